@@ -1,0 +1,1 @@
+"""A body and what moves it. May import `scene_graphs`, never the planner."""

@@ -1,0 +1,1 @@
+"""Files a motion can be written to and read from."""

@@ -1,0 +1,1 @@
+"""What words mean: sentence features for captions and summaries."""

@@ -1,0 +1,176 @@
+"""The words of the body: skills, actions, motion and the protocol every motion backend keeps.
+
+Arrays are float32, Y up, metres, seconds, quaternions xyzw; T frames at `fps`; 22 joints in SMPL's order (skeleton.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion_backend.skeleton import Skeleton
+from scene_graphs.homes import Home
+from scene_graphs.surfaces import Spot
+
+Array = NDArray[np.float32]
+FPS = 30
+
+
+class Skill(StrEnum):
+    """The keyframe skills of SIMS 3.4, with standing up from a seat told apart as in its tables."""
+
+    LOCO = "loco"
+    SITDOWN = "sitdown"
+    STANDUP = "standup"
+    GETUP = "getup"
+    LIEDOWN = "liedown"
+    TOUCH = "touch"
+
+
+class Posture(StrEnum):
+    """What the body rests in between two actions."""
+
+    STANDING = "standing"
+    SEATED = "seated"
+    LYING = "lying"
+
+
+@dataclass(frozen=True)
+class Character:
+    """Who acts: the name and pronouns the story uses, and the height the body has (metres)."""
+
+    name: str = "Sam"
+    pronouns: str = "they"
+    """he, she or they."""
+    height: float = 1.70
+
+
+@dataclass(frozen=True)
+class Action:
+    """One thing to do, grounded in the home: what a backend gets for one keyframe (SIMS 3.4, Eq. 6)."""
+
+    skill: Skill
+    caption: str
+    emotion: str
+    """Free text of the keyframe, such as "tired, sad"."""
+    furniture: str = "floor"
+    object_id: str | None = None
+    spot: Spot | None = None
+    """Where on the object: surface point, normal, facing and standing point. None for walking and the floor."""
+    goal: tuple[float, float] | None = None
+    """Pelvis goal on the floor, [x, z], for loco."""
+    facing: float | None = None
+    """Yaw to end with, for loco."""
+    hand: str = "right"
+    """The hand that touches: left or right."""
+    hold: float = 1.5
+    """Seconds to stay in the reached pose."""
+    keyframe: int = 0
+    """Index of the keyframe it serves."""
+
+
+@dataclass(frozen=True)
+class ContactGoal:
+    """One contact to reach: a joint and where it should be (surface point + normal × rest offset)."""
+
+    joint: str
+    position: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What the body did over T frames; world joint positions follow by `skeleton.forward_kinematics`."""
+
+    root_positions: Array
+    """(T, 3) pelvis in the world."""
+    local_rotations: Array
+    """(T, 22, 4) xyzw, each joint in its parent's frame, the pelvis in the world's."""
+    contacts: Array
+    """(T, 4) 1 where planted: left ankle, left toe, right ankle, right toe."""
+    skeleton: Skeleton
+    actions: NDArray[np.int32]
+    """(T,) index of the keyframe each frame serves."""
+    fps: int = FPS
+    goals: tuple[ContactGoal, ...] = ()
+    """What this segment set out to touch, sit on or reach."""
+    completed: bool = True
+    reason: str = ""
+    """Why not, when it was not completed."""
+
+    def __len__(self) -> int:
+        return int(self.root_positions.shape[0])
+
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        return len(self) / self.fps
+
+    def joint_positions(self) -> Array:
+        """World positions of all joints. (T, 22, 3) float32."""
+        return self.skeleton.forward_kinematics(self.root_positions, self.local_rotations)[0]
+
+    def part(self, start: int, stop: int) -> Motion:
+        """Frames start to stop (exclusive)."""
+        window = slice(start, stop)
+        return replace(
+            self,
+            root_positions=self.root_positions[window],
+            local_rotations=self.local_rotations[window],
+            contacts=self.contacts[window],
+            actions=self.actions[window],
+        )
+
+
+def join(motions: list[Motion]) -> Motion:
+    """One motion after the other; they must share skeleton and fps."""
+    first = motions[0]
+    return replace(
+        first,
+        root_positions=np.concatenate([m.root_positions for m in motions]),
+        local_rotations=np.concatenate([m.local_rotations for m in motions]),
+        contacts=np.concatenate([m.contacts for m in motions]),
+        actions=np.concatenate([m.actions for m in motions]),
+        goals=(),
+        completed=all(m.completed for m in motions),
+        reason="; ".join(m.reason for m in motions if m.reason),
+    )
+
+
+@dataclass(frozen=True)
+class BodyState:
+    """All a backend needs to go on: JSON-able, so that a story can stop and resume between any two actions."""
+
+    posture: Posture
+    pelvis: tuple[float, float, float]
+    yaw: float
+    object_id: str | None = None
+    """What it sits or lies on."""
+    index: int = 0
+    """Segments made so far; with the seed it fixes the next segment's randomness."""
+    seed: int = 0
+    height: float = 1.70
+    memory: dict[str, Any] = field(default_factory=dict)
+    """The backend's own: lists and numbers only."""
+
+
+class MotionBackend(Protocol):
+    """What moves the body. One segment an action, each reproducible alone from the state it starts in."""
+
+    name: str
+
+    def begin(self, home: Home, character: Character, seed: int) -> BodyState:
+        """The body standing in the home, before its first action."""
+        ...
+
+    def advance(self, home: Home, action: Action, state: BodyState) -> tuple[Motion, BodyState]:
+        """Act out one action from a state."""
+        ...
+
+
+Progress = Callable[[str, float], None]
+"""Called with a stage name and the share done, 0 to 1."""

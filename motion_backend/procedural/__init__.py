@@ -1,0 +1,1 @@
+"""The procedural backend: a body moved by rules, styles and inverse kinematics."""

@@ -1,0 +1,106 @@
+"""The body's skeleton: 22 joints with SMPL's names and parents, and offsets of our own (notes: fractions of height).
+
+Rest pose is a T-pose facing +Z: Y up, left is +X. Offsets are metres from the parent joint.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion_backend import rotations
+
+JOINTS = (
+    "pelvis", "left_hip", "right_hip", "spine1", "left_knee", "right_knee", "spine2", "left_ankle", "right_ankle",
+    "spine3", "left_foot", "right_foot", "neck", "left_collar", "right_collar", "head", "left_shoulder",
+    "right_shoulder", "left_elbow", "right_elbow", "left_wrist", "right_wrist",
+)  # fmt: skip
+PARENTS = (-1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9, 12, 13, 14, 16, 17, 18, 19)
+INDEX = {name: index for index, name in enumerate(JOINTS)}
+REFERENCE_HEIGHT = 1.70
+
+_OFFSETS = {
+    "pelvis": (0.0, 0.0, 0.0),
+    "left_hip": (0.088, 0.0, 0.0),
+    "spine1": (0.0, 0.11, 0.0),
+    "left_knee": (0.0, -0.4165, 0.0),
+    "spine2": (0.0, 0.12, 0.0),
+    "left_ankle": (0.0, -0.418, 0.0),
+    "spine3": (0.0, 0.12, 0.0),
+    "left_foot": (0.0, -0.035, 0.12),
+    "neck": (0.0, 0.20, 0.0),
+    "left_collar": (0.05, 0.13, 0.0),
+    "head": (0.0, 0.09, 0.0),
+    "left_shoulder": (0.130, 0.005, 0.0),
+    "left_elbow": (0.292, 0.0, 0.0),
+    "left_wrist": (0.248, 0.0, 0.0),
+}
+ANKLE_HEIGHT = 0.066
+"""Ankle above the sole, at the reference height."""
+
+
+@dataclass(frozen=True)
+class Skeleton:
+    """Joint names, parents and rest offsets; bones never change length."""
+
+    names: tuple[str, ...]
+    parents: tuple[int, ...]
+    offsets: NDArray[np.float64]
+    """(J, 3) metres from the parent joint in the rest pose."""
+
+    @cached_property
+    def rest_positions(self) -> NDArray[np.float64]:
+        """Joint positions of the T-pose with the pelvis at the origin. (J, 3)."""
+        positions = np.zeros_like(self.offsets)
+        for joint, parent in enumerate(self.parents):
+            if parent >= 0:
+                positions[joint] = positions[parent] + self.offsets[joint]
+        return positions
+
+    @property
+    def scale(self) -> float:
+        """Size against the reference body of 1.70 m."""
+        return float(-self.offsets[INDEX["left_knee"], 1] / 0.4165)
+
+    @property
+    def ankle_height(self) -> float:
+        """Ankle above the sole when standing flat."""
+        return ANKLE_HEIGHT * self.scale
+
+    @property
+    def standing_height(self) -> float:
+        """Pelvis above the floor with straight legs."""
+        leg = self.offsets[INDEX["left_knee"], 1] + self.offsets[INDEX["left_ankle"], 1]
+        return float(-leg + self.ankle_height)
+
+    def forward_kinematics(
+        self, root_positions: NDArray[np.floating], local_rotations: NDArray[np.floating]
+    ) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
+        """World positions (T, J, 3) and rotations (T, J, 4) from pelvis positions and local rotations."""
+        frames = len(root_positions)
+        positions = np.empty((frames, len(self.parents), 3))
+        world = np.empty((frames, len(self.parents), 4))
+        for joint, parent in enumerate(self.parents):
+            local = np.asarray(local_rotations[:, joint], dtype=np.float64)
+            if parent < 0:
+                positions[:, joint] = root_positions
+                world[:, joint] = local
+            else:
+                world[:, joint] = rotations.compose(world[:, parent], local)
+                positions[:, joint] = positions[:, parent] + rotations.rotate(world[:, parent], self.offsets[joint])
+        return positions.astype(np.float32), world
+
+
+def build_skeleton(height: float = REFERENCE_HEIGHT) -> Skeleton:
+    """The skeleton of a body of that height (metres), every bone scaled alike."""
+    if not 1.2 <= height <= 2.2:
+        raise ValueError(f"character.height must lie between 1.2 and 2.2 metres, got {height}")
+    offsets = np.zeros((len(JOINTS), 3))
+    for name, offset in _OFFSETS.items():
+        offsets[INDEX[name]] = offset
+        if name.startswith("left_"):
+            offsets[INDEX["right_" + name[5:]]] = (-offset[0], offset[1], offset[2])
+    return Skeleton(JOINTS, PARENTS, offsets * (height / REFERENCE_HEIGHT))

@@ -1,0 +1,1 @@
+"""Scripts, stories, language models and the command line. May import every other package."""

@@ -1,0 +1,1 @@
+"""Short and long scripts: keeping, finding, composing, checking and telling them."""

@@ -1,0 +1,120 @@
+"""The planner's words, as in the paper's tables: keyframe, short script, long script (SIMS 3.2, 9, 10)."""
+
+from __future__ import annotations
+
+import re
+from typing import Literal
+
+from pydantic import AliasChoices, BaseModel, ConfigDict, Field, field_validator
+
+from motion_backend.motion import Skill
+
+EMOTIONS = ("neutral", "happy", "angry", "hurried", "tired", "sad", "stressed", "drunk", "relaxed")
+"""Neutral and the eight emotions or styles of SIMS 4.1."""
+
+Room = Literal["bedroom", "living_room", "dining_room", "study"]
+Source = Literal["authored", "video", "text", "imitation"]
+_INSTANCE = re.compile(r"^(?P<name>.*?)[\s_#]+(?P<number>[1-9]\d?)$")
+
+
+class Keyframe(BaseModel):
+    """One moment of a script: a skill in an emotion, told by a caption, at a piece of furniture or the floor."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
+
+    skill: Skill
+    emotion: str = Field("neutral", validation_alias=AliasChoices("emotion", "emotion/style"), max_length=80)
+    caption: str = Field(min_length=1, max_length=200)
+    furniture: str = Field("floor", validation_alias=AliasChoices("furniture", "furnitures"), max_length=60)
+    """A furniture word, with an instance number when a script uses two of a kind ("wardrobe 2"), or "floor"."""
+
+    @field_validator("furniture", "emotion", "caption")
+    @classmethod
+    def _tidy(cls, text: str) -> str:
+        return " ".join(text.split())
+
+    @property
+    def piece(self) -> tuple[str, int]:
+        """The furniture word and its instance number, 1 unless it says otherwise."""
+        match = _INSTANCE.match(self.furniture)
+        return (match["name"], int(match["number"])) if match else (self.furniture, 1)
+
+    @property
+    def on_floor(self) -> bool:
+        """Whether it needs no furniture."""
+        return self.furniture.lower() == "floor"
+
+
+class ScriptGraph(BaseModel):
+    """The furniture a script uses and which pieces belong together; nodes as in `Keyframe.furniture`."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    nodes: tuple[tuple[str, int], ...] = ()
+    edges: tuple[tuple[int, int], ...] = ()
+
+
+class ShortScript(BaseModel):
+    """A few keyframes with one summary: what the library keeps and a story is woven from."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    id: str = Field(pattern=r"^[a-z0-9][a-z0-9-]{0,79}$")
+    summary: str = Field(min_length=1, max_length=400)
+    emotion: Literal["neutral", "happy", "angry", "hurried", "tired", "sad", "stressed", "drunk", "relaxed"]
+    room: Room
+    keyframes: tuple[Keyframe, ...] = Field(min_length=1, max_length=24)
+    graph: ScriptGraph | None = None
+    """Given, or derived from the keyframes: an edge between two pieces used one after the other."""
+    source: Source = "authored"
+    licence: str = "MIT"
+
+
+class PlannedKeyframe(Keyframe):
+    """A keyframe of a long script, with where it came from."""
+
+    short_script: int | None = None
+    """Index into the long script's short scripts; None for a connecting keyframe."""
+    event: int | None = None
+    """Index of the theme's event it serves."""
+    room: Room | None = None
+
+
+class Retrieved(BaseModel):
+    """A short script that was chosen, for which event of the theme, and how near its summary was."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    script: ShortScript
+    event: int
+    score: float
+
+
+class Event(BaseModel):
+    """One thing that happens in a theme, in order."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    text: str
+    emotion: str = "neutral"
+
+
+class LongScript(BaseModel):
+    """The whole plan: events of the theme, the short scripts chosen for them, and every keyframe in order."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    theme: str
+    events: tuple[Event, ...]
+    short_scripts: tuple[Retrieved, ...]
+    keyframes: tuple[PlannedKeyframe, ...]
+    repairs: tuple[str, ...] = ()
+    """What checking changed, and why."""
+    uncovered: tuple[str, ...] = ()
+    """Events no short script was near enough to."""
+    method: Literal["matching", "direct"] = "matching"
+    planner: str = "rules"
+    """What planned it: "rules" or "llm:<model>"."""
+    encoder: str = ""
+    """The sentence encoder that ranked the library."""
+    seed: int = 0

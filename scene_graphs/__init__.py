@@ -1,0 +1,1 @@
+"""Furniture, graphs, rooms, homes and the ways through them. Imports nothing of ours."""
