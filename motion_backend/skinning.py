@@ -1,0 +1,74 @@
+"""Skinned meshes: vertices that follow the skeleton's joints, and where they are in a pose (linear blend skinning)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion_backend import rotations
+from motion_backend.skeleton import Skeleton
+
+Floats = NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Material:
+    """One look: sRGB colour and how matt it is."""
+
+    name: str
+    color: tuple[float, float, float]
+    roughness: float = 0.85
+
+
+@dataclass(frozen=True)
+class SkinnedMesh:
+    """A body's surface in the rest pose (pelvis at the origin, T-pose facing +Z) and how it hangs on the joints."""
+
+    vertices: Floats
+    """(V, 3) metres."""
+    normals: Floats
+    """(V, 3) unit."""
+    faces: NDArray[np.uint32]
+    """(F, 3) counter-clockwise seen from outside, sorted by material."""
+    joints: NDArray[np.uint16]
+    """(V, 4) joint indices; unused ones are 0 with weight 0."""
+    weights: Floats
+    """(V, 4), each row sums to 1."""
+    materials: tuple[Material, ...]
+    face_materials: NDArray[np.uint8]
+    """(F,) index into `materials`."""
+
+    @property
+    def face_colors(self) -> Floats:
+        """(F, 3) sRGB."""
+        return np.array([m.color for m in self.materials], dtype=np.float32)[self.face_materials]
+
+
+def strongest_four(weights: NDArray[np.floating]) -> tuple[NDArray[np.uint16], Floats]:
+    """Dense weights (V, J) to the four largest a vertex: joints (V, 4) and weights (V, 4) that sum to 1."""
+    order = np.argsort(-weights, axis=1, kind="stable")[:, :4]
+    kept = np.take_along_axis(weights, order, axis=1)
+    kept = np.where(kept < 1e-3, 0.0, kept)
+    kept = kept / kept.sum(axis=1, keepdims=True)
+    return np.where(kept > 0, order, 0).astype(np.uint16), kept.astype(np.float32)
+
+
+def skin(
+    mesh: SkinnedMesh,
+    skeleton: Skeleton,
+    root_positions: NDArray[np.floating],
+    local_rotations: NDArray[np.floating],
+) -> tuple[Floats, Floats]:
+    """World vertices (T, V, 3) and normals (T, V, 3) of a mesh in T poses."""
+    positions, world = skeleton.forward_kinematics(np.asarray(root_positions), np.asarray(local_rotations))
+    turn = rotations.quat_to_matrix(world)  # (T, J, 3, 3)
+    shift = positions - np.einsum("tjab,jb->tja", turn, skeleton.rest_positions)
+    frames = np.concatenate([turn, shift[..., None]], axis=-1).reshape(len(positions), -1, 12)
+    dense = np.zeros((len(mesh.vertices), len(skeleton.names)))
+    np.add.at(dense, (np.arange(len(dense))[:, None], mesh.joints), mesh.weights)
+    blended = (dense @ frames).reshape(len(positions), -1, 3, 4)  # (T, V, 3, 4)
+    vertices = np.einsum("tvab,vb->tva", blended[..., :3], mesh.vertices) + blended[..., 3]
+    normals = rotations.normalize(np.einsum("tvab,vb->tva", blended[..., :3], mesh.normals))
+    return vertices.astype(np.float32), normals.astype(np.float32)
