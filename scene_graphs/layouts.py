@@ -37,8 +37,8 @@ class Placed:
         local = np.asarray(points, dtype=float)
         cos, sin = np.cos(self.yaw), np.sin(self.yaw)
         x, y, z = local[..., 0], local[..., 1], local[..., 2]
-        turned = np.stack([cos * x + sin * z, y, -sin * x + cos * z], axis=-1)
-        return turned + np.asarray(self.position)
+        turned: Array = np.stack([cos * x + sin * z, y, -sin * x + cos * z], axis=-1) + np.asarray(self.position)
+        return turned
 
     def to_local(self, points: Array | Point3) -> Array:
         """The inverse of `to_world`. (..., 3)."""

@@ -1,0 +1,1 @@
+"""Finding the places of a piece of furniture that afford sitting, lying and touching."""

@@ -1,0 +1,37 @@
+"""Where a body can sit, lie and touch: candidates from an object's shape, each with a standing point (SIMS 4.1)."""
+
+from __future__ import annotations
+
+from math import cos, inf, pi, sin
+
+from scene_graphs.affording.resting import TO_FOOT, TO_HEAD, lying, sitting
+from scene_graphs.affording.spot import Spot, wrap
+from scene_graphs.affording.touching import touching
+from scene_graphs.forms import parts
+from scene_graphs.layouts import Placed, Point2
+
+__all__ = ["Spot", "floor_spot", "spots"]
+
+
+def spots(placed: Placed, affordance: str) -> tuple[Spot, ...]:
+    """Candidate spots of an object for "sit", "lie" or "touch", best first; empty where its shape offers none.
+
+    They look at the object alone: whether a standing point is free in a room is for the caller to find.
+    """
+    makers = {"sit": sitting, "lie": lying, "touch": touching}
+    if affordance not in makers:
+        raise ValueError(f"affordance must be one of {', '.join(makers)}, got {affordance!r}")
+    solid = [part for part in parts(placed.category, placed.size) if not part.is_soft]
+    return tuple(makers[affordance](placed, solid))
+
+
+def floor_spot(affordance: str, point_xz: Point2, facing: float) -> Spot:
+    """The floor as a place to sit (looking to `facing`) or lie (head towards `facing`), object id "floor"."""
+    if affordance not in ("sit", "lie"):
+        raise ValueError(f"the floor affords sit and lie, not {affordance!r}")
+    approach = facing if affordance == "sit" else facing + pi
+    ahead = 0.30
+    standing = (point_xz[0] + ahead * sin(approach), point_xz[1] + ahead * cos(approach))
+    room = (inf, 0.0) if affordance == "sit" else (TO_HEAD, TO_FOOT)
+    point = (point_xz[0], 0.0, point_xz[1])
+    return Spot(affordance, "floor", point, (0.0, 1.0, 0.0), facing, standing, wrap(approach), ahead, *room)
