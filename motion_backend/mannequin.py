@@ -140,9 +140,11 @@ def _hand_on(weights: Weights, parent: str, child: str, share: Array) -> None:
 def _weigh_spine(p: Array) -> Weights:
     y = p[:, 1]
     weights = {"pelvis": np.ones(len(p))}
-    chain = (("spine1", 0.10, 0.07), ("spine2", 0.22, 0.07), ("spine3", 0.34, 0.07), ("neck", 0.545, 0.035))
-    for (child, middle, half), parent in zip(chain, ("pelvis", "spine1", "spine2", "spine3"), strict=True):
-        _hand_on(weights, parent, child, _rise(y, middle, half))
+    chain = (("pelvis", "spine1", 0.10), ("spine1", "spine2", 0.22), ("spine2", "spine3", 0.34))
+    for parent, child, middle in chain:
+        _hand_on(weights, parent, child, _rise(y, middle, 0.07))
+    # The neck turns only what is near the middle: shoulders are as high as its root.
+    _hand_on(weights, "spine3", "neck", _rise(y - 0.5 * np.abs(p[:, 0]), 0.53, 0.04))
     _hand_on(weights, "neck", "head", _rise(y - 0.35 * p[:, 2], 0.615, 0.035))
     return weights
 
