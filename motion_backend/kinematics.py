@@ -1,0 +1,61 @@
+"""Two-bone inverse kinematics in closed form, over whole motions at once."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion_backend import rotations
+
+Array = NDArray[np.float64]
+STRAIGHTEST = 0.999
+"""Share of a limb's length that is used at most: a limb pulled quite straight snaps its hinge."""
+
+
+class Limb(NamedTuple):
+    """A solved limb: unit directions of both bones and of the hinge between them. Each (..., 3)."""
+
+    upper: Array
+    lower: Array
+    hinge: Array
+
+
+def two_bone(root: Array, target: Array, pole: Array, lengths: tuple[float, float]) -> Limb:
+    """Bend a limb so that its end comes to `target`, its middle joint towards `pole`; out of reach it points there.
+
+    root, target: (..., 3) world positions; pole: (..., 3) direction, need not be unit or perpendicular.
+    """
+    upper_length, lower_length = lengths
+    reach = target - root
+    distance = np.linalg.norm(reach, axis=-1, keepdims=True)
+    along = reach / np.maximum(distance, 1e-9)
+    longest = STRAIGHTEST * (upper_length + lower_length)
+    shortest = abs(upper_length - lower_length) + 0.12 * min(lengths)
+    distance = np.clip(distance, shortest, longest)
+    aside = rotations.normalize(pole - np.sum(pole * along, axis=-1, keepdims=True) * along)
+    cosine = (upper_length**2 + distance**2 - lower_length**2) / (2 * upper_length * distance)
+    sine = np.sqrt(np.maximum(1 - cosine**2, 0.0))
+    upper = cosine * along + sine * aside
+    lower = rotations.normalize(distance * along - upper_length * upper)
+    return Limb(upper, lower, np.cross(aside, along))
+
+
+def leg_rotations(leg: Limb) -> tuple[Array, Array]:
+    """World rotations of hip and knee; at rest both bones point down (-Y) and the hinge is +X. (..., 4) each."""
+    return _hinged(leg.hinge, -leg.upper), _hinged(leg.hinge, -leg.lower)
+
+
+def arm_rotations(arm: Limb, side: int) -> tuple[Array, Array]:
+    """World rotations of shoulder and elbow; at rest bones point to ±X (side +1 left, -1 right). (..., 4) each."""
+    y = -side * arm.hinge
+    return _aligned(side * arm.upper, y), _aligned(side * arm.lower, y)
+
+
+def _hinged(x: Array, y: Array) -> Array:
+    return rotations.basis_to_quat(x, y, np.cross(x, y))
+
+
+def _aligned(x: Array, y: Array) -> Array:
+    return rotations.basis_to_quat(x, y, np.cross(x, y))

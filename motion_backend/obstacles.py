@@ -1,0 +1,83 @@
+"""What a body must not go through: every solid box of a home, and how deep points are inside it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scene_graphs.furnishing import parts
+from scene_graphs.homes import Home
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Obstacles:
+    """N upright boxes turned about Y, in the home's frame."""
+
+    centers: Array
+    """(N, 3)."""
+    halves: Array
+    """(N, 3) half sizes in the box's own frame."""
+    yaws: Array
+    """(N,)."""
+    owners: tuple[str, ...]
+    """Object id of each box."""
+    soft: NDArray[np.bool_]
+    """(N,) pillows and the like, which give way."""
+
+    @staticmethod
+    def of_home(home: Home) -> Obstacles:
+        """The furniture parts of a home."""
+        centers, halves, yaws, owners, soft = [], [], [], [], []
+        for placed in home.objects:
+            for part in parts(placed.category, placed.size):
+                centers.append(placed.to_world(part.center))
+                halves.append(np.asarray(part.size) / 2)
+                yaws.append(placed.yaw)
+                owners.append(placed.id)
+                soft.append(part.is_soft)
+        return Obstacles(
+            np.array(centers).reshape(-1, 3),
+            np.array(halves).reshape(-1, 3),
+            np.array(yaws, dtype=np.float64),
+            tuple(owners),
+            np.array(soft, dtype=bool),
+        )
+
+    def near(self, low: Array, high: Array) -> Obstacles:
+        """Only the boxes whose surroundings meet the axis-aligned box from low to high (3,) each."""
+        cos, sin = np.abs(np.cos(self.yaws)), np.abs(np.sin(self.yaws))
+        x, y, z = self.halves.T
+        span = np.stack([cos * x + sin * z, y, sin * x + cos * z], axis=1)
+        return self.only(np.all((self.centers + span >= low) & (self.centers - span <= high), axis=1))
+
+    def only(self, chosen: NDArray[np.bool_]) -> Obstacles:
+        """The boxes a mask (N,) chooses."""
+        owners = tuple(owner for owner, keep in zip(self.owners, chosen, strict=True) if keep)
+        return Obstacles(self.centers[chosen], self.halves[chosen], self.yaws[chosen], owners, self.soft[chosen])
+
+    def solid(self) -> Obstacles:
+        """Without what gives way."""
+        return self.only(~self.soft)
+
+    def inside(self, points: Array, index: int) -> Array:
+        """Depth of points (P, 3) in one box: positive inside, to the nearest face; negative outside. (P,)."""
+        moved = points - self.centers[index]
+        cos, sin = np.cos(self.yaws[index]), np.sin(self.yaws[index])
+        local = np.abs(np.stack([cos * moved[:, 0] - sin * moved[:, 2], moved[:, 1], sin * moved[:, 0] + cos * moved[:, 2]]))
+        gap = local - self.halves[index][:, None]
+        outside = np.sqrt((np.maximum(gap, 0.0) ** 2).sum(axis=0))
+        return np.asarray(np.where(outside > 0, -outside, -gap.max(axis=0)))
+
+    def depth(self, points: Array) -> Array:
+        """Greatest depth of points (P, 3) in any box; -inf where there is none. (P,)."""
+        deepest = np.full(len(points), -np.inf)
+        if not len(points):
+            return deepest
+        close = self.near(points.min(axis=0) - 0.1, points.max(axis=0) + 0.1)
+        for index in range(len(close.owners)):
+            deepest = np.maximum(deepest, close.inside(points, index))
+        return deepest

@@ -1,0 +1,247 @@
+"""The handles a body is posed by, and solving them into joint rotations.
+
+A `Pose` holds what an animator would hold: pelvis, spine, head, feet on the ground, wrists and where elbows point.
+Every field may carry leading time dimensions; a motion is a Pose whose arrays begin with T.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion_backend import rotations
+from motion_backend.kinematics import Limb, arm_rotations, leg_rotations, two_bone
+from motion_backend.skeleton import INDEX, Skeleton
+
+Array = NDArray[np.float64]
+SIDES = (("left", 1), ("right", -1))
+SPINE = ("spine1", "spine2", "spine3")
+ROTATIONS = ("hips", "feet", "palms")
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Handles of the body. Index 0 of a pair is left, 1 is right; distances in metres."""
+
+    pelvis: Array
+    """(..., 3) world."""
+    hips: Array
+    """(..., 4) pelvis to world."""
+    spine: Array
+    """(..., 3) rotation vector of the chest against the pelvis, shared by three joints; +x bends forward."""
+    head: Array
+    """(..., 3) rotation vector of the head against the chest, shared by neck and head."""
+    ankles: Array
+    """(..., 2, 3) world."""
+    feet: Array
+    """(..., 2, 4) foot to world."""
+    toes: Array
+    """(..., 2) bend of the toes, positive upwards."""
+    knees: Array
+    """(..., 2, 3) world direction the knees point to."""
+    arms: Array
+    """(..., 2, 3) wrist from its shoulder in the chest frame, in arm lengths (1 = straight)."""
+    elbows: Array
+    """(..., 2, 3) direction the elbows point to, in the chest frame."""
+    reach: Array
+    """(..., 2, 3) world position for the wrist, in place of `arms` as far as `reaching` says."""
+    reaching: Array
+    """(..., 2) 0 to 1."""
+    palms: Array
+    """(..., 2, 4) hand to world, used as far as `pressing` says."""
+    pressing: Array
+    """(..., 2) 0 to 1."""
+    planted: Array
+    """(..., 2) 1 where the foot stands on its place."""
+
+    def __len__(self) -> int:
+        return int(self.pelvis.shape[0])
+
+    def at(self, index: int | slice) -> Pose:
+        """One frame, or a stretch of frames."""
+        return Pose(**{f.name: getattr(self, f.name)[index] for f in fields(self)})
+
+    def repeat(self, frames: int) -> Pose:
+        """The same single pose held for so many frames."""
+        held = {f.name: np.repeat(getattr(self, f.name)[None], frames, axis=0) for f in fields(self)}
+        return Pose(**held)
+
+    def to_lists(self) -> dict[str, Any]:
+        """Plain lists for a BodyState's memory."""
+        return {f.name: np.round(getattr(self, f.name), 9).tolist() for f in fields(self)}
+
+    @staticmethod
+    def from_lists(memory: dict[str, Any]) -> Pose:
+        """Back from `to_lists`."""
+        return Pose(**{f.name: np.asarray(memory[f.name], dtype=np.float64) for f in fields(Pose)})
+
+
+def concatenate(poses: list[Pose]) -> Pose:
+    """One stretch of frames after the other."""
+    return Pose(**{f.name: np.concatenate([getattr(p, f.name) for p in poses]) for f in fields(Pose)})
+
+
+def smooth(u: Array | float) -> Array:
+    """Minimum-jerk share of the way at share u of the time (0 to 1, clipped)."""
+    u = np.clip(u, 0.0, 1.0)
+    return np.asarray(u**3 * (10 - 15 * u + 6 * u**2))
+
+
+def interpolate(times: list[float], keys: list[Pose], fps: int) -> Pose:
+    """Frames through key poses: cubic Hermite through every handle, at rest at both ends."""
+    knots = np.asarray(times, dtype=np.float64)
+    frames = max(round((knots[-1] - knots[0]) * fps), 1)
+    at = knots[0] + np.arange(1, frames + 1) / fps
+    values: dict[str, Array] = {}
+    for f in fields(Pose):
+        stacked = np.stack([getattr(key, f.name) for key in keys])
+        if f.name in ROTATIONS:
+            values[f.name] = _rotation_spline(knots, stacked, at)
+        elif f.name == "planted":
+            values[f.name] = stacked[np.clip(np.searchsorted(knots, at, side="left"), 0, len(knots) - 1)]
+        else:
+            values[f.name] = _spline(knots, stacked, at)
+    lengths = _spline(knots, np.linalg.norm(np.stack([key.arms for key in keys]), axis=-1), at)
+    values["arms"] = _around_the_shoulder(values["arms"], lengths)
+    return Pose(**values)
+
+
+def _around_the_shoulder(arms: Array, lengths: Array) -> Array:
+    """Push wrists that cut the corner out, forward and sideways, until the arm has the length it should have."""
+    out = np.array([[0.75, 0.0, 0.66], [-0.75, 0.0, 0.66]])
+    along = np.sum(arms * out, axis=-1)
+    missing = np.maximum(lengths**2 - np.sum(arms**2, axis=-1), 0.0)
+    return np.asarray(arms + out * (np.sqrt(along**2 + missing) - along)[..., None])
+
+
+def _spline(knots: Array, values: Array, at: Array) -> Array:
+    """Shape-keeping cubic through values (K, ...), flat at both ends."""
+    if len(knots) == 2:
+        share = smooth((at - knots[0]) / (knots[1] - knots[0]))
+        return np.asarray(values[0] + share.reshape(-1, *([1] * (values.ndim - 1))) * (values[1] - values[0]))
+    from scipy.interpolate import CubicHermiteSpline
+
+    steps = np.diff(knots).reshape(-1, *([1] * (values.ndim - 1)))
+    slopes = np.diff(values, axis=0) / steps
+    before, after = slopes[:-1], slopes[1:]
+    # Harmonic mean where both slopes agree in sign (Fritsch-Carlson), else flat: no overshoot into furniture.
+    agree = before * after > 0
+    mean = np.where(agree, 2 * before * after / np.where(agree, before + after, 1.0), 0.0)
+    flat = np.zeros_like(values[:1])
+    return np.asarray(CubicHermiteSpline(knots, values, np.concatenate([flat, mean, flat]), axis=0)(at))
+
+
+def _rotation_spline(knots: Array, quats: Array, at: Array) -> Array:
+    middle = quats[len(quats) // 2]
+    vectors = rotations.quat_to_rotvec(rotations.compose(rotations.inverse(middle), quats))
+    return rotations.compose(middle, rotations.rotvec_to_quat(_spline(knots, vectors, at)))
+
+
+def settle_from(start: Pose, motion: Pose, fps: int, seconds: float = 0.45) -> Pose:
+    """Let a motion begin in exactly `start`: the difference at its first frame fades out (inertialisation).
+
+    Feet are left alone: who places them begins where they stand.
+    """
+    fade = 1 - smooth(np.arange(1, len(motion) + 1) / (seconds * fps))
+    first = motion.at(0)
+    changed: dict[str, Array] = {}
+    for name in ("pelvis", "spine", "head", "knees", "arms", "elbows", "reach", "reaching", "pressing"):
+        offset = getattr(start, name) - getattr(first, name)
+        values = getattr(motion, name)
+        changed[name] = values + fade.reshape(-1, *([1] * (values.ndim - 1))) * offset
+    for name in ("hips", "palms"):
+        offset = rotations.quat_to_rotvec(
+            rotations.compose(getattr(start, name), rotations.inverse(getattr(first, name)))
+        )
+        values = getattr(motion, name)
+        turn = rotations.rotvec_to_quat(fade.reshape(-1, *([1] * (values.ndim - 1))) * offset)
+        changed[name] = rotations.compose(turn, values)
+    return replace(motion, **changed)
+
+
+def solve(pose: Pose, skeleton: Skeleton) -> tuple[Array, Array]:
+    """Handles of T frames to pelvis positions (T, 3) and local rotations (T, 22, 4)."""
+    frames = len(pose)
+    local = np.tile(rotations.IDENTITY, (frames, len(skeleton.names), 1))
+    local[:, INDEX["pelvis"]] = pose.hips
+    third = rotations.rotvec_to_quat(pose.spine / 3)
+    for name in SPINE:
+        local[:, INDEX[name]] = third
+    half = rotations.rotvec_to_quat(pose.head / 2)
+    local[:, INDEX["neck"]] = local[:, INDEX["head"]] = half
+    chest, chest_position = chest_frame(pose, skeleton)
+    for index, (name, side) in enumerate(SIDES):
+        _solve_leg(local, pose, skeleton, index, name)
+        _solve_arm(local, pose, skeleton, (index, name, side), (chest, chest_position))
+    return pose.pelvis.copy(), rotations.continuous(local)
+
+
+def chest_frame(pose: Pose, skeleton: Skeleton) -> tuple[Array, Array]:
+    """World rotation (T, 4) and position (T, 3) of spine3, the frame that arms hang in."""
+    third = rotations.rotvec_to_quat(pose.spine / 3)
+    rotation, position = pose.hips, pose.pelvis
+    for name in SPINE:
+        position = position + rotations.rotate(rotation, skeleton.offsets[INDEX[name]])
+        rotation = rotations.compose(rotation, third)
+    return rotation, position
+
+
+def _solve_leg(local: Array, pose: Pose, skeleton: Skeleton, index: int, name: str) -> None:
+    offsets = skeleton.offsets
+    hip = pose.pelvis + rotations.rotate(pose.hips, offsets[INDEX[f"{name}_hip"]])
+    lengths = (-float(offsets[INDEX[f"{name}_knee"], 1]), -float(offsets[INDEX[f"{name}_ankle"], 1]))
+    leg = two_bone(hip, pose.ankles[:, index], pose.knees[:, index], lengths)
+    thigh, shin = leg_rotations(leg)
+    local[:, INDEX[f"{name}_hip"]] = rotations.compose(rotations.inverse(pose.hips), thigh)
+    local[:, INDEX[f"{name}_knee"]] = rotations.compose(rotations.inverse(thigh), shin)
+    local[:, INDEX[f"{name}_ankle"]] = rotations.compose(rotations.inverse(shin), pose.feet[:, index])
+    bend = np.zeros((len(pose), 3))
+    bend[:, 0] = -pose.toes[:, index]
+    local[:, INDEX[f"{name}_foot"]] = rotations.rotvec_to_quat(bend)
+
+
+def _solve_arm(
+    local: Array, pose: Pose, skeleton: Skeleton, which: tuple[int, str, int], frame: tuple[Array, Array]
+) -> None:
+    index, name, side = which
+    chest, _ = frame
+    arm, collar = limb_of_arm(pose, skeleton, which, frame)
+    upper, lower = arm_rotations(arm, side)
+    local[:, INDEX[f"{name}_collar"]] = collar
+    clavicle = rotations.compose(chest, collar)
+    local[:, INDEX[f"{name}_shoulder"]] = rotations.compose(rotations.inverse(clavicle), upper)
+    local[:, INDEX[f"{name}_elbow"]] = rotations.compose(rotations.inverse(upper), lower)
+    press = rotations.quat_to_rotvec(rotations.compose(rotations.inverse(lower), pose.palms[:, index]))
+    angle = np.linalg.norm(press, axis=-1, keepdims=True)
+    press = press * np.minimum(1.0, 1.3 / np.maximum(angle, 1e-9)) * pose.pressing[:, index, None]
+    local[:, INDEX[f"{name}_wrist"]] = rotations.rotvec_to_quat(press)
+
+
+def limb_of_arm(
+    pose: Pose, skeleton: Skeleton, which: tuple[int, str, int], frame: tuple[Array, Array]
+) -> tuple[Limb, Array]:
+    """The solved arm and its collar's local rotation."""
+    index, name, side = which
+    chest, chest_position = frame
+    offsets = skeleton.offsets
+    lengths = (abs(float(offsets[INDEX[f"{name}_elbow"], 0])), abs(float(offsets[INDEX[f"{name}_wrist"], 0])))
+    span = sum(lengths)
+    rest = chest_position + rotations.rotate(
+        chest, offsets[INDEX[f"{name}_collar"]] + offsets[INDEX[f"{name}_shoulder"]]
+    )
+    weight = pose.reaching[:, index, None]
+    wanted = rest + rotations.rotate(chest, pose.arms[:, index] * span)
+    target = wanted + weight * (pose.reach[:, index] - wanted)
+    # Raising the arm lifts the collar bone with it, as a shoulder does.
+    up = rotations.rotate(rotations.inverse(chest), target - rest)[:, 1] / span
+    lift = np.zeros((len(pose), 3))
+    lift[:, 2] = side * 0.45 * np.clip(up, 0.0, 1.0)
+    collar = rotations.rotvec_to_quat(lift)
+    clavicle = rotations.compose(chest, collar)
+    joint = chest_position + rotations.rotate(chest, offsets[INDEX[f"{name}_collar"]])
+    shoulder = joint + rotations.rotate(clavicle, offsets[INDEX[f"{name}_shoulder"]])
+    pole = rotations.rotate(chest, pose.elbows[:, index])
+    return two_bone(shoulder, target, pole, lengths), collar

@@ -1,0 +1,284 @@
+"""Poses that hold: standing, seated and lying, from a style and the place they are held at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion_backend import rotations
+from motion_backend.kinematics import two_bone
+from motion_backend.procedural.gait import drift, home_ankle
+from motion_backend.procedural.pose import Pose, chest_frame
+from motion_backend.procedural.styles import THIGHS, Bearing, Lying, Seated, arm_arrays
+from motion_backend.skeleton import INDEX, Skeleton
+from scene_graphs.surfaces import Spot
+
+Array = NDArray[np.float64]
+SEATED_REST = 0.09
+LYING_REST = 0.10
+HAND_REST = 0.06
+"""Rest offsets: joint above the surface it touches (pelvis seated, pelvis lying, wrist of a hand laid on)."""
+SHIN_REACH = 0.42
+"""Seated pelvis to ankle on the floor with upright shins, at the reference height."""
+FOOT_SPLAY = 0.10
+UP = np.array([0.0, 1.0, 0.0])
+
+
+def upright(yaw: float, pitch: float = 0.0) -> Array:
+    """Pelvis rotation heading `yaw`, bent forward by `pitch` radians. (4,)."""
+    return rotations.compose(rotations.yaw_to_quat(yaw), rotations.rotvec_to_quat(np.array([pitch, 0.0, 0.0])))
+
+
+def bend(forward: float, side: float = 0.0, turn: float = 0.0) -> Array:
+    """A rotation vector of spine or head: forward bend, turn to the left, side bend. (3,)."""
+    return np.array([forward, turn, side])
+
+
+def standing(position: tuple[float, float], yaw: float, bearing: Bearing, skeleton: Skeleton) -> Pose:
+    """Standing on both feet at [x, z]."""
+    ground = np.asarray(position, dtype=np.float64)
+    ankles = np.stack([home_ankle(ground, yaw, index, 0.085, skeleton) for index in (0, 1)])
+    wrists, elbows = arm_arrays(*bearing.arms)
+    lean = np.radians(bearing.lean)
+    height = skeleton.standing_height * 0.993 - 0.012 * skeleton.scale
+    return Pose(
+        pelvis=np.array([ground[0], height, ground[1]]),
+        hips=upright(yaw, 0.3 * lean),
+        spine=bend(0.7 * lean),
+        head=bend(np.radians(bearing.head)),
+        ankles=ankles,
+        feet=np.stack([rotations.yaw_to_quat(yaw + side * FOOT_SPLAY) for side in (1, -1)]),
+        toes=np.zeros(2),
+        knees=np.stack([_ahead(yaw + side * 0.06) for side in (1, -1)]),
+        arms=wrists,
+        elbows=elbows,
+        reach=ankles + UP,
+        reaching=np.zeros(2),
+        palms=np.tile(rotations.IDENTITY, (2, 1)),
+        pressing=np.zeros(2),
+        planted=np.ones(2),
+    )
+
+
+def _ahead(yaw: float) -> Array:
+    return np.array([np.sin(yaw), 0.0, np.cos(yaw)])
+
+
+@dataclass(frozen=True)
+class Seat:
+    """A place to sit, as the body needs it."""
+
+    pelvis: Array
+    """(3,) where the pelvis joint rests."""
+    yaw: float
+    back: float
+    """Distance from the pelvis to the backrest behind it."""
+
+    @staticmethod
+    def of(spot: Spot) -> Seat:
+        """The seat of a sit spot."""
+        return Seat(np.asarray(spot.point) + SEATED_REST * np.asarray(spot.normal), spot.facing, spot.back)
+
+    def to_world(self, right_up_ahead: tuple[float, float, float]) -> Array:
+        """A point given to the sitter's left, up from the floor and ahead of the pelvis. (3,)."""
+        left, up, ahead = right_up_ahead
+        sin, cos = np.sin(self.yaw), np.cos(self.yaw)
+        x = self.pelvis[0] + left * cos + ahead * sin
+        z = self.pelvis[2] - left * sin + ahead * cos
+        return np.array([x, up, z])
+
+
+def seated(start: Pose, seat: Seat, style: Seated, skeleton: Skeleton, reach: tuple[float, float]) -> Pose:
+    """Settled on a seat; feet where `legs` puts them, `reach` metres ahead at most for left and right."""
+    limit = np.pi if np.isinf(seat.back) else np.arcsin(np.clip((seat.back - 0.12) / 0.42, 0.0, 0.9))
+    back = min(np.radians(style.recline), float(limit) + 0.03, np.radians(10 if np.isinf(seat.back) else 40))
+    wrists, elbows = arm_arrays(*style.arms)
+    laid = np.array([1.0 if name == THIGHS else 0.0 for name in style.arms])
+    ankles, feet, knees = _seated_legs(seat, style, skeleton, reach)
+    return replace(
+        start,
+        pelvis=seat.pelvis.copy(),
+        hips=upright(seat.yaw, -0.6 * back if back > 0 else -0.45 * back),
+        spine=bend(-0.4 * back if back > 0 else -0.55 * back),
+        head=bend(np.radians(style.head) + (0.5 * back if back > 0 else 0.0)),
+        ankles=ankles,
+        feet=feet,
+        toes=np.zeros(2),
+        knees=knees,
+        arms=wrists,
+        elbows=elbows,
+        reaching=laid,
+        palms=np.stack([_palm_down(seat.yaw, side) for side in (1, -1)]),
+        pressing=laid,
+        planted=np.ones(2),
+    )
+
+
+def _palm_down(yaw: float, side: int) -> Array:
+    """World rotation of a hand lying flat with its fingers pointing along yaw; at rest fingers point to ±X. (4,)."""
+    return rotations.yaw_to_quat(yaw - side * np.pi / 2)
+
+
+def _seated_legs(
+    seat: Seat, style: Seated, skeleton: Skeleton, reach: tuple[float, float]
+) -> tuple[Array, Array, Array]:
+    scale, ankle = skeleton.scale, skeleton.ankle_height
+    drop = seat.pelvis[1] - ankle
+    longest = np.sqrt(max((0.80 * scale) ** 2 - drop**2, 0.1))
+    ankles, feet, knees = [], [], []
+    for index, side in ((0, 1), (1, -1)):
+        wide, ahead, up, pitch, outward = 0.10 * scale, SHIN_REACH * scale, ankle, 0.0, 0.10
+        stretched = style.legs in ("straight", "feet_crossed") or style.legs == f"{('left', 'right')[index]}_straight"
+        if stretched:
+            ahead = float(np.clip(longest, 0.2, max(reach[index], SHIN_REACH * scale)))
+            straight = np.clip((ahead / scale - SHIN_REACH) / 0.25, 0, 1)
+            pitch, up = -0.55 * straight, ankle + 0.012 * straight
+        if style.legs == "feet_crossed":
+            wide, up = (-0.035 if side > 0 else 0.005) * scale, up + (0.10 if side > 0 else 0.0) * scale
+        if style.legs == "open":
+            wide, outward = 0.21 * scale, 0.45
+        if style.legs == "crossed" and side < 0:
+            wide, ahead, up, pitch = -0.13 * scale, 0.56 * scale, seat.pelvis[1] - 0.21 * scale, 0.45
+        if style.legs == "drawn":
+            ahead = 0.30 * scale
+        ankles.append(seat.to_world((side * wide, up, min(ahead, max(reach[index], 0.34 * scale)))))
+        feet.append(upright(seat.yaw + side * FOOT_SPLAY, pitch))
+        raised = 0.55 if style.legs == "crossed" and side < 0 else 0.25
+        knees.append(_ahead(seat.yaw + side * outward) + raised * UP)
+    return np.stack(ankles), np.stack(feet), np.stack(knees)
+
+
+def hands_on_thighs(pose: Pose, skeleton: Skeleton) -> Pose:
+    """Point `reach` of every frame at the thighs, for hands that lie on them as far as `reaching` says."""
+    names = ("left", "right")
+    reach = pose.reach.copy()
+    lengths = (
+        -float(skeleton.offsets[INDEX["left_knee"], 1]),
+        -float(skeleton.offsets[INDEX["left_ankle"], 1]),
+    )
+    for index, name in enumerate(names):
+        hip = pose.pelvis + rotations.rotate(pose.hips, skeleton.offsets[INDEX[f"{name}_hip"]])
+        leg = two_bone(hip, pose.ankles[:, index], pose.knees[:, index], lengths)
+        reach[:, index] = hip + 0.68 * lengths[0] * leg.upper + 0.105 * skeleton.scale * UP
+    return replace(pose, reach=reach)
+
+
+@dataclass(frozen=True)
+class Bed:
+    """A place to lie, as the body needs it."""
+
+    pelvis: Array
+    """(3,) where the pelvis joint rests when lying on the back."""
+    head_yaw: float
+    """Direction from pelvis to head."""
+
+    @staticmethod
+    def of(spot: Spot) -> Bed:
+        """The bed of a lie spot."""
+        return Bed(np.asarray(spot.point) + LYING_REST * np.asarray(spot.normal), spot.facing)
+
+    def hips(self, side: str) -> Array:
+        """Pelvis rotation lying on the back, or on the left or right side. (4,)."""
+        up_the_bed = np.array([np.sin(self.head_yaw), 0.0, np.cos(self.head_yaw)])
+        supine = rotations.basis_to_quat(np.cross(up_the_bed, UP), up_the_bed, UP)
+        roll = {"back": 0.0, "left": np.radians(78), "right": -np.radians(78)}[side]
+        return rotations.compose(supine, rotations.rotvec_to_quat(np.array([0.0, roll, 0.0])))
+
+
+def lying(start: Pose, bed: Bed, style: Lying, skeleton: Skeleton, pillow: float) -> Pose:
+    """Settled on a bed, sofa or the floor; `pillow` is how far the head is raised (metres)."""
+    hips = bed.hips(style.side)
+    on_side = style.side != "back"
+    pelvis = bed.pelvis + (0.025 * UP if on_side else 0.0)
+    legs = _SIDE_LEGS if on_side else _BACK_LEGS
+    rows = legs.get(style.legs, legs["straight"])
+    if style.side == "right":
+        rows = tuple((-x, y, z, pitch) for x, y, z, pitch in reversed(rows))
+    local = np.array([row[:3] for row in rows]) * skeleton.scale
+    pitch = np.array([row[3] for row in rows])
+    ankles = pelvis + rotations.rotate(hips, local)
+    feet = np.stack([rotations.compose(hips, rotations.rotvec_to_quat(np.array([p, 0.0, 0.0]))) for p in pitch])
+    wrists, elbows = _lying_arms(style)
+    lift = np.arctan2(pillow, 0.30)
+    return replace(
+        start,
+        pelvis=pelvis,
+        hips=hips,
+        spine=bend(np.radians(style.prop) + (0.0 if on_side else 0.25 * lift)),
+        head=bend(0.25 if on_side else 0.6 * lift, side=_toward_pillow(style.side) * lift),
+        ankles=ankles,
+        feet=feet,
+        toes=np.zeros(2),
+        knees=np.stack([rotations.rotate(hips, np.array([0.12 * side, 0.0, 1.0])) for side in (1, -1)]),
+        arms=wrists,
+        elbows=elbows,
+        reaching=np.zeros(2),
+        pressing=np.zeros(2),
+        planted=np.zeros(2),
+    )
+
+
+def _toward_pillow(side: str) -> float:
+    """Side bend that lifts the head off the shoulder it lies on."""
+    return {"back": 0.0, "left": -0.35, "right": 0.35}[side]
+
+
+# Ankles in the pelvis frame (left, towards the head, forwards) and foot pitch: left row, right row.
+_BACK_LEGS = {
+    "straight": ((0.11, -0.822, -0.035, 0.35), (-0.11, -0.822, -0.035, 0.35)),
+    "left_bent": ((0.11, -0.47, -0.02, 1.45), (-0.11, -0.822, -0.035, 0.35)),
+    "right_bent": ((0.11, -0.822, -0.035, 0.35), (-0.11, -0.47, -0.02, 1.45)),
+    "bent": ((0.11, -0.47, -0.02, 1.45), (-0.11, -0.47, -0.02, 1.45)),
+    "crossed": ((-0.02, -0.81, 0.06, 0.35), (0.015, -0.822, -0.035, 0.35)),
+}
+_SIDE_LEGS = {
+    "straight": ((0.03, -0.815, 0.02, 0.4), (-0.09, -0.80, 0.05, 0.4)),
+    "bent": ((0.04, -0.60, -0.10, 0.5), (-0.08, -0.58, -0.06, 0.5)),
+    "left_bent": ((0.04, -0.55, -0.10, 0.5), (-0.08, -0.80, 0.05, 0.4)),
+    "right_bent": ((0.04, -0.80, 0.02, 0.4), (-0.03, -0.55, 0.06, 0.5)),
+    "crossed": ((0.03, -0.80, 0.10, 0.4), (-0.08, -0.78, -0.05, 0.4)),
+}
+
+
+def _lying_arms(style: Lying) -> tuple[Array, Array]:
+    wrists, elbows = arm_arrays(*style.arms)
+    if style.side == "back":
+        for index, name in enumerate(style.arms):
+            if name == "sides":
+                wrists[index, 2], wrists[index, 0] = -0.03, wrists[index, 0] * 1.25
+        return wrists, elbows
+    below, above = (0, 1) if style.side == "left" else (1, 0)
+    inward = np.array([-1.0 if above == 0 else 1.0, 1.0, 1.0])
+    wrists[below], elbows[below] = (0.0, 0.22, 0.55), (0.0, -0.9, 0.5)
+    if style.arms[above] != "belly":
+        wrists[above] = np.array([0.52, -0.42, 0.52]) * inward
+    elbows[above] = np.array([0.4, -0.8, 0.4]) * inward
+    return wrists, elbows
+
+
+def idle(pose: Pose, seconds: float, size: float, rng: np.random.Generator, fps: int) -> Pose:
+    """Hold a single pose for a while, alive: breath, a slow shift of weight, a wandering gaze."""
+    frames = max(round(seconds * fps), 1)
+    held = pose.repeat(frames)
+    ease = (1 - np.exp(-np.arange(1, frames + 1) / (0.4 * fps)))[:, None]
+    breath = np.sin(2 * np.pi * 0.27 * np.arange(1, frames + 1) / fps)
+    slow = [drift(frames, 0.16, fps, rng) for _ in range(4)]
+    on_feet = float(pose.planted.min() > 0 and pose.pelvis[1] > 0.7)
+    spine = held.spine + ease * np.stack([0.010 * breath, 0.012 * size * slow[0], 0.010 * size * slow[1]], axis=1)
+    head = held.head + ease * np.stack([0.02 * size * slow[2], 0.07 * size * slow[3], 0.01 * slow[0]], axis=1)
+    sway = 0.006 * size * on_feet * ease * np.stack([slow[0], -0.25 * np.abs(slow[0]), slow[1]], axis=1)
+    arms = held.arms.copy()
+    arms[:, :, 2] += (0.012 * ease[:, 0] * breath)[:, None] * (1 - held.reaching)
+    return replace(held, spine=spine, head=head, pelvis=held.pelvis + sway, arms=arms)
+
+
+def shoulders(pose: Pose, skeleton: Skeleton) -> Array:
+    """World positions of both shoulders. (T, 2, 3)."""
+    chest, position = chest_frame(pose, skeleton)
+    found = []
+    for name in ("left", "right"):
+        offset = skeleton.offsets[INDEX[f"{name}_collar"]] + skeleton.offsets[INDEX[f"{name}_shoulder"]]
+        found.append(position + rotations.rotate(chest, offset))
+    return np.stack(found, axis=1)
