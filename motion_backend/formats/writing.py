@@ -1,0 +1,46 @@
+"""Every format a motion can be had in, by name: the one table that files and HTTP answers share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from motion_backend.formats.bvh import bvh_bytes
+from motion_backend.formats.glb import body_glb
+from motion_backend.formats.jsonfmt import json_bytes
+from motion_backend.formats.npz import npz_bytes
+from motion_backend.formats.raw import raw_bytes
+from motion_backend.motion import Motion
+
+
+@dataclass(frozen=True)
+class Format:
+    """How a motion is written in one format."""
+
+    encode: Callable[[Motion], bytes]
+    media_type: str
+    suffix: str
+
+
+FORMATS = {
+    "npz": Format(npz_bytes, "application/x-npz", ".npz"),
+    "bvh": Format(bvh_bytes, "text/plain; charset=utf-8", ".bvh"),
+    "glb": Format(body_glb, "model/gltf-binary", ".glb"),
+    "json": Format(json_bytes, "application/json", ".json"),
+    "f32": Format(raw_bytes, "application/octet-stream", ".f32"),
+}
+
+
+def encode(motion: Motion, name: str) -> bytes:
+    """The motion in the format of that name; ValueError lists the names there are."""
+    if name not in FORMATS:
+        raise ValueError(f"format must be one of {', '.join(FORMATS)}, not {name!r}")
+    return FORMATS[name].encode(motion)
+
+
+def write_motion(motion: Motion, path: Path | str) -> Path:
+    """Save a motion in the format its file name ends with."""
+    path = Path(path)
+    path.write_bytes(encode(motion, path.suffix.removeprefix(".")))
+    return path
