@@ -1,20 +1,51 @@
-"""Placed furniture and rooms: the `Layout` every reader fills and every stage reads.
+"""Placed furniture and rooms: the `Layout` every reader fills and every stage reads, and its JSON.
 
 Frame: right-handed, Y up, metres, radians. Yaw is about +Y, counter-clockwise seen from above, and 0 faces +Z.
 """
 
 from __future__ import annotations
 
+import gzip
+import json
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
+
+from scene_graphs.fields import FARTHEST, LayoutError, Row, read_number, read_point2, read_point3, read_rows, read_text
+from scene_graphs.furniture import canonical
+
+__all__ = [
+    "Array",
+    "Layout",
+    "LayoutError",
+    "Opening",
+    "Placed",
+    "Point2",
+    "Point3",
+    "Segment",
+    "layout_from_dict",
+    "layout_to_dict",
+    "read_layouts",
+    "write_layouts",
+]
 
 Array = NDArray[np.float64]
 Point2 = tuple[float, float]
 Point3 = tuple[float, float, float]
 Segment = tuple[Point2, Point2]
+
+MOST_OBJECTS = 500
+MOST_CORNERS = 400
+MOST_LAYOUTS = 200_000
+LARGEST = 30.0
+"""No object is longer, in metres."""
+_MOST_BYTES = 1 << 29
 
 
 @dataclass(frozen=True)
@@ -98,3 +129,166 @@ class Layout:
             if placed.id == object_id:
                 return placed
         raise KeyError(f"no object {object_id!r} in layout {self.id!r}; it has {', '.join(o.id for o in self.objects)}")
+
+
+def layout_to_dict(layout: Layout) -> dict[str, Any]:
+    """The native JSON row of a layout (DESIGN section 2); `layout_from_dict` is its exact inverse."""
+    return {
+        "id": layout.id,
+        "source": layout.source,
+        "licence": layout.licence,
+        "room_type": layout.room_type,
+        "tags": list(layout.tags),
+        "floor_polygon": [list(corner) for corner in layout.floor_polygon],
+        "height": layout.height,
+        "doors": [_opening_to_dict(door) for door in layout.doors],
+        "windows": [_opening_to_dict(window) for window in layout.windows],
+        "objects": [_placed_to_dict(placed) for placed in layout.objects],
+    }
+
+
+def layout_from_dict(row: Row, where: str = "layout") -> Layout:
+    """Read one native row; `pos` is read as `position`, categories are made canonical, the outline's winding is set.
+
+    `where` names the row in errors. LayoutError if a field is missing, out of bounds or of another type.
+    """
+    room_type = read_text(row, "room_type", where)
+    objects = [_placed(item, place) for item, place in read_rows(row, "objects", where, MOST_OBJECTS)]
+    _check_ids(objects, where)
+    return Layout(
+        id=read_text(row, "id", where),
+        room_type=room_type,
+        floor_polygon=_outline(row, where),
+        height=read_number(row.get("height", 2.7), f"{where}.height", 1.5, LARGEST),
+        doors=tuple(_opening(item, place) for item, place in read_rows(row, "doors", where, 100)),
+        windows=tuple(_opening(item, place) for item, place in read_rows(row, "windows", where, 100)),
+        objects=tuple(objects),
+        tags=tuple(str(tag) for tag in row.get("tags") or (room_type,)),
+        source=str(row.get("source", "user")),
+        licence=str(row.get("licence", "unknown")),
+    )
+
+
+def read_layouts(path: str | Path) -> list[Layout]:
+    """Read rooms from .json (one row or a list) or .jsonl (a row a line), either with .gz behind it.
+
+    LayoutError, naming file and line, for the first row that is not a valid layout or repeats an id.
+    """
+    file = Path(path)
+    layouts: list[Layout] = []
+    seen: set[str] = set()
+    for where, row in _read_rows(file):
+        if not isinstance(row, dict):
+            raise LayoutError(f"{where} must be an object with id, room_type, floor_polygon and objects")
+        layout = layout_from_dict(row, where)
+        if layout.id in seen:
+            raise LayoutError(f"{where}.id {layout.id!r} occurs twice; give every room its own id")
+        seen.add(layout.id)
+        layouts.append(layout)
+        if len(layouts) > MOST_LAYOUTS:
+            raise LayoutError(f"{file.name} holds more than {MOST_LAYOUTS} rooms; split it")
+    return layouts
+
+
+def write_layouts(path: str | Path, layouts: Iterable[Layout]) -> None:
+    """Write rooms as .json (a list) or .jsonl, gzipped if the name ends in .gz; the same rooms give the same bytes."""
+    file = Path(path)
+    rows = [layout_to_dict(layout) for layout in layouts]
+    if ".jsonl" in file.suffixes:
+        text = "".join(json.dumps(row, separators=(",", ":"), allow_nan=False) + "\n" for row in rows)
+    else:
+        text = json.dumps(rows, indent=1, allow_nan=False) + "\n"
+    # No time stamp, so that a library made again is the same file.
+    data = gzip.compress(text.encode(), 9, mtime=0) if file.suffix == ".gz" else text.encode()
+    file.write_bytes(data)
+
+
+def _read_rows(file: Path) -> Iterator[tuple[str, Any]]:
+    if not {".json", ".jsonl"} & set(file.suffixes):
+        raise LayoutError(f"{file.name}: rooms are read from .json, .jsonl, .json.gz or .jsonl.gz")
+    try:
+        with gzip.open(file) if file.suffix == ".gz" else file.open("rb") as stream:
+            data = stream.read(_MOST_BYTES + 1)
+        if len(data) > _MOST_BYTES:
+            raise LayoutError(f"{file.name} is larger than {_MOST_BYTES >> 20} MiB; split it")
+        text = data.decode()
+    except (OSError, EOFError, UnicodeDecodeError) as error:
+        raise LayoutError(f"{file.name} cannot be read: {error}") from error
+    if ".jsonl" in file.suffixes:
+        for number, line in enumerate(text.splitlines(), start=1):
+            if line.strip():
+                yield f"{file.name} line {number}", _parse(line, f"{file.name} line {number}")
+        return
+    parsed = _parse(text, file.name)
+    for index, row in enumerate(parsed if isinstance(parsed, list) else [parsed]):
+        yield f"{file.name} [{index}]", row
+
+
+def _parse(text: str, where: str) -> Any:
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise LayoutError(f"{where} is not JSON: {error}") from error
+
+
+def _placed_to_dict(placed: Placed) -> dict[str, Any]:
+    row: dict[str, Any] = {
+        "id": placed.id,
+        "category": placed.category,
+        "position": list(placed.position),
+        "size": list(placed.size),
+        "yaw": placed.yaw,
+    }
+    return row | {key: value for key in ("parent", "mesh") if (value := getattr(placed, key)) is not None}
+
+
+def _opening_to_dict(opening: Opening) -> dict[str, Any]:
+    return {"segment": [list(end) for end in opening.segment], "bottom": opening.bottom, "top": opening.top}
+
+
+def _placed(row: Row, where: str) -> Placed:
+    position = row.get("position", row.get("pos"))
+    return Placed(
+        id=read_text(row, "id", where),
+        category=canonical(read_text(row, "category", where)),
+        position=read_point3(position, f"{where}.position", -FARTHEST, FARTHEST),
+        size=read_point3(row.get("size"), f"{where}.size", 1e-4, LARGEST),
+        yaw=read_number(row.get("yaw", 0.0), f"{where}.yaw", -100.0, 100.0),
+        parent=None if row.get("parent") is None else str(row["parent"]),
+        mesh=None if row.get("mesh") is None else str(row["mesh"]),
+    )
+
+
+def _check_ids(objects: list[Placed], where: str) -> None:
+    ids = [placed.id for placed in objects]
+    for index, placed in enumerate(objects):
+        if placed.id in ids[:index]:
+            raise LayoutError(f"{where}.objects[{index}].id {placed.id!r} occurs twice; give every object its own id")
+        if placed.parent is not None and (placed.parent == placed.id or placed.parent not in ids):
+            raise LayoutError(f"{where}.objects[{index}].parent {placed.parent!r} is no other object's id")
+
+
+def _opening(row: Row, where: str) -> Opening:
+    ends = row.get("segment")
+    if not isinstance(ends, list) or len(ends) != 2:
+        raise LayoutError(f"{where}.segment must be two [x, z] points on the outline, got {ends!r}")
+    start, end = (read_point2(point, f"{where}.segment[{index}]") for index, point in enumerate(ends))
+    bottom = read_number(row.get("bottom", 0.0), f"{where}.bottom", 0.0, LARGEST)
+    top = read_number(row.get("top", 2.1), f"{where}.top", 0.0, LARGEST)
+    if top <= bottom:
+        raise LayoutError(f"{where}.top must be above bottom, got {top} and {bottom}")
+    return Opening((start, end), bottom, top)
+
+
+def _outline(row: Row, where: str) -> tuple[Point2, ...]:
+    corners, place = row.get("floor_polygon"), f"{where}.floor_polygon"
+    if not isinstance(corners, list) or not 3 <= len(corners) <= MOST_CORNERS:
+        raise LayoutError(f"{place} must be a list of 3 to {MOST_CORNERS} [x, z] corners in metres")
+    points = [read_point2(corner, f"{place}[{index}]") for index, corner in enumerate(corners)]
+    if points[0] == points[-1]:
+        points.pop()
+    polygon = shapely.Polygon(points) if len(points) >= 3 else None
+    if polygon is None or not polygon.is_valid or polygon.area < 0.5:
+        raise LayoutError(f"{place} must be a simple polygon of at least 0.5 square metres; order its corners around")
+    # Seen from above [x, z] is a left-handed pair: counter-clockwise there is clockwise to shapely.
+    return tuple(reversed(points)) if polygon.exterior.is_ccw else tuple(points)

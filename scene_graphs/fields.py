@@ -1,0 +1,59 @@
+"""Reading checked fields out of JSON rows: every refusal names the field, what is wrong and what would be right."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+Row = Mapping[str, Any]
+FARTHEST = 1000.0
+"""No coordinate lies farther from the origin, in metres."""
+
+
+class LayoutError(ValueError):
+    """A room that cannot be read: names the place in the file, the field, what is wrong and what would be right."""
+
+
+def read_rows(row: Row, key: str, where: str, most: int) -> Iterator[tuple[Row, str]]:
+    """The objects of a list field with the place of each; an absent field is an empty list."""
+    items = row.get(key, [])
+    if not isinstance(items, list) or len(items) > most:
+        raise LayoutError(f"{where}.{key} must be a list of at most {most} objects")
+    for index, item in enumerate(items):
+        if not isinstance(item, dict):
+            raise LayoutError(f"{where}.{key}[{index}] must be an object, got {type(item).__name__}")
+        yield item, f"{where}.{key}[{index}]"
+
+
+def read_text(row: Row, key: str, where: str) -> str:
+    """A text of 1 to 200 characters."""
+    value = row.get(key)
+    if not isinstance(value, str) or not 0 < len(value) <= 200:
+        raise LayoutError(f"{where}.{key} must be a text of 1 to 200 characters, got {value!r:.60}")
+    return value
+
+
+def read_number(value: Any, where: str, least: float, most: float) -> float:
+    """A finite number between two bounds."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise LayoutError(f"{where} must be a number, got {value!r:.60}")
+    if not least <= value <= most:
+        raise LayoutError(f"{where} must lie between {least:g} and {most:g}, got {value:g}")
+    return float(value)
+
+
+def read_point2(value: Any, where: str) -> tuple[float, float]:
+    """An [x, z] point in metres."""
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise LayoutError(f"{where} must be [x, z] in metres, got {value!r:.60}")
+    x, z = (read_number(number, where, -FARTHEST, FARTHEST) for number in value)
+    return (x, z)
+
+
+def read_point3(value: Any, where: str, least: float, most: float) -> tuple[float, float, float]:
+    """Three numbers between two bounds."""
+    if not isinstance(value, list | tuple) or len(value) != 3:
+        raise LayoutError(f"{where} must be three numbers [x, y, z] in metres, got {value!r:.60}")
+    x, y, z = (read_number(number, where, least, most) for number in value)
+    return (x, y, z)
