@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend.raster import Array, Camera, Ints, clip, fragments
 
+Floats = NDArray[np.floating[Any]]
 Image = NDArray[np.uint8]
 
 SUPERSAMPLE = 2
@@ -24,9 +26,13 @@ SHADOW_SIZE, SHADOW_REACH = 640, 3.2
 GRID = 0.5
 """Metres between the floor's lines."""
 HORIZON = np.array([0.90, 0.91, 0.92])
-_TAPS = np.array(
-    [[0.0, 0.0], [1.0, 0.2], [-0.9, 0.5], [0.2, -1.0], [-0.3, 0.95], [0.55, -0.5], [-0.6, -0.55], [0.6, 0.7]]
-)
+HAZE_START, HAZE_DEPTH = 5.0, 4.0
+"""Metres around the target that are clear, and over which all fades behind them."""
+SHADOW_OFFSET = 0.02
+"""Metres off a surface at which light is looked up, so that it does not shade itself."""
+_SUN_TAPS = np.array([[0.9, 0.1], [-0.1, 0.9], [-0.9, -0.1], [0.1, -0.9]])
+_SKY_TAPS = np.array([[0.2, 0.1], [0.9, 0.3], [0.1, 0.95], [-0.75, 0.55], [-0.7, -0.6], [0.35, -0.85]])
+"""Where around a point the shadow maps are read, in blur radii; each of a pixel's four samples turns them further."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +62,7 @@ def render(
     large = (size[0] * SUPERSAMPLE, size[1] * SUPERSAMPLE)
     scene = _Scene.of(solids)
     triangle, nearness = _visible(scene, camera, large)
-    color = np.broadcast_to(_to_linear(HORIZON), (large[0] * large[1], 3)).copy()
+    color = np.tile(_to_linear(HORIZON).astype(np.float32), (large[0] * large[1], 1))
     hit = np.flatnonzero(triangle >= 0)
     if len(hit):
         x, y = hit % large[0] + 0.5, hit // large[0] + 0.5
@@ -75,29 +81,33 @@ class _Scene:
     corners: Array
     """(F, 3, 3)."""
     normals: Array
-    """(F, 3, 3), one a corner."""
+    """(F, 3, 3) float32, one a corner; zero where flat."""
+    flat: Array
+    """(F, 3) float32."""
+    is_smooth: Array
+    """(F,) bool."""
     color: Array
-    """(F, 3) linear."""
+    """(F, 3) float32, linear."""
     opacity: Array
     cut: Array
 
     @classmethod
     def of(cls, solids: Sequence[Solid]) -> _Scene:
-        corners, normals, colors = [], [], []
-        for solid in solids:
-            shape = np.asarray(solid.vertices, dtype=np.float64)[solid.faces]
+        corners = [np.asarray(s.vertices, dtype=np.float64)[s.faces] for s in solids]
+        counts = [len(c) for c in corners]
+        flats, normals, colors = [], [], []
+        for solid, shape in zip(solids, corners, strict=True):
             flat = np.cross(shape[:, 1] - shape[:, 0], shape[:, 2] - shape[:, 0])
-            flat = flat / np.maximum(np.linalg.norm(flat, axis=-1, keepdims=True), 1e-12)
-            smooth = None if solid.normals is None else np.asarray(solid.normals, dtype=np.float64)[solid.faces]
-            corners.append(shape)
-            normals.append(np.repeat(flat[:, None], 3, axis=1) if smooth is None else smooth)
+            flats.append(flat / np.maximum(np.linalg.norm(flat, axis=-1, keepdims=True), 1e-12))
+            normals.append(np.zeros_like(shape) if solid.normals is None else np.asarray(solid.normals)[solid.faces])
             color = np.asarray(solid.color, dtype=np.float64)[..., :3]
             colors.append(np.broadcast_to(_to_linear(color), (len(shape), 3)))
-        counts = [len(c) for c in corners]
         return cls(
             np.concatenate(corners),
-            np.concatenate(normals),
-            np.concatenate(colors),
+            np.concatenate(normals).astype(np.float32),
+            np.concatenate(flats).astype(np.float32),
+            np.repeat([s.normals is not None for s in solids], counts),
+            np.concatenate(colors).astype(np.float32),
             np.repeat([s.opacity for s in solids], counts),
             np.repeat([s.cut for s in solids], counts),
         )
@@ -129,76 +139,87 @@ def _visible(scene: _Scene, camera: Camera, size: tuple[int, int]) -> tuple[Ints
     return nearest, best
 
 
-def _shade(scene: _Scene, camera: Camera, triangle: Ints, points: Array, quarter: Ints) -> Array:
+def _shade(scene: _Scene, camera: Camera, triangle: Ints, points: Array, quarter: Ints) -> Floats:
     """Linear colours of surface points; `quarter` says which of a picture's four samples each one is. (N, 3)."""
-    normal = _interpolated(scene, triangle, points)
-    towards = np.asarray(camera.eye) - points if camera.span is None else np.broadcast_to(-camera.axes[2], points.shape)
-    towards = towards / np.sqrt(_dot(towards, towards))[:, None]
-    facing = _dot(normal, towards)
-    normal = np.where(facing[:, None] < 0, -normal, normal)
-    sun, sky = _light(scene, camera, points + 0.02 * normal, quarter)
-    direct = np.maximum(normal @ (SUN / np.linalg.norm(SUN)), 0.0) * sun
+    normal = scene.flat[triangle]
+    smooth = np.flatnonzero(scene.is_smooth[triangle])
+    normal[smooth] = _interpolated(scene, triangle[smooth], points[smooth])
+    if camera.span is None:
+        ray = (np.asarray(camera.eye) - points).astype(np.float32)
+        distance = np.sqrt(_dot(ray, ray))
+        facing = _dot(normal, ray) / distance
+    else:
+        distance = np.zeros(len(points), dtype=np.float32)
+        facing = normal @ -camera.axes[2].astype(np.float32)
+    normal[facing < 0] *= -1
+    sun, sky = _light(scene, camera, points + SHADOW_OFFSET * normal, quarter)
+    direct = np.maximum(normal @ (SUN / np.linalg.norm(SUN)).astype(np.float32), 0.0) * sun
     up = 0.5 + 0.5 * normal[:, 1]
     light = SUN_LIGHT * direct + sky * (SKY_LIGHT * up + BOUNCE_LIGHT * (1 - up)) + CAMERA_LIGHT * np.abs(facing)
+    ground = np.flatnonzero((np.abs(points[:, 1]) < 0.006) & (normal[:, 1] > 0.99))
+    light[ground] *= _grid(points[ground], distance[ground])
     color = scene.color[triangle] * light[:, None]
-    ground = (np.abs(points[:, 1]) < 0.006) & (normal[:, 1] > 0.99)
-    color[ground] *= _grid(points[ground], camera)[:, None]
     away = np.hypot(points[:, 0] - camera.target[0], points[:, 2] - camera.target[2])
-    haze = np.clip((away - 5.0) / 4.0, 0, 1)[:, None]
-    return np.asarray(color * (1 - haze) + _to_linear(HORIZON) * haze)
+    far = np.flatnonzero(away > HAZE_START)
+    haze = np.minimum((away[far, None] - HAZE_START) / HAZE_DEPTH, 1.0)
+    color[far] += (_to_linear(HORIZON) - color[far]) * haze
+    return np.asarray(color)
 
 
-def _interpolated(scene: _Scene, triangle: Ints, points: Array) -> Array:
-    """Unit normals at points of triangles, from the corners' normals. (N, 3)."""
-    base, side, other = scene.corners[:, 0], *np.moveaxis(scene.corners[:, 1:] - scene.corners[:, :1], 1, 0)
-    across = np.cross(side, other)
-    scale = 1.0 / np.maximum(_dot(across, across), 1e-18)[:, None]
-    offset = points - base[triangle]
-    u = _dot(offset, (np.cross(other, across) * scale)[triangle])[:, None]
-    v = _dot(offset, (np.cross(across, side) * scale)[triangle])[:, None]
-    n0, n1, n2 = np.moveaxis(scene.normals, 1, 0)
-    normal = n0[triangle] + u * (n1 - n0)[triangle] + v * (n2 - n0)[triangle]
-    return np.asarray(normal / np.sqrt(np.maximum(_dot(normal, normal), 1e-18))[:, None])
+def _interpolated(scene: _Scene, triangle: Ints, points: Array) -> Floats:
+    """Unit normals at points of triangles, from the corners' normals. (N, 3) float32."""
+    corners, normals = scene.corners[triangle], scene.normals[triangle]
+    side, other, offset = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], points - corners[:, 0]
+    a, b, c = _dot(side, side), _dot(side, other), _dot(other, other)
+    d, e = _dot(offset, side), _dot(offset, other)
+    area = np.maximum(a * c - b * b, 1e-18)
+    u, v = ((c * d - b * e) / area)[:, None], ((a * e - b * d) / area)[:, None]
+    normal = (1 - u - v) * normals[:, 0] + u * normals[:, 1] + v * normals[:, 2]
+    return np.asarray(normal / np.sqrt(np.maximum(_dot(normal, normal), 1e-18))[:, None], dtype=np.float32)
 
 
-def _dot(a: Array, b: Array) -> Array:
+def _dot(a: Floats, b: Floats) -> Floats:
     return np.asarray(np.einsum("nk,nk->n", a, b))
 
 
-def _light(scene: _Scene, camera: Camera, points: Array, quarter: Ints) -> tuple[Array, Array]:
+def _light(scene: _Scene, camera: Camera, points: Array, quarter: Ints) -> tuple[Floats, Floats]:
     """Shares of the sun and of the sky that reach points, from two shadow maps. (N,) each."""
-    casting = (scene.opacity >= 1) & (scene.cut <= 0)
-    size = (SHADOW_SIZE, SHADOW_SIZE)
-    scale = SHADOW_SIZE / (2 * SHADOW_REACH)
-    turn = quarter * (np.pi / 8)
+    casting = scene.corners[(scene.opacity >= 1) & (scene.cut <= 0)]
+    reach = SHADOW_REACH if camera.span is None else max(SHADOW_REACH, 0.8 * camera.span)
+    scale = SHADOW_SIZE / (2 * reach)
+    turn = quarter.astype(np.float32) * np.float32(np.pi / 8)
     cos, sin = np.cos(turn), np.sin(turn)
     shares = []
-    for direction, blur in ((SUN, 0.013), (np.array([0.0, 1.0, 0.0]), 0.10)):
-        eye = np.asarray(camera.target) + 6.0 * direction / np.linalg.norm(direction)
-        lamp = Camera((float(eye[0]), float(eye[1]), float(eye[2])), camera.target, span=2 * SHADOW_REACH)
-        corners = lamp.project(lamp.view(scene.corners[casting]), size)
-        pixel, _, nearness = fragments(corners, *size)
-        best = np.full(SHADOW_SIZE * SHADOW_SIZE, -np.inf)
-        np.maximum.at(best, pixel, nearness)
-        x, y, height = np.moveaxis(lamp.project(lamp.view(points), size), -1, 0)
-        lit = np.zeros(len(points))
-        for u, v in _TAPS * (blur * scale):
-            column = (x + u * cos - v * sin).astype(np.int64)
-            row = (y + u * sin + v * cos).astype(np.int64)
-            beyond = (column < 0) | (row < 0) | (column >= SHADOW_SIZE) | (row >= SHADOW_SIZE)
-            at = np.where(beyond, 0, row * SHADOW_SIZE + column)
-            lit += beyond | (best[at] < height + 0.02)
-        shares.append(lit / len(_TAPS))
+    for direction, taps in ((SUN, 0.013 * scale * _SUN_TAPS), (np.array([0.0, 1.0, 0.0]), 0.10 * scale * _SKY_TAPS)):
+        lamp, depth = _shadow_map(casting, direction, camera, reach)
+        x, y, height = (lamp.project(lamp.view(points), (SHADOW_SIZE, SHADOW_SIZE)).astype(np.float32) + 0.02).T
+        lit = np.zeros(len(points), dtype=np.float32)
+        for u, v in taps.astype(np.float32):
+            column = np.clip(x + (u * cos - v * sin), 0, SHADOW_SIZE - 1).astype(np.int32)
+            row = np.clip(y + (u * sin + v * cos), 0, SHADOW_SIZE - 1).astype(np.int32)
+            lit += depth[row * SHADOW_SIZE + column] < height
+        shares.append(lit / len(taps))
     return shares[0], 0.35 + 0.65 * shares[1]
 
 
-def _grid(points: Array, camera: Camera) -> Array:
-    """How dark the floor's lines make it. (N,)."""
-    offset = np.abs((points[:, [0, 2]] / GRID + 0.5) % 1.0 - 0.5) * GRID
-    ray = points - np.asarray(camera.eye)
-    distance = np.sqrt(_dot(ray, ray))
+def _shadow_map(corners: Array, direction: Array, camera: Camera, reach: float) -> tuple[Camera, Floats]:
+    """A parallel view from the light, and the nearness of what it meets first in every pixel. (SHADOW_SIZE ** 2,)."""
+    eye = np.asarray(camera.target) + 6.0 * direction / np.linalg.norm(direction)
+    lamp = Camera((float(eye[0]), float(eye[1]), float(eye[2])), camera.target, span=2 * reach)
+    size = (SHADOW_SIZE, SHADOW_SIZE)
+    pixel, _, nearness = fragments(lamp.project(lamp.view(corners), size), *size)
+    depth = np.full((SHADOW_SIZE, SHADOW_SIZE), -np.inf)
+    np.maximum.at(depth.reshape(-1), pixel, nearness)
+    # Nothing casts a shadow on what lies beyond the map: points there read its border.
+    depth[[0, -1]] = depth[:, [0, -1]] = -np.inf
+    return lamp, depth.astype(np.float32).reshape(-1)
+
+
+def _grid(points: Array, distance: Floats) -> Floats:
+    """How dark the floor's lines make it at points that far from the eye. (N,)."""
+    x, z = (np.abs((points[:, k] / GRID + 0.5) % 1.0 - 0.5) * GRID for k in (0, 2))
     width = 0.004 + 0.0012 * distance
-    return np.asarray(1.0 - 0.22 * np.clip(1.5 - np.minimum(offset[:, 0], offset[:, 1]) / width, 0, 1))
+    return np.asarray(1.0 - 0.22 * np.clip(1.5 - np.minimum(x, z) / width, 0, 1))
 
 
 def _to_linear(color: Array) -> Array:
