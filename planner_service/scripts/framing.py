@@ -1,0 +1,203 @@
+"""How a story begins, goes on and ends: openings, connecting words, closings and titles, by mood."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+OPENINGS: Final[dict[str, tuple[str, ...]]] = {
+    "neutral": (
+        "It was an ordinary {time}, and {name} had the house to {themself}.",
+        "The {time} began like any other, with {name} alone at home.",
+        "Nothing about the {time} seemed unusual at first.",
+    ),
+    "happy": (
+        "It was one of those {time}s on which everything seemed possible.",
+        "Light filled the house that {time}, and {name} was in the best of spirits.",
+        "That {time} there was a spring in every step {name} took.",
+    ),
+    "angry": (
+        "The {time} had hardly begun, and already it was going wrong.",
+        "There are {time}s that test a person's patience, and this was one.",
+        "That {time} it took very little to make {name} boil over.",
+    ),
+    "hurried": (
+        "That {time} the clock was nobody's friend.",
+        "There was never enough time, and that {time} there was less than ever.",
+        "Every minute counted that {time}.",
+    ),
+    "tired": (
+        "It had been a long {time}, and {name} could feel it in every bone.",
+        "The {time} was still, and {name} was close to the end of {their} strength.",
+        "That {time} even the light in the rooms looked tired.",
+    ),
+    "sad": (
+        "A grey {time} hung over the house.",
+        "It was very quiet in the house that {time}, quieter than {name} could bear.",
+        "Some {time}s weigh more than others, and this was a heavy one.",
+    ),
+    "stressed": (
+        "That {time} {name} could not find a moment's peace.",
+        "Something was wrong with the {time} from the start: it would not pass.",
+        "All that {time} {name} had been listening to the ticking of the clock.",
+    ),
+    "drunk": (
+        "The {time} was no longer young, and neither was the first bottle.",
+        "It was that kind of {time}, and the glass was seldom empty.",
+    ),
+    "relaxed": (
+        "It was a slow, generous {time}, and {name} had nowhere to be.",
+        "For once the {time} belonged to {name} alone.",
+        "The {time} lay ahead, wide and quiet, without a single plan.",
+    ),
+}
+
+CONNECTIVES: Final = (
+    "then",
+    "a moment later",
+    "soon",
+    "before long",
+    "after a while",
+    "presently",
+    "a little later",
+    "from there",
+    "next",
+    "after a pause",
+    "the moment after",
+    "some minutes later",
+)
+RISINGS: Final = (
+    "After a while {they} {rose}.",
+    "At length {they} {rose} again.",
+    "Eventually {they} {rose}.",
+    "It was some time before {they} {rose}.",
+    "By and by {they} {rose} again.",
+    "Only after a long moment {name} {rose}.",
+    "In the end {they} {rose}.",
+    "Then {they} {rose} again.",
+)
+"""Leaving a seat or a bed for what comes next."""
+LAST_CONNECTIVES: Final = ("at last", "finally", "in the end")
+TURNS: Final = ("Then", "Later", "After that", "Not long afterwards", "Some time later", "By and by")
+"""Before an event that follows another."""
+
+CLOSINGS: Final[dict[str, tuple[str, ...]]] = {
+    "neutral": ("And so the {time} took its course.", "The house was still again, and that was all right."),
+    "happy": (
+        "It was a {time} to remember.",
+        "Long afterwards, {name} would still smile at the thought of that {time}.",
+        "If happiness had a sound, it would have filled every room.",
+    ),
+    "angry": (
+        "It would be a good while before the anger burned down.",
+        "Somewhere a clock went on ticking, quite unimpressed.",
+    ),
+    "hurried": (
+        "The clock ticked on, as merciless as before.",
+        "Whether it would be enough, only the clock could tell.",
+    ),
+    "tired": (
+        "The house grew quiet around {them}, and the long {time} was over.",
+        "There was nothing more to do but rest.",
+    ),
+    "sad": (
+        "Outside, the world went on as if nothing had happened.",
+        "The silence stayed, and {name} stayed in it.",
+        "Some things take longer than one {time} to heal.",
+    ),
+    "stressed": (
+        "Peace of mind would have to wait for another day.",
+        "The worry had not left; it had only sat down too.",
+    ),
+    "drunk": ("The room went on turning for a long while.", "Tomorrow would have a word to say about all this."),
+    "relaxed": (
+        "There was nothing left to wish for.",
+        "Nothing else was needed that {time}.",
+        "And the rest of the {time} could take care of itself.",
+    ),
+}
+LYING_CLOSINGS: Final[dict[str, tuple[str, ...]]] = {
+    "tired": ("Sleep was not long in coming.", "Within minutes {they} {were} fast asleep."),
+    "drunk": ("Sleep came like a curtain falling.", "Within moments {name} was snoring."),
+    "sad": ("Sleep, when it came, was a mercy.",),
+    "relaxed": ("{Their} breath grew slow, and the {time} drifted away.",),
+    "happy": ("{They} lay there smiling at the ceiling.",),
+}
+
+FIRST_ROOM: Final = ("in the {room},",)
+NEW_ROOMS: Final = ("in the {room},", "then, in the {room},", "in the {room} next door,")
+ROOMS: Final = ("back in the {room},", "in the {room} again,")
+"""Before the first sentence in another room: the story's first, one it has not been in, one it has."""
+
+_TIMES: Final = (
+    (r"\bmorning\b|\boversle\w+|\bbreakfast\b|\bwak(?:es?|ing) up\b|\bdawn\b", "morning"),
+    (r"\bafternoon\b|\blunch\b|\bnoon\b", "afternoon"),
+    (r"\bevening\b|\bdinner\b|\bsunset\b|\bafter work\b|\bfrom work\b", "evening"),
+    (r"\bnight\b|\bmidnight\b|\bsleepless\b|\binsomnia\b", "night"),
+    (r"\bsunday\b", "Sunday"),
+    (r"\bsaturday\b", "Saturday"),
+)
+_TITLES: Final = (
+    (r"lotter", "The Winning Ticket"),
+    (r"jewel|jewell|\bring\b|necklace", "The Lost Jewellery"),
+    (r"interview", "The Job Interview"),
+    (r"picnic", "Before the Picnic"),
+    (r"photograph|\bphoto\b", "An Old Photograph"),
+    (r"dead wife|late wife|widow|his wife", "The Empty Chair"),
+    (r"lost love|broken heart|heartbr|break-?up|dumped", "After the Goodbye"),
+    (r"birthday", "A Birthday at Home"),
+    (r"guests?\b|visitors?\b", "Before the Guests Arrive"),
+    (r"\bexams?\b|studying", "The Night Before the Exam"),
+    (r"deadline|working late|\bovertime\b", "Past Midnight"),
+    (r"\bkeys\b", "Where Are the Keys?"),
+    (r"hangover|hung ?over", "The Morning After"),
+    (r"insomnia|cannot sleep|can't sleep|sleepless", "Wide Awake"),
+    (r"power cut|blackout|lights go out", "Lights Out"),
+    (r"quarrel|argument|argu(?:es|ing)|fights? with", "After the Quarrel"),
+    (r"\blate for|oversle", "Running Late"),
+    (r"\bletter\b", "The Letter"),
+    (r"promot", "A Reason to Celebrate"),
+    (r"\bdate\b", "Dressed for the Evening"),
+    (r"party", "The Party"),
+    (r"\bpacks?\b|\bpacking\b|\btrip\b|journey", "Packing"),
+    (r"\bsick\b|\bcold\b|fever|\bill\b", "A Day in Bed"),
+    (r"\brain\b|rainy|storm|thunder", "Rain on the Window"),
+    (r"\bwine\b|\bwhisky\b|\bdrunk", "One Glass More"),
+    (r"\bcomics?\b", "The Comic Book"),
+    (r"\bbooks?\b|\bnovel\b|\bread(?:s|ing)?\b", "A Good Book"),
+    (r"\bbills?\b|\bdebts?\b", "The Bills"),
+    (r"meditat|yoga", "A Quiet Breath"),
+    (r"weekend|sunday|saturday", "A Slow Weekend"),
+    (r"bad news", "Bad News"),
+    (r"good news", "Good News"),
+    (r"\bphone\b|\bcall\b", "The Call"),
+    (r"\bcook|\bdinner\b", "Dinner at Home"),
+    (r"\bsearch|looking for|\bloses\b|\blost\b", "Lost and Looked For"),
+    (r"danc", "Nobody Is Watching"),
+    (r"\bwork\b", "Home from Work"),
+)
+_MOOD_TITLES: Final[dict[str, str]] = {
+    "neutral": "An Ordinary {time}",
+    "happy": "A Bright {time}",
+    "angry": "A Short Fuse",
+    "hurried": "Against the Clock",
+    "tired": "A Long {time}",
+    "sad": "A Heavy {time}",
+    "stressed": "No Peace of Mind",
+    "drunk": "One Glass More",
+    "relaxed": "A {time} at Home",
+}
+
+
+def time_of(theme: str) -> str:
+    """The time of day a theme speaks of: morning, afternoon, evening, night, Sunday, Saturday, or day."""
+    return next((time for pattern, time in _TIMES if re.search(pattern, theme, re.IGNORECASE)), "day")
+
+
+def title_of(theme: str, mood: str) -> str:
+    """A short title: after what the theme is about, else after its mood."""
+    for pattern, title in _TITLES:
+        if re.search(pattern, theme, re.IGNORECASE):
+            return title
+    title = _MOOD_TITLES[mood].format(time=time_of(theme).capitalize())
+    return re.sub(r"^A (?=[AEIOU])", "An ", title)

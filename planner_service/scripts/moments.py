@@ -1,0 +1,242 @@
+"""What keyframes do, worded: each becomes a verb phrase, and phrases become sentences tied to their keyframes."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from motion_backend.motion import Skill
+from planner_service.scripts import phrases
+from planner_service.scripts.emotions import emotion_of
+from planner_service.scripts.keyframe import Keyframe, PlannedKeyframe
+from planner_service.scripts.tense import gerund, past
+from planner_service.scripts.voice import Voice
+from scene_graphs.furniture import class_of, display_name
+
+Piece = tuple[str, tuple[int, ...]]
+"""Words and the keyframes they tell, none for connecting words."""
+Places = Mapping[int, tuple[str, str]]
+"""Index of a keyframe to how its furniture and its room are called in the home it is acted out in."""
+_IN = ("armchair", "lounge chair", "lazy sofa", "rocking chair")
+_VERB = re.compile(r"(?:^|~)(\w+)")
+_LONGEST = 24
+"""Words of a sentence after which no more is added to it."""
+_FURTHER = ("on and on", "from wall to wall", "this way and that", "from one end to the other")
+"""Where a walk with no goal goes after another one."""
+_NEUTRAL_WALKS = ("smoothly forward walk", "steadily walking forward")
+
+
+@dataclass(frozen=True)
+class Phrase:
+    """A verb phrase without its subject and the keyframes it tells."""
+
+    base: str
+    """With verbs in their base form, further ones marked: "bend down and ~reach under the bed"."""
+    keyframes: tuple[int, ...]
+    mood: str = "neutral"
+    rises: bool = False
+    arrives: bool = False
+    """A walk whose purpose follows in the next phrase: the two stay in one sentence."""
+
+    @property
+    def text(self) -> str:
+        """In the past: "sat down on the sofa with bowed head"."""
+        return _VERB.sub(lambda verb: past(verb[1]), self.base)
+
+    @property
+    def gerund(self) -> str:
+        """ "sitting down on the sofa with bowed head"."""
+        return _VERB.sub(lambda verb: gerund(verb[1]), self.base)
+
+
+class Variety:
+    """Chooses among ways to say a thing: the least used so far, ties by the seed."""
+
+    def __init__(self, seed: int) -> None:
+        self._rng = np.random.default_rng(seed)
+        self._used: Counter[str] = Counter()
+
+    def pick(self, options: Sequence[str]) -> str:
+        """One of the options; it counts as used."""
+        fewest = min(self._used[option] for option in options)
+        fresh = [option for option in options if self._used[option] == fewest]
+        chosen = fresh[int(self._rng.integers(len(fresh)))]
+        self._used[chosen] += 1
+        return chosen
+
+    def chance(self, share: float) -> bool:
+        """True in that share of cases."""
+        return bool(self._rng.random() < share)
+
+
+class Wording:
+    """Words one story's keyframes, remembering where the body is so that "it" can stand for the furniture."""
+
+    def __init__(self, voice: Voice, variety: Variety, places: Places, brief: bool = False) -> None:
+        self.voice = voice
+        self.brief = brief
+        """Whether to leave out how the body walks and rests where that says little."""
+        self.variety = variety
+        self.places = places
+        self.say_room = True
+        """Whether the room may be called by its name; not right after it was."""
+        self._at: str | None = None
+        self._wandering = False
+
+    def phrases(self, keyframes: Iterable[tuple[int, PlannedKeyframe]]) -> list[Phrase]:
+        """Keyframes of one event as phrases in order; every index is in exactly one of them."""
+        rows = list(keyframes)
+        self._wandering = False
+        told: list[Phrase] = []
+        untold: tuple[int, ...] = ()
+        for position, (index, keyframe) in enumerate(rows):
+            following = rows[position + 1][1] if position + 1 < len(rows) else None
+            arrives = keyframe.skill == Skill.LOCO and _goes_on(keyframe, following)
+            if arrives and (self._is_here(index, keyframe) or self._is_plain(keyframe)):
+                untold = (*untold, index)
+                continue
+            text = self._text(index, keyframe)
+            rises = keyframe.skill in (Skill.STANDUP, Skill.GETUP)
+            told.append(Phrase(text, (*untold, index), mood_of(keyframe), rises, arrives))
+            untold = ()
+        return told
+
+    def _is_plain(self, keyframe: Keyframe) -> bool:
+        """Whether walking there goes without saying."""
+        return keyframe.caption in _NEUTRAL_WALKS and (self.brief or self.variety.chance(0.5))
+
+    def _is_here(self, index: int, keyframe: Keyframe) -> bool:
+        return not keyframe.on_floor and self._at == self._the(index, keyframe)
+
+    def _text(self, index: int, keyframe: PlannedKeyframe) -> str:
+        mood = mood_of(keyframe)
+        match keyframe.skill:
+            case Skill.LOCO:
+                template = self.variety.pick(self._walks(keyframe, mood))
+            case Skill.SITDOWN:
+                template = self._posture(keyframe, phrases.SITS_IN_MOOD[mood], phrases.SITS)
+            case Skill.LIEDOWN:
+                template = self._posture(keyframe, phrases.LIES_IN_MOOD[mood], phrases.LIES)
+            case Skill.TOUCH:
+                template = self.variety.pick(touches(keyframe))
+            case _:
+                pace = re.search(r"slow|weari", keyframe.caption) and "slow"
+                pace = pace or (re.search(r"quick|abrupt|jump", keyframe.caption) and "fast") or "neutral"
+                template = self.variety.pick(phrases.RISES[pace])
+        filled = self._fill(template, index, keyframe)
+        self._wandering = keyframe.skill == Skill.LOCO and keyframe.on_floor
+        self._at = None if keyframe.on_floor else self._the(index, keyframe)
+        return " ".join(filled.split()).replace(" ,", ",")
+
+    def _walks(self, keyframe: Keyframe, mood: str) -> tuple[str, ...]:
+        walk = phrases.WALKS.get(keyframe.caption, phrases.WALKS_IN_MOOD[mood])
+        ways = walk.about if keyframe.on_floor else walk.to
+        short = tuple(way for way in ways if "," not in way)
+        return short if self.brief and short else ways
+
+    def _posture(self, keyframe: Keyframe, verbs: tuple[str, ...], manners: Mapping[str, tuple[str, ...]]) -> str:
+        known = manners.get(keyframe.caption)
+        manner = self.variety.pick(known) if known and not (self.brief and self.variety.chance(0.55)) else ""
+        comma = "" if manner.startswith(("with ", "on ", "flat ")) or not manner else ","
+        return f"{self.variety.pick(verbs)}{comma} {manner}"
+
+    def _fill(self, template: str, index: int, keyframe: PlannedKeyframe) -> str:
+        the = self._the(index, keyframe)
+        here = self._is_here(index, keyframe)
+        inside = the.endswith(_IN)
+        name = "it" if here else the
+        if here and re.search(r"\b(?:down|out|back|seat|comfortably)\b", template.split("{on}")[0]):
+            template = template.replace(" {on}", "")
+        if here:
+            template = re.sub(r"the (\w+(?: \w+)?) of \{the\}", r"its \1", template)
+        room = self._room(index, keyframe)
+        ways = _FURTHER if self._wandering else (f"around {room}", f"about {room}", f"through {room}")
+        return self.voice.fill(
+            template,
+            the=name,
+            on=f"{'in' if inside else 'on'} {name}",
+            onto=f"{'into' if inside else 'onto'} {name}",
+            to=f"{self.variety.pick(('to', 'over to', 'across to'))} {the}" if "{to}" in template else "",
+            about=self.variety.pick(ways) if "{about}" in template else "",
+            back=self.variety.pick(("up and down", "back and forth")) + f" in {room}" if "{back}" in template else "",
+            hand=_hand(keyframe.caption, self.voice),
+        )
+
+    def _the(self, index: int, keyframe: Keyframe) -> str:
+        if keyframe.on_floor:
+            return "the floor"
+        word, instance = keyframe.piece
+        name = self.places[index][0] if index in self.places else display_name(word)
+        return f"the {'other ' if instance > 1 else ''}{name.removeprefix('the ')}"
+
+    def room_of(self, index: int, keyframe: PlannedKeyframe) -> str:
+        """How the keyframe's room is called, "room" where it has none."""
+        room = self.places[index][1] if index in self.places else (keyframe.room or "room")
+        return room.replace("_", " ").lower().removeprefix("the ")
+
+    def _room(self, index: int, keyframe: PlannedKeyframe) -> str:
+        name = self.room_of(index, keyframe)
+        return "the " + (self.variety.pick((name, "room")) if self.say_room else "room")
+
+
+def mood_of(keyframe: Keyframe) -> str:
+    """The one emotion of a keyframe's words, neutral when they name none."""
+    if keyframe.emotion.lower().startswith("neutral"):
+        return "neutral"
+    return emotion_of(keyframe.emotion) or "neutral"
+
+
+def touches(keyframe: Keyframe) -> tuple[str, ...]:
+    """Ways to word a touch, by its height and what is touched."""
+    caption = keyframe.caption.lower()
+    height = next((h for h in ("prone", "low", "high") if re.search(rf"\b{h}\b", caption)), "medium")
+    return phrases.TOUCHES_AT.get((class_of(keyframe.piece[0]), height)) or phrases.TOUCHES[height]
+
+
+def joined(told: Sequence[Phrase]) -> list[Piece]:
+    """Phrases as one predicate, piece by piece: "stood up, crossed to the bed, and lay down"."""
+    pieces: list[Piece] = []
+    for position, phrase in enumerate(told):
+        last = position == len(told) - 1
+        if position and last:
+            crowded = len(told) > 2 or "," in told[0].text
+            pieces.append((", and " if crowded else " and ", ()))
+        elif position:
+            pieces.append((", ", ()))
+        pieces.append((phrase.text, phrase.keyframes))
+    return pieces
+
+
+def sentences_of(told: Sequence[Phrase]) -> list[tuple[Phrase, ...]]:
+    """Two or three phrases a sentence: a walk stays with its purpose, rising and a change of mood start a new one."""
+    groups: list[list[Phrase]] = []
+    for phrase in told:
+        current = groups[-1] if groups else []
+        tied = bool(current) and current[-1].arrives
+        words = len(phrase.text.split()) + sum(len(p.text.split()) for p in current)
+        room = 0 < len(current) < 3 and words <= _LONGEST and not phrase.rises
+        turns = len(current) >= 2 and (phrase.arrives or phrase.mood != current[-1].mood)
+        if tied or (room and not turns):
+            current.append(phrase)
+        else:
+            groups.append([phrase])
+    return [tuple(group) for group in groups]
+
+
+def _goes_on(walk: Keyframe, following: Keyframe | None) -> bool:
+    """Whether what follows is done at the piece this walk leads to."""
+    return (
+        following is not None
+        and following.skill in (Skill.SITDOWN, Skill.LIEDOWN, Skill.TOUCH)
+        and not walk.on_floor
+        and walk.piece == following.piece
+    )
+
+
+def _hand(caption: str, voice: Voice) -> str:
+    side = re.search(r"\b(left|right)\b", caption)
+    return f"{voice['their']} {side[1]} hand" if side else "a hand"

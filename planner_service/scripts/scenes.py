@@ -1,0 +1,80 @@
+"""The parts of a long script as a teller sees them: scenes, and the events of the theme in the teller's words."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from itertools import groupby
+
+from motion_backend.motion import Skill
+from planner_service.scripts.keyframe import LongScript, PlannedKeyframe
+from planner_service.scripts.tense import base_of, is_past, is_verb_form
+from planner_service.scripts.voice import Voice, retell
+
+_LONGEST = 24
+"""Words of an event's own text that a story may quote."""
+_ASLEEP = re.compile(r"\b(?:asleep|sleep|slept|nap|dozed|nodded off|passed out)\b")
+_PALE_WORDS = """
+again about after becom befor begin chara decid feels felt from gets herse himse into over perso some start that their
+then thems this very when with
+"""
+_PALE = frozenset(_PALE_WORDS.split())
+"""Stems that say nothing about what happens."""
+_RISES = (Skill.STANDUP, Skill.GETUP)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Keyframes that one short script put in, or one event where there are no short scripts."""
+
+    script: int | None
+    """Index into the long script's short scripts."""
+    event: int | None
+    keyframes: tuple[tuple[int, PlannedKeyframe], ...]
+    """With their indices in the long script."""
+
+    def ends_asleep(self, told: str) -> bool:
+        """Whether the telling speaks of sleep and the scene ends resting: sleep is then told last."""
+        resting = [k.skill for _, k in self.keyframes if k.short_script is not None or self.script is None][-1:]
+        return bool(_ASLEEP.search(told)) and resting in ([Skill.LIEDOWN], [Skill.SITDOWN])
+
+
+def scenes_of(script: LongScript) -> list[Scene]:
+    """The scenes in order; connecting keyframes go with what follows them, but rising ends the scene before."""
+    keyframes = script.keyframes
+    owners: list[tuple[int | None, int | None]] = [(k.short_script, k.event) for k in keyframes]
+    bridging = [k.short_script is None and bool(script.short_scripts) for k in keyframes]
+    for index in reversed(range(len(keyframes) - 1)):
+        if bridging[index]:
+            owners[index] = owners[index + 1]
+    for index in range(1, len(keyframes)):
+        trailing = bridging[index] and (keyframes[index].skill in _RISES or all(bridging[index:]))
+        if trailing:
+            owners[index] = owners[index - 1]
+    runs = groupby(enumerate(keyframes), key=lambda row: owners[row[0]])
+    return [Scene(owner[0], owner[1], tuple(run)) for owner, run in runs]
+
+
+def event_retold(event: str, voice: Voice, named: bool = False) -> str | None:
+    """An event of the theme as a sentence in the past, or None where the rules are not sure of its grammar."""
+    text = event.strip().rstrip(".!?")
+    words = text.lower().split()
+    if not words or len(words) > _LONGEST:
+        return None
+    verb = next((word for word in words[:2] if not word.endswith("ly")), "")
+    if is_verb_form(verb) or is_past(verb) or (base_of(verb) and len(words) > 1 and words[1] not in ("and", "of")):
+        text = f"The character {text}"
+    elif words[0] not in ("the", "a", "an", "he", "she", "they", "his", "her", "their", "it", "there"):
+        return None
+    told = retell(text, voice, named)
+    return told and told + "."
+
+
+def covered(event: str, summary: str) -> float:
+    """Share of an event's content words that the summary has too; 1 when it has no content words."""
+    wanted, had = _stems(event), _stems(summary)
+    return len(wanted & had) / len(wanted) if wanted else 1.0
+
+
+def _stems(text: str) -> set[str]:
+    return {word[:5] for word in re.findall(r"[a-z]{4,}", text.lower())} - _PALE

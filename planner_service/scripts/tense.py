@@ -1,0 +1,178 @@
+"""English verbs for telling: past and -ing forms, and a present-tense sentence told in the past."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+_REGULAR: Final = """
+accept ache act admire allow amble answer appear argue arrange arrive ask attack attempt attend avoid await bake bask
+bathe battle beam beckon belong blame blast blink blush boil borrow bother bounce bound bow breathe brush bump burn
+bustle buzz call calm care carry celebrate change chase chat check cheer cherish chew chill chop chuckle circle clean
+clear climb close collapse collect comb comfort complain compose conclude confess confide confirm connect consider
+consume contemplate continue convince cook cool correct cough count cover crack cram crash crave crawl create cross
+crouch crumble crumple crush cry curl curse dance dart dash daydream decide decline decorate defeat demand depart
+describe deserve desire destroy detect devour dial die dim dine dip disappear discard discover discuss dismiss
+distract donate doodle dose doze drag drain dread dress drift drool drop drown drum dry dust edge edit email embark
+embrace employ empty enable encounter end enjoy enter envy erupt escape evaporate examine exclaim exercise exhale exit
+expect explain explode explore express face fade fail faint fear feast fetch fidget fill finish fix flatter flick flip
+float flood flop flow fluff fold follow forward free frolic frown fry fulfil fumble fume fuss gallop gape gasp gather
+gaze gesture giggle glance glare glide gobble gossip grab greet grieve grimace grin grip groan groom grumble guard
+guess guide gulp guzzle hammer happen hasten hate head heat help hesitate hobble hoist hop hope host hover huddle hug
+hum hunt hurl hurry ignore imagine improve inch indulge inform inhale insist inspect intend interrupt investigate
+invite iron itch jog join jot juggle jump kick kiss knock lament land last laugh laze lean learn lift like limp linger
+listen live load lock long look loom loosen lounge love lower lug lunge lurch manage march mark marvel massage match
+matter meander measure meditate melt mend mess miss mix moan mop mope mourn move mumble munch murmur muse mutter nap
+need nestle nibble nod note notice nudge nurse observe obsess occur offer open order organise organize overflow
+overturn overwhelm own pace pack paint panic pant park pass pat patrol pause peek peel peep peer perch perform persist
+pet phone photograph pick pile pinch pine place plan play plead plod plop pluck plug plummet plunge point poke polish
+ponder pop pose post pounce pour practice practise praise pray prefer prepare press pretend prevent print process
+procrastinate promise prop protest prowl pull punch purr push puzzle quiver rage raise rattle reach realise realize
+reassure recall receive recite recline recognise recognize recover reel reflect refuse regain regard regret rehearse
+reheat rejoice relax release relieve relish relive rely remain remember remind reminisce remove renew repair repeat
+replace reply report request rescue resolve rest restore resume retire retreat retrieve return reunite reveal revel
+review rinse rip roam roast roll rouse row rub ruin rummage rush sag sail salute saunter savor savour scan scare
+scatter scold scoop score scowl scramble scratch scream scroll scrub scurry scuttle seal search seat seem seethe
+select sense serve settle shape share shatter shelter shift shiver shout shove shower shrug shuffle sidestep sigh sip
+sizzle sketch skim skip slam slap slip slouch slow slump slurp smash smell smile smoke smooth snack snap snatch sneak
+sneeze sniff snooze snore snuggle soak sob soften solve soothe sort spill splash splurge spoon spot sprawl spray
+sprint squash squat squeal squeeze squint squirm stack stagger stalk stamp stare start startle stash stay steady step
+stiffen stir stomp stoop stop storm straighten strain stretch strip stroll struggle strum strut study stuff stumble
+style subside succumb suffer sulk surf surprise surrender survey suspect swallow sway sweat swipe swirl switch swoon
+sympathise tackle talk tap taste tease tend tense test text thank thrash throb thump tidy tie tighten tilt tiptoe tire
+toast toddle toil tolerate topple toss touch trace trail train travel treasure treat tremble trickle trip trot trudge
+trust try tuck tug tumble turn twiddle twirl twist twitch type unbutton uncork uncover unfold unload unlock unpack
+unplug unroll unwrap update urge use vacuum vanish vent view visit vow wail wait walk wallow waltz wander wane want
+warm wash watch water wave weigh welcome wheel whirl whisper whistle wince wipe wish wither witness wobble wonder work
+worry worsen wrap wrestle yank yawn yearn yell zigzag zip
+"""
+_PAIRS: Final = """
+am:was arise:arose awake:awoke be:was bear:bore beat:beat become:became begin:began bend:bent bet:bet bid:bid bite:bit
+blow:blew break:broke bring:brought build:built burst:burst buy:bought cast:cast catch:caught choose:chose cling:clung
+come:came creep:crept cut:cut deal:dealt dig:dug do:did draw:drew dream:dreamt drink:drank drive:drove eat:ate
+fall:fell feed:fed feel:felt fight:fought find:found flee:fled fling:flung fly:flew forget:forgot forgive:forgave
+freeze:froze get:got give:gave go:went grow:grew hang:hung have:had hear:heard hide:hid hit:hit hold:held hurt:hurt
+keep:kept kneel:knelt know:knew lay:laid lead:led leap:leapt leave:left lend:lent let:let lie:lay light:lit lose:lost
+make:made mean:meant meet:met misread:misread mistake:mistook outgrow:outgrew overcome:overcame overhear:overheard
+oversee:oversaw oversleep:overslept overtake:overtook pay:paid put:put quit:quit read:read rid:rid ride:rode ring:rang
+rise:rose run:ran say:said see:saw seek:sought sell:sold send:sent set:set shake:shook shed:shed shine:shone
+show:showed shrink:shrank shut:shut sing:sang sink:sank sit:sat sleep:slept slide:slid sling:slung speak:spoke
+spend:spent spin:spun spit:spat split:split spread:spread spring:sprang stand:stood steal:stole stick:stuck
+sting:stung stride:strode strike:struck swear:swore sweep:swept swell:swelled swim:swam swing:swung take:took
+teach:taught tear:tore tell:told think:thought throw:threw tread:trod undergo:underwent understand:understood
+undo:undid unwind:unwound upset:upset wake:woke wear:wore weave:wove weep:wept win:won wind:wound withdraw:withdrew
+wring:wrung write:wrote
+"""
+_IRREGULAR: Final = dict(pair.split(":") for pair in _PAIRS.split())
+_DOUBLED: Final = """
+begin bid chat chop cram cut dig dim dip drag drop drum flip flop forget get grab grin grip hit hop hug hum jog jot
+let lug mop nap nod pat pet plan plod plop plug pop prefer prop put quit regret rid rip rub run sag scan scrub set
+shrug shut sip sit skim skip slam slap slip snap sob spin spit split spot squat step stir stop strip strum strut swim
+tap travel trip trot tug unplug upset win wrap zigzag zip
+"""
+_DOUBLING: Final = frozenset(_DOUBLED.split())
+_AUXILIARY: Final = {
+    "is": "was", "are": "were", "has": "had", "does": "did", "do": "did", "can": "could", "cannot": "could not",
+    "will": "would", "must": "had to", "may": "might", "isn't": "wasn't", "aren't": "weren't", "hasn't": "hadn't",
+    "doesn't": "didn't", "don't": "didn't", "can't": "couldn't", "won't": "wouldn't", "it's": "it was",
+}  # fmt: skip
+_SHIFTED: Final = (
+    (r"\btomorrow (morning|afternoon|evening|night)\b", r"the next \1"),
+    (r"(?<!about )\btomorrow\b", "the next day"),
+    (r"\btonight\b", "that night"),
+    (r"\btoday\b", "that day"),
+    (r"\byesterday\b", "the day before"),
+)
+"""Days named from the teller's present, named from the story's."""
+
+
+def past(base: str) -> str:
+    """The simple past of a base form: sit → sat, carry → carried."""
+    if base in _IRREGULAR:
+        return _IRREGULAR[base]
+    if base.endswith("e"):
+        return base + "d"
+    if base.endswith("y") and base[-2:-1] not in "aeiou":
+        return base[:-1] + "ied"
+    if base in _DOUBLING:
+        return base + base[-1] + "ed"
+    return base + "ed"
+
+
+def gerund(base: str) -> str:
+    """The -ing form: sit → sitting, lie → lying, make → making."""
+    if base.endswith("ie"):
+        return base[:-2] + "ying"
+    if base.endswith("e") and not base.endswith(("ee", "oe")) and base != "be":
+        return base[:-1] + "ing"
+    return base + (base[-1] if base in _DOUBLING else "") + "ing"
+
+
+def third_person(base: str) -> str:
+    """The present of he, she and it: carry → carries."""
+    if base.endswith("y") and base[-2:-1] not in "aeiou":
+        return base[:-1] + "ies"
+    return base + ("es" if base.endswith(("s", "x", "z", "ch", "sh", "o")) else "s")
+
+
+BASES: Final = frozenset(_REGULAR.split()) | _IRREGULAR.keys() - {"be", "am"}
+_PRESENT: Final = {third_person(base): base for base in BASES} | {"has": "have", "does": "do", "goes": "go"}
+_PASTS: Final = frozenset(past(base) for base in BASES) | {"was", "were", "could", "would", "might"}
+
+_DESCRIBING: Final = """
+a an the this that's his her their its my your our some many few several of two three four five six ten no these
+those all other more most old new good bad clean dirty empty first last final long loud little big small heavy with
+in on at from for about into to by over under through without between after before during strange large slow
+quick light short brisk hurried deep cold soft
+"""
+"""After these, a word such as "drinks" or "steps" is a noun."""
+_NOUN_BEFORE: Final = frozenset(_DESCRIBING.split())
+
+
+def is_past(word: str) -> bool:
+    """Whether a word is a simple past we know."""
+    return word in _PASTS
+
+
+def is_verb_form(word: str) -> bool:
+    """Whether a word is a third-person present we know, or an auxiliary."""
+    return word in _PRESENT or word in _AUXILIARY
+
+
+def base_of(present: str) -> str | None:
+    """The base of a third-person present form, a regular guess for an unknown word in -s; None for anything else."""
+    if present in _PRESENT:
+        return _PRESENT[present]
+    if not present.endswith("s") or present.endswith("ss") or len(present) < 4:
+        return None
+    if present.endswith("ies"):
+        return present[:-3] + "y"
+    return present[:-2] if present.endswith(("sses", "shes", "ches", "xes", "zzes")) else present[:-1]
+
+
+def word_to_past(word: str, before: str, after_subject: bool = False) -> str:
+    """One word of a present-tense sentence in the past; `before` is the word in front of it, lower case.
+
+    Right after the subject any word in -s counts as a verb, and so does a base form after "they".
+    """
+    lower = word.lower()
+    if lower in _AUXILIARY and not (lower == "do" and before == "to"):
+        return _match_case(_AUXILIARY[lower], word)
+    if after_subject:
+        base = lower if before == "they" and lower in BASES else base_of(lower)
+        return past(base) if base else word
+    if lower in _PRESENT and before not in _NOUN_BEFORE:
+        return _match_case(past(_PRESENT[lower]), word)
+    return word
+
+
+def days_to_past(text: str) -> str:
+    """Tomorrow → the next day, tonight → that night."""
+    for pattern, told in _SHIFTED:
+        text = re.sub(pattern, told, text)
+        text = re.sub(pattern.replace(r"\bt", r"\bT"), told[:1].upper() + told[1:], text)
+    return text
+
+
+def _match_case(told: str, word: str) -> str:
+    return told[:1].upper() + told[1:] if word[:1].isupper() else told
