@@ -1,0 +1,225 @@
+"""Ways through a home: where on its floor a walking body can stand, and smooth short paths that keep off furniture."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse import csgraph
+
+from scene_graphs.clearance import BODY_RADIUS, Clearance, measure_clearance, obstacles
+from scene_graphs.homes import Home
+from scene_graphs.joining import WALL_GAP
+from scene_graphs.layouts import Array, Point2
+from scene_graphs.smoothing import along_line, smooth_path
+
+COMFORT: Final = 0.45
+"""Beyond this clearance more room is worth no detour, in metres."""
+CARE: Final = 2.0
+"""How many times longer than its length a step counts, beyond itself, where the body only just fits."""
+TIGHT: Final = 3.0
+"""The same for a step that might touch: between two free cells clearance can dip by 0.7 of a cell."""
+WITHIN: Final = 0.6
+"""How far from walkable floor a start or goal may be, in metres."""
+_STEPS: Final = ((1, 0), (0, 1), (1, 1), (1, -1))
+
+Cells = NDArray[np.int64]
+
+
+class NoPath(ValueError):  # noqa: N818
+    """There is no way to walk from a start to a goal: names both and why."""
+
+
+class Walkable:
+    """The walkable floor of a home for a body of one radius, and the ways over it. Everything is [x, z] in metres.
+
+    Points that stand a little too near to furniture (where one sits down, where one reaches a shelf) may be a start or
+    a goal: the body leaves and reaches them in a straight line.
+    """
+
+    def __init__(self, home: Home, radius: float = BODY_RADIUS, cell: float = 0.05) -> None:
+        self.home = home
+        self.radius = radius
+        self.field = _measure(home, cell)
+        self._free = self.field.distances >= radius
+        self._cells: Cells = np.argwhere(self._free)
+        self._numbers = np.full(self._free.shape, -1, dtype=np.int64)
+        self._numbers[self._free] = np.arange(len(self._cells))
+
+    def clearance(self, point: Point2) -> float:
+        """Distance to the nearest furniture or wall; 0 inside one or off the floor."""
+        return float(self.field.at(np.asarray(point, dtype=float)))
+
+    def is_free(self, point: Point2) -> bool:
+        """Whether the body can stand there without touching anything."""
+        return self.clearance(point) >= self.radius
+
+    def nearest_free(self, point: Point2, within: float = WITHIN) -> Point2 | None:
+        """The point itself if it is free, else the nearest walkable place a straight step away, else None."""
+        if self.is_free(point):
+            return point
+        number = self._enter(point, within)
+        return None if number is None else self._center(number)
+
+    def reachable(self, start: Point2, goal: Point2) -> bool:
+        """Whether there is a way from start to goal."""
+        first, last = self._enter(start, WITHIN), self._enter(goal, WITHIN)
+        return first is not None and last is not None and bool(self._regions[first] == self._regions[last])
+
+    def path(self, start: Point2, goal: Point2) -> Array:
+        """A smooth way from start to goal, about 0.1 m between points, ends included. (N, 2).
+
+        It is shortest for a cost in which a step counts more the less clearance there is (`CARE`, `COMFORT`).
+        NoPath if start or goal is farther than `WITHIN` from walkable floor, or nothing leads from one to the other.
+        """
+        first, last = self._entry("start", start, goal), self._entry("goal", start, goal)
+        if self._regions[first] != self._regions[last]:
+            raise NoPath(f"no way from {_name(start)} to {_name(goal)}: furniture or walls separate them")
+        inner = self._shortest(first, last)
+        inner[0] = start if self.is_free(start) else inner[0]
+        inner[-1] = goal if self.is_free(goal) else inner[-1]
+        smooth = smooth_path(inner, self._cost, lambda points: bool((self.field.at(points) >= self.radius).all()))
+        ends = ([] if self.is_free(start) else [start], [] if self.is_free(goal) else [goal])
+        return np.concatenate([np.reshape(ends[0], (-1, 2)), smooth, np.reshape(ends[1], (-1, 2))])
+
+    def random_point(self, rng: np.random.Generator, room: int) -> Point2:
+        """A place in the room with generous clearance, connected to the rest of the home where possible.
+
+        NoPath if no floor of that room is walkable; IndexError if there is no such room.
+        """
+        outline = shapely.Polygon(self.home.room_polygon(room))
+        centers = self._centers
+        inside = np.flatnonzero(shapely.contains_xy(outline, centers[:, 0], centers[:, 1]))
+        if not len(inside):
+            raise NoPath(f"room {room} ({self.home.rooms[room].layout.id!r}) has no walkable floor")
+        main = np.bincount(self._regions).argmax()
+        candidates = connected if len(connected := inside[self._regions[inside] == main]) else inside
+        clear = self.field.distances[tuple(self._cells[candidates].T)]
+        roomy = candidates[clear >= min(0.5, float(np.quantile(clear, 0.8)))]
+        return self._center(int(rng.choice(roomy)))
+
+    @cached_property
+    def _centers(self) -> Array:
+        """Centres of the free cells. (free cells, 2)."""
+        centers: Array = np.asarray(self.field.origin) + self._cells * self.field.cell
+        return centers
+
+    @cached_property
+    def _graph(self) -> sparse.csr_array:
+        """Free cells joined to their free neighbours, by the cost of the step."""
+        count = len(self._cells)
+        weights = self._weights(self.field.distances[self._free])
+        starts, ends, costs = [], [], []
+        for di, dj in _STEPS:
+            moved = self._cells + np.array([di, dj])
+            valid = (moved >= 0).all(axis=1) & (moved < self._free.shape).all(axis=1)
+            other = np.full(count, -1)
+            other[valid] = self._numbers[tuple(moved[valid].T)]
+            here = np.flatnonzero(other >= 0)
+            starts.append(here)
+            ends.append(other[here])
+            costs.append(np.hypot(di, dj) * self.field.cell * (weights[here] + weights[other[here]]) / 2)
+        edges = (np.concatenate(costs), (np.concatenate(starts), np.concatenate(ends)))
+        upper = sparse.coo_array(edges, shape=(count, count)).tocsr()
+        return sparse.csr_array(upper + upper.T)
+
+    @cached_property
+    def _regions(self) -> NDArray[np.int32]:
+        """The connected region of every free cell. (free cells,)."""
+        return np.asarray(csgraph.connected_components(self._graph, directed=False)[1], dtype=np.int32)
+
+    def _weights(self, clearance: Array) -> Array:
+        """What a metre counts at that clearance: 1 with room to spare, 1 + CARE where the body only just fits."""
+        tight = (COMFORT - clearance) / max(COMFORT - self.radius, 1e-6)
+        touching = clearance < self.radius + 0.71 * self.field.cell
+        weights: Array = 1.0 + CARE * np.clip(tight, 0.0, 1.0) + TIGHT * touching
+        return weights
+
+    def _cost(self, start: Array, end: Array) -> float:
+        """Cost of walking straight from start to end; infinite where the body does not fit."""
+        clearance = self.field.at(along_line(start, end, self.field.cell / 2))
+        if clearance.min() < self.radius:
+            return float("inf")
+        return float(np.hypot(*(end - start)) * self._weights(clearance).mean())
+
+    def _shortest(self, first: int, last: int) -> Array:
+        """Centres of the cells on the cheapest way between two free cells. (N, 2)."""
+        _, before = csgraph.dijkstra(self._graph, indices=np.array([last]), return_predecessors=True)
+        numbers = [first]
+        while numbers[-1] != last:
+            numbers.append(int(before[0, numbers[-1]]))
+        return self._centers[numbers]
+
+    def _center(self, number: int) -> Point2:
+        x, z = self._centers[number]
+        return float(x), float(z)
+
+    def _entry(self, which: str, start: Point2, goal: Point2) -> int:
+        number = self._enter(start if which == "start" else goal, WITHIN)
+        if number is None:
+            raise NoPath(
+                f"no way from {_name(start)} to {_name(goal)}: no walkable floor within {WITHIN} m of the {which}; "
+                "move the furniture there or take another place"
+            )
+        return number
+
+    def _enter(self, point: Point2, within: float) -> int | None:
+        """The free cell where a body at the point joins the walkable floor, or None.
+
+        Of the cells near by it takes one whose straight line to the point crosses least furniture, then the nearest;
+        a line never leaves the floor, so nobody steps through a wall.
+        """
+        if not len(self._cells):
+            return None
+        here = np.asarray(point, dtype=float)
+        away = np.hypot(*(self._centers - here).T)
+        near = np.flatnonzero(away <= within)
+        near = near[np.argsort(away[near], kind="stable")[:200]]
+        if self.is_free(point):
+            near = near[:4]
+        best: tuple[float, int] | None = None
+        for number in near:
+            if best is not None and away[number] >= best[0]:
+                break
+            line = along_line(here, self._centers[number], 0.02)
+            if not self._on_floor(line):
+                continue
+            blocked = float((self.field.at(line) <= 0.0).mean())
+            cost = float(away[number]) * (1.0 + 10.0 * blocked)
+            if best is None or cost < best[0]:
+                best = (cost, int(number))
+        return None if best is None else best[1]
+
+    @cached_property
+    def _floor(self) -> shapely.Geometry:
+        floor = _floor(self.home)
+        shapely.prepare(floor)
+        return floor
+
+    def _on_floor(self, line: Array) -> bool:
+        return bool(shapely.intersects_xy(self._floor, line[:, 0], line[:, 1]).all())
+
+
+def _floor(home: Home) -> shapely.Geometry:
+    """All rooms and the doorways between them."""
+    rooms = [shapely.Polygon(home.room_polygon(index)) for index in range(len(home.rooms))]
+    reach = WALL_GAP / 2 + 0.01
+    return shapely.union_all(
+        [*rooms, *(shapely.LineString(d.segment).buffer(reach, cap_style="flat") for d in home.doorways)]
+    )
+
+
+def _measure(home: Home, cell: float) -> Clearance:
+    """The clearance of a home's floor: solid furniture and the floor's own edge are in the way."""
+    floor = _floor(home)
+    return measure_clearance(
+        floor, [outline for _, outline in obstacles(home.objects)], [shapely.boundary(floor)], cell
+    )
+
+
+def _name(point: Point2) -> str:
+    return f"({point[0]:.2f}, {point[1]:.2f})"
