@@ -72,7 +72,7 @@ RISINGS: Final = (
     "Eventually {they} {rose}.",
     "It was some time before {they} {rose}.",
     "By and by {they} {rose} again.",
-    "Only after a long moment {name} {rose}.",
+    "A long moment passed before {they} {rose}.",
     "In the end {they} {rose}.",
     "Then {they} {rose} again.",
 )
@@ -125,7 +125,7 @@ LYING_CLOSINGS: Final[dict[str, tuple[str, ...]]] = {
 }
 
 FIRST_ROOM: Final = ("in the {room},",)
-NEW_ROOMS: Final = ("in the {room},", "then, in the {room},", "in the {room} next door,")
+NEW_ROOMS: Final = ("in the {room},", "then, in the {room},", "now in the {room},")
 ROOMS: Final = ("back in the {room},", "in the {room} again,")
 """Before the first sentence in another room: the story's first, one it has not been in, one it has."""
 

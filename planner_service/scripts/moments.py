@@ -85,12 +85,13 @@ class Wording:
         self.say_room = True
         """Whether the room may be called by its name; not right after it was."""
         self._at: str | None = None
+        self._said: str | None = None  # what "it" stands for
         self._wandering = False
 
     def phrases(self, keyframes: Iterable[tuple[int, PlannedKeyframe]]) -> list[Phrase]:
         """Keyframes of one event as phrases in order; every index is in exactly one of them."""
         rows = list(keyframes)
-        self._wandering = False
+        self._wandering, self._said = False, None
         told: list[Phrase] = []
         untold: tuple[int, ...] = ()
         for position, (index, keyframe) in enumerate(rows):
@@ -129,7 +130,7 @@ class Wording:
                 template = self.variety.pick(phrases.RISES[pace])
         filled = self._fill(template, index, keyframe)
         self._wandering = keyframe.skill == Skill.LOCO and keyframe.on_floor
-        self._at = None if keyframe.on_floor else self._the(index, keyframe)
+        self._at = self._said = None if keyframe.on_floor else self._the(index, keyframe)
         return " ".join(filled.split()).replace(" ,", ",")
 
     def _walks(self, keyframe: Keyframe, mood: str) -> tuple[str, ...]:
@@ -146,7 +147,7 @@ class Wording:
 
     def _fill(self, template: str, index: int, keyframe: PlannedKeyframe) -> str:
         the = self._the(index, keyframe)
-        here = self._is_here(index, keyframe)
+        here = not keyframe.on_floor and self._said == the
         inside = the.endswith(_IN)
         name = "it" if here else the
         if here and re.search(r"\b(?:down|out|back|seat|comfortably)\b", template.split("{on}")[0]):

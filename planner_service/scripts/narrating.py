@@ -200,7 +200,8 @@ class _Narrator:
     def _framed(self, templates: tuple[str, ...], event: str) -> str:
         they, their = self.voice["they"].capitalize(), self.voice["their"].capitalize()
         template = self.variety.pick(templates)
-        return self.voice.fill(template, time=framing.time_of(event), They=they, Their=their)
+        told = self.voice.fill(template, time=framing.time_of(event), They=they, Their=their)
+        return re.sub(r"\ba (?=[aeiou])", "an ", told)
 
     def _add(self, sentence: str) -> None:
         self.text += (" " if self.text and not self.text.endswith("\n") else "") + sentence

@@ -14,6 +14,14 @@ from planner_service.scripts.voice import Voice, retell
 _LONGEST = 24
 """Words of an event's own text that a story may quote."""
 _ASLEEP = re.compile(r"\b(?:asleep|sleep|slept|nap|dozed|nodded off|passed out)\b")
+_WEATHER = re.compile(
+    r"(?:is|was) (?:raining|snowing|storming)\b|(?:starts|begins) to (?:rain|snow)\b|(?:rains|snows)\b"
+)
+_RUN_ON = re.compile(
+    r"^(?:an?|the)\b.*(?<!,)(?<!\band)(?<!\bbut)(?<!\bso)(?<!\bthat)(?<!\bwhen)(?<!\bwhile)(?<!\bas)"
+    r" (?:he|she|they)\b"
+)
+"""A noun and then a clause of its own: the word that joined them was lost."""
 _PALE_WORDS = """
 again about after becom befor begin chara decid feels felt from gets herse himse into over perso some start that their
 then thems this very when with
@@ -60,6 +68,10 @@ def event_retold(event: str, voice: Voice, named: bool = False) -> str | None:
     text = event.strip().rstrip(".!?")
     words = text.lower().split()
     if not words or len(words) > _LONGEST:
+        return None
+    if _WEATHER.match(text):
+        return (told := retell(f"It {text}", voice, named)) and told + "."
+    if _RUN_ON.search(text):
         return None
     verb = next((word for word in words[:2] if not word.endswith("ly")), "")
     if is_verb_form(verb) or is_past(verb) or (base_of(verb) and len(words) > 1 and words[1] not in ("and", "of")):
