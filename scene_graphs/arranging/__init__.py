@@ -1,0 +1,1 @@
+"""Composing rooms: an empty shell, groups of furniture that belong together, and where they go."""
