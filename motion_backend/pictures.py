@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,9 +16,8 @@ from motion_backend.rendering import Image, Solid, render
 from motion_backend.skinning import skin
 
 if TYPE_CHECKING:
-    from scene_graphs.homes import Home
-
     from motion_backend.motion import Motion
+    from scene_graphs.homes import Home
 
 WALL_PREFIXES = ("wall", "door", "window", "ceiling", "frame")
 """How the names of meshes begin that may stand between the camera and the body."""
@@ -32,24 +31,48 @@ def body_solids(motion: Motion, frames: Sequence[int], opacity: float = 1.0) -> 
     return [Solid(v, mesh.faces, mesh.face_colors, n, opacity=opacity) for v, n in zip(vertices, normals, strict=True)]
 
 
-def home_solids(home: Home) -> list[tuple[str, Solid]]:
-    """Everything of a home that can be drawn, with its name."""
+@dataclass(frozen=True)
+class Prop:
+    """One mesh of a home, ready to draw."""
+
+    name: str
+    solid: Solid
+    low: NDArray[np.floating]
+    high: NDArray[np.floating]
+    """Corners of its box. (3,) each."""
+    room: int | None
+    """The room its middle lies in."""
+
+    @property
+    def is_wall(self) -> bool:
+        """Whether it may be cut open to look inside."""
+        return self.name.startswith(WALL_PREFIXES)
+
+
+def home_props(home: Home) -> list[Prop]:
+    """Everything of a home that can be drawn."""
     from scene_graphs.furnishing import home_meshes
 
-    return [(mesh.name, Solid(mesh.vertices, mesh.faces, mesh.color[:3])) for mesh in home_meshes(home)]
+    props = []
+    for mesh in home_meshes(home):
+        low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+        middle = (float(low[0] + high[0]) / 2, float(low[2] + high[2]) / 2)
+        solid = Solid(mesh.vertices, mesh.faces, mesh.color[:3])
+        props.append(Prop(mesh.name, solid, low, high, home.room_at(middle)))
+    return props
 
 
-def around(named: Sequence[tuple[str, Solid]], camera: Camera, reach: float = 4.5) -> list[Solid]:
-    """What is within reach of the camera's target, with the walls in front of it cut open."""
+def around(props: Sequence[Prop], camera: Camera, room: int | None = None, reach: float = 4.5) -> list[Solid]:
+    """What is within reach of the camera's target, cut open where walls or other rooms' things are before the room."""
     target = np.asarray(camera.target)
     distance = float(np.linalg.norm(target - camera.eye))
     shown = []
-    for name, solid in named:
-        low, high = solid.vertices.min(axis=0), solid.vertices.max(axis=0)
-        gap = np.maximum(np.maximum(low - target, target - high), 0.0)
+    for prop in props:
+        gap = np.maximum(np.maximum(prop.low - target, target - prop.high), 0.0)
         if np.hypot(gap[0], gap[2]) > reach:
             continue
-        shown.append(replace(solid, cut=distance - 0.5) if name.startswith(WALL_PREFIXES) else solid)
+        in_the_way = prop.is_wall or (room is not None and prop.room != room and prop.high[1] > 0.1)
+        shown.append(replace(prop.solid, cut=distance - 0.5) if in_the_way else prop.solid)
     return shown
 
 
@@ -66,12 +89,13 @@ def contact_sheet(
     `yaw` is where the camera stands around the body, in the world: 0 looks at the face of a body that faces +Z.
     """
     chosen = np.linspace(0, len(motion) - 1, frames).round().astype(int)
-    named = [] if home is None else home_solids(home)
+    props = [] if home is None else home_props(home)
     pictures = []
     for frame in chosen:
         x, y, z = (float(v) for v in motion.root_positions[frame])
         camera = orbit((x, max(0.35, 0.9 * y), z), 4.2, yaw, 0.25, fov=0.58)
-        pictures.append(render([*body_solids(motion, [frame]), *around(named, camera)], camera, size))
+        room = None if home is None else home.room_at((x, z))
+        pictures.append(render([*body_solids(motion, [frame]), *around(props, camera, room)], camera, size))
     return save_png(tile(pictures, columns=min(frames, 6)), path)
 
 

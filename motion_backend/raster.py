@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Real = NDArray[np.floating[Any]]
 Ints = NDArray[np.int64]
 Point3 = tuple[float, float, float]
 
@@ -41,11 +43,12 @@ class Camera:
         right = right / np.linalg.norm(right)
         return np.stack([right, np.cross(right, forward), forward])
 
-    def view(self, points: Array) -> Array:
-        """World to camera: right, up, depth. (..., 3)."""
-        return np.asarray((points - np.asarray(self.eye)) @ self.axes.T)
+    def view(self, points: Real) -> Real:
+        """World to camera: right, up, depth. (..., 3), as exact as the points are."""
+        axes = self.axes.astype(points.dtype)
+        return np.asarray(points @ axes.T - (axes @ np.asarray(self.eye)).astype(points.dtype))
 
-    def project(self, viewed: Array, size: tuple[int, int]) -> Array:
+    def project(self, viewed: Real, size: tuple[int, int]) -> Real:
         """From what `view` gives to (x, y, nearness). (..., 3)."""
         width, height = size
         depth = viewed[..., 2]
@@ -54,11 +57,10 @@ class Camera:
         else:
             nearness = 1.0 / depth
             scale = 0.5 * height / np.tan(0.5 * self.fov) * nearness
-        return np.stack(
-            [0.5 * width + viewed[..., 0] * scale, 0.5 * height - viewed[..., 1] * scale, nearness], axis=-1
-        )
+        across, down = 0.5 * width + viewed[..., 0] * scale, 0.5 * height - viewed[..., 1] * scale
+        return np.stack([across, down, nearness], axis=-1, dtype=viewed.dtype)
 
-    def unproject(self, x: Array, y: Array, nearness: Array, size: tuple[int, int]) -> Array:
+    def unproject(self, x: Real, y: Real, nearness: Real, size: tuple[int, int]) -> Real:
         """The inverse of `project` and `view` together. (..., 3) in the world."""
         width, height = size
         if self.span is not None:
@@ -66,8 +68,8 @@ class Camera:
         else:
             depth = 1.0 / nearness
             scale = 2.0 * np.tan(0.5 * self.fov) / height * depth
-        viewed = np.stack([(x - 0.5 * width) * scale, (0.5 * height - y) * scale, depth], axis=-1)
-        return np.asarray(viewed @ self.axes + np.asarray(self.eye))
+        viewed = np.stack([(x - 0.5 * width) * scale, (0.5 * height - y) * scale, depth], axis=-1, dtype=x.dtype)
+        return np.asarray(viewed @ self.axes.astype(x.dtype) + np.asarray(self.eye, dtype=x.dtype))
 
 
 def orbit(target: Point3, distance: float, yaw: float, pitch: float, fov: float = 0.6) -> Camera:
@@ -78,7 +80,7 @@ def orbit(target: Point3, distance: float, yaw: float, pitch: float, fov: float 
     return Camera((eye[0], eye[1], eye[2]), target, fov)
 
 
-def clip(viewed: Array, camera: Camera) -> tuple[Array, Ints]:
+def clip(viewed: Real, camera: Camera) -> tuple[Real, Ints]:
     """Triangles cut off at the near plane, and which one each came from."""
     index = np.arange(len(viewed))
     if camera.span is not None:
@@ -86,7 +88,7 @@ def clip(viewed: Array, camera: Camera) -> tuple[Array, Ints]:
     behind = (viewed[..., 2] < NEAR).sum(axis=1)
     pieces, sources = [viewed[behind == 0]], [index[behind == 0]]
     for f in np.flatnonzero((behind > 0) & (behind < 3)):
-        polygon: list[Array] = []
+        polygon: list[Real] = []
         for a, b in zip(viewed[f], np.roll(viewed[f], -1, axis=0), strict=True):
             if a[2] >= NEAR:
                 polygon.append(a)
@@ -98,7 +100,7 @@ def clip(viewed: Array, camera: Camera) -> tuple[Array, Ints]:
     return np.concatenate(pieces), np.concatenate(sources)
 
 
-def fragments(screen: Array, width: int, height: int) -> tuple[Ints, Ints, Array]:
+def fragments(screen: Real, width: int, height: int) -> tuple[Ints, Ints, Real]:
     """Pixel, triangle and nearness of everything every triangle covers. screen: (F, 3, 3) as from `Camera.project`."""
     x, y, near = screen[..., 0], screen[..., 1], screen[..., 2]
     dx, dy = np.roll(x, -1, axis=1) - x, np.roll(y, -1, axis=1) - y

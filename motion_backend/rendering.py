@@ -8,14 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motion_backend.raster import Array, Camera, Ints, clip, fragments
+from motion_backend.raster import Array, Camera, Ints, Real, clip, fragments
 
-Floats = NDArray[np.floating[Any]]
 Image = NDArray[np.uint8]
 
 SUPERSAMPLE = 2
@@ -46,7 +44,7 @@ class Solid:
     color: Sequence[float] | NDArray[np.floating] = (0.75, 0.75, 0.75)
     """(3,) or (F, 3) sRGB; an alpha is not read."""
     normals: NDArray[np.floating] | None = None
-    """(V, 3) for smooth shading; flat without."""
+    """(V, 3) for smooth shading of a closed shape; flat without."""
     opacity: float = 1.0
     """Quarters show: 0.25, 0.5, 0.75, 1."""
     cut: float = 0.0
@@ -66,7 +64,7 @@ def render(
     hit = np.flatnonzero(triangle >= 0)
     if len(hit):
         x, y = hit % large[0] + 0.5, hit // large[0] + 0.5
-        points = camera.unproject(np.asarray(x), np.asarray(y), nearness[hit], large)
+        points = camera.unproject(x.astype(np.float32), y.astype(np.float32), nearness[hit].astype(np.float32), large)
         color[hit] = _shade(scene, camera, triangle[hit], points, hit % 2 + 2 * (hit // large[0] % 2))
     color = color.reshape(large[1], large[0], 3)
     steps = range(SUPERSAMPLE)
@@ -84,8 +82,8 @@ class _Scene:
     """(F, 3, 3) float32, one a corner; zero where flat."""
     flat: Array
     """(F, 3) float32."""
-    is_smooth: Array
-    """(F,) bool."""
+    is_smooth: NDArray[np.bool_]
+    """(F,)."""
     color: Array
     """(F, 3) float32, linear."""
     opacity: Array
@@ -124,7 +122,11 @@ def _visible(scene: _Scene, camera: Camera, size: tuple[int, int]) -> tuple[Ints
     """For every pixel the nearest triangle (-1 for none) and its nearness."""
     width, height = size
     viewed, source = clip(camera.view(scene.corners), camera)
-    pixel, piece, nearness = fragments(camera.project(viewed, size), width, height)
+    screen = camera.project(viewed, size)
+    # A smooth solid is closed: its far side is hidden by its near side, or by none when it is see-through.
+    seen = ~scene.is_smooth[source] | _turned_to_us(screen)
+    screen, source = screen[seen], source[seen]
+    pixel, piece, nearness = fragments(screen, width, height)
     triangle = source[piece]
     if scene.opacity.min() < 1 or scene.cut.max() > 0:
         order = (pixel % width % 2) * 2 ^ (pixel // width % 2) * 3
@@ -139,13 +141,18 @@ def _visible(scene: _Scene, camera: Camera, size: tuple[int, int]) -> tuple[Ints
     return nearest, best
 
 
-def _shade(scene: _Scene, camera: Camera, triangle: Ints, points: Array, quarter: Ints) -> Floats:
+def _turned_to_us(screen: Real) -> NDArray[np.bool_]:
+    x, y = screen[..., 0], screen[..., 1]
+    return np.asarray((x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) < (y[:, 1] - y[:, 0]) * (x[:, 2] - x[:, 0]))
+
+
+def _shade(scene: _Scene, camera: Camera, triangle: Ints, points: Real, quarter: Ints) -> Real:
     """Linear colours of surface points; `quarter` says which of a picture's four samples each one is. (N, 3)."""
     normal = scene.flat[triangle]
     smooth = np.flatnonzero(scene.is_smooth[triangle])
     normal[smooth] = _interpolated(scene, triangle[smooth], points[smooth])
     if camera.span is None:
-        ray = (np.asarray(camera.eye) - points).astype(np.float32)
+        ray = np.asarray(camera.eye, dtype=np.float32) - points
         distance = np.sqrt(_dot(ray, ray))
         facing = _dot(normal, ray) / distance
     else:
@@ -166,7 +173,7 @@ def _shade(scene: _Scene, camera: Camera, triangle: Ints, points: Array, quarter
     return np.asarray(color)
 
 
-def _interpolated(scene: _Scene, triangle: Ints, points: Array) -> Floats:
+def _interpolated(scene: _Scene, triangle: Ints, points: Real) -> Real:
     """Unit normals at points of triangles, from the corners' normals. (N, 3) float32."""
     corners, normals = scene.corners[triangle], scene.normals[triangle]
     side, other, offset = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], points - corners[:, 0]
@@ -178,11 +185,11 @@ def _interpolated(scene: _Scene, triangle: Ints, points: Array) -> Floats:
     return np.asarray(normal / np.sqrt(np.maximum(_dot(normal, normal), 1e-18))[:, None], dtype=np.float32)
 
 
-def _dot(a: Floats, b: Floats) -> Floats:
+def _dot(a: Real, b: Real) -> Real:
     return np.asarray(np.einsum("nk,nk->n", a, b))
 
 
-def _light(scene: _Scene, camera: Camera, points: Array, quarter: Ints) -> tuple[Floats, Floats]:
+def _light(scene: _Scene, camera: Camera, points: Real, quarter: Ints) -> tuple[Real, Real]:
     """Shares of the sun and of the sky that reach points, from two shadow maps. (N,) each."""
     casting = scene.corners[(scene.opacity >= 1) & (scene.cut <= 0)]
     reach = SHADOW_REACH if camera.span is None else max(SHADOW_REACH, 0.8 * camera.span)
@@ -192,17 +199,17 @@ def _light(scene: _Scene, camera: Camera, points: Array, quarter: Ints) -> tuple
     shares = []
     for direction, taps in ((SUN, 0.013 * scale * _SUN_TAPS), (np.array([0.0, 1.0, 0.0]), 0.10 * scale * _SKY_TAPS)):
         lamp, depth = _shadow_map(casting, direction, camera, reach)
-        x, y, height = (lamp.project(lamp.view(points), (SHADOW_SIZE, SHADOW_SIZE)).astype(np.float32) + 0.02).T
+        x, y, height = lamp.project(lamp.view(points), (SHADOW_SIZE, SHADOW_SIZE)).T
         lit = np.zeros(len(points), dtype=np.float32)
         for u, v in taps.astype(np.float32):
             column = np.clip(x + (u * cos - v * sin), 0, SHADOW_SIZE - 1).astype(np.int32)
             row = np.clip(y + (u * sin + v * cos), 0, SHADOW_SIZE - 1).astype(np.int32)
-            lit += depth[row * SHADOW_SIZE + column] < height
+            lit += depth[row * SHADOW_SIZE + column] < height + 0.02
         shares.append(lit / len(taps))
     return shares[0], 0.35 + 0.65 * shares[1]
 
 
-def _shadow_map(corners: Array, direction: Array, camera: Camera, reach: float) -> tuple[Camera, Floats]:
+def _shadow_map(corners: Array, direction: Array, camera: Camera, reach: float) -> tuple[Camera, Real]:
     """A parallel view from the light, and the nearness of what it meets first in every pixel. (SHADOW_SIZE ** 2,)."""
     eye = np.asarray(camera.target) + 6.0 * direction / np.linalg.norm(direction)
     lamp = Camera((float(eye[0]), float(eye[1]), float(eye[2])), camera.target, span=2 * reach)
@@ -215,7 +222,7 @@ def _shadow_map(corners: Array, direction: Array, camera: Camera, reach: float) 
     return lamp, depth.astype(np.float32).reshape(-1)
 
 
-def _grid(points: Array, distance: Floats) -> Floats:
+def _grid(points: Real, distance: Real) -> Real:
     """How dark the floor's lines make it at points that far from the eye. (N,)."""
     x, z = (np.abs((points[:, k] / GRID + 0.5) % 1.0 - 0.5) * GRID for k in (0, 2))
     width = 0.004 + 0.0012 * distance
