@@ -25,7 +25,7 @@ _IN = ("armchair", "lounge chair", "lazy sofa", "rocking chair")
 _VERB = re.compile(r"(?:^|~)(\w+)")
 _LONGEST = 24
 """Words of a sentence after which no more is added to it."""
-_FURTHER = ("on and on", "from wall to wall", "this way and that", "from one end to the other")
+_FURTHER = ("to and fro", "from wall to wall", "this way and that", "from one end to the other")
 """Where a walk with no goal goes after another one."""
 _NEUTRAL_WALKS = ("smoothly forward walk", "steadily walking forward")
 

@@ -98,6 +98,9 @@ class _Narrator:
             reached = next_event if scene.event is None else max(next_event, scene.event + 1)
             self._tell_scene(scene, number, [event.text for event in events[next_event:reached]])
             next_event = reached
+        for event in events[next_event:]:
+            if told := event_retold(event.text, self.voice):
+                self._add(self._turned(told))
         self._add(self._framed(self._closings(), last.text))
         title = framing.title_of(self.script.theme, emotion_of(last.emotion) or "neutral")
         return Told(title, self.text, tuple(self.spans))
@@ -108,13 +111,9 @@ class _Narrator:
         lead = self._lead(scene, events, number > 0, named)
         self._enter(scene, lead)
         sentences = sentences_of(self.wording.phrases(scene.keyframes))
-        before = 0
-        if lead and sentences and scene.ends_asleep(" ".join(lead)):
-            before = len(sentences)
-        elif (
-            lead and number % 2 and len(sentences) > 1 and scene.keyframes[0][1].on_floor and not sentences[0][0].rises
-        ):
-            before = 1
+        before = _told_before(scene, lead, sentences, number)
+        if before:
+            lead = self._lead(scene, events, turn=False, named=True)
         for position, sentence in enumerate(sentences[:before]):
             self._add_sentence(sentence, name=position == 0 and not named, plain=position == 0)
         for told in lead:
@@ -141,13 +140,15 @@ class _Narrator:
         for event in events:
             told = event_retold(event, self.voice, named) if covered(event, summary) < 0.5 else None
             if told:
-                if turn:
-                    inner = told if told.startswith(self.voice.name) else told[:1].lower() + told[1:]
-                    told = f"{self.variety.pick(framing.TURNS)} {inner}"
-                lead.append(told)
+                lead.append(self._turned(told) if turn else told)
                 named = turn = True
         told = retell(summary, self.voice, named) if summary else None
         return [*lead, *([told] if told else [])]
+
+    def _turned(self, told: str) -> str:
+        """A sentence after "then" or "later"."""
+        inner = told if told.startswith(self.voice.name) else told[:1].lower() + told[1:]
+        return f"{self.variety.pick(framing.TURNS)} {inner}"
 
     def _add_sentence(self, sentence: Sequence[Phrase], name: bool, plain: bool, last: bool = False) -> None:
         subject = self.voice.name if name else self.voice["they"]
@@ -191,9 +192,11 @@ class _Narrator:
         return fits and not self.gerunds and self.variety.chance(0.3)
 
     def _closings(self) -> tuple[str, ...]:
+        if not self.script.keyframes:
+            return framing.CLOSINGS["neutral"]
         last = self.script.keyframes[-1]
         mood = mood_of(last)
-        asleep = "asleep" in self.text[-120:]
+        asleep = re.search(r"sleep|awake", self.text.rpartition("\n\n")[2])
         lying = framing.LYING_CLOSINGS.get(mood) if last.skill == Skill.LIEDOWN and not asleep else None
         return lying or framing.CLOSINGS[mood]
 
@@ -205,6 +208,15 @@ class _Narrator:
 
     def _add(self, sentence: str) -> None:
         self.text += (" " if self.text and not self.text.endswith("\n") else "") + sentence
+
+
+def _told_before(scene: Scene, lead: Sequence[str], sentences: Sequence[Sequence[Phrase]], number: int) -> int:
+    """How many sentences about the body come before what happens: all when it ends asleep, at times the first walk."""
+    if lead and sentences and scene.ends_asleep(" ".join(lead)):
+        left = sentences[-1][0].rises and len(sentences) > 1  # what comes after the sleep
+        return len(sentences) - left
+    wanders = scene.keyframes[0][1].on_floor and len(sentences) > 1 and not sentences[0][0].rises
+    return int(bool(lead) and number % 2 == 1 and wanders)
 
 
 def _called(index: int, keyframe: PlannedKeyframe, places: Places) -> str:

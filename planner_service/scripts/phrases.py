@@ -57,7 +57,7 @@ WALKS: Final[dict[str, Walk]] = {
     ),
     "walk with depression": Walk(
         ("trudge {to}", "drift {to} with hanging shoulders", "walk listlessly {to}"),
-        ("trudge {about}", "drift {about} with hanging shoulders", "wander {about} without a goal"),
+        ("trudge {about}", "drift aimlessly {about}", "wander {about} without a goal"),
     ),
     "head bowed and body bent while walking": Walk(
         ("plod {to}, bent and silent", "move {to}, head down", "walk {to} with lowered eyes"),
@@ -198,13 +198,13 @@ LIES: Final[dict[str, tuple[str, ...]]] = {
 
 RISES: Final[dict[str, tuple[str, ...]]] = {
     "neutral": ("get up", "stand up", "rise"),
-    "slow": ("get slowly to {their} feet", "rise slowly", "get up without haste"),
+    "slow": ("get slowly to {their} feet", "rise slowly", "get up slowly"),
     "fast": ("jump up", "spring to {their} feet", "leap up"),
 }
 
 TOUCHES: Final[dict[str, tuple[str, ...]]] = {
     "low": ("bend down and ~reach low at {the}", "stoop to {the}", "reach down beside {the}"),
-    "prone": ("crouch and ~reach far down at {the}",),
+    "prone": ("crouch and ~reach far under {the}",),
     "medium": ("lay {hand} on {the}", "put {hand} on {the}", "touch {the}", "reach for {the}"),
     "high": ("reach high up at {the}", "stretch to the top of {the}"),
 }

@@ -13,7 +13,7 @@ from planner_service.scripts.voice import Voice, retell
 
 _LONGEST = 24
 """Words of an event's own text that a story may quote."""
-_ASLEEP = re.compile(r"\b(?:asleep|sleep|slept|nap|dozed|nodded off|passed out)\b")
+_ASLEEP = re.compile(r"\b(?:fell (?:fast )?asleep|went to sleep|(?:took|into) a nap|dozed off|nodded off|passed out)\b")
 _WEATHER = re.compile(
     r"(?:is|was) (?:raining|snowing|storming)\b|(?:starts|begins) to (?:rain|snow)\b|(?:rains|snows)\b"
 )

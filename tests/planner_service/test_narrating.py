@@ -76,7 +76,7 @@ def spoken(told: Told) -> list[int]:
     return [index for span in told.spans for index in span.keyframes]
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(stories, st.sampled_from(PEOPLE), st.integers(0, 9))
 def test_no_story_has_a_slip_of_grammar(script: LongScript, person: Character, seed: int) -> None:
     told = narrate(script, person, seed)

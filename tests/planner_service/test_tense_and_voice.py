@@ -1,0 +1,95 @@
+"""Verbs in the past, and sentences about "the character" told of somebody."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from motion_backend.motion import Character
+from planner_service.scripts.scenes import event_retold
+from planner_service.scripts.tense import BASES, gerund, past, third_person, word_to_past
+from planner_service.scripts.voice import Voice, retell
+
+SHE, HE, THEY = Voice("Ana", "she"), Voice("Tom", "he"), Voice("Sam", "they")
+
+
+@pytest.mark.parametrize(
+    ("base", "simple_past", "ing", "present"),
+    [
+        ("sit", "sat", "sitting", "sits"),
+        ("carry", "carried", "carrying", "carries"),
+        ("stop", "stopped", "stopping", "stops"),
+        ("lie", "lay", "lying", "lies"),
+        ("make", "made", "making", "makes"),
+        ("reach", "reached", "reaching", "reaches"),
+        ("play", "played", "playing", "plays"),
+        ("flee", "fled", "fleeing", "flees"),
+        ("tiptoe", "tiptoed", "tiptoeing", "tiptoes"),
+    ],
+)
+def test_verbs_are_inflected_as_in_a_grammar(base: str, simple_past: str, ing: str, present: str) -> None:
+    assert (past(base), gerund(base), third_person(base)) == (simple_past, ing, present)
+
+
+@given(st.sampled_from(sorted(BASES - {"have", "do", "be"})))
+def test_the_present_of_every_verb_leads_back_to_its_past(base: str) -> None:
+    assert word_to_past(third_person(base), "and") == past(base)
+
+
+def test_a_noun_that_looks_like_a_verb_stays() -> None:
+    told = retell("The character drinks two drinks and looks at the steps.", SHE)
+    assert told == "Ana drank two drinks and looked at the steps."
+
+
+@pytest.mark.parametrize(
+    ("text", "voice", "told"),
+    [
+        ("The character is tired and sits down.", THEY, "Sam was tired and sat down."),
+        ("The character sits. The character is tired.", THEY, "Sam sat. They were tired."),
+        ("The character sits. The character is tired.", SHE, "Ana sat. She was tired."),
+        ("It is the character's birthday, and they are happy.", HE, "It was Tom's birthday, and he was happy."),
+        ("A person is told that he fails.", HE, "Tom was told that he failed."),
+        ("A person is told that he fails.", THEY, "Sam was told that they failed."),
+        ("The rain wakes the character.", SHE, "The rain woke Ana."),
+        ("Character stomped around, holding her head.", HE, "Tom stomped around, holding his head."),
+        (
+            "The picnic is tomorrow and the character cannot wait.",
+            SHE,
+            "The picnic was the next day and Ana could not wait.",
+        ),
+        ("Tonight the character eats alone.", HE, "That night Tom ate alone."),
+        ("The character ponders over a photograph.", SHE, "Ana pondered over a photograph."),
+    ],
+)
+def test_a_sentence_is_told_in_the_past_of_its_person(text: str, voice: Voice, told: str) -> None:
+    assert retell(text, voice) == told
+
+
+@pytest.mark.parametrize("text", ["", "rain and wind", "She calls him.", "I sit down.", "He gives her a ring."])
+def test_what_might_go_wrong_is_not_told(text: str) -> None:
+    assert retell(text, THEY) is None
+
+
+@pytest.mark.parametrize(
+    ("event", "told"),
+    [
+        ("misses the bus", "Ana missed the bus."),
+        ("is raining", "It was raining."),
+        ("decided to drink wine", "Ana decided to drink wine."),
+        ("the phone rings", "The phone rang."),
+        ("a quarrel with her boss she comes home", None),
+        ("insomnia", None),
+        ("to relax", None),
+        ("", None),
+    ],
+)
+def test_an_event_becomes_a_sentence_or_nothing(event: str, told: str | None) -> None:
+    assert event_retold(event, SHE) == told
+
+
+@pytest.mark.parametrize(
+    ("written", "kind"), [("she", "she"), ("He", "he"), ("they/them", "they"), ("xe", "they"), ("", "they")]
+)
+def test_pronouns_are_read_kindly(written: str, kind: str) -> None:
+    assert Voice.of(Character("Kim", written)).pronouns == kind
