@@ -1,13 +1,14 @@
 """A small software renderer: shaded solids, shadows and a floor grid to pictures, in numpy alone.
 
 Frame: Y up, metres. Colours are sRGB, 0 to 1; light is summed in linear space. The nearest fragment of every pixel is
-shaded once; pictures are drawn at twice their size and averaged, so that edges and see-through solids are smooth.
+shaded; pixels are looked at in four places, so that edges and see-through solids are smooth.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,9 +17,8 @@ from motion_backend.raster import Array, Camera, Ints, Real, clip, fragments
 
 Image = NDArray[np.uint8]
 
-SUPERSAMPLE = 2
 SUN = np.array([0.35, 0.86, 0.37])
-SUN_LIGHT, SKY_LIGHT, BOUNCE_LIGHT, CAMERA_LIGHT = 0.72, 0.42, 0.20, 0.10
+SUN_LIGHT, SKY_LIGHT, BOUNCE_LIGHT, CAMERA_LIGHT = 0.70, 0.45, 0.24, 0.12
 SHADOW_SIZE, SHADOW_REACH = 640, 3.2
 """Pixels across the shadow maps, and the metres around the target they cover."""
 GRID = 0.5
@@ -28,7 +28,7 @@ HAZE_START, HAZE_DEPTH = 5.0, 4.0
 """Metres around the target that are clear, and over which all fades behind them."""
 SHADOW_OFFSET = 0.02
 """Metres off a surface at which light is looked up, so that it does not shade itself."""
-_SUN_TAPS = np.array([[0.9, 0.1], [-0.1, 0.9], [-0.9, -0.1], [0.1, -0.9]])
+_SUN_TAPS = np.array([[0.9, 0.1], [-0.1, 0.9], [-0.9, -0.1], [0.1, -0.9], [0.35, 0.3], [-0.3, -0.35]])
 _SKY_TAPS = np.array([[0.2, 0.1], [0.9, 0.3], [0.1, 0.95], [-0.75, 0.55], [-0.7, -0.6], [0.35, -0.85]])
 """Where around a point the shadow maps are read, in blur radii; each of a pixel's four samples turns them further."""
 
@@ -57,19 +57,33 @@ def render(
     """The picture, (height, width, 3) uint8 sRGB; `ground` is the height of an endless gridded floor, None for none."""
     if ground is not None:
         solids = [*solids, _floor(camera, ground)]
-    large = (size[0] * SUPERSAMPLE, size[1] * SUPERSAMPLE)
     scene = _Scene.of(solids)
-    triangle, nearness = _visible(scene, camera, large)
-    color = np.tile(_to_linear(HORIZON).astype(np.float32), (large[0] * large[1], 1))
-    hit = np.flatnonzero(triangle >= 0)
-    if len(hit):
-        x, y = hit % large[0] + 0.5, hit // large[0] + 0.5
-        points = camera.unproject(x.astype(np.float32), y.astype(np.float32), nearness[hit].astype(np.float32), large)
-        color[hit] = _shade(scene, camera, triangle[hit], points, hit % 2 + 2 * (hit // large[0] % 2))
-    color = color.reshape(large[1], large[0], 3)
-    steps = range(SUPERSAMPLE)
-    mean = sum(color[i::SUPERSAMPLE, j::SUPERSAMPLE] for i in steps for j in steps) / SUPERSAMPLE**2
-    return _to_srgb_bytes(np.asarray(mean))
+    large = (2 * size[0], 2 * size[1])
+    triangle, nearness = (_quarters(a, size) for a in _visible(scene, camera, large))
+    # A pixel that one triangle fills is shaded once, in its middle; all others at their four samples.
+    whole = np.flatnonzero((triangle[:, 0] >= 0) & (triangle == triangle[:, :1]).all(axis=1))
+    torn = np.setdiff1d(np.flatnonzero(triangle.max(axis=1) >= 0), whole, assume_unique=True)
+    row, sample = np.nonzero(triangle[torn] >= 0)
+    pixel = np.concatenate([whole, torn[row]])
+    x = 2 * (pixel % size[0]) + np.concatenate([np.full(len(whole), 1.0), sample % 2 + 0.5])
+    y = 2 * (pixel // size[0]) + np.concatenate([np.full(len(whole), 1.0), sample // 2 + 0.5])
+    near = np.concatenate([nearness[whole].mean(axis=1), nearness[torn][row, sample]])
+    points = camera.unproject(x.astype(np.float32), y.astype(np.float32), near.astype(np.float32), large)
+    drawn = np.concatenate([triangle[whole, 0], triangle[torn][row, sample]])
+    quarter = np.concatenate([whole % 2 + 2 * (whole // size[0] % 2), sample])
+    shades = _shade(scene, camera, drawn, points, quarter)
+    color = np.tile(_to_linear(HORIZON).astype(np.float32), (size[0] * size[1], 1))
+    color[whole] = shades[: len(whole)]
+    mixed = np.tile(_to_linear(HORIZON).astype(np.float32), (len(torn), 4, 1))
+    mixed[row, sample] = shades[len(whole) :]
+    color[torn] = mixed.mean(axis=1)
+    return _to_srgb_bytes(color).reshape(size[1], size[0], 3)
+
+
+def _quarters(samples: NDArray[Any], size: tuple[int, int]) -> NDArray[Any]:
+    """A double-size picture's values as four a pixel. (H * W, 4)."""
+    width, height = size
+    return samples.reshape(height, 2, width, 2).transpose(0, 2, 1, 3).reshape(-1, 4)
 
 
 @dataclass(frozen=True)
@@ -128,10 +142,13 @@ def _visible(scene: _Scene, camera: Camera, size: tuple[int, int]) -> tuple[Ints
     screen, source = screen[seen], source[seen]
     pixel, piece, nearness = fragments(screen, width, height)
     triangle = source[piece]
-    if scene.opacity.min() < 1 or scene.cut.max() > 0:
-        order = (pixel % width % 2) * 2 ^ (pixel // width % 2) * 3
-        depth = -nearness if camera.span is not None else 1.0 / nearness
-        kept = (order < scene.opacity[triangle] * 4 - 0.5) & (depth > scene.cut[triangle])
+    special = np.flatnonzero(((scene.opacity < 1) | (scene.cut > 0))[triangle])
+    if len(special):
+        at, of, near = pixel[special], triangle[special], nearness[special]
+        order = (at % width % 2) * 2 ^ (at // width % 2) * 3
+        depth = -near if camera.span is not None else 1.0 / near
+        kept = np.ones(len(pixel), dtype=bool)
+        kept[special] = (order < scene.opacity[of] * 4 - 0.5) & (depth > scene.cut[of])
         pixel, triangle, nearness = pixel[kept], triangle[kept], nearness[kept]
     best = np.full(width * height, -np.inf)
     np.maximum.at(best, pixel, nearness)
@@ -233,7 +250,7 @@ def _to_linear(color: Array) -> Array:
     return np.asarray(np.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4))
 
 
-def _to_srgb_bytes(light: Array) -> Image:
+def _to_srgb_bytes(light: Real) -> Image:
     light = np.clip(light, 0.0, 1.0)
     color = np.where(light <= 0.0031308, light * 12.92, 1.055 * light ** (1 / 2.4) - 0.055)
     return np.asarray(np.round(color * 255), dtype=np.uint8)

@@ -169,6 +169,8 @@ def _draw_plan(axes: Axes, stage: _Stage, panel: _Panel, plan: Image) -> None:
     left, far, right, near = panel.window
     way = stage.motion.root_positions[panel.start : panel.stop, [0, 2]]
     axes.imshow(plan, extent=(left, right, near, far), interpolation="nearest")
+    walls = _wall_lines(stage.home)
+    axes.plot(walls[:, 0], walls[:, 1], color=INK, linewidth=2.2, solid_capstyle="butt")
     axes.plot(way[:, 0], way[:, 1], color="white", linewidth=3.2, alpha=0.8, solid_capstyle="round")
     axes.plot(way[:, 0], way[:, 1], color=WAY, linewidth=1.7, solid_capstyle="round")
     axes.plot(*way[0], marker="o", markersize=5, color="white", markeredgecolor=WAY)
@@ -182,6 +184,24 @@ def _draw_plan(axes: Axes, stage: _Stage, panel: _Panel, plan: Image) -> None:
     axes.set_xlim(left, right)
     axes.set_ylim(near, far)
     axes.set_axis_off()
+
+
+def _wall_lines(home: Home) -> Array:
+    """The walls as one broken line of [x, z], open where a door is. (N, 2), NaN between pieces."""
+    gap = np.full(2, np.nan)
+    points: list[Array] = []
+    for wall in home.walls:
+        start, end = np.asarray(wall.segment, dtype=np.float64)
+        length = float(np.linalg.norm(end - start))
+        if length < 1e-6:
+            continue
+        along = (end - start) / length
+        doors = [opening.segment for opening in wall.openings if opening.bottom < 0.2]
+        spans = sorted(sorted(float((np.asarray(p) - start) @ along) for p in door) for door in doors)
+        stops = [0.0, *(value for span in spans for value in span), length]
+        for a, b in zip(stops[::2], stops[1::2], strict=True):
+            points += [start + a * along, start + b * along, gap]
+    return np.array(points).reshape(-1, 2)
 
 
 def _draw_facing(axes: Axes, joints: NDArray[np.float32]) -> None:
