@@ -34,12 +34,21 @@ def two_bone(root: Array, target: Array, pole: Array, lengths: tuple[float, floa
     longest = STRAIGHTEST * (upper_length + lower_length)
     shortest = abs(upper_length - lower_length) + 0.12 * min(lengths)
     distance = np.clip(distance, shortest, longest)
-    aside = rotations.normalize(pole - np.sum(pole * along, axis=-1, keepdims=True) * along)
+    aside = _aside(pole, along)
     cosine = (upper_length**2 + distance**2 - lower_length**2) / (2 * upper_length * distance)
     sine = np.sqrt(np.maximum(1 - cosine**2, 0.0))
     upper = cosine * along + sine * aside
     lower = rotations.normalize(distance * along - upper_length * upper)
     return Limb(upper, lower, np.cross(aside, along))
+
+
+def _aside(pole: Array, along: Array) -> Array:
+    """Unit vectors towards the pole at right angles to the reach; any such vector where the pole lies along it."""
+    across = pole - np.sum(pole * along, axis=-1, keepdims=True) * along
+    helper = np.where(np.abs(along[..., 2:]) < 0.7, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0])
+    any_side = helper - np.sum(helper * along, axis=-1, keepdims=True) * along
+    lost = np.linalg.norm(across, axis=-1, keepdims=True) < 1e-6
+    return rotations.normalize(np.where(lost, any_side, across))
 
 
 def leg_rotations(leg: Limb) -> tuple[Array, Array]:

@@ -25,8 +25,9 @@ from motion_backend.motion import (
 )
 from motion_backend.obstacles import Obstacles
 from motion_backend.procedural.gait import walk, yaw_of
+from motion_backend.procedural.guarding import hands_clear
 from motion_backend.procedural.interactions import edge_seat, lie_down, rise_to_edge, sit_down, stand_up, touch
-from motion_backend.procedural.pose import Pose, concatenate, settle_from, solve
+from motion_backend.procedural.pose import Pose, concatenate, released, settle_from, solve
 from motion_backend.procedural.stances import (
     HAND_REST,
     LYING_REST,
@@ -49,6 +50,12 @@ AT_THE_SPOT = 0.04
 """A body this near to a standing point (metres) need not walk to it."""
 FACING_IT = 0.12
 """And this near to the wanted yaw (radians) need not turn."""
+
+
+TURNING_ROUND = 1.2
+"""A body that arrives turned away from where it will face by more (radians) turns before the last step."""
+ELBOW_ROOM = 0.20
+"""Clearance that turning on the spot takes (metres)."""
 
 
 @dataclass(frozen=True)
@@ -131,9 +138,10 @@ class ProceduralBackend:
 
     def _wake(self, home: Home, state: BodyState) -> _Body:
         rng = np.random.default_rng([state.seed, state.index])
-        pose = Pose.from_lists(state.memory["pose"])
+        skeleton = build_skeleton(state.height)
+        pose = released(Pose.from_lists(state.memory["pose"]), skeleton)
         rest = _spot_from_lists(state.memory.get("spot"))
-        return _Body(self._enter(home), build_skeleton(state.height), rng, pose, state.posture, rest, [])
+        return _Body(self._enter(home), skeleton, rng, pose, state.posture, rest, [])
 
     def _enter(self, home: Home) -> _Scene:
         if self._scene is None or self._scene.home is not home:
@@ -159,7 +167,8 @@ def _spot_from_lists(values: dict[str, Any] | None) -> Spot | None:
 
 
 def _to_motion(body: _Body, action: Action, reason: str) -> Motion:
-    pose = concatenate(body.frames)
+    pose = hands_clear(concatenate(body.frames), body.skeleton, body.scene.obstacles.solid())
+    body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)
     return Motion(
         root_positions=root.astype(np.float32),
@@ -215,7 +224,27 @@ def _go(body: _Body, goal: Point, facing: float | None, action: Action) -> None:
         return
     style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
     path = body.scene.walkable.path(body.place, goal) if not near else np.array([body.place, goal])
-    body.add(walk(body.pose, path, facing, style, body.skeleton, body.rng))
+    turning = _turning_place(body, path, goal, facing)
+    if turning is None or facing is None:
+        body.add(walk(body.pose, path, facing, style, body.skeleton, body.rng))
+        return
+    body.add(walk(body.pose, body.scene.walkable.path(body.place, turning), facing, style, body.skeleton, body.rng))
+    body.add(walk(body.pose, np.array([body.place, goal]), facing, style, body.skeleton, body.rng))
+
+
+def _turning_place(body: _Body, path: Array, goal: Point, facing: float | None) -> Point | None:
+    """Where to turn round before backing up to a seat, away from it; None where no turning round is needed."""
+    if facing is None or len(path) < 2:
+        return None
+    step = path[-1] - path[-2]
+    if float(np.abs(rotations.wrap(np.arctan2(step[0], step[1]) - facing))) < TURNING_ROUND:
+        return None
+    ahead = np.array([np.sin(facing), np.cos(facing)])
+    for distance in (0.30, 0.24, 0.18, 0.12):
+        place = (float(goal[0] + distance * ahead[0]), float(goal[1] + distance * ahead[1]))
+        if body.scene.walkable.clearance(place) >= ELBOW_ROOM:
+            return place
+    return None
 
 
 def _loco(body: _Body, action: Action) -> None:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.procedural.gait import home_ankle, yaw_of
-from motion_backend.procedural.pose import Pose, concatenate, interpolate, settle_from, smooth
+from motion_backend.procedural.pose import Pose, concatenate, interpolate, released, settle_from, smooth
 from motion_backend.procedural.stances import (
     FOOT_SPLAY,
     SHIN_REACH,
@@ -253,7 +253,14 @@ def touch(start: Pose, goal: Array, palm: Array, hand: str, style: tuple[Bearing
     one = np.eye(2)[index]
     reach, palms = start.reach.copy(), start.palms.copy()
     reach[index], palms[index] = goal, palm
-    reached = replace(reached, reach=reach, reaching=one, palms=palms, pressing=one)
+    elbows = start.elbows.copy()
+    side = 1.0 if index == 0 else -1.0
+    # A raised hand hangs its elbow below, a lowered one keeps it behind: else the elbow would flip over on the way.
+    high = float(np.clip((goal[1] - 0.72 * start.pelvis[1] / 0.53) / 0.25, 0.0, 1.0))
+    elbows[index] = np.array([0.45 * side, -0.25 - 0.75 * high, -1.0 + 0.75 * high])
+    reached = replace(reached, reach=reach, reaching=one, palms=palms, pressing=one, elbows=elbows)
+    # The same place held from the chest, so that the arm swings there round its shoulder.
+    reached = replace(reached, arms=released(reached, skeleton).arms)
     away = replace(start, reach=reach, palms=palms)
     lead = replace(away, head=0.7 * reached.head + 0.3 * start.head)
     go = interpolate([0.0, 0.35 * pace, 1.15 * pace], [away, lead, reached], FPS)
@@ -274,7 +281,7 @@ def _reaching(start: Pose, goal: Array, index: int, skeleton: Skeleton) -> Pose:
     ahead = np.array([np.sin(yaw), 0.0, np.cos(yaw)])
     tries = start.repeat(len(lean))
     turn = 0.22 if index == 1 else -0.22
-    back = 0.10 * np.sin(lean) + 0.25 * crouch
+    back = 0.06 * np.sin(lean) + 0.25 * crouch
     tries = replace(
         tries,
         pelvis=start.pelvis - crouch * UP - back * ahead,
@@ -284,7 +291,7 @@ def _reaching(start: Pose, goal: Array, index: int, skeleton: Skeleton) -> Pose:
     gap = np.linalg.norm(goal - shoulders(tries, skeleton)[:, index], axis=1)
     arm = 0.54 * skeleton.scale
     miss = np.maximum(gap - 0.955 * arm, 0.0) + np.maximum(0.45 * arm - gap, 0.0)
-    effort = 60.0 * miss + lean[:, 0] + 1.2 * crouch[:, 0] + 2.0 * lean[:, 0] ** 2
+    effort = 60.0 * miss + 0.6 * lean[:, 0] + 1.1 * lean[:, 0] ** 2 + 2.6 * crouch[:, 0]
     best = tries.at(int(np.argmin(effort)))
     eyes = shoulders(best.repeat(1), skeleton)[0].mean(axis=0) + 0.2 * UP
     look = goal - eyes

@@ -106,15 +106,46 @@ def interpolate(times: list[float], keys: list[Pose], fps: int) -> Pose:
             values[f.name] = _spline(knots, stacked, at)
     lengths = _spline(knots, np.linalg.norm(np.stack([key.arms for key in keys]), axis=-1), at)
     values["arms"] = _around_the_shoulder(values["arms"], lengths)
+    values["elbows"] = _carried_along(knots, keys, at, values["arms"])
     return Pose(**values)
+
+
+def _carried_along(knots: Array, keys: list[Pose], at: Array, arms: Array) -> Array:
+    """Elbow directions that turn with the arm from key to key, so that an elbow never flips over. (T, 2, 3)."""
+    before = np.clip(np.searchsorted(knots, at, side="left") - 1, 0, len(keys) - 2)
+    share = smooth((at - knots[before]) / (knots[before + 1] - knots[before]))[:, None, None]
+    way = rotations.normalize(arms)
+    ends = []
+    for offset in (0, 1):
+        wrists = rotations.normalize(np.stack([key.arms for key in keys])[before + offset])
+        poles = np.stack([key.elbows for key in keys])[before + offset]
+        poles = rotations.normalize(poles - np.sum(poles * wrists, axis=-1, keepdims=True) * wrists)
+        ends.append(_turned_with(poles, wrists, way))
+    between = np.arctan2(
+        np.sum(np.cross(ends[0], ends[1]) * way, axis=-1, keepdims=True),
+        np.sum(ends[0] * ends[1], axis=-1, keepdims=True),
+    )
+    # An angle near a half turn must not change its side from frame to frame.
+    angle = np.unwrap(between, axis=0) * share
+    return np.asarray(ends[0] * np.cos(angle) + np.cross(way, ends[0]) * np.sin(angle))
+
+
+def _turned_with(vectors: Array, start: Array, end: Array) -> Array:
+    """Vectors turned by the shortest rotation that takes unit vectors `start` to `end`."""
+    axis = np.cross(start, end)
+    cosine = np.sum(start * end, axis=-1, keepdims=True)
+    scale = 1.0 / np.maximum(1.0 + cosine, 1e-3)
+    crossed = np.cross(axis, vectors)
+    return np.asarray(vectors + crossed + scale * np.cross(axis, crossed))
 
 
 def _around_the_shoulder(arms: Array, lengths: Array) -> Array:
     """Push wrists that cut the corner out, forward and sideways, until the arm has the length it should have."""
     out = np.array([[0.75, 0.0, 0.66], [-0.75, 0.0, 0.66]])
-    along = np.sum(arms * out, axis=-1)
+    along = rotations.normalize(arms)
+    aside = rotations.normalize(out - np.sum(out * along, axis=-1, keepdims=True) * along)
     missing = np.maximum(lengths**2 - np.sum(arms**2, axis=-1), 0.0)
-    return np.asarray(arms + out * (np.sqrt(along**2 + missing) - along)[..., None])
+    return np.asarray(arms + aside * np.sqrt(missing)[..., None])
 
 
 def _spline(knots: Array, values: Array, at: Array) -> Array:
@@ -208,7 +239,7 @@ def _solve_arm(
 ) -> None:
     index, name, side = which
     chest, _ = frame
-    arm, collar = limb_of_arm(pose, skeleton, which, frame)
+    arm, collar, _ = limb_of_arm(pose, skeleton, which, frame)
     upper, lower = arm_rotations(arm, side)
     local[:, INDEX[f"{name}_collar"]] = collar
     clavicle = rotations.compose(chest, collar)
@@ -220,10 +251,25 @@ def _solve_arm(
     local[:, INDEX[f"{name}_wrist"]] = rotations.rotvec_to_quat(press)
 
 
+def released(pose: Pose, skeleton: Skeleton) -> Pose:
+    """The same single pose with its wrists held from the chest alone, no longer tied to places in the world."""
+    one = pose.repeat(1)
+    frame = chest_frame(one, skeleton)
+    arms = pose.arms.copy()
+    for index, (name, side) in enumerate(SIDES):
+        limb, _, shoulder = limb_of_arm(one, skeleton, (index, name, side), frame)
+        lengths = [abs(float(skeleton.offsets[INDEX[f"{name}_{joint}"], 0])) for joint in ("elbow", "wrist")]
+        wrist = shoulder[0] + lengths[0] * limb.upper[0] + lengths[1] * limb.lower[0]
+        rest = skeleton.offsets[INDEX[f"{name}_collar"]] + skeleton.offsets[INDEX[f"{name}_shoulder"]]
+        local = rotations.rotate(rotations.inverse(frame[0][0]), wrist - frame[1][0]) - rest
+        arms[index] = local / sum(lengths)
+    return replace(pose, arms=arms, reaching=np.zeros(2))
+
+
 def limb_of_arm(
     pose: Pose, skeleton: Skeleton, which: tuple[int, str, int], frame: tuple[Array, Array]
-) -> tuple[Limb, Array]:
-    """The solved arm and its collar's local rotation."""
+) -> tuple[Limb, Array, Array]:
+    """The solved arm, its collar's local rotation and where its shoulder joint is."""
     index, name, side = which
     chest, chest_position = frame
     offsets = skeleton.offsets
@@ -244,4 +290,4 @@ def limb_of_arm(
     joint = chest_position + rotations.rotate(chest, offsets[INDEX[f"{name}_collar"]])
     shoulder = joint + rotations.rotate(clavicle, offsets[INDEX[f"{name}_shoulder"]])
     pole = rotations.rotate(chest, pose.elbows[:, index])
-    return two_bone(shoulder, target, pole, lengths), collar
+    return two_bone(shoulder, target, pole, lengths), collar, shoulder

@@ -1,0 +1,89 @@
+"""Keeping hands and forearms out of furniture: what would go into a solid part slides onto its face instead."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion_backend import rotations
+from motion_backend.obstacles import Obstacles
+from motion_backend.procedural.pose import SIDES, Pose, chest_frame, limb_of_arm
+from motion_backend.skeleton import INDEX, Skeleton
+
+Array = NDArray[np.float64]
+HAND_LENGTH = 0.14
+THICKNESS = 0.034
+"""Radius of hand and wrist (metres)."""
+UPWARDS = 0.12
+"""A way out upwards may be this much longer than the nearest way out sideways: hands rest on things."""
+
+
+def hands_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles) -> Pose:
+    """The same motion with hands moved out of what is solid; hands laid on something are left where they are."""
+    reach, reaching = pose.reach.copy(), pose.reaching.copy()
+    frame = chest_frame(pose, skeleton)
+    for index, (name, side) in enumerate(SIDES):
+        arm, _, shoulder = limb_of_arm(pose, skeleton, (index, name, side), frame)
+        upper = abs(float(skeleton.offsets[INDEX[f"{name}_elbow"], 0]))
+        lower = abs(float(skeleton.offsets[INDEX[f"{name}_wrist"], 0]))
+        elbow = shoulder + upper * arm.upper
+        wrist = elbow + lower * arm.lower
+        tip = wrist + HAND_LENGTH * skeleton.scale * arm.lower
+        push = _way_out(np.stack([tip, wrist, 0.5 * (elbow + wrist)], axis=1), obstacles)
+        push = push * (1 - pose.pressing[:, index, None])
+        moved = np.linalg.norm(push, axis=1) > 1e-4
+        if not moved.any():
+            continue
+        eased = _eased(push)
+        used = np.linalg.norm(eased, axis=1) > 1e-4
+        reach[used, index] = (wrist + eased)[used]
+        reaching[used, index] = 1.0
+    return replace(pose, reach=reach, reaching=reaching)
+
+
+def _way_out(points: Array, obstacles: Obstacles) -> Array:
+    """The longest of the shortest ways out of solid boxes for K points a frame. (T, K, 3) to (T, 3)."""
+    frames = len(points)
+    flat = points.reshape(-1, 3).copy()
+    total = np.zeros_like(flat)
+    close = obstacles.near(flat.min(axis=0) - THICKNESS, flat.max(axis=0) + THICKNESS)
+    for index in range(len(close.owners)):
+        step = _out_of_box(flat + total, close, index)
+        total += step
+    total = total.reshape(frames, -1, 3)
+    longest = np.argmax(np.linalg.norm(total, axis=2), axis=1)
+    return np.asarray(total[np.arange(frames), longest])
+
+
+def _out_of_box(points: Array, boxes: Obstacles, index: int) -> Array:
+    turn = rotations.yaw_to_quat(float(boxes.yaws[index]))
+    local = rotations.rotate(rotations.inverse(turn), points - boxes.centers[index])
+    half = boxes.halves[index] + THICKNESS
+    gap = half - np.abs(local)
+    inside = (gap > 0).all(axis=1)
+    out = np.zeros_like(local)
+    if not inside.any():
+        return out
+    up = half[1] - local[:, 1]
+    sideways = np.argmin(gap[:, [0, 2]], axis=1) * 2
+    across = gap[np.arange(len(gap)), sideways]
+    upwards = inside & (up < across + UPWARDS)
+    out[upwards, 1] = up[upwards]
+    aside = np.flatnonzero(inside & ~upwards)
+    out[aside, sideways[aside]] = across[aside] * np.sign(local[aside, sideways[aside]])
+    return np.asarray(rotations.rotate(turn, out))
+
+
+def _eased(push: Array) -> Array:
+    """The push led in and out over a few frames, so that hands do not snap."""
+    from scipy.ndimage import gaussian_filter1d, maximum_filter1d
+
+    size = np.linalg.norm(push, axis=1)
+    wide = maximum_filter1d(size, 7, mode="nearest")
+    smoothed = gaussian_filter1d(push, 2.5, axis=0, mode="nearest")
+    length = np.linalg.norm(smoothed, axis=1)
+    wanted = np.maximum(gaussian_filter1d(wide, 2.0, mode="nearest"), 0.0)
+    grow = np.where(length > 1e-6, wanted / np.maximum(length, 1e-6), 0.0)
+    return np.asarray(smoothed * np.minimum(grow, 4.0)[:, None])

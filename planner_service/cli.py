@@ -1,0 +1,42 @@
+"""The command line: `sims story`, `sims scripts …`, `sims layouts …`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from planner_service.commands import layouts, scripts, story
+from planner_service.commands.errors import USER_ERRORS, explain
+
+app = typer.Typer(no_args_is_help=True, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+app.command("story")(story.story)
+app.add_typer(scripts.app, name="scripts")
+app.add_typer(layouts.app, name="layouts")
+
+
+@app.callback()
+def sims(
+    data_dir: Annotated[
+        Path | None, typer.Option(help="Folder of your own scripts and caches (SIMS_DATA_DIR).", envvar="SIMS_DATA_DIR")
+    ] = None,
+) -> None:
+    """A story theme becomes a long script, a furnished home, a told story and a body acting it out."""
+    if data_dir is not None:
+        import os
+
+        os.environ["SIMS_DATA_DIR"] = str(data_dir)
+
+
+def main() -> None:
+    """Run the command line; what a user did wrong ends as one line on standard error and exit code 2."""
+    try:
+        app(standalone_mode=True)
+    except USER_ERRORS as error:
+        print(f"sims: {explain(error)}", file=sys.stderr)  # noqa: T201
+        sys.exit(2)
+    except KeyboardInterrupt:
+        print("sims: stopped; nothing was written", file=sys.stderr)  # noqa: T201
+        sys.exit(130)

@@ -1,0 +1,132 @@
+"""`sims story THEME`: theme to film, with a progress bar and a closing table of what was reached and how well."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from motion_backend.motion import Character
+from planner_service.scripts.events import ThemeError
+from planner_service.settings import Settings
+from planner_service.stories import STAGES, Story, StoryRequest, Studio, load_backend
+
+SHARES = {"plan": 0.30, "furnish": 0.05, "narrate": 0.02, "act": 0.06, "move": 0.12, "judge": 0.20, "write": 0.25}
+"""About how much of the time each stage takes, for the bar."""
+LONGEST_FILE = 100_000
+"""Bytes of a theme's file that are read."""
+TOLD = {
+    "plan": "weaving short scripts",
+    "furnish": "finding rooms that fit",
+    "narrate": "telling the story",
+    "act": "finding where to sit, lie, touch and walk",
+    "move": "moving the body",
+    "judge": "measuring the motion",
+    "write": "writing the film",
+}
+
+
+def story(
+    theme: Annotated[str, typer.Argument(help="What happens, in your own words; @FILE reads it from a file.")],
+    out: Annotated[Path, typer.Option(help="Folder for the story's files.")] = Path("out/story"),
+    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same story.")] = 0,
+    rooms: Annotated[
+        str | None, typer.Option(help="Room types to play in, separated by commas: bedroom, living_room, dining_room, study.")
+    ] = None,
+    layout: Annotated[
+        list[str] | None, typer.Option(help="A layout file, or the id of a built-in layout; may be given up to 4 times.")
+    ] = None,
+    backend: Annotated[str | None, typer.Option(help="What moves the body: procedural.")] = None,
+    name: Annotated[str, typer.Option(help="The character's name.")] = "Sam",
+    pronouns: Annotated[str, typer.Option(help="he, she or they.")] = "they",
+    height: Annotated[float, typer.Option(help="The character's height in metres, 1.2 to 2.2.")] = 1.70,
+) -> None:
+    """Turn a story theme into a script, a home, a told story and an animated film."""
+    from planner_service.commands.rooms import chosen_layouts
+    from planner_service.filing import check_writable, write_story
+
+    settings = Settings()
+    check_writable(out)
+    chosen_backend = backend or settings.backend
+    load_backend(chosen_backend)
+    studio = Studio(settings.scripts_file, settings.cache_dir, settings.layouts)
+    request = StoryRequest(
+        theme=read_theme(theme),
+        rooms=tuple(room.strip() for room in rooms.split(",") if room.strip()) if rooms else (),
+        layouts=chosen_layouts(layout or [], studio),
+        seed=seed,
+        backend=chosen_backend,
+        character=Character(name, pronouns, height),
+    )
+    console = Console()
+    with _bar(console) as bar:
+        task = bar.add_task(TOLD["plan"], total=1.0)
+
+        def show(stage: str, share: float) -> None:
+            before = sum(SHARES[s] for s in [*STAGES, "write"][: [*STAGES, "write"].index(stage)])
+            bar.update(task, completed=before + share * SHARES[stage], description=TOLD[stage])
+
+        made = studio.make(request, show)
+        show("write", 0.0)
+        files = write_story(made, out)
+        bar.update(task, completed=1.0, description="done")
+    _close(console, made, files)
+
+
+def read_theme(argument: str) -> str:
+    """The theme itself, or the text of the file that `@FILE` names. Raises ThemeError for what is not UTF-8."""
+    if not argument.startswith("@"):
+        return argument
+    with Path(argument[1:]).open("rb") as file:
+        data = file.read(LONGEST_FILE)
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise ThemeError(f"{argument[1:]} is not UTF-8 text ({error.reason} at byte {error.start}).") from error
+
+
+def _bar(console: Console) -> Progress:
+    return Progress(TextColumn("{task.description:<42}"), BarColumn(), TimeElapsedColumn(), console=console)
+
+
+def _close(console: Console, made: Story, files: list[Path]) -> None:
+    """The closing table: what was reached, and how well."""
+    console.print(f"\n[bold]{made.planned.told.title}[/bold]\n")
+    console.print(made.planned.told.text + "\n", highlight=False)
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    for column, justify in (("#", "right"), ("skill", "left"), ("caption", "left"), ("furniture", "left")):
+        table.add_column(column, justify=justify)  # type: ignore[arg-type]
+    for column in ("seconds", "reached", "contact", "deepest"):
+        table.add_column(column, justify="right")
+    for action, figure in zip(made.actions, made.figures, strict=True):
+        error = "" if figure.contact_error is None else f"{100 * figure.contact_error:.1f} cm"
+        table.add_row(
+            str(figure.keyframe),
+            figure.skill,
+            action.caption[:44],
+            action.object_id or "floor",
+            f"{figure.seconds:.1f}",
+            "yes" if figure.reached else f"[red]no[/red] {figure.reason}",
+            error,
+            f"{100 * figure.pen_max:.1f} cm",
+        )
+    console.print(table)
+    for line in made.planned.stage.explain():
+        console.print(f"  {line}", highlight=False)
+    report = made.report
+    contact = "–" if report["contact_error"] is None else f"{100 * report['contact_error']:.1f} cm"
+    console.print(
+        f"\n{report['reached']} of {report['keyframes']} keyframes reached · contact error {contact} · "
+        f"inside furniture {100 * report['pen_mean']:.1f} cm mean, {100 * report['pen_share']:.1f} % of frames · "
+        f"skating {100 * report['skate_ratio_loco']:.1f} % of walking · {report['seconds']:.0f} s of motion\n"
+        f"planner: {made.planned.script.planner} · motion: {made.planned.request.backend} (kinematic, not learned) · "
+        f"encoder: {made.planned.script.encoder}",
+        highlight=False,
+    )
+    for event in made.planned.script.uncovered:
+        console.print(f"not covered: {event}", highlight=False)
+    console.print(f"\nwritten to {files[0].parent}/: {', '.join(file.name for file in files)}", highlight=False)

@@ -1,0 +1,188 @@
+"""Keyframes to actions: surfaces to sit, lie and touch, standing points, hands and ways to walk (SIMS 3.4, LINGO C).
+
+Every contact gets the reachable spot nearest to where the body comes from; a walk ends where the next contact begins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from scene_graphs.homes import Home
+from scene_graphs.navigation import NoPath, Walkable
+
+from motion_backend.motion import Action, Skill
+from planner_service.scripts.checking import hand_of
+from planner_service.scripts.keyframe import Keyframe
+from scene_graphs.layouts import Placed
+from scene_graphs.surfaces import Spot, floor_spot, spots
+
+NEEDS = {Skill.SITDOWN: "sit", Skill.LIEDOWN: "lie", Skill.TOUCH: "touch"}
+HOLDS = {Skill.SITDOWN: 2.5, Skill.LIEDOWN: 3.0, Skill.TOUCH: 1.4}
+"""Seconds a reached pose is held."""
+LAST_HOLD = 1.5
+"""Seconds more for the last keyframe."""
+PACING = 1.5
+"""A wandering walk goes at least this far, where the room allows it (metres)."""
+Point = tuple[float, float]
+
+
+class UnreachableError(ValueError):
+    """A keyframe has nothing it can be done at: no object, or none with a spot that can be walked to."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a keyframe happens: room of the home, and object in it (None for the floor)."""
+
+    room: int
+    object_id: str | None = None
+
+
+def act(keyframes: Sequence[Keyframe], places: Sequence[Place], home: Home, seed: int) -> tuple[Action, ...]:
+    """Ground every keyframe in the home. Raises UnreachableError naming the keyframe that cannot be done."""
+    stage = _Stage(home, Walkable(home), np.random.default_rng([seed, 7]))
+    drafts: list[Action] = []
+    for index, (keyframe, place) in enumerate(zip(keyframes, places, strict=True)):
+        drafts.append(stage.contact(index, keyframe, place))
+    return tuple(stage.walks(drafts, keyframes, places))
+
+
+class _Stage:
+    """The home while actions are being grounded: where the body stands and what it rests on."""
+
+    def __init__(self, home: Home, walkable: Walkable, rng: np.random.Generator) -> None:
+        self.home, self.walkable, self.rng = home, walkable, rng
+        self.at: Point | None = None
+        self.resting: Spot | None = None
+        self.by_object: dict[tuple[str, str], Spot] = {}
+
+    def contact(self, index: int, keyframe: Keyframe, place: Place) -> Action:
+        """The action of a keyframe; walks get their goal later, when what follows them is known."""
+        action = Action(
+            keyframe.skill, keyframe.caption, keyframe.emotion, keyframe.furniture, place.object_id, keyframe=index
+        )
+        if keyframe.skill in NEEDS:
+            spot = self._spot(index, keyframe, place)
+            self.at = spot.standing
+            if keyframe.skill is not Skill.TOUCH:
+                self.resting = spot
+            hand = hand_of(keyframe.caption, default="right")
+            return replace(action, object_id=spot.object_id, spot=spot, hand=hand, hold=HOLDS[keyframe.skill])
+        if keyframe.skill in (Skill.STANDUP, Skill.GETUP) and self.resting is not None:
+            return replace(action, object_id=self.resting.object_id, spot=self.resting)
+        return action
+
+    def _spot(self, index: int, keyframe: Keyframe, place: Place) -> Spot:
+        need = NEEDS[keyframe.skill]
+        if place.object_id is None:
+            if keyframe.skill is Skill.TOUCH:
+                raise UnreachableError(f"keyframe {index}: nothing to touch, {keyframe.furniture!r} is not in the home")
+            return self._on_floor(need, place.room)
+        placed = self.home.object(place.object_id)
+        found = self._reachable(placed, need)
+        if not found:
+            raise UnreachableError(
+                f"keyframe {index}: no spot to {need} on {place.object_id} ({placed.category}) that can be walked to"
+            )
+        if need == "touch":
+            wanted = height_of(keyframe.caption)
+            found = [s for s in found if s.height == wanted] or [s for s in found if s.height == "medium"] or found
+            # The body may come back to a piece: it need not touch the very same place again.
+            return found[int(self.rng.integers(min(len(found), 3)))]
+        return found[0]
+
+    def _reachable(self, placed: Placed, need: str) -> list[Spot]:
+        """Spots whose standing point can be walked to, best first: as they come, the nearer side first when lying."""
+        start = self.at or self.walkable.random_point(np.random.default_rng(0), 0)
+        found = [s for s in spots(placed, need) if self._free(s.standing) and self.walkable.reachable(start, s.standing)]
+        if need == "lie":
+            found.sort(key=lambda s: round(float(np.hypot(s.standing[0] - start[0], s.standing[1] - start[1])), 1))
+        return found
+
+    def _free(self, point: Point) -> bool:
+        return self.walkable.nearest_free(point, within=0.35) is not None
+
+    def _on_floor(self, need: str, room: int) -> Spot:
+        """The freest place of a room to sit or lie on the floor, and the freest direction there."""
+        best: tuple[float, Spot] | None = None
+        length = 0.9 if need == "lie" else 0.5
+        for _ in range(60):
+            point = self.walkable.random_point(self.rng, room)
+            for yaw in np.arange(8) * np.pi / 4:
+                ahead = np.array([np.sin(yaw), np.cos(yaw)])
+                ends = [np.asarray(point) + share * length * ahead for share in (-1.0, -0.5, 0.5, 1.0)]
+                room_left = min(self.walkable.clearance((float(e[0]), float(e[1]))) for e in ends)
+                if best is None or room_left > best[0]:
+                    best = (room_left, floor_spot(need, point, float(yaw)))
+            if best is not None and best[0] > 0.35:
+                break
+        if best is None or best[0] <= 0.0:
+            raise UnreachableError(f"room {room} has no free floor to {need} on")
+        return best[1]
+
+    def walks(self, drafts: list[Action], keyframes: Sequence[Keyframe], places: Sequence[Place]) -> list[Action]:
+        """Give every walk its goal: where the next contact with the same thing begins, beside a thing, or anywhere."""
+        done: list[Action] = []
+        at: Point | None = None
+        for index, action in enumerate(drafts):
+            if action.skill is Skill.LOCO:
+                following = drafts[index + 1] if index + 1 < len(drafts) else None
+                action = self._walk(action, following, places[index], at)
+            at = action.goal or (action.spot.standing if action.spot else at)
+            last = index == len(drafts) - 1
+            done.append(replace(action, hold=action.hold + LAST_HOLD) if last else action)
+        return done
+
+    def _walk(self, action: Action, following: Action | None, place: Place, at: Point | None) -> Action:
+        same = following is not None and following.skill in NEEDS and following.object_id == action.object_id
+        if following is not None and following.spot is not None and (same or following.object_id == "floor"):
+            spot = following.spot
+            return replace(action, goal=spot.standing, facing=spot.approach)
+        if place.object_id is not None:
+            beside = self._reachable(self.home.object(place.object_id), "touch")
+            if beside:
+                return replace(action, goal=beside[0].standing, facing=beside[0].facing)
+        return replace(action, goal=self._anywhere(place.room, at), facing=None)
+
+    def _anywhere(self, room: int, at: Point | None) -> Point:
+        """A place to wander to: some way off, with room around it, and not through the whole house."""
+        start = at or self.walkable.random_point(self.rng, room)
+        best: tuple[float, Point] | None = None
+        for _ in range(24):
+            point = self.walkable.random_point(self.rng, room)
+            try:
+                path = self.walkable.path(start, point)
+            except NoPath:
+                continue
+            length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+            worth = min(length, 2.2 * PACING) - 0.4 * max(length - 3 * PACING, 0.0)
+            worth += min(self.walkable.clearance(point), 0.8)
+            if best is None or worth > best[0]:
+                best = (worth, point)
+        if best is None:
+            raise UnreachableError(f"nothing in room {room} can be walked to from {start}")
+        return best[1]
+
+
+def height_of(caption: str) -> str:
+    """The height a touch caption asks for: low, medium or high."""
+    text = caption.lower()
+    if "high" in text or "above" in text or "up to" in text:
+        return "high"
+    if "low" in text or "prone" in text or "bend" in text or "under" in text:
+        return "low"
+    return "medium"
+
+
+def action_to_dict(action: Action) -> dict[str, Any]:
+    """Plain values of an action for story.json."""
+    spot = None
+    if action.spot is not None:
+        spot = {name: (None if value == np.inf else value) for name, value in vars(action.spot).items()}
+    plain: dict[str, Any] = {name: value for name, value in vars(action).items() if name != "spot"}
+    return plain | {"skill": action.skill.value, "spot": spot}
+
+

@@ -1,0 +1,178 @@
+"""Every figure is checked on motions whose answer is known beforehand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from motion_backend import metrics, rotations
+from motion_backend.metrics import Kinematics
+from motion_backend.motion import Action, ContactGoal, Motion, Skill
+from motion_backend.obstacles import Obstacles
+from motion_backend.skeleton import build_skeleton
+
+SKELETON = build_skeleton()
+NOTHING = Obstacles(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), (), np.zeros(0, dtype=bool))
+
+
+def standing_still(frames: int = 60, root: np.ndarray | None = None) -> Motion:
+    """A T-pose on its feet; `root` (T, 3) moves it."""
+    place = np.zeros((frames, 3)) if root is None else root
+    frames = len(place)
+    height = np.array([0.0, SKELETON.standing_height, 0.0])
+    return Motion(
+        (place + height).astype(np.float32),
+        np.tile(rotations.IDENTITY, (frames, 22, 1)).astype(np.float32),
+        np.ones((frames, 4), np.float32),
+        SKELETON,
+        np.zeros(frames, np.int32),
+    )
+
+
+def box(center: tuple[float, float, float], size: tuple[float, float, float], owner: str = "0/box") -> Obstacles:
+    return Obstacles(
+        np.array([center]), np.array([size]) / 2, np.zeros(1), (owner,), np.zeros(1, dtype=bool)
+    )
+
+
+def touch(**changes: object) -> Action:
+    return replace(Action(Skill.TOUCH, "touch", "neutral"), **changes)  # type: ignore[arg-type]
+
+
+def test_a_body_that_stands_still_neither_skates_nor_jerks_nor_sinks() -> None:
+    motion = standing_still()
+    body = Kinematics.of(motion)
+    assert metrics.skate_ratio(motion, body) == 0
+    assert metrics.skate_speed(motion, body) == pytest.approx(0, abs=1e-4)
+    assert metrics.jerk(body.positions, 30) == pytest.approx(0, abs=1e-3)
+    assert metrics.sole_heights(motion, body).min() == pytest.approx(0, abs=1e-6)
+
+
+def test_a_body_that_glides_skates_all_the_time_at_its_own_speed() -> None:
+    root = np.outer(np.arange(60) / 30, [1.2, 0.0, 0.0])
+    motion = standing_still(root=root)
+    body = Kinematics.of(motion)
+    assert metrics.skate_ratio(motion, body) == 1.0
+    assert metrics.skate_speed(motion, body) == pytest.approx(120, rel=1e-3)
+
+
+def test_slow_creeping_is_skate_speed_but_not_gmd_skating() -> None:
+    motion = standing_still(root=np.outer(np.arange(60) / 30, [0.3, 0.0, 0.0]))
+    body = Kinematics.of(motion)
+    assert metrics.skate_ratio(motion, body) == 0.0
+    assert metrics.skate_speed(motion, body) == pytest.approx(30, rel=1e-3)
+
+
+def test_a_body_in_the_air_does_not_skate() -> None:
+    root = np.outer(np.arange(60) / 30, [1.2, 0.0, 0.0]) + [0, 0.2, 0]
+    motion = standing_still(root=root)
+    assert metrics.skate_ratio(motion, Kinematics.of(motion)) == 0.0
+
+
+def test_jerk_of_a_cubic_is_its_third_derivative() -> None:
+    time = np.arange(90) / 30
+    positions = np.zeros((90, 2, 3))
+    positions[:, 0, 0] = positions[:, 1, 2] = 5 * time**3
+    assert metrics.jerk(positions, 30) == pytest.approx(30.0, rel=1e-6)
+
+
+@pytest.mark.parametrize(("depth", "seen"), [(0.03, 0.03), (-0.01, 0.0)])
+def test_penetration_is_the_depth_of_the_deepest_skin_point(depth: float, seen: float) -> None:
+    motion = standing_still(10)
+    body = Kinematics.of(motion)
+    head = body.positions[0, metrics.INDEX["head"]]
+    # A ceiling comes down on the head: its crown is at the capsule's end plus its radius at 45 degrees.
+    crown = head[1] + 0.09 + 0.09 * np.sqrt(0.5)
+    ceiling = box((0.0, crown - depth + 0.5, 0.0), (4.0, 1.0, 4.0))
+    found = metrics.penetration(motion, body, ceiling, None)
+    np.testing.assert_allclose(found, seen, atol=2e-3)
+
+
+def test_only_contact_bodies_may_sink_and_only_into_their_own_target() -> None:
+    motion = standing_still(5)
+    body = Kinematics.of(motion)
+    hips = body.positions[0, 0]
+    seat = box((0.0, hips[1] - 0.09 + 0.03 - 0.5, -0.3), (0.5, 1.0, 0.6), owner="0/chair")
+    sit = Action(Skill.SITDOWN, "sit", "neutral", object_id="0/chair")
+    free = metrics.penetration(motion, body, seat, None)
+    own = metrics.penetration(motion, body, seat, sit)
+    other = metrics.penetration(motion, body, seat, replace(sit, object_id="0/table"))
+    assert free.max() > 0.05
+    np.testing.assert_allclose(other, free)
+    np.testing.assert_allclose(own, np.maximum(free - 0.05, 0), atol=0.03)
+    assert own.max() < free.max()
+
+
+def test_success_must_be_sustained_for_a_second_unless_any_frame_counts() -> None:
+    motion = standing_still(90)
+    wrist = motion.joint_positions()[0, metrics.INDEX["right_wrist"]]
+    goal = ContactGoal("right_wrist", tuple(float(v) for v in wrist))  # type: ignore[arg-type]
+    sliding = standing_still(root=np.outer(np.concatenate([np.zeros(20), np.arange(1, 71) / 30]), [1.0, 0.0, 0.0]))
+    for moved, sustained in ((motion, True), (sliding, False)):
+        trial = replace(moved, goals=(goal,))
+        reached, reached_any, error = metrics.success(trial, touch(), Kinematics.of(trial))
+        assert (reached, reached_any) == (sustained, True)
+        assert error == pytest.approx(0, abs=1e-5)
+
+
+def test_a_trial_without_a_goal_is_not_a_success() -> None:
+    motion = standing_still()
+    assert metrics.success(motion, touch(), Kinematics.of(motion)) == (False, False, None)
+
+
+def test_a_walk_succeeds_where_it_ends_not_where_it_passes() -> None:
+    root = np.outer(np.arange(90) / 30, [1.0, 0.0, 0.0])
+    motion = standing_still(root=root)
+    there = Action(Skill.LOCO, "walk", "neutral", goal=(2.9, 0.0))
+    passed = replace(there, goal=(1.0, 0.0))
+    body = Kinematics.of(motion)
+    assert metrics.success(motion, there, body)[:2] == (True, True)
+    assert metrics.success(motion, passed, body)[:2] == (False, True)
+
+
+def test_a_motion_that_was_not_completed_is_never_reached() -> None:
+    motion = replace(standing_still(), completed=False, reason="no way")
+    figures = metrics.judge(motion, Action(Skill.LOCO, "walk", "neutral", goal=(0.0, 0.0)), NOTHING)
+    assert not figures.reached
+    assert figures.reason == "no way"
+
+
+def test_rising_means_high_and_upright() -> None:
+    motion = standing_still(40)
+    assert metrics.risen(motion, Kinematics.of(motion)).all()
+    low = replace(motion, root_positions=motion.root_positions - np.array([0, 0.3, 0], np.float32))
+    assert not metrics.risen(low, Kinematics.of(low)).any()
+    bent = motion.local_rotations.copy()
+    bent[:, 0] = rotations.rotvec_to_quat(np.array([0.8, 0.0, 0.0]))
+    tilted = replace(motion, local_rotations=bent)
+    assert not metrics.risen(tilted, Kinematics.of(tilted)).any()
+
+
+def test_a_jump_at_a_seam_is_found_and_a_smooth_seam_is_not() -> None:
+    root = np.outer(np.arange(60) / 30, [0.5, 0.0, 0.0])
+    smooth = replace(standing_still(root=root), actions=np.repeat([0, 1], 30).astype(np.int32))
+    assert metrics.seam_jump(smooth) == pytest.approx(0, abs=1e-4)
+    root[30:, 2] += 0.25
+    broken = replace(standing_still(root=root), actions=np.repeat([0, 1], 30).astype(np.int32))
+    assert metrics.seam_jump(broken) == pytest.approx(0.235, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("flags", "run"),
+    [([0, 1, 1, 0, 1], (1, 3)), ([1, 1, 0, 1, 1], (3, 5)), ([0, 0], (0, 0)), ([1], (0, 1))],
+)
+def test_the_longest_run_is_the_later_of_equals(flags: list[int], run: tuple[int, int]) -> None:
+    assert metrics.longest_run(np.array(flags, dtype=bool)) == run
+
+
+def test_depth_inside_a_turned_box_is_the_distance_to_its_nearest_face() -> None:
+    turned = Obstacles(
+        np.array([[1.0, 0.5, 2.0]]), np.array([[1.0, 0.5, 0.25]]), np.array([0.7]), ("0/a",), np.zeros(1, dtype=bool)
+    )
+    across = np.array([np.sin(0.7), 0.0, np.cos(0.7)])
+    center = np.array([1.0, 0.5, 2.0])
+    inside = turned.inside(center + np.outer([0.0, 0.2, 0.35], across), 0)
+    np.testing.assert_allclose(inside, [0.25, 0.05, -0.10], atol=1e-9)
+    assert np.isneginf(NOTHING.depth(np.zeros((2, 3)))).all()
