@@ -1,0 +1,53 @@
+"""A model's text to a validated value, whatever it wrote around the JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+
+from pydantic import ValidationError
+
+from planner_service.llm.protocol import InvalidAnswerError, T
+
+_SHOWN = 8
+"""Problems told to the model at once."""
+
+
+def read_answer(text: str, schema: type[T]) -> T:
+    """The last JSON object in the text that fits the schema; InvalidAnswerError says why none does.
+
+    Fences, greetings and thoughts around the JSON are skipped (a draft comes before the answer, so the last one
+    counts); JSON that breaks off is not guessed at.
+    """
+    failure: ValidationError | None = None
+    for value in reversed(list(_objects(text))):
+        try:
+            return schema.model_validate(value)
+        except ValidationError as error:
+            failure = failure or error
+    if failure is not None:
+        raise InvalidAnswerError(text, problems_of(failure)) from failure
+    broken = "the JSON is not complete" if "{" in text else "there is no JSON object in it"
+    raise InvalidAnswerError(text, [broken])
+
+
+def problems_of(error: ValidationError) -> list[str]:
+    """What a validation found, one line a field: "events.0.emotion: …"."""
+    found = [
+        f"{'.'.join(map(str, item['loc'])) or 'the value'}: {item['msg']}" for item in error.errors(include_url=False)
+    ]
+    return found if len(found) <= _SHOWN else [*found[:_SHOWN], f"and {len(found) - _SHOWN} more"]
+
+
+def _objects(text: str) -> Iterator[object]:
+    """Every outermost JSON object in the text, in order."""
+    decoder = json.JSONDecoder()
+    start = text.find("{")
+    while start >= 0:
+        try:
+            value, end = decoder.raw_decode(text, start)
+        except (ValueError, RecursionError):
+            end = start + 1
+        else:
+            yield value
+        start = text.find("{", end)

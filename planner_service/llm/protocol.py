@@ -1,0 +1,44 @@
+"""One call to a language model: prompt and images in, a validated value out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol, TypeVar
+
+from pydantic import BaseModel
+
+T = TypeVar("T", bound=BaseModel)
+
+
+class ModelError(RuntimeError):
+    """No usable answer came from a language model.
+
+    ModelError
+    ├── InvalidAnswerError  it answered, and the answer does not fit what was asked
+    └── ModelAnswerError    it was told what was wrong, and still did not answer well (asking.py)
+    """
+
+
+class InvalidAnswerError(ModelError):
+    """One answer that does not fit; `asking.ask` tells the model why and asks again."""
+
+    def __init__(self, text: str, problems: Sequence[str]) -> None:
+        super().__init__(f"the answer does not fit: {'; '.join(problems)}")
+        self.text = text
+        self.problems = tuple(problems)
+
+
+class LanguageModel(Protocol):
+    """What every language model looks like to us, a scripted one included."""
+
+    @property
+    def name(self) -> str:
+        """Such as "openai:gpt-5" or "scripted"; stories name it as their planner."""
+        ...
+
+    def answer(self, prompt: str, schema: type[T], images: Sequence[bytes] = ()) -> T:
+        """Answer as a value of `schema`. Images are JPEG or PNG files.
+
+        Raises InvalidAnswerError when the model's text does not fit the schema, ModelError when no text came at all.
+        """
+        ...
