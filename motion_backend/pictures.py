@@ -78,9 +78,9 @@ def around(props: Sequence[Prop], camera: Camera, room: int | None = None, reach
 
 def contact_sheet(
     motion: Motion,
-    path: Path | str,
     home: Home | None = None,
     frames: int = 12,
+    path: Path | str = "contact-sheet.png",
     yaw: float = 0.8,
     size: tuple[int, int] = (240, 320),
 ) -> Path:

@@ -71,6 +71,7 @@ class _Panel:
 
     index: int
     keyframe: Caption
+    target: str | None
     start: int
     stop: int
     shot: Shot
@@ -78,10 +79,18 @@ class _Panel:
     """The floor its plan shows: low x, low z, high x, high z."""
 
 
-def storyboard(home: Home, motion: Motion, keyframes: Sequence[Caption], path: Path | str, title: str = "") -> Path:
-    """Draw all keyframes a motion serves and save the picture as a PNG."""
+def storyboard(
+    home: Home,
+    motion: Motion,
+    keyframes: Sequence[Caption],
+    path: Path | str,
+    title: str = "",
+    targets: Sequence[str | None] = (),
+) -> Path:
+    """Draw all keyframes a motion serves and save the picture as a PNG; `targets` are ids of the objects they use."""
     stage = _Stage(home, motion, motion.joint_positions(), home_props(home))
-    panels = [_panel(stage, index, keyframes[index]) for index in np.unique(motion.actions).tolist()]
+    served = np.unique(motion.actions).tolist()
+    panels = [_panel(stage, i, keyframes[i], targets[i] if targets else None) for i in served]
     windows = sorted({panel.window for panel in panels})
     with ThreadPoolExecutor(max_workers=WORKERS) as pool:
         pictures = list(pool.map(lambda panel: _picture(stage, panel.shot), panels))
@@ -93,11 +102,11 @@ def storyboard(home: Home, motion: Motion, keyframes: Sequence[Caption], path: P
     return Path(path)
 
 
-def _panel(stage: _Stage, index: int, keyframe: Caption) -> _Panel:
+def _panel(stage: _Stage, index: int, keyframe: Caption, target: str | None) -> _Panel:
     frames = np.flatnonzero(stage.motion.actions == index)
     start, stop = int(frames[0]), int(frames[-1]) + 1
     shot = choose_frames(stage.motion, stage.joints, start, stop, Skill(keyframe.skill))
-    return _Panel(index, keyframe, start, stop, shot, _window(stage, start, stop, shot))
+    return _Panel(index, keyframe, target, start, stop, shot, _window(stage, start, stop, shot))
 
 
 def _window(stage: _Stage, start: int, stop: int, shot: Shot) -> tuple[float, float, float, float]:
@@ -171,6 +180,9 @@ def _draw_plan(axes: Axes, stage: _Stage, panel: _Panel, plan: Image) -> None:
     axes.imshow(plan, extent=(left, right, near, far), interpolation="nearest")
     walls = _wall_lines(stage.home)
     axes.plot(walls[:, 0], walls[:, 1], color=INK, linewidth=2.2, solid_capstyle="butt")
+    if panel.target is not None:
+        outline = stage.home.object(panel.target).footprint
+        axes.fill(outline[:, 0], outline[:, 1], facecolor="none", edgecolor=WAY, linewidth=1.3)
     axes.plot(way[:, 0], way[:, 1], color="white", linewidth=3.2, alpha=0.8, solid_capstyle="round")
     axes.plot(way[:, 0], way[:, 1], color=WAY, linewidth=1.7, solid_capstyle="round")
     axes.plot(*way[0], marker="o", markersize=5, color="white", markeredgecolor=WAY)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +43,11 @@ def bvh_text(motion: Motion, unit: float = CENTIMETRE) -> str:
     )
     row = " ".join(["%.5f"] * table.shape[1])
     return "\n".join([*lines, *(row % tuple(frame) for frame in table.tolist())]) + "\n"
+
+
+def write_bvh(motion: Motion, path: Path | str) -> None:
+    """Save the text, in centimetres."""
+    Path(path).write_bytes(bvh_bytes(motion))
 
 
 def bvh_bytes(motion: Motion) -> bytes:

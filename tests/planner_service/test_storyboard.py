@@ -47,6 +47,12 @@ def test_the_same_story_gives_the_same_picture(tmp_path):
     assert first.read_bytes() == again.read_bytes()
 
 
+def test_the_furniture_a_keyframe_uses_is_outlined(tmp_path):
+    plain = imread(storyboard(HOME, told([1]), KEYFRAMES, tmp_path / "plain.png"))
+    marked = imread(storyboard(HOME, told([1]), KEYFRAMES, tmp_path / "marked.png", targets=[None, "0/bed", None]))
+    assert (plain != marked).any()
+
+
 def test_the_pictures_show_the_home_and_not_an_empty_page(tmp_path):
     picture = imread(storyboard(HOME, told([0]), KEYFRAMES, tmp_path / "one.png"))[..., :3]
     pair = picture[60 : 60 + SIDE[1], 20 : 20 + PLAN[0] + SIDE[0]]
@@ -55,6 +61,7 @@ def test_the_pictures_show_the_home_and_not_an_empty_page(tmp_path):
 
 def test_a_motion_without_a_home_makes_a_contact_sheet(tmp_path):
     motion = replace(told([0]), fps=30)
-    sheet = imread(contact_sheet(motion, tmp_path / "sheet.png", frames=4, size=(60, 80)))
+    sheet = imread(contact_sheet(motion, frames=4, path=tmp_path / "sheet.png", size=(60, 80)))
     assert sheet.shape[:2] == (80, 240)
-    assert imread(contact_sheet(motion, tmp_path / "room.png", HOME, frames=7, size=(60, 80))).shape[:2] == (160, 360)
+    room = imread(contact_sheet(motion, HOME, 7, tmp_path / "room.png", size=(60, 80)))
+    assert room.shape[:2] == (160, 360)
