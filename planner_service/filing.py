@@ -33,7 +33,7 @@ def write_story(story: Story, folder: Path) -> list[Path]:
         "motion.npz": lambda path: write_npz(story.motion, path),
         "motion.bvh": lambda path: write_bvh(story.motion, path),
         "film.glb": lambda path: path.write_bytes(film_glb(story.planned.home, story.motion)),
-        "storyboard.png": lambda path: storyboard(story, path),
+        "storyboard.png": lambda path: _write_storyboard(story, path),
     }
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -50,6 +50,11 @@ def write_story(story: Story, folder: Path) -> list[Path]:
     finally:
         shutil.rmtree(aside, ignore_errors=True)
     return [folder / name for name in writers]
+
+
+def _write_storyboard(story: Story, path: Path) -> Path:
+    planned, targets = story.planned, [action.object_id for action in story.actions]
+    return storyboard(planned.home, story.motion, planned.script.keyframes, path, planned.told.title, targets)
 
 
 def check_writable(folder: Path) -> None:
