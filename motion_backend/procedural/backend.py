@@ -1,96 +1,29 @@
 """The procedural backend: rules, styles and inverse kinematics behind `begin` and `advance`.
 
-It learns nothing and says so. Transitions follow the state machine of SIMS 3.4: rest is left before walking, a
-contact skill starts from its standing point, and an action counts as done only when its goal was reached.
+It learns nothing and says so. What may follow what is decided in performing.py; here a state wakes up, one action is
+performed, and the state that is left is put into plain lists again.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motion_backend import rotations
-from motion_backend.motion import (
-    FPS,
-    Action,
-    BodyState,
-    Character,
-    ContactGoal,
-    Motion,
-    Posture,
-    Skill,
-)
+from motion_backend.motion import FPS, Action, BodyState, Character, ContactGoal, Motion, Posture, Skill
 from motion_backend.obstacles import Obstacles
-from motion_backend.procedural.gait import walk, yaw_of
 from motion_backend.procedural.guarding import hands_clear
-from motion_backend.procedural.interactions import edge_seat, lie_down, rise_to_edge, sit_down, stand_up, touch
-from motion_backend.procedural.pose import Pose, concatenate, released, settle_from, solve
-from motion_backend.procedural.stances import (
-    HAND_REST,
-    LYING_REST,
-    SEATED_REST,
-    SHIN_REACH,
-    Bed,
-    Seat,
-    idle,
-    standing,
-)
-from motion_backend.procedural.styles import Bearing, bearing_of, lie_style, sit_style, walk_style
-from motion_backend.skeleton import Skeleton, build_skeleton
+from motion_backend.procedural.performing import SKILLS, Body, Scene
+from motion_backend.procedural.pose import Pose, concatenate, released, solve
+from motion_backend.procedural.stances import HAND_REST, LYING_REST, SEATED_REST, idle, standing
+from motion_backend.procedural.styles import Bearing
+from motion_backend.skeleton import build_skeleton
 from scene_graphs.homes import Home
 from scene_graphs.navigation import NoPath, Walkable
 from scene_graphs.surfaces import Spot
 
 Array = NDArray[np.float64]
-Point = tuple[float, float]
-AT_THE_SPOT = 0.04
-"""A body this near to a standing point (metres) need not walk to it."""
-FACING_IT = 0.12
-"""And this near to the wanted yaw (radians) need not turn."""
-
-
-TURNING_ROUND = 1.2
-"""A body that arrives turned away from where it will face by more (radians) turns before the last step."""
-ELBOW_ROOM = 0.20
-"""Clearance that turning on the spot takes (metres)."""
-
-
-@dataclass(frozen=True)
-class _Scene:
-    home: Home
-    walkable: Walkable
-    obstacles: Obstacles
-
-
-@dataclass
-class _Body:
-    """One action being made: frames so far, the last pose, and what it rests on."""
-
-    scene: _Scene
-    skeleton: Skeleton
-    rng: np.random.Generator
-    pose: Pose
-    posture: Posture
-    rest: Spot | None
-    frames: list[Pose]
-
-    def add(self, frames: Pose) -> None:
-        """Append frames and take the last as the present pose."""
-        self.frames.append(frames)
-        self.pose = frames.at(len(frames) - 1)
-
-    @property
-    def place(self) -> Point:
-        """Pelvis on the floor plan."""
-        return float(self.pose.pelvis[0]), float(self.pose.pelvis[2])
-
-    @property
-    def yaw(self) -> float:
-        """Heading of the pelvis."""
-        return float(yaw_of(self.pose.hips))
 
 
 class ProceduralBackend:
@@ -99,7 +32,7 @@ class ProceduralBackend:
     name = "procedural"
 
     def __init__(self) -> None:
-        self._scene: _Scene | None = None
+        self._scene: Scene | None = None
 
     def begin(self, home: Home, character: Character, seed: int) -> BodyState:
         """Standing in the first room, on a free place that the seed chooses."""
@@ -117,7 +50,7 @@ class ProceduralBackend:
         body = self._wake(home, state)
         reason = ""
         try:
-            _SKILLS[action.skill](body, action)
+            SKILLS[action.skill](body, action)
         except NoPath as error:
             reason = str(error)
             body.add(idle(body.pose, 1.0, 1.0, body.rng, FPS))
@@ -136,16 +69,16 @@ class ProceduralBackend:
         )
         return motion, following
 
-    def _wake(self, home: Home, state: BodyState) -> _Body:
+    def _wake(self, home: Home, state: BodyState) -> Body:
         rng = np.random.default_rng([state.seed, state.index])
         skeleton = build_skeleton(state.height)
         pose = released(Pose.from_lists(state.memory["pose"]), skeleton)
         rest = _spot_from_lists(state.memory.get("spot"))
-        return _Body(self._enter(home), skeleton, rng, pose, state.posture, rest, [])
+        return Body(self._enter(home), skeleton, rng, pose, state.posture, rest, [])
 
-    def _enter(self, home: Home) -> _Scene:
+    def _enter(self, home: Home) -> Scene:
         if self._scene is None or self._scene.home is not home:
-            self._scene = _Scene(home, Walkable(home), Obstacles.of_home(home))
+            self._scene = Scene(home, Walkable(home), Obstacles.of_home(home))
         return self._scene
 
 
@@ -162,11 +95,14 @@ def _spot_to_lists(spot: Spot | None) -> dict[str, Any] | None:
 def _spot_from_lists(values: dict[str, Any] | None) -> Spot | None:
     if values is None:
         return None
-    restored = {name: tuple(value) if isinstance(value, list) else value for name, value in values.items()}
-    return Spot(**{name: np.inf if value is None else value for name, value in restored.items()})
+    restored: dict[str, Any] = {
+        name: tuple(value) if isinstance(value, list) else np.inf if value is None else value
+        for name, value in values.items()
+    }
+    return Spot(**restored)
 
 
-def _to_motion(body: _Body, action: Action, reason: str) -> Motion:
+def _to_motion(body: Body, action: Action, reason: str) -> Motion:
     pose = hands_clear(concatenate(body.frames), body.skeleton, body.scene.obstacles.solid())
     body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)
@@ -191,167 +127,3 @@ def contact_goals(action: Action) -> tuple[ContactGoal, ...]:
     joint = f"{action.hand}_wrist" if action.skill is Skill.TOUCH else "pelvis"
     point = np.asarray(action.spot.point) + rest * np.asarray(action.spot.normal)
     return (ContactGoal(joint, _triple(point)),)
-
-
-# The state machine of SIMS 3.4: what each skill needs before it, then the skill itself.
-
-
-def _rise(body: _Body, bearing: Bearing) -> None:
-    """Leave the seat or bed and stand."""
-    spot = body.rest
-    if body.posture is Posture.STANDING or spot is None:
-        return
-    if body.posture is Posture.LYING:
-        bed, seat = Bed.of(spot), _edge(body, spot)
-        body.add(rise_to_edge(body.pose, seat, bed, bearing, body.skeleton))
-    else:
-        seat = Seat.of(spot)
-    out = SHIN_REACH * body.skeleton.scale * np.array([np.sin(seat.yaw), np.cos(seat.yaw)])
-    where = (float(seat.pelvis[0] + out[0]), float(seat.pelvis[2] + out[1]))
-    body.add(stand_up(body.pose, seat, where, bearing, body.skeleton))
-    body.posture, body.rest = Posture.STANDING, None
-
-
-def _edge(body: _Body, spot: Spot) -> Seat:
-    return edge_seat(Bed.of(spot), spot.standing, spot.approach, spot.edge, body.skeleton.scale)
-
-
-def _go(body: _Body, goal: Point, facing: float | None, action: Action) -> None:
-    """Walk to a place and end up facing a yaw, in the style of the action."""
-    near = float(np.hypot(goal[0] - body.place[0], goal[1] - body.place[1])) < AT_THE_SPOT
-    turned = facing is None or abs(float(rotations.wrap(facing - body.yaw))) < FACING_IT
-    if near and turned:
-        return
-    style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
-    path = body.scene.walkable.path(body.place, goal) if not near else np.array([body.place, goal])
-    turning = _turning_place(body, path, goal, facing)
-    if turning is None or facing is None:
-        body.add(walk(body.pose, path, facing, style, body.skeleton, body.rng))
-        return
-    body.add(walk(body.pose, body.scene.walkable.path(body.place, turning), facing, style, body.skeleton, body.rng))
-    body.add(walk(body.pose, np.array([body.place, goal]), facing, style, body.skeleton, body.rng))
-
-
-def _turning_place(body: _Body, path: Array, goal: Point, facing: float | None) -> Point | None:
-    """Where to turn round before backing up to a seat, away from it; None where no turning round is needed."""
-    if facing is None or len(path) < 2:
-        return None
-    step = path[-1] - path[-2]
-    if float(np.abs(rotations.wrap(np.arctan2(step[0], step[1]) - facing))) < TURNING_ROUND:
-        return None
-    ahead = np.array([np.sin(facing), np.cos(facing)])
-    for distance in (0.30, 0.24, 0.18, 0.12):
-        place = (float(goal[0] + distance * ahead[0]), float(goal[1] + distance * ahead[1]))
-        if body.scene.walkable.clearance(place) >= ELBOW_ROOM:
-            return place
-    return None
-
-
-def _loco(body: _Body, action: Action) -> None:
-    bearing = bearing_of(action.emotion, action.caption)
-    _rise(body, bearing)
-    before = len(body.frames)
-    if action.goal is not None:
-        _go(body, action.goal, action.facing, action)
-    if len(body.frames) == before:
-        body.add(idle(body.pose, 1.0, bearing.restless, body.rng, FPS))
-
-
-def _seat_for(body: _Body, action: Action) -> tuple[Spot, Seat]:
-    if action.spot is None:
-        raise NoPath(f"keyframe {action.keyframe}: {action.skill} has no place to go to")
-    return action.spot, Seat.of(action.spot)
-
-
-def _at_standing_point(body: _Body, action: Action, spot: Spot, seat: Seat) -> None:
-    """Stand where shins will be upright once seated, back to the seat."""
-    out = SHIN_REACH * body.skeleton.scale * np.array([np.sin(seat.yaw), np.cos(seat.yaw)])
-    _go(body, (float(seat.pelvis[0] + out[0]), float(seat.pelvis[2] + out[1])), seat.yaw, action)
-
-
-def _sitdown(body: _Body, action: Action) -> None:
-    style = sit_style(action.emotion, action.caption)
-    spot, seat = _seat_for(body, action)
-    if body.posture is not Posture.STANDING:
-        _rise(body, style.bearing)
-    _at_standing_point(body, action, spot, seat)
-    reach = _leg_room(body, seat)
-    body.add(sit_down(body.pose, seat, style, body.skeleton, reach))
-    body.add(idle(body.pose, action.hold, style.bearing.restless, body.rng, FPS))
-    body.posture, body.rest = Posture.SEATED, spot
-
-
-def _leg_room(body: _Body, seat: Seat) -> tuple[float, float]:
-    """How far ahead of the pelvis each foot may go before it meets something (metres)."""
-    ahead = np.arange(0.44, 0.86, 0.02)
-    room = []
-    for side in (1, -1):
-        points = np.array([seat.to_world((side * 0.12, up, a + 0.16)) for a in ahead for up in (0.06, 0.22)])
-        hit = body.scene.obstacles.solid().depth(points).reshape(len(ahead), -1).max(axis=1) > -0.03
-        room.append(float(ahead[np.argmax(hit)] - 0.02) if hit.any() else float(ahead[-1]))
-    return room[0], room[1]
-
-
-def _liedown(body: _Body, action: Action) -> None:
-    style = lie_style(action.emotion, action.caption)
-    spot, _ = _seat_for(body, action)
-    if body.posture is Posture.LYING or (body.rest is not None and body.rest.object_id != spot.object_id):
-        _rise(body, style.bearing)
-    if body.posture is Posture.SEATED:
-        _rise(body, style.bearing)
-    seat, bed = _edge(body, spot), Bed.of(spot)
-    _at_standing_point(body, action, spot, seat)
-    pillow = _pillow(body, spot, bed)
-    body.add(lie_down(body.pose, seat, bed, style, body.skeleton, pillow))
-    body.add(idle(body.pose, action.hold, 0.6 * style.bearing.restless, body.rng, FPS))
-    body.posture, body.rest = Posture.LYING, spot
-
-
-def _pillow(body: _Body, spot: Spot, bed: Bed) -> float:
-    """How much higher than the mattress the thing under the head is (metres)."""
-    head = np.array([np.sin(bed.head_yaw), 0.0, np.cos(bed.head_yaw)]) * 0.68 * body.skeleton.scale
-    column = np.asarray(spot.point) + head + np.arange(0.30, 0.0, -0.01)[:, None] * [0.0, 1.0, 0.0]
-    inside = body.scene.obstacles.depth(column) > 0
-    return float(np.clip(0.30 - 0.01 * np.argmax(inside), 0.0, 0.14)) if inside.any() else 0.0
-
-
-def _rest_over(body: _Body, action: Action) -> None:
-    bearing = bearing_of(action.emotion, action.caption)
-    before = len(body.frames)
-    _rise(body, bearing)
-    if len(body.frames) == before:
-        body.add(settle_from(body.pose, idle(body.pose, 0.8, bearing.restless, body.rng, FPS), FPS))
-    else:
-        body.add(idle(body.pose, 0.3, bearing.restless, body.rng, FPS))
-
-
-def _touch(body: _Body, action: Action) -> None:
-    bearing = bearing_of(action.emotion, action.caption)
-    spot, _ = _seat_for(body, action)
-    _rise(body, bearing)
-    _go(body, spot.standing, spot.facing, action)
-    normal = np.asarray(spot.normal, dtype=np.float64)
-    goal = np.asarray(spot.point) + HAND_REST * normal
-    palm = palm_on(normal, spot.facing, action.hand)
-    hold = max(action.hold, 1.2)
-    body.add(touch(body.pose, goal, palm, action.hand, (bearing, hold), body.skeleton))
-
-
-def palm_on(normal: Array, facing: float, hand: str) -> Array:
-    """World rotation of a hand laid flat on a surface: palm against it, fingers forwards or up it. (4,)."""
-    side = 1.0 if hand == "left" else -1.0
-    ahead = np.array([np.sin(facing), 0.0, np.cos(facing)])
-    fingers = ahead if normal[1] > 0.7 else 0.8 * np.array([0.0, 1.0, 0.0]) + 0.2 * ahead
-    fingers = rotations.normalize(fingers - (fingers @ normal) * normal)
-    x, y = side * fingers, normal
-    return rotations.basis_to_quat(x, y, np.cross(x, y))
-
-
-_SKILLS = {
-    Skill.LOCO: _loco,
-    Skill.SITDOWN: _sitdown,
-    Skill.LIEDOWN: _liedown,
-    Skill.STANDUP: _rest_over,
-    Skill.GETUP: _rest_over,
-    Skill.TOUCH: _touch,
-}

@@ -219,9 +219,7 @@ def _soften(values: Array) -> Array:
     return np.asarray(gaussian_filter1d(values, 5.0, mode="constant"))
 
 
-def _carry(
-    start: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skeleton, rng: np.random.Generator
-) -> Pose:
+def _carry(start: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skeleton, rng: np.random.Generator) -> Pose:
     """Everything above the feet: pelvis over its support, hips and chest turning against each other, arms, gaze."""
     frames = len(steps.phase)
     bearing, moving, first = style.bearing, steps.moving, steps.first

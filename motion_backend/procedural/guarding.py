@@ -52,9 +52,9 @@ def _way_out(points: Array, obstacles: Obstacles) -> Array:
     for index in range(len(close.owners)):
         step = _out_of_box(flat + total, close, index)
         total += step
-    total = total.reshape(frames, -1, 3)
-    longest = np.argmax(np.linalg.norm(total, axis=2), axis=1)
-    return np.asarray(total[np.arange(frames), longest])
+    ways = total.reshape(frames, -1, 3)
+    longest = np.argmax(np.linalg.norm(ways, axis=2), axis=1)
+    return np.asarray(ways[np.arange(frames), longest])
 
 
 def _out_of_box(points: Array, boxes: Obstacles, index: int) -> Array:

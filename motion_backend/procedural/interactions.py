@@ -245,7 +245,7 @@ def rise_to_edge(start: Pose, seat: Seat, bed: Bed, bearing: Bearing, skeleton: 
 
 
 def touch(start: Pose, goal: Array, palm: Array, hand: str, style: tuple[Bearing, float], skeleton: Skeleton) -> Pose:
-    """Bring a wrist to `goal` (3,), the hand laid along `palm` (4,), hold it there `style[1]` seconds, and come back."""
+    """Bring a wrist to `goal` (3,), the hand laid along `palm` (4,), hold it `style[1]` seconds, and come back."""
     bearing, hold = style
     index = 0 if hand == "left" else 1
     pace = 1 / bearing.tempo

@@ -101,33 +101,49 @@ def interpolate(times: list[float], keys: list[Pose], fps: int) -> Pose:
         if f.name in ROTATIONS:
             values[f.name] = _rotation_spline(knots, stacked, at)
         elif f.name == "planted":
-            values[f.name] = stacked[np.clip(np.searchsorted(knots, at, side="left"), 0, len(knots) - 1)]
+            after = np.clip(np.searchsorted(knots, at, side="left"), 1, len(knots) - 1)
+            # A foot stands only where it stood at both ends of a stretch; the last frame is the last key.
+            values[f.name] = np.minimum(stacked[after - 1], stacked[after])
+            values[f.name][-1] = stacked[-1]
         else:
             values[f.name] = _spline(knots, stacked, at)
-    lengths = _spline(knots, np.linalg.norm(np.stack([key.arms for key in keys]), axis=-1), at)
-    values["arms"] = _around_the_shoulder(values["arms"], lengths)
+    values["arms"] = _around_the_shoulder(knots, np.stack([key.arms for key in keys]), at, values["arms"])
     values["elbows"] = _carried_along(knots, keys, at, values["arms"])
     return Pose(**values)
 
 
 def _carried_along(knots: Array, keys: list[Pose], at: Array, arms: Array) -> Array:
-    """Elbow directions that turn with the arm from key to key, so that an elbow never flips over. (T, 2, 3)."""
+    """Elbow directions carried along with the arm from key to key, so that an elbow never flips over. (T, 2, 3).
+
+    Within a stretch the direction is turned as the arm turns, frame by frame, and what is then still missing to the
+    next key's direction is made up for evenly.
+    """
     before = np.clip(np.searchsorted(knots, at, side="left") - 1, 0, len(keys) - 2)
-    share = smooth((at - knots[before]) / (knots[before + 1] - knots[before]))[:, None, None]
     way = rotations.normalize(arms)
-    ends = []
-    for offset in (0, 1):
-        wrists = rotations.normalize(np.stack([key.arms for key in keys])[before + offset])
-        poles = np.stack([key.elbows for key in keys])[before + offset]
-        poles = rotations.normalize(poles - np.sum(poles * wrists, axis=-1, keepdims=True) * wrists)
-        ends.append(_turned_with(poles, wrists, way))
-    between = np.arctan2(
-        np.sum(np.cross(ends[0], ends[1]) * way, axis=-1, keepdims=True),
-        np.sum(ends[0] * ends[1], axis=-1, keepdims=True),
-    )
-    # An angle near a half turn must not change its side from frame to frame.
-    angle = np.unwrap(between, axis=0) * share
-    return np.asarray(ends[0] * np.cos(angle) + np.cross(way, ends[0]) * np.sin(angle))
+    out = np.empty_like(arms)
+    for index in range(len(keys) - 1):
+        frames = np.flatnonzero(before == index)
+        if not len(frames):
+            continue
+        here, following = keys[index], keys[index + 1]
+        last, pole = rotations.normalize(here.arms), _square(here.elbows, rotations.normalize(here.arms))
+        for frame in frames:
+            pole = _square(_turned_with(pole, last, way[frame]), way[frame])
+            last = way[frame]
+            out[frame] = pole
+        end = rotations.normalize(following.arms)
+        wanted, got = _square(following.elbows, end), _square(_turned_with(pole, last, end), end)
+        turn = np.arctan2(np.sum(np.cross(got, wanted) * end, axis=-1), np.sum(got * wanted, axis=-1))  # (2,)
+        share = smooth((at[frames] - knots[index]) / (knots[index + 1] - knots[index]))
+        angle = (share[:, None] * turn)[..., None]
+        poles = out[frames]
+        out[frames] = poles * np.cos(angle) + np.cross(way[frames], poles) * np.sin(angle)
+    return out
+
+
+def _square(vectors: Array, axes: Array) -> Array:
+    """Unit vectors at right angles to unit axes, nearest to the given ones."""
+    return rotations.normalize(vectors - np.sum(vectors * axes, axis=-1, keepdims=True) * axes)
 
 
 def _turned_with(vectors: Array, start: Array, end: Array) -> Array:
@@ -139,13 +155,23 @@ def _turned_with(vectors: Array, start: Array, end: Array) -> Array:
     return np.asarray(vectors + crossed + scale * np.cross(axis, crossed))
 
 
-def _around_the_shoulder(arms: Array, lengths: Array) -> Array:
-    """Push wrists that cut the corner out, forward and sideways, until the arm has the length it should have."""
-    out = np.array([[0.75, 0.0, 0.66], [-0.75, 0.0, 0.66]])
-    along = rotations.normalize(arms)
-    aside = rotations.normalize(out - np.sum(out * along, axis=-1, keepdims=True) * along)
-    missing = np.maximum(lengths**2 - np.sum(arms**2, axis=-1), 0.0)
-    return np.asarray(arms + aside * np.sqrt(missing)[..., None])
+def _around_the_shoulder(knots: Array, keys: Array, at: Array, straight: Array) -> Array:
+    """Wrists on their way round the shoulder: a swing that would cut through it goes outwards and forwards. (T, 2, 3).
+
+    `straight` is the plain spline; it is kept where a swing is small.
+    """
+    outward = np.array([[0.75, 0.0, 0.66], [-0.75, 0.0, 0.66]])
+    before = np.clip(np.searchsorted(knots, at, side="left") - 1, 0, len(keys) - 2)
+    share = smooth((at - knots[before]) / (knots[before + 1] - knots[before]))[:, None, None]
+    start, end = keys[before], keys[before + 1]
+    lengths = [np.linalg.norm(v, axis=-1, keepdims=True) for v in (start, end)]
+    first, last = rotations.normalize(start), rotations.normalize(end)
+    apart = (1 - np.sum(first * last, axis=-1, keepdims=True)) / 2  # 0 together, 1 opposite
+    middle = rotations.normalize(first + last + 2.4 * apart * outward)
+    way = rotations.normalize((1 - share) ** 2 * first + 2 * share * (1 - share) * middle + share**2 * last)
+    swing = way * (lengths[0] + share * (lengths[1] - lengths[0]))
+    wide = smooth((apart - 0.2) / 0.25)
+    return np.asarray(straight + wide * (swing - straight))
 
 
 def _spline(knots: Array, values: Array, at: Array) -> Array:

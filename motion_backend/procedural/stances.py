@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -193,9 +194,9 @@ def lying(start: Pose, bed: Bed, style: Lying, skeleton: Skeleton, pillow: float
     on_side = style.side != "back"
     pelvis = bed.pelvis + (0.025 * UP if on_side else 0.0)
     legs = _SIDE_LEGS if on_side else _BACK_LEGS
-    rows = legs.get(style.legs, legs["straight"])
+    rows: Sequence[Sequence[float]] = legs.get(style.legs, legs["straight"])
     if style.side == "right":
-        rows = tuple((-x, y, z, pitch) for x, y, z, pitch in reversed(rows))
+        rows = [(-x, y, z, pitch) for x, y, z, pitch in reversed(rows)]
     local = np.array([row[:3] for row in rows]) * skeleton.scale
     pitch = np.array([row[3] for row in rows])
     ankles = pelvis + rotations.rotate(hips, local)
@@ -248,6 +249,8 @@ def _lying_arms(style: Lying) -> tuple[Array, Array]:
         for index, name in enumerate(style.arms):
             if name == "sides":
                 wrists[index, 2], wrists[index, 0] = -0.03, wrists[index, 0] * 1.25
+            if name == "wide":
+                elbows[index] = (0.0, -0.5, 0.4)
         return wrists, elbows
     below, above = (0, 1) if style.side == "left" else (1, 0)
     inward = np.array([-1.0 if above == 0 else 1.0, 1.0, 1.0])

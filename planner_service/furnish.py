@@ -1,0 +1,220 @@
+"""From a long script to a furnished home: graphs, merging, retrieval, and every script's furniture found (SIMS 3.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from motion_backend.motion import Skill
+from planner_service.scripts.acting import NEEDS, Place
+from planner_service.scripts.keyframe import LongScript, PlannedKeyframe
+from scene_graphs.distance import exact_distance
+from scene_graphs.furniture import ROOM_TYPES, Furniture, canonical, canonical_room, display_name
+from scene_graphs.graph import FurnitureGraph, graph_from_layout, graph_from_objects, graph_from_uses
+from scene_graphs.homes import Home, home_from_layouts
+from scene_graphs.layouts import Layout
+from scene_graphs.merging import merge
+from scene_graphs.retrieval import LayoutIndex
+
+MOST_ROOMS = 4
+
+
+class FurnishError(ValueError):
+    """No home can be found for a script; the text names what is missing."""
+
+
+@dataclass(frozen=True)
+class RoomMatch:
+    """One room of the home and how well it fits what is played in it."""
+
+    room_type: str
+    """What the script asked for."""
+    layout_id: str
+    distance: int
+    exact: bool
+    substitutions: tuple[tuple[str, str, str], ...]
+    """(asked, given, level) where the room has something else than asked: same class or same group."""
+    missing: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Furnished:
+    """A home for a script: each keyframe with its room and object."""
+
+    script: LongScript
+    home: Home
+    matches: tuple[RoomMatch, ...]
+    places: tuple[Place, ...]
+
+    @property
+    def names(self) -> dict[int, tuple[str, str]]:
+        """Keyframe index to the words a story uses for its furniture and room; the floor has no word."""
+        named = {}
+        for index, place in enumerate(self.places):
+            room = self.matches[place.room].room_type.replace("_", " ")
+            piece = "floor"
+            if place.object_id is not None:
+                piece = display_name(self.home.object(place.object_id).category)
+            named[index] = (piece, room)
+        return named
+
+    def explain(self) -> list[str]:
+        """One line a room: which, how far from what was asked, what stands for what."""
+        lines = []
+        for match in self.matches:
+            line = f"{match.room_type.replace('_', ' ')}: {match.layout_id}, graph distance {match.distance}"
+            line += "" if match.exact else " (not proven least)"
+            given = [f"{asked} → {got} ({level})" for asked, got, level in match.substitutions]
+            lines.append("; ".join([line, *given, *[f"missing {name}" for name in match.missing]]))
+        return lines
+
+    def rooms_to_dicts(self) -> list[dict[str, Any]]:
+        """Plain values for JSON."""
+        return [
+            {
+                "layout_id": match.layout_id,
+                "room_type": match.room_type,
+                "distance": match.distance,
+                "exact": match.exact,
+                "substitutions": [
+                    {"asked": asked, "given": given, "level": level} for asked, given, level in match.substitutions
+                ],
+                "missing": list(match.missing),
+            }
+            for match in self.matches
+        ]
+
+
+def furnish(
+    script: LongScript,
+    index: LayoutIndex,
+    rooms: Sequence[str] = (),
+    layouts: Sequence[Layout] = (),
+    seed: int = 0,
+) -> Furnished:
+    """Find a room for every room type of the script, join them to a home and ground every keyframe in it.
+
+    `layouts` of the user's own are used instead of retrieved ones. Raises FurnishError naming what no room has.
+    """
+    wanted = _room_types(script, rooms)
+    uses = {room: _script_graphs(script, room, wanted) for room in wanted}
+    merged = {room: merge([graph for _, graph in graphs]).graph for room, graphs in uses.items()}
+    chosen = (
+        _given(merged, layouts) if layouts else {room: _retrieve(index, room, graph) for room, graph in merged.items()}
+    )
+    unique = list(dict.fromkeys([layout for layout, _ in chosen.values()] + list(layouts)))
+    home = home_from_layouts(unique, seed)
+    number = {room: unique.index(layout) for room, (layout, _) in chosen.items()}
+    matches = _matches(unique, chosen)
+    grounded = _ground(home, uses, number)
+    places = tuple(_place(i, k, number, grounded, wanted) for i, k in enumerate(script.keyframes))
+    return Furnished(script, home, matches, places)
+
+
+def _room_types(script: LongScript, rooms: Sequence[str]) -> list[str]:
+    """Room types in the order the story comes to them."""
+    asked = [canonical_room(room) for room in rooms]
+    unknown = [room for room, name in zip(rooms, asked, strict=True) if name not in ROOM_TYPES]
+    if unknown:
+        raise FurnishError(f"rooms: {unknown[0]!r} is none of {', '.join(ROOM_TYPES)}")
+    if len(asked) > MOST_ROOMS:
+        raise FurnishError(f"rooms: a home has at most {MOST_ROOMS} rooms, {len(asked)} were asked for")
+    met = dict.fromkeys(keyframe.room for keyframe in script.keyframes if keyframe.room)
+    return list(met) + [room for room in asked if room not in met] or [asked[0] if asked else "living_room"]
+
+
+def _room_of(keyframe: PlannedKeyframe, wanted: Sequence[str]) -> str:
+    return keyframe.room if keyframe.room in wanted else wanted[0]
+
+
+def _script_graphs(script: LongScript, room: str, wanted: Sequence[str]) -> list[tuple[int | None, FurnitureGraph]]:
+    """One graph for every short script that plays in a room, from its keyframes as they were planned."""
+    numbers = dict.fromkeys(k.short_script for k in script.keyframes if _room_of(k, wanted) == room)
+    graphs = []
+    for number in numbers:
+        mine = [k for k in script.keyframes if k.short_script == number and _room_of(k, wanted) == room]
+        used = [k for k in mine if not k.on_floor]
+        needs = [[NEEDS[k.skill]] if k.skill in NEEDS else [] for k in used]
+        graphs.append((number, graph_from_uses([k.piece for k in used], needs)))
+    return graphs
+
+
+Chosen = dict[str, tuple[Layout, RoomMatch]]
+
+
+def _retrieve(index: LayoutIndex, room: str, graph: FurnitureGraph) -> tuple[Layout, RoomMatch]:
+    """The nearest room of that type."""
+    if not len(graph):
+        layout = index.first(room)
+        return layout, RoomMatch(room, layout.id, 0, True, (), ())
+    found = index.search(graph, 1, room_type=room)
+    if not found:
+        raise FurnishError(f"rooms: the library has no {room.replace('_', ' ')}")
+    best = found[0]
+    layout = index.layout(best.layout_id)
+    return layout, _explained(room, graph, layout)
+
+
+def _given(merged: dict[str, FurnitureGraph], layouts: Sequence[Layout]) -> Chosen:
+    """The user's room that fits each room type best: its own type first, then the smaller distance."""
+    chosen: Chosen = {}
+    for room, graph in merged.items():
+        ranked = sorted(
+            ((room not in (layout.room_type, *layout.tags), _explained(room, graph, layout).distance, number)
+             for number, layout in enumerate(layouts))
+        )  # fmt: skip
+        best = layouts[ranked[0][2]]
+        chosen[room] = (best, _explained(room, graph, best))
+    return chosen
+
+
+def _explained(room: str, graph: FurnitureGraph, layout: Layout) -> RoomMatch:
+    match = exact_distance(graph, graph_from_layout(layout))
+    substitutions = tuple(
+        (display_name(pair.query.category), display_name(pair.room.category), pair.level)
+        for pair in match.pairs
+        if pair.level != "same"
+    )
+    missing = tuple(display_name(node.category) for node in match.missing)
+    return RoomMatch(room, layout.id, match.cost, match.exact, substitutions, missing)
+
+
+def _matches(unique: Sequence[Layout], chosen: Chosen) -> tuple[RoomMatch, ...]:
+    """One match a room of the home, in the home's order; a room nothing is played in matches trivially."""
+    found = {layout.id: match for layout, match in reversed(list(chosen.values()))}
+    return tuple(found.get(u.id, RoomMatch(u.room_type, u.id, 0, True, (), ())) for u in unique)
+
+
+Grounded = dict[tuple[str, int | None], dict[Furniture, str]]
+
+
+def _ground(home: Home, uses: dict[str, list[tuple[int | None, FurnitureGraph]]], number: dict[str, int]) -> Grounded:
+    """Map every short script by itself onto the objects of its room."""
+    grounded: Grounded = {}
+    for room, graphs in uses.items():
+        prefix = f"{number[room]}/"
+        objects = graph_from_objects(placed for placed in home.objects if placed.id.startswith(prefix))
+        for script, graph in graphs:
+            match = exact_distance(graph, objects)
+            grounded[room, script] = {pair.query: objects.nodes[pair.room]["object_id"] for pair in match.pairs}
+    return grounded
+
+
+def _place(
+    index: int, keyframe: PlannedKeyframe, number: dict[str, int], grounded: Grounded, wanted: Sequence[str]
+) -> Place:
+    room = _room_of(keyframe, wanted)
+    if keyframe.on_floor:
+        return Place(number[room])
+    word, instance = keyframe.piece
+    node = Furniture(canonical(word), instance)
+    object_id = grounded[room, keyframe.short_script].get(node)
+    if object_id is None:
+        object_id = next((own[node] for (r, _), own in grounded.items() if r == room and node in own), None)
+    if object_id is None and keyframe.skill in (Skill.SITDOWN, Skill.LIEDOWN, Skill.TOUCH):
+        raise FurnishError(
+            f"keyframe {index}: the {room.replace('_', ' ')} has no {display_name(word)} to {NEEDS[keyframe.skill]}, "
+            f"nor anything that could stand for it; choose another room (--rooms, --layout) or theme"
+        )
+    return Place(number[room], object_id)

@@ -1,0 +1,48 @@
+"""One hand-made room with something to sit on, lie on and touch, and ways to act in it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from motion_backend.motion import Action, Skill
+from scene_graphs.homes import Home, home_from_layouts
+from scene_graphs.layouts import Layout, Placed
+from scene_graphs.surfaces import spots
+
+ROOM = Layout(
+    "small",
+    "bedroom",
+    ((0.0, 0.0), (0.0, 5.0), (6.0, 5.0), (6.0, 0.0)),
+    objects=(
+        Placed("bed", "double_bed", (1.2, 0.0, 1.2), (1.7, 0.9, 2.2), 0.0),
+        Placed("sofa", "multi_seat_sofa", (5.4, 0.0, 2.5), (2.3, 0.85, 0.95), -np.pi / 2),
+        Placed("shelf", "bookshelf", (3.2, 0.0, 0.2), (0.9, 1.9, 0.35), 0.0),
+        Placed("table", "dining_table", (1.2, 0.0, 4.3), (1.4, 0.76, 0.8), np.pi),
+        Placed("chair", "dining_chair", (4.0, 0.0, 4.3), (0.47, 0.87, 0.54), np.pi),
+    ),
+)
+
+
+def small_home() -> Home:
+    return home_from_layouts([ROOM], 0)
+
+
+def contact(home: Home, skill: Skill, name: str, caption: str, emotion: str = "neutral", which: int = 0) -> Action:
+    """A contact action at the `which`-th spot of an object."""
+    need = {Skill.SITDOWN: "sit", Skill.LIEDOWN: "lie", Skill.TOUCH: "touch"}[skill]
+    spot = spots(home.object(f"0/{name}"), need)[which]
+    return Action(skill, caption, emotion, name, f"0/{name}", spot)
+
+
+def rise(action: Action, skill: Skill = Skill.STANDUP) -> Action:
+    """Leaving what a contact action rests on."""
+    return Action(skill, "stand up", "neutral", action.furniture, action.object_id, action.spot)
+
+
+def to(action: Action, caption: str = "smoothly forward walk", emotion: str = "neutral") -> Action:
+    """The walk to where a contact action begins."""
+    spot = action.spot
+    assert spot is not None
+    return Action(
+        Skill.LOCO, caption, emotion, action.furniture, action.object_id, goal=spot.standing, facing=spot.approach
+    )
