@@ -32,13 +32,13 @@ def bedroom(room: Arrangement) -> bool:
     if _chance(rng, 0.9) and room.against_wall(groups.standing_alone(rng, "wardrobe")) is None:
         room.against_wall(groups.standing_alone(rng, "wardrobe"))
     extras = (
-        (0.50, groups.dressing_place),
+        (0.75, groups.dressing_place),
         (0.50, groups.reading_place),
         (0.28, lambda r: groups.work_place(r, "dining_chair")),
         (0.35, _tv_on_its_stand),
         (0.35, lambda r: groups.standing_alone(r, "dresser")),
         (0.25, lambda r: groups.standing_alone(r, "bookshelf")),
-        (0.15, lambda r: groups.standing_alone(r, "cabinet")),
+        (0.35, lambda r: groups.standing_alone(r, "cabinet")),
         (0.15, lambda r: groups.standing_alone(r, "shelf")),
         (0.12, lambda r: groups.standing_alone(r, "loveseat_sofa")),
         (0.20, lambda r: groups.standing_alone(r, "stool", 0.4)),
@@ -56,9 +56,9 @@ def living_room(room: Arrangement) -> bool:
     extras = (
         (0.55, groups.reading_place),
         (0.35, lambda r: groups.standing_alone(r, "loveseat_sofa")),
-        (0.50, lambda r: groups.standing_alone(r, "bookshelf")),
-        (0.40, lambda r: groups.standing_alone(r, "cabinet")),
-        (0.35, lambda r: groups.standing_alone(r, "console_table")),
+        (0.70, lambda r: groups.standing_alone(r, "bookshelf")),
+        (0.70, lambda r: groups.standing_alone(r, "cabinet")),
+        (0.30, lambda r: groups.standing_alone(r, "console_table")),
         (0.30, lambda r: groups.standing_alone(r, "shelf")),
         (0.20, lambda r: groups.standing_alone(r, "floor_lamp", 0.3)),
         (0.20, lambda r: groups.standing_alone(r, "wardrobe")),
@@ -142,7 +142,7 @@ def _bed(room: Arrangement) -> bool:
 
 def _lounge(room: Arrangement) -> bool:
     rng = room.rng
-    sofa = str(rng.choice(["multi_seat_sofa", "l_shaped_sofa", "loveseat_sofa"], p=[0.66, 0.20, 0.14]))
+    sofa = str(rng.choice(["multi_seat_sofa", "l_shaped_sofa", "loveseat_sofa"], p=[0.58, 0.28, 0.14]))
     if _chance(rng, 0.82):
         for side in (int(index) for index in rng.permutation(4)):
             for _ in range(3):
