@@ -57,7 +57,7 @@ def home_props(home: Home) -> list[Prop]:
     for mesh in home_meshes(home):
         low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
         middle = (float(low[0] + high[0]) / 2, float(low[2] + high[2]) / 2)
-        solid = Solid(mesh.vertices, mesh.faces, mesh.color[:3])
+        solid = Solid(mesh.vertices, mesh.faces, mesh.color, opacity=0.25 if mesh.color[3] < 1 else 1.0)
         props.append(Prop(mesh.name, solid, low, high, home.room_at(middle)))
     return props
 

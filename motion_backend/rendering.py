@@ -17,10 +17,9 @@ from motion_backend.raster import Array, Camera, Ints, Real, clip, fragments
 
 Image = NDArray[np.uint8]
 
-SUN = np.array([0.35, 0.86, 0.37])
 SUN_LIGHT, SKY_LIGHT, BOUNCE_LIGHT, CAMERA_LIGHT = 0.70, 0.45, 0.24, 0.12
-SHADOW_SIZE, SHADOW_REACH = 640, 3.2
-"""Pixels across the shadow maps, and the metres around the target they cover."""
+SHADOW_REACH = 3.2
+"""Metres around the target that shadows are drawn for."""
 GRID = 0.5
 """Metres between the floor's lines."""
 HORIZON = np.array([0.90, 0.91, 0.92])
@@ -28,9 +27,33 @@ HAZE_START, HAZE_DEPTH = 5.0, 4.0
 """Metres around the target that are clear, and over which all fades behind them."""
 SHADOW_OFFSET = 0.02
 """Metres off a surface at which light is looked up, so that it does not shade itself."""
-_SUN_TAPS = np.array([[0.9, 0.1], [-0.1, 0.9], [-0.9, -0.1], [0.1, -0.9], [0.35, 0.3], [-0.3, -0.35]])
-_SKY_TAPS = np.array([[0.2, 0.1], [0.9, 0.3], [0.1, 0.95], [-0.75, 0.55], [-0.7, -0.6], [0.35, -0.85]])
-"""Where around a point the shadow maps are read, in blur radii; each of a pixel's four samples turns them further."""
+
+
+@dataclass(frozen=True)
+class _Lamp:
+    """A light far away, and the map of what it reaches first."""
+
+    direction: Array
+    """Unit vector towards it."""
+    pixels: int
+    blur: float
+    """Metres around a point that its share of light is taken from."""
+    taps: Array
+    """Where the map is read, in blur radii; each of a pixel's four samples turns them further. (N, 2)."""
+
+
+_SUN = _Lamp(
+    np.array([0.35, 0.86, 0.37]) / np.linalg.norm([0.35, 0.86, 0.37]),
+    640,
+    0.013,
+    np.array([[0.9, 0.1], [-0.1, 0.9], [-0.9, -0.1], [0.1, -0.9], [0.35, 0.3], [-0.3, -0.35]]),
+)
+_SKY = _Lamp(
+    np.array([0.0, 1.0, 0.0]),
+    288,
+    0.10,
+    np.array([[0.2, 0.1], [0.9, 0.3], [0.1, 0.95], [-0.75, 0.55], [-0.7, -0.6], [0.35, -0.85]]),
+)
 
 
 @dataclass(frozen=True)
@@ -134,28 +157,34 @@ def _floor(camera: Camera, height: float) -> Solid:
 
 def _visible(scene: _Scene, camera: Camera, size: tuple[int, int]) -> tuple[Ints, Array]:
     """For every pixel the nearest triangle (-1 for none) and its nearness."""
-    width, height = size
     viewed, source = clip(camera.view(scene.corners), camera)
     screen = camera.project(viewed, size)
+    cut = scene.cut[source]
     # A smooth solid is closed: its far side is hidden by its near side, or by none when it is see-through.
-    seen = ~scene.is_smooth[source] | _turned_to_us(screen)
-    screen, source = screen[seen], source[seen]
-    pixel, piece, nearness = fragments(screen, width, height)
-    triangle = source[piece]
-    special = np.flatnonzero(((scene.opacity < 1) | (scene.cut > 0))[triangle])
-    if len(special):
-        at, of, near = pixel[special], triangle[special], nearness[special]
-        order = (at % width % 2) * 2 ^ (at // width % 2) * 3
-        depth = -near if camera.span is not None else 1.0 / near
-        kept = np.ones(len(pixel), dtype=bool)
-        kept[special] = (order < scene.opacity[of] * 4 - 0.5) & (depth > scene.cut[of])
-        pixel, triangle, nearness = pixel[kept], triangle[kept], nearness[kept]
-    best = np.full(width * height, -np.inf)
-    np.maximum.at(best, pixel, nearness)
-    won = nearness == best[pixel]
-    nearest = np.full(width * height, -1)
-    nearest[pixel[won]] = triangle[won]
+    shown = (~scene.is_smooth[source] | _turned_to_us(screen)) & (viewed[..., 2].max(axis=1) > cut)
+    partly = shown & ((scene.opacity[source] < 1) | (viewed[..., 2].min(axis=1) < cut))
+    best = np.full(size[0] * size[1], -np.inf)
+    layers = []
+    for chosen in (np.flatnonzero(shown & ~partly), np.flatnonzero(partly)):
+        pixel, piece, nearness = fragments(screen[chosen], *size)
+        triangle = source[chosen][piece]
+        if partly[chosen].any():
+            kept = _kept(scene, camera, triangle, (pixel % size[0], pixel // size[0]), nearness)
+            pixel, triangle, nearness = pixel[kept], triangle[kept], nearness[kept]
+        np.maximum.at(best, pixel, nearness)
+        layers.append((pixel, triangle, nearness))
+    nearest = np.full(size[0] * size[1], -1)
+    for pixel, triangle, nearness in layers:
+        won = np.flatnonzero(nearness == best[pixel])
+        nearest[pixel[won]] = triangle[won]
     return nearest, best
+
+
+def _kept(scene: _Scene, camera: Camera, triangle: Ints, place: tuple[Ints, Ints], nearness: Real) -> NDArray[np.bool_]:
+    """Which fragments of cut or see-through solids are there: these are holes in a pattern over a pixel's samples."""
+    order = (place[0] % 2) * 2 ^ (place[1] % 2) * 3
+    depth = -nearness if camera.span is not None else 1.0 / nearness
+    return np.asarray((order < scene.opacity[triangle] * 4 - 0.5) & (depth > scene.cut[triangle]))
 
 
 def _turned_to_us(screen: Real) -> NDArray[np.bool_]:
@@ -177,7 +206,7 @@ def _shade(scene: _Scene, camera: Camera, triangle: Ints, points: Real, quarter:
         facing = normal @ -camera.axes[2].astype(np.float32)
     normal[facing < 0] *= -1
     sun, sky = _light(scene, camera, points + SHADOW_OFFSET * normal, quarter)
-    direct = np.maximum(normal @ (SUN / np.linalg.norm(SUN)).astype(np.float32), 0.0) * sun
+    direct = np.maximum(normal @ _SUN.direction.astype(np.float32), 0.0) * sun
     up = 0.5 + 0.5 * normal[:, 1]
     light = SUN_LIGHT * direct + sky * (SKY_LIGHT * up + BOUNCE_LIGHT * (1 - up)) + CAMERA_LIGHT * np.abs(facing)
     ground = np.flatnonzero((np.abs(points[:, 1]) < 0.006) & (normal[:, 1] > 0.99))
@@ -207,36 +236,35 @@ def _dot(a: Real, b: Real) -> Real:
 
 
 def _light(scene: _Scene, camera: Camera, points: Real, quarter: Ints) -> tuple[Real, Real]:
-    """Shares of the sun and of the sky that reach points, from two shadow maps. (N,) each."""
+    """Shares of the sun and of the sky that reach points. (N,) each."""
     casting = scene.corners[(scene.opacity >= 1) & (scene.cut <= 0)]
     reach = SHADOW_REACH if camera.span is None else max(SHADOW_REACH, 0.8 * camera.span)
-    scale = SHADOW_SIZE / (2 * reach)
     turn = quarter.astype(np.float32) * np.float32(np.pi / 8)
     cos, sin = np.cos(turn), np.sin(turn)
     shares = []
-    for direction, taps in ((SUN, 0.013 * scale * _SUN_TAPS), (np.array([0.0, 1.0, 0.0]), 0.10 * scale * _SKY_TAPS)):
-        lamp, depth = _shadow_map(casting, direction, camera, reach)
-        x, y, height = lamp.project(lamp.view(points), (SHADOW_SIZE, SHADOW_SIZE)).T
+    for lamp in (_SUN, _SKY):
+        view, depth = _shadow_map(lamp, casting, camera, reach)
+        x, y, height = view.project(view.view(points), (lamp.pixels, lamp.pixels)).T
         lit = np.zeros(len(points), dtype=np.float32)
-        for u, v in taps.astype(np.float32):
-            column = np.clip(x + (u * cos - v * sin), 0, SHADOW_SIZE - 1).astype(np.int32)
-            row = np.clip(y + (u * sin + v * cos), 0, SHADOW_SIZE - 1).astype(np.int32)
-            lit += depth[row * SHADOW_SIZE + column] < height + 0.02
-        shares.append(lit / len(taps))
+        for u, v in (lamp.taps * (lamp.blur * lamp.pixels / (2 * reach))).astype(np.float32):
+            column = np.clip(x + (u * cos - v * sin), 0, lamp.pixels - 1).astype(np.int32)
+            row = np.clip(y + (u * sin + v * cos), 0, lamp.pixels - 1).astype(np.int32)
+            lit += depth[row * lamp.pixels + column] < height + 0.02
+        shares.append(lit / len(lamp.taps))
     return shares[0], 0.35 + 0.65 * shares[1]
 
 
-def _shadow_map(corners: Array, direction: Array, camera: Camera, reach: float) -> tuple[Camera, Real]:
-    """A parallel view from the light, and the nearness of what it meets first in every pixel. (SHADOW_SIZE ** 2,)."""
-    eye = np.asarray(camera.target) + 6.0 * direction / np.linalg.norm(direction)
-    lamp = Camera((float(eye[0]), float(eye[1]), float(eye[2])), camera.target, span=2 * reach)
-    size = (SHADOW_SIZE, SHADOW_SIZE)
-    pixel, _, nearness = fragments(lamp.project(lamp.view(corners), size), *size)
-    depth = np.full((SHADOW_SIZE, SHADOW_SIZE), -np.inf)
+def _shadow_map(lamp: _Lamp, corners: Array, camera: Camera, reach: float) -> tuple[Camera, Real]:
+    """A parallel view from the light, and the nearness of what it meets first in every pixel. (pixels ** 2,)."""
+    x, y, z = (np.asarray(camera.target) + 6.0 * lamp.direction).tolist()
+    view = Camera((x, y, z), camera.target, span=2 * reach)
+    size = (lamp.pixels, lamp.pixels)
+    pixel, _, nearness = fragments(view.project(view.view(corners), size), *size)
+    depth = np.full(size, -np.inf)
     np.maximum.at(depth.reshape(-1), pixel, nearness)
     # Nothing casts a shadow on what lies beyond the map: points there read its border.
     depth[[0, -1]] = depth[:, [0, -1]] = -np.inf
-    return lamp, depth.astype(np.float32).reshape(-1)
+    return view, depth.astype(np.float32).reshape(-1)
 
 
 def _grid(points: Real, distance: Real) -> Real:

@@ -34,7 +34,6 @@ TEXT, GAP, HEAD = 62, 18, 52
 COLUMNS = 3
 DPI = 100
 INK, WAY, BODY = "#23262b", "#d9480f", "#1c5d99"
-WALLS = (0.36, 0.37, 0.39)
 WORKERS = 2
 """Pictures drawn at once; numpy lets go of the interpreter for most of the work."""
 
@@ -133,11 +132,11 @@ def _picture(stage: _Stage, shot: Shot) -> Image:
 
 
 def _plan(stage: _Stage, window: tuple[float, float, float, float]) -> Image:
-    """That square of the home from above; its walls are dark and cast no shadow."""
+    """That square of the home from above; its walls cast no shadow."""
     left, far, right, near = window
     x, z = (left + right) / 2, (far + near) / 2
     camera = Camera((x, 8.0, z), (x, 0.0, z), span=right - left)
-    solids = [replace(p.solid, color=WALLS, cut=0.01) if p.is_wall else p.solid for p in stage.props]
+    solids = [replace(p.solid, cut=0.01) if p.is_wall else p.solid for p in stage.props]
     return render(solids, camera, PLAN, ground=None)
 
 
