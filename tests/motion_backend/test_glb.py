@@ -15,8 +15,10 @@ from numpy.typing import NDArray
 from sample_motions import tumbling
 
 from motion_backend import rotations
-from motion_backend.formats.glb import body_glb, meshes_to_glb
+from motion_backend.formats.glb import body_glb, film_glb, meshes_to_glb, scene_glb
 from motion_backend.formats.gltf import read_glb
+from scene_graphs.homes import home_from_layouts
+from scene_graphs.layouts import Layout, Placed
 
 RUNNER = Path(__file__).parent / "gltf_validate.mjs"
 VALIDATOR = Path(__file__).parents[1] / "gltf" / "node_modules" / "gltf-validator"
@@ -138,3 +140,15 @@ def test_the_khronos_validator_has_nothing_to_say(tmp_path):
 def test_other_bytes_are_not_taken_for_a_glb():
     with pytest.raises(ValueError, match="glTF"):
         read_glb(b"PK" + b"\0" * 40)
+
+
+def test_a_film_holds_the_home_and_the_body():
+    bed = Placed("bed", "double_bed", (2.0, 0.0, 1.1), (1.6, 0.9, 2.0))
+    layout = Layout("room", "bedroom", ((0, 0), (0, 4), (4, 4), (4, 0)), objects=(bed,))
+    home = home_from_layouts([layout], 0)
+    document, _ = read_glb(film_glb(home, tumbling(5)))
+    roots = [document["nodes"][index]["name"] for index in document["scenes"][0]["nodes"]]
+    assert {"floor", "wall", "furniture", "body", "pelvis"} <= set(roots)
+    still, _ = read_glb(scene_glb(home))
+    assert "animations" not in still
+    assert {node["name"] for node in still["nodes"]} < set(roots)
