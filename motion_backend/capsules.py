@@ -83,8 +83,6 @@ def skin_points(start: Array, end: Array, radius: Array) -> Array:
     first = rotations.normalize(np.cross(axis, helper))
     second = np.cross(axis, first)
     outward = (
-        across[:, 0, None] * first[:, None]
-        + across[:, 1, None] * second[:, None]
-        + along[:, None] * axis[:, None]
+        across[:, 0, None] * first[:, None] + across[:, 1, None] * second[:, None] + along[:, None] * axis[:, None]
     )
     return np.asarray(start[:, None] + share[:, None] * (end - start)[:, None] + radius[:, None, None] * outward)

@@ -26,7 +26,16 @@ RISEN = (0.85, np.cos(np.radians(30)), 0.5)
 CUSHION = 0.05
 """How deep a body may sink into what it sits or lies on."""
 CLEARLY_IN = 0.02
-_SITTING = ("pelvis", "torso", "left_thigh", "right_thigh", "left_hand", "right_hand", "left_lower_arm", "right_lower_arm")
+_SITTING = (
+    "pelvis",
+    "torso",
+    "left_thigh",
+    "right_thigh",
+    "left_hand",
+    "right_hand",
+    "left_lower_arm",
+    "right_lower_arm",
+)
 
 
 @dataclass(frozen=True)

@@ -67,7 +67,9 @@ class Obstacles:
         """Depth of points (P, 3) in one box: positive inside, to the nearest face; negative outside. (P,)."""
         moved = points - self.centers[index]
         cos, sin = np.cos(self.yaws[index]), np.sin(self.yaws[index])
-        local = np.abs(np.stack([cos * moved[:, 0] - sin * moved[:, 2], moved[:, 1], sin * moved[:, 0] + cos * moved[:, 2]]))
+        local = np.abs(
+            np.stack([cos * moved[:, 0] - sin * moved[:, 2], moved[:, 1], sin * moved[:, 0] + cos * moved[:, 2]])
+        )
         gap = local - self.halves[index][:, None]
         outside = np.sqrt((np.maximum(gap, 0.0) ** 2).sum(axis=0))
         return np.asarray(np.where(outside > 0, -outside, -gap.max(axis=0)))

@@ -26,7 +26,7 @@ def compose(a: Array, b: Array) -> Array:
 
 def inverse(q: Array) -> Array:
     """The rotation that undoes q. (..., 4)."""
-    return q * np.array([-1.0, -1.0, -1.0, 1.0])
+    return np.asarray(q * np.array([-1.0, -1.0, -1.0, 1.0]))
 
 
 def rotate(q: Array, v: Array) -> Array:

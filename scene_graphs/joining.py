@@ -18,16 +18,19 @@ WALL_GAP: Final = 0.12
 """Between the facing walls of two rooms, in metres."""
 DOOR_WIDTH: Final = 0.95
 DOOR_HEIGHT: Final = 2.1
-CLEAR: Final = 0.5
-"""Distance from a doorway to the nearest furniture that we want, in metres; `TIGHT` is the least we take."""
-TIGHT: Final = 0.3
+CLEAR: Final = 0.75
+"""Free space we want on both sides of the way through a doorway and half a metre on; `TIGHT` is the least we take."""
+TIGHT: Final = 0.4
 _WIDEST_DOOR: Final = 1.4
 _NARROWEST_DOOR: Final = 0.75
 _FROM_CORNER: Final = 0.1
 _STEP: Final = 0.2
-_ENTERED: Final = 0.35
-"""How far inside the room a body must be able to stand and reach the rest of it."""
+_ENTERED: Final = 0.5
+"""How far into the room the way through a doorway is kept free; from there the rest of the room must be reached."""
+_BESIDE: Final = 0.03
+"""Furniture may come this near to the frame of a door."""
 _CANDIDATES: Final = 4000
+_COMPARED: Final = 60
 _ATTEMPTS: Final = 8
 _Stretch = tuple[Array, float, float, float]
 
@@ -102,9 +105,11 @@ def doorway_sites(layout: Layout) -> list[Site]:
     found = []
     for start, along, inward, length in _edges(layout):
         for center, width, top, penalty in _stretches(layout, start, along, length):
-            clear = _clear(furniture, center, along * width / 2)
-            x, z = center + _ENTERED * inward
-            if clear >= TIGHT and clearance.region_at((float(x), float(z))) == main:
+            entered, half = center + _ENTERED * inward, along * width / 2
+            clear = _gap(furniture, center, entered)
+            framed = _gap(furniture, center - half, center + half) >= _BESIDE
+            leads_on = clearance.region_at((float(entered[0]), float(entered[1]))) == main
+            if clear >= TIGHT and framed and leads_on:
                 found.append(Site(center, inward, width, top, penalty + 4 * max(CLEAR - clear, 0.0)))
     if not found:
         raise HomeError(
@@ -149,10 +154,9 @@ def span_on(opening: Opening, start: Array, along: Array, length: float) -> tupl
     return (low, high) if np.abs(beside).max() < WALL_GAP + 0.03 and high - low > 0.05 else None
 
 
-def _clear(furniture: NDArray[np.object_], center: Array, half: Array) -> float:
-    """Least distance from the opening's line to furniture."""
-    line = shapely.LineString([center - half, center + half])
-    return float(np.min(shapely.distance(line, furniture), initial=np.inf))
+def _gap(furniture: NDArray[np.object_], start: Array, end: Array) -> float:
+    """Distance from a line to the nearest furniture."""
+    return float(np.min(shapely.distance(shapely.LineString([start, end]), furniture), initial=np.inf))
 
 
 def _arrange(layouts: Sequence[Layout], sites: list[list[Site]], rng: np.random.Generator) -> Plan | None:
@@ -168,7 +172,7 @@ def _arrange(layouts: Sequence[Layout], sites: list[list[Site]], rng: np.random.
             for pose, doorway in joints
             if _apart(doorway, doorways) and not taken.intersects(outline := shapely.Polygon(pose.to_home(corners)))
         )
-        best = min(islice(fitting, 24), key=lambda joint: _sprawl(outlines, joint[2]), default=None)
+        best = min(islice(fitting, _COMPARED), key=lambda joint: _sprawl(outlines, joint[2]), default=None)
         if best is None:
             return None
         poses.append(best[0])
@@ -202,10 +206,10 @@ def _join(pose: Pose, old: Site, new: Site) -> tuple[Pose, Opening]:
 def _apart(doorway: Opening, others: list[Opening]) -> bool:
     """Whether a doorway keeps a step away from all others, so that their frames do not run together."""
     line = shapely.LineString(doorway.segment)
-    return all(line.distance(shapely.LineString(other.segment)) >= CLEAR for other in others)
+    return all(line.distance(shapely.LineString(other.segment)) >= _ENTERED for other in others)
 
 
 def _sprawl(outlines: list[shapely.Polygon], added: shapely.Polygon) -> float:
-    """Area of the rectangle around all rooms: the less, the more it looks like one home."""
+    """Half the way around all rooms: the less, the more they look like one home and not like a train."""
     low_x, low_z, high_x, high_z = shapely.union_all([*outlines, added]).bounds
-    return float((high_x - low_x) * (high_z - low_z))
+    return float(high_x - low_x + high_z - low_z)

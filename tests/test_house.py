@@ -71,7 +71,9 @@ def test_there_is_no_drawer_for_odds_and_ends() -> None:
         assert path.stem not in {"common", "utils", "util", "helpers", "types", "misc"}, path
 
 
-@pytest.mark.parametrize("module", ["planner_service.cli", "planner_service.stories", "motion_backend.procedural.backend"])
+@pytest.mark.parametrize(
+    "module", ["planner_service.cli", "planner_service.stories", "motion_backend.procedural.backend"]
+)
 def test_importing_the_planner_loads_nothing_heavy(module: str) -> None:
     heavy = ["torch", "matplotlib", "trimesh", "openai", "anthropic", "pydantic_ai"]
     code = f"import sys, {module}; print([name for name in {heavy!r} if name in sys.modules])"

@@ -103,7 +103,8 @@ def _spot_from_lists(values: dict[str, Any] | None) -> Spot | None:
 
 
 def _to_motion(body: Body, action: Action, reason: str) -> Motion:
-    pose = hands_clear(concatenate(body.frames), body.skeleton, body.scene.obstacles.solid())
+    touching = action.hand if action.skill is Skill.TOUCH else None
+    pose = hands_clear(concatenate(body.frames), body.skeleton, body.scene.obstacles.solid(), touching)
     body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)
     return Motion(

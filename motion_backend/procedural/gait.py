@@ -14,10 +14,12 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.procedural.pose import Pose, settle_from, smooth
 from motion_backend.procedural.route import Route, plan_route
-from motion_backend.procedural.styles import Walk, arm_arrays
+from motion_backend.procedural.styles import ARMS, Walk, arm_arrays
 from motion_backend.skeleton import INDEX, Skeleton
 
 Array = NDArray[np.float64]
+LEAD = 0.35
+"""Phase before the first step."""
 HEEL = np.array([0.0, -0.066, -0.055])
 """Heel from the ankle at the reference height."""
 
@@ -99,7 +101,8 @@ def _phase(route: Route, style: Walk, skeleton: Skeleton, fps: int) -> tuple[Rou
     usual = np.sqrt(np.maximum(route.speed, 0.05) / (0.36 * skeleton.scale**1.5)) / style.stride
     longest = route.speed / (min(0.68 * style.stride, 0.76) * skeleton.scale)
     rate = np.maximum.reduce([usual, turning / 0.72, longest, np.full_like(usual, 1.25)])
-    phase = np.cumsum(rate) / fps
+    # A third of a step goes by before the first foot lifts: the weight shifts and the heel rises.
+    phase = np.cumsum(rate) / fps - LEAD
     total = np.ceil(phase[-1] + 0.5)
     extra = max(int(np.ceil((total - phase[-1]) / 1.7 * fps)), 1)
     tail = phase[-1] + (total - phase[-1]) * np.arange(1, extra + 1) / extra
@@ -151,7 +154,7 @@ def _steps(start: Pose, route: Route, phase: Array, style: Walk, skeleton: Skele
         foot = _Swing(ankles[before, index].copy(), target, float(yaw[before, index]), toed_out)
         amount = np.maximum(amount, foot.size * ((phase > k) & (phase <= k + 1)))
         _swing(foot, phase, window, style, (ankles[:, index], yaw[:, index], pitch[:, index], planted[:, index]))
-    ease = smooth(phase) * smooth((phase[-1] - phase) / 1.5)
+    ease = smooth(phase + LEAD) * smooth((phase[-1] - phase) / 1.5)
     feet, toes = _roll(ankles, yaw, pitch + np.radians(style.tiptoe) * ease[:, None], skeleton)
     return Steps(phase, _soften(amount), first, ankles, feet, toes, planted)
 
@@ -190,7 +193,8 @@ def _swing(
     planted[inside] = 0.0
     stride = float(np.clip(np.linalg.norm(foot.end - foot.start) / 0.9, 0.0, 1.0))
     off, strike = np.radians(34) * stride, -np.radians(13) * stride
-    rise = smooth((phase - (window[0] - 0.42)) / 0.42)
+    begin = max(window[0] - 0.42, -LEAD)
+    rise = smooth((phase - begin) / (window[0] - begin))
     leaving = share <= 0
     pitch[leaving] = np.maximum(pitch[leaving], off * rise[leaving])
     pitch[after] = off + (strike - off) * smooth(u / 0.75)
@@ -230,7 +234,10 @@ def _carry(start: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skele
     ground = route.position + aside[:, None] * left
     hip_turn = np.radians(style.twist) * first * cycle * moving
     roll = -np.radians(2.5) * first * wave * moving
-    lean = np.radians(bearing.lean) + 0.03 * np.clip(route.speed - 1.0, 0, 1)
+    # A bowed body straightens up a little where it arrives, so as not to bump its head.
+    arriving = smooth((np.arange(frames) - frames + 30) / 30)
+    lean = np.radians(bearing.lean) * (1 - 0.55 * arriving * (bearing.lean > 8))
+    lean = lean + 0.03 * np.clip(route.speed - 1.0, 0, 1)
     hips = rotations.compose(
         rotations.yaw_to_quat(route.heading + hip_turn),
         rotations.rotvec_to_quat(np.stack([np.full(frames, 0.3) * lean, np.zeros(frames), roll], axis=1)),
@@ -292,6 +299,14 @@ def _height(pose: Pose, steps: Steps, style: Walk, skeleton: Skeleton) -> Array:
     return pelvis
 
 
+def _spread(frames: int, arms: str, fps: int) -> Array:
+    """Share of an arm pose that takes room: arms open once the body is under way and come down before it arrives."""
+    if arms not in ("open", "balance"):
+        return np.ones(frames)
+    at = np.arange(frames) / fps
+    return smooth((at - 0.25) / 0.8) * smooth((at[-1] - at) / 0.7)
+
+
 def _swinging(style: Walk, steps: Steps, fps: int) -> tuple[Array, Array]:
     """Wrists and elbow directions: arms that hang swing against the legs, others keep their pose. (T, 2, 3) each."""
     frames = len(steps.phase)
@@ -311,6 +326,11 @@ def _swinging(style: Walk, steps: Steps, fps: int) -> tuple[Array, Array]:
             wrists[:, index] *= np.minimum(1, 0.985 / np.linalg.norm(wrists[:, index], axis=1))[:, None]
         else:
             wrists[:, index, 2] += 0.02 * beat
+            spread = _spread(frames, style.bearing.arms[index], fps)
+            hang = np.asarray(ARMS["hang"].wrist) * [side, 1, 1]
+            between = hang + spread[:, None] * (wrists[:, index] - hang)
+            length = np.linalg.norm(hang) + spread * (np.linalg.norm(wrists[:, index], axis=1) - np.linalg.norm(hang))
+            wrists[:, index] = rotations.normalize(between) * length[:, None]
         if style.tap:
             beating = np.maximum(np.sin(2 * np.pi * 1.6 * np.arange(frames) / fps + (0 if side > 0 else np.pi)), 0)
             wrists[:, index, 2] += 0.16 * beating

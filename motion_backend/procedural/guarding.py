@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.obstacles import Obstacles
-from motion_backend.procedural.pose import SIDES, Pose, chest_frame, limb_of_arm
+from motion_backend.procedural.pose import SIDES, Pose, chest_frame, limb_of_arm, smooth
 from motion_backend.skeleton import INDEX, Skeleton
 
 Array = NDArray[np.float64]
@@ -20,8 +20,8 @@ UPWARDS = 0.12
 """A way out upwards may be this much longer than the nearest way out sideways: hands rest on things."""
 
 
-def hands_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles) -> Pose:
-    """The same motion with hands moved out of what is solid; hands laid on something are left where they are."""
+def hands_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles, touching: str | None = None) -> Pose:
+    """The same motion with hands moved out of what is solid; the hand that touches is left where it is laid."""
     reach, reaching = pose.reach.copy(), pose.reaching.copy()
     frame = chest_frame(pose, skeleton)
     for index, (name, side) in enumerate(SIDES):
@@ -32,11 +32,13 @@ def hands_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles) -> Pose:
         wrist = elbow + lower * arm.lower
         tip = wrist + HAND_LENGTH * skeleton.scale * arm.lower
         push = _way_out(np.stack([tip, wrist, 0.5 * (elbow + wrist)], axis=1), obstacles)
-        push = push * (1 - pose.pressing[:, index, None])
+        if name == touching:
+            push = push * (1 - pose.pressing[:, index, None])
         moved = np.linalg.norm(push, axis=1) > 1e-4
         if not moved.any():
             continue
-        eased = _eased(push)
+        # A segment begins in the pose the one before left, which was cleared already.
+        eased = _eased(push) * smooth(np.arange(len(push)) / 8)[:, None]
         used = np.linalg.norm(eased, axis=1) > 1e-4
         reach[used, index] = (wrist + eased)[used]
         reaching[used, index] = 1.0

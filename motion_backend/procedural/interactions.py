@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -244,33 +244,53 @@ def rise_to_edge(start: Pose, seat: Seat, bed: Bed, bearing: Bearing, skeleton: 
     return interpolate(times, [start, over, middle, sat], FPS)
 
 
-def touch(start: Pose, goal: Array, palm: Array, hand: str, style: tuple[Bearing, float], skeleton: Skeleton) -> Pose:
-    """Bring a wrist to `goal` (3,), the hand laid along `palm` (4,), hold it `style[1]` seconds, and come back."""
-    bearing, hold = style
-    index = 0 if hand == "left" else 1
+@dataclass(frozen=True)
+class Laid:
+    """Where a hand is to lie."""
+
+    wrist: Array
+    """(3,) world."""
+    palm: Array
+    """(4,) hand to world."""
+    normal: Array
+    """(3,) out of the surface."""
+    hand: str
+
+
+def touch(start: Pose, laid: Laid, bearing: Bearing, hold: float, skeleton: Skeleton) -> Pose:
+    """Bring a hand from outside onto a surface, keep it there `hold` seconds, and come back to standing."""
+    index = 0 if laid.hand == "left" else 1
     pace = 1 / bearing.tempo
-    reached = _reaching(start, goal, index, skeleton)
-    one = np.eye(2)[index]
-    reach, palms = start.reach.copy(), start.palms.copy()
-    reach[index], palms[index] = goal, palm
-    elbows = start.elbows.copy()
-    side = 1.0 if index == 0 else -1.0
-    # A raised hand hangs its elbow below, a lowered one keeps it behind: else the elbow would flip over on the way.
-    high = float(np.clip((goal[1] - 0.72 * start.pelvis[1] / 0.53) / 0.25, 0.0, 1.0))
-    elbows[index] = np.array([0.45 * side, -0.25 - 0.75 * high, -1.0 + 0.75 * high])
-    reached = replace(reached, reach=reach, reaching=one, palms=palms, pressing=one, elbows=elbows)
-    # The same place held from the chest, so that the arm swings there round its shoulder.
-    reached = replace(reached, arms=released(reached, skeleton).arms)
-    away = replace(start, reach=reach, palms=palms)
+    bent = _reaching(start, laid.wrist, index, skeleton)
+    reached = _hand_at(start, bent, laid, 0.0, skeleton)
+    over = _hand_at(start, bent, laid, 0.11, skeleton)
+    away = replace(start, reach=over.reach, palms=over.palms)
     lead = replace(away, head=0.7 * reached.head + 0.3 * start.head)
-    go = interpolate([0.0, 0.35 * pace, 1.15 * pace], [away, lead, reached], FPS)
-    back = interpolate([0.0, 0.95 * pace], [reached, away], FPS)
+    go = interpolate([0.0, 0.3 * pace, 0.85 * pace, 1.2 * pace], [away, lead, over, reached], FPS)
+    back = interpolate([0.0, 0.3 * pace, 1.05 * pace], [reached, over, away], FPS)
     frames = max(round(hold * FPS), 1)
     held = reached.repeat(frames)
     breath = 0.012 * np.sin(2 * np.pi * 0.4 * np.arange(frames) / FPS)
     held = replace(held, spine=held.spine + np.stack([breath, 0 * breath, 0 * breath], axis=1))
     whole = concatenate([go, held, back])
     return settle_from(start, replace(whole, knees=_knees_over_feet(whole)), FPS, seconds=0.3)
+
+
+def _hand_at(start: Pose, bent: Pose, laid: Laid, off: float, skeleton: Skeleton) -> Pose:
+    """A bent posture with the hand on the surface, or `off` metres out from it."""
+    index, side = (0, 1.0) if laid.hand == "left" else (1, -1.0)
+    one = np.eye(2)[index]
+    reach, palms, elbows = start.reach.copy(), start.palms.copy(), start.elbows.copy()
+    reach[index], palms[index] = laid.wrist + off * laid.normal, laid.palm
+    # A raised hand hangs its elbow below, a lowered one keeps it behind; over the edge of a top it is lifted aside.
+    high = float(np.clip((laid.wrist[1] / skeleton.scale - 1.2) / 0.25, 0.0, 1.0))
+    elbows[index] = np.array([0.45 * side, -0.25 - 0.75 * high, -1.0 + 0.75 * high])
+    if laid.normal[1] > 0.7 and high > 0:
+        elbows[index] = np.array([1.0 * side, 0.25, -0.3])
+    pressing = one * (1.0 if off == 0.0 else 0.6)
+    posed = replace(bent, reach=reach, reaching=one, palms=palms, pressing=pressing, elbows=elbows)
+    # The same place held from the chest, so that the arm swings there round its shoulder.
+    return replace(posed, arms=released(posed, skeleton).arms)
 
 
 def _reaching(start: Pose, goal: Array, index: int, skeleton: Skeleton) -> Pose:

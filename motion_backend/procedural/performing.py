@@ -6,7 +6,7 @@ Rest is left before walking, and a contact skill starts from its standing point 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,11 +15,12 @@ from motion_backend import rotations
 from motion_backend.motion import FPS, Action, Posture, Skill
 from motion_backend.obstacles import Obstacles
 from motion_backend.procedural.gait import walk, yaw_of
-from motion_backend.procedural.interactions import edge_seat, lie_down, rise_to_edge, sit_down, stand_up, touch
+from motion_backend.procedural.interactions import Laid, edge_seat, lie_down, rise_to_edge, sit_down, stand_up, touch
 from motion_backend.procedural.moods import bearing_of, lie_style, sit_style, walk_style
 from motion_backend.procedural.pose import Pose, settle_from
+from motion_backend.procedural.route import resample
 from motion_backend.procedural.stances import HAND_REST, SHIN_REACH, Bed, Seat, idle
-from motion_backend.procedural.styles import Bearing
+from motion_backend.procedural.styles import Bearing, Walk
 from motion_backend.skeleton import Skeleton
 from scene_graphs.homes import Home
 from scene_graphs.navigation import NoPath, Walkable
@@ -35,8 +36,8 @@ FACING_IT = 0.12
 
 TURNING_ROUND = 1.2
 """A body that arrives turned away from where it will face by more (radians) turns before the last step."""
-ELBOW_ROOM = 0.20
-"""Clearance that turning on the spot takes (metres)."""
+ELBOW_ROOM = 0.26
+"""Clearance beyond which there is no better place to turn on the spot (metres)."""
 
 
 @dataclass(frozen=True)
@@ -105,11 +106,24 @@ def _go(body: Body, goal: Point, facing: float | None, action: Action) -> None:
     style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
     path = body.scene.walkable.path(body.place, goal) if not near else np.array([body.place, goal])
     turning = _turning_place(body, path, goal, facing)
+    if style.spin and not near:
+        path = _spin_on_the_way(body, path, style)
+        style = replace(style, spin=0.0)
     if turning is None or facing is None:
         body.add(walk(body.pose, path, facing, style, body.skeleton, body.rng))
         return
     body.add(walk(body.pose, body.scene.walkable.path(body.place, turning), facing, style, body.skeleton, body.rng))
     body.add(walk(body.pose, np.array([body.place, goal]), facing, style, body.skeleton, body.rng))
+
+
+def _spin_on_the_way(body: Body, path: Array, style: Walk) -> Array:
+    """Walk to the roomiest place of the path's second half and spin there; returns the way that is left."""
+    points = resample(path)
+    half = points[len(points) // 2 :]
+    room = [body.scene.walkable.clearance((float(x), float(z))) for x, z in half]
+    split = len(points) // 2 + int(np.argmax(room))
+    body.add(walk(body.pose, points[: split + 1], None, style, body.skeleton, body.rng))
+    return np.concatenate([[body.place], points[split:]])
 
 
 def _turning_place(body: Body, path: Array, goal: Point, facing: float | None) -> Point | None:
@@ -120,11 +134,10 @@ def _turning_place(body: Body, path: Array, goal: Point, facing: float | None) -
     if float(np.abs(rotations.wrap(np.arctan2(step[0], step[1]) - facing))) < TURNING_ROUND:
         return None
     ahead = np.array([np.sin(facing), np.cos(facing)])
-    for distance in (0.30, 0.24, 0.18, 0.12):
-        place = (float(goal[0] + distance * ahead[0]), float(goal[1] + distance * ahead[1]))
-        if body.scene.walkable.clearance(place) >= ELBOW_ROOM:
-            return place
-    return None
+    places = [(float(goal[0] + d * ahead[0]), float(goal[1] + d * ahead[1])) for d in (0.32, 0.26, 0.20, 0.14)]
+    room = [min(body.scene.walkable.clearance(place), ELBOW_ROOM) for place in places]
+    best = int(np.argmax(room))
+    return places[best] if room[best] > body.scene.walkable.clearance(goal) + 0.04 else None
 
 
 def _loco(body: Body, action: Action) -> None:
@@ -215,7 +228,7 @@ def _touch(body: Body, action: Action) -> None:
     goal = np.asarray(spot.point) + HAND_REST * normal
     palm = palm_on(normal, spot.facing, action.hand)
     hold = max(action.hold, 1.2)
-    body.add(touch(body.pose, goal, palm, action.hand, (bearing, hold), body.skeleton))
+    body.add(touch(body.pose, Laid(goal, palm, normal, action.hand), bearing, hold, body.skeleton))
 
 
 def palm_on(normal: Array, facing: float, hand: str) -> Array:

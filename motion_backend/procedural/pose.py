@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 SIDES = (("left", 1), ("right", -1))
 SPINE = ("spine1", "spine2", "spine3")
 ROTATIONS = ("hips", "feet", "palms")
+WRIST_BEND, FOREARM_ROLL = 1.45, 1.5
+"""How far a hand can bend against the forearm and roll about it (radians)."""
 
 
 @dataclass(frozen=True)
@@ -271,10 +273,22 @@ def _solve_arm(
     clavicle = rotations.compose(chest, collar)
     local[:, INDEX[f"{name}_shoulder"]] = rotations.compose(rotations.inverse(clavicle), upper)
     local[:, INDEX[f"{name}_elbow"]] = rotations.compose(rotations.inverse(upper), lower)
-    press = rotations.quat_to_rotvec(rotations.compose(rotations.inverse(lower), pose.palms[:, index]))
-    angle = np.linalg.norm(press, axis=-1, keepdims=True)
-    press = press * np.minimum(1.0, 1.3 / np.maximum(angle, 1e-9)) * pose.pressing[:, index, None]
+    bend = _within_reach(rotations.compose(rotations.inverse(lower), pose.palms[:, index]))
+    press = rotations.quat_to_rotvec(bend) * pose.pressing[:, index, None]
     local[:, INDEX[f"{name}_wrist"]] = rotations.rotvec_to_quat(press)
+
+
+def _within_reach(wrist: Array) -> Array:
+    """A wrist's rotation limited to what wrist and forearm can do: bend first, then roll about the hand. (T, 4)."""
+    roll = 2 * np.arctan2(wrist[:, 0], wrist[:, 3])
+    roll = rotations.wrap(roll)
+    twist = np.zeros((len(wrist), 3))
+    twist[:, 0] = roll
+    swing = rotations.quat_to_rotvec(rotations.compose(wrist, rotations.inverse(rotations.rotvec_to_quat(twist))))
+    angle = np.linalg.norm(swing, axis=-1, keepdims=True)
+    swing = swing * np.minimum(1.0, WRIST_BEND / np.maximum(angle, 1e-9))
+    twist[:, 0] = np.clip(roll, -FOREARM_ROLL, FOREARM_ROLL)
+    return rotations.compose(rotations.rotvec_to_quat(swing), rotations.rotvec_to_quat(twist))
 
 
 def released(pose: Pose, skeleton: Skeleton) -> Pose:

@@ -76,11 +76,14 @@ class Seat:
     yaw: float
     back: float
     """Distance from the pelvis to the backrest behind it."""
+    edge: float = 0.0
+    """Distance from the pelvis to the front edge."""
 
     @staticmethod
     def of(spot: Spot) -> Seat:
         """The seat of a sit spot."""
-        return Seat(np.asarray(spot.point) + SEATED_REST * np.asarray(spot.normal), spot.facing, spot.back)
+        pelvis = np.asarray(spot.point) + SEATED_REST * np.asarray(spot.normal)
+        return Seat(pelvis, spot.facing, spot.back, spot.edge)
 
     def to_world(self, right_up_ahead: tuple[float, float, float]) -> Array:
         """A point given to the sitter's left, up from the floor and ahead of the pelvis. (3,)."""
@@ -127,7 +130,7 @@ def _seated_legs(
 ) -> tuple[Array, Array, Array]:
     scale, ankle = skeleton.scale, skeleton.ankle_height
     drop = seat.pelvis[1] - ankle
-    longest = np.sqrt(max((0.80 * scale) ** 2 - drop**2, 0.1))
+    longest = _stretch(seat, drop, scale)
     ankles, feet, knees = [], [], []
     for index, side in ((0, 1), (1, -1)):
         wide, ahead, up, pitch, outward = 0.10 * scale, SHIN_REACH * scale, ankle, 0.0, 0.10
@@ -149,6 +152,21 @@ def _seated_legs(
         raised = 0.55 if style.legs == "crossed" and side < 0 else 0.25
         knees.append(_ahead(seat.yaw + side * outward) + raised * UP)
     return np.stack(ankles), np.stack(feet), np.stack(knees)
+
+
+def _stretch(seat: Seat, drop: float, scale: float) -> float:
+    """How far ahead a stretched foot goes: as far as the thigh clears the seat's front edge (metres)."""
+    thigh, shank = 0.4165 * scale, 0.418 * scale
+    for ahead in np.arange(0.80, SHIN_REACH, -0.01) * scale:
+        reach = float(np.hypot(ahead, drop))
+        if reach > 0.80 * scale:
+            continue
+        # The knee lies above the line from hip to ankle: the thigh's slope follows from the triangle they make.
+        inner = np.arccos(np.clip((thigh**2 + reach**2 - shank**2) / (2 * thigh * reach), -1.0, 1.0))
+        sinks = np.tan(np.arctan2(drop, ahead) - inner) * seat.edge
+        if sinks < 0.055 * scale:
+            return float(ahead)
+    return SHIN_REACH * scale
 
 
 def hands_on_thighs(pose: Pose, skeleton: Skeleton) -> Pose:
@@ -184,7 +202,7 @@ class Bed:
         """Pelvis rotation lying on the back, or on the left or right side. (4,)."""
         up_the_bed = np.array([np.sin(self.head_yaw), 0.0, np.cos(self.head_yaw)])
         supine = rotations.basis_to_quat(np.cross(up_the_bed, UP), up_the_bed, UP)
-        roll = {"back": 0.0, "left": np.radians(78), "right": -np.radians(78)}[side]
+        roll = {"back": 0.0, "left": np.radians(66), "right": -np.radians(66)}[side]
         return rotations.compose(supine, rotations.rotvec_to_quat(np.array([0.0, roll, 0.0])))
 
 
@@ -207,8 +225,8 @@ def lying(start: Pose, bed: Bed, style: Lying, skeleton: Skeleton, pillow: float
         start,
         pelvis=pelvis,
         hips=hips,
-        spine=bend(np.radians(style.prop) + (0.0 if on_side else 0.25 * lift)),
-        head=bend(0.25 if on_side else 0.6 * lift, side=_toward_pillow(style.side) * lift),
+        spine=bend(np.radians(style.prop) + (0.0 if on_side else 0.25 * lift), side=0.24 * _off_the_bed(style.side)),
+        head=bend(0.25 if on_side else 0.6 * lift, side=(0.3 * lift - 0.2) * _off_the_bed(style.side)),
         ankles=ankles,
         feet=feet,
         toes=np.zeros(2),
@@ -221,9 +239,9 @@ def lying(start: Pose, bed: Bed, style: Lying, skeleton: Skeleton, pillow: float
     )
 
 
-def _toward_pillow(side: str) -> float:
-    """Side bend that lifts the head off the shoulder it lies on."""
-    return {"back": 0.0, "left": -0.35, "right": 0.35}[side]
+def _off_the_bed(side: str) -> float:
+    """Sign of the side bend that lifts the trunk off the shoulder it lies on."""
+    return {"back": 0.0, "left": 1.0, "right": -1.0}[side]
 
 
 # Ankles in the pelvis frame (left, towards the head, forwards) and foot pitch: left row, right row.

@@ -63,7 +63,9 @@ def add(file: Annotated[Path, typer.Argument(help="JSON with one short script, o
 
 
 @app.command()
-def check(file: Annotated[Path, typer.Argument(help="JSON with one short script, or JSON lines with several.")]) -> None:
+def check(
+    file: Annotated[Path, typer.Argument(help="JSON with one short script, or JSON lines with several.")],
+) -> None:
     """Say whether short scripts can be acted out, and what would be repaired."""
     console = Console()
     problems = 0
@@ -102,5 +104,7 @@ def _rows(text: str, name: str) -> list[Any]:
             try:
                 rows.append(json.loads(line))
             except json.JSONDecodeError:
-                raise LibraryError(f"{name}:{error.lineno if len(lines) == 1 else number}: not JSON: {error.msg}") from error
+                raise LibraryError(
+                    f"{name}:{error.lineno if len(lines) == 1 else number}: not JSON: {error.msg}"
+                ) from error
         return rows

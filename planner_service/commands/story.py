@@ -35,10 +35,12 @@ def story(
     out: Annotated[Path, typer.Option(help="Folder for the story's files.")] = Path("out/story"),
     seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same story.")] = 0,
     rooms: Annotated[
-        str | None, typer.Option(help="Room types to play in, separated by commas: bedroom, living_room, dining_room, study.")
+        str | None,
+        typer.Option(help="Room types to play in, separated by commas: bedroom, living_room, dining_room, study."),
     ] = None,
     layout: Annotated[
-        list[str] | None, typer.Option(help="A layout file, or the id of a built-in layout; may be given up to 4 times.")
+        list[str] | None,
+        typer.Option(help="A layout file, or the id of a built-in layout; may be given up to 4 times."),
     ] = None,
     backend: Annotated[str | None, typer.Option(help="What moves the body: procedural.")] = None,
     name: Annotated[str, typer.Option(help="The character's name.")] = "Sam",

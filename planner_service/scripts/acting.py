@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from scene_graphs.homes import Home
-from scene_graphs.navigation import NoPath, Walkable
+from scene_graphs.navigation import Walkable
 
 from motion_backend.motion import Action, Skill
 from planner_service.scripts.checking import hand_of
@@ -90,14 +90,26 @@ class _Stage:
         if need == "touch":
             wanted = height_of(keyframe.caption)
             found = [s for s in found if s.height == wanted] or [s for s in found if s.height == "medium"] or found
+            # Fronts before tops of what is taller than the chest: an arm does not go over an edge by itself.
+            found = [s for s in found if s.normal[1] < 0.5 or s.point[1] < 1.2] or found
+            room = [self._elbow_room(s) for s in found]
             # The body may come back to a piece: it need not touch the very same place again.
+            found = [s for s, space in zip(found, room, strict=True) if space >= max(room) - 0.03]
             return found[int(self.rng.integers(min(len(found), 3)))]
         return found[0]
+
+    def _elbow_room(self, spot: Spot) -> float:
+        """Clearance where a body stands and, since it may crouch, a step behind; more than enough counts alike."""
+        back = -0.16 * np.array([np.sin(spot.approach), np.cos(spot.approach)])
+        behind = (float(spot.standing[0] + back[0]), float(spot.standing[1] + back[1]))
+        return min(self.walkable.clearance(spot.standing), self.walkable.clearance(behind), 0.28)
 
     def _reachable(self, placed: Placed, need: str) -> list[Spot]:
         """Spots whose standing point can be walked to, best first: as they come, the nearer side first when lying."""
         start = self.at or self.walkable.random_point(np.random.default_rng(0), 0)
-        found = [s for s in spots(placed, need) if self._free(s.standing) and self.walkable.reachable(start, s.standing)]
+        found = [
+            s for s in spots(placed, need) if self._free(s.standing) and self.walkable.reachable(start, s.standing)
+        ]
         if need == "lie":
             found.sort(key=lambda s: round(float(np.hypot(s.standing[0] - start[0], s.standing[1] - start[1])), 1))
         return found
@@ -150,21 +162,20 @@ class _Stage:
     def _anywhere(self, room: int, at: Point | None) -> Point:
         """A place to wander to: some way off, with room around it, and not through the whole house."""
         start = at or self.walkable.random_point(self.rng, room)
-        best: tuple[float, Point] | None = None
-        for _ in range(24):
-            point = self.walkable.random_point(self.rng, room)
-            try:
-                path = self.walkable.path(start, point)
-            except NoPath:
-                continue
-            length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
-            worth = min(length, 2.2 * PACING) - 0.4 * max(length - 3 * PACING, 0.0)
-            worth += min(self.walkable.clearance(point), 0.8)
-            if best is None or worth > best[0]:
-                best = (worth, point)
-        if best is None:
+        points = [self.walkable.random_point(self.rng, room) for _ in range(12)]
+        points = [point for point in points if self.walkable.reachable(start, point)]
+        if not points:
             raise UnreachableError(f"nothing in room {room} can be walked to from {start}")
-        return best[1]
+
+        def worth(point: Point) -> float:
+            length = float(np.hypot(point[0] - start[0], point[1] - start[1]))
+            return (
+                min(length, 2.2 * PACING)
+                - 0.4 * max(length - 3 * PACING, 0.0)
+                + min(self.walkable.clearance(point), 0.8)
+            )
+
+        return max(points, key=worth)
 
 
 def height_of(caption: str) -> str:
@@ -184,5 +195,3 @@ def action_to_dict(action: Action) -> dict[str, Any]:
         spot = {name: (None if value == np.inf else value) for name, value in vars(action.spot).items()}
     plain: dict[str, Any] = {name: value for name, value in vars(action).items() if name != "spot"}
     return plain | {"skill": action.skill.value, "spot": spot}
-
-

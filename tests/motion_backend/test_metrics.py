@@ -32,9 +32,7 @@ def standing_still(frames: int = 60, root: np.ndarray | None = None) -> Motion:
 
 
 def box(center: tuple[float, float, float], size: tuple[float, float, float], owner: str = "0/box") -> Obstacles:
-    return Obstacles(
-        np.array([center]), np.array([size]) / 2, np.zeros(1), (owner,), np.zeros(1, dtype=bool)
-    )
+    return Obstacles(np.array([center]), np.array([size]) / 2, np.zeros(1), (owner,), np.zeros(1, dtype=bool))
 
 
 def touch(**changes: object) -> Action:
