@@ -121,6 +121,15 @@ def test_without_edges_the_bound_is_the_distance_and_the_best_assignment(
     assert lower_bound(query, room) == distance(query, room) == best_assignment(query, room)
 
 
+@given(graphs(6, ("chair", "dining_chair", "armchair", "sofa")), graphs(8, CATEGORIES[:5]))
+@QUICK
+def test_a_kind_beside_categories_of_its_own_is_bounded_exactly(query: FurnitureGraph, room: FurnitureGraph) -> None:
+    query, room = nx.create_empty_copy(query), nx.create_empty_copy(room)
+    for strict in (False, True):
+        match = exact_distance(query, with_offers(room), strict=strict)
+        assert match.lower_bound == match.cost
+
+
 def best_assignment(query: FurnitureGraph, room: FurnitureGraph) -> int:
     """The node part of the distance by scipy's assignment: a square of substitutions, deletions and insertions."""
     rows, columns = list(query), list(room)
