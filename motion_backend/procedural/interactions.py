@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.procedural.gait import home_ankle, yaw_of
-from motion_backend.procedural.pose import Pose, concatenate, interpolate, released, settle_from, smooth
+from motion_backend.procedural.pose import Pose, chest_frame, concatenate, interpolate, released, settle_from, smooth
 from motion_backend.procedural.stances import (
     FOOT_SPLAY,
     SHIN_REACH,
@@ -28,7 +29,10 @@ from motion_backend.procedural.styles import ARMS, Bearing, Lying, Seated
 from motion_backend.skeleton import Skeleton
 
 Array = NDArray[np.float64]
+Depth = Callable[[Array], Array]
 FPS = 30
+HEAD_ROOM = 0.13
+"""Distance of the middle of the head to furniture that a reaching body keeps (metres)."""
 
 
 def sit_down(start: Pose, seat: Seat, style: Seated, skeleton: Skeleton, reach: tuple[float, float]) -> Pose:
@@ -257,11 +261,15 @@ class Laid:
     hand: str
 
 
-def touch(start: Pose, laid: Laid, bearing: Bearing, hold: float, skeleton: Skeleton) -> Pose:
-    """Bring a hand from outside onto a surface, keep it there `hold` seconds, and come back to standing."""
+def touch(start: Pose, laid: Laid, style: tuple[Bearing, float], skeleton: Skeleton, depth: Depth) -> Pose:
+    """Bring a hand from outside onto a surface, keep it there, and come back to standing.
+
+    `style` is the bearing and the seconds to hold; `depth` says how deep points (N, 3) are in furniture.
+    """
+    bearing, hold = style
     index = 0 if laid.hand == "left" else 1
     pace = 1 / bearing.tempo
-    bent = _reaching(start, laid.wrist, index, skeleton)
+    bent = _reaching(start, laid, index, skeleton, depth)
     reached = _hand_at(start, bent, laid, 0.0, skeleton)
     over = _hand_at(start, bent, laid, 0.11, skeleton)
     away = replace(start, reach=over.reach, palms=over.palms)
@@ -293,8 +301,9 @@ def _hand_at(start: Pose, bent: Pose, laid: Laid, off: float, skeleton: Skeleton
     return replace(posed, arms=released(posed, skeleton).arms)
 
 
-def _reaching(start: Pose, goal: Array, index: int, skeleton: Skeleton) -> Pose:
+def _reaching(start: Pose, laid: Laid, index: int, skeleton: Skeleton, depth: Depth) -> Pose:
     """The least bent posture from which the hand gets to the goal: a search over lean and crouch."""
+    goal = laid.wrist
     yaw = float(yaw_of(start.hips))
     lean, crouch = (grid.ravel() for grid in np.meshgrid(np.radians(np.arange(0, 76, 5)), np.arange(0, 0.50, 0.05)))
     lean, crouch = lean[:, None], crouch[:, None] * skeleton.scale
@@ -311,7 +320,13 @@ def _reaching(start: Pose, goal: Array, index: int, skeleton: Skeleton) -> Pose:
     gap = np.linalg.norm(goal - shoulders(tries, skeleton)[:, index], axis=1)
     arm = 0.54 * skeleton.scale
     miss = np.maximum(gap - 0.955 * arm, 0.0) + np.maximum(0.45 * arm - gap, 0.0)
-    effort = 60.0 * miss + 0.6 * lean[:, 0] + 1.1 * lean[:, 0] ** 2 + 2.6 * crouch[:, 0]
+    # The head stays clear of what is touched: before a front one bends the knees instead.
+    chest, place = chest_frame(tries, skeleton)
+    head = place + rotations.rotate(chest, np.array([0.0, 0.38, 0.05]) * skeleton.scale)
+    miss = miss + np.maximum(depth(head) + HEAD_ROOM, 0.0)
+    # One bends over to a table and squats to a drawer.
+    squat = 2.6 + 4.5 * float(np.clip((goal[1] / skeleton.scale - 0.6) / 0.2, 0.0, 1.0))
+    effort = 60.0 * miss + 0.6 * lean[:, 0] + 1.1 * lean[:, 0] ** 2 + squat * crouch[:, 0]
     best = tries.at(int(np.argmin(effort)))
     eyes = shoulders(best.repeat(1), skeleton)[0].mean(axis=0) + 0.2 * UP
     look = goal - eyes

@@ -228,7 +228,8 @@ def _touch(body: Body, action: Action) -> None:
     goal = np.asarray(spot.point) + HAND_REST * normal
     palm = palm_on(normal, spot.facing, action.hand)
     hold = max(action.hold, 1.2)
-    body.add(touch(body.pose, Laid(goal, palm, normal, action.hand), bearing, hold, body.skeleton))
+    laid, depth = Laid(goal, palm, normal, action.hand), body.scene.obstacles.solid().depth
+    body.add(touch(body.pose, laid, (bearing, hold), body.skeleton, depth))
 
 
 def palm_on(normal: Array, facing: float, hand: str) -> Array:
