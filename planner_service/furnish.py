@@ -6,16 +6,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from motion_backend.motion import Skill
 from planner_service.scripts.acting import NEEDS, Place
 from planner_service.scripts.keyframe import LongScript, PlannedKeyframe
 from scene_graphs.distance import exact_distance
 from scene_graphs.furniture import ROOM_TYPES, Furniture, canonical, canonical_room, display_name
-from scene_graphs.graph import FurnitureGraph, graph_from_layout, graph_from_objects, graph_from_uses
+from scene_graphs.graph import FurnitureGraph, graph_from_layout, graph_from_uses
+from scene_graphs.grounding import Grounding, ground_script
 from scene_graphs.homes import Home, home_from_layouts
 from scene_graphs.layouts import Layout
 from scene_graphs.merging import merge
-from scene_graphs.retrieval import LayoutIndex
+from scene_graphs.retrieval import LayoutIndex, retrieve_rooms
 
 MOST_ROOMS = 4
 
@@ -100,16 +100,17 @@ def furnish(
     wanted = _room_types(script, rooms)
     uses = {room: _script_graphs(script, room, wanted) for room in wanted}
     merged = {room: merge([graph for _, graph in graphs]).graph for room, graphs in uses.items()}
-    chosen = (
-        _given(merged, layouts) if layouts else {room: _retrieve(index, room, graph) for room, graph in merged.items()}
-    )
+    chosen = _given(merged, layouts) if layouts else _retrieved(merged, index, seed)
     unique = list(dict.fromkeys([layout for layout, _ in chosen.values()] + list(layouts)))
     home = home_from_layouts(unique, seed)
     number = {room: unique.index(layout) for room, (layout, _) in chosen.items()}
-    matches = _matches(unique, chosen)
-    grounded = _ground(home, uses, number)
+    grounded = {
+        (room, script_number): ground_script(graph, home, number[room])
+        for room, graphs in uses.items()
+        for script_number, graph in graphs
+    }
     places = tuple(_place(i, k, number, grounded, wanted) for i, k in enumerate(script.keyframes))
-    return Furnished(script, home, matches, places)
+    return Furnished(script, home, _matches(unique, chosen), places)
 
 
 def _room_types(script: LongScript, rooms: Sequence[str]) -> list[str]:
@@ -125,7 +126,7 @@ def _room_types(script: LongScript, rooms: Sequence[str]) -> list[str]:
 
 
 def _room_of(keyframe: PlannedKeyframe, wanted: Sequence[str]) -> str:
-    return keyframe.room if keyframe.room in wanted else wanted[0]
+    return keyframe.room if keyframe.room is not None and keyframe.room in wanted else wanted[0]
 
 
 def _script_graphs(script: LongScript, room: str, wanted: Sequence[str]) -> list[tuple[int | None, FurnitureGraph]]:
@@ -143,17 +144,11 @@ def _script_graphs(script: LongScript, room: str, wanted: Sequence[str]) -> list
 Chosen = dict[str, tuple[Layout, RoomMatch]]
 
 
-def _retrieve(index: LayoutIndex, room: str, graph: FurnitureGraph) -> tuple[Layout, RoomMatch]:
-    """The nearest room of that type."""
-    if not len(graph):
-        layout = index.first(room)
-        return layout, RoomMatch(room, layout.id, 0, True, (), ())
-    found = index.search(graph, 1, room_type=room)
-    if not found:
-        raise FurnishError(f"rooms: the library has no {room.replace('_', ' ')}")
-    best = found[0]
-    layout = index.layout(best.layout_id)
-    return layout, _explained(room, graph, layout)
+def _retrieved(merged: dict[str, FurnitureGraph], index: LayoutIndex, seed: int) -> Chosen:
+    """One of the nearest rooms of the library for every room type."""
+    found = retrieve_rooms(index, merged, seed=seed)
+    rooms = {room: index.layout(match.layout_id) for room, match in found.items()}
+    return {room: (layout, _explained(room, merged[room], layout)) for room, layout in rooms.items()}
 
 
 def _given(merged: dict[str, FurnitureGraph], layouts: Sequence[Layout]) -> Chosen:
@@ -186,19 +181,7 @@ def _matches(unique: Sequence[Layout], chosen: Chosen) -> tuple[RoomMatch, ...]:
     return tuple(found.get(u.id, RoomMatch(u.room_type, u.id, 0, True, (), ())) for u in unique)
 
 
-Grounded = dict[tuple[str, int | None], dict[Furniture, str]]
-
-
-def _ground(home: Home, uses: dict[str, list[tuple[int | None, FurnitureGraph]]], number: dict[str, int]) -> Grounded:
-    """Map every short script by itself onto the objects of its room."""
-    grounded: Grounded = {}
-    for room, graphs in uses.items():
-        prefix = f"{number[room]}/"
-        objects = graph_from_objects(placed for placed in home.objects if placed.id.startswith(prefix))
-        for script, graph in graphs:
-            match = exact_distance(graph, objects)
-            grounded[room, script] = {pair.query: objects.nodes[pair.room]["object_id"] for pair in match.pairs}
-    return grounded
+Grounded = dict[tuple[str, int | None], Grounding]
 
 
 def _place(
@@ -209,12 +192,14 @@ def _place(
         return Place(number[room])
     word, instance = keyframe.piece
     node = Furniture(canonical(word), instance)
-    object_id = grounded[room, keyframe.short_script].get(node)
+    object_id = grounded[room, keyframe.short_script].objects.get(node)
     if object_id is None:
-        object_id = next((own[node] for (r, _), own in grounded.items() if r == room and node in own), None)
-    if object_id is None and keyframe.skill in (Skill.SITDOWN, Skill.LIEDOWN, Skill.TOUCH):
+        # A connecting keyframe speaks of what the script before or after it uses.
+        own = (g.objects[node] for (r, _), g in grounded.items() if r == room and node in g.objects)
+        object_id = next(own, None)
+    if object_id is None and keyframe.skill in NEEDS:
         raise FurnishError(
             f"keyframe {index}: the {room.replace('_', ' ')} has no {display_name(word)} to {NEEDS[keyframe.skill]}, "
             f"nor anything that could stand for it; choose another room (--rooms, --layout) or theme"
         )
-    return Place(number[room], object_id)
+    return Place(number[room] if object_id is None else int(object_id.split("/")[0]), object_id)

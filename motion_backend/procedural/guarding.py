@@ -31,7 +31,7 @@ def hands_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles, touching: 
         elbow = shoulder + upper * arm.upper
         wrist = elbow + lower * arm.lower
         tip = wrist + HAND_LENGTH * skeleton.scale * arm.lower
-        push = _way_out(np.stack([tip, wrist, 0.5 * (elbow + wrist)], axis=1), obstacles)
+        push = _way_out(np.stack([tip, wrist, 0.5 * (elbow + wrist)], axis=1), shoulder, obstacles)
         if name == touching:
             push = push * (1 - pose.pressing[:, index, None])
         moved = np.linalg.norm(push, axis=1) > 1e-4
@@ -45,36 +45,42 @@ def hands_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles, touching: 
     return replace(pose, reach=reach, reaching=reaching)
 
 
-def _way_out(points: Array, obstacles: Obstacles) -> Array:
-    """The longest of the shortest ways out of solid boxes for K points a frame. (T, K, 3) to (T, 3)."""
-    frames = len(points)
-    flat = points.reshape(-1, 3).copy()
+def _way_out(points: Array, shoulder: Array, obstacles: Obstacles) -> Array:
+    """The longest of the ways back out of solid boxes for K points a frame of an arm. (T, K, 3), (T, 3) to (T, 3)."""
+    frames, count = points.shape[:2]
+    flat = points.reshape(-1, 3)
+    origin = np.repeat(shoulder, count, axis=0)
     total = np.zeros_like(flat)
     close = obstacles.near(flat.min(axis=0) - THICKNESS, flat.max(axis=0) + THICKNESS)
     for index in range(len(close.owners)):
-        step = _out_of_box(flat + total, close, index)
-        total += step
+        total += _out_of_box(flat + total, origin, close, index)
     ways = total.reshape(frames, -1, 3)
     longest = np.argmax(np.linalg.norm(ways, axis=2), axis=1)
     return np.asarray(ways[np.arange(frames), longest])
 
 
-def _out_of_box(points: Array, boxes: Obstacles, index: int) -> Array:
+def _out_of_box(points: Array, origin: Array, boxes: Obstacles, index: int) -> Array:
+    """Up out of a box, or back to the side the arm came from: through a wardrobe is no way out of it."""
     turn = rotations.yaw_to_quat(float(boxes.yaws[index]))
-    local = rotations.rotate(rotations.inverse(turn), points - boxes.centers[index])
+    back = rotations.inverse(turn)
+    local = rotations.rotate(back, points - boxes.centers[index])
+    source = rotations.rotate(back, origin - boxes.centers[index])
     half = boxes.halves[index] + THICKNESS
-    gap = half - np.abs(local)
-    inside = (gap > 0).all(axis=1)
+    inside = (np.abs(local) < half).all(axis=1)
     out = np.zeros_like(local)
     if not inside.any():
         return out
+    side = np.sign(source[:, [0, 2]])
+    across = half[[0, 2]] - side * local[:, [0, 2]]
+    entered = np.abs(source[:, [0, 2]]) > boxes.halves[index][[0, 2]]
+    across = np.where(entered | ~entered.any(axis=1, keepdims=True), across, np.inf)
+    axis = np.argmin(across, axis=1)
+    distance = across[np.arange(len(across)), axis]
     up = half[1] - local[:, 1]
-    sideways = np.argmin(gap[:, [0, 2]], axis=1) * 2
-    across = gap[np.arange(len(gap)), sideways]
-    upwards = inside & (up < across + UPWARDS)
+    upwards = inside & (up < distance + UPWARDS)
     out[upwards, 1] = up[upwards]
     aside = np.flatnonzero(inside & ~upwards)
-    out[aside, sideways[aside]] = across[aside] * np.sign(local[aside, sideways[aside]])
+    out[aside, 2 * axis[aside]] = (side[np.arange(len(side)), axis] * distance)[aside]
     return np.asarray(rotations.rotate(turn, out))
 
 
