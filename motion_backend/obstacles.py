@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from scene_graphs.furnishing import parts
-from scene_graphs.homes import Home
+from scene_graphs.homes import Home, Wall
 
 Array = NDArray[np.float64]
+WALL = "wall"
+"""The owner of a wall's boxes."""
+THICKNESS = 0.10
+HEAD_HEIGHT = 1.9
+"""Openings that begin higher leave the wall a wall for bodies (metres)."""
 
 
 @dataclass(frozen=True)
@@ -24,24 +30,24 @@ class Obstacles:
     yaws: Array
     """(N,)."""
     owners: tuple[str, ...]
-    """Object id of each box."""
+    """Object id of each box, or `WALL`."""
     soft: NDArray[np.bool_]
     """(N,) pillows and the like, which give way."""
 
     @staticmethod
     def of_home(home: Home) -> Obstacles:
-        """The furniture parts of a home."""
-        centers, halves, yaws, owners, soft = [], [], [], [], []
-        for placed in home.objects:
-            for part in parts(placed.category, placed.size):
-                centers.append(placed.to_world(part.center))
-                halves.append(np.asarray(part.size) / 2)
-                yaws.append(placed.yaw)
-                owners.append(placed.id)
-                soft.append(part.is_soft)
+        """The furniture parts and the walls of a home; doorways, doors and windows are cut out of the walls."""
+        rows = [
+            (placed.to_world(part.center), np.asarray(part.size) / 2, placed.yaw, placed.id, part.is_soft)
+            for placed in home.objects
+            for part in parts(placed.category, placed.size)
+        ]
+        for wall in home.walls:
+            rows.extend((*box, WALL, False) for box in _wall_boxes(wall, home))
+        centers, halves, yaws, owners, soft = zip(*rows, strict=True) if rows else ((), (), (), (), ())
         return Obstacles(
-            np.array(centers).reshape(-1, 3),
-            np.array(halves).reshape(-1, 3),
+            np.array(centers, dtype=np.float64).reshape(-1, 3),
+            np.array(halves, dtype=np.float64).reshape(-1, 3),
             np.array(yaws, dtype=np.float64),
             tuple(owners),
             np.array(soft, dtype=bool),
@@ -83,3 +89,28 @@ class Obstacles:
         for index in range(len(close.owners)):
             deepest = np.maximum(deepest, close.inside(points, index))
         return deepest
+
+
+def _wall_boxes(wall: Wall, home: Home) -> Iterator[tuple[Array, Array, float]]:
+    """Centre, half size and yaw of the solid stretches of a wall; it is as thick as it can be away from its room."""
+    start, end = (np.asarray(point, dtype=np.float64) for point in wall.segment)
+    length = float(np.linalg.norm(end - start))
+    if length < 1e-6:
+        return
+    along = (end - start) / length
+    outward = np.array([along[1], -along[0]])
+    middle = (start + end) / 2
+    if home.room_at((float(middle[0] + 0.05 * outward[0]), float(middle[1] + 0.05 * outward[1]))) is not None:
+        outward = -outward
+    yaw = float(np.arctan2(outward[0], outward[1]))
+    gaps = sorted(
+        tuple(sorted(float((np.asarray(point) - start) @ along) for point in opening.segment))
+        for opening in wall.openings
+        if opening.bottom < HEAD_HEIGHT
+    )
+    edges = [0.0, *[edge for gap in gaps for edge in gap], length]
+    for low, high in zip(edges[::2], edges[1::2], strict=True):
+        if high - low > 0.01:
+            center = start + along * (low + high) / 2 + outward * THICKNESS / 2
+            half = np.array([(high - low) / 2, wall.height / 2, THICKNESS / 2])
+            yield np.array([center[0], wall.height / 2, center[1]]), half, yaw

@@ -170,7 +170,9 @@ def _walls(rooms: tuple[Room, ...], doorways: tuple[Opening, ...]) -> tuple[Wall
         corners = np.asarray(outlines[index].exterior.coords)
         others = shapely.union_all([outline for i, outline in enumerate(outlines) if i != index])
         own = [_moved(opening, room.pose) for opening in (*room.layout.doors, *room.layout.windows)]
-        outside = [opening for opening in own if others.distance(shapely.LineString(opening.segment)) > 0.5]
+        outside = [
+            opening for opening in own if others.is_empty or others.distance(shapely.LineString(opening.segment)) > 0.5
+        ]
         for start, end in pairwise(corners):
             cut = _on_wall(doorways, start, end)
             lines = [shapely.LineString(doorway.segment) for doorway in cut]

@@ -66,7 +66,7 @@ def _out_of_box(points: Array, origin: Array, boxes: Obstacles, index: int) -> A
     local = rotations.rotate(back, points - boxes.centers[index])
     source = rotations.rotate(back, origin - boxes.centers[index])
     half = boxes.halves[index] + THICKNESS
-    inside = (np.abs(local) < half).all(axis=1)
+    inside = (np.abs(local) < half).all(axis=1) | _crosses(source, local, boxes.halves[index])
     out = np.zeros_like(local)
     if not inside.any():
         return out
@@ -82,6 +82,16 @@ def _out_of_box(points: Array, origin: Array, boxes: Obstacles, index: int) -> A
     aside = np.flatnonzero(inside & ~upwards)
     out[aside, 2 * axis[aside]] = (side[np.arange(len(side)), axis] * distance)[aside]
     return np.asarray(rotations.rotate(turn, out))
+
+
+def _crosses(start: Array, end: Array, half: Array) -> NDArray[np.bool_]:
+    """Whether the line from shoulder to point passes through a box about the origin: a thin wall is no gap. (N,)."""
+    way = end - start
+    way = np.where(np.abs(way) < 1e-9, 1e-9, way)
+    first, second = (-half - start) / way, (half - start) / way
+    enters = np.minimum(first, second).max(axis=1)
+    leaves = np.maximum(first, second).min(axis=1)
+    return np.asarray((enters < leaves) & (enters > 0) & (enters < 1))
 
 
 def _eased(push: Array) -> Array:

@@ -269,6 +269,9 @@ def _lying_arms(style: Lying) -> tuple[Array, Array]:
                 wrists[index, 2], wrists[index, 0] = -0.03, wrists[index, 0] * 1.25
             if name == "wide":
                 elbows[index] = (0.0, -0.5, 0.4)
+            if name == "behind_head":
+                # Elbows point up rather than out, where a backrest may be.
+                elbows[index] = (0.5 if index == 0 else -0.5, 0.2, 0.85)
         return wrists, elbows
     below, above = (0, 1) if style.side == "left" else (1, 0)
     inward = np.array([-1.0 if above == 0 else 1.0, 1.0, 1.0])

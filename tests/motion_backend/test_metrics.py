@@ -12,6 +12,8 @@ from motion_backend.metrics import Kinematics
 from motion_backend.motion import Action, ContactGoal, Motion, Skill
 from motion_backend.obstacles import Obstacles
 from motion_backend.skeleton import build_skeleton
+from scene_graphs.homes import home_from_layouts
+from scene_graphs.layouts import Layout, Opening
 
 SKELETON = build_skeleton()
 NOTHING = Obstacles(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), (), np.zeros(0, dtype=bool))
@@ -174,3 +176,19 @@ def test_depth_inside_a_turned_box_is_the_distance_to_its_nearest_face() -> None
     inside = turned.inside(center + np.outer([0.0, 0.2, 0.35], across), 0)
     np.testing.assert_allclose(inside, [0.25, 0.05, -0.10], atol=1e-9)
     assert np.isneginf(NOTHING.depth(np.zeros((2, 3)))).all()
+
+
+def test_walls_are_solid_and_doorways_are_not() -> None:
+    layout = Layout(
+        "r",
+        "bedroom",
+        ((0.0, 0.0), (0.0, 4.0), (5.0, 4.0), (5.0, 0.0)),
+        doors=(Opening(((5.0, 1.0), (5.0, 1.9))),),
+    )
+    walls = Obstacles.of_home(home_from_layouts([layout], 0))
+    assert set(walls.owners) == {"wall"}
+    through_wall, through_door, inside = np.array([[5.05, 1.0, 3.0], [5.05, 1.0, 1.45], [4.9, 1.0, 3.0]])
+    depth = walls.depth(np.array([through_wall, through_door, inside]))
+    assert depth[0] == pytest.approx(0.05, abs=1e-6)
+    assert depth[1] < -0.3, depth
+    assert depth[2] == pytest.approx(-0.1, abs=1e-6)
