@@ -271,7 +271,7 @@ def touch(start: Pose, laid: Laid, style: tuple[Bearing, float], skeleton: Skele
     pace = 1 / bearing.tempo
     bent = _reaching(start, laid, index, skeleton, depth)
     reached = _hand_at(start, bent, laid, 0.0, skeleton)
-    over = _hand_at(start, bent, laid, 0.11, skeleton)
+    over = _hand_at(start, bent, laid, 0.12, skeleton)
     away = replace(start, reach=over.reach, palms=over.palms)
     lead = replace(away, head=0.7 * reached.head + 0.3 * start.head)
     go = interpolate([0.0, 0.3 * pace, 0.85 * pace, 1.2 * pace], [away, lead, over, reached], FPS)
@@ -289,7 +289,10 @@ def _hand_at(start: Pose, bent: Pose, laid: Laid, off: float, skeleton: Skeleton
     index, side = (0, 1.0) if laid.hand == "left" else (1, -1.0)
     one = np.eye(2)[index]
     reach, palms, elbows = start.reach.copy(), start.palms.copy(), start.elbows.copy()
-    reach[index], palms[index] = laid.wrist + off * laid.normal, laid.palm
+    yaw = float(yaw_of(start.hips))
+    # Onto a top the hand comes over its edge from the body's side.
+    back = off * laid.normal[1] * np.array([np.sin(yaw), 0.0, np.cos(yaw)])
+    reach[index], palms[index] = laid.wrist + off * laid.normal - 1.2 * back, laid.palm
     # A raised hand hangs its elbow below, a lowered one keeps it behind; over the edge of a top it is lifted aside.
     high = float(np.clip((laid.wrist[1] / skeleton.scale - 1.2) / 0.25, 0.0, 1.0))
     elbows[index] = np.array([0.45 * side, -0.25 - 0.75 * high, -1.0 + 0.75 * high])

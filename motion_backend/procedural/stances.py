@@ -24,6 +24,8 @@ HAND_REST = 0.06
 SHIN_REACH = 0.42
 """Seated pelvis to ankle on the floor with upright shins, at the reference height."""
 FOOT_SPLAY = 0.10
+TAILOR_HEIGHT = 0.30
+"""Below this pelvis height crossed legs are folded on the floor (metres at 1.70 m)."""
 UP = np.array([0.0, 1.0, 0.0])
 
 
@@ -143,13 +145,16 @@ def _seated_legs(
             wide, up = (-0.035 if side > 0 else 0.005) * scale, up + (0.10 if side > 0 else 0.0) * scale
         if style.legs == "open":
             wide, outward = 0.21 * scale, 0.45
-        if style.legs == "crossed" and side < 0:
+        tailor = style.legs == "crossed" and seat.pelvis[1] < TAILOR_HEIGHT * scale
+        if tailor:
+            wide, ahead, outward = -0.07 * scale, (0.27 if side > 0 else 0.34) * scale, 1.15
+        elif style.legs == "crossed" and side < 0:
             wide, ahead, up, pitch = -0.13 * scale, 0.56 * scale, seat.pelvis[1] - 0.21 * scale, 0.45
         if style.legs == "drawn":
             ahead = 0.30 * scale
-        ankles.append(seat.to_world((side * wide, up, min(ahead, max(reach[index], 0.34 * scale)))))
+        ankles.append(seat.to_world((side * wide, max(up, ankle), min(ahead, max(reach[index], 0.34 * scale)))))
         feet.append(upright(seat.yaw + side * FOOT_SPLAY, pitch))
-        raised = 0.55 if style.legs == "crossed" and side < 0 else 0.25
+        raised = 0.55 if style.legs == "crossed" and side < 0 and not tailor else 0.25
         knees.append(_ahead(seat.yaw + side * outward) + raised * UP)
     return np.stack(ankles), np.stack(feet), np.stack(knees)
 
