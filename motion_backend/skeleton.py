@@ -38,6 +38,8 @@ _OFFSETS = {
     "left_elbow": (0.292, 0.0, 0.0),
     "left_wrist": (0.248, 0.0, 0.0),
 }
+SEATED_REST, LYING_REST, HAND_REST = 0.09, 0.10, 0.06
+"""Rest offsets: pelvis above a seat, pelvis above a mattress, wrist off what its hand lies on (metres, any body)."""
 ANKLE_HEIGHT = 0.066
 """Ankle above the sole, at the reference height."""
 

@@ -15,10 +15,11 @@ from motion_backend.motion import FPS, Action, BodyState, Character, ContactGoal
 from motion_backend.obstacles import Obstacles
 from motion_backend.procedural.guarding import hands_clear
 from motion_backend.procedural.performing import SKILLS, Body, Scene
-from motion_backend.procedural.pose import Pose, concatenate, released, solve
-from motion_backend.procedural.stances import HAND_REST, LYING_REST, SEATED_REST, idle, standing
+from motion_backend.procedural.pose import Pose, concatenate
+from motion_backend.procedural.solving import released, solve
+from motion_backend.procedural.stances import idle, standing
 from motion_backend.procedural.styles import Bearing
-from motion_backend.skeleton import build_skeleton
+from motion_backend.skeleton import HAND_REST, LYING_REST, SEATED_REST, build_skeleton
 from scene_graphs.homes import Home
 from scene_graphs.navigation import NoPath, Walkable
 from scene_graphs.surfaces import Spot

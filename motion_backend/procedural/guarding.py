@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.obstacles import Obstacles
-from motion_backend.procedural.pose import SIDES, Pose, chest_frame, limb_of_arm, smooth
+from motion_backend.procedural.pose import Pose, smooth
+from motion_backend.procedural.solving import SIDES, chest_frame, limb_of_arm
 from motion_backend.skeleton import INDEX, Skeleton
 
 Array = NDArray[np.float64]

@@ -1,27 +1,25 @@
-"""Sitting down, standing up, lying down, getting up and touching, as key poses with planted feet between them."""
+"""Sitting down, standing up, lying down and getting up, as key poses with planted feet between them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
-from motion_backend.procedural.gait import home_ankle, yaw_of
-from motion_backend.procedural.pose import Pose, chest_frame, concatenate, interpolate, released, settle_from, smooth
+from motion_backend.motion import FPS
+from motion_backend.procedural.footsteps import home_ankle, yaw_of
+from motion_backend.procedural.lying import Bed, lying
+from motion_backend.procedural.pose import Pose, concatenate, interpolate, smooth
 from motion_backend.procedural.stances import (
     FOOT_SPLAY,
     SHIN_REACH,
     UP,
-    Bed,
     Seat,
     bend,
     hands_on_thighs,
-    lying,
     seated,
-    shoulders,
     standing,
     upright,
 )
@@ -29,10 +27,6 @@ from motion_backend.procedural.styles import ARMS, Bearing, Lying, Seated
 from motion_backend.skeleton import Skeleton
 
 Array = NDArray[np.float64]
-Depth = Callable[[Array], Array]
-FPS = 30
-HEAD_ROOM = 0.13
-"""Distance of the middle of the head to furniture that a reaching body keeps (metres)."""
 
 
 def sit_down(start: Pose, seat: Seat, style: Seated, skeleton: Skeleton, reach: tuple[float, float]) -> Pose:
@@ -73,10 +67,10 @@ def _lower(start: Pose, seat: Seat, bearing: Bearing, skeleton: Skeleton) -> Pos
     contact = replace(low, pelvis=seat.pelvis, hips=upright(seat.yaw, 0.45 * forward), spine=bend(0.55 * forward))
     seconds = 1.35 * pace * (0.7 + 0.3 * depth)
     down = interpolate([0.0, 0.42 * seconds, 0.8 * seconds, seconds], [start, hinge, low, contact], FPS)
-    return replace(down, knees=_knees_over_feet(down))
+    return replace(down, knees=knees_over_feet(down))
 
 
-def _knees_over_feet(pose: Pose) -> Array:
+def knees_over_feet(pose: Pose) -> Array:
     """Knees point where their feet point, a little up, so that deep bends stay in plane. (T, 2, 3)."""
     forward = rotations.rotate(rotations.yaw_to_quat(yaw_of(pose.feet)), np.array([0.0, 0.0, 1.0]))
     return np.asarray(forward + 0.25 * UP)
@@ -145,7 +139,7 @@ def stand_up(start: Pose, seat: Seat, where: tuple[float, float], bearing: Beari
     seconds = 1.25 * pace * (0.7 + 0.3 * depth)
     end = replace(end, reach=ready.reach, palms=ready.palms)
     up = interpolate([0.0, 0.34 * seconds, 0.72 * seconds, seconds], [ready, lift, straighten, end], FPS)
-    return concatenate([gather, replace(up, knees=_knees_over_feet(up))])
+    return concatenate([gather, replace(up, knees=knees_over_feet(up))])
 
 
 def edge_seat(bed: Bed, standing_point: tuple[float, float], outward: float, edge: float, scale: float) -> Seat:
@@ -246,94 +240,3 @@ def rise_to_edge(start: Pose, seat: Seat, bed: Bed, bearing: Bearing, skeleton: 
     over = _legs_over(middle, start, bed, skeleton)
     times = [0.0, 0.95 * pace, 1.55 * pace, 2.35 * pace]
     return interpolate(times, [start, over, middle, sat], FPS)
-
-
-@dataclass(frozen=True)
-class Laid:
-    """Where a hand is to lie."""
-
-    wrist: Array
-    """(3,) world."""
-    palm: Array
-    """(4,) hand to world."""
-    normal: Array
-    """(3,) out of the surface."""
-    hand: str
-
-
-def touch(start: Pose, laid: Laid, style: tuple[Bearing, float], skeleton: Skeleton, depth: Depth) -> Pose:
-    """Bring a hand from outside onto a surface, keep it there, and come back to standing.
-
-    `style` is the bearing and the seconds to hold; `depth` says how deep points (N, 3) are in furniture.
-    """
-    bearing, hold = style
-    index = 0 if laid.hand == "left" else 1
-    pace = 1 / bearing.tempo
-    bent = _reaching(start, laid, index, skeleton, depth)
-    reached = _hand_at(start, bent, laid, 0.0, skeleton)
-    over = _hand_at(start, bent, laid, 0.12, skeleton)
-    away = replace(start, reach=over.reach, palms=over.palms)
-    lead = replace(away, head=0.7 * reached.head + 0.3 * start.head)
-    go = interpolate([0.0, 0.3 * pace, 0.85 * pace, 1.2 * pace], [away, lead, over, reached], FPS)
-    back = interpolate([0.0, 0.3 * pace, 1.05 * pace], [reached, over, away], FPS)
-    frames = max(round(hold * FPS), 1)
-    held = reached.repeat(frames)
-    breath = 0.012 * np.sin(2 * np.pi * 0.4 * np.arange(frames) / FPS)
-    held = replace(held, spine=held.spine + np.stack([breath, 0 * breath, 0 * breath], axis=1))
-    whole = concatenate([go, held, back])
-    return settle_from(start, replace(whole, knees=_knees_over_feet(whole)), FPS, seconds=0.3)
-
-
-def _hand_at(start: Pose, bent: Pose, laid: Laid, off: float, skeleton: Skeleton) -> Pose:
-    """A bent posture with the hand on the surface, or `off` metres out from it."""
-    index, side = (0, 1.0) if laid.hand == "left" else (1, -1.0)
-    one = np.eye(2)[index]
-    reach, palms, elbows = start.reach.copy(), start.palms.copy(), start.elbows.copy()
-    yaw = float(yaw_of(start.hips))
-    # Onto a top the hand comes over its edge from the body's side.
-    back = off * laid.normal[1] * np.array([np.sin(yaw), 0.0, np.cos(yaw)])
-    reach[index], palms[index] = laid.wrist + off * laid.normal - 1.2 * back, laid.palm
-    # A raised hand hangs its elbow below, a lowered one keeps it behind; over the edge of a top it is lifted aside.
-    high = float(np.clip((laid.wrist[1] / skeleton.scale - 1.2) / 0.25, 0.0, 1.0))
-    elbows[index] = np.array([0.45 * side, -0.25 - 0.75 * high, -1.0 + 0.75 * high])
-    if laid.normal[1] > 0.7 and high > 0:
-        elbows[index] = np.array([1.0 * side, 0.25, -0.3])
-    pressing = one * (1.0 if off == 0.0 else 0.6)
-    posed = replace(bent, reach=reach, reaching=one, palms=palms, pressing=pressing, elbows=elbows)
-    # The same place held from the chest, so that the arm swings there round its shoulder.
-    return replace(posed, arms=released(posed, skeleton).arms)
-
-
-def _reaching(start: Pose, laid: Laid, index: int, skeleton: Skeleton, depth: Depth) -> Pose:
-    """The least bent posture from which the hand gets to the goal: a search over lean and crouch."""
-    goal = laid.wrist
-    yaw = float(yaw_of(start.hips))
-    lean, crouch = (grid.ravel() for grid in np.meshgrid(np.radians(np.arange(0, 76, 5)), np.arange(0, 0.50, 0.05)))
-    lean, crouch = lean[:, None], crouch[:, None] * skeleton.scale
-    ahead = np.array([np.sin(yaw), 0.0, np.cos(yaw)])
-    tries = start.repeat(len(lean))
-    turn = 0.22 if index == 1 else -0.22
-    back = 0.06 * np.sin(lean) + 0.25 * crouch
-    tries = replace(
-        tries,
-        pelvis=start.pelvis - crouch * UP - back * ahead,
-        hips=np.stack([upright(yaw, 0.45 * float(a[0])) for a in lean]),
-        spine=np.concatenate([0.55 * lean + 0.02, turn * np.minimum(lean / 0.3, 1.0), 0 * lean], axis=1),
-    )
-    gap = np.linalg.norm(goal - shoulders(tries, skeleton)[:, index], axis=1)
-    arm = 0.54 * skeleton.scale
-    miss = np.maximum(gap - 0.955 * arm, 0.0) + np.maximum(0.45 * arm - gap, 0.0)
-    # The head stays clear of what is touched: before a front one bends the knees instead.
-    chest, place = chest_frame(tries, skeleton)
-    head = place + rotations.rotate(chest, np.array([0.0, 0.38, 0.05]) * skeleton.scale)
-    miss = miss + np.maximum(depth(head) + HEAD_ROOM, 0.0)
-    # One bends over to a table and squats to a drawer.
-    squat = 2.6 + 4.5 * float(np.clip((goal[1] / skeleton.scale - 0.6) / 0.2, 0.0, 1.0))
-    effort = 60.0 * miss + 0.6 * lean[:, 0] + 1.1 * lean[:, 0] ** 2 + squat * crouch[:, 0]
-    best = tries.at(int(np.argmin(effort)))
-    eyes = shoulders(best.repeat(1), skeleton)[0].mean(axis=0) + 0.2 * UP
-    look = goal - eyes
-    down = np.arctan2(-look[1], np.hypot(look[0], look[2]))
-    sideways = float(rotations.wrap(np.arctan2(look[0], look[2]) - yaw))
-    nod = float(np.clip(down - 0.7 * lean[int(np.argmin(effort)), 0], -0.5, 0.6))
-    return replace(best, head=bend(nod, turn=float(np.clip(sideways, -0.6, 0.6))))

@@ -14,14 +14,17 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.motion import FPS, Action, Posture, Skill
 from motion_backend.obstacles import Obstacles
-from motion_backend.procedural.gait import walk, yaw_of
-from motion_backend.procedural.interactions import Laid, edge_seat, lie_down, rise_to_edge, sit_down, stand_up, touch
+from motion_backend.procedural.footsteps import yaw_of
+from motion_backend.procedural.gait import walk
+from motion_backend.procedural.interactions import edge_seat, lie_down, rise_to_edge, sit_down, stand_up
+from motion_backend.procedural.lying import Bed
 from motion_backend.procedural.moods import bearing_of, lie_style, sit_style, walk_style
 from motion_backend.procedural.pose import Pose, settle_from
+from motion_backend.procedural.reaching import Laid, touch
 from motion_backend.procedural.route import resample
-from motion_backend.procedural.stances import HAND_REST, SHIN_REACH, Bed, Seat, idle
+from motion_backend.procedural.stances import SHIN_REACH, Seat, idle
 from motion_backend.procedural.styles import Bearing, Walk
-from motion_backend.skeleton import Skeleton
+from motion_backend.skeleton import HAND_REST, Skeleton
 from scene_graphs.homes import Home
 from scene_graphs.navigation import NoPath, Walkable
 from scene_graphs.surfaces import Spot

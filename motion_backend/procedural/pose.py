@@ -1,4 +1,4 @@
-"""The handles a body is posed by, and solving them into joint rotations.
+"""The handles a body is posed by, and moving them from key pose to key pose.
 
 A `Pose` holds what an animator would hold: pelvis, spine, head, feet on the ground, wrists and where elbows point.
 Every field may carry leading time dimensions; a motion is a Pose whose arrays begin with T.
@@ -13,15 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
-from motion_backend.kinematics import Limb, arm_rotations, leg_rotations, two_bone
-from motion_backend.skeleton import INDEX, Skeleton
 
 Array = NDArray[np.float64]
-SIDES = (("left", 1), ("right", -1))
-SPINE = ("spine1", "spine2", "spine3")
+
+
 ROTATIONS = ("hips", "feet", "palms")
-WRIST_BEND, FOREARM_ROLL = 1.45, 1.5
-"""How far a hand can bend against the forearm and roll about it (radians)."""
 
 
 @dataclass(frozen=True)
@@ -219,115 +215,3 @@ def settle_from(start: Pose, motion: Pose, fps: int, seconds: float = 0.45) -> P
         turn = rotations.rotvec_to_quat(fade.reshape(-1, *([1] * (values.ndim - 1))) * offset)
         changed[name] = rotations.compose(turn, values)
     return replace(motion, **changed)
-
-
-def solve(pose: Pose, skeleton: Skeleton) -> tuple[Array, Array]:
-    """Handles of T frames to pelvis positions (T, 3) and local rotations (T, 22, 4)."""
-    frames = len(pose)
-    local = np.tile(rotations.IDENTITY, (frames, len(skeleton.names), 1))
-    local[:, INDEX["pelvis"]] = pose.hips
-    third = rotations.rotvec_to_quat(pose.spine / 3)
-    for name in SPINE:
-        local[:, INDEX[name]] = third
-    half = rotations.rotvec_to_quat(pose.head / 2)
-    local[:, INDEX["neck"]] = local[:, INDEX["head"]] = half
-    chest, chest_position = chest_frame(pose, skeleton)
-    for index, (name, side) in enumerate(SIDES):
-        _solve_leg(local, pose, skeleton, index, name)
-        _solve_arm(local, pose, skeleton, (index, name, side), (chest, chest_position))
-    return pose.pelvis.copy(), rotations.continuous(local)
-
-
-def chest_frame(pose: Pose, skeleton: Skeleton) -> tuple[Array, Array]:
-    """World rotation (T, 4) and position (T, 3) of spine3, the frame that arms hang in."""
-    third = rotations.rotvec_to_quat(pose.spine / 3)
-    rotation, position = pose.hips, pose.pelvis
-    for name in SPINE:
-        position = position + rotations.rotate(rotation, skeleton.offsets[INDEX[name]])
-        rotation = rotations.compose(rotation, third)
-    return rotation, position
-
-
-def _solve_leg(local: Array, pose: Pose, skeleton: Skeleton, index: int, name: str) -> None:
-    offsets = skeleton.offsets
-    hip = pose.pelvis + rotations.rotate(pose.hips, offsets[INDEX[f"{name}_hip"]])
-    lengths = (-float(offsets[INDEX[f"{name}_knee"], 1]), -float(offsets[INDEX[f"{name}_ankle"], 1]))
-    leg = two_bone(hip, pose.ankles[:, index], pose.knees[:, index], lengths)
-    thigh, shin = leg_rotations(leg)
-    local[:, INDEX[f"{name}_hip"]] = rotations.compose(rotations.inverse(pose.hips), thigh)
-    local[:, INDEX[f"{name}_knee"]] = rotations.compose(rotations.inverse(thigh), shin)
-    local[:, INDEX[f"{name}_ankle"]] = rotations.compose(rotations.inverse(shin), pose.feet[:, index])
-    bend = np.zeros((len(pose), 3))
-    bend[:, 0] = -pose.toes[:, index]
-    local[:, INDEX[f"{name}_foot"]] = rotations.rotvec_to_quat(bend)
-
-
-def _solve_arm(
-    local: Array, pose: Pose, skeleton: Skeleton, which: tuple[int, str, int], frame: tuple[Array, Array]
-) -> None:
-    index, name, side = which
-    chest, _ = frame
-    arm, collar, _ = limb_of_arm(pose, skeleton, which, frame)
-    upper, lower = arm_rotations(arm, side)
-    local[:, INDEX[f"{name}_collar"]] = collar
-    clavicle = rotations.compose(chest, collar)
-    local[:, INDEX[f"{name}_shoulder"]] = rotations.compose(rotations.inverse(clavicle), upper)
-    local[:, INDEX[f"{name}_elbow"]] = rotations.compose(rotations.inverse(upper), lower)
-    bend = _within_reach(rotations.compose(rotations.inverse(lower), pose.palms[:, index]))
-    press = rotations.quat_to_rotvec(bend) * pose.pressing[:, index, None]
-    local[:, INDEX[f"{name}_wrist"]] = rotations.rotvec_to_quat(press)
-
-
-def _within_reach(wrist: Array) -> Array:
-    """A wrist's rotation limited to what wrist and forearm can do: bend first, then roll about the hand. (T, 4)."""
-    roll = 2 * np.arctan2(wrist[:, 0], wrist[:, 3])
-    roll = rotations.wrap(roll)
-    twist = np.zeros((len(wrist), 3))
-    twist[:, 0] = roll
-    swing = rotations.quat_to_rotvec(rotations.compose(wrist, rotations.inverse(rotations.rotvec_to_quat(twist))))
-    angle = np.linalg.norm(swing, axis=-1, keepdims=True)
-    swing = swing * np.minimum(1.0, WRIST_BEND / np.maximum(angle, 1e-9))
-    twist[:, 0] = np.clip(roll, -FOREARM_ROLL, FOREARM_ROLL)
-    return rotations.compose(rotations.rotvec_to_quat(swing), rotations.rotvec_to_quat(twist))
-
-
-def released(pose: Pose, skeleton: Skeleton) -> Pose:
-    """The same single pose with its wrists held from the chest alone, no longer tied to places in the world."""
-    one = pose.repeat(1)
-    frame = chest_frame(one, skeleton)
-    arms = pose.arms.copy()
-    for index, (name, side) in enumerate(SIDES):
-        limb, _, shoulder = limb_of_arm(one, skeleton, (index, name, side), frame)
-        lengths = [abs(float(skeleton.offsets[INDEX[f"{name}_{joint}"], 0])) for joint in ("elbow", "wrist")]
-        wrist = shoulder[0] + lengths[0] * limb.upper[0] + lengths[1] * limb.lower[0]
-        rest = skeleton.offsets[INDEX[f"{name}_collar"]] + skeleton.offsets[INDEX[f"{name}_shoulder"]]
-        local = rotations.rotate(rotations.inverse(frame[0][0]), wrist - frame[1][0]) - rest
-        arms[index] = local / sum(lengths)
-    return replace(pose, arms=arms, reaching=np.zeros(2))
-
-
-def limb_of_arm(
-    pose: Pose, skeleton: Skeleton, which: tuple[int, str, int], frame: tuple[Array, Array]
-) -> tuple[Limb, Array, Array]:
-    """The solved arm, its collar's local rotation and where its shoulder joint is."""
-    index, name, side = which
-    chest, chest_position = frame
-    offsets = skeleton.offsets
-    lengths = (abs(float(offsets[INDEX[f"{name}_elbow"], 0])), abs(float(offsets[INDEX[f"{name}_wrist"], 0])))
-    span = sum(lengths)
-    rest = chest_position + rotations.rotate(
-        chest, offsets[INDEX[f"{name}_collar"]] + offsets[INDEX[f"{name}_shoulder"]]
-    )
-    weight = pose.reaching[:, index, None]
-    wanted = rest + rotations.rotate(chest, pose.arms[:, index] * span)
-    target = wanted + weight * (pose.reach[:, index] - wanted)
-    # Raising the arm lifts the collar bone with it, as a shoulder does.
-    up = rotations.rotate(rotations.inverse(chest), target - rest)[:, 1] / span
-    lift = np.zeros((len(pose), 3))
-    lift[:, 2] = side * 0.45 * np.clip(up, 0.0, 1.0)
-    collar = rotations.rotvec_to_quat(lift)
-    clavicle = rotations.compose(chest, collar)
-    joint = chest_position + rotations.rotate(chest, offsets[INDEX[f"{name}_collar"]])
-    shoulder = joint + rotations.rotate(clavicle, offsets[INDEX[f"{name}_shoulder"]])
-    pole = rotations.rotate(chest, pose.elbows[:, index])
-    return two_bone(shoulder, target, pole, lengths), collar, shoulder
