@@ -1,0 +1,111 @@
+"""Keyframes become actions that can be done: spots that can be walked to, hands, heights, and ends for every walk."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from motion_backend.motion import Skill
+from planner_service.scripts.acting import Place, UnreachableError, act, height_of
+from planner_service.scripts.keyframe import Keyframe
+from scene_graphs.homes import Home, home_from_layouts
+from scene_graphs.layouts import Layout, Placed
+from scene_graphs.navigation import Walkable
+
+ROOM = Layout(
+    "room",
+    "living_room",
+    ((0.0, 0.0), (0.0, 5.0), (6.0, 5.0), (6.0, 0.0)),
+    objects=(
+        Placed("sofa", "multi_seat_sofa", (5.4, 0.0, 2.5), (2.3, 0.85, 0.95), -np.pi / 2),
+        Placed("shelf", "bookshelf", (3.2, 0.0, 0.2), (0.9, 1.9, 0.35), 0.0),
+        Placed("stool", "stool", (1.0, 0.0, 4.0), (0.45, 0.45, 0.4), 0.0),
+    ),
+)
+HOME = home_from_layouts([ROOM], 0)
+WALKABLE = Walkable(HOME)
+
+
+def keyframe(skill: str, caption: str = "x", furniture: str = "floor") -> Keyframe:
+    return Keyframe(skill=Skill(skill), caption=caption, furniture=furniture, emotion="neutral")
+
+
+def grounded(*rows: tuple[str, str, str | None], home: Home = HOME, seed: int = 0):  # type: ignore[no-untyped-def]
+    keyframes = [keyframe(skill, caption, object_id or "floor") for skill, caption, object_id in rows]
+    places = [Place(0, f"0/{object_id}" if object_id else None) for _, _, object_id in rows]
+    return act(keyframes, places, home, seed)
+
+
+def test_a_walk_ends_where_the_next_contact_with_the_same_thing_begins() -> None:
+    walk, sit = grounded(("loco", "walk", "sofa"), ("sitdown", "sit", "sofa"))
+    assert sit.spot is not None
+    assert (walk.goal, walk.facing) == (sit.spot.standing, sit.spot.approach)
+
+
+def test_a_walk_to_a_thing_nobody_uses_ends_beside_it() -> None:
+    (walk,) = grounded(("loco", "walk", "shelf"))
+    shelf = HOME.object("0/shelf")
+    assert walk.goal is not None
+    assert np.hypot(walk.goal[0] - shelf.position[0], walk.goal[1] - shelf.position[2]) < 1.2
+
+
+def test_wandering_goes_some_way_and_stays_on_free_floor() -> None:
+    first, second = grounded(("loco", "walk", None), ("loco", "walk", None))
+    assert first.goal is not None
+    assert second.goal is not None
+    assert WALKABLE.is_free(first.goal)
+    assert WALKABLE.is_free(second.goal)
+    assert np.hypot(first.goal[0] - second.goal[0], first.goal[1] - second.goal[1]) > 1.0
+
+
+@pytest.mark.parametrize("skill", ["sitdown", "liedown"])
+def test_the_floor_can_be_sat_and_lain_on_where_there_is_room(skill: str) -> None:
+    (action,) = grounded((skill, "x", None))
+    assert action.spot is not None
+    assert action.spot.point[1] == 0
+    assert WALKABLE.clearance((action.spot.point[0], action.spot.point[2])) > 0.3
+
+
+def test_nothing_can_be_touched_in_the_air() -> None:
+    with pytest.raises(UnreachableError, match="keyframe 0"):
+        grounded(("touch", "touch medium height", None))
+
+
+def test_a_bed_walled_in_by_cupboards_is_refused_by_name() -> None:
+    bed = Placed("bed", "single_bed", (0.6, 0.0, 1.0), (1.1, 0.5, 2.0), 0.0)
+    beside = Placed("beside", "wardrobe", (1.5, 0.0, 1.3), (2.6, 2.0, 0.6), np.pi / 2)
+    below = Placed("below", "wardrobe", (0.6, 0.0, 2.35), (1.2, 2.0, 0.6), 0.0)
+    home = home_from_layouts([Layout("full", "bedroom", ROOM.floor_polygon, objects=(bed, beside, below))], 0)
+    with pytest.raises(UnreachableError, match="0/bed"):
+        grounded(("liedown", "lie", "bed"), home=home)
+
+
+@pytest.mark.parametrize(
+    ("caption", "height"),
+    [
+        ("An act of reaching high", "high"),
+        ("touch medium height with the left hand", "medium"),
+        ("Low touch from a prone position", "low"),
+        ("touch", "medium"),
+    ],
+)
+def test_the_caption_says_how_high_to_touch(caption: str, height: str) -> None:
+    assert height_of(caption) == height
+    (action,) = grounded(("touch", caption, "shelf"))
+    assert action.spot is not None
+    assert action.spot.height == height
+
+
+def test_the_caption_names_the_hand() -> None:
+    left, right = grounded(("touch", "touch with the left hand", "shelf"), ("touch", "touch medium height", "shelf"))
+    assert (left.hand, right.hand) == ("left", "right")
+
+
+def test_rising_knows_what_was_rested_on() -> None:
+    sit, rise = grounded(("sitdown", "sit", "stool"), ("standup", "stand up", "stool"))
+    assert rise.spot == sit.spot
+
+
+def test_the_same_seed_grounds_alike() -> None:
+    rows = (("loco", "walk", None), ("touch", "touch", "shelf"), ("liedown", "lie", None))
+    assert grounded(*rows, seed=5) == grounded(*rows, seed=5)

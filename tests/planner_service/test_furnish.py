@@ -1,0 +1,95 @@
+"""A script gets a home that has what it needs, and says what stands for what."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import pytest
+
+from motion_backend.motion import Skill
+from planner_service.furnish import FurnishError, furnish
+from planner_service.scripts.keyframe import Event, LongScript, PlannedKeyframe
+from scene_graphs.layouts import Layout, Placed
+from scene_graphs.library import built_in_layouts
+from scene_graphs.retrieval import LayoutIndex
+
+
+@lru_cache(maxsize=1)
+def index() -> LayoutIndex:
+    return LayoutIndex(built_in_layouts())
+
+
+def script(*rows: tuple[str, str, str]) -> LongScript:
+    """Keyframes as (skill, furniture, room), one short script a room."""
+    rooms = list(dict.fromkeys(room for _, _, room in rows))
+    keyframes = tuple(
+        PlannedKeyframe(skill=Skill(skill), caption="x", furniture=piece, room=room, short_script=rooms.index(room))
+        for skill, piece, room in rows
+    )
+    return LongScript(theme="t", events=(Event(text="t"),), short_scripts=(), keyframes=keyframes)
+
+
+DAY = script(
+    ("loco", "wardrobe", "bedroom"),
+    ("touch", "wardrobe", "bedroom"),
+    ("loco", "bed", "bedroom"),
+    ("sitdown", "bed", "bedroom"),
+    ("loco", "floor", "living_room"),
+    ("liedown", "sofa", "living_room"),
+)
+
+
+def test_every_keyframe_gets_an_object_of_its_room_that_affords_it() -> None:
+    found = furnish(DAY, index())
+    categories = [found.home.object(p.object_id).category if p.object_id else None for p in found.places]
+    assert categories[1] == "wardrobe"
+    assert "bed" in str(categories[3])
+    assert "sofa" in str(categories[5])
+    assert categories[4] is None
+    assert [match.room_type for match in found.matches] == ["bedroom", "living_room"]
+    assert all(place.object_id is None or place.object_id.startswith(f"{place.room}/") for place in found.places)
+
+
+def test_the_two_wardrobes_of_a_script_are_two_objects() -> None:
+    two = script(("touch", "wardrobe", "bedroom"), ("touch", "wardrobe 2", "bedroom"))
+    found = furnish(two, index())
+    assert len({place.object_id for place in found.places}) == 2
+
+
+def test_a_substitution_is_said() -> None:
+    room = Layout(
+        "mine",
+        "bedroom",
+        ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)),
+        objects=(Placed("a", "stool", (2.0, 0.0, 2.0), (0.45, 0.45, 0.45)),),
+    )
+    found = furnish(script(("sitdown", "dining chair", "bedroom")), index(), layouts=[room])
+    assert found.places[0].object_id == "0/a"
+    assert found.matches[0].substitutions == (("dining chair", "stool", "class"),)
+    assert "dining chair → stool" in found.explain()[0]
+
+
+def test_what_nothing_can_stand_for_is_an_error_that_names_it() -> None:
+    empty = Layout("bare", "bedroom", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)))
+    with pytest.raises(FurnishError, match="no bed to lie"):
+        furnish(script(("liedown", "bed", "bedroom")), index(), layouts=[empty])
+
+
+@pytest.mark.parametrize("rooms", [["cellar"], ["bedroom"] * 5])
+def test_rooms_that_are_not_there_are_refused(rooms: list[str]) -> None:
+    with pytest.raises(FurnishError, match="rooms"):
+        furnish(DAY, index(), rooms=rooms)
+
+
+def test_the_same_seed_furnishes_alike_and_seeds_vary() -> None:
+    first, again = furnish(DAY, index(), seed=3), furnish(DAY, index(), seed=3)
+    assert first.home == again.home
+    assert first.places == again.places
+    homes = {tuple(m.layout_id for m in furnish(DAY, index(), seed=seed).matches) for seed in range(12)}
+    assert len(homes) > 1
+
+
+def test_a_script_on_the_floor_alone_still_gets_a_room() -> None:
+    found = furnish(script(("loco", "floor", "study")), index())
+    assert len(found.home.rooms) == 1
+    assert found.places[0].object_id is None
