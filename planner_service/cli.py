@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -32,11 +33,15 @@ def sims(
 
 def main() -> None:
     """Run the command line; what a user did wrong ends as one line on standard error and exit code 2."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # A path need not be UTF-8, nor a terminal show every letter: neither may cost a finished story.
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         app(standalone_mode=True)
     except USER_ERRORS as error:
         print(f"sims: {explain(error)}", file=sys.stderr)  # noqa: T201
         sys.exit(2)
-    except KeyboardInterrupt:
-        print("sims: stopped; nothing was written", file=sys.stderr)  # noqa: T201
-        sys.exit(130)
+
+
+if __name__ == "__main__":
+    main()

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-import shutil
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +13,12 @@ from motion_backend.formats.bvh import write_bvh
 from motion_backend.formats.glb import film_glb
 from motion_backend.formats.npz import write_npz
 from planner_service.scripts.acting import action_to_dict
-from planner_service.stories import Story
+from planner_service.stories import Planned, Story
 from planner_service.storyboard import storyboard
 from scene_graphs.homes import home_to_dict
+
+Writer = Callable[[Path], object]
+FILES = ("story.md", "story.json", "report.json", "motion.npz", "motion.bvh", "film.glb", "storyboard.png")
 
 
 class OutputError(OSError):
@@ -26,7 +29,7 @@ def write_story(story: Story, folder: Path) -> list[Path]:
     """All files of a story in `folder`: story.md, story.json, report.json, motion.npz, motion.bvh, film.glb,
     storyboard.png. A file of that name from an earlier story is replaced; OutputError leaves everything as it was.
     """
-    writers: dict[str, Callable[[Path], object]] = {
+    writers: dict[str, Writer] = {
         "story.md": lambda path: path.write_text(story_to_markdown(story), encoding="utf-8"),
         "story.json": lambda path: _write_json(path, story_to_dict(story)),
         "report.json": lambda path: _write_json(path, report_to_dict(story)),
@@ -35,21 +38,37 @@ def write_story(story: Story, folder: Path) -> list[Path]:
         "film.glb": lambda path: path.write_bytes(film_glb(story.planned.home, story.motion)),
         "storyboard.png": lambda path: _write_storyboard(story, path),
     }
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        aside = Path(tempfile.mkdtemp(prefix=".writing-", dir=folder))
-    except OSError as error:
-        raise OutputError(f"--out: {folder} cannot be written: {error.strerror or error}") from error
-    try:
+    return write_files(folder, writers)
+
+
+def write_files(folder: Path, writers: Mapping[str, Writer]) -> list[Path]:
+    """Write every file aside, then move all of them into place. OutputError leaves everything as it was."""
+    with _writing(folder) as aside:
         for name, write in writers.items():
             write(aside / name)
+        _refuse_folders(folder, writers)
         for name in writers:
             (aside / name).replace(folder / name)
-    except OSError as error:
-        raise OutputError(f"--out: {folder} cannot be written: {error.strerror or error}") from error
-    finally:
-        shutil.rmtree(aside, ignore_errors=True)
     return [folder / name for name in writers]
+
+
+@contextmanager
+def _writing(folder: Path) -> Iterator[Path]:
+    """An empty folder inside `folder`; all that had to be made for it is removed again when the block fails."""
+    made: list[Path] = []
+    try:
+        made = [path for path in (folder, *folder.parents) if not path.exists()]
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=".writing-", dir=folder, ignore_cleanup_errors=True) as aside:
+            yield Path(aside)
+    except BaseException as error:
+        for path in made:
+            with suppress(OSError):
+                path.rmdir()
+        if isinstance(error, OSError) and not isinstance(error, OutputError):
+            why = "a file is in the way" if isinstance(error, FileExistsError) else error.strerror or error
+            raise OutputError(f"--out: {folder} cannot be written: {why}; choose another place") from error
+        raise
 
 
 def _write_storyboard(story: Story, path: Path) -> Path:
@@ -57,18 +76,24 @@ def _write_storyboard(story: Story, path: Path) -> Path:
     return storyboard(planned.home, story.motion, planned.script.keyframes, path, planned.told.title, targets)
 
 
-def check_writable(folder: Path) -> None:
-    """Fail before the work, not after it. Raises OutputError."""
-    nearest = folder
-    while not nearest.exists():
-        nearest = nearest.parent
-    try:
-        if not nearest.is_dir():
-            raise NotADirectoryError(20, "is not a folder")
-        with tempfile.TemporaryDirectory(prefix=".writing-", dir=nearest):
-            pass
-    except OSError as error:
-        raise OutputError(f"--out: {folder} cannot be written: {error.strerror or error} ({nearest})") from error
+class _Tried(Exception):  # noqa: N818
+    """Ends a trial, so that nothing of it stays."""
+
+
+def check_writable(folder: Path, names: Iterable[str] = ()) -> None:
+    """Fail before the work, not after it, if files of these names cannot be put there. Raises OutputError."""
+    with suppress(_Tried), _writing(folder) as aside:
+        for name in names:
+            (aside / name).touch()
+        _refuse_folders(folder, names)
+        raise _Tried
+
+
+def _refuse_folders(folder: Path, names: Iterable[str]) -> None:
+    """A file cannot take the place of a folder; seen in time, no earlier file is replaced."""
+    for name in names:
+        if (folder / name).is_dir():
+            raise OutputError(f"--out: {folder / name} is a folder, a file would be written there; move it away")
 
 
 def _write_json(path: Path, value: dict[str, Any]) -> None:
@@ -98,8 +123,7 @@ def story_to_markdown(story: Story) -> str:
             "",
             f"Theme: {script.theme}",
             "",
-            f"Planner: {script.planner} · method: {script.method} · encoder: {script.encoder} · "
-            f"motion: {planned.request.backend} · seed: {planned.request.seed}",
+            _makers(planned),
             "",
             *[f"- {chosen.script.id} ({chosen.score:.2f}): {chosen.script.summary}" for chosen in script.short_scripts],
             *missed,
@@ -117,6 +141,14 @@ def story_to_markdown(story: Story) -> str:
             *rows,
             "",
         ]
+    )
+
+
+def _makers(planned: Planned) -> str:
+    script = planned.script
+    return (
+        f"Planner: {script.planner} · method: {script.method} · encoder: {script.encoder} · "
+        f"motion: {planned.request.backend} · seed: {planned.request.seed}"
     )
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from planner_service.scripts.acting import NEEDS, Place
 from planner_service.scripts.keyframe import LongScript, PlannedKeyframe
-from scene_graphs.distance import exact_distance
+from scene_graphs.distance import MOST_NODES, exact_distance
 from scene_graphs.furniture import ROOM_TYPES, Furniture, canonical, canonical_room, display_name
 from scene_graphs.graph import FurnitureGraph, graph_from_layout, graph_from_uses
 from scene_graphs.grounding import Grounding, ground_script
@@ -18,6 +18,7 @@ from scene_graphs.merging import merge
 from scene_graphs.retrieval import LayoutIndex, retrieve_rooms
 
 MOST_ROOMS = 4
+_DOING = {"sit": "sit on", "lie": "lie on", "touch": "touch"}
 
 
 class FurnishError(ValueError):
@@ -100,6 +101,10 @@ def furnish(
     wanted = _room_types(script, rooms)
     uses = {room: _script_graphs(script, room, wanted) for room in wanted}
     merged = {room: merge([graph for _, graph in graphs]).graph for room, graphs in uses.items()}
+    for room, graph in merged.items():
+        if len(graph) > MOST_NODES:
+            used = f"{len(graph)} pieces of furniture in the {room.replace('_', ' ')}"
+            raise FurnishError(f"theme: the story uses {used}, at most {MOST_NODES} can be; tell of fewer events")
     chosen = _given(merged, layouts) if layouts else _retrieved(merged, index, seed)
     unique = list(dict.fromkeys([layout for layout, _ in chosen.values()] + list(layouts)))
     home = home_from_layouts(unique, seed)
@@ -177,8 +182,15 @@ def _explained(room: str, graph: FurnitureGraph, layout: Layout) -> RoomMatch:
 
 def _matches(unique: Sequence[Layout], chosen: Chosen) -> tuple[RoomMatch, ...]:
     """One match a room of the home, in the home's order; a room nothing is played in matches trivially."""
-    found = {layout.id: match for layout, match in reversed(list(chosen.values()))}
-    return tuple(found.get(u.id, RoomMatch(u.room_type, u.id, 0, True, (), ())) for u in unique)
+    matches = []
+    for layout in unique:
+        played = [match for given, match in chosen.values() if given is layout]
+        first = played[0] if played else RoomMatch(layout.room_type, layout.id, 0, True, (), ())
+        # A room of the user's may stand for several types: what is missed or replaced in any of them is said.
+        substitutions = tuple(dict.fromkeys(s for match in played for s in match.substitutions))
+        missing = tuple(dict.fromkeys(name for match in played for name in match.missing))
+        matches.append(replace(first, substitutions=substitutions, missing=missing))
+    return tuple(matches)
 
 
 Grounded = dict[tuple[str, int | None], Grounding]
@@ -198,8 +210,9 @@ def _place(
         own = (g.objects[node] for (r, _), g in grounded.items() if r == room and node in g.objects)
         object_id = next(own, None)
     if object_id is None and keyframe.skill in NEEDS:
+        lacks = f"the {room.replace('_', ' ')} has no {display_name(word)} to {_DOING[NEEDS[keyframe.skill]]}"
         raise FurnishError(
-            f"keyframe {index}: the {room.replace('_', ' ')} has no {display_name(word)} to {NEEDS[keyframe.skill]}, "
-            f"nor anything that could stand for it; choose another room (--rooms, --layout) or theme"
+            f"keyframe {index}: {lacks}, nor anything that could stand for it; choose another room (--rooms, --layout) "
+            "or theme"
         )
     return Place(number[room] if object_id is None else int(object_id.split("/")[0]), object_id)

@@ -5,8 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from platformdirs import user_data_path
-from pydantic import Field
+from pydantic import Field, ValidationError
 from pydantic_settings import BaseSettings, SettingsConfigDict
+
+
+class SettingsError(ValueError):
+    """An environment variable or a line of `.env` that cannot be used."""
 
 
 class Settings(BaseSettings):
@@ -29,3 +33,14 @@ class Settings(BaseSettings):
     def cache_dir(self) -> Path:
         """Derived files that may be deleted at any time."""
         return self.data_dir / "cache"
+
+
+def read_settings() -> Settings:
+    """The settings of this process. SettingsError names the one that cannot be used."""
+    try:
+        return Settings()
+    except ValidationError as error:
+        faults = [f"SIMS_{'.'.join(map(str, fault['loc'])).upper()}: {fault['msg']}" for fault in error.errors()]
+        raise SettingsError("; ".join(faults)) from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise SettingsError(f".env cannot be read: {error}; it must be UTF-8 text") from error

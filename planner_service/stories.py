@@ -11,26 +11,37 @@ from typing import Any
 from motion_backend import metrics
 from motion_backend.motion import Action, BodyState, Character, Motion, MotionBackend, join
 from motion_backend.obstacles import Obstacles
-from planner_service.furnish import Furnished, furnish
+from planner_service.furnish import MOST_ROOMS, Furnished, furnish
 from planner_service.llm.protocol import LanguageModel
 from planner_service.scripts.acting import act
-from planner_service.scripts.composing import Request, compose
+from planner_service.scripts.composing import MOST, Request, compose
 from planner_service.scripts.keyframe import LongScript
 from planner_service.scripts.library import ScriptLibrary
 from planner_service.scripts.narrating import Told, narrate, narrate_with_model
+from scene_graphs.furniture import ROOM_TYPES, canonical_room
 from scene_graphs.homes import Home
-from scene_graphs.layouts import Layout, read_layouts
+from scene_graphs.layouts import Layout, LayoutError, read_layouts
 from scene_graphs.library import built_in_layouts
 from scene_graphs.retrieval import LayoutIndex
 
 Progress = Callable[[str, float], None]
 """Called with a stage's name and the share of it that is done, 0 to 1."""
 STAGES = ("plan", "furnish", "narrate", "act", "move", "judge")
+BACKENDS = ("procedural",)
+METHODS = ("matching", "direct")
+PRONOUNS = ("he", "she", "they")
+LONGEST_NAME = 40
+LEAST_HEIGHT, MOST_HEIGHT = 1.2, 2.2
+"""Metres."""
+
+
+class RequestError(ValueError):
+    """What is asked of a story cannot be had; the text names the field and what would be right."""
 
 
 @dataclass(frozen=True)
 class StoryRequest:
-    """What a user may ask for; empty means: choose for me."""
+    """What a user may ask for; empty means: choose for me. RequestError names the first field that is out of bounds."""
 
     theme: str
     rooms: tuple[str, ...] = ()
@@ -41,7 +52,39 @@ class StoryRequest:
     method: str = "matching"
     backend: str = "procedural"
     seed: int = 0
-    character: Character = Character()
+    character: Character = field(default_factory=Character)
+
+    def __post_init__(self) -> None:
+        for room in self.rooms:
+            _one_of("rooms", canonical_room(room), ROOM_TYPES, room)
+        _one_of("backend", self.backend, BACKENDS)
+        _one_of("method", self.method, METHODS)
+        if max(len(set(self.rooms)), len(self.layouts)) > MOST_ROOMS:
+            field, count = ("rooms", len(self.rooms)) if len(self.rooms) > MOST_ROOMS else ("layout", len(self.layouts))
+            raise RequestError(f"{field}: a home has one to {MOST_ROOMS} rooms, {count} were asked for; leave some out")
+        ids = [layout.id for layout in self.layouts]
+        for number, layout_id in enumerate(ids):
+            if layout_id in ids[:number]:
+                raise RequestError(f"layout: two rooms are called {layout_id!r}; give every room its own id")
+        if self.short_scripts is not None and not 1 <= self.short_scripts <= MOST:
+            raise RequestError(f"short_scripts: must be a number from 1 to {MOST}, got {self.short_scripts}")
+        if self.seed < 0:
+            raise RequestError(f"seed: must be a whole number, 0 or more, got {self.seed}")
+        _check_character(self.character)
+
+
+def _check_character(character: Character) -> None:
+    name = character.name.strip()
+    if not name or len(name) > LONGEST_NAME or not name.isprintable():
+        raise RequestError(f"name: must be 1 to {LONGEST_NAME} printable letters, got {name[:LONGEST_NAME]!r}")
+    _one_of("pronouns", character.pronouns.strip().lower().split("/")[0], PRONOUNS, character.pronouns)
+    if not LEAST_HEIGHT <= character.height <= MOST_HEIGHT:
+        raise RequestError(f"height: must be {LEAST_HEIGHT} to {MOST_HEIGHT} metres, got {character.height:g}")
+
+
+def _one_of(field: str, value: str, known: Sequence[str], shown: str | None = None) -> None:
+    if value not in known:
+        raise RequestError(f"{field}: {shown or value!r:.60} is none of {', '.join(known)}")
 
 
 @dataclass(frozen=True)
@@ -90,6 +133,10 @@ class Studio:
     def layouts(self) -> tuple[Layout, ...]:
         """Rooms, ours and the user's."""
         extra = tuple(read_layouts(self.layouts_file)) if self.layouts_file else ()
+        taken = {layout.id for layout in built_in_layouts()}
+        for layout in extra:
+            if layout.id in taken:
+                raise LayoutError(f"{self.layouts_file}: {layout.id!r} is the id of a built-in room; choose another id")
         return (*built_in_layouts(), *extra)
 
     @cached_property
@@ -97,13 +144,14 @@ class Studio:
         """The rooms, ready to be searched."""
         return LayoutIndex(self.layouts)
 
-    def plan(self, request: StoryRequest, progress: Progress = lambda stage, share: None) -> Planned:
+    def plan(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Planned:
         """Theme to narrated story in a furnished home, without motion."""
         progress("plan", 0.0)
-        asked = Request(request.short_scripts, request.rooms, request.seed, request.method)  # type: ignore[arg-type]
+        rooms = request.rooms or types_of(request.layouts)
+        asked = Request(request.short_scripts, rooms, request.seed, request.method)  # type: ignore[arg-type]
         script = compose(request.theme, self.library, asked, self.model)
         progress("furnish", 0.0)
-        stage = furnish(script, self.index, request.rooms, request.layouts, request.seed)
+        stage = furnish(script, self.index, rooms, request.layouts, request.seed)
         progress("narrate", 0.0)
         if self.model is None:
             told = narrate(stage.script, request.character, request.seed, stage.names)
@@ -111,7 +159,7 @@ class Studio:
             told = narrate_with_model(stage.script, request.character, self.model, stage.names)
         return Planned(request, stage.script, stage, told)
 
-    def make(self, request: StoryRequest, progress: Progress = lambda stage, share: None) -> Story:
+    def make(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Story:
         """Theme to acted story."""
         planned = self.plan(request, progress)
         progress("act", 0.0)
@@ -120,13 +168,18 @@ class Studio:
         return judge(planned, actions, motions, progress)
 
 
+def types_of(layouts: Sequence[Layout]) -> tuple[str, ...]:
+    """The room types that rooms of the user's can be; a story is then looked for that plays there."""
+    own = [layout.room_type for layout in layouts] + [tag for layout in layouts for tag in layout.tags]
+    return tuple(room for room in dict.fromkeys(own) if room in ROOM_TYPES)[:MOST_ROOMS]
+
+
 def load_backend(name: str) -> MotionBackend:
-    """The motion backend of that name. ValueError names those there are."""
+    """The motion backend of that name. RequestError names those there are."""
     from motion_backend.procedural.backend import ProceduralBackend
 
+    _one_of("backend", name, BACKENDS)
     known: dict[str, Callable[[], MotionBackend]] = {"procedural": ProceduralBackend}
-    if name not in known:
-        raise ValueError(f"backend: {name!r} is none of {', '.join(known)}")
     return known[name]()
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+import unicodedata
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -26,20 +26,30 @@ def read_rows(row: Row, key: str, where: str, most: int) -> Iterator[tuple[Row, 
         yield item, f"{where}.{key}[{index}]"
 
 
-def read_text(row: Row, key: str, where: str) -> str:
-    """A text of 1 to 200 characters."""
-    value = row.get(key)
+def read_text(row: Row, key: str, where: str, default: str | None = None) -> str:
+    """A text of 1 to 200 characters, none of which controls a terminal or is half a letter."""
+    value = row.get(key, default)
     if not isinstance(value, str) or not 0 < len(value) <= 200:
         raise LayoutError(f"{where}.{key} must be a text of 1 to 200 characters, got {value!r:.60}")
+    if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in value):
+        raise LayoutError(f"{where}.{key} has control characters or letters that are not text: {value!r:.60}")
     return value
+
+
+def read_texts(row: Row, key: str, where: str, most: int) -> tuple[str, ...]:
+    """The texts of a list field; an absent field is an empty list."""
+    texts = row.get(key) or []
+    if not isinstance(texts, list) or len(texts) > most:
+        raise LayoutError(f"{where}.{key} must be a list of at most {most} texts, got {texts!r:.60}")
+    return tuple(read_text({str(index): text}, str(index), f"{where}.{key}") for index, text in enumerate(texts))
 
 
 def read_number(value: Any, where: str, least: float, most: float) -> float:
     """A finite number between two bounds."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float) or value != value:
         raise LayoutError(f"{where} must be a number, got {value!r:.60}")
     if not least <= value <= most:
-        raise LayoutError(f"{where} must lie between {least:g} and {most:g}, got {value:g}")
+        raise LayoutError(f"{where} must lie between {least:g} and {most:g}, got {value!r:.60}")
     return float(value)
 
 

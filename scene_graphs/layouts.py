@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import gzip
 import json
+import zlib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -17,7 +18,17 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from scene_graphs.fields import FARTHEST, LayoutError, Row, read_number, read_point2, read_point3, read_rows, read_text
+from scene_graphs.fields import (
+    FARTHEST,
+    LayoutError,
+    Row,
+    read_number,
+    read_point2,
+    read_point3,
+    read_rows,
+    read_text,
+    read_texts,
+)
 from scene_graphs.furniture import canonical
 
 __all__ = [
@@ -45,6 +56,9 @@ MOST_CORNERS = 400
 MOST_LAYOUTS = 200_000
 LARGEST = 30.0
 """No object is longer, in metres."""
+WIDEST = 60.0
+"""No room is wider: maps of the floor take memory by its area."""
+MOST_TAGS = 100
 _MOST_BYTES = 1 << 29
 
 
@@ -163,21 +177,22 @@ def layout_from_dict(row: Row, where: str = "layout") -> Layout:
         doors=tuple(_opening(item, place) for item, place in read_rows(row, "doors", where, 100)),
         windows=tuple(_opening(item, place) for item, place in read_rows(row, "windows", where, 100)),
         objects=tuple(objects),
-        tags=tuple(str(tag) for tag in row.get("tags") or (room_type,)),
-        source=str(row.get("source", "user")),
-        licence=str(row.get("licence", "unknown")),
+        tags=read_texts(row, "tags", where, MOST_TAGS) or (room_type,),
+        source=read_text(row, "source", where, "user"),
+        licence=read_text(row, "licence", where, "unknown"),
     )
 
 
-def read_layouts(path: str | Path) -> list[Layout]:
+def read_layouts(path: str | Path, most_bytes: int = _MOST_BYTES) -> list[Layout]:
     """Read rooms from .json (one row or a list) or .jsonl (a row a line), either with .gz behind it.
 
-    LayoutError, naming file and line, for the first row that is not a valid layout or repeats an id.
+    LayoutError, naming file and line, for the first row that is not a valid layout or repeats an id, or where the file
+    has more than `most_bytes` when it is unpacked.
     """
     file = Path(path)
     layouts: list[Layout] = []
     seen: set[str] = set()
-    for where, row in _read_rows(file):
+    for where, row in _read_rows(file, most_bytes):
         if not isinstance(row, dict):
             raise LayoutError(f"{where} must be an object with id, room_type, floor_polygon and objects")
         layout = layout_from_dict(row, where)
@@ -203,17 +218,19 @@ def write_layouts(path: str | Path, layouts: Iterable[Layout]) -> None:
     file.write_bytes(data)
 
 
-def _read_rows(file: Path) -> Iterator[tuple[str, Any]]:
+def _read_rows(file: Path, most_bytes: int) -> Iterator[tuple[str, Any]]:
     if not {".json", ".jsonl"} & set(file.suffixes):
         raise LayoutError(f"{file.name}: rooms are read from .json, .jsonl, .json.gz or .jsonl.gz")
     try:
         with gzip.open(file) if file.suffix == ".gz" else file.open("rb") as stream:
-            data = stream.read(_MOST_BYTES + 1)
-        if len(data) > _MOST_BYTES:
-            raise LayoutError(f"{file.name} is larger than {_MOST_BYTES >> 20} MiB; split it")
-        text = data.decode()
-    except (OSError, EOFError, UnicodeDecodeError) as error:
-        raise LayoutError(f"{file.name} cannot be read: {error}") from error
+            data = stream.read(most_bytes + 1)
+        if len(data) > most_bytes:
+            raise LayoutError(f"{file.name} is larger than {most_bytes >> 20} MiB; split it")
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise LayoutError(f"{file.name} is not UTF-8 text ({error.reason} at byte {error.start})") from error
+    except (OSError, EOFError, zlib.error) as error:
+        raise LayoutError(f"{file.name} cannot be read, it is missing, cut off or damaged: {error}") from error
     if ".jsonl" in file.suffixes:
         for number, line in enumerate(text.splitlines(), start=1):
             if line.strip():
@@ -254,8 +271,8 @@ def _placed(row: Row, where: str) -> Placed:
         position=read_point3(position, f"{where}.position", -FARTHEST, FARTHEST),
         size=read_point3(row.get("size"), f"{where}.size", 1e-4, LARGEST),
         yaw=read_number(row.get("yaw", 0.0), f"{where}.yaw", -100.0, 100.0),
-        parent=None if row.get("parent") is None else str(row["parent"]),
-        mesh=None if row.get("mesh") is None else str(row["mesh"]),
+        parent=None if row.get("parent") is None else read_text(row, "parent", where),
+        mesh=None if row.get("mesh") is None else read_text(row, "mesh", where),
     )
 
 
@@ -290,5 +307,8 @@ def _outline(row: Row, where: str) -> tuple[Point2, ...]:
     polygon = shapely.Polygon(points) if len(points) >= 3 else None
     if polygon is None or not polygon.is_valid or polygon.area < 0.5:
         raise LayoutError(f"{place} must be a simple polygon of at least 0.5 square metres; order its corners around")
+    low_x, low_z, high_x, high_z = polygon.bounds
+    if max(high_x - low_x, high_z - low_z) > WIDEST:
+        raise LayoutError(f"{place} must fit in {WIDEST:g} by {WIDEST:g} metres; is it in centimetres?")
     # Seen from above [x, z] is a left-handed pair: counter-clockwise there is clockwise to shapely.
     return tuple(reversed(points)) if polygon.exterior.is_ccw else tuple(points)

@@ -1,34 +1,39 @@
-"""What a user can do wrong, as one tuple of exceptions and one line of text."""
+"""What a user can do wrong, as one tuple of exceptions and one line of text; anything else is a fault of ours."""
 
 from __future__ import annotations
 
-from pydantic import ValidationError
-
+from motion_backend.language.minilm import WeightsError
 from planner_service.filing import OutputError
 from planner_service.furnish import FurnishError
 from planner_service.llm.protocol import ModelError
 from planner_service.scripts.acting import UnreachableError
+from planner_service.scripts.events import ThemeError
 from planner_service.scripts.library import LibraryError
+from planner_service.settings import SettingsError
+from planner_service.stories import RequestError
+from scene_graphs.homes import HomeError
 from scene_graphs.layouts import LayoutError
+from scene_graphs.navigation import NoPath
+from scene_graphs.retrieval import NoSuitableRoom
 
 USER_ERRORS = (
-    OutputError,
+    RequestError,
+    ThemeError,
     FurnishError,
-    ModelError,
+    NoSuitableRoom,
+    HomeError,
+    LayoutError,
+    NoPath,
     UnreachableError,
     LibraryError,
-    LayoutError,
-    ValidationError,
-    UnicodeError,
-    ValueError,
-    OSError,
+    ModelError,
+    OutputError,
+    SettingsError,
+    WeightsError,
 )
 
 
 def explain(error: BaseException) -> str:
-    """One or a few lines naming what was wrong and, where it is known, what would be right."""
-    if isinstance(error, ValidationError):
-        return "; ".join(f"{'.'.join(str(part) for part in fault['loc'])}: {fault['msg']}" for fault in error.errors())
-    if isinstance(error, OSError) and error.filename:
-        return f"{error.filename}: {error.strerror}"
-    return str(error)
+    """One line naming what was wrong and what would be right, safe to show on a terminal."""
+    line = " ".join(str(error).split())
+    return "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in line)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -11,16 +14,19 @@ from rich.console import Console
 from rich.table import Table
 
 from planner_service.commands.rooms import chosen_layouts
-from planner_service.settings import Settings
-from planner_service.stories import Studio
+from planner_service.settings import read_settings
+from planner_service.stories import RequestError, Studio
 from scene_graphs.furniture import ROOM_TYPES
-from scene_graphs.layouts import write_layouts
+from scene_graphs.layouts import Layout, write_layouts
 
 app = typer.Typer(no_args_is_help=True, help="List, draw and generate furnished rooms.")
+ENDINGS = (".json", ".jsonl", ".json.gz", ".jsonl.gz")
+MOST_DRAWN = 400
+"""Pictures of one command."""
 
 
 def _studio() -> Studio:
-    settings = Settings()
+    settings = read_settings()
     return Studio(settings.scripts_file, settings.cache_dir, settings.layouts)
 
 
@@ -28,7 +34,7 @@ def _studio() -> Studio:
 def list_layouts(room: Annotated[str | None, typer.Option(help="Only rooms of this type.")] = None) -> None:
     """Show the rooms a story can play in."""
     if room is not None and room not in ROOM_TYPES:
-        raise ValueError(f"--room: {room!r} is none of {', '.join(ROOM_TYPES)}")
+        raise RequestError(f"--room: {room!r} is none of {', '.join(ROOM_TYPES)}")
     table = Table(box=None, header_style="bold", pad_edge=False)
     for column in ("id", "room type", "objects"):
         table.add_column(column)
@@ -37,7 +43,7 @@ def list_layouts(room: Annotated[str | None, typer.Option(help="Only rooms of th
         counts = Counter(placed.category for placed in layout.objects)
         words = [f"{count} {category}" if count > 1 else category for category, count in counts.items()]
         table.add_row(layout.id, layout.room_type, ", ".join(words))
-    console = Console()
+    console = Console(markup=False)
     console.print(table)
     console.print(f"{len(chosen)} rooms", highlight=False)
 
@@ -48,16 +54,27 @@ def draw(
     out: Annotated[Path, typer.Option(help="Folder for the pictures.")] = Path("out/layouts"),
 ) -> None:
     """Draw rooms from above."""
-    from planner_service.filing import check_writable
+    from planner_service.filing import Writer, check_writable, write_files
     from scene_graphs.drawing import draw_layout
 
-    check_writable(out)
-    layouts = chosen_layouts(names, _studio())
-    out.mkdir(parents=True, exist_ok=True)
+    layouts = chosen_layouts(names, _studio(), "NAMES", most=MOST_DRAWN)
+    drawings: dict[str, Writer] = {}
     for layout in layouts:
-        path = out / f"{layout.id.replace('/', '_')}.png"
-        draw_layout(layout, path=path)
-        Console().print(str(path), highlight=False)
+        name = _file_name(layout.id)
+        name += f"-{len(drawings)}" if f"{name}.png" in drawings else ""
+        drawings[f"{name}.png"] = partial(_draw_to, draw_layout, layout)
+    check_writable(out, drawings)
+    for path in write_files(out, drawings):
+        Console(markup=False).print(str(path), highlight=False)
+
+
+def _draw_to(draw_layout: Callable[..., object], layout: Layout, path: Path) -> None:
+    draw_layout(layout, path=path)
+
+
+def _file_name(layout_id: str) -> str:
+    """A room's id as the name of a file, whatever is in it."""
+    return re.sub(r"[^A-Za-z0-9._-]+", "_", layout_id).lstrip(".")[:80] or "room"
 
 
 @app.command()
@@ -67,11 +84,12 @@ def generate(
     out: Annotated[Path, typer.Option(help="File to write: .json, .jsonl or .jsonl.gz.")] = Path("out/rooms.jsonl"),
 ) -> None:
     """Generate furnished rooms, the four types in turn."""
-    from planner_service.filing import check_writable
+    from planner_service.filing import check_writable, write_files
     from scene_graphs.generating import generate_library
 
-    check_writable(out.parent)
+    if not out.name.endswith(ENDINGS):
+        raise RequestError(f"--out: {out} must end in one of {', '.join(ENDINGS)}, or no reader knows what it is")
+    check_writable(out.parent, [out.name])
     layouts = generate_library(count, seed)
-    out.parent.mkdir(parents=True, exist_ok=True)
-    write_layouts(out, layouts)
-    Console().print(f"{len(layouts)} rooms written to {out}", highlight=False)
+    write_files(out.parent, {out.name: lambda path: write_layouts(path, layouts)})
+    Console(markup=False).print(f"{len(layouts)} rooms written to {out}", highlight=False)

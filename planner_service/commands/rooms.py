@@ -5,23 +5,37 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from planner_service.furnish import MOST_ROOMS
 from planner_service.stories import Studio
 from scene_graphs.layouts import Layout, LayoutError, read_layouts
 
+LARGEST_FILE = 64 << 20
+"""Bytes of a user's file of rooms, after unpacking."""
 
-def chosen_layouts(names: Sequence[str], studio: Studio) -> tuple[Layout, ...]:
-    """The layouts that paths and ids stand for, in order. Raises LayoutError."""
-    if len(names) > 4:
-        raise LayoutError(f"--layout: a home has one to four rooms, {len(names)} were given")
+
+def chosen_layouts(
+    names: Sequence[str], studio: Studio, field: str = "--layout", most: int = MOST_ROOMS
+) -> tuple[Layout, ...]:
+    """The layouts that paths and ids stand for, in order, at most `most`; LayoutError names field and remedy."""
     found: list[Layout] = []
     for name in names:
-        if Path(name).is_file():
-            found.extend(read_layouts(Path(name)))
+        if _is_file(name):
+            rooms = read_layouts(name, LARGEST_FILE)
+            if not rooms:
+                raise LayoutError(f"{field}: {name} holds no room; `sims layouts generate` writes such files")
+            found.extend(rooms)
             continue
         matching = [layout for layout in studio.layouts if layout.id == name]
         if not matching:
-            raise LayoutError(f"--layout: {name!r} is neither a file nor the id of a layout; see `sims layouts list`")
+            raise LayoutError(f"{field}: {name!r:.200} is neither a file nor the id of a room; see `sims layouts list`")
         found.extend(matching)
-    if len(found) > 4:
-        raise LayoutError(f"--layout: a home has one to four rooms, the files hold {len(found)}")
+    if len(found) > most:
+        raise LayoutError(f"{field}: at most {most} rooms, {len(found)} were given; leave some out")
     return tuple(found)
+
+
+def _is_file(name: str) -> bool:
+    try:
+        return Path(name).is_file()
+    except (OSError, ValueError):  # longer than any path, or not one
+        return False

@@ -7,13 +7,15 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from pydantic import ValidationError
 from rich.console import Console
 from rich.table import Table
 
+from planner_service.llm.answers import problems_of
 from planner_service.scripts.checking import check as find_problems
 from planner_service.scripts.keyframe import ShortScript
 from planner_service.scripts.library import LibraryError, ScriptLibrary
-from planner_service.settings import Settings
+from planner_service.settings import read_settings
 
 app = typer.Typer(no_args_is_help=True, help="Search, check and extend the library of short scripts.")
 LARGEST = 2_000_000
@@ -21,7 +23,7 @@ LARGEST = 2_000_000
 
 
 def _library() -> ScriptLibrary:
-    settings = Settings()
+    settings = read_settings()
     return ScriptLibrary.read(settings.scripts_file, cache=settings.cache_dir)
 
 
@@ -40,7 +42,7 @@ def search(
     for found in library.search(query, k, emotion, room):
         script = found.script
         table.add_row(f"{found.score:.3f}", script.id, script.emotion, script.room, script.summary)
-    console = Console()
+    console = Console(markup=False)
     console.print(table)
     console.print(f"{len(library)} scripts, encoder {library.encoder.name}", highlight=False)
 
@@ -50,16 +52,17 @@ def add(file: Annotated[Path, typer.Argument(help="JSON with one short script, o
     """Check short scripts and add them to your own library; one that does not fit adds none."""
     scripts = read_scripts(file)
     library = _library()
+    taken = {script.id for script in library.scripts}
     for script in scripts:
-        if any(other.id == script.id for other in library.scripts):
-            raise LibraryError(f"{file.name}: {script.id!r} is in the library already; choose another id")
+        if script.id in taken:
+            raise LibraryError(f"{file.name}: id: {script.id!r} is in the library already; choose another id")
+        taken.add(script.id)
         # A walk or a rising that is missing is put in when a story is composed; anything else must be right.
         faults = [problem for problem in find_problems(script) if problem.field != "skill"]
         if faults:
             raise LibraryError(f"{file.name}: {script.id}: {faults[0]}")
-    for script in scripts:
-        library = library.add(script)
-    Console().print(f"added {len(scripts)}; the library has {len(library)} scripts", highlight=False)
+    library = library.add(*scripts)
+    Console(markup=False).print(f"added {len(scripts)}; the library has {len(library)} scripts", highlight=False)
 
 
 @app.command()
@@ -67,7 +70,7 @@ def check(
     file: Annotated[Path, typer.Argument(help="JSON with one short script, or JSON lines with several.")],
 ) -> None:
     """Say whether short scripts can be acted out, and what would be repaired."""
-    console = Console()
+    console = Console(markup=False)
     problems = 0
     for script in read_scripts(file):
         found = find_problems(script)
@@ -81,30 +84,56 @@ def check(
 
 def read_scripts(file: Path) -> list[ShortScript]:
     """Short scripts of a JSON or JSON-lines file. Raises LibraryError naming file, line and what is wrong."""
-    if file.stat().st_size > LARGEST:
+    try:
+        with file.open("rb") as stream:
+            data = stream.read(LARGEST + 1)
+    except OSError as error:
+        raise LibraryError(f"FILE: {file} cannot be read: {error.strerror}") from error
+    if len(data) > LARGEST:
         raise LibraryError(f"{file.name}: larger than {LARGEST // 1_000_000} MB; split it")
     try:
-        text = file.read_text(encoding="utf-8")
+        text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise LibraryError(f"{file.name}: not UTF-8 text ({error.reason} at byte {error.start})") from error
+        raise LibraryError(
+            f"{file.name}: not UTF-8 text ({error.reason} at byte {error.start}); save it as UTF-8"
+        ) from error
     rows = _rows(text, file.name)
     if not rows:
-        raise LibraryError(f"{file.name}: no short script in it")
-    return [ShortScript.model_validate(row) for row in rows]
+        raise LibraryError(f"{file.name}: no short script in it; one is an object with id, summary and keyframes")
+    return [_script(row, f"{file.name} [{number}]") for number, row in enumerate(rows)]
+
+
+def _script(row: Any, where: str) -> ShortScript:
+    try:
+        return ShortScript.model_validate(row)
+    except ValidationError as error:
+        raise LibraryError(f"{where}: {'; '.join(problems_of(error))}") from error
 
 
 def _rows(text: str, name: str) -> list[Any]:
     try:
         whole = json.loads(text)
         return whole if isinstance(whole, list) else [whole]
-    except json.JSONDecodeError as error:
+    except RecursionError as error:
+        raise LibraryError(f"{name}: not a script: brackets within brackets without end") from error
+    except ValueError as error:
         lines = [line for line in text.splitlines() if line.strip()]
         rows = []
         for number, line in enumerate(lines, 1):
             try:
                 rows.append(json.loads(line))
-            except json.JSONDecodeError:
-                raise LibraryError(
-                    f"{name}:{error.lineno if len(lines) == 1 else number}: not JSON: {error.msg}"
-                ) from error
+            except (ValueError, RecursionError) as fault:
+                raise LibraryError(_not_json(name, error if _spread(lines) else fault, number)) from fault
         return rows
+
+
+def _spread(lines: list[str]) -> bool:
+    """Whether this is one object written over several lines, not one a line."""
+    return len(lines) == 1 or not lines[0].rstrip().endswith("}")
+
+
+def _not_json(name: str, error: Exception, number: int) -> str:
+    if isinstance(error, json.JSONDecodeError):
+        line = error.lineno if error.lineno > 1 else number
+        return f"{name}:{line}: not JSON: {error.msg} at column {error.colno}"
+    return f"{name}:{number}: not JSON: {error}"

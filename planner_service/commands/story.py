@@ -9,11 +9,13 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
+from rich.text import Text
 
 from motion_backend.motion import Character
-from planner_service.scripts.events import ThemeError
-from planner_service.settings import Settings
-from planner_service.stories import STAGES, Story, StoryRequest, Studio, load_backend
+from planner_service.scripts.events import clean
+from planner_service.settings import read_settings
+from planner_service.stories import STAGES, RequestError, Story, StoryRequest, Studio
+from scene_graphs.furniture import ROOM_TYPES
 
 SHARES = {"plan": 0.30, "furnish": 0.05, "narrate": 0.02, "act": 0.06, "move": 0.12, "judge": 0.20, "write": 0.25}
 """About how much of the time each stage takes, for the bar."""
@@ -49,22 +51,20 @@ def story(
 ) -> None:
     """Turn a story theme into a script, a home, a told story and an animated film."""
     from planner_service.commands.rooms import chosen_layouts
-    from planner_service.filing import check_writable, write_story
+    from planner_service.filing import FILES, check_writable, write_story
 
-    settings = Settings()
-    check_writable(out)
-    chosen_backend = backend or settings.backend
-    load_backend(chosen_backend)
+    settings = read_settings()
+    check_writable(out, FILES)
     studio = Studio(settings.scripts_file, settings.cache_dir, settings.layouts)
     request = StoryRequest(
-        theme=read_theme(theme),
-        rooms=tuple(room.strip() for room in rooms.split(",") if room.strip()) if rooms else (),
+        theme=clean(read_theme(theme)),
+        rooms=() if rooms is None else read_rooms(rooms),
         layouts=chosen_layouts(layout or [], studio),
         seed=seed,
-        backend=chosen_backend,
+        backend=backend or settings.backend,
         character=Character(name, pronouns, height),
     )
-    console = Console()
+    console = Console(markup=False)
     with _bar(console) as bar:
         task = bar.add_task(TOLD["plan"], total=1.0)
 
@@ -80,15 +80,31 @@ def story(
 
 
 def read_theme(argument: str) -> str:
-    """The theme itself, or the text of the file that `@FILE` names. Raises ThemeError for what is not UTF-8."""
+    """The theme itself, or the text of the file that `@FILE` names. RequestError for one that is not UTF-8."""
     if not argument.startswith("@"):
         return argument
-    with Path(argument[1:]).open("rb") as file:
-        data = file.read(LONGEST_FILE)
+    path = argument[1:]
     try:
-        return data.decode("utf-8")
+        with Path(path).open("rb") as file:
+            data = file.read(LONGEST_FILE + 1)
+    except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
+        why = f"{getattr(error, 'strerror', None) or error}; after @ comes the path of a file"
+        raise RequestError(f"theme: {path or '@'} cannot be read: {why}") from error
+    if len(data) > LONGEST_FILE:
+        raise RequestError(f"theme: {path} has more than {LONGEST_FILE} bytes; a theme is a few sentences")
+    try:
+        return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise ThemeError(f"{argument[1:]} is not UTF-8 text ({error.reason} at byte {error.start}).") from error
+        why = f"{error.reason} at byte {error.start}"
+        raise RequestError(f"theme: {path} is not UTF-8 text ({why}); save it as UTF-8") from error
+
+
+def read_rooms(argument: str) -> tuple[str, ...]:
+    """The words between commas. RequestError if there are none."""
+    rooms = tuple(room.strip() for room in argument.split(",") if room.strip())
+    if not rooms:
+        raise RequestError(f"rooms: there is no room in {argument!r}; choose among {', '.join(ROOM_TYPES)}")
+    return rooms
 
 
 def _bar(console: Console) -> Progress:
@@ -97,7 +113,7 @@ def _bar(console: Console) -> Progress:
 
 def _close(console: Console, made: Story, files: list[Path]) -> None:
     """The closing table: what was reached, and how well."""
-    console.print(f"\n[bold]{made.planned.told.title}[/bold]\n")
+    console.print(f"\n{made.planned.told.title}\n", style="bold", highlight=False)
     console.print(made.planned.told.text + "\n", highlight=False)
     table = Table(box=None, header_style="bold", pad_edge=False)
     for column, justify in (("#", "right"), ("skill", "left"), ("caption", "left"), ("furniture", "left")):
@@ -112,7 +128,7 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
             action.caption[:44],
             action.object_id or "floor",
             f"{figure.seconds:.1f}",
-            "yes" if figure.reached else f"[red]no[/red] {figure.reason}",
+            "yes" if figure.reached else Text(f"no {figure.reason}", style="red"),
             error,
             f"{100 * figure.pen_max:.1f} cm",
         )

@@ -70,9 +70,9 @@ class ScriptLibrary:
     ) -> ScriptLibrary:
         """Our scripts and those of the user's `file`, which need not exist yet; LibraryError names file:line:field."""
         scripts = list(built_in())
-        if file is not None and file.exists():
+        if file is not None:
             lines: dict[str, str] = {script.id: BUILT_IN for script in scripts}
-            for number, script in _read(file.read_bytes(), file.name):
+            for number, script in _read(_bytes_of(file), file.name):
                 if script.id in lines:
                     raise LibraryError(f"{file.name}:{number}:id: {script.id!r} is taken by {lines[script.id]}")
                 lines[script.id] = f"{file.name}:{number}"
@@ -94,21 +94,29 @@ class ScriptLibrary:
                 return script
         raise LibraryError(f"id: there is no short script {script_id!r} among the {len(self)} of the library")
 
-    def add(self, script: ShortScript) -> ScriptLibrary:
-        """A library with one script more, written to the user's file before this returns.
+    def add(self, *scripts: ShortScript) -> ScriptLibrary:
+        """A library with these scripts more, all of them in the user's file before this returns, or none.
 
-        LibraryError when the id is taken, when a furniture word or emotion is not known, or when there is no file.
+        LibraryError when an id is taken, when a furniture word or emotion is not known, or when there is no file.
         """
         if self.file is None:
             raise LibraryError("file: this library has no file of the user's to write to")
-        if any(other.id == script.id for other in self.scripts):
-            raise LibraryError(f"{self.file.name}:id: there is a short script {script.id!r} already; choose another id")
-        for problem in check(script):
-            if problem.field != "skill":  # missing walks and risings are put in when a story is composed
-                where = f"{self.file.name}:{script.id}:keyframes.{problem.keyframe}.{problem.field}"
-                raise LibraryError(f"{where}: {problem.fault}")
-        _append(self.file, script.model_dump_json(exclude_none=True))
-        return ScriptLibrary((*self.scripts, script), self.encoder, self._cache, self.file)
+        taken = {script.id for script in self.scripts}
+        for script in scripts:
+            if script.id in taken:
+                where = f"{self.file.name}:id"
+                raise LibraryError(f"{where}: there is a short script {script.id!r} already; choose another id")
+            taken.add(script.id)
+            for problem in check(script):
+                if problem.field != "skill":  # missing walks and risings are put in when a story is composed
+                    where = f"{self.file.name}:{script.id}:keyframes.{problem.keyframe}.{problem.field}"
+                    raise LibraryError(f"{where}: {problem.fault}")
+        try:
+            _append(self.file, "\n".join(script.model_dump_json(exclude_none=True) for script in scripts))
+        except OSError as error:
+            why = f"{error.strerror}; choose another folder by SIMS_DATA_DIR or --data-dir"
+            raise LibraryError(f"{self.file} cannot be written: {why}") from error
+        return ScriptLibrary((*self.scripts, *scripts), self.encoder, self._cache, self.file)
 
     def search(self, query: str, k: int = 5, emotion: str | None = None, room: str | None = None) -> tuple[Found, ...]:
         """The k scripts nearest to the query in meaning, nearest first, of one emotion and room if these are given."""
@@ -205,6 +213,16 @@ def built_in() -> tuple[ShortScript, ...]:
     """The short scripts shipped with the package."""
     data = resources.files("planner_service").joinpath("data", BUILT_IN).read_bytes()
     return tuple(script for _, script in _read(data, BUILT_IN))
+
+
+def _bytes_of(file: Path) -> bytes:
+    """What is in the user's file, which need not exist yet."""
+    try:
+        return file.read_bytes()
+    except (FileNotFoundError, NotADirectoryError):
+        return b""
+    except OSError as error:
+        raise LibraryError(f"{file} cannot be read: {error.strerror}") from error
 
 
 def _read(data: bytes, name: str) -> Iterable[tuple[int, ShortScript]]:

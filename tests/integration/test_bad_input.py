@@ -1,0 +1,329 @@
+"""What a user does wrong is answered by one clear line and a non-zero exit, and leaves nothing behind."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import pytest
+
+from planner_service.commands.errors import USER_ERRORS
+from planner_service.stories import StoryRequest, Studio
+from scene_graphs.generating import generate_room
+from scene_graphs.layouts import Layout, Placed, layout_to_dict
+
+SIMS = [sys.executable, "-m", "planner_service.cli"]
+ENVIRONMENT = {name: value for name, value in os.environ.items() if not name.startswith("SIMS_")}
+THEME = "A person enjoys a relaxed afternoon at home."
+
+
+def keyframe(**changed: object) -> dict[str, object]:
+    return {"skill": "sitdown", "emotion": "neutral", "caption": "sit calmly", "furniture": "sofa"} | changed
+
+
+def script(**changed: object) -> dict[str, object]:
+    row: dict[str, object] = {"id": "my-own", "summary": "The character rests.", "emotion": "relaxed"}
+    return row | {"room": "living_room", "keyframes": [keyframe()]} | changed
+
+
+def room(**changed: object) -> dict[str, object]:
+    return layout_to_dict(generate_room("living_room", 3)) | {"id": "my-room"} | changed
+
+
+def with_sizes(size: list[object]) -> dict[str, object]:
+    row = room()
+    objects = [dict(placed) for placed in row["objects"]]  # type: ignore[attr-defined]
+    objects[0]["size"] = size
+    return row | {"objects": objects}
+
+
+def bare_room() -> dict[str, object]:
+    """Nothing here can be sat on, nor stand for what can."""
+    shelf = Placed("bookshelf_1", "bookshelf", (0.0, 0.0, -1.8), (0.8, 1.9, 0.3))
+    corners = ((-2.0, -2.0), (-2.0, 2.0), (2.0, 2.0), (2.0, -2.0))
+    return layout_to_dict(Layout("bare", "living_room", corners, 2.6, objects=(shelf,), tags=("living_room",)))
+
+
+def crowded_room() -> dict[str, object]:
+    chairs = [
+        {"id": f"chair_{i}", "category": "dining_chair", "position": [0, 0, 0], "size": [0.5, 0.9, 0.5]}
+        for i in range(10_000)
+    ]
+    return room(objects=chairs)
+
+
+def text(value: object) -> bytes:
+    return json.dumps(value).encode()
+
+
+FILES: dict[str, bytes] = {
+    "latin.txt": "A person goes to the café and is very happy.".encode("latin-1"),
+    "long.txt": b"A person reads a book. " * 10_000,
+    "broken.json": b'[{"id": "x", ',
+    "deep.json": b"[" * 100_000,
+    "cut.json.gz": gzip.compress(text([room()]) * 9)[:-200],
+    "damaged.json.gz": gzip.compress(b"[]")[:10] + b"\xff" * 40,
+    "plain.json.gz": text([room()]),
+    "bomb.json.gz": gzip.compress(b" " * (80 << 20), 9),
+    "latin.json": '[{"id": "café"}]'.encode("latin-1"),
+    "number.json": b"7",
+    "none.json": b"[]",
+    "corners.json": text(room(floor_polygon=[[0, 0], [4, 0]])),
+    "crossed.json": text(room(floor_polygon=[[0, 0], [4, 4], [4, 0], [0, 4]])),
+    "field.json": text(room(floor_polygon=[[0, 0], [0, 900], [900, 900], [900, 0]])),
+    "nan.json": text(with_sizes([float("nan"), 1.0, 1.0])),
+    "huge.json": text(with_sizes([10**400, 1.0, 1.0])),
+    "flat.json": text(with_sizes([0.0, 1.0, 1.0])),
+    "crowded.json": text(crowded_room()),
+    "tags.json": text(room(tags=7)),
+    "half-letter.json": text(room(id="room \ud800")),
+    "twice.json": text([room(), room()]),
+    "five.json": text([room(id=f"room-{i}") for i in range(5)]),
+    "bare.json": text(bare_room()),
+    "broken-script.json": b'{"id": "x", "summary"',
+    "deep-script.json": b"[" * 100_000,
+    "second-line.jsonl": text(script()) + b'\n{"id": ]\n',
+    "latin-script.json": '{"id": "café"}'.encode("latin-1"),
+    "skill.json": text(script(keyframes=[keyframe(skill="fly")])),
+    "furniture.json": text(script(keyframes=[keyframe(furniture="trampoline")])),
+    "extra.json": text(script(mood="blue")),
+    "no-keyframes.json": text(script(keyframes=[])),
+    "empty.json": b"",
+    "list.json": b"[1, 2]",
+    "taken.json": text(script(id="mine")),
+    "same-twice.jsonl": text(script()) + b"\n" + text(script()) + b"\n",
+    "good-then-bad.jsonl": text(script()) + b"\n" + text(script(id="b", keyframes=[keyframe(furniture="ufo")])),
+}
+
+
+@dataclass(frozen=True)
+class Case:
+    """A command that must be refused, and words of the refusal; FILES is the folder of `FILES`."""
+
+    arguments: tuple[str | bytes, ...]
+    says: tuple[str, ...]
+    settings: tuple[tuple[str, str], ...] = ()
+
+
+def story(*arguments: str | bytes, says: tuple[str, ...]) -> Case:
+    return Case(("story", *arguments), says)
+
+
+def layout(file: str, *says: str) -> Case:
+    return Case(("story", THEME, "--layout", f"FILES/{file}"), says)
+
+
+def add(file: str, *says: str) -> Case:
+    return Case(("scripts", "add", f"FILES/{file}"), says)
+
+
+def check(file: str, *says: str) -> Case:
+    return Case(("scripts", "check", f"FILES/{file}"), says)
+
+
+CASES: dict[str, Case] = {
+    "an empty theme": story("", says=("theme", "empty", "Try")),
+    "only spaces": story(" \t \n ", says=("theme", "empty", "Try")),
+    "only punctuation": story("... !? --- ...", says=("theme", "no word", "Try")),
+    "an enormous theme": story("A person reads a book. " * 4_300, says=("theme", "at most 2000")),
+    "a theme that is not UTF-8": story(b"A person \xff\xfe sits", says=("theme", "not text")),
+    "a file that is not UTF-8": story("@FILES/latin.txt", says=("theme", "latin.txt", "UTF-8", "byte 24")),
+    "an enormous file": story("@FILES/long.txt", says=("theme", "long.txt", "100000 bytes")),
+    "a file that is not there": story("@FILES/none.txt", says=("theme", "none.txt", "No such file", "path of a file")),
+    "a folder as theme": story("@FILES", says=("theme", "directory")),
+    "control characters": story("A person \x1b[31m sits \x07", says=("theme", "control characters")),
+    "letters without meaning": story("xqzt wvbnm plkj", says=("theme", "xqzt wvbnm plkj", "Try")),
+    "a room misspelt": story(THEME, "--rooms", "bedrom", says=("rooms", "bedrom", "bedroom, living_room")),
+    "no room at all": story(THEME, "--rooms", " , ", says=("rooms", "no room", "bedroom")),
+    "five rooms": story(
+        THEME, "--rooms", "study,bedroom,living_room,dining_room,garage", says=("rooms", "garage", "living_room")
+    ),
+    "an unknown backend": story(THEME, "--backend", "magic", says=("backend", "magic", "procedural")),
+    "a seed below zero": story(THEME, "--seed", "-1", says=("seed", "0")),
+    "a seed that is no number": story(THEME, "--seed", "two", says=("seed", "two|integer")),
+    "a giant": story(THEME, "--height", "9", says=("height", "1.2 to 2.2", "9")),
+    "a height that is no number": story(THEME, "--height", "nan", says=("height", "1.2 to 2.2", "nan")),
+    "unknown pronouns": story(THEME, "--pronouns", "blorp", says=("pronouns", "blorp", "he, she, they")),
+    "no name": story(THEME, "--name", "  ", says=("name", "1 to 40")),
+    "a name that is not text": story(THEME, "--name", b"S\xffm", says=("name", "printable")),
+    "an option that is none": story(THEME, "--colour", "red", says=("--colour",)),
+    "a layout that is not there": layout("nowhere.json", "--layout", "nowhere.json", "sims layouts list"),
+    "a name longer than any path": story(THEME, "--layout", "x" * 9000, says=("--layout", "neither a file")),
+    "a layout that is not JSON": layout("broken.json", "broken.json", "not JSON"),
+    "brackets without end": layout("deep.json", "deep.json", "not JSON"),
+    "a layout cut off": layout("cut.json.gz", "cut.json.gz", "cut off"),
+    "a damaged layout": layout("damaged.json.gz", "damaged.json.gz", "damaged"),
+    "a gz that is none": layout("plain.json.gz", "plain.json.gz", "cannot be read"),
+    "a gz that unpacks to very much": layout("bomb.json.gz", "bomb.json.gz", "larger than 64 MiB"),
+    "a layout that is not UTF-8": layout("latin.json", "latin.json", "UTF-8"),
+    "a number for a layout": layout("number.json", "number.json", "must be an object", "floor_polygon"),
+    "a file without rooms": layout("none.json", "none.json", "no room"),
+    "two corners": layout("corners.json", "floor_polygon", "3 to 400"),
+    "walls that cross": layout("crossed.json", "floor_polygon", "simple polygon"),
+    "a room as large as a field": layout("field.json", "floor_polygon", "60 by 60"),
+    "a size that is no number": layout("nan.json", "objects", "size", "must be a number"),
+    "a size beyond all numbers": layout("huge.json", "objects", "size", "between"),
+    "a size of nothing": layout("flat.json", "objects", "size", "between"),
+    "ten thousand objects": layout("crowded.json", "objects", "at most 500"),
+    "tags that are none": layout("tags.json", "tags", "list"),
+    "half a letter": layout("half-letter.json", "id", "not text"),
+    "two rooms of one id": layout("twice.json", "my-room", "twice"),
+    "five rooms in a file": layout("five.json", "--layout", "at most 4", "5"),
+    "nothing to sit on": layout("bare.json", "room has no", "to sit on|to lie on", "--rooms, --layout"),
+    "layouts of the settings not there": Case(
+        ("story", THEME), ("nowhere.json", "missing"), (("SIMS_LAYOUTS", "nowhere.json"),)
+    ),
+    "a script that is not JSON": add("broken-script.json", "broken-script.json:1", "not JSON"),
+    "a script of brackets": add("deep-script.json", "deep-script.json", "brackets"),
+    "a second line that is not JSON": add("second-line.jsonl", "second-line.jsonl:2", "not JSON"),
+    "a script that is not UTF-8": add("latin-script.json", "latin-script.json", "UTF-8", "byte 11"),
+    "an unknown skill": add("skill.json", "skill.json", "keyframes.0.skill", "'loco'"),
+    "unknown furniture": add("furniture.json", "my-own", "keyframe 0", "furniture", "trampoline"),
+    "a field too many": add("extra.json", "extra.json", "mood", "not permitted"),
+    "no keyframes": add("no-keyframes.json", "keyframes", "at least 1"),
+    "an empty script file": add("empty.json", "empty.json", "no short script"),
+    "numbers for scripts": add("list.json", "list.json", "dictionary|object"),
+    "an id that is taken": add("taken.json", "taken.json", "'mine'", "another id"),
+    "an id twice in a file": add("same-twice.jsonl", "my-own", "another id"),
+    "a bad script behind a good one": add("good-then-bad.jsonl", "ufo"),
+    "a script file that is not there": add("nowhere.json", "FILE", "nowhere.json", "No such file"),
+    "a folder of scripts": add("", "cannot be read", "directory"),
+    "a data folder that cannot be": Case(
+        ("scripts", "add", "FILES/second.json"),
+        ("cannot be written", "SIMS_DATA_DIR"),
+        (("SIMS_DATA_DIR", "/dev/null"),),
+    ),
+    "checking an unknown skill": check("skill.json", "skill.json", "keyframes.0.skill", "'loco'"),
+    "checking what is not JSON": check("broken-script.json", "broken-script.json:1", "not JSON"),
+    "checking what is not UTF-8": check("latin-script.json", "latin-script.json", "UTF-8"),
+    "checking a field too many": check("extra.json", "mood"),
+    "searching for nothing": Case(("scripts", "search", " "), ("query", "one word")),
+    "searching an unknown emotion": Case(("scripts", "search", "rest", "--emotion", "bored"), ("emotion", "relaxed")),
+    "listing an unknown room": Case(("layouts", "list", "--room", "garage"), ("--room", "garage", "study")),
+    "drawing an unknown room": Case(("layouts", "draw", "nowhere"), ("nowhere", "sims layouts list")),
+    "generating none": Case(("layouts", "generate", "--count", "0", "--out", "out/r.json"), ("count",)),
+    "generating what no reader knows": Case(("layouts", "generate", "--out", "out/rooms.txt"), ("--out", ".jsonl.gz")),
+    "generating into a folder": Case(("layouts", "generate", "--out", "FILES/folder.json"), ("--out", "is a folder")),
+    "out is a file": story(THEME, "--out", "FILES/none.json", says=("--out", "none.json", "a file is in the way")),
+    "out below a file": story(THEME, "--out", "FILES/none.json/out", says=("--out", "Not a directory")),
+    "out where nothing can be made": story(THEME, "--out", "/proc/nope/out", says=("--out", "/proc/nope")),
+    "out with too long a name": story(THEME, "--out", "out/" + "x" * 300, says=("--out", "too long")),
+    "a folder in the way of a file": story(THEME, "--out", "FILES/taken", says=("--out", "film.glb", "is a folder")),
+}
+
+
+@dataclass(frozen=True)
+class Answer:
+    """How a command ended, and what lay in its folder afterwards."""
+
+    code: int
+    output: str
+    error: str
+    left: tuple[str, ...]
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the bad files, a folder of user's data with one script, and folders where files would go."""
+    root = tmp_path_factory.mktemp("bad_input")
+    (root / "files/taken/film.glb").mkdir(parents=True)
+    (root / "files/folder.json").mkdir()
+    for name, data in FILES.items():
+        (root / "files" / name).write_bytes(data)
+    (root / "files/second.json").write_bytes(text(script(id="second")))
+    (root / "data").mkdir()
+    (root / "data/short_scripts.jsonl").write_bytes(text(script(id="mine")) + b"\n")
+    return root
+
+
+def ask(place: Path, case: Case, name: str) -> Answer:
+    folder = place / "runs" / name.replace(" ", "-")
+    folder.mkdir(parents=True)
+    files = str(place / "files")
+    arguments = [a.replace("FILES", files) if isinstance(a, str) else a for a in case.arguments]
+    environment = ENVIRONMENT | {"SIMS_DATA_DIR": str(place / "data"), "OMP_NUM_THREADS": "1"} | dict(case.settings)
+    done = subprocess.run([*SIMS, *arguments], cwd=folder, env=environment, capture_output=True, timeout=120)
+    left = tuple(sorted(str(path.relative_to(folder)) for path in folder.rglob("*")))
+    return Answer(done.returncode, done.stdout.decode(), done.stderr.decode(), left)
+
+
+@pytest.fixture(scope="module")
+def before(place: Path) -> dict[Path, bytes]:
+    return contents(place / "files") | contents(place / "data")
+
+
+def contents(folder: Path) -> dict[Path, bytes]:
+    return {
+        path: path.read_bytes() if path.is_file() else b"" for path in folder.rglob("*") if "cache" not in path.parts
+    }
+
+
+@pytest.fixture(scope="module")
+def answers(place: Path, before: dict[Path, bytes]) -> dict[str, Answer]:
+    """Every command, as many at a time as there are cores."""
+    assert before
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return dict(zip(CASES, pool.map(lambda name: ask(place, CASES[name], name), CASES), strict=True))
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_mistake_is_answered_by_one_line_that_names_it(name: str, answers: dict[str, Answer]) -> None:
+    answer = answers[name]
+    assert answer.code == 2, answer
+    assert "Traceback" not in answer.error + answer.output
+    lines = answer.error.strip().splitlines()
+    said = lines[-1]
+    assert said.startswith(("sims: ", "Error: ")), answer.error
+    assert len(lines) == 1 or lines[0].startswith("Usage: "), answer.error
+    for words in CASES[name].says:
+        assert any(word in said for word in words.split("|")), f"{words!r} is not said: {said}"
+    assert len(said) < 700
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_mistake_leaves_no_file_behind(name: str, answers: dict[str, Answer]) -> None:
+    assert answers[name].left == ()
+
+
+def test_a_mistake_changes_no_file_of_the_user(answers: dict[str, Answer], place: Path, before) -> None:
+    assert len(answers) == len(CASES)
+    assert contents(place / "files") | contents(place / "data") == before
+
+
+def test_a_fault_of_ours_is_not_taken_for_a_mistake_of_the_user() -> None:
+    for fault in (ValueError, TypeError, KeyError, OSError, RuntimeError, AssertionError, UnicodeError, IndexError):
+        assert not issubclass(fault, USER_ERRORS)
+
+
+@pytest.mark.parametrize(
+    ("field", "changed"),
+    [
+        ("rooms", {"rooms": ("attic",)}),
+        ("backend", {"backend": "magic"}),
+        ("method", {"method": "guessing"}),
+        ("short_scripts", {"short_scripts": 13}),
+        ("seed", {"seed": -1}),
+        ("layout", {"layouts": (generate_room("study", 1),) * 2}),
+        ("layout", {"layouts": tuple(generate_room("study", seed) for seed in range(5))}),
+    ],
+)
+def test_a_request_names_the_field_that_is_out_of_bounds(field: str, changed: dict[str, object]) -> None:
+    with pytest.raises(USER_ERRORS, match=f"^{field}: "):
+        StoryRequest(THEME, **changed)  # type: ignore[arg-type]
+
+
+def test_furniture_of_another_kind_stands_in_and_this_is_said(tmp_path: Path) -> None:
+    given = generate_room("living_room", 3)
+    seats = [placed for placed in given.objects if placed.category == "armchair"]
+    changed = tuple(replace(placed, category="lounge_chair") if placed in seats else placed for placed in given.objects)
+    assert seats
+    request = StoryRequest("A person sits down on the armchair.", layouts=(replace(given, objects=changed),))
+    planned = Studio(cache=tmp_path).plan(request)
+    assert "armchair → lounge chair (class)" in " ".join(planned.stage.explain())
+    assert planned.stage.rooms_to_dicts()[0]["substitutions"]
