@@ -151,8 +151,8 @@ def _swing(
     yaw[after] = foot.start_yaw + way * float(rotations.wrap(foot.end_yaw - foot.start_yaw))
     planted[inside] = 0.0
     stride = float(np.clip(np.linalg.norm(foot.end - foot.start) / 0.9, 0.0, 1.0))
-    off, strike = np.radians(34) * stride, -np.radians(13) * stride
-    begin = max(window[0] - 0.42, -LEAD)
+    off, strike = np.radians(42) * stride, -np.radians(13) * stride
+    begin = max(window[0] - 0.30, -LEAD)
     rise = smooth((phase - begin) / (window[0] - begin))
     leaving = share <= 0
     pitch[leaving] = np.maximum(pitch[leaving], off * rise[leaving])

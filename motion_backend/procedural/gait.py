@@ -127,7 +127,7 @@ def _height(pose: Pose, steps: Steps, style: Walk, skeleton: Skeleton) -> Array:
     beat = -np.cos(2 * np.pi * steps.phase) * (1 if style.double > 0 else -1)
     carried = skeleton.standing_height * 0.993 - (style.crouch + 0.012) * skeleton.scale
     carried = carried + 0.05 * skeleton.scale * np.sin(np.radians(style.tiptoe)) + 0.01 * (style.tiptoe > 0)
-    wanted = carried + style.bounce * skeleton.scale * steps.moving * (beat - (0.3 if style.double > 0 else 0.0))
+    wanted = carried + style.bounce * skeleton.scale * steps.moving * (beat - (0.9 if style.double > 0 else 0.0))
     leg = -float(skeleton.offsets[INDEX["left_knee"], 1] + skeleton.offsets[INDEX["left_ankle"], 1]) * 0.994
     limits = []
     for index, name in enumerate(("left", "right")):
