@@ -1,0 +1,128 @@
+"""The seven themes made into stories in one warm process: how long each stage takes and how well the body did."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from benchmarks.figure import Figure
+from benchmarks.themes import SEED, THEMES
+from motion_backend.formats.glb import film_glb
+from motion_backend.metrics import summarise
+from planner_service.scripts.acting import act
+from planner_service.stories import Planned, Story, StoryRequest, Studio, judge, move
+from planner_service.storyboard import storyboard
+
+PLAN_MS, SPEED = 300.0, 30.0
+REACHED, CONTACT_CM, PEN_MEAN_CM, PEN_SHARE, SKATE = 95.0, 3.0, 2.0, 5.0, 5.0
+REPEATS = 3
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Timed:
+    """A story and what making it took, in seconds."""
+
+    name: str
+    story: Story
+    plans: tuple[float, ...]
+    """Theme to narrated story, each time it was done."""
+    acted: float
+    moved: float
+    judged: float
+
+    @property
+    def speed(self) -> float:
+        """How many times faster the motion is made than it plays."""
+        return self.story.motion.duration / self.moved
+
+
+def silent(stage: str, share: float) -> None:
+    """Progress that nobody watches."""
+
+
+def timed(work: Callable[[], T]) -> tuple[T, float]:
+    """What some work gives, and its seconds."""
+    started = time.perf_counter()
+    return work(), time.perf_counter() - started
+
+
+def make_stories(studio: Studio) -> list[Timed]:
+    """All seven stories; each is planned once untimed, so that every cache that a server would have is warm."""
+    return [_make(studio, name, StoryRequest(theme, seed=SEED)) for name, theme in THEMES.items()]
+
+
+def _make(studio: Studio, name: str, request: StoryRequest) -> Timed:
+    planned: Planned = studio.plan(request)
+    plans = tuple(timed(lambda: studio.plan(request))[1] for _ in range(REPEATS))
+    script, stage = planned.script, planned.stage
+    actions, acted = timed(lambda: act(script.keyframes, stage.places, planned.home, request.seed))
+    motions, moved = timed(lambda: move(planned.home, actions, request, silent))
+    story, judged = timed(lambda: judge(planned, actions, motions, silent))
+    return Timed(name, story, plans, acted, moved, judged)
+
+
+def speed_figures(made: Sequence[Timed]) -> list[Figure]:
+    """Planning and moving against their limits."""
+    plans = 1000 * np.array([seconds for one in made for seconds in one.plans])
+    slowest = min(made, key=lambda one: one.speed)
+    played = sum(one.story.motion.duration for one in made)
+    total = played / sum(one.moved for one in made)
+    runs = f"{len(made)} themes × {REPEATS}, warm"
+    return [
+        Figure("theme to narrated story, median", float(np.median(plans)), "ms", PLAN_MS, note=runs, digits=0),
+        Figure("theme to narrated story, p90", float(np.quantile(plans, 0.9)), "ms", PLAN_MS, note=runs, digits=0),
+        Figure("motion against playing it, all", total, "×", SPEED, "least", f"{played:.0f} s of motion", 0),
+        Figure("motion against playing it, slowest", slowest.speed, "×", SPEED, "least", slowest.name, 0),
+    ]
+
+
+def file_figures(made: Sequence[Timed], folder: Path) -> list[Figure]:
+    """Writing the film and the storyboard of the story with most keyframes."""
+    largest = max(made, key=lambda one: len(one.story.actions)).story
+    planned, count = largest.planned, len(largest.actions)
+    film, writing = timed(lambda: film_glb(planned.home, largest.motion))
+    targets = [action.object_id for action in largest.actions]
+    _, drawing = timed(
+        lambda: storyboard(planned.home, largest.motion, planned.script.keyframes, folder / "board.png", "", targets)
+    )
+    length = f"{largest.motion.duration:.0f} s of motion, {len(planned.home.rooms)} rooms"
+    return [
+        Figure("film.glb written", 1000 * writing, "ms", note=length, digits=0),
+        Figure("film.glb size", len(film) / 1e6, "MB", note=length),
+        Figure("storyboard for 20 keyframes", drawing / count * 20, "s", note=f"from {count} keyframes"),
+    ]
+
+
+def quality(report: dict[str, Any]) -> tuple[float, float, float, float, float]:
+    """Reached %, contact error cm, pen_mean cm, pen_share %, skate_ratio_loco % of a report."""
+    return (
+        100 * report["success"],
+        100 * (report["contact_error"] or 0.0),
+        100 * report["pen_mean"],
+        100 * report["pen_share"],
+        100 * report["skate_ratio_loco"],
+    )
+
+
+def quality_figures(made: Sequence[Timed]) -> list[Figure]:
+    """The worst story of the seven against each limit; the note tells the figure over all."""
+    reports = [one.story.report for one in made]
+    rows = np.array([quality(report) for report in reports])
+    whole = quality(summarise([figure for one in made for figure in one.story.figures]))
+    keyframes, reached = (sum(report[name] for report in reports) for name in ("keyframes", "reached"))
+    uncovered = sum(len(one.story.planned.script.uncovered) for one in made)
+    events = sum(len(one.story.planned.script.events) for one in made)
+    return [
+        Figure("events not covered", uncovered, "", 0, note=f"of {events}", digits=0),
+        Figure("keyframes reached", rows[:, 0].min(), "%", REACHED, "least", f"all: {reached} of {keyframes}"),
+        Figure("contact error", rows[:, 1].max(), "cm", CONTACT_CM, note=f"all: {whole[1]:.2f} cm", digits=2),
+        Figure("pen_mean", rows[:, 2].max(), "cm", PEN_MEAN_CM, note=f"all: {whole[2]:.2f} cm", digits=2),
+        Figure("pen_share", rows[:, 3].max(), "%", PEN_SHARE, note=f"all: {whole[3]:.2f} %", digits=2),
+        Figure("skate_ratio_loco", rows[:, 4].max(), "%", SKATE, note=f"all: {whole[4]:.2f} %", digits=2),
+    ]

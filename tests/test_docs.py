@@ -1,0 +1,106 @@
+"""What the documentation names is there: modules, paths, commands, links."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+import typer
+
+from planner_service.cli import app
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
+TOPS = ("prompts", "scene_graphs", "motion_backend", "planner_service", "benchmarks", "docs", "tests")
+PATH = re.compile(rf"(?<![\w/.-])(?:{'|'.join(TOPS)})/[\w./-]*\w(?:\.\w+)?/?")
+LINK = re.compile(r"\]\((?!https?:|#)([^)#\s]+)|src=\"(?!https?:)([^\"]+)\"")
+ids = [str(page.relative_to(ROOT)) for page in PAGES]
+
+
+def text_of(page: Path) -> str:
+    return page.read_text(encoding="utf-8")
+
+
+def code_of(page: Path) -> str:
+    """What stands in code blocks and between back-ticks."""
+    return "\n".join(re.findall(r"```.*?```|`[^`\n]+`", text_of(page), re.DOTALL))
+
+
+def commands() -> dict[str, list[str]]:
+    """Words after `sims` of every command there is, and its options."""
+    found = {}
+
+    def walk(command: object, words: str) -> None:
+        inner = getattr(command, "commands", {})
+        for name, child in inner.items():
+            walk(child, f"{words} {name}".strip())
+        if not inner:
+            found[words] = [option for parameter in command.params for option in parameter.opts]  # type: ignore[attr-defined]
+
+    walk(typer.main.get_command(app), "")
+    return found
+
+
+def test_every_module_is_named_in_the_architecture() -> None:
+    page = text_of(ROOT / "docs" / "architecture.md")
+    packages = ("prompts", "scene_graphs", "motion_backend", "planner_service", "benchmarks")
+    modules = [path.relative_to(ROOT).as_posix() for name in packages for path in (ROOT / name).rglob("*.py")]
+    missing = [module for module in modules if f"\n{module} " not in page]
+    assert not missing, "run python docs/tree.py"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=ids)
+def test_every_path_that_is_named_exists(page: Path) -> None:
+    missing = [path for path in PATH.findall(text_of(page)) if not (ROOT / path).exists()]
+    assert not missing
+
+
+@pytest.mark.parametrize("page", PAGES, ids=ids)
+def test_every_link_leads_somewhere(page: Path) -> None:
+    links = [first or second for first, second in LINK.findall(text_of(page))]
+    assert not [link for link in links if not (page.parent / link).exists()]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=ids)
+def test_every_make_target_that_is_named_exists(page: Path) -> None:
+    makefile = text_of(ROOT / "Makefile")
+    targets = set(re.findall(r"^`*make ([a-z]+)", code_of(page), re.MULTILINE))
+    assert targets <= set(re.findall(r"^([a-z]+):", makefile, re.MULTILINE))
+
+
+@pytest.mark.parametrize("page", PAGES, ids=ids)
+def test_every_sims_command_that_is_named_exists_with_its_options(page: Path) -> None:
+    known = commands()
+    for line in re.findall(r"\bsims ((?:story|scripts [a-z|]+|layouts [a-z|]+)\b[^\n`]*)", code_of(page)):
+        words = line.split()
+        name = words[0] if words[0] == "story" else " ".join(words[:2])
+        for one in expanded(name):
+            assert one in known, f"sims {line}"
+            options = set(re.findall(r"(?<!\S)--[a-z-]+", line))
+            assert options <= {*known[one], "--help"}, f"sims {line}"
+
+
+def expanded(name: str) -> list[str]:
+    """`scripts search|add` stands for two commands."""
+    first, _, rest = name.partition(" ")
+    return [f"{first} {word}".strip() for word in rest.split("|")]
+
+
+def test_the_readme_names_every_command() -> None:
+    readme = code_of(ROOT / "README.md")
+    assert not [name for name in commands() if f"sims {name}" not in readme]
+
+
+def test_the_python_of_the_readme_uses_names_that_exist() -> None:
+    (snippet,) = re.findall(r"```python\n(.*?)```", text_of(ROOT / "README.md"), re.DOTALL)
+    imports = "\n".join(line for line in snippet.splitlines() if line.startswith(("from ", "import ")))
+    compile(snippet, "README.md", "exec")
+    names: dict[str, object] = {}
+    exec(imports, names)
+    assert "Studio" in names
+
+
+def test_the_pictures_are_small() -> None:
+    for name, most in (("storyboard.png", 400_000), ("plan.png", 150_000)):
+        assert (ROOT / "docs" / "images" / name).stat().st_size <= most
