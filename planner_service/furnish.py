@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from planner_service.housing import housed
 from planner_service.scripts.acting import NEEDS, Place
 from planner_service.scripts.keyframe import LongScript, PlannedKeyframe
 from scene_graphs.distance import MOST_NODES, exact_distance
@@ -98,6 +99,8 @@ def furnish(
 
     `layouts` of the user's own are used instead of retrieved ones. Raises FurnishError naming what no room has.
     """
+    known = [room for room in map(canonical_room, rooms) if room in ROOM_TYPES]
+    script = housed(script, index.layouts, known or ROOM_TYPES)
     wanted = _room_types(script, rooms)
     uses = {room: _script_graphs(script, room, wanted) for room in wanted}
     merged = {room: merge([graph for _, graph in graphs]).graph for room, graphs in uses.items()}

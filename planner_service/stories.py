@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,7 @@ from motion_backend import metrics
 from motion_backend.motion import Action, BodyState, Character, Motion, MotionBackend, join
 from motion_backend.obstacles import Obstacles
 from planner_service.furnish import MOST_ROOMS, Furnished, furnish
-from planner_service.llm.protocol import LanguageModel
+from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts.acting import act
 from planner_service.scripts.composing import MOST, Request, compose
 from planner_service.scripts.keyframe import LongScript
@@ -153,11 +153,21 @@ class Studio:
         progress("furnish", 0.0)
         stage = furnish(script, self.index, rooms, request.layouts, request.seed)
         progress("narrate", 0.0)
-        if self.model is None:
-            told = narrate(stage.script, request.character, request.seed, stage.names)
-        else:
-            told = narrate_with_model(stage.script, request.character, self.model, stage.names)
+        told, notes = self._tell(stage, request)
+        if notes:
+            script = stage.script.model_copy(update={"repairs": (*stage.script.repairs, *notes)})
+            stage = replace(stage, script=script)
         return Planned(request, stage.script, stage, told)
+
+    def _tell(self, stage: Furnished, request: StoryRequest) -> tuple[Told, tuple[str, ...]]:
+        """The story as the model tells it, else as the rules do, with a note why."""
+        notes: tuple[str, ...] = ()
+        if self.model is not None:
+            try:
+                return narrate_with_model(stage.script, request.character, self.model, stage.names), ()
+            except ModelError as error:
+                notes = (f"told by rules: {error}",)
+        return narrate(stage.script, request.character, request.seed, stage.names), notes
 
     def make(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Story:
         """Theme to acted story."""

@@ -1,0 +1,133 @@
+"""A language model drives planning and telling through the whole house; one that talks nonsense is done without."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from pydantic import BaseModel
+
+from motion_backend.motion import Character
+from planner_service.llm.protocol import ModelError
+from planner_service.llm.scripted import Answer, ScriptedModel
+from planner_service.stories import Planned, StoryRequest, Studio
+
+THEME = "Sam reads a book on the sofa, hears bad news on the phone and lies down on the bed in tears."
+EVENTS = ("reads a book on the sofa", "hears bad news on the phone", "lies down on the bed in tears")
+TEXT = (
+    "Sam read the whole morning, and the light moved slowly over the wall. Then the telephone rang. After that there "
+    "was nothing left to do but to lie down and to weep until the evening came."
+)
+
+
+def answer_well(prompt: str, schema: type[BaseModel]) -> Answer:
+    """A model that reads what it is asked: three events, the last script offered for each, a text of its own."""
+    if schema.__name__ == "PlannedEvents":
+        moods = ("relaxed", "stressed", "sad")
+        return {"events": [{"text": text, "emotion": mood} for text, mood in zip(EVENTS, moods, strict=True)]}
+    if schema.__name__ == "Arrangement":
+        return {"choices": [{"event": event, "script": script} for event, script in chosen_in(prompt).items()]}
+    return {"title": "A Letter of Glass", "text": TEXT}
+
+
+def chosen_in(prompt: str) -> dict[int, str]:
+    """For every event the last script that is offered for it and not taken yet."""
+    chosen: dict[int, str] = {}
+    for block in re.split(r"^event (?=\d+:)", prompt, flags=re.MULTILINE)[1:]:
+        offered = re.findall(r"^  ([a-z0-9-]+) \[", block, flags=re.MULTILINE)
+        chosen[int(block.split(":")[0])] = [script for script in offered if script not in chosen.values()][-1]
+    return chosen
+
+
+def plan(model: ScriptedModel, cache: Path, **asked: object) -> Planned:
+    return Studio(cache=cache, model=model).plan(StoryRequest(THEME, **asked))  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("cache")
+
+
+def test_a_model_finds_the_events_arranges_the_scripts_and_tells_the_story(cache: Path) -> None:
+    model = ScriptedModel(answer_well, name="scripted-a")
+    planned = plan(model, cache)
+    script = planned.script
+    assert [call.schema for call in model.calls] == ["PlannedEvents", "Arrangement", "_ModelStory"]
+    assert tuple(event.text for event in script.events) == EVENTS
+    assert [event.emotion for event in script.events] == ["relaxed", "stressed", "sad"]
+    wanted = chosen_in(model.calls[1].prompt)
+    assert {r.event: r.script.id for r in script.short_scripts} == wanted
+    assert script.planner == "llm:scripted-a"
+    assert (planned.told.title, planned.told.text) == ("A Letter of Glass", TEXT)
+
+
+def test_a_model_changes_what_is_played(cache: Path) -> None:
+    by_model = plan(ScriptedModel(answer_well), cache)
+    by_rules = Studio(cache=cache).plan(StoryRequest(THEME))
+    assert by_rules.script.planner == "rules"
+    assert [r.script.id for r in by_model.script.short_scripts] != [r.script.id for r in by_rules.script.short_scripts]
+
+
+def test_the_theme_and_the_character_reach_the_model(cache: Path) -> None:
+    model = ScriptedModel(answer_well)
+    plan(model, cache, character=Character("Noor", "she"))
+    assert all(THEME in call.prompt for call in model.calls)
+    assert "Noor" in model.calls[-1].prompt
+
+
+@pytest.mark.parametrize(
+    "nonsense",
+    [
+        "As a model I like cats.",
+        "",
+        "{}",
+        '{"events": []}',
+        '{"events": [{"text": "x", "emotion": "beige"}]}',
+        "{" * 99,
+    ],
+)
+def test_a_model_that_talks_nonsense_is_done_without_and_this_is_said(nonsense: str, cache: Path) -> None:
+    planned = plan(ScriptedModel(lambda _prompt, _schema: nonsense), cache)
+    by_rules = Studio(cache=cache).plan(StoryRequest(THEME))
+    assert planned.script.planner == "rules"
+    assert planned.script.keyframes == by_rules.script.keyframes
+    assert planned.told == by_rules.told
+    said = " ".join(planned.script.repairs)
+    for stage in ("events found by rules", "short scripts arranged by rules", "told by rules"):
+        assert stage in said
+
+
+def test_a_lost_connection_costs_only_the_stage_it_happened_in(cache: Path) -> None:
+    def answer(prompt: str, schema: type[BaseModel]) -> Answer:
+        return ModelError("no connection") if schema.__name__ == "Arrangement" else answer_well(prompt, schema)
+
+    planned = plan(ScriptedModel(answer, name="half"), cache)
+    assert planned.script.planner == "llm:half, rules"
+    assert any("arranged by rules: no connection" in note for note in planned.script.repairs)
+    assert planned.told.title == "A Letter of Glass"
+
+
+def test_a_model_may_write_the_keyframes_itself(cache: Path) -> None:
+    keyframes = [
+        {"skill": "walk", "emotion": "sad", "caption": "walk slowly", "furniture": "bed"},
+        {"skill": "liedown", "emotion": "sad", "caption": "lie on the back", "furniture": "bed"},
+    ]
+
+    def answer(prompt: str, schema: type[BaseModel]) -> Answer:
+        return {"keyframes": keyframes} if schema.__name__ == "DirectScript" else answer_well(prompt, schema)
+
+    planned = plan(ScriptedModel(answer, name="writer"), cache, method="direct")
+    assert planned.script.method == "direct"
+    assert planned.script.planner == "llm:writer"
+    assert [keyframe.skill.value for keyframe in planned.script.keyframes] == ["loco", "liedown"]
+    assert {keyframe.room for keyframe in planned.script.keyframes} == {"bedroom"}
+
+
+def test_the_told_story_of_a_model_is_acted_out_and_filed(cache: Path, tmp_path: Path) -> None:
+    from planner_service.filing import write_story
+
+    made = Studio(cache=cache, model=ScriptedModel(answer_well, name="scripted-a")).make(StoryRequest(THEME, seed=3))
+    write_story(made, tmp_path)
+    assert "Planner: llm:scripted-a" in (tmp_path / "story.md").read_text(encoding="utf-8")
+    assert '"planner": "llm:scripted-a"' in (tmp_path / "report.json").read_text(encoding="utf-8")

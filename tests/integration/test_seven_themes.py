@@ -1,0 +1,80 @@
+"""The seven themes of the paper (SIMS 8.2, Tables 10, 11, 13) become stories that cover their events, and are acted."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from motion_backend.language import minilm
+from motion_backend.motion import Skill
+from planner_service.stories import Story, StoryRequest, Studio
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "planner_service"))
+from themes import THEMES
+
+pytestmark = pytest.mark.skipif(
+    minilm.weights_folder() is None or not minilm.torch_is_installed(),
+    reason="the sentence encoder is not installed: make test installs it",
+)
+SEED = 7
+NAMES = [theme.name for theme in THEMES]
+
+
+@pytest.fixture(scope="module")
+def stories(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Story]:
+    studio = Studio(cache=tmp_path_factory.mktemp("cache"))
+    return {theme.name: studio.make(StoryRequest(theme.text, seed=SEED)) for theme in THEMES}
+
+
+def total(stories: dict[str, Story], name: str, skills: tuple[Skill, ...] = tuple(Skill)) -> float:
+    """Mean of a figure over the seconds of all seven."""
+    figures = [figure for story in stories.values() for figure in story.figures if figure.skill in skills]
+    return sum(getattr(f, name) * f.seconds for f in figures) / sum(f.seconds for f in figures)
+
+
+def test_the_sentences_were_compared_by_meaning(stories: dict[str, Story]) -> None:
+    assert {story.planned.script.encoder for story in stories.values()} == {"all-MiniLM-L6-v2"}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_theme_is_covered(name: str, stories: dict[str, Story]) -> None:
+    script = stories[name].planned.script
+    assert script.uncovered == ()
+    assert {retrieved.event for retrieved in script.short_scripts} == set(range(len(script.events)))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_keyframe_of_a_theme_is_at_something_or_on_the_floor(name: str, stories: dict[str, Story]) -> None:
+    story = stories[name]
+    known = {placed.id for placed in story.planned.home.objects} | {None, "floor"}
+    assert {action.object_id for action in story.actions} <= known
+    assert not any(match.missing for match in story.planned.stage.matches)
+
+
+def test_at_least_95_percent_of_the_keyframes_are_reached(stories: dict[str, Story]) -> None:
+    figures = [(name, figure) for name, story in stories.items() for figure in story.figures]
+    missed = [f"{name} {f.keyframe} {f.skill}: {f.reason or f.contact_error}" for name, f in figures if not f.reached]
+    assert len(missed) <= 0.05 * len(figures), missed
+
+
+def test_contacts_are_within_3_centimetres(stories: dict[str, Story]) -> None:
+    errors = [f.contact_error for story in stories.values() for f in story.figures if f.contact_error is not None]
+    assert sum(errors) / len(errors) <= 0.03
+    for name, story in stories.items():
+        assert story.report["contact_error"] <= 0.03, name
+
+
+def test_the_body_stays_out_of_the_furniture(stories: dict[str, Story]) -> None:
+    assert total(stories, "pen_mean") <= 0.02
+    assert total(stories, "pen_share") <= 0.05
+
+
+def test_feet_that_walk_do_not_skate(stories: dict[str, Story]) -> None:
+    assert total(stories, "skate_ratio", (Skill.LOCO,)) <= 0.05
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_joint_jumps_between_two_segments(name: str, stories: dict[str, Story]) -> None:
+    assert stories[name].report["seam_jump"] < 0.02
