@@ -72,7 +72,9 @@ def _writing(folder: Path) -> Iterator[Path]:
 
 
 def _write_storyboard(story: Story, path: Path) -> Path:
-    planned, targets = story.planned, [action.object_id for action in story.actions]
+    planned, known = story.planned, {placed.id for placed in story.planned.home.objects}
+    # What is done on the floor has no piece of furniture to outline.
+    targets = [action.object_id if action.object_id in known else None for action in story.actions]
     return storyboard(planned.home, story.motion, planned.script.keyframes, path, planned.told.title, targets)
 
 

@@ -95,7 +95,8 @@ class Walkable:
         centers = self._centers
         inside = np.flatnonzero(shapely.contains_xy(outline, centers[:, 0], centers[:, 1]))
         if not len(inside):
-            raise NoPath(f"room {room} ({self.home.rooms[room].layout.id!r}) has no walkable floor")
+            name = self.home.rooms[room].layout.id
+            raise NoPath(f"room {room} ({name!r}) has no walkable floor: too small or too full; take another")
         main = np.bincount(self._regions).argmax()
         candidates = connected if len(connected := inside[self._regions[inside] == main]) else inside
         clear = self.field.distances[tuple(self._cells[candidates].T)]

@@ -10,13 +10,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scene_graphs.homes import Home
-from scene_graphs.navigation import Walkable
 
 from motion_backend.motion import Action, Skill
 from planner_service.scripts.checking import hand_of
 from planner_service.scripts.keyframe import Keyframe
+from scene_graphs.homes import Home
 from scene_graphs.layouts import Placed
+from scene_graphs.navigation import Walkable
 from scene_graphs.surfaces import Spot, floor_spot, spots
 
 NEEDS = {Skill.SITDOWN: "sit", Skill.LIEDOWN: "lie", Skill.TOUCH: "touch"}
@@ -47,7 +47,7 @@ def act(keyframes: Sequence[Keyframe], places: Sequence[Place], home: Home, seed
     drafts: list[Action] = []
     for index, (keyframe, place) in enumerate(zip(keyframes, places, strict=True)):
         drafts.append(stage.contact(index, keyframe, place))
-    return tuple(stage.walks(drafts, keyframes, places))
+    return tuple(stage.walks(drafts, places))
 
 
 class _Stage:
@@ -85,7 +85,8 @@ class _Stage:
         found = self._reachable(placed, need)
         if not found:
             raise UnreachableError(
-                f"keyframe {index}: no spot to {need} on {place.object_id} ({placed.category}) that can be walked to"
+                f"keyframe {index}: no spot to {need} on {place.object_id} ({placed.category}) that can be walked to; "
+                "clear the way to it, or choose another room (--rooms, --layout)"
             )
         if need == "touch":
             wanted = height_of(keyframe.caption)
@@ -132,10 +133,10 @@ class _Stage:
             if best is not None and best[0] > 0.35:
                 break
         if best is None or best[0] <= 0.0:
-            raise UnreachableError(f"room {room} has no free floor to {need} on")
+            raise UnreachableError(f"room {room} has no free floor to {need} on; choose another (--rooms, --layout)")
         return best[1]
 
-    def walks(self, drafts: list[Action], keyframes: Sequence[Keyframe], places: Sequence[Place]) -> list[Action]:
+    def walks(self, drafts: list[Action], places: Sequence[Place]) -> list[Action]:
         """Give every walk its goal: where the next contact with the same thing begins, beside a thing, or anywhere."""
         done: list[Action] = []
         at: Point | None = None

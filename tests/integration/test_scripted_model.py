@@ -9,6 +9,7 @@ import pytest
 from pydantic import BaseModel
 
 from motion_backend.motion import Character
+from planner_service.filing import write_story
 from planner_service.llm.protocol import ModelError
 from planner_service.llm.scripted import Answer, ScriptedModel
 from planner_service.stories import Planned, StoryRequest, Studio
@@ -125,9 +126,26 @@ def test_a_model_may_write_the_keyframes_itself(cache: Path) -> None:
 
 
 def test_the_told_story_of_a_model_is_acted_out_and_filed(cache: Path, tmp_path: Path) -> None:
-    from planner_service.filing import write_story
-
     made = Studio(cache=cache, model=ScriptedModel(answer_well, name="scripted-a")).make(StoryRequest(THEME, seed=3))
     write_story(made, tmp_path)
     assert "Planner: llm:scripted-a" in (tmp_path / "story.md").read_text(encoding="utf-8")
     assert '"planner": "llm:scripted-a"' in (tmp_path / "report.json").read_text(encoding="utf-8")
+
+
+def test_a_story_on_the_floor_needs_no_furniture_and_is_filed(cache: Path, tmp_path: Path) -> None:
+    keyframes = [
+        {"skill": "loco", "emotion": "tired", "caption": "walk wearily", "furniture": "floor"},
+        {"skill": "sitdown", "emotion": "tired", "caption": "sit cross-legged", "furniture": "floor"},
+        {"skill": "standup", "emotion": "tired", "caption": "stand up", "furniture": "floor"},
+        {"skill": "liedown", "emotion": "tired", "caption": "lie on the back", "furniture": "floor"},
+    ]
+
+    def answer(prompt: str, schema: type[BaseModel]) -> Answer:
+        return {"keyframes": keyframes} if schema.__name__ == "DirectScript" else answer_well(prompt, schema)
+
+    request = StoryRequest("A tired person lies on the floor.", method="direct")
+    made = Studio(cache=cache, model=ScriptedModel(answer)).make(request)
+    assert [figure.reached for figure in made.figures] == [True] * len(made.figures)
+    assert {action.object_id for action in made.actions} <= {None, "floor"}
+    files = write_story(made, tmp_path)
+    assert all(file.stat().st_size for file in files)
