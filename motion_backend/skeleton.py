@@ -1,4 +1,4 @@
-"""The body's skeleton: 22 joints with SMPL's names and parents, and offsets of our own (notes: fractions of height).
+"""The body's skeleton: 22 joints with SMPL's names and parents, and offsets of our own.
 
 Rest pose is a T-pose facing +Z: Y up, left is +X. Offsets are metres from the parent joint.
 """

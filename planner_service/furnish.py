@@ -7,19 +7,18 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from planner_service.housing import housed
+from planner_service.placing import MissingError, Placing, StandIn, usable_offers
 from planner_service.scripts.acting import NEEDS, Place
 from planner_service.scripts.keyframe import LongScript, PlannedKeyframe
 from scene_graphs.distance import MOST_NODES, exact_distance
-from scene_graphs.furniture import ROOM_TYPES, Furniture, canonical, canonical_room, display_name
+from scene_graphs.furniture import ROOM_TYPES, canonical_room, display_name
 from scene_graphs.graph import FurnitureGraph, graph_from_layout, graph_from_uses
-from scene_graphs.grounding import Grounding, ground_script
 from scene_graphs.homes import Home, home_from_layouts
 from scene_graphs.layouts import Layout
 from scene_graphs.merging import merge
 from scene_graphs.retrieval import LayoutIndex, retrieve_rooms
 
 MOST_ROOMS = 4
-_DOING = {"sit": "sit on", "lie": "lie on", "touch": "touch"}
 
 
 class FurnishError(ValueError):
@@ -36,7 +35,7 @@ class RoomMatch:
     distance: int
     exact: bool
     substitutions: tuple[tuple[str, str, str], ...]
-    """(asked, given, level) where the room has something else than asked: same class or same group."""
+    """(asked, given, level) where the room has something else than asked: same class, group or, at last, affordance."""
     missing: tuple[str, ...]
 
 
@@ -112,13 +111,13 @@ def furnish(
     unique = list(dict.fromkeys([layout for layout, _ in chosen.values()] + list(layouts)))
     home = home_from_layouts(unique, seed)
     number = {room: unique.index(layout) for room, (layout, _) in chosen.items()}
-    grounded = {
-        (room, script_number): ground_script(graph, home, number[room])
-        for room, graphs in uses.items()
-        for script_number, graph in graphs
-    }
-    places = tuple(_place(i, k, number, grounded, wanted) for i, k in enumerate(script.keyframes))
-    return Furnished(script, home, _matches(unique, chosen), places)
+    # Our own rooms were checked when they were made; in a user's room a chair may stand where nobody gets to.
+    placing = Placing(home, uses, number, usable_offers(home) if layouts else {})
+    try:
+        places = placing.places(script, [_room_of(keyframe, wanted) for keyframe in script.keyframes])
+    except MissingError as error:
+        raise FurnishError(str(error)) from error
+    return Furnished(script, home, _matches(unique, chosen, placing.said()), places)
 
 
 def _room_types(script: LongScript, rooms: Sequence[str]) -> list[str]:
@@ -183,39 +182,16 @@ def _explained(room: str, graph: FurnitureGraph, layout: Layout) -> RoomMatch:
     return RoomMatch(room, layout.id, match.cost, match.exact, substitutions, missing)
 
 
-def _matches(unique: Sequence[Layout], chosen: Chosen) -> tuple[RoomMatch, ...]:
+def _matches(unique: Sequence[Layout], chosen: Chosen, stand_ins: Sequence[StandIn]) -> tuple[RoomMatch, ...]:
     """One match a room of the home, in the home's order; a room nothing is played in matches trivially."""
     matches = []
-    for layout in unique:
+    for number, layout in enumerate(unique):
         played = [match for given, match in chosen.values() if given is layout]
         first = played[0] if played else RoomMatch(layout.room_type, layout.id, 0, True, (), ())
         # A room of the user's may stand for several types: what is missed or replaced in any of them is said.
         substitutions = tuple(dict.fromkeys(s for match in played for s in match.substitutions))
-        missing = tuple(dict.fromkeys(name for match in played for name in match.missing))
+        served = {s.asked: s.given for s in stand_ins if s.room == number}
+        substitutions += tuple((asked, given, "affordance") for asked, given in served.items())
+        missing = tuple(dict.fromkeys(n for match in played for n in match.missing if n not in served))
         matches.append(replace(first, substitutions=substitutions, missing=missing))
     return tuple(matches)
-
-
-Grounded = dict[tuple[str, int | None], Grounding]
-
-
-def _place(
-    index: int, keyframe: PlannedKeyframe, number: dict[str, int], grounded: Grounded, wanted: Sequence[str]
-) -> Place:
-    room = _room_of(keyframe, wanted)
-    if keyframe.on_floor:
-        return Place(number[room])
-    word, instance = keyframe.piece
-    node = Furniture(canonical(word), instance)
-    object_id = grounded[room, keyframe.short_script].objects.get(node)
-    if object_id is None:
-        # A connecting keyframe speaks of what the script before or after it uses.
-        own = (g.objects[node] for (r, _), g in grounded.items() if r == room and node in g.objects)
-        object_id = next(own, None)
-    if object_id is None and keyframe.skill in NEEDS:
-        lacks = f"the {room.replace('_', ' ')} has no {display_name(word)} to {_DOING[NEEDS[keyframe.skill]]}"
-        raise FurnishError(
-            f"keyframe {index}: {lacks}, nor anything that could stand for it; choose another room (--rooms, --layout) "
-            "or theme"
-        )
-    return Place(number[room] if object_id is None else int(object_id.split("/")[0]), object_id)

@@ -146,7 +146,7 @@ class Layout:
 
 
 def layout_to_dict(layout: Layout) -> dict[str, Any]:
-    """The native JSON row of a layout (DESIGN section 2); `layout_from_dict` is its exact inverse."""
+    """The native JSON row of a layout (docs/architecture.md); `layout_from_dict` is its exact inverse."""
     return {
         "id": layout.id,
         "source": layout.source,

@@ -122,7 +122,7 @@ def _to_motion(body: Body, action: Action, reason: str) -> Motion:
 
 
 def contact_goals(action: Action) -> tuple[ContactGoal, ...]:
-    """Where joints should be: surface point + normal × that joint's rest offset (DESIGN: contact goals)."""
+    """Where joints should be: surface point + normal × that joint's rest offset."""
     rest = {Skill.SITDOWN: SEATED_REST, Skill.LIEDOWN: LYING_REST, Skill.TOUCH: HAND_REST}.get(action.skill)
     if action.spot is None or rest is None:
         return ()

@@ -26,6 +26,8 @@ LAST_HOLD = 1.5
 """Seconds more for the last keyframe."""
 PACING = 1.5
 """A wandering walk goes at least this far, where the room allows it (metres)."""
+STEP = 0.35
+"""From free floor to a standing point is at most one step (metres)."""
 Point = tuple[float, float]
 
 
@@ -108,15 +110,25 @@ class _Stage:
     def _reachable(self, placed: Placed, need: str) -> list[Spot]:
         """Spots whose standing point can be walked to, best first: as they come, the nearer side first when lying."""
         start = self.at or self.walkable.random_point(np.random.default_rng(0), 0)
-        found = [
-            s for s in spots(placed, need) if self._free(s.standing) and self.walkable.reachable(start, s.standing)
-        ]
+        found = [s for s in spots(placed, need) if can_stand(self.walkable, start, s)]
+        # A seat with a laptop on it is taken.
+        found.sort(key=self._cluttered)
         if need == "lie":
-            found.sort(key=lambda s: round(float(np.hypot(s.standing[0] - start[0], s.standing[1] - start[1])), 1))
+            found.sort(
+                key=lambda s: (
+                    self._cluttered(s),
+                    round(float(np.hypot(s.standing[0] - start[0], s.standing[1] - start[1])), 1),
+                )
+            )
         return found
 
-    def _free(self, point: Point) -> bool:
-        return self.walkable.nearest_free(point, within=0.35) is not None
+    def _cluttered(self, spot: Spot) -> int:
+        """How many things lie where a body would."""
+        if spot.affordance == "touch":
+            return 0
+        reach = 0.35 if spot.affordance == "sit" else 0.8
+        things = (placed.position for placed in self.home.objects if placed.parent == spot.object_id)
+        return sum(np.hypot(x - spot.point[0], z - spot.point[2]) < reach for x, _, z in things)
 
     def _on_floor(self, need: str, room: int) -> Spot:
         """The freest place of a room to sit or lie on the floor, and the freest direction there."""
@@ -177,6 +189,11 @@ class _Stage:
             )
 
         return max(points, key=worth)
+
+
+def can_stand(walkable: Walkable, start: Point, spot: Spot) -> bool:
+    """Whether the standing point of a spot is nearly free and can be walked to."""
+    return walkable.nearest_free(spot.standing, within=STEP) is not None and walkable.reachable(start, spot.standing)
 
 
 def height_of(caption: str) -> str:

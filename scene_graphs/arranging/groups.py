@@ -1,4 +1,4 @@
-"""Groups of furniture that belong together, with the space people need around them (notes: scene-formats 10).
+"""Groups of furniture that belong together, with the space people need around them.
 
 Sizes are drawn around the medians of real rooms. Chairs stand pulled out, so that one can step between seat and table.
 """

@@ -1,4 +1,4 @@
-"""The parts of every category of furniture, scaled to a piece's box (notes: scene-formats 10)."""
+"""The parts of every category of furniture, scaled to a piece's box."""
 
 from __future__ import annotations
 

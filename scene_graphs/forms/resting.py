@@ -1,4 +1,4 @@
-"""Forms of what one sits or lies on: chairs, stools, sofas, beds (notes: scene-formats 10).
+"""Forms of what one sits or lies on: chairs, stools, sofas, beds.
 
 Seats end where their back and arms begin, so a seat's own rectangle is free to sit on.
 """
