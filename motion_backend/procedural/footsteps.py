@@ -58,7 +58,12 @@ def plan_phase(route: Route, style: Walk, skeleton: Skeleton, fps: int) -> tuple
     turning = np.abs(np.gradient(route.heading)) * fps
     usual = np.sqrt(np.maximum(route.speed, 0.05) / (0.36 * skeleton.scale**1.5)) / style.stride
     longest = route.speed / (min(0.68 * style.stride, 0.76) * skeleton.scale)
-    rate = np.maximum.reduce([usual, turning / 0.72, longest, np.full_like(usual, 1.25)])
+    # A turn takes a step every half right angle or so, a spin fewer: nobody trips along at five steps a second.
+    rate = np.maximum.reduce([usual, np.minimum(turning / 0.85, 2.6), longest, np.full_like(usual, 1.25)])
+    # The first steps are short: the foot that stays behind must not be left too far.
+    walked = np.cumsum(route.speed) / fps
+    starting = np.clip((0.55 * skeleton.scale - walked) / 0.25, 0.0, 1.0)
+    rate = np.maximum(rate, np.minimum(route.speed / (0.30 * skeleton.scale), 3.2) * starting)
     # A third of a step goes by before the first foot lifts: the weight shifts and the heel rises.
     phase = np.cumsum(rate) / fps - LEAD
     total = np.ceil(phase[-1] + 0.5)
@@ -110,7 +115,8 @@ def plan_steps(start: Pose, route: Route, phase: Array, style: Walk, skeleton: S
         target = home_ankle(middle, route.heading[at], index, style.width, skeleton)
         toed_out = float(route.heading[at]) + (1 if index == 0 else -1) * 0.10
         before = max(int(np.searchsorted(phase, window[0])) - 1, 0)
-        foot = _Swing(ankles[before, index].copy(), target, float(yaw[before, index]), toed_out)
+        side = 1 if index == 0 else -1
+        foot = _Swing(ankles[before, index].copy(), target, float(yaw[before, index]), toed_out, side)
         amount = np.maximum(amount, foot.size * ((phase > k) & (phase <= k + 1)))
         _swing(foot, phase, window, style, (ankles[:, index], yaw[:, index], pitch[:, index], planted[:, index]))
     ease = smooth(phase + LEAD) * smooth((phase[-1] - phase) / 1.5)
@@ -124,6 +130,16 @@ class _Swing:
     end: Array
     start_yaw: float
     end_yaw: float
+    side: int
+    """+1 left, -1 right."""
+
+    @property
+    def bow(self) -> Array:
+        """How far outwards the foot goes round the other leg: not at all straight ahead, most in a turn. (3,)."""
+        turn = float(rotations.wrap(self.end_yaw - self.start_yaw))
+        yaw = self.start_yaw + 0.5 * turn
+        outward = self.side * np.array([np.cos(yaw), 0.0, -np.sin(yaw)])
+        return np.asarray(0.055 * min(abs(turn) / 0.7, 1.0) * outward)
 
     @property
     def size(self) -> float:
@@ -145,7 +161,8 @@ def _swing(
     u = np.clip(share[after], 0, 1)
     way = smooth(u)
     ankle[after] = foot.start + way[:, None] * (foot.end - foot.start)
-    height = style.clearance * (0.35 + 0.65 * foot.size)
+    ankle[after] += np.sin(np.pi * u)[:, None] * foot.bow
+    height = style.clearance * (0.55 + 0.45 * foot.size)
     # Up early and down late, so that the ball of the foot is clear of the floor whenever it travels fast.
     ankle[after, 1] += height * np.sin(np.pi * u) ** 0.55 * (1 - 0.25 * u)
     yaw[after] = foot.start_yaw + way * float(rotations.wrap(foot.end_yaw - foot.start_yaw))

@@ -13,13 +13,15 @@ from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.motion import FPS
-from motion_backend.procedural.footsteps import Steps, plan_phase, plan_steps, yaw_of
+from motion_backend.procedural.footsteps import LEAD, Steps, plan_phase, plan_steps, yaw_of
 from motion_backend.procedural.pose import Pose, settle_from, smooth
 from motion_backend.procedural.route import Route, plan_route
 from motion_backend.procedural.styles import ARMS, Walk, arm_arrays
 from motion_backend.skeleton import INDEX, Skeleton
 
 Array = NDArray[np.float64]
+SPIN_RATE = 2.8
+"""How fast a body spins about itself (radians a second)."""
 
 
 def walk(
@@ -27,6 +29,7 @@ def walk(
 ) -> Pose:
     """Walk from a standing pose along a path (N, 2), ending on both feet at its end, facing `end_yaw` if given."""
     fps = FPS
+    style = replace(style, release=end_yaw is not None)
     route = plan_route(path, float(yaw_of(start.hips)), end_yaw, style.speed * skeleton.scale, fps)
     if style.spin:
         route = _with_spin(route, style.spin, fps)
@@ -40,9 +43,13 @@ def walk(
 
 def _with_spin(route: Route, turns: float, fps: int) -> Route:
     """Whole turns on the spot, half-way along where the body is fastest or at the end of a short way."""
-    frames = int(turns * 2 * np.pi / 4.2 * fps)
+    frames = int((turns * 2 * np.pi / SPIN_RATE + 0.4) * fps)
     at = len(route.heading) - 1
-    angle = 2 * np.pi * turns * smooth(np.arange(1, frames + 1) / frames)
+    # Even turning with a short ease at both ends: a peak would take more steps than feet can make.
+    share = np.arange(1, frames + 1) / frames
+    ease = 0.4 * fps / frames
+    angle = np.cumsum(smooth(share / ease) * smooth((1 - share) / ease))
+    angle = 2 * np.pi * turns * angle / angle[-1]
     return Route(
         np.concatenate([route.position, np.repeat(route.position[at : at + 1], frames, axis=0)]),
         np.concatenate([route.heading, route.heading[at] + angle]),
@@ -90,7 +97,7 @@ def _carry(start: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skele
     ahead = np.concatenate([route.heading[12:], np.full(min(12, frames), route.heading[-1])])[:frames]
     gaze = np.clip(ahead - route.heading, -0.6, 0.6) + 0.7 * hip_turn
     nod = np.radians(bearing.head) - 0.1 * np.clip(route.speed - 1.2, 0, 1) + 0.12 * unsteady
-    arms, elbows = _swinging(style, steps, FPS)
+    arms, elbows = _swinging(style, steps)
     pose = Pose(
         pelvis=np.stack([ground[:, 0], np.zeros(frames), ground[:, 1]], axis=1),
         hips=hips,
@@ -125,10 +132,18 @@ def _height(pose: Pose, steps: Steps, style: Walk, skeleton: Skeleton) -> Array:
 
     pelvis = pose.pelvis.copy()
     beat = -np.cos(2 * np.pi * steps.phase) * (1 if style.double > 0 else -1)
-    carried = skeleton.standing_height * 0.993 - (style.crouch + 0.012) * skeleton.scale
-    carried = carried + 0.05 * skeleton.scale * np.sin(np.radians(style.tiptoe)) + 0.01 * (style.tiptoe > 0)
-    wanted = carried + style.bounce * skeleton.scale * steps.moving * (beat - (0.9 if style.double > 0 else 0.0))
-    leg = -float(skeleton.offsets[INDEX["left_knee"], 1] + skeleton.offsets[INDEX["left_ankle"], 1]) * 0.994
+    at_rest = skeleton.standing_height * 0.998 - (0.004 + 0.3 * style.crouch) * skeleton.scale
+    walking = skeleton.standing_height * 0.993 - (style.crouch + 0.012) * skeleton.scale
+    # The last step ends upright: legs straighten as the feet come together.
+    ending = smooth((steps.phase[-1] - steps.phase) / 0.8)
+    under_way = np.clip(1.6 * steps.moving, 0.0, 1.0) * ending
+    carried = at_rest + under_way * (walking - at_rest)
+    lifted = 0.05 * skeleton.scale * np.sin(np.radians(style.tiptoe)) + 0.01 * (style.tiptoe > 0)
+    carried = carried + lifted * smooth(steps.phase + LEAD) * smooth((steps.phase[-1] - steps.phase) / 1.5)
+    quick = np.clip(np.hypot(*np.gradient(pelvis[:, [0, 2]], axis=0).T) * FPS / 0.8, 0.35, 1.0)
+    bounce = style.bounce * skeleton.scale * steps.moving * quick * ending
+    wanted = carried + bounce * (beat - (0.9 if style.double > 0 else 0.0))
+    leg = -float(skeleton.offsets[INDEX["left_knee"], 1] + skeleton.offsets[INDEX["left_ankle"], 1]) * 0.998
     limits = []
     for index, name in enumerate(("left", "right")):
         hip = rotations.rotate(pose.hips, skeleton.offsets[INDEX[f"{name}_hip"]])
@@ -143,15 +158,15 @@ def _height(pose: Pose, steps: Steps, style: Walk, skeleton: Skeleton) -> Array:
     return pelvis
 
 
-def _spread(frames: int, arms: str, fps: int) -> Array:
-    """Share of an arm pose that takes room: arms open once the body is under way and come down before it arrives."""
-    if arms not in ("open", "balance"):
-        return np.ones(frames)
-    at = np.arange(frames) / fps
-    return smooth((at - 0.25) / 0.8) * smooth((at[-1] - at) / 0.7)
+def _spread(frames: int, arms: str, release: bool) -> Array:
+    """Share of an arm pose: open arms wait until the body is under way, and all come down where something is begun."""
+    at = np.arange(frames) / FPS
+    takes_room = arms in ("open", "balance")
+    begun = smooth((at - 0.25) / 0.8) if takes_room else np.ones(frames)
+    return begun * smooth((at[-1] - at) / 0.7) if takes_room or release else begun
 
 
-def _swinging(style: Walk, steps: Steps, fps: int) -> tuple[Array, Array]:
+def _swinging(style: Walk, steps: Steps) -> tuple[Array, Array]:
     """Wrists and elbow directions: arms that hang swing against the legs, others keep their pose. (T, 2, 3) each."""
     frames = len(steps.phase)
     fixed, poles = arm_arrays(*style.bearing.arms)
@@ -170,12 +185,13 @@ def _swinging(style: Walk, steps: Steps, fps: int) -> tuple[Array, Array]:
             wrists[:, index] *= np.minimum(1, 0.985 / np.linalg.norm(wrists[:, index], axis=1))[:, None]
         else:
             wrists[:, index, 2] += 0.02 * beat
-            spread = _spread(frames, style.bearing.arms[index], fps)
+            spread = _spread(frames, style.bearing.arms[index], style.release)
             hang = np.asarray(ARMS["hang"].wrist) * [side, 1, 1]
             between = hang + spread[:, None] * (wrists[:, index] - hang)
             length = np.linalg.norm(hang) + spread * (np.linalg.norm(wrists[:, index], axis=1) - np.linalg.norm(hang))
             wrists[:, index] = rotations.normalize(between) * length[:, None]
         if style.tap:
-            beating = np.maximum(np.sin(2 * np.pi * 1.6 * np.arange(frames) / fps + (0 if side > 0 else np.pi)), 0)
+            beating = np.maximum(np.sin(2 * np.pi * 1.6 * np.arange(frames) / FPS + (0 if side > 0 else np.pi)), 0)
+            wrists[:, index] += [0.14 * side, 0.06 * side, 0.02]
             wrists[:, index, 2] += 0.16 * beating
     return wrists, elbows

@@ -23,7 +23,7 @@ from motion_backend.procedural.stances import (
     standing,
     upright,
 )
-from motion_backend.procedural.styles import ARMS, Bearing, Lying, Seated
+from motion_backend.procedural.styles import Bearing, Lying, Seated, arm_arrays
 from motion_backend.skeleton import Skeleton
 
 Array = NDArray[np.float64]
@@ -45,9 +45,9 @@ def _lower(start: Pose, seat: Seat, bearing: Bearing, skeleton: Skeleton) -> Pos
     pace = 1 / bearing.tempo
     depth = float(np.clip((start.pelvis[1] - seat.pelvis[1]) / (0.4 * skeleton.scale), 0.6, 2.0))
     drop, back = seat.pelvis[1] - start.pelvis[1], seat.pelvis - start.pelvis
-    arms = start.arms.copy()
-    arms[:, 2] += 0.35
-    arms[:, 1] *= 0.86
+    # Whatever the arms were doing, they come forward for balance.
+    arms, elbows = arm_arrays("hang", "hang")
+    arms = arms * [1.0, 0.86, 1.0] + [0.0, 0.0, 0.35]
     forward = 0.30 + 0.16 * depth
     hinge = replace(
         start,
@@ -56,6 +56,7 @@ def _lower(start: Pose, seat: Seat, bearing: Bearing, skeleton: Skeleton) -> Pos
         spine=bend(0.5 * forward),
         head=bend(0.1),
         arms=0.5 * (start.arms + arms),
+        elbows=elbows,
     )
     low = replace(
         hinge,
@@ -183,7 +184,9 @@ def _half_way(landed: Pose, seat: Seat, bed: Bed, skeleton: Skeleton) -> Pose:
     arms, elbows = landed.arms.copy(), landed.elbows.copy()
     mirror = np.array([1.0 if side == 0 else -1.0, 1.0, 1.0])
     arms[side], elbows[side] = np.array([0.45, -0.75, -0.2]) * mirror, np.array([0.6, 0.0, -1.0]) * mirror
-    arms[1 - side] = np.array(ARMS["belly"].wrist) * [1.0 if side == 1 else -1.0, 1.0, 1.0]
+    # The other arm is held out before the body, clear of the thighs that come up.
+    arms[1 - side] = np.array([-0.20, -0.42, 0.52]) * mirror
+    elbows[1 - side] = np.array([-0.45, -0.5, -0.6]) * mirror
     return replace(
         landed,
         pelvis=pelvis,
@@ -213,7 +216,7 @@ def _legs_over(middle: Pose, end: Pose, bed: Bed, skeleton: Skeleton) -> Pose:
         ankles=pelvis + rotations.rotate(hips, local),
         feet=np.repeat(rotations.compose(hips, rotations.rotvec_to_quat(np.array([0.4, 0, 0])))[None], 2, axis=0),
         knees=np.stack([rotations.rotate(hips, np.array([0.1 * s, 0.1, 1.0])) for s in (1, -1)]),
-        arms=0.5 * (middle.arms + end.arms),
+        arms=0.7 * middle.arms + 0.3 * end.arms,
     )
 
 

@@ -111,7 +111,7 @@ def _lying_arms(style: Lying) -> tuple[Array, Array]:
         return wrists, elbows
     below, above = (0, 1) if style.side == "left" else (1, 0)
     inward = np.array([-1.0 if above == 0 else 1.0, 1.0, 1.0])
-    wrists[below], elbows[below] = (0.0, 0.22, 0.55), (0.0, -0.9, 0.5)
+    wrists[below], elbows[below] = (-0.10 if below == 0 else 0.10, 0.36, 0.30), (0.0, -0.4, 0.9)
     if style.arms[above] != "belly":
         wrists[above] = np.array([0.52, -0.42, 0.52]) * inward
     elbows[above] = np.array([0.4, -0.8, 0.4]) * inward

@@ -102,8 +102,8 @@ _WALK_WORDS: tuple[tuple[str, dict[str, Any]], ...] = (
     (r"\brun|jog", {"speed": 1.9, "double": -0.14, "bounce": 0.045, "elbow": 75.0, "swing": 32.0, "lean": 7}),
     (r"skip", {"speed": 1.6, "double": -0.22, "bounce": 0.075, "swing": 40.0, "elbow": 30.0, "clearance": 0.14}),
     (r"open arms|arms open|arms wide|arms opened", {"arms": ("open", "open"), "swing": 0.0}),
-    (r"spin|danc|twirl", {"spin": 1.0, "arms": ("balance", "balance"), "swing": 0.0, "speed": 1.3}),
-    (r"danc", {"bounce": 0.05, "sway": 0.05}),
+    (r"spin|danc|twirl", {"spin": 1.0, "arms": ("balance", "balance"), "swing": 0.0}),
+    (r"danc", {"bounce": 0.05, "sway": 0.05, "speed": 1.3}),
 )
 _SIT_WORDS: tuple[tuple[str, dict[str, Any]], ...] = (
     (r"lean(ing)? back|lying back|recline|against", {"recline": 22.0}),

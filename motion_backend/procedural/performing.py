@@ -39,6 +39,8 @@ FACING_IT = 0.12
 
 TURNING_ROUND = 1.2
 """A body that arrives turned away from where it will face by more (radians) turns before the last step."""
+FINGER = 0.02
+"""Half a finger's thickness (metres)."""
 ELBOW_ROOM = 0.26
 """Clearance beyond which there is no better place to turn on the spot (metres)."""
 
@@ -229,10 +231,27 @@ def _touch(body: Body, action: Action) -> None:
     _go(body, spot.standing, spot.facing, action)
     normal = np.asarray(spot.normal, dtype=np.float64)
     goal = np.asarray(spot.point) + HAND_REST * normal
-    palm = palm_on(normal, spot.facing, action.hand)
+    palm = _free_palm(body, spot, goal, action.hand)
     hold = max(action.hold, 1.2)
     laid, depth = Laid(goal, palm, normal, action.hand), body.scene.obstacles.solid().depth
     body.add(touch(body.pose, laid, (bearing, hold), body.skeleton, depth))
+
+
+def _free_palm(body: Body, spot: Spot, wrist: Array, hand: str) -> Array:
+    """The hand laid straight ahead, or turned aside where its fingers would be in something else."""
+    others = body.scene.obstacles.solid()
+    others = others.only(np.array([owner != spot.object_id for owner in others.owners], dtype=bool))
+    fingers = np.array([[0.05, 0.0, 0.0], [0.10, 0.0, 0.0], [0.14, 0.0, 0.0]]) * (1.0 if hand == "left" else -1.0)
+    inward = -1.0 if hand == "left" else 1.0
+    best: tuple[float, Array] | None = None
+    for turn in (0.0, 0.5 * inward, -0.5 * inward, 1.0 * inward, -1.0 * inward):
+        palm = palm_on(np.asarray(spot.normal), spot.facing + turn, hand)
+        depth = float(np.max(others.depth(wrist + rotations.rotate(palm, fingers)), initial=-1.0))
+        if depth < -FINGER:
+            return palm
+        if best is None or depth < best[0]:
+            best = (depth, palm)
+    return best[1] if best else palm_on(np.asarray(spot.normal), spot.facing, hand)
 
 
 def palm_on(normal: Array, facing: float, hand: str) -> Array:

@@ -158,18 +158,23 @@ def _around_the_shoulder(knots: Array, keys: Array, at: Array, straight: Array) 
 
     `straight` is the plain spline; it is kept where a swing is small.
     """
-    outward = np.array([[0.75, 0.0, 0.66], [-0.75, 0.0, 0.66]])
     before = np.clip(np.searchsorted(knots, at, side="left") - 1, 0, len(keys) - 2)
     share = smooth((at - knots[before]) / (knots[before + 1] - knots[before]))[:, None, None]
     start, end = keys[before], keys[before + 1]
+    apart = (1 - np.sum(rotations.normalize(start) * rotations.normalize(end), axis=-1, keepdims=True)) / 2
+    wide = smooth((apart - 0.2) / 0.25)
+    return np.asarray(straight + wide * (_swing(start, end, share) - straight))
+
+
+def _swing(start: Array, end: Array, share: Array) -> Array:
+    """Wrists on an arc from start to end about the shoulder, bowed outwards and forwards the wider it is. (T, 2, 3)."""
+    outward = np.array([[0.75, 0.0, 0.66], [-0.75, 0.0, 0.66]])
     lengths = [np.linalg.norm(v, axis=-1, keepdims=True) for v in (start, end)]
     first, last = rotations.normalize(start), rotations.normalize(end)
     apart = (1 - np.sum(first * last, axis=-1, keepdims=True)) / 2  # 0 together, 1 opposite
     middle = rotations.normalize(first + last + 2.4 * apart * outward)
     way = rotations.normalize((1 - share) ** 2 * first + 2 * share * (1 - share) * middle + share**2 * last)
-    swing = way * (lengths[0] + share * (lengths[1] - lengths[0]))
-    wide = smooth((apart - 0.2) / 0.25)
-    return np.asarray(straight + wide * (swing - straight))
+    return np.asarray(way * (lengths[0] + share * (lengths[1] - lengths[0])))
 
 
 def _spline(knots: Array, values: Array, at: Array) -> Array:
@@ -203,10 +208,11 @@ def settle_from(start: Pose, motion: Pose, fps: int, seconds: float = 0.45) -> P
     fade = 1 - smooth(np.arange(1, len(motion) + 1) / (seconds * fps))
     first = motion.at(0)
     changed: dict[str, Array] = {}
-    for name in ("pelvis", "spine", "head", "knees", "arms", "elbows", "reach", "reaching", "pressing"):
+    for name in ("pelvis", "spine", "head", "knees", "reach", "reaching", "pressing"):
         offset = getattr(start, name) - getattr(first, name)
         values = getattr(motion, name)
         changed[name] = values + fade.reshape(-1, *([1] * (values.ndim - 1))) * offset
+    changed |= _settle_arms(start, motion, 1.5 * seconds * fps)
     for name in ("hips", "palms"):
         offset = rotations.quat_to_rotvec(
             rotations.compose(getattr(start, name), rotations.inverse(getattr(first, name)))
@@ -215,3 +221,17 @@ def settle_from(start: Pose, motion: Pose, fps: int, seconds: float = 0.45) -> P
         turn = rotations.rotvec_to_quat(fade.reshape(-1, *([1] * (values.ndim - 1))) * offset)
         changed[name] = rotations.compose(turn, values)
     return replace(motion, **changed)
+
+
+def _settle_arms(start: Pose, motion: Pose, frames: float) -> dict[str, Array]:
+    """Arms led round the body from where they were into the motion, and elbows with them."""
+    share = smooth(np.arange(1, len(motion) + 1) / frames)[:, None, None]
+    arms = _swing(np.broadcast_to(start.arms, motion.arms.shape), motion.arms, share)
+    elbows = motion.elbows.copy()
+    last = rotations.normalize(start.arms)
+    pole = _square(start.elbows, last)
+    for frame in range(min(int(np.ceil(frames)), len(motion))):
+        way = rotations.normalize(arms[frame])
+        pole, last = _square(_turned_with(pole, last, way), way), way
+        elbows[frame] = (1 - share[frame]) * pole + share[frame] * _square(motion.elbows[frame], way)
+    return {"arms": arms, "elbows": elbows}

@@ -12,7 +12,7 @@ from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.footsteps import yaw_of
 from motion_backend.procedural.interactions import knees_over_feet
-from motion_backend.procedural.pose import Pose, concatenate, interpolate, settle_from
+from motion_backend.procedural.pose import Pose, concatenate, interpolate, settle_from, smooth
 from motion_backend.procedural.solving import chest_frame, released
 from motion_backend.procedural.stances import (
     UP,
@@ -28,6 +28,8 @@ Array = NDArray[np.float64]
 Depth = Callable[[Array], Array]
 
 
+SLIDE = 0.025
+"""How far a touching hand slides to each side (metres)."""
 HEAD_ROOM = 0.13
 """Distance of the middle of the head to furniture that a reaching body keeps (metres)."""
 
@@ -62,10 +64,24 @@ def touch(start: Pose, laid: Laid, style: tuple[Bearing, float], skeleton: Skele
     back = interpolate([0.0, 0.3 * pace, 1.05 * pace], [reached, over, away], FPS)
     frames = max(round(hold * FPS), 1)
     held = reached.repeat(frames)
-    breath = 0.012 * np.sin(2 * np.pi * 0.4 * np.arange(frames) / FPS)
-    held = replace(held, spine=held.spine + np.stack([breath, 0 * breath, 0 * breath], axis=1))
+    held = _feeling_about(held, laid, frames)
     whole = concatenate([go, held, back])
     return settle_from(start, replace(whole, knees=knees_over_feet(whole)), FPS, seconds=0.3)
+
+
+def _feeling_about(held: Pose, laid: Laid, frames: int) -> Pose:
+    """A held touch, alive: breath, and the hand sliding a little to and fro along what it lies on."""
+    time = np.arange(frames) / FPS
+    breath = 0.02 * np.sin(2 * np.pi * 0.35 * time)
+    along = rotations.rotate(laid.palm, np.array([0.0, 0.0, 1.0]))
+    slide = SLIDE * np.sin(2 * np.pi * 0.55 * time) * smooth(time / 0.3) * smooth((time[-1] - time) / 0.3)
+    reach = held.reach.copy()
+    reach[:, 0 if laid.hand == "left" else 1] += slide[:, None] * along
+    look = np.stack([0.03 * breath / 0.02, 0.08 * np.sin(2 * np.pi * 0.3 * time), 0 * time], axis=1)
+    look *= smooth(time / 0.4)[:, None]
+    return replace(
+        held, reach=reach, spine=held.spine + np.stack([breath, 0 * breath, 0 * breath], axis=1), head=held.head + look
+    )
 
 
 def _hand_at(start: Pose, bent: Pose, laid: Laid, off: float, skeleton: Skeleton) -> Pose:
@@ -80,6 +96,9 @@ def _hand_at(start: Pose, bent: Pose, laid: Laid, off: float, skeleton: Skeleton
     # A raised hand hangs its elbow below, a lowered one keeps it behind; over the edge of a top it is lifted aside.
     high = float(np.clip((laid.wrist[1] / skeleton.scale - 1.2) / 0.25, 0.0, 1.0))
     elbows[index] = np.array([0.45 * side, -0.25 - 0.75 * high, -1.0 + 0.75 * high])
+    if laid.wrist[1] < 0.7 * skeleton.scale:
+        # Down low it goes outwards: behind is the thigh.
+        elbows[index] = np.array([1.0 * side, -0.1, -0.3])
     if laid.normal[1] > 0.7 and high > 0:
         elbows[index] = np.array([1.0 * side, 0.25, -0.3])
     pressing = one * (1.0 if off == 0.0 else 0.6)
@@ -113,6 +132,8 @@ def _reaching(start: Pose, laid: Laid, index: int, skeleton: Skeleton, depth: De
     miss = miss + np.maximum(depth(head) + HEAD_ROOM, 0.0)
     # One bends over to a table and squats to a drawer.
     squat = 2.6 + 4.5 * float(np.clip((goal[1] / skeleton.scale - 0.6) / 0.2, 0.0, 1.0))
+    if laid.normal[1] > 0.7 and goal[1] > 0.35 * skeleton.scale:
+        squat = max(squat, 5.0)
     effort = 60.0 * miss + 0.6 * lean[:, 0] + 1.1 * lean[:, 0] ** 2 + squat * crouch[:, 0]
     best = tries.at(int(np.argmin(effort)))
     eyes = shoulders(best.repeat(1), skeleton)[0].mean(axis=0) + 0.2 * UP

@@ -86,7 +86,7 @@ def _walk(points: Array, tangent: Array, yaw: float, last_turn: float, pace: tup
     limit = np.minimum(speed, 1.0 / np.maximum(bend, 1e-6) ** 0.5)
     limit = np.minimum(limit, 2.2 / np.maximum(bend, 1e-6))
     limit[0] = limit[-1] = 0.12
-    push, brake = 1.3 * max(speed, 0.8), 1.1 * max(speed, 0.8)
+    push, brake = 0.8 * max(speed, 0.8), 1.1 * max(speed, 0.8)
     for i in range(1, len(limit)):
         limit[i] = min(limit[i], np.sqrt(limit[i - 1] ** 2 + 2 * push * SPACING))
     for i in range(len(limit) - 2, -1, -1):

@@ -50,7 +50,7 @@ def standing(position: tuple[float, float], yaw: float, bearing: Bearing, skelet
     ankles = np.stack([home_ankle(ground, yaw, index, 0.085, skeleton) for index in (0, 1)])
     wrists, elbows = arm_arrays(*bearing.arms)
     lean = np.radians(bearing.lean)
-    height = skeleton.standing_height * 0.993 - 0.012 * skeleton.scale
+    height = skeleton.standing_height * 0.998 - 0.004 * skeleton.scale
     return Pose(
         pelvis=np.array([ground[0], height, ground[1]]),
         hips=upright(yaw, 0.3 * lean),
@@ -201,12 +201,12 @@ def idle(pose: Pose, seconds: float, size: float, rng: np.random.Generator, fps:
     ease = (1 - np.exp(-np.arange(1, frames + 1) / (0.4 * fps)))[:, None]
     breath = np.sin(2 * np.pi * 0.27 * np.arange(1, frames + 1) / fps)
     slow = [drift(frames, 0.16, fps, rng) for _ in range(4)]
-    on_feet = float(pose.planted.min() > 0 and pose.pelvis[1] > 0.7)
-    spine = held.spine + ease * np.stack([0.010 * breath, 0.012 * size * slow[0], 0.010 * size * slow[1]], axis=1)
-    head = held.head + ease * np.stack([0.02 * size * slow[2], 0.07 * size * slow[3], 0.01 * slow[0]], axis=1)
-    sway = 0.006 * size * on_feet * ease * np.stack([slow[0], -0.25 * np.abs(slow[0]), slow[1]], axis=1)
+    on_feet = bool(pose.planted.min() > 0 and pose.pelvis[1] > 0.7)
+    spine = held.spine + ease * np.stack([0.018 * breath, 0.020 * size * slow[0], 0.016 * size * slow[1]], axis=1)
+    head = held.head + ease * np.stack([0.04 * size * slow[2], 0.16 * size * slow[3], 0.015 * slow[0]], axis=1)
+    sway = (0.006 if on_feet else 0.003) * size * ease * np.stack([slow[0], -0.25 * np.abs(slow[0]), slow[1]], axis=1)
     arms = held.arms.copy()
-    arms[:, :, 2] += (0.012 * ease[:, 0] * breath)[:, None] * (1 - held.reaching)
+    arms[:, :, 2] += (0.02 * ease[:, 0] * breath)[:, None] * (1 - held.reaching)
     return replace(held, spine=spine, head=head, pelvis=held.pelvis + sway, arms=arms)
 
 

@@ -29,7 +29,7 @@ ARMS: dict[str, ArmPose] = {
     "ear": ArmPose((-0.09, 0.30, 0.15), (0.5, -0.8, 0.35)),
     "hips": ArmPose((0.06, -0.70, 0.08), (1.0, 0.0, -0.4)),
     "open": ArmPose((0.93, -0.02, 0.22), (0.0, -0.4, -1.0)),
-    "face": ArmPose((-0.20, 0.26, 0.30), (0.35, -1.0, 0.35)),
+    "face": ArmPose((-0.20, 0.26, 0.37), (0.35, -1.0, 0.35)),
     "belly": ArmPose((-0.16, -0.60, 0.33), (1.0, -0.2, -0.2)),
     "chest": ArmPose((-0.26, -0.14, 0.34), (0.8, -0.7, 0.0)),
     "props": ArmPose((0.20, -0.90, -0.27), (0.5, 0.0, -1.0)),
@@ -108,6 +108,8 @@ class Walk:
     """Whole turns about itself along the way."""
     tap: bool = False
     """Hands tap the chest."""
+    release: bool = False
+    """Whether arms come down at the end of the way, where something else begins."""
 
 
 @dataclass(frozen=True)

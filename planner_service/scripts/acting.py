@@ -95,6 +95,11 @@ class _Stage:
             found = [s for s in found if s.height == wanted] or [s for s in found if s.height == "medium"] or found
             # Fronts before tops of what is taller than the chest: an arm does not go over an edge by itself.
             found = [s for s in found if s.normal[1] < 0.5 or s.point[1] < 1.2] or found
+            if wanted == "high":
+                found.sort(key=lambda s: -s.point[1])
+                found = [s for s in found if s.point[1] > found[0].point[1] - 0.1]
+            least = min(self._cluttered(s) for s in found)
+            found = [s for s in found if self._cluttered(s) == least]
             room = [self._elbow_room(s) for s in found]
             # The body may come back to a piece: it need not touch the very same place again.
             found = [s for s, space in zip(found, room, strict=True) if space >= max(room) - 0.03]
@@ -123,10 +128,8 @@ class _Stage:
         return found
 
     def _cluttered(self, spot: Spot) -> int:
-        """How many things lie where a body would."""
-        if spot.affordance == "touch":
-            return 0
-        reach = 0.35 if spot.affordance == "sit" else 0.8
+        """How many things lie or stand where a body or its hand would."""
+        reach = {"sit": 0.35, "lie": 0.8, "touch": 0.2}[spot.affordance]
         things = (placed.position for placed in self.home.objects if placed.parent == spot.object_id)
         return sum(np.hypot(x - spot.point[0], z - spot.point[2]) < reach for x, _, z in things)
 

@@ -156,6 +156,25 @@ def mean_speed(motion: Motion) -> float:
     return float(np.linalg.norm(np.diff(root[:, [0, 2]], axis=0), axis=1).sum() * 30 / len(root))
 
 
+@pytest.mark.parametrize(
+    ("caption", "emotion"),
+    [("walk", "neutral"), ("walk", "hurried"), ("walk with depression", "sad"), ("walk on tiptoes", "neutral")],
+)
+def test_nobody_lunges_into_a_walk(caption: str, emotion: str) -> None:
+    height = walked(caption, emotion).root_positions[:, 1].astype(np.float64)
+    assert height[:60].min() > 0.92 * np.median(height)
+    assert np.abs(np.diff(height, n=2)).max() * 900 < 40
+
+
+def test_standing_knees_are_nearly_straight() -> None:
+    positions = MOTIONS[2].joint_positions().astype(np.float64)[-1]
+    for side in ("left", "right"):
+        thigh = positions[INDEX[f"{side}_knee"]] - positions[INDEX[f"{side}_hip"]]
+        shin = positions[INDEX[f"{side}_ankle"]] - positions[INDEX[f"{side}_knee"]]
+        bent = np.degrees(np.arccos(thigh @ shin / np.linalg.norm(thigh) / np.linalg.norm(shin)))
+        assert bent < 16
+
+
 def test_emotions_show_in_speed_and_posture() -> None:
     happy, sad, hurried = (walked("walk", emotion) for emotion in ("happy", "sad", "hurried"))
     assert mean_speed(hurried) > mean_speed(happy) > mean_speed(sad)
