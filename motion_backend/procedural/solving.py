@@ -20,7 +20,7 @@ SIDES = (("left", 1), ("right", -1))
 SPINE = ("spine1", "spine2", "spine3")
 
 
-WRIST_BEND, FOREARM_ROLL = 1.45, 1.3
+WRIST_BEND, FOREARM_ROLL = 1.5, 1.55
 """How far a hand can bend against the forearm and roll about it (radians)."""
 
 

@@ -116,17 +116,17 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
     console.print(f"\n{made.planned.told.title}\n", style="bold", highlight=False)
     console.print(made.planned.told.text + "\n", highlight=False)
     table = Table(box=None, header_style="bold", pad_edge=False)
-    for column, justify in (("#", "right"), ("skill", "left"), ("caption", "left"), ("furniture", "left")):
-        table.add_column(column, justify=justify)  # type: ignore[arg-type]
-    for column in ("seconds", "reached", "contact", "deepest"):
-        table.add_column(column, justify="right")
+    for column in ("#", "skill", "caption", "furniture", "seconds", "reached", "contact", "inside"):
+        table.add_column(column, justify="left" if column in ("skill", "caption", "furniture") else "right")
+    # What the other columns leave of the line.
+    longest = max(console.width - 68, 12)
     for action, figure in zip(made.actions, made.figures, strict=True):
         error = "" if figure.contact_error is None else f"{100 * figure.contact_error:.1f} cm"
         table.add_row(
             str(figure.keyframe),
             figure.skill,
-            action.caption[:44],
-            action.object_id or "floor",
+            action.caption if len(action.caption) <= longest else action.caption[: longest - 1] + "…",
+            (action.object_id or "floor")[:16],
             f"{figure.seconds:.1f}",
             "yes" if figure.reached else Text(f"no {figure.reason}", style="red"),
             error,

@@ -78,5 +78,5 @@ def test_the_body_is_as_tall_as_asked_and_mirrored() -> None:
 
 @pytest.mark.parametrize("height", [0.5, 3.0, float("nan")])
 def test_a_body_of_impossible_height_is_refused(height: float) -> None:
-    with pytest.raises(ValueError, match="character.height"):
+    with pytest.raises(ValueError, match=r"character\.height"):
         build_skeleton(height)
