@@ -69,6 +69,34 @@ def test_a_substitution_is_said() -> None:
     assert "dining chair → stool" in found.explain()[0]
 
 
+def test_a_users_room_without_the_very_thing_lends_another_and_says_so() -> None:
+    room = Layout(
+        "mine",
+        "bedroom",
+        ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)),
+        objects=(
+            Placed("bed", "single_bed", (3.2, 0.0, 1.2), (1.1, 0.6, 2.0)),
+            Placed("table", "dining_table", (1.0, 0.0, 1.0), (1.2, 0.75, 0.8)),
+        ),
+    )
+    found = furnish(script(("touch", "cabinet", "bedroom"), ("liedown", "bed", "bedroom")), index(), layouts=[room])
+    assert [place.object_id for place in found.places] == ["0/table", "0/bed"]
+    assert ("cabinet", "dining table", "affordance") in found.matches[0].substitutions
+    assert "cabinet" not in found.matches[0].missing
+
+
+def test_a_users_chair_that_nobody_can_get_to_is_not_used() -> None:
+    corner = Placed("corner", "dining_chair", (0.3, 0.0, 0.3), (0.45, 0.9, 0.5))
+    guard = [
+        Placed("east", "wardrobe", (0.95, 0.0, 0.6), (1.2, 2.0, 0.6), 1.5707963),
+        Placed("south", "wardrobe", (0.6, 0.0, 1.5), (1.2, 2.0, 0.6)),
+    ]
+    free = Placed("free", "dining_chair", (3.0, 0.0, 3.0), (0.45, 0.9, 0.5))
+    room = Layout("mine", "bedroom", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)), objects=(corner, *guard, free))
+    found = furnish(script(("sitdown", "chair", "bedroom")), index(), layouts=[room])
+    assert found.places[0].object_id == "0/free"
+
+
 def test_what_nothing_can_stand_for_is_an_error_that_names_it() -> None:
     empty = Layout("bare", "bedroom", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)))
     with pytest.raises(FurnishError, match="no bed to lie"):
