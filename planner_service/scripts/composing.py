@@ -13,7 +13,16 @@ from planner_service.scripts import planning
 from planner_service.scripts.casting import Limits, cast
 from planner_service.scripts.checking import repair
 from planner_service.scripts.directing import direct_by_rules
-from planner_service.scripts.events import Clause, ThemeError, clause_of, clauses_of, grouped, moods_of, rooms_in
+from planner_service.scripts.events import (
+    LANGUAGE,
+    Clause,
+    ThemeError,
+    clause_of,
+    clauses_of,
+    grouped,
+    moods_of,
+    rooms_in,
+)
 from planner_service.scripts.keyframe import Event, LongScript, PlannedKeyframe, Retrieved
 from planner_service.scripts.library import Found, Scores, ScriptLibrary
 from planner_service.scripts.reading import Reading, read
@@ -225,4 +234,4 @@ def _direct(
 def _not_understood(reading: Reading, library: ScriptLibrary, request: Request) -> str:
     texts = ", ".join(f"“{event.text[:60]}”" for event in reading.events[:5])
     where = f" in the {' or '.join(request.rooms)}" if request.rooms else ""
-    return f"none of the {len(library)} short scripts{where} is about {texts}."
+    return f"none of the {len(library)} short scripts{where} is about {texts}. {LANGUAGE}"

@@ -16,6 +16,7 @@ from planner_service.scripts.verbs import has_verb
 
 LONGEST: Final = 2000
 """Letters of a theme."""
+LANGUAGE: Final = "Themes are read in English."
 EXAMPLES: Final = (
     "A person enjoys a relaxed afternoon at home.",
     "A woman searches for her keys, misses the bus, gets angry and then calms down with a book.",
@@ -87,7 +88,7 @@ def clauses_of(theme: str) -> tuple[Clause, ...]:
                 said.append(_clause(moment, before[0].text if before else "", number))
         clauses.extend(_merge_states(said))
     if not clauses:
-        raise ThemeError(f"nothing happens in {theme[:60]!r}.")
+        raise ThemeError(f"nothing happens in {theme[:60]!r}. {LANGUAGE}")
     return tuple(clauses)
 
 

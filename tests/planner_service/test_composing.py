@@ -126,6 +126,16 @@ def test_nonsense_is_refused_with_what_was_not_understood_and_examples(meaning: 
         assert theme.split()[-1] in str(error.value)
 
 
+@pytest.mark.parametrize(
+    "theme", ["Eine Frau kommt müde nach Hause und liest ein Buch.", "Une femme rentre et dort.", "彼女は本を読む。"]
+)
+def test_a_theme_in_another_language_is_refused_and_told_that_english_is_read(
+    meaning: ScriptLibrary, theme: str
+) -> None:
+    with pytest.raises(ThemeError, match=r"Themes are read in English\. Try for example: A person"):
+        compose(theme, meaning)
+
+
 @pytest.mark.parametrize("theme", ["", "  \n ", "x" * 2001, "a\x00b", "12 34 !!", "\ud800 sits"])
 def test_what_is_no_theme_is_refused(theme: str) -> None:
     with pytest.raises(ThemeError, match=r"^theme: "):
