@@ -66,7 +66,8 @@ def plan_phase(route: Route, style: Walk, skeleton: Skeleton, fps: int) -> tuple
     rate = np.maximum(rate, np.minimum(route.speed / (0.30 * skeleton.scale), 3.2) * starting)
     # A third of a step goes by before the first foot lifts: the weight shifts and the heel rises.
     phase = np.cumsum(rate) / fps - LEAD
-    total = np.ceil(phase[-1] + 0.5)
+    # Both feet step at least once, and a last step in flight comes down before the end.
+    total = max(np.ceil(phase[-1] + 0.5), 2.0) + max(0.0, -style.double / 2) + 0.05
     extra = max(int(np.ceil((total - phase[-1]) / 1.7 * fps)), 1)
     tail = phase[-1] + (total - phase[-1]) * np.arange(1, extra + 1) / extra
     longer = Route(
@@ -139,7 +140,7 @@ class _Swing:
         turn = float(rotations.wrap(self.end_yaw - self.start_yaw))
         yaw = self.start_yaw + 0.5 * turn
         outward = self.side * np.array([np.cos(yaw), 0.0, -np.sin(yaw)])
-        return np.asarray(0.055 * min(abs(turn) / 0.7, 1.0) * outward)
+        return np.asarray(0.085 * min(abs(turn) / 0.5, 1.0) * outward)
 
     @property
     def size(self) -> float:
@@ -161,7 +162,7 @@ def _swing(
     u = np.clip(share[after], 0, 1)
     way = smooth(u)
     ankle[after] = foot.start + way[:, None] * (foot.end - foot.start)
-    ankle[after] += np.sin(np.pi * u)[:, None] * foot.bow
+    ankle[after] += (np.sin(np.pi * u) ** 2)[:, None] * foot.bow
     height = style.clearance * (0.55 + 0.45 * foot.size)
     # Up early and down late, so that the ball of the foot is clear of the floor whenever it travels fast.
     ankle[after, 1] += height * np.sin(np.pi * u) ** 0.55 * (1 - 0.25 * u)

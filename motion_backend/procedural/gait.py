@@ -128,7 +128,7 @@ def _knees(hips: Array, feet: Array) -> Array:
 
 def _height(pose: Pose, steps: Steps, style: Walk, skeleton: Skeleton) -> Array:
     """Pelvis positions with the height that the bounce asks for and the legs allow. (T, 3)."""
-    from scipy.ndimage import gaussian_filter1d
+    from scipy.ndimage import gaussian_filter1d, minimum_filter1d
 
     pelvis = pose.pelvis.copy()
     beat = -np.cos(2 * np.pi * steps.phase) * (1 if style.double > 0 else -1)
@@ -151,10 +151,9 @@ def _height(pose: Pose, steps: Steps, style: Walk, skeleton: Skeleton) -> Array:
         top = pose.ankles[:, index, 1] + np.sqrt(np.maximum(leg**2 - gap**2, 0.04)) - hip[:, 1]
         # Feet in the air do not hold the body down.
         limits.append(np.where(pose.planted[:, index] > 0, top, np.maximum(top, carried - 0.09)))
-    allowed = np.minimum(*limits)
-    low = np.minimum(wanted, allowed)
-    eased = gaussian_filter1d(low - wanted, 2.5, mode="nearest")
-    pelvis[:, 1] = np.minimum(wanted + eased, allowed)
+    # The least of a few frames, then smoothed over no more than these: never above what the legs allow, and no corner.
+    low = minimum_filter1d(np.minimum(wanted, np.minimum(*limits)), 5, mode="nearest")
+    pelvis[:, 1] = gaussian_filter1d(low, 1.0, radius=2, mode="nearest")
     return pelvis
 
 

@@ -27,6 +27,8 @@ from motion_backend.procedural.styles import Bearing, Lying, Seated, arm_arrays
 from motion_backend.skeleton import Skeleton
 
 Array = NDArray[np.float64]
+ARM = 0.54
+"""Shoulder to wrist at the reference height (metres)."""
 
 
 def sit_down(start: Pose, seat: Seat, style: Seated, skeleton: Skeleton, reach: tuple[float, float]) -> Pose:
@@ -35,7 +37,10 @@ def sit_down(start: Pose, seat: Seat, style: Seated, skeleton: Skeleton, reach: 
     down = _lower(start, seat, style.bearing, skeleton)
     landed = down.at(len(down) - 1)
     settled = seated(landed, seat, style, skeleton, reach)
-    moved = interpolate([0.0, 0.75 * pace], [landed, replace(settled, ankles=landed.ankles, feet=landed.feet)], FPS)
+    travel = float(np.linalg.norm(settled.arms - landed.arms, axis=1).max()) * ARM * skeleton.scale
+    moved = interpolate(
+        [0.0, max(0.75, 1.1 * travel) * pace], [landed, replace(settled, ankles=landed.ankles, feet=landed.feet)], FPS
+    )
     moved = _place_feet(moved, landed, settled, first=0.25, each=0.42)
     return hands_on_thighs(concatenate([down, moved]), skeleton)
 
@@ -118,7 +123,11 @@ def stand_up(start: Pose, seat: Seat, where: tuple[float, float], bearing: Beari
         elbows=end.elbows,
         pressing=np.zeros(2),
     )
-    gather = interpolate([0.0, 0.62 * pace], [start, replace(ready, ankles=start.ankles, feet=start.feet)], FPS)
+    # Hands that come down from the head need longer than hands on the lap.
+    travel = float(np.linalg.norm(ready.arms - start.arms, axis=1).max()) * ARM * skeleton.scale
+    gather = interpolate(
+        [0.0, max(0.62, 1.1 * travel) * pace], [start, replace(ready, ankles=start.ankles, feet=start.feet)], FPS
+    )
     gather = hands_on_thighs(_place_feet(gather, start, ready, first=0.0, each=0.36), skeleton)
     ready = gather.at(len(gather) - 1)
     rise, ahead = end.pelvis[1] - seat.pelvis[1], end.pelvis - seat.pelvis

@@ -114,5 +114,8 @@ def _lying_arms(style: Lying) -> tuple[Array, Array]:
     wrists[below], elbows[below] = (-0.10 if below == 0 else 0.10, 0.36, 0.30), (0.0, -0.4, 0.9)
     if style.arms[above] != "belly":
         wrists[above] = np.array([0.52, -0.42, 0.52]) * inward
-    elbows[above] = np.array([0.4, -0.8, 0.4]) * inward
+        elbows[above] = np.array([0.4, -0.8, 0.4]) * inward
+    else:
+        wrists[above] = np.array([0.14, -0.55, 0.42]) * inward
+        elbows[above] = np.array([-1.0, -0.3, -0.2]) * inward
     return wrists, elbows

@@ -28,6 +28,8 @@ Array = NDArray[np.float64]
 Depth = Callable[[Array], Array]
 
 
+DEEP = 0.30
+"""Lowering the pelvis by more than this (metres) slows a reach down."""
 SLIDE = 0.025
 """How far a touching hand slides to each side (metres)."""
 HEAD_ROOM = 0.13
@@ -56,6 +58,8 @@ def touch(start: Pose, laid: Laid, style: tuple[Bearing, float], skeleton: Skele
     index = 0 if laid.hand == "left" else 1
     pace = 1 / bearing.tempo
     bent = _reaching(start, laid, index, skeleton, depth)
+    # A deep bend takes its time, however hurried.
+    pace *= max(1.0, float(start.pelvis[1] - bent.pelvis[1]) / (DEEP * skeleton.scale))
     reached = _hand_at(start, bent, laid, 0.0, skeleton)
     over = _hand_at(start, bent, laid, 0.12, skeleton)
     away = replace(start, reach=over.reach, palms=over.palms)
@@ -90,11 +94,11 @@ def _hand_at(start: Pose, bent: Pose, laid: Laid, off: float, skeleton: Skeleton
     one = np.eye(2)[index]
     reach, palms, elbows = start.reach.copy(), start.palms.copy(), start.elbows.copy()
     yaw = float(yaw_of(start.hips))
-    # Onto a top the hand comes over its edge from the body's side.
-    back = off * laid.normal[1] * np.array([np.sin(yaw), 0.0, np.cos(yaw)])
-    reach[index], palms[index] = laid.wrist + off * laid.normal - 1.2 * back, laid.palm
     # A raised hand hangs its elbow below, a lowered one keeps it behind; over the edge of a top it is lifted aside.
     high = float(np.clip((laid.wrist[1] / skeleton.scale - 1.2) / 0.25, 0.0, 1.0))
+    # Onto a top the hand comes over its edge from the body's side.
+    back = off * laid.normal[1] * (0.3 + 0.9 * high) * np.array([np.sin(yaw), 0.0, np.cos(yaw)])
+    reach[index], palms[index] = laid.wrist + off * laid.normal - back, laid.palm
     elbows[index] = np.array([0.45 * side, -0.25 - 0.75 * high, -1.0 + 0.75 * high])
     if laid.wrist[1] < 0.7 * skeleton.scale:
         # Down low it goes outwards: behind is the thigh.
@@ -133,7 +137,7 @@ def _reaching(start: Pose, laid: Laid, index: int, skeleton: Skeleton, depth: De
     # One bends over to a table and squats to a drawer.
     squat = 2.6 + 4.5 * float(np.clip((goal[1] / skeleton.scale - 0.6) / 0.2, 0.0, 1.0))
     if laid.normal[1] > 0.7 and goal[1] > 0.35 * skeleton.scale:
-        squat = max(squat, 5.0)
+        squat = max(squat, 8.0)
     effort = 60.0 * miss + 0.6 * lean[:, 0] + 1.1 * lean[:, 0] ** 2 + squat * crouch[:, 0]
     best = tries.at(int(np.argmin(effort)))
     eyes = shoulders(best.repeat(1), skeleton)[0].mean(axis=0) + 0.2 * UP

@@ -147,7 +147,8 @@ def _seated_legs(
             straight = np.clip((ahead / scale - SHIN_REACH) / 0.25, 0, 1)
             pitch, up = -0.55 * straight, ankle + 0.012 * straight
         if style.legs == "feet_crossed":
-            wide, up = (-0.035 if side > 0 else 0.005) * scale, up + (0.10 if side > 0 else 0.0) * scale
+            wide, up = (-0.035 if side > 0 else 0.005) * scale, up + (0.14 if side > 0 else 0.0) * scale
+            ahead += (0.04 if side > 0 else 0.0) * scale
         if style.legs == "open":
             wide, outward = 0.21 * scale, 0.45
         tailor = style.legs == "crossed" and seat.pelvis[1] < TAILOR_HEIGHT * scale

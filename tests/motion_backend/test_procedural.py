@@ -166,6 +166,21 @@ def test_nobody_lunges_into_a_walk(caption: str, emotion: str) -> None:
     assert np.abs(np.diff(height, n=2)).max() * 900 < 40
 
 
+@pytest.mark.parametrize("caption", ["walk", "skip steps running", "run and spin"])
+@pytest.mark.parametrize("distance", [0.2, 0.5, 1.4])
+def test_every_walk_ends_on_both_feet(caption: str, distance: float) -> None:
+    start = Action(Skill.LOCO, "smoothly forward walk", "neutral", goal=(2.6, 2.6), facing=0.0)
+    motions, _ = perform([start, Action(Skill.LOCO, caption, "happy", goal=(2.6, 2.6 + distance), facing=0.0)])
+    motion = motions[1]
+    positions = motion.joint_positions().astype(np.float64)[-1]
+    assert motion.contacts[-1].min() == 1
+    for side, sign in (("left", 1), ("right", -1)):
+        ankle = positions[INDEX[f"{side}_ankle"]]
+        assert ankle[1] == pytest.approx(motion.skeleton.ankle_height, abs=0.008)
+        assert ankle[0] - positions[0, 0] == pytest.approx(sign * 0.085, abs=0.03)
+        assert ankle[2] - positions[0, 2] == pytest.approx(0.0, abs=0.03)
+
+
 def test_standing_knees_are_nearly_straight() -> None:
     positions = MOTIONS[2].joint_positions().astype(np.float64)[-1]
     for side in ("left", "right"):
