@@ -11,6 +11,8 @@ from scene_graphs.layouts import Placed, Point2, Point3
 
 TOUCH_HEIGHTS = {"medium": (0.68, 1.0, 1.15), "low": (0.30, 0.45, 0.55), "high": (1.38, 1.55, 1.68)}
 """Least, wanted and greatest height above the floor of a touched point."""
+SHOULDERS = 1.3
+"""Up to this height tops are touched rather than fronts (metres above the piece's bottom)."""
 DISC = 0.22
 """Radius of a standing body seen from above."""
 _UNTOUCHED = frozenset({"rug", "foliage", "pillow", "foot", "leg"})
@@ -63,7 +65,8 @@ def _touch_point(
         for y, inset, normal in _faces(part, u, band):
             out = rim - inset
             # A top counts as if touched at its rim, and a little further: a hand is laid on a table, not on its edge.
-            preferred = rim + 0.02 if inset else rim
+            # Above the shoulders it is the other way round: an arm does not go over an edge.
+            preferred = rim + (0.0 if not inset else 0.02 if y < SHOULDERS else -0.02)
             rank = (round(abs(lateral - shift) - preferred, 3), abs(y - band[1]))
             point = (u[0] * out + v[0] * lateral, y, u[1] * out + v[1] * lateral)
             if best is None or rank < best[:2]:
