@@ -11,12 +11,15 @@ from motion_backend import rotations
 from motion_backend.obstacles import Obstacles
 from motion_backend.procedural.pose import Pose, smooth
 from motion_backend.procedural.solving import SIDES, chest_frame, limb_of_arm
+from motion_backend.procedural.styles import arm_arrays
 from motion_backend.skeleton import INDEX, Skeleton
 
 Array = NDArray[np.float64]
 HAND_LENGTH = 0.14
 THICKNESS = 0.034
 """Radius of hand and wrist (metres)."""
+WIDE, NARROW = 0.85, 0.50
+"""Clearance (metres at 1.70 m) from which arms may be spread, and below which they hang."""
 UPWARDS = 0.12
 """A way out upwards may be this much longer than the nearest way out sideways: hands rest on things."""
 
@@ -44,6 +47,19 @@ def hands_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles, touching: 
         reach[used, index] = (wrist + eased)[used]
         reaching[used, index] = 1.0
     return replace(pose, reach=reach, reaching=reaching)
+
+
+def arms_in(pose: Pose, room: Array) -> Pose:
+    """Spread arms brought down to the sides where the way is narrow; `room` (T,) is the clearance at 1.70 m."""
+    from scipy.ndimage import gaussian_filter1d, minimum_filter1d
+
+    least = gaussian_filter1d(minimum_filter1d(room, 17, mode="nearest"), 4.0, mode="nearest")
+    # A segment begins in the pose the one before left.
+    share = (smooth((WIDE - least) / (WIDE - NARROW)) * smooth(np.arange(len(room)) / 15))[:, None, None]
+    hang, _ = arm_arrays("hang", "hang")
+    lengths = np.linalg.norm(pose.arms, axis=-1, keepdims=True)
+    along = rotations.normalize(pose.arms + share * (hang - pose.arms))
+    return replace(pose, arms=along * (lengths + share * (np.linalg.norm(hang, axis=-1, keepdims=True) - lengths)))
 
 
 def _way_out(points: Array, shoulder: Array, obstacles: Obstacles) -> Array:

@@ -16,6 +16,7 @@ from motion_backend.motion import FPS, Action, Posture, Skill
 from motion_backend.obstacles import Obstacles
 from motion_backend.procedural.footsteps import yaw_of
 from motion_backend.procedural.gait import walk
+from motion_backend.procedural.guarding import arms_in
 from motion_backend.procedural.interactions import edge_seat, lie_down, rise_to_edge, sit_down, stand_up
 from motion_backend.procedural.lying import Bed
 from motion_backend.procedural.moods import bearing_of, lie_style, sit_style, walk_style
@@ -115,10 +116,20 @@ def _go(body: Body, goal: Point, facing: float | None, action: Action) -> None:
         path = _spin_on_the_way(body, path, style)
         style = replace(style, spin=0.0)
     if turning is None or facing is None:
-        body.add(walk(body.pose, path, facing, style, body.skeleton, body.rng))
+        _stride(body, path, facing, style)
         return
-    body.add(walk(body.pose, body.scene.walkable.path(body.place, turning), facing, style, body.skeleton, body.rng))
-    body.add(walk(body.pose, np.array([body.place, goal]), facing, style, body.skeleton, body.rng))
+    _stride(body, body.scene.walkable.path(body.place, turning), facing, style)
+    _stride(body, np.array([body.place, goal]), facing, style)
+
+
+def _stride(body: Body, path: Array, facing: float | None, style: Walk) -> None:
+    """Walk along a path; arms that are spread come in where there is no room for them."""
+    frames = walk(body.pose, path, facing, style, body.skeleton, body.rng)
+    if {"open", "balance"} & set(style.bearing.arms):
+        places = frames.pelvis[:, [0, 2]]
+        room = np.array([body.scene.walkable.clearance((float(x), float(z))) for x, z in places])
+        frames = arms_in(frames, room / body.skeleton.scale)
+    body.add(frames)
 
 
 def _spin_on_the_way(body: Body, path: Array, style: Walk) -> Array:
@@ -127,7 +138,7 @@ def _spin_on_the_way(body: Body, path: Array, style: Walk) -> Array:
     half = points[len(points) // 2 :]
     room = [body.scene.walkable.clearance((float(x), float(z))) for x, z in half]
     split = len(points) // 2 + int(np.argmax(room))
-    body.add(walk(body.pose, points[: split + 1], None, style, body.skeleton, body.rng))
+    _stride(body, points[: split + 1], None, style)
     return np.concatenate([[body.place], points[split:]])
 
 
