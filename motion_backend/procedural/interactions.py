@@ -195,7 +195,7 @@ def _half_way(landed: Pose, seat: Seat, bed: Bed, skeleton: Skeleton) -> Pose:
     arms[side], elbows[side] = np.array([0.45, -0.75, -0.2]) * mirror, np.array([0.6, 0.0, -1.0]) * mirror
     # The other arm is held out before the body, clear of the thighs that come up.
     arms[1 - side] = np.array([-0.20, -0.42, 0.52]) * mirror
-    elbows[1 - side] = np.array([-0.45, -0.5, -0.6]) * mirror
+    elbows[1 - side] = np.array([-0.15, -1.0, 0.1]) * mirror
     return replace(
         landed,
         pelvis=pelvis,
