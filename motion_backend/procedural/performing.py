@@ -40,6 +40,8 @@ FACING_IT = 0.12
 
 TURNING_ROUND = 1.2
 """A body that arrives turned away from where it will face by more (radians) turns before the last step."""
+NARROW_ARMS = {"open": "raised", "balance": "hang"}
+"""What spread arms do where there is no room for them: joy goes up, balance comes down."""
 FINGER = 0.02
 """Half a finger's thickness (metres)."""
 ELBOW_ROOM = 0.26
@@ -125,10 +127,11 @@ def _go(body: Body, goal: Point, facing: float | None, action: Action) -> None:
 def _stride(body: Body, path: Array, facing: float | None, style: Walk) -> None:
     """Walk along a path; arms that are spread come in where there is no room for them."""
     frames = walk(body.pose, path, facing, style, body.skeleton, body.rng)
-    if {"open", "balance"} & set(style.bearing.arms):
+    narrow = NARROW_ARMS.get(style.bearing.arms[0])
+    if narrow is not None:
         places = frames.pelvis[:, [0, 2]]
         room = np.array([body.scene.walkable.clearance((float(x), float(z))) for x, z in places])
-        frames = arms_in(frames, room / body.skeleton.scale)
+        frames = arms_in(frames, room / body.skeleton.scale, narrow)
     body.add(frames)
 
 
