@@ -5,7 +5,6 @@ Arrays are float32, Y up, metres, seconds, quaternions xyzw; T frames at `fps`; 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Any, Protocol
@@ -61,7 +60,7 @@ class Action:
     furniture: str = "floor"
     object_id: str | None = None
     spot: Spot | None = None
-    """Where on the object: surface point, normal, facing and standing point. None for walking and the floor."""
+    """Where on the object: surface point, normal, facing and standing point. None for walking."""
     goal: tuple[float, float] | None = None
     """Pelvis goal on the floor, [x, z], for loco."""
     facing: float | None = None
@@ -170,7 +169,3 @@ class MotionBackend(Protocol):
     def advance(self, home: Home, action: Action, state: BodyState) -> tuple[Motion, BodyState]:
         """Act out one action from a state."""
         ...
-
-
-Progress = Callable[[str, float], None]
-"""Called with a stage name and the share done, 0 to 1."""
