@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -47,6 +47,8 @@ class Furnished:
     home: Home
     matches: tuple[RoomMatch, ...]
     places: tuple[Place, ...]
+    graphs: Mapping[str, FurnitureGraph]
+    """Room type to the merged graph of the furniture that is used there."""
 
     @property
     def names(self) -> dict[int, tuple[str, str]]:
@@ -91,13 +93,15 @@ def furnish(
     script: LongScript,
     index: LayoutIndex,
     rooms: Sequence[str] = (),
-    layouts: Sequence[Layout] = (),
+    given: Home | Sequence[Layout] = (),
     seed: int = 0,
 ) -> Furnished:
     """Find a room for every room type of the script, join them to a home and ground every keyframe in it.
 
-    `layouts` of the user's own are used instead of retrieved ones. Raises FurnishError naming what no room has.
+    `given` are rooms of the user's own, used instead of retrieved ones and joined, or a whole home, used as it is.
+    Raises FurnishError naming what no room has.
     """
+    layouts = [room.layout for room in given.rooms] if isinstance(given, Home) else given
     known = [room for room in map(canonical_room, rooms) if room in ROOM_TYPES]
     script = housed(script, index.layouts, known or ROOM_TYPES)
     wanted = _room_types(script, rooms)
@@ -109,7 +113,10 @@ def furnish(
             raise FurnishError(f"theme: the story uses {used}, at most {MOST_NODES} can be; tell of fewer events")
     chosen = _given(merged, layouts) if layouts else _retrieved(merged, index, seed)
     unique = list(dict.fromkeys([layout for layout, _ in chosen.values()] + list(layouts)))
-    home = home_from_layouts(unique, seed)
+    if isinstance(given, Home):
+        unique, home = list(layouts), given
+    else:
+        home = home_from_layouts(unique, seed)
     number = {room: unique.index(layout) for room, (layout, _) in chosen.items()}
     # Our own rooms were checked when they were made; in a user's room a chair may stand where nobody gets to.
     placing = Placing(home, uses, number, usable_offers(home) if layouts else {})
@@ -117,7 +124,7 @@ def furnish(
         places = placing.places(script, [_room_of(keyframe, wanted) for keyframe in script.keyframes])
     except MissingError as error:
         raise FurnishError(str(error)) from error
-    return Furnished(script, home, _matches(unique, chosen, placing.said()), places)
+    return Furnished(script, home, _matches(unique, chosen, placing.said()), places, merged)
 
 
 def _room_types(script: LongScript, rooms: Sequence[str]) -> list[str]:

@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Annotated, Literal
 
 from platformdirs import user_data_path
-from pydantic import Field, ValidationError
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from pydantic import Field, ValidationError, field_validator
+from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
+
+LEAST_KEY = 16
+"""Letters of an API key: shorter ones can be guessed."""
+Words = Annotated[tuple[str, ...], NoDecode]
+"""Words parted by commas."""
 
 
 class SettingsError(ValueError):
@@ -19,15 +25,48 @@ class Settings(BaseSettings):
     model_config = SettingsConfigDict(env_prefix="SIMS_", env_file=".env", extra="ignore")
 
     data_dir: Path = Field(default_factory=lambda: user_data_path("sims"))
-    """Holds the user's own short scripts and the cache of sentence features."""
+    """Holds the SQLite database and the cache of sentence features."""
+    database_url: str = ""
+    """PostgreSQL, as postgresql://user:password@host/name; empty for the SQLite file in `data_dir`."""
     backend: str = "procedural"
     layouts: Path | None = None
     """An extra layout file, read beside the built-in library."""
+    llm_model: str = ""
+    """The language model that plans: "scripted:FILE" answers from a file of JSON lines; empty for rules."""
+    host: str = "127.0.0.1"
+    port: int = Field(8000, ge=0, le=65535)
+    workers: int = Field(1, ge=0, le=64)
+    """Worker processes that `sims serve` keeps running; 0 leaves the work to `sims worker` elsewhere."""
+    worker_id: str = Field("worker-0", pattern=r"^[a-z0-9][a-z0-9_-]{0,62}$")
+    """The name of a worker process; after a crash it goes on with the stories it had under this name."""
+    api_keys: Words = ()
+    """Keys of those who may use the service; needed to serve beyond this machine."""
+    cors_origins: Words = ()
+    """Origins of other web pages that may call the service, such as https://studio.example."""
+    log_level: Literal["debug", "info", "warning", "error"] = "info"
+    most_stories: int = Field(100, ge=1)
+    """Stories of one caller that may wait or be in the making at the same time."""
+    rate: str = Field("1200/minute", pattern=r"^[1-9]\d{0,6}/(second|minute|hour)$")
+    """Requests of one caller."""
 
-    @property
-    def scripts_file(self) -> Path:
-        """The user's own short scripts."""
-        return self.data_dir / "short_scripts.jsonl"
+    @field_validator("api_keys", "cors_origins", mode="before")
+    @classmethod
+    def _words(cls, value: object) -> object:
+        if isinstance(value, str):
+            return tuple(word.strip() for word in value.split(",") if word.strip())
+        return value
+
+    @field_validator("api_keys")
+    @classmethod
+    def _long(cls, keys: tuple[str, ...]) -> tuple[str, ...]:
+        if any(len(key) < LEAST_KEY for key in keys):
+            raise ValueError(f"a key has at least {LEAST_KEY} letters; `openssl rand -hex 24` makes a good one")
+        return keys
+
+    @field_validator("log_level", mode="before")
+    @classmethod
+    def _lower(cls, value: object) -> object:
+        return value.lower() if isinstance(value, str) else value
 
     @property
     def cache_dir(self) -> Path:
@@ -35,10 +74,13 @@ class Settings(BaseSettings):
         return self.data_dir / "cache"
 
 
-def read_settings() -> Settings:
-    """The settings of this process. SettingsError names the one that cannot be used."""
+def read_settings(**options: object) -> Settings:
+    """The settings of this process; `options` that are not None come before the environment.
+
+    SettingsError names the one that cannot be used.
+    """
     try:
-        return Settings()
+        return Settings(**{name: value for name, value in options.items() if value is not None})  # type: ignore[arg-type]
     except ValidationError as error:
         faults = [f"SIMS_{'.'.join(map(str, fault['loc'])).upper()}: {fault['msg']}" for fault in error.errors()]
         raise SettingsError("; ".join(faults)) from error

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 from motion_backend import metrics
@@ -14,15 +12,13 @@ from motion_backend.obstacles import Obstacles
 from planner_service.furnish import MOST_ROOMS, Furnished, furnish
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts.acting import act
-from planner_service.scripts.composing import MOST, Request, compose
-from planner_service.scripts.keyframe import LongScript
-from planner_service.scripts.library import ScriptLibrary
+from planner_service.scripts.composing import MOST, Request, compose, script_of
+from planner_service.scripts.keyframe import Keyframe, LongScript
 from planner_service.scripts.narrating import Told, narrate, narrate_with_model
+from planner_service.shelves import Shelves
 from scene_graphs.furniture import ROOM_TYPES, canonical_room
 from scene_graphs.homes import Home
-from scene_graphs.layouts import Layout, LayoutError, read_layouts
-from scene_graphs.library import built_in_layouts
-from scene_graphs.retrieval import LayoutIndex
+from scene_graphs.layouts import Layout
 
 Progress = Callable[[str, float], None]
 """Called with a stage's name and the share of it that is done, 0 to 1."""
@@ -31,6 +27,8 @@ BACKENDS = ("procedural",)
 METHODS = ("matching", "direct")
 PRONOUNS = ("he", "she", "they")
 LONGEST_NAME = 40
+LARGEST_SEED = 2**53 - 1
+"""The largest whole number that every JSON reader keeps exactly."""
 LEAST_HEIGHT, MOST_HEIGHT = 1.2, 2.2
 """Metres."""
 
@@ -48,6 +46,10 @@ class StoryRequest:
     """Room types, one to four."""
     layouts: tuple[Layout, ...] = ()
     """Rooms of the user's own, used in place of retrieved ones."""
+    home: Home | None = None
+    """A whole home of the user's own, used as it is."""
+    keyframes: tuple[Keyframe, ...] = ()
+    """A script of the user's own: nothing is planned, and the story is not told."""
     short_scripts: int | None = None
     method: str = "matching"
     backend: str = "procedural"
@@ -68,8 +70,10 @@ class StoryRequest:
                 raise RequestError(f"layout: two rooms are called {layout_id!r}; give every room its own id")
         if self.short_scripts is not None and not 1 <= self.short_scripts <= MOST:
             raise RequestError(f"short_scripts: must be a number from 1 to {MOST}, got {self.short_scripts}")
-        if self.seed < 0:
-            raise RequestError(f"seed: must be a whole number, 0 or more, got {self.seed}")
+        if self.home is not None and self.layouts:
+            raise RequestError("home: give a whole home or layouts to join to one, not both")
+        if not 0 <= self.seed <= LARGEST_SEED:
+            raise RequestError(f"seed: must be a whole number from 0 to {LARGEST_SEED}, got {self.seed}")
         _check_character(self.character)
 
 
@@ -119,55 +123,40 @@ class Story:
 class Studio:
     """What stories are made from: scripts, rooms, a language model if there is one. Heavy parts load on first use."""
 
-    scripts_file: Path | None = None
-    cache: Path | None = None
-    layouts_file: Path | None = None
+    shelves: Shelves = field(default_factory=Shelves)
     model: LanguageModel | None = None
-
-    @cached_property
-    def library(self) -> ScriptLibrary:
-        """Short scripts, ours and the user's."""
-        return ScriptLibrary.read(self.scripts_file, cache=self.cache)
-
-    @cached_property
-    def layouts(self) -> tuple[Layout, ...]:
-        """Rooms, ours and the user's."""
-        extra = tuple(read_layouts(self.layouts_file)) if self.layouts_file else ()
-        taken = {layout.id for layout in built_in_layouts()}
-        for layout in extra:
-            if layout.id in taken:
-                raise LayoutError(f"{self.layouts_file}: {layout.id!r} is the id of a built-in room; choose another id")
-        return (*built_in_layouts(), *extra)
-
-    @cached_property
-    def index(self) -> LayoutIndex:
-        """The rooms, ready to be searched."""
-        return LayoutIndex(self.layouts)
 
     def plan(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Planned:
         """Theme to narrated story in a furnished home, without motion."""
         progress("plan", 0.0)
-        rooms = request.rooms or types_of(request.layouts)
-        asked = Request(request.short_scripts, rooms, request.seed, request.method)  # type: ignore[arg-type]
-        script = compose(request.theme, self.library, asked, self.model)
+        script = self.script(request)
         progress("furnish", 0.0)
-        stage = furnish(script, self.index, rooms, request.layouts, request.seed)
+        stage = self.furnish(request, script)
         progress("narrate", 0.0)
-        told, notes = self._tell(stage, request)
-        if notes:
-            script = stage.script.model_copy(update={"repairs": (*stage.script.repairs, *notes)})
-            stage = replace(stage, script=script)
+        stage, told = self.tell(request, stage)
         return Planned(request, stage.script, stage, told)
 
-    def _tell(self, stage: Furnished, request: StoryRequest) -> tuple[Told, tuple[str, ...]]:
-        """The story as the model tells it, else as the rules do, with a note why."""
-        notes: tuple[str, ...] = ()
+    def script(self, request: StoryRequest) -> LongScript:
+        """The long script of a theme; what the user wrote as keyframes is only checked and repaired."""
+        if request.keyframes:
+            return script_of(request.keyframes, request.theme, request.seed)
+        asked = Request(request.short_scripts, _rooms(request), request.seed, request.method)  # type: ignore[arg-type]
+        return compose(request.theme, self.shelves.scripts(), asked, self.model)
+
+    def furnish(self, request: StoryRequest, script: LongScript) -> Furnished:
+        """The home of a script, and every keyframe's place in it."""
+        given = request.home or request.layouts
+        return furnish(script, self.shelves.layouts(), _rooms(request), given, request.seed)
+
+    def tell(self, request: StoryRequest, stage: Furnished) -> tuple[Furnished, Told]:
+        """The story as the model tells it, else as the rules do, with a note why among the script's repairs."""
         if self.model is not None:
             try:
-                return narrate_with_model(stage.script, request.character, self.model, stage.names), ()
+                return stage, narrate_with_model(stage.script, request.character, self.model, stage.names)
             except ModelError as error:
-                notes = (f"told by rules: {error}",)
-        return narrate(stage.script, request.character, request.seed, stage.names), notes
+                repairs = (*stage.script.repairs, f"told by rules: {error}")
+                stage = replace(stage, script=stage.script.model_copy(update={"repairs": repairs}))
+        return stage, narrate(stage.script, request.character, request.seed, stage.names)
 
     def make(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Story:
         """Theme to acted story."""
@@ -176,6 +165,12 @@ class Studio:
         actions = act(planned.script.keyframes, planned.stage.places, planned.home, request.seed)
         motions = move(planned.home, actions, request, progress)
         return judge(planned, actions, motions, progress)
+
+
+def _rooms(request: StoryRequest) -> tuple[str, ...]:
+    """The room types a story is looked for in."""
+    own = [room.layout for room in request.home.rooms] if request.home else request.layouts
+    return request.rooms or types_of(own)
 
 
 def types_of(layouts: Sequence[Layout]) -> tuple[str, ...]:

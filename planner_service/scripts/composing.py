@@ -23,7 +23,7 @@ from planner_service.scripts.events import (
     moods_of,
     rooms_in,
 )
-from planner_service.scripts.keyframe import Event, LongScript, PlannedKeyframe, Retrieved
+from planner_service.scripts.keyframe import Event, Keyframe, LongScript, PlannedKeyframe, Retrieved
 from planner_service.scripts.library import Found, Scores, ScriptLibrary
 from planner_service.scripts.reading import Reading, read
 from scene_graphs.furniture import ROOM_TYPES, canonical_room
@@ -229,6 +229,15 @@ def _direct(
         planner=planner,
         seed=request.seed,
     )
+
+
+def script_of(keyframes: Sequence[Keyframe], theme: str, seed: int = 0) -> LongScript:
+    """The long script of keyframes that somebody else wrote: checked and repaired, nothing retrieved."""
+    acted, repairs = repair([PlannedKeyframe.model_validate(keyframe.model_dump()) for keyframe in keyframes])
+    return LongScript(
+        theme=theme, events=(), short_scripts=(), keyframes=acted, repairs=tuple(repairs), method="direct",
+        planner="given", seed=seed,
+    )  # fmt: skip
 
 
 def _not_understood(reading: Reading, library: ScriptLibrary, request: Request) -> str:

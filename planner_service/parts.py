@@ -1,0 +1,46 @@
+"""What the service is made of, put together at its door and handed to every route."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from fastapi import Depends
+from sqlalchemy import Engine
+from starlette.requests import HTTPConnection
+
+from planner_service.jobs import Jobs
+from planner_service.settings import Settings
+from planner_service.shelves import Shelves
+from planner_service.store.engine import database_url, open_engine
+
+
+@dataclass(frozen=True)
+class Parts:
+    """One service: its settings, its database, the scripts and rooms there are, and the door to the workers."""
+
+    settings: Settings
+    engine: Engine
+    shelves: Shelves
+    jobs: Jobs
+
+    def close(self) -> None:
+        """Let go of the database."""
+        self.jobs.close()
+        self.engine.dispose()
+
+
+def open_parts(settings: Settings) -> Parts:
+    """Open the database and everything on it. SettingsError says what cannot be used."""
+    url = database_url(settings)
+    engine = open_engine(url)
+    return Parts(settings, engine, Shelves(engine, settings.cache_dir, settings.layouts), Jobs(engine, url))
+
+
+def parts_of(connection: HTTPConnection) -> Parts:
+    """The parts of the app that a request came to."""
+    parts: Parts = connection.app.state.parts
+    return parts
+
+
+PartsDep = Annotated[Parts, Depends(parts_of)]

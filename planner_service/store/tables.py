@@ -1,0 +1,93 @@
+"""The tables, the same on SQLite and PostgreSQL. Those of the job engine (DBOS) lie beside them and are only read."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from sqlalchemy import BigInteger, Column, Float, ForeignKey, Index, Integer, LargeBinary, MetaData, Table, Text
+
+SCHEMA_VERSION: Final = 1
+metadata = MetaData()
+
+schema_version = Table("sims_schema", metadata, Column("version", Integer, primary_key=True))
+
+stories = Table(
+    "stories",
+    metadata,
+    Column("id", Text, primary_key=True),  # UUIDv7, so that ids sort by time
+    Column("kind", Text, nullable=False),  # story or motion
+    Column("caller", Text, nullable=False),
+    Column("created", BigInteger, nullable=False),  # milliseconds since 1970
+    Column("theme", Text, nullable=False),
+    Column("seed", BigInteger, nullable=False),
+    Column("backend", Text, nullable=False),
+    Column("request", Text, nullable=False),  # JSON: all that was asked for, own rooms included
+    Column("stage", Text),  # what is being made
+    Column("progress", Float, nullable=False, default=0.0),
+    Column("title", Text),
+    Column("error", Text),  # JSON {title, detail}: why it could not be made
+)
+"""What was asked for, and how far it is. Whether it still runs is for the job engine alone to say."""
+
+artifacts = Table(
+    "artifacts",
+    metadata,
+    Column("story_id", Text, ForeignKey("stories.id", ondelete="CASCADE"), primary_key=True),
+    Column("position", Integer, primary_key=True),  # in the order of making
+    Column("kind", Text, nullable=False),  # script, home, told, actions, segment, report, film
+    Column("summary", Text, nullable=False),  # small JSON: what lists and events show of it
+    Column("data", LargeBinary, nullable=False),  # gzipped JSON, npz or GLB
+    Column("etag", Text, nullable=False),  # SHA-256 of data, shortened
+    Column("seconds", Float, nullable=False),
+    Column("made", BigInteger, nullable=False),
+)
+"""What every recorded stage and segment made. Written once and never changed."""
+
+idempotency_keys = Table(
+    "idempotency_keys",
+    metadata,
+    Column("caller", Text, primary_key=True),
+    Column("key", Text, primary_key=True),
+    Column("story_id", Text, nullable=False),
+    Column("body_hash", Text, nullable=False),
+    Column("created", BigInteger, nullable=False),
+)
+
+stage_times = Table(
+    "stage_times",
+    metadata,
+    Column("worker", Text, primary_key=True),
+    Column("stage", Text, primary_key=True),
+    Column("count", BigInteger, nullable=False),
+    Column("seconds", Float, nullable=False),
+)
+"""How often each worker made each stage, and how long it took in all."""
+
+short_scripts = Table(
+    "short_scripts",
+    metadata,
+    Column("id", Text, primary_key=True),
+    Column("body", Text, nullable=False),  # JSON of a ShortScript
+    Column("created", BigInteger, nullable=False),
+)
+"""The users' own short scripts; ours are in the package."""
+
+layouts = Table(
+    "layouts",
+    metadata,
+    Column("id", Text, primary_key=True),
+    Column("room_type", Text, nullable=False),
+    Column("body", Text, nullable=False),  # native JSON of a Layout
+    Column("created", BigInteger, nullable=False),
+)
+"""The users' own rooms; ours are in the package."""
+
+revisions = Table(
+    "revisions",
+    metadata,
+    Column("shelf", Text, primary_key=True),  # short_scripts or layouts
+    Column("revision", BigInteger, nullable=False),
+)
+"""Raised with every change of a shelf, so that other processes read it again."""
+
+Index("stories_by_caller", stories.c.caller)
