@@ -9,6 +9,7 @@ from sqlalchemy import Connection, Engine, create_engine, event, make_url, selec
 from sqlalchemy.exc import ArgumentError, SQLAlchemyError
 
 from planner_service.settings import Settings, SettingsError
+from planner_service.store.jobs import SCHEMA
 from planner_service.store.tables import SCHEMA_VERSION, metadata, schema_version
 
 BUSY_MS = 15_000
@@ -41,7 +42,8 @@ def open_engine(url: str, pool_size: int = 8) -> Engine:
     try:
         if url.startswith("sqlite"):
             Path(make_url(url).database or "").parent.mkdir(parents=True, exist_ok=True)
-            engine = create_engine(url, pool_size=pool_size, max_overflow=pool_size)
+            plain_names = {"schema_translate_map": {SCHEMA: None}}
+            engine = create_engine(url, pool_size=pool_size, max_overflow=pool_size, execution_options=plain_names)
             _tune_sqlite(engine)
         else:
             engine = create_engine(

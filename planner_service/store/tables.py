@@ -36,7 +36,8 @@ artifacts = Table(
     Column("position", Integer, primary_key=True),  # in the order of making
     Column("kind", Text, nullable=False),  # script, home, told, actions, segment, report, film
     Column("summary", Text, nullable=False),  # small JSON: what lists and events show of it
-    Column("data", LargeBinary, nullable=False),  # gzipped JSON, npz or GLB
+    Column("data", LargeBinary, nullable=False),  # JSON, npz or GLB
+    Column("state", Text),  # JSON of the BodyState a segment left
     Column("etag", Text, nullable=False),  # SHA-256 of data, shortened
     Column("seconds", Float, nullable=False),
     Column("made", BigInteger, nullable=False),

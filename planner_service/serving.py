@@ -1,0 +1,145 @@
+"""`sims serve`: the HTTP process, which supervises its workers and starts those again that die."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import threading
+import time
+from dataclasses import dataclass, field
+from typing import Final
+
+import structlog
+
+from planner_service.settings import Settings
+
+FIRST_WAIT, LONGEST_WAIT = 0.2, 15.0
+"""Seconds before a worker that died is started again; doubled while it keeps dying."""
+LIVED: Final = 30.0
+"""Seconds after which a worker counts as having lived."""
+GRACE: Final = 8
+"""Seconds that requests and workers have to end when the service stops."""
+log = structlog.get_logger("sims.serve")
+
+
+@dataclass
+class Slot:
+    """A worker's place: its fixed id, and the process that has it now."""
+
+    id: str
+    process: subprocess.Popen[bytes] | None = None
+    started: float = 0.0
+    wait: float = FIRST_WAIT
+
+
+@dataclass
+class Supervisor:
+    """Keeps one process in every slot, under the same id, so that it goes on with its stories."""
+
+    settings: Settings
+    slots: list[Slot] = field(default_factory=list)
+    stopping: threading.Event = field(default_factory=threading.Event)
+
+    def start(self) -> None:
+        """Start all workers, and a thread that watches them."""
+        self.slots = [Slot(f"worker-{number}") for number in range(self.settings.workers)]
+        for slot in self.slots:
+            self._spawn(slot)
+        threading.Thread(target=self._watch, name="supervisor", daemon=True).start()
+
+    def alive(self) -> int:
+        """How many workers run now."""
+        return sum(slot.process is not None and slot.process.poll() is None for slot in self.slots)
+
+    def stop(self) -> None:
+        """Ask all workers to stop, and end those that do not."""
+        self.stopping.set()
+        running = [slot.process for slot in self.slots if slot.process is not None]
+        for process in running:
+            process.terminate()
+        for process in running:
+            try:
+                process.wait(GRACE)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+            if process.stdin is not None:
+                process.stdin.close()
+
+    def _watch(self) -> None:
+        while not self.stopping.wait(0.1):
+            for slot in self.slots:
+                if slot.process is None or slot.process.poll() is None:
+                    continue
+                lived = time.monotonic() - slot.started
+                slot.wait = FIRST_WAIT if lived > LIVED else min(2 * slot.wait, LONGEST_WAIT)
+                log.warning("worker ended, starting it again", worker=slot.id, code=slot.process.returncode)
+                if self.stopping.wait(slot.wait):
+                    return
+                self._spawn(slot)
+
+    def _spawn(self, slot: Slot) -> None:
+        command = [sys.executable, "-m", "planner_service.cli", "worker", "--supervised"]
+        slot.process = subprocess.Popen(command, stdin=subprocess.PIPE, env=environment(self.settings, slot.id))
+        slot.started = time.monotonic()
+
+
+def environment(settings: Settings, worker_id: str) -> dict[str, str]:
+    """The environment of a worker: these very settings, and one thread a worker."""
+    given = {
+        "SIMS_DATA_DIR": str(settings.data_dir.absolute()),
+        "SIMS_DATABASE_URL": settings.database_url,
+        "SIMS_BACKEND": settings.backend,
+        "SIMS_LAYOUTS": str(settings.layouts.absolute()) if settings.layouts else None,
+        "SIMS_LLM_MODEL": settings.llm_model,
+        "SIMS_LOG_LEVEL": settings.log_level,
+        "SIMS_WORKER_ID": worker_id,
+    }
+    # Two threads of torch on two busy cores are many times slower than one.
+    calm = {"OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+    return {**os.environ, **calm, **{name: value for name, value in given.items() if value is not None}}
+
+
+def serve(settings: Settings) -> None:
+    """Answer until SIGTERM or SIGINT. SettingsError names what cannot be used, before anything is started."""
+    import uvicorn
+
+    from planner_service.access import check_exposure
+    from planner_service.app import create_app
+    from planner_service.llm.choosing import load_model
+    from planner_service.parts import open_parts
+
+    check_exposure(settings)
+    load_model(settings.llm_model)
+    parts = open_parts(settings)
+    supervisor = Supervisor(settings)
+
+    class Server(uvicorn.Server):
+        """Says when it is ready to answer, and where."""
+
+        async def startup(self, sockets: list[object] | None = None) -> None:  # type: ignore[override]
+            await super().startup(sockets)  # type: ignore[arg-type]
+            if self.started:
+                port = self.servers[0].sockets[0].getsockname()[1]
+                print(f"sims: ready at {_address(settings.host, port)} ({settings.workers} workers)", flush=True)  # noqa: T201
+
+    config = uvicorn.Config(
+        create_app(parts),
+        host=settings.host,
+        port=settings.port,
+        log_config=None,
+        access_log=False,
+        server_header=False,
+        timeout_graceful_shutdown=GRACE,
+        timeout_keep_alive=30,
+    )
+    supervisor.start()
+    try:
+        Server(config).run()
+    finally:
+        supervisor.stop()
+
+
+def _address(host: str, port: int) -> str:
+    return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"

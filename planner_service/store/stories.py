@@ -1,0 +1,285 @@
+"""Stories in the database: what was asked, what each stage made of it, and how far it is."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import secrets
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from sqlalchemy import Connection, Engine, Row, Select, delete, func, select, update
+from sqlalchemy.exc import IntegrityError
+
+from planner_service.documents import request_from_dict, request_to_dict
+from planner_service.store.jobs import WAITING, workflow_status
+from planner_service.store.tables import artifacts, idempotency_keys, stage_times, stories
+from planner_service.stories import StoryRequest
+
+Json = dict[str, Any]
+_LISTED: Final = (
+    stories.c.id,
+    stories.c.kind,
+    stories.c.created,
+    stories.c.theme,
+    stories.c.title,
+    stories.c.seed,
+    stories.c.backend,
+    stories.c.stage,
+    stories.c.progress,
+    stories.c.error,
+    workflow_status.c.status,
+    workflow_status.c.recovery_attempts,
+)
+
+
+class StoryGone(LookupError):  # noqa: N818
+    """A story that is not there, or no longer."""
+
+
+@dataclass(frozen=True)
+class Made:
+    """What one stage made, about to be stored."""
+
+    kind: str
+    """script, home, told, actions, segment, report or film."""
+    position: int
+    """In the order of making; a story has one artifact at each."""
+    data: bytes
+    summary: Json
+    """What lists and events show of it, small."""
+    following: str | None
+    """The stage that begins now, if another one does."""
+    progress: float
+    seconds: float
+    state: Json | None = None
+    """The BodyState a segment left."""
+    title: str | None = None
+
+
+@dataclass(frozen=True)
+class Artifact:
+    """What one stage made, without its data."""
+
+    position: int
+    kind: str
+    summary: Json
+    etag: str
+
+
+@dataclass(frozen=True)
+class Record:
+    """A story as the database knows it; `status` is the job engine's word for it."""
+
+    id: str
+    kind: str
+    created: int
+    theme: str
+    title: str | None
+    seed: int
+    backend: str
+    stage: str | None
+    progress: float
+    error: Json | None
+    status: str | None
+    attempts: int
+    artifacts: tuple[Artifact, ...] = field(default=())
+    request: Json = field(default_factory=dict)
+
+
+def new_id(milliseconds: int) -> str:
+    """A UUIDv7: 48 bits of time, then chance, so that ids sort by the time they were made."""
+    number = (milliseconds << 80) | secrets.randbits(80)
+    number = number & ~(0xF << 76) | 0x7 << 76
+    number = number & ~(0x3 << 62) | 0x2 << 62
+    text = f"{number:032x}"
+    return f"{text[:8]}-{text[8:12]}-{text[12:16]}-{text[16:20]}-{text[20:]}"
+
+
+def now() -> int:
+    """Milliseconds since 1970."""
+    return time.time_ns() // 1_000_000
+
+
+class Stories:
+    """The table of stories with what hangs on it."""
+
+    def __init__(self, engine: Engine) -> None:
+        self.engine = engine
+        self.writing = engine.execution_options(writes=True)
+
+    def add(self, connection: Connection, kind: str, caller: str, request: StoryRequest) -> str:
+        """A new story inside the caller's transaction; its id."""
+        created = now()
+        story_id = new_id(created)
+        connection.execute(
+            stories.insert().values(
+                id=story_id,
+                kind=kind,
+                caller=caller,
+                created=created,
+                theme=request.theme,
+                seed=request.seed,
+                backend=request.backend,
+                request=json.dumps(request_to_dict(request), separators=(",", ":")),
+                progress=0.0,
+            )
+        )
+        return story_id
+
+    def waiting(self, connection: Connection, caller: str) -> int:
+        """How many stories of a caller have not ended."""
+        joined = stories.join(workflow_status, workflow_status.c.workflow_uuid == stories.c.id)
+        mine = (stories.c.caller == caller) & workflow_status.c.status.in_(WAITING)
+        return int(connection.execute(select(func.count()).select_from(joined).where(mine)).scalar_one())
+
+    def known_key(self, connection: Connection, caller: str, key: str) -> tuple[str, str] | None:
+        """Story id and body hash that an idempotency key stands for."""
+        mine = (idempotency_keys.c.caller == caller) & (idempotency_keys.c.key == key)
+        columns = (idempotency_keys.c.story_id, idempotency_keys.c.body_hash)
+        row = connection.execute(select(*columns).where(mine)).one_or_none()
+        return None if row is None else (row.story_id, row.body_hash)
+
+    def remember_key(self, connection: Connection, caller: str, key: str, story_id: str, body_hash: str) -> None:
+        """Bind an idempotency key to a story."""
+        values = {"caller": caller, "key": key, "story_id": story_id, "body_hash": body_hash, "created": now()}
+        connection.execute(idempotency_keys.insert().values(**values))
+
+    def request(self, story_id: str) -> StoryRequest:
+        """What was asked for. StoryGone."""
+        with self.engine.connect() as connection:
+            text = connection.execute(select(stories.c.request).where(stories.c.id == story_id)).scalar()
+        if text is None:
+            raise StoryGone(story_id)
+        return request_from_dict(json.loads(text))
+
+    def record(self, story_id: str, made: Made, worker: str) -> None:
+        """Store what a stage made, once: a stage that was made again after a crash changes nothing. StoryGone."""
+        values = {
+            "story_id": story_id,
+            "position": made.position,
+            "kind": made.kind,
+            "summary": json.dumps(made.summary, separators=(",", ":"), allow_nan=False),
+            "data": made.data,
+            "state": None if made.state is None else json.dumps(made.state, separators=(",", ":")),
+            "etag": hashlib.sha256(made.data).hexdigest()[:32],
+            "seconds": made.seconds,
+            "made": now(),
+        }
+        with self.writing.begin() as connection:
+            here = (artifacts.c.story_id == story_id) & (artifacts.c.position == made.position)
+            if connection.execute(select(artifacts.c.position).where(here)).first():
+                return
+            try:
+                connection.execute(artifacts.insert().values(**values))
+            except IntegrityError as error:
+                raise StoryGone(story_id) from error
+            after: Json = {"progress": made.progress}
+            after |= {"stage": made.following} if made.following else {}
+            after |= {"title": made.title} if made.title else {}
+            connection.execute(update(stories).where(stories.c.id == story_id).values(**after))
+            _count(connection, worker, made.kind, made.seconds)
+
+    def begin(self, story_id: str, stage: str) -> None:
+        """A story leaves the queue; nothing changes if it has begun already."""
+        with self.writing.begin() as connection:
+            fresh = (stories.c.id == story_id) & stories.c.stage.is_(None)
+            connection.execute(update(stories).where(fresh).values(stage=stage))
+
+    def fail(self, story_id: str, title: str, detail: str) -> None:
+        """Keep why a story could not be made."""
+        with self.writing.begin() as connection:
+            error = json.dumps({"title": title, "detail": detail})
+            connection.execute(update(stories).where(stories.c.id == story_id).values(error=error))
+
+    def data(self, story_id: str, position: int) -> bytes:
+        """What the stage at a position made. StoryGone if it is not there."""
+        return self.segment(story_id, position)[0]
+
+    def segment(self, story_id: str, position: int) -> tuple[bytes, Json]:
+        """What the stage at a position made and, of a segment, the BodyState it left. StoryGone."""
+        here = (artifacts.c.story_id == story_id) & (artifacts.c.position == position)
+        with self.engine.connect() as connection:
+            row = connection.execute(select(artifacts.c.data, artifacts.c.state).where(here)).one_or_none()
+        if row is None:
+            raise StoryGone(f"{story_id}: nothing at {position}")
+        return row.data, json.loads(row.state) if row.state else {}
+
+    def parts(self, story_id: str, positions: Iterable[int]) -> list[bytes]:
+        """The data at several positions, in order; those that are not there are left out."""
+        here = (artifacts.c.story_id == story_id) & artifacts.c.position.in_(list(positions))
+        with self.engine.connect() as connection:
+            rows = connection.execute(select(artifacts.c.data).where(here).order_by(artifacts.c.position))
+            return [row.data for row in rows]
+
+    def get(self, story_id: str, after: int = -1) -> Record:
+        """A story with what was made of it beyond the position `after`, data left out. StoryGone."""
+        columns = (artifacts.c.position, artifacts.c.kind, artifacts.c.summary, artifacts.c.etag)
+        beyond = (artifacts.c.story_id == story_id) & (artifacts.c.position > after)
+        with self.engine.connect() as connection:
+            row = connection.execute(_listed(stories.c.request).where(stories.c.id == story_id)).one_or_none()
+            if row is None:
+                raise StoryGone(story_id)
+            found = connection.execute(select(*columns).where(beyond).order_by(artifacts.c.position)).all()
+        made = tuple(Artifact(one.position, one.kind, json.loads(one.summary), one.etag) for one in found)
+        return _record(row, made, json.loads(row.request))
+
+    def page(self, limit: int, before: str | None = None) -> list[Record]:
+        """Stories from newest to oldest, those after the id `before` in that order; artifacts left out."""
+        query = _listed().order_by(stories.c.id.desc()).limit(limit)
+        if before is not None:
+            query = query.where(stories.c.id < before)
+        with self.engine.connect() as connection:
+            return [_record(row) for row in connection.execute(query)]
+
+    def durations(self, story_ids: Iterable[str]) -> dict[str, int]:
+        """Frames that are ready, by story."""
+        wanted = artifacts.c.story_id.in_(list(story_ids)) & (artifacts.c.kind == "segment")
+        last = select(artifacts.c.story_id, func.max(artifacts.c.position).label("position"))
+        last_of = last.where(wanted).group_by(artifacts.c.story_id).subquery()
+        both = (artifacts.c.story_id == last_of.c.story_id) & (artifacts.c.position == last_of.c.position)
+        query = select(artifacts.c.story_id, artifacts.c.summary).join(last_of, both)
+        with self.engine.connect() as connection:
+            return {row.story_id: int(json.loads(row.summary)["end"]) for row in connection.execute(query)}
+
+    def delete(self, story_id: str) -> None:
+        """Forget a story and all that was made of it. StoryGone."""
+        with self.writing.begin() as connection:
+            connection.execute(delete(idempotency_keys).where(idempotency_keys.c.story_id == story_id))
+            if connection.execute(delete(stories).where(stories.c.id == story_id)).rowcount == 0:
+                raise StoryGone(story_id)
+
+
+def _listed(*more: Any) -> Select[Any]:
+    """Stories beside what the job engine says of them."""
+    joined = stories.outerjoin(workflow_status, workflow_status.c.workflow_uuid == stories.c.id)
+    return select(*_LISTED, *more).select_from(joined)
+
+
+def _record(row: Row[Any], made: tuple[Artifact, ...] = (), request: Json | None = None) -> Record:
+    return Record(
+        id=row.id,
+        kind=row.kind,
+        created=row.created,
+        theme=row.theme,
+        title=row.title,
+        seed=row.seed,
+        backend=row.backend,
+        stage=row.stage,
+        progress=row.progress,
+        error=json.loads(row.error) if row.error else None,
+        status=row.status,
+        attempts=row.recovery_attempts or 0,
+        artifacts=made,
+        request=request or {},
+    )
+
+
+def _count(connection: Connection, worker: str, stage: str, seconds: float) -> None:
+    """One more stage made by a worker."""
+    mine = (stage_times.c.worker == worker) & (stage_times.c.stage == stage)
+    more = {"count": stage_times.c.count + 1, "seconds": stage_times.c.seconds + seconds}
+    if connection.execute(update(stage_times).where(mine).values(**more)).rowcount == 0:
+        connection.execute(stage_times.insert().values(worker=worker, stage=stage, count=1, seconds=seconds))

@@ -1,0 +1,93 @@
+"""The durable way of a story: every stage, and the motion of every action, is one recorded step (DBOS).
+
+A worker that is killed goes on, when it starts again under its id, at the step it was in. A step may therefore run
+twice, and what it stores is stored once. Steps are the points where a story can be cancelled.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from typing import Final, TypeVar
+
+import structlog
+from dbos import DBOS
+from sqlalchemy.exc import InterfaceError, OperationalError
+
+from planner_service.commands.errors import USER_ERRORS, explain
+from planner_service.jobs import WORKFLOW
+from planner_service.making import Maker
+from planner_service.store.stories import StoryGone
+
+MOST_ATTEMPTS: Final = 10
+"""How often a story may take its worker down with it before it is given up."""
+LONGEST_WAIT: Final = 15.0
+"""Seconds between two attempts to reach the database."""
+UNUSABLE: Final = (OperationalError, InterfaceError)
+"""What a locked, full or absent database raises."""
+R = TypeVar("R")
+log = structlog.get_logger("sims.worker")
+
+
+def register(maker: Maker) -> None:
+    """Tell the job engine how a story is made; call before DBOS.launch()."""
+
+    @DBOS.workflow(name=WORKFLOW, max_recovery_attempts=MOST_ATTEMPTS)
+    def act_out(story_id: str) -> None:
+        with structlog.contextvars.bound_contextvars(story_id=story_id):
+            make(maker, story_id)
+
+    del act_out
+
+
+def make(maker: Maker, story_id: str) -> None:
+    """All steps of a story in order; what cannot be made is said in the story before the workflow fails."""
+    try:
+        step("plan", maker.plan, story_id)
+        step("furnish", maker.furnish, story_id)
+        if step("tells", _tells, maker, story_id):
+            step("narrate", maker.narrate, story_id)
+        for index in range(step("act", maker.act, story_id)):
+            step(f"move {index}", maker.move, story_id, index)
+        step("judge", maker.judge, story_id)
+        step("film", maker.film, story_id)
+    except StoryGone:
+        log.info("story deleted while it was made")
+    except USER_ERRORS as error:
+        step("fail", maker.store.fail, story_id, "This story cannot be made", explain(error))
+        raise
+    except Exception as error:
+        log.exception("story failed")
+        step("fail", maker.store.fail, story_id, "Something went wrong on our side", type(error).__name__)
+        raise
+
+
+def _tells(maker: Maker, story_id: str) -> bool:
+    """Whether there is a story to tell: there is none to keyframes that were given."""
+    return not maker.store.request(story_id).keyframes
+
+
+def step(name: str, run: Callable[..., R], *args: object) -> R:
+    """One recorded step. A database that is away, locked or full is waited for; nothing is lost meanwhile."""
+
+    def attempt() -> R:
+        log.info("step begins", step=name)
+        started, wait = time.perf_counter(), 0.5
+        while True:
+            try:
+                done = run(*args)
+            except UNUSABLE as error:
+                log.warning("database not usable, trying again", step=name, reason=str(error.orig), wait=wait)
+                time.sleep(wait)
+                wait = min(2 * wait, LONGEST_WAIT)
+            else:
+                log.info("step done", step=name, ms=round(1000 * (time.perf_counter() - started), 1))
+                return done
+
+    try:
+        return DBOS.run_step({"name": name}, attempt)
+    except UNUSABLE as error:
+        # The job engine itself could not write: only a fresh process knows what was recorded.
+        log.error("step cannot be recorded, starting again", step=name, reason=str(error.orig))
+        os._exit(75)
