@@ -1,0 +1,129 @@
+"""The HTTP service as one ASGI app: routes, who may ask, how much, and how errors are told."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from importlib import import_module
+from importlib.metadata import version
+from importlib.util import find_spec
+from typing import Any, Final
+
+from fastapi import FastAPI
+from fastapi.routing import APIRoute
+from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import MutableHeaders
+from starlette.middleware import Middleware
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from planner_service.access import Access, Cors, Gate
+from planner_service.answering import Unforeseen, register_handlers
+from planner_service.limiting import BodyLimit, Limiting, Rate
+from planner_service.openapi import document
+from planner_service.parts import Parts
+from planner_service.routes import page, service
+from planner_service.telemetry import Figures, Telemetry
+
+ROUTES: Final = ("stories", "motions", "short_scripts", "long_scripts", "layouts", "layout_graphs")
+
+
+class Service(FastAPI):
+    """FastAPI with our own OpenAPI document."""
+
+    def openapi(self) -> dict[str, Any]:
+        """Made once, on the first call."""
+        if self.openapi_schema is None:
+            self.openapi_schema = document(self, self.state.gate.locked)
+        return self.openapi_schema
+
+
+def create_app(parts: Parts) -> FastAPI:
+    """The service on these parts; they are closed when it shuts down."""
+    gate = Gate(parts.settings.api_keys, parts.settings.cors_origins)
+    figures = Figures()
+    app = Service(
+        title="sims-stories",
+        version=version("sims-stories"),
+        docs_url=None,  # those pages load scripts from elsewhere
+        redoc_url=None,
+        redirect_slashes=False,
+        generate_unique_id_function=_operation_id,
+        lifespan=_closing,
+        middleware=_middleware(gate, figures, parts),
+    )
+    app.state.parts, app.state.gate, app.state.figures = parts, gate, figures
+    register_handlers(app)
+    for name in ROUTES:
+        if find_spec(f"planner_service.routes.{name}"):
+            app.include_router(import_module(f"planner_service.routes.{name}").router)
+    app.include_router(service.router)
+    app.include_router(page.router)
+    app.mount("/assets", page.assets())
+    return app
+
+
+@asynccontextmanager
+async def _closing(app: FastAPI) -> AsyncIterator[None]:
+    yield
+    await run_in_threadpool(app.state.parts.close)
+
+
+def _middleware(gate: Gate, figures: Figures, parts: Parts) -> list[Middleware]:
+    """Outermost first. Whoever is refused has an id, a line in the log and the headers of a page elsewhere."""
+    cors = [Middleware(Cors, origins=gate.origins)] if gate.origins else []
+    return [
+        Middleware(Telemetry, figures=figures),
+        Middleware(Hardened),
+        *cors,
+        Middleware(Unforeseen),
+        Middleware(Access, gate=gate),
+        Middleware(Limiting, rate=Rate(parts.settings.rate)),
+        Middleware(BodyLimit),
+        Middleware(Head),
+    ]
+
+
+def _operation_id(route: APIRoute) -> str:
+    return "_".join([*(str(tag).replace(" ", "_") for tag in route.tags[:1]), route.name])
+
+
+class Hardened:
+    """ASGI: browsers take an answer for what it says it is, and tell nobody where a visitor came from."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on, with two headers more."""
+
+        async def marked(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                headers = MutableHeaders(scope=message)
+                headers["X-Content-Type-Options"] = "nosniff"
+                headers["Referrer-Policy"] = "no-referrer"
+            await send(message)
+
+        await self.app(scope, receive, marked)
+
+
+class Head:
+    """ASGI: HEAD is answered as GET is, without the body; FastAPI's own routes know GET alone."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on; after the head the answer is complete, so that the server ends streams as if the caller had left."""
+        if scope["type"] != "http" or scope["method"] != "HEAD":
+            await self.app(scope, receive, send)
+            return
+
+        async def headless(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                await send(message)
+                await send({"type": "http.response.body", "body": b""})
+
+        # A copy: the server frames the answer by the method that it keeps in the scope.
+        as_get = dict(scope, method="GET")
+        await self.app(as_get, receive, headless)
+        scope.update({name: as_get[name] for name in ("route", "path_params") if name in as_get})

@@ -1,0 +1,170 @@
+"""Errors of the HTTP service: one tree, and one way to answer any of them as application/problem+json.
+
+Problem                     500  the root; any of these may be raised anywhere below a route
+├── Malformed               400  not JSON, or not HTTP that we read
+├── Unauthorised            401  no key, or a wrong one
+├── Forbidden               403  a key would not help: wrong Host, wrong Origin
+├── NotFound                404  no such thing
+│   └── NotReady            404  it is still being made
+├── Conflict                409  it is not in a state for that
+├── TooLarge                413  more bytes than are read
+├── WrongMedia              415  not application/json
+├── Unprocessable           422  read, but it does not make sense; names the field
+├── TooMany                 429  later, please; with Retry-After
+├── ModelFailed             502  the language model did not give a usable answer
+├── Unavailable             503  the database is busy or away; with Retry-After
+└── StorageFull             507  no room left for what was asked for
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from http import HTTPStatus
+from typing import ClassVar, Final
+
+from starlette.responses import Response
+
+from planner_service.schemas.problems import PROBLEM_MEDIA, Fault, ProblemDetails
+
+LONGEST_DETAIL: Final = 600
+LONGEST_POINTER: Final = 200
+MOST_FAULTS: Final = 20
+
+
+class Problem(Exception):  # noqa: N818 - the word of RFC 9457
+    """A request that cannot be done; `detail` says what was wrong and the remedy."""
+
+    status: int = 500
+    kind: ClassVar[str] = "about:blank"
+    title: ClassVar[str] = ""
+    """Empty: the phrase of the status."""
+
+    def __init__(self, detail: str, errors: Sequence[Fault] = (), headers: Mapping[str, str] | None = None) -> None:
+        super().__init__(detail)
+        self.detail = detail
+        self.errors = tuple(errors)
+        self.headers = dict(headers or {})
+
+    def details(self, path: str) -> ProblemDetails:
+        """The members of RFC 9457, every text of them short and printable."""
+        faults = [
+            Fault(pointer=printable(fault.pointer, LONGEST_POINTER), detail=printable(fault.detail, LONGEST_DETAIL))
+            for fault in self.errors[:MOST_FAULTS]
+        ]
+        return ProblemDetails(
+            type=self.kind,
+            title=self.title or HTTPStatus(self.status).phrase,
+            status=self.status,
+            detail=printable(self.detail, LONGEST_DETAIL),
+            instance=printable(path, LONGEST_POINTER),
+            errors=faults or None,
+        )
+
+    def response(self, path: str) -> Response:
+        """The answer to a request for `path`."""
+        content = json.dumps(self.details(path).model_dump(exclude_none=True), ensure_ascii=False)
+        return Response(content, self.status, {"Cache-Control": "no-store", **self.headers}, PROBLEM_MEDIA)
+
+
+def printable(text: str, most: int) -> str:
+    """At most that many letters on one line, control characters and broken ones written as escapes."""
+    line = " ".join(text[: 2 * most].split())
+    safe = "".join(one if one.isprintable() else one.encode("unicode_escape").decode() for one in line)
+    return safe if len(safe) <= most and len(text) <= 2 * most else safe[: most - 1] + "…"
+
+
+class Malformed(Problem):
+    """What was sent cannot be read at all."""
+
+    status = 400
+
+
+class Unauthorised(Problem):
+    """A key is needed."""
+
+    status = 401
+
+    def __init__(self, detail: str) -> None:
+        super().__init__(detail, headers={"WWW-Authenticate": 'Bearer realm="sims"'})
+
+
+class Forbidden(Problem):
+    """Refused, whoever asks."""
+
+    status = 403
+
+
+class NotFound(Problem):
+    """There is no such thing."""
+
+    status = 404
+
+
+class NotReady(NotFound):
+    """It will be there: it is still being made."""
+
+    kind = "urn:sims:problem:not-ready"
+    title = "Not Ready Yet"
+
+    def __init__(self, detail: str, retry_after: int = 1) -> None:
+        super().__init__(detail, headers={"Retry-After": str(retry_after)})
+
+
+class Conflict(Problem):
+    """The thing is not in a state for that."""
+
+    status = 409
+
+
+class TooLarge(Problem):
+    """More bytes than are read."""
+
+    status = 413
+
+
+class WrongMedia(Problem):
+    """The body is not of the type that is read here."""
+
+    status = 415
+
+
+class Unprocessable(Problem):
+    """Read and understood, but wrong; `pointer` names where."""
+
+    status = 422
+
+    def __init__(self, pointer: str, detail: str) -> None:
+        super().__init__(f"{pointer}: {detail}" if pointer else detail, (Fault(pointer=pointer, detail=detail),))
+
+
+class TooMany(Problem):
+    """Enough for now; `retry_after` in seconds."""
+
+    status = 429
+
+    def __init__(self, detail: str, retry_after: int) -> None:
+        super().__init__(detail, headers={"Retry-After": str(retry_after)})
+
+
+class ModelFailed(Problem):
+    """The language model gave no usable answer."""
+
+    status = 502
+    kind = "urn:sims:problem:language-model"
+    title = "Language Model Failed"
+
+
+class Unavailable(Problem):
+    """Something we need is busy or away; `retry_after` in seconds."""
+
+    status = 503
+
+    def __init__(self, detail: str, retry_after: int = 2) -> None:
+        super().__init__(detail, headers={"Retry-After": str(retry_after)})
+
+
+class StorageFull(Problem):
+    """Nothing more can be written."""
+
+    status = 507

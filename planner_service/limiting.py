@@ -1,0 +1,114 @@
+"""Bounds on what one caller may send: requests in a moving window, and bytes of a body."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Final
+
+from limits import parse
+from limits.storage import MemoryStorage
+from limits.strategies import MovingWindowRateLimiter
+from starlette.datastructures import Headers
+from starlette.exceptions import HTTPException
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from planner_service.errors import TooLarge, TooMany
+
+MOST_BYTES: Final = 4 * 1024 * 1024
+"""Of one body."""
+FREE: Final = ("/healthz", "/readyz", "/metrics")
+"""Paths that probes ask for often, never counted; neither are the files of the page."""
+
+
+class Rate:
+    """So many events of one name in a moving window, such as "1200/minute". Counted in this process only."""
+
+    def __init__(self, rate: str) -> None:
+        self.said = rate
+        self._limit = parse(rate)
+        # The strategy holds its storage weakly; without this one it would vanish.
+        self._storage = MemoryStorage()
+        self._window = MovingWindowRateLimiter(self._storage)
+
+    def take(self, name: str, what: str) -> None:
+        """Count one event. TooMany, with the seconds to wait, when the window is full."""
+        if not self._window.hit(self._limit, name):
+            self._refuse(name, what)
+
+    def check(self, name: str, what: str) -> None:
+        """TooMany when the window is full; counts nothing."""
+        if not self._window.test(self._limit, name):
+            self._refuse(name, what)
+
+    def _refuse(self, name: str, what: str) -> None:
+        seconds = self._window.get_window_stats(self._limit, name).reset_time - time.time()
+        wait = max(1, math.ceil(seconds))
+        raise TooMany(f"{what}: {self.said.replace('/', ' a ')} are allowed; wait {wait} s", wait)
+
+
+class Limiting:
+    """ASGI: counts the requests of every caller, known by key or by address."""
+
+    def __init__(self, app: ASGIApp, rate: Rate) -> None:
+        self.app = app
+        self.rate = rate
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on, or answer 429 with Retry-After."""
+        if scope["type"] == "http" and not is_free(scope["path"]):
+            try:
+                self.rate.take(counted_as(scope), "too many requests")
+            except TooMany as problem:
+                await problem.response(scope["path"])(scope, receive, send)
+                return
+        await self.app(scope, receive, send)
+
+
+def is_free(path: str) -> bool:
+    """Whether requests for it are never counted."""
+    return path in FREE or path.startswith("/assets/")
+
+
+def counted_as(scope: Scope) -> str:
+    """The key's fingerprint where there is one, else the address."""
+    caller = scope.get("state", {}).get("caller")
+    return f"caller {caller}" if caller else address_of(scope)
+
+
+def address_of(scope: Scope) -> str:
+    """Where a request comes from, as a name to count by."""
+    client = scope.get("client")
+    return f"address {client[0] if client else 'unknown'}"
+
+
+class BodyLimit:
+    """ASGI: no body of more than `MOST_BYTES` is read, whether its length was declared or it comes in chunks."""
+
+    def __init__(self, app: ASGIApp, most: int = MOST_BYTES) -> None:
+        self.app = app
+        self.most = most
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on, or answer 413; a body in chunks is broken off where it grows too long."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        detail = f"a body has at most {self.most} bytes"
+        declared = Headers(scope=scope).get("content-length", "")
+        if declared.isdecimal() and int(declared) > self.most:
+            problem = TooLarge(f"{detail}, {int(declared)} were announced")
+            await problem.response(scope["path"])(scope, receive, send)
+            return
+        read = 0
+
+        async def counting() -> Message:
+            nonlocal read
+            message = await receive()
+            read += len(message.get("body", b""))
+            if read > self.most:
+                # An HTTPException, because FastAPI turns any other one that comes up while it reads into a 400.
+                raise HTTPException(413, detail)
+            return message
+
+        await self.app(scope, counting, send)
