@@ -13,6 +13,7 @@ from benchmarks.demo import measure_demo
 from benchmarks.retrieval import retrieval_figures
 from benchmarks.stories import file_figures, make_stories, quality_figures, speed_figures
 from benchmarks.tables import figure_rows, markdown, plain, story_rows
+from planner_service.shelves import Shelves
 from planner_service.stories import Studio
 
 
@@ -23,7 +24,7 @@ def main() -> int:
     print(f"{machine}\n")
     figures = measure_demo()
     with tempfile.TemporaryDirectory(prefix="sims-bench-") as folder:
-        studio = Studio(cache=Path(folder))
+        studio = Studio(Shelves(cache=Path(folder)))
         made = make_stories(studio)
         figures += speed_figures(made)
         figures += retrieval_figures(studio)

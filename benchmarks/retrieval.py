@@ -32,9 +32,9 @@ FORBIDDEN = 100_000
 def retrieval_figures(studio: Studio) -> list[Figure]:
     """A query over all rooms, and the same few rooms done by both."""
     query = graph_from_uses(USES, NEEDS)
-    index = studio.index
+    index = studio.shelves.layouts()
     _, all_rooms = timed(lambda: [index.search(query, 5, ROOM_TYPE) for _ in range(REPEATS)])
-    rooms = [layout for layout in studio.layouts if layout.room_type == ROOM_TYPE]
+    rooms = [layout for layout in index.layouts if layout.room_type == ROOM_TYPE]
     by_size = sorted(rooms, key=lambda layout: (len(layout.objects), layout.id))
     few = [by_size[round(share * (len(by_size) - 1) / (ROOMS - 1))] for share in range(ROOMS)]
     graphs = [graph_from_layout(layout) for layout in few]

@@ -69,6 +69,11 @@ class Settings(BaseSettings):
         return value.lower() if isinstance(value, str) else value
 
     @property
+    def database_file(self) -> Path:
+        """The SQLite database, where no other is named."""
+        return self.data_dir.absolute() / "sims.db"
+
+    @property
     def cache_dir(self) -> Path:
         """Derived files that may be deleted at any time."""
         return self.data_dir / "cache"

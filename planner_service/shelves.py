@@ -2,44 +2,250 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+import json
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from threading import RLock
+from typing import TYPE_CHECKING, Final, Generic, TypeVar
 
-from sqlalchemy import Engine
-
-from planner_service.scripts.library import ScriptLibrary
-from scene_graphs.layouts import LayoutError, read_layouts
+from planner_service.scripts.checking import check
+from planner_service.scripts.keyframe import ShortScript
+from planner_service.scripts.library import Features, LibraryError, ScriptLibrary, built_in
+from planner_service.scripts.mending import Problem
+from scene_graphs.layouts import Layout, LayoutError, layout_from_dict, layout_to_dict, read_layouts
 from scene_graphs.library import built_in_layouts
 from scene_graphs.retrieval import LayoutIndex
 
+if TYPE_CHECKING:
+    from sqlalchemy import Engine
+
+    from planner_service.settings import Settings
+    from planner_service.store.shelving import Shelf
+
+T = TypeVar("T")
+MOST_SCRIPTS: Final = 20_000
+"""Short scripts of the users': all are compared with every query."""
+MOST_LAYOUTS: Final = 5_000
+"""Rooms of the users': all are kept in memory, and a graph is made of each."""
+
+
+class ShelfError(ValueError):
+    """Something cannot be put on a shelf or taken from it; the text says why.
+
+    TakenError    there is something of that id already
+    FixedError    it is ours, and stays
+    AbsentError   there is no such thing
+    FullError     there are too many already
+    """
+
+
+class TakenError(ShelfError):
+    """There is something of that id already."""
+
+
+class FixedError(ShelfError):
+    """It is shipped with the package and cannot be removed."""
+
+
+class AbsentError(ShelfError):
+    """There is nothing of that id."""
+
+
+class FullError(ShelfError):
+    """There are as many as can be kept."""
+
+
+class UnfitError(LibraryError):
+    """A short script cannot be acted out, whatever is repaired; `problems` name its fields."""
+
+    def __init__(self, script: ShortScript, problems: tuple[Problem, ...]) -> None:
+        first = problems[0]
+        super().__init__(f"{script.id}: keyframes.{first.keyframe}.{first.field}: {first.fault}")
+        self.script, self.problems = script, problems
+
 
 class Shelves:
-    """Scripts and rooms, loaded on first use and read again when somebody has changed them."""
+    """Scripts and rooms, loaded on first use and read again when another process or thread has changed them.
+
+    What it hands out never changes, so that a request sees one library from its beginning to its end. Without a
+    database there are only ours and the rooms of `layouts_file`.
+    """
 
     def __init__(
         self, engine: Engine | None = None, cache: Path | None = None, layouts_file: Path | None = None
     ) -> None:
         self.engine = engine
-        self.cache = cache
         self.layouts_file = layouts_file
+        self._features = Features(cache=cache)
+        self._scripts = _Kept(engine, "short_scripts", _read_script, lambda: {one.id: one for one in built_in()})
+        self._rooms = _Kept(engine, "layouts", _read_layout, self._fixed_rooms)
+        self._library: tuple[Mapping[str, ShortScript], ScriptLibrary] | None = None
+        self._index: tuple[Mapping[str, Layout], LayoutIndex] | None = None
+        self._lock = RLock()
 
     def scripts(self) -> ScriptLibrary:
-        """The short scripts as they are now."""
-        return self._scripts
+        """The short scripts as they are now, ours first."""
+        scripts = self._scripts.now()
+        with self._lock:
+            if self._library is None or self._library[0] is not scripts:
+                self._library = scripts, ScriptLibrary(scripts.values(), self._features)
+            return self._library[1]
+
+    def rooms(self) -> Mapping[str, Layout]:
+        """The rooms as they are now, by id; quicker than `layouts`, where none is to be searched for."""
+        return self._rooms.now()
 
     def layouts(self) -> LayoutIndex:
         """The rooms as they are now, ready to be searched."""
-        return self._layouts
+        rooms = self._rooms.now()
+        with self._lock:
+            if self._index is None or self._index[0] is not rooms:
+                known = self._index[1] if self._index else None
+                self._index = rooms, LayoutIndex(tuple(rooms.values()), known=known)
+            return self._index[1]
 
-    @cached_property
-    def _scripts(self) -> ScriptLibrary:
-        return ScriptLibrary.read(cache=self.cache)
+    def add_scripts(self, *scripts: ShortScript) -> None:
+        """Keep scripts, all or none of them; they are in the database before this returns.
 
-    @cached_property
-    def _layouts(self) -> LayoutIndex:
-        extra = tuple(read_layouts(self.layouts_file)) if self.layouts_file else ()
-        taken = {layout.id for layout in built_in_layouts()}
-        for layout in extra:
-            if layout.id in taken:
+        UnfitError when a furniture word or emotion is not known, TakenError when an id is taken, FullError.
+        """
+        taken = set(self._scripts.fixed)
+        for script in scripts:
+            if script.id in taken:
+                raise TakenError(f"id: there is a short script {script.id!r} already; choose another id")
+            taken.add(script.id)
+            # Missing walks and risings are put in when a story is composed.
+            if problems := tuple(problem for problem in check(script) if problem.field != "skill"):
+                raise UnfitError(script, problems)
+        rows = {one.id: {"body": one.model_dump_json(exclude_none=True)} for one in scripts}
+        self._scripts.put(rows, MOST_SCRIPTS, "short script")
+
+    def remove_script(self, script_id: str) -> None:
+        """Remove a script of the users'. FixedError for one of ours, AbsentError if there is none of that id."""
+        self._scripts.take(script_id, "short script")
+
+    def add_layouts(self, *layouts: Layout) -> None:
+        """Keep rooms, all or none of them. TakenError when an id is taken, FullError."""
+        rows: dict[str, dict[str, str]] = {}
+        for layout in layouts:
+            if layout.id in self._rooms.fixed or layout.id in rows:
+                raise TakenError(f"id: there is a room {layout.id!r} already; choose another id")
+            body = json.dumps(layout_to_dict(layout), separators=(",", ":"), allow_nan=False)
+            rows[layout.id] = {"body": body, "room_type": layout.room_type}
+        self._rooms.put(rows, MOST_LAYOUTS, "room")
+
+    def remove_layout(self, layout_id: str) -> None:
+        """Remove a room of the users'; stories keep their own copy. FixedError for one of ours, AbsentError."""
+        self._rooms.take(layout_id, "room")
+
+    def _fixed_rooms(self) -> dict[str, Layout]:
+        fixed = {layout.id: layout for layout in built_in_layouts()}
+        for layout in read_layouts(self.layouts_file) if self.layouts_file else ():
+            if layout.id in fixed:
                 raise LayoutError(f"{self.layouts_file}: {layout.id!r} is the id of a built-in room; choose another id")
-        return LayoutIndex((*built_in_layouts(), *extra))
+            fixed[layout.id] = layout
+        return fixed
+
+
+class _Kept(Generic[T]):
+    """One shelf: what does not change, and the rows of the database, of which only new ones are read and parsed."""
+
+    def __init__(
+        self, engine: Engine | None, shelf: Shelf, read: Callable[[str, str], T], fixed: Callable[[], dict[str, T]]
+    ) -> None:
+        self.engine, self.shelf = engine, shelf
+        self._read, self._make_fixed = read, fixed
+        self._fixed: dict[str, T] | None = None
+        self._rows: dict[str, tuple[int, T]] = {}
+        self._revision = -1
+        self._all: Mapping[str, T] = {}
+        self._lock = RLock()
+
+    @property
+    def fixed(self) -> Mapping[str, T]:
+        """What is not in the database."""
+        with self._lock:
+            if self._fixed is None:
+                self._fixed = self._make_fixed()
+            return self._fixed
+
+    def now(self) -> Mapping[str, T]:
+        """Everything by its id; the very same mapping as long as nothing has changed."""
+        revision = self._newest()
+        with self._lock:
+            if revision != self._revision:
+                self._refresh()
+            return self._all
+
+    def _newest(self) -> int:
+        if self.engine is None:
+            return 0
+        from planner_service.store.shelving import revision_of
+
+        return revision_of(self.engine, self.shelf)
+
+    def _refresh(self) -> None:
+        if self.engine is None:
+            self._all, self._revision = self.fixed, 0
+            return
+        from planner_service.store.shelving import bodies_of, stock_of
+
+        stock = stock_of(self.engine, self.shelf)
+        kept = {one: row for one, row in self._rows.items() if stock.rows.get(one) == row[0]}
+        bodies = bodies_of(self.engine, self.shelf, stock.rows.keys() - kept.keys())
+        kept |= {one: (stock.rows[one], self._read(one, body)) for one, body in bodies.items()}
+        self._rows = {one: kept[one] for one in sorted(kept, key=lambda one: (kept[one][0], one))}
+        # A user's comes before one of the same id that a later version of ours brought.
+        self._all = {**self.fixed, **{one: value for one, (_, value) in self._rows.items()}}
+        self._revision = stock.revision
+
+    def put(self, rows: Mapping[str, Mapping[str, str]], most: int, name: str) -> None:
+        """Write rows, all or none."""
+        if not rows:
+            return
+        if self.engine is None:
+            raise ShelfError(f"there is no database to keep a {name} in")
+        from planner_service.store.shelving import IdTaken, ShelfFull, put
+
+        try:
+            put(self.engine, self.shelf, rows, most)
+        except IdTaken as error:
+            raise TakenError(f"id: there is a {name} {error.row_id!r} already; choose another id") from error
+        except ShelfFull as error:
+            raise FullError(f"at most {most} {name}s of users' own are kept; remove some first") from error
+
+    def take(self, row_id: str, name: str) -> None:
+        """Remove a row."""
+        if self.engine is not None:
+            from planner_service.store.shelving import take
+
+            if take(self.engine, self.shelf, row_id):
+                return
+        if row_id in self.fixed:
+            raise FixedError(f"{row_id!r} is a {name} that is not in the database; it cannot be removed")
+        raise AbsentError(f"there is no {name} {row_id!r}")
+
+
+def open_shelves(settings: Settings, *, writes: bool = False) -> Shelves:
+    """The shelves of a command, on the database that the service has. SettingsError when it cannot be opened.
+
+    Where there is no database yet it is made only if the command `writes`: a story can be told from our library
+    though nothing can be written beside it.
+    """
+    engine = None
+    if writes or settings.database_url or settings.database_file.exists():
+        from planner_service.store.engine import database_url, open_engine
+
+        engine = open_engine(database_url(settings))
+    return Shelves(engine, settings.cache_dir, settings.layouts)
+
+
+def _read_script(script_id: str, body: str) -> ShortScript:
+    try:
+        return ShortScript.model_validate_json(body)
+    except ValueError as error:
+        raise LibraryError(f"database: short script {script_id!r} cannot be read: {error}") from error
+
+
+def _read_layout(layout_id: str, body: str) -> Layout:
+    return layout_from_dict(json.loads(body), f"database: room {layout_id!r}")

@@ -62,8 +62,12 @@ class LayoutIndex:
         *,
         limit: int = NODE_LIMIT,
         first_stage: int = 64,
+        known: LayoutIndex | None = None,
     ) -> None:
-        """Index rooms. ValueError if two share an id, or `first_stage`, the rooms verified at first, is below 1."""
+        """Index rooms; what an earlier index `known` made of the same rooms is used again.
+
+        ValueError if two share an id, or `first_stage`, the rooms verified at first, is below 1.
+        """
         if first_stage < 1:
             raise ValueError(f"first_stage must be at least 1, got {first_stage}")
         # In the order of ids, so that a room's number decides ties.
@@ -73,8 +77,8 @@ class LayoutIndex:
             raise ValueError("layouts must have different ids; give every room its own")
         self.costs = costs or CostTable()
         self.limit, self.first_stage = limit, first_stage
-        self._graphs = [graph_from_layout(layout) for layout in self.layouts]
-        self._rooms = [CodedRoom.of(graph) for graph in self._graphs]
+        coded = [_coded(layout) if known is None else known._coded_of(layout) for layout in self.layouts]
+        self._graphs, self._rooms = [graph for graph, _ in coded], [room for _, room in coded]
         self._columns = _count_columns(self._rooms)
         self._bases = np.array([room.base(self.costs) for room in self._rooms], dtype=np.int64)
 
@@ -83,6 +87,18 @@ class LayoutIndex:
         if layout_id not in self._numbers:
             raise KeyError(f"no layout {layout_id!r} among the {len(self.layouts)} that are indexed")
         return self.layouts[self._numbers[layout_id]]
+
+    def graph(self, layout_id: str) -> FurnitureGraph:
+        """The graph of the room of that id, which is not to be changed; KeyError if there is none."""
+        self.layout(layout_id)
+        return self._graphs[self._numbers[layout_id]]
+
+    def _coded_of(self, layout: Layout) -> tuple[FurnitureGraph, CodedRoom]:
+        """What was made of a room, or is made now where it is not this very room that is indexed."""
+        number = self._numbers.get(layout.id)
+        if number is None or self.layouts[number] is not layout:
+            return _coded(layout)
+        return self._graphs[number], self._rooms[number]
 
     def of_type(self, room_type: str | None) -> NDArray[np.intp]:
         """Numbers of the rooms that can serve as a room type. NoSuitableRoom if there are none."""
@@ -218,6 +234,11 @@ def _varied(found: Sequence[LayoutMatch], seed: int) -> LayoutMatch:
     best = found[0]
     good = [m for m in found if m.distance <= best.distance + VARIETY and len(m.missing) <= len(best.missing)]
     return good[int(np.random.default_rng(seed).integers(len(good)))]
+
+
+def _coded(layout: Layout) -> tuple[FurnitureGraph, CodedRoom]:
+    graph = graph_from_layout(layout)
+    return graph, CodedRoom.of(graph)
 
 
 def _count_columns(rooms: Sequence[CodedRoom]) -> dict[Key, NDArray[np.uint8]]:

@@ -27,6 +27,15 @@ HOMES = {
     "rich": {"planner_service"},
     "pydantic_settings": {"planner_service"},
     "platformdirs": {"planner_service"},
+    "fastapi": {"planner_service"},
+    "starlette": {"planner_service"},
+    "uvicorn": {"planner_service"},
+    "sqlalchemy": {"planner_service"},
+    "dbos": {"planner_service"},
+    "httpx": {"planner_service"},
+    "structlog": {"planner_service"},
+    "prometheus_client": {"planner_service"},
+    "limits": {"planner_service"},
 }
 """Where a third-party library may be imported; libraries not named here may be used anywhere they are needed."""
 FORBIDDEN = {"pickle", "shelve", "marshal"}

@@ -31,7 +31,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         board = draw_board(studio.make(StoryRequest(THEME, seed=SEED)), Path(folder, "board.png"))
         plan = Path(folder, "plan.png")
-        draw_layout(studio.index.layout(PLAN_OF), plan)
+        draw_layout(studio.shelves.layouts().layout(PLAN_OF), plan)
         save(cut(board, SHOWN), HERE / "storyboard.png")
         save(np.asarray(Image.open(plan).convert("RGB")), HERE / "plan.png")
 

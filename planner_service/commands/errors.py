@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from motion_backend.language.minilm import WeightsError
 from planner_service.filing import OutputError
 from planner_service.furnish import FurnishError
@@ -10,6 +13,7 @@ from planner_service.scripts.acting import UnreachableError
 from planner_service.scripts.events import ThemeError
 from planner_service.scripts.library import LibraryError
 from planner_service.settings import SettingsError
+from planner_service.shelves import ShelfError
 from planner_service.stories import RequestError
 from scene_graphs.homes import HomeError
 from scene_graphs.layouts import LayoutError
@@ -26,11 +30,24 @@ USER_ERRORS = (
     NoPath,
     UnreachableError,
     LibraryError,
+    ShelfError,
     ModelError,
     OutputError,
     SettingsError,
     WeightsError,
 )
+
+
+@contextmanager
+def writing_database() -> Iterator[None]:
+    """Turns what a database refuses (no space left, locked for long) into a SettingsError."""
+    from sqlalchemy.exc import SQLAlchemyError
+
+    try:
+        yield
+    except SQLAlchemyError as error:
+        reason = str(getattr(error, "orig", error)).splitlines()[0]
+        raise SettingsError(f"the database cannot be written: {reason}; see SIMS_DATA_DIR") from error
 
 
 def explain(error: BaseException) -> str:

@@ -1,4 +1,4 @@
-"""`sims layouts list|draw|generate`: the library of rooms."""
+"""`sims layouts list|draw|import|remove|generate`: the library of rooms."""
 
 from __future__ import annotations
 
@@ -13,21 +13,19 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from planner_service.commands.rooms import chosen_layouts
+from planner_service.commands.errors import writing_database
+from planner_service.commands.rooms import LARGEST_FILE, chosen_layouts
 from planner_service.settings import read_settings
-from planner_service.stories import RequestError, Studio
+from planner_service.shelves import open_shelves
+from planner_service.stories import RequestError
+from scene_graphs.checking import validate
 from scene_graphs.furniture import ROOM_TYPES
-from scene_graphs.layouts import Layout, write_layouts
+from scene_graphs.layouts import Layout, LayoutError, read_layouts, write_layouts
 
-app = typer.Typer(no_args_is_help=True, help="List, draw and generate furnished rooms.")
+app = typer.Typer(no_args_is_help=True, help="List, draw, import and generate furnished rooms.")
 ENDINGS = (".json", ".jsonl", ".json.gz", ".jsonl.gz")
 MOST_DRAWN = 400
 """Pictures of one command."""
-
-
-def _studio() -> Studio:
-    settings = read_settings()
-    return Studio(settings.scripts_file, settings.cache_dir, settings.layouts)
 
 
 @app.command("list")
@@ -38,7 +36,8 @@ def list_layouts(room: Annotated[str | None, typer.Option(help="Only rooms of th
     table = Table(box=None, header_style="bold", pad_edge=False)
     for column in ("id", "room type", "objects"):
         table.add_column(column)
-    chosen = [layout for layout in _studio().layouts if room is None or layout.room_type == room]
+    rooms = open_shelves(read_settings()).rooms()
+    chosen = [layout for layout in rooms.values() if room is None or layout.room_type == room]
     for layout in chosen:
         counts = Counter(placed.category for placed in layout.objects)
         words = [f"{count} {category}" if count > 1 else category for category, count in counts.items()]
@@ -46,6 +45,34 @@ def list_layouts(room: Annotated[str | None, typer.Option(help="Only rooms of th
     console = Console(markup=False)
     console.print(table)
     console.print(f"{len(chosen)} rooms", highlight=False)
+
+
+@app.command("import")
+def import_layouts(file: Annotated[Path, typer.Argument(help="Rooms: .json, .jsonl, either with .gz behind.")]) -> None:
+    """Check rooms and add them to your library; one that cannot be read adds none."""
+    layouts = read_layouts(file, LARGEST_FILE)
+    if not layouts:
+        raise LayoutError(f"{file.name} holds no room; `sims layouts generate` writes such files")
+    shelves = open_shelves(read_settings(), writes=True)
+    with writing_database():
+        shelves.add_layouts(*layouts)
+    console = Console(markup=False)
+    for layout in layouts:
+        problems = validate(layout)
+        console.print(f"{layout.id}: {f'{len(problems)} problems' if problems else 'all can be used'}", highlight=False)
+        for problem in problems:
+            console.print(f"  {problem}", highlight=False)
+    console.print(f"added {len(layouts)}; the library has {len(shelves.rooms())} rooms", highlight=False)
+
+
+@app.command()
+def remove(layout_id: Annotated[str, typer.Argument(help="The id of a room you added.")]) -> None:
+    """Remove a room from your library; stories that play there keep their own copy."""
+    shelves = open_shelves(read_settings())
+    with writing_database():
+        shelves.remove_layout(layout_id)
+    console = Console(markup=False)
+    console.print(f"removed {layout_id}; the library has {len(shelves.rooms())} rooms", highlight=False)
 
 
 @app.command()
@@ -57,7 +84,7 @@ def draw(
     from planner_service.filing import Writer, check_writable, write_files
     from scene_graphs.drawing import draw_layout
 
-    layouts = chosen_layouts(names, _studio(), "NAMES", most=MOST_DRAWN)
+    layouts = chosen_layouts(names, open_shelves(read_settings()), "NAMES", most=MOST_DRAWN)
     drawings: dict[str, Writer] = {}
     for layout in layouts:
         name = _file_name(layout.id)

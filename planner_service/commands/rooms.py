@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from planner_service.furnish import MOST_ROOMS
-from planner_service.stories import Studio
+from planner_service.shelves import Shelves
 from scene_graphs.layouts import Layout, LayoutError, read_layouts
 
 LARGEST_FILE = 64 << 20
@@ -14,7 +14,7 @@ LARGEST_FILE = 64 << 20
 
 
 def chosen_layouts(
-    names: Sequence[str], studio: Studio, field: str = "--layout", most: int = MOST_ROOMS
+    names: Sequence[str], shelves: Shelves, field: str = "--layout", most: int = MOST_ROOMS
 ) -> tuple[Layout, ...]:
     """The layouts that paths and ids stand for, in order, at most `most`; LayoutError names field and remedy."""
     found: list[Layout] = []
@@ -25,10 +25,9 @@ def chosen_layouts(
                 raise LayoutError(f"{field}: {name} holds no room; `sims layouts generate` writes such files")
             found.extend(rooms)
             continue
-        matching = [layout for layout in studio.layouts if layout.id == name]
-        if not matching:
+        if (known := shelves.rooms().get(name)) is None:
             raise LayoutError(f"{field}: {name!r:.200} is neither a file nor the id of a room; see `sims layouts list`")
-        found.extend(matching)
+        found.append(known)
     if len(found) > most:
         raise LayoutError(f"{field}: at most {most} rooms, {len(found)} were given; leave some out")
     return tuple(found)

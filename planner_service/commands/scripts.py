@@ -1,4 +1,4 @@
-"""`sims scripts search|add|check`: the library of short scripts."""
+"""`sims scripts search|add|remove|check`: the library of short scripts."""
 
 from __future__ import annotations
 
@@ -11,20 +11,17 @@ from pydantic import ValidationError
 from rich.console import Console
 from rich.table import Table
 
+from planner_service.commands.errors import writing_database
 from planner_service.llm.answers import problems_of
 from planner_service.scripts.checking import check as find_problems
 from planner_service.scripts.keyframe import ShortScript
-from planner_service.scripts.library import LibraryError, ScriptLibrary
+from planner_service.scripts.library import LibraryError
 from planner_service.settings import read_settings
+from planner_service.shelves import TakenError, UnfitError, open_shelves
 
 app = typer.Typer(no_args_is_help=True, help="Search, check and extend the library of short scripts.")
 LARGEST = 2_000_000
 """Bytes of a script file."""
-
-
-def _library() -> ScriptLibrary:
-    settings = read_settings()
-    return ScriptLibrary.read(settings.scripts_file, cache=settings.cache_dir)
 
 
 @app.command()
@@ -35,7 +32,7 @@ def search(
     room: Annotated[str | None, typer.Option(help="Only scripts of this room type.")] = None,
 ) -> None:
     """Show the short scripts whose summary is nearest in meaning."""
-    library = _library()
+    library = open_shelves(read_settings()).scripts()
     table = Table(box=None, header_style="bold", pad_edge=False)
     for column in ("score", "id", "emotion", "room", "summary"):
         table.add_column(column)
@@ -51,18 +48,26 @@ def search(
 def add(file: Annotated[Path, typer.Argument(help="JSON with one short script, or JSON lines with several.")]) -> None:
     """Check short scripts and add them to your own library; one that does not fit adds none."""
     scripts = read_scripts(file)
-    library = _library()
-    taken = {script.id for script in library.scripts}
-    for script in scripts:
-        if script.id in taken:
-            raise LibraryError(f"{file.name}: id: {script.id!r} is in the library already; choose another id")
-        taken.add(script.id)
-        # A walk or a rising that is missing is put in when a story is composed; anything else must be right.
-        faults = [problem for problem in find_problems(script) if problem.field != "skill"]
-        if faults:
-            raise LibraryError(f"{file.name}: {script.id}: {faults[0]}")
-    library = library.add(*scripts)
-    Console(markup=False).print(f"added {len(scripts)}; the library has {len(library)} scripts", highlight=False)
+    shelves = open_shelves(read_settings(), writes=True)
+    try:
+        with writing_database():
+            shelves.add_scripts(*scripts)
+    except TakenError as error:
+        raise LibraryError(f"{file.name}: {error}") from error
+    except UnfitError as error:
+        raise LibraryError(f"{file.name}: {error.script.id}: {error.problems[0]}") from error
+    console = Console(markup=False)
+    console.print(f"added {len(scripts)}; the library has {len(shelves.scripts())} scripts", highlight=False)
+
+
+@app.command()
+def remove(script_id: Annotated[str, typer.Argument(help="The id of a script you added.")]) -> None:
+    """Remove a short script from your own library."""
+    shelves = open_shelves(read_settings())
+    with writing_database():
+        shelves.remove_script(script_id)
+    console = Console(markup=False)
+    console.print(f"removed {script_id}; the library has {len(shelves.scripts())} scripts", highlight=False)
 
 
 @app.command()

@@ -14,6 +14,7 @@ from rich.text import Text
 from motion_backend.motion import Character
 from planner_service.scripts.events import clean
 from planner_service.settings import read_settings
+from planner_service.shelves import open_shelves
 from planner_service.stories import STAGES, RequestError, Story, StoryRequest, Studio
 from scene_graphs.furniture import ROOM_TYPES
 
@@ -55,11 +56,11 @@ def story(
 
     settings = read_settings()
     check_writable(out, FILES)
-    studio = Studio(settings.scripts_file, settings.cache_dir, settings.layouts)
+    studio = Studio(open_shelves(settings))
     request = StoryRequest(
         theme=clean(read_theme(theme)),
         rooms=() if rooms is None else read_rooms(rooms),
-        layouts=chosen_layouts(layout or [], studio),
+        layouts=chosen_layouts(layout or [], studio.shelves),
         seed=seed,
         backend=backend or settings.backend,
         character=Character(name, pronouns, height),

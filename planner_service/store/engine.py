@@ -21,7 +21,7 @@ STARTING_LOCK = 7_041_500_021
 def database_url(settings: Settings) -> str:
     """Where the database is, as SQLAlchemy and DBOS both read it. SettingsError for an address that is neither kind."""
     if not settings.database_url:
-        return f"sqlite:///{settings.data_dir.absolute() / 'sims.db'}"
+        return f"sqlite:///{settings.database_file}"
     try:
         url = make_url(settings.database_url)
     except ArgumentError as error:

@@ -26,6 +26,10 @@ class IdTaken(Exception):  # noqa: N818
         self.row_id = row_id
 
 
+class ShelfFull(Exception):  # noqa: N818
+    """There would be more rows than may be."""
+
+
 @dataclass(frozen=True)
 class Stock:
     """What lies on a shelf at one revision: each id with the revision it was put there, which tells it from a later
@@ -62,10 +66,10 @@ def bodies_of(engine: Engine, shelf: Shelf, ids: Collection[str]) -> dict[str, s
     return found
 
 
-def put(engine: Engine, shelf: Shelf, rows: Mapping[str, Mapping[str, str]], most: int) -> bool:
-    """Add rows, all or none, by id with their other columns; False if there would then be more than `most`.
+def put(engine: Engine, shelf: Shelf, rows: Mapping[str, Mapping[str, str]], most: int) -> None:
+    """Add rows, all or none, by id with their other columns.
 
-    IdTaken names an id that has a row already.
+    IdTaken names an id that has a row already; ShelfFull if there would be more than `most`.
     """
     table = TABLES[shelf]
     with engine.execution_options(writes=True).begin() as connection:
@@ -78,11 +82,9 @@ def put(engine: Engine, shelf: Shelf, rows: Mapping[str, Mapping[str, str]], mos
                 raise IdTaken(taken)
         count = connection.execute(select(func.count()).select_from(table)).scalar_one()
         if count + len(rows) > most:
-            connection.rollback()
-            return False
+            raise ShelfFull
         values = [{"id": row_id, "created": revision, **columns} for row_id, columns in rows.items()]
         connection.execute(insert(table), values)
-    return True
 
 
 def take(engine: Engine, shelf: Shelf, row_id: str) -> bool:

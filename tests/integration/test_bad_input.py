@@ -14,9 +14,12 @@ from pathlib import Path
 import pytest
 
 from planner_service.commands.errors import USER_ERRORS
+from planner_service.scripts.keyframe import ShortScript
+from planner_service.settings import read_settings
+from planner_service.shelves import Shelves, open_shelves
 from planner_service.stories import StoryRequest, Studio
 from scene_graphs.generating import generate_room
-from scene_graphs.layouts import Layout, Placed, layout_to_dict
+from scene_graphs.layouts import Layout, Placed, layout_from_dict, layout_to_dict
 
 SIMS = [sys.executable, "-m", "planner_service.cli"]
 ENVIRONMENT = {name: value for name, value in os.environ.items() if not name.startswith("SIMS_")}
@@ -84,6 +87,8 @@ FILES: dict[str, bytes] = {
     "tags.json": text(room(tags=7)),
     "half-letter.json": text(room(id="room \ud800")),
     "twice.json": text([room(), room()]),
+    "ours.json": text(room(id="study-0000")),
+    "mixed.json": text([room(id="new-room"), room(id="study-0000")]),
     "five.json": text([room(id=f"room-{i}") for i in range(5)]),
     "bare.json": text(bare_room()),
     "broken-script.json": b'{"id": "x", "summary"',
@@ -196,7 +201,7 @@ CASES: dict[str, Case] = {
     "a folder of scripts": add("", "cannot be read", "directory"),
     "a data folder that cannot be": Case(
         ("scripts", "add", "FILES/second.json"),
-        ("cannot be written", "SIMS_DATA_DIR"),
+        ("cannot be opened", "SIMS_DATA_DIR"),
         (("SIMS_DATA_DIR", "/dev/null"),),
     ),
     "checking an unknown skill": check("skill.json", "skill.json", "keyframes.0.skill", "'loco'"),
@@ -207,6 +212,14 @@ CASES: dict[str, Case] = {
     "searching an unknown emotion": Case(("scripts", "search", "rest", "--emotion", "bored"), ("emotion", "relaxed")),
     "listing an unknown room": Case(("layouts", "list", "--room", "garage"), ("--room", "garage", "study")),
     "drawing an unknown room": Case(("layouts", "draw", "nowhere"), ("nowhere", "sims layouts list")),
+    "importing what is not JSON": Case(("layouts", "import", "FILES/broken.json"), ("broken.json", "not JSON")),
+    "importing a size of nothing": Case(("layouts", "import", "FILES/flat.json"), ("objects[0].size", "between")),
+    "importing an id of ours": Case(("layouts", "import", "FILES/ours.json"), ("study-0000", "another id")),
+    "importing a good room before one of ours": Case(("layouts", "import", "FILES/mixed.json"), ("study-0000",)),
+    "importing a file without rooms": Case(("layouts", "import", "FILES/none.json"), ("none.json", "no room")),
+    "removing a room of ours": Case(("layouts", "remove", "study-0000"), ("study-0000", "cannot be removed")),
+    "removing no room": Case(("layouts", "remove", "nowhere"), ("no room", "nowhere")),
+    "removing no script": Case(("scripts", "remove", "nothing"), ("no short script", "nothing")),
     "generating none": Case(("layouts", "generate", "--count", "0", "--out", "out/r.json"), ("count",)),
     "generating what no reader knows": Case(("layouts", "generate", "--out", "out/rooms.txt"), ("--out", ".jsonl.gz")),
     "generating into a folder": Case(("layouts", "generate", "--out", "FILES/folder.json"), ("--out", "is a folder")),
@@ -237,9 +250,16 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for name, data in FILES.items():
         (root / "files" / name).write_bytes(data)
     (root / "files/second.json").write_bytes(text(script(id="second")))
-    (root / "data").mkdir()
-    (root / "data/short_scripts.jsonl").write_bytes(text(script(id="mine")) + b"\n")
+    mine = ShortScript.model_validate(script(id="mine"))
+    shelves = own_shelves(root)
+    shelves.add_scripts(mine)
+    shelves.add_layouts(layout_from_dict(room(id="my-room-kept")))
     return root
+
+
+def own_shelves(root: Path) -> Shelves:
+    """The user's own scripts and rooms."""
+    return open_shelves(read_settings(data_dir=root / "data"), writes=True)
 
 
 def ask(place: Path, case: Case, name: str) -> Answer:
@@ -254,18 +274,23 @@ def ask(place: Path, case: Case, name: str) -> Answer:
 
 
 @pytest.fixture(scope="module")
-def before(place: Path) -> dict[Path, bytes]:
-    return contents(place / "files") | contents(place / "data")
+def before(place: Path) -> dict[object, object]:
+    return contents(place)
 
 
-def contents(folder: Path) -> dict[Path, bytes]:
-    return {
-        path: path.read_bytes() if path.is_file() else b"" for path in folder.rglob("*") if "cache" not in path.parts
-    }
+def contents(root: Path) -> dict[object, object]:
+    """Every file, and what is on the user's shelves: the bytes of a database may differ."""
+    shelves = own_shelves(root)
+    files = [*(root / "files").rglob("*"), *(root / "data").glob("[!cs]*")]
+    return (
+        {path: path.read_bytes() if path.is_file() else b"" for path in files}
+        | {script.id: script for script in shelves.scripts().scripts}
+        | dict(shelves.rooms())
+    )
 
 
 @pytest.fixture(scope="module")
-def answers(place: Path, before: dict[Path, bytes]) -> dict[str, Answer]:
+def answers(place: Path, before: dict[object, object]) -> dict[str, Answer]:
     """Every command, as many at a time as there are cores."""
     assert before
     with ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -293,7 +318,7 @@ def test_a_mistake_leaves_no_file_behind(name: str, answers: dict[str, Answer]) 
 
 def test_a_mistake_changes_no_file_of_the_user(answers: dict[str, Answer], place: Path, before) -> None:
     assert len(answers) == len(CASES)
-    assert contents(place / "files") | contents(place / "data") == before
+    assert contents(place) == before
 
 
 def test_a_fault_of_ours_is_not_taken_for_a_mistake_of_the_user() -> None:
@@ -324,6 +349,6 @@ def test_furniture_of_another_kind_stands_in_and_this_is_said(tmp_path: Path) ->
     changed = tuple(replace(placed, category="lounge_chair") if placed in seats else placed for placed in given.objects)
     assert seats
     request = StoryRequest("A person sits down on the armchair.", layouts=(replace(given, objects=changed),))
-    planned = Studio(cache=tmp_path).plan(request)
+    planned = Studio(Shelves(cache=tmp_path)).plan(request)
     assert "armchair → lounge chair (class)" in " ".join(planned.stage.explain())
     assert planned.stage.rooms_to_dicts()[0]["substitutions"]

@@ -9,6 +9,7 @@ import pytest
 
 from motion_backend.language import minilm
 from motion_backend.motion import Skill
+from planner_service.shelves import Shelves
 from planner_service.stories import Story, StoryRequest, Studio
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "planner_service"))
@@ -24,7 +25,7 @@ NAMES = [theme.name for theme in THEMES]
 
 @pytest.fixture(scope="module")
 def stories(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Story]:
-    studio = Studio(cache=tmp_path_factory.mktemp("cache"))
+    studio = Studio(Shelves(cache=tmp_path_factory.mktemp("cache")))
     return {theme.name: studio.make(StoryRequest(theme.text, seed=SEED)) for theme in THEMES}
 
 

@@ -19,9 +19,9 @@ from planner_service.scripts.checking import check
 from planner_service.scripts.composing import Request, compose
 from planner_service.scripts.events import ThemeError
 from planner_service.scripts.keyframe import LongScript
-from planner_service.scripts.library import ScriptLibrary
+from planner_service.scripts.library import Features, ScriptLibrary, built_in
 
-HASHING = ScriptLibrary.read(encoder=HashingEncoder())
+HASHING = ScriptLibrary(built_in(), Features(HashingEncoder()))
 THEME = THEMES[5].text
 
 
@@ -31,7 +31,7 @@ def meaning() -> ScriptLibrary:
     encoder: SentenceEncoder = load_encoder()
     if encoder.name == "hashing":
         pytest.skip("the MiniLM weights are not installed")
-    return ScriptLibrary.read(encoder=encoder)
+    return ScriptLibrary(built_in(), Features(encoder))
 
 
 def covers(script: LongScript, theme: Theme) -> None:

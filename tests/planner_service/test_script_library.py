@@ -1,16 +1,17 @@
-"""The library of short scripts: reading, adding and finding them."""
+"""The library of short scripts: what is in it, and finding them."""
 
 from __future__ import annotations
 
-import json
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from motion_backend.language.text import HashingEncoder
+from motion_backend.language.text import HashingEncoder, Vectors
 from planner_service.scripts.keyframe import ShortScript
-from planner_service.scripts.library import LibraryError, ScriptLibrary, built_in
+from planner_service.scripts.library import Features, LibraryError, ScriptLibrary, built_in
 
 NAP = {
     "id": "my-nap",
@@ -26,9 +27,26 @@ def nap(**changes: object) -> ShortScript:
     return ShortScript.model_validate({**NAP, **changes})
 
 
-def small(*scripts: ShortScript, file: Path | None = None) -> ScriptLibrary:
+def small(*scripts: ShortScript) -> ScriptLibrary:
     """A library of a few scripts."""
-    return ScriptLibrary(scripts, HashingEncoder(), file=file)
+    return ScriptLibrary(scripts, Features(HashingEncoder()))
+
+
+def ours() -> ScriptLibrary:
+    """The library that is shipped."""
+    return small(*built_in())
+
+
+class Counting(HashingEncoder):
+    """An encoder that tells how many texts it was given."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.texts = 0
+
+    def encode(self, texts: Sequence[str]) -> Vectors:
+        self.texts += len(texts)
+        return super().encode(texts)
 
 
 def test_our_scripts_are_there_and_their_ids_differ() -> None:
@@ -36,86 +54,48 @@ def test_our_scripts_are_there_and_their_ids_differ() -> None:
     assert len({script.id for script in scripts}) == len(scripts) >= 100
 
 
-def test_a_script_that_was_added_is_written_found_and_read_again(tmp_path: Path) -> None:
-    file = tmp_path / "mine" / "scripts.jsonl"
-    library = ScriptLibrary.read(file, HashingEncoder())
-    more = library.add(nap()).add(nap(id="my-second-nap"))
-    assert len(more) == len(library) + 2
-    assert more.search("zebra-striped sofa")[0].script == nap()
-    again = ScriptLibrary.read(file, HashingEncoder())
-    assert again.scripts == more.scripts
-    assert again.get("my-nap") == nap()
-    assert [path.name for path in file.parent.iterdir()] == ["scripts.jsonl"]
+def test_two_scripts_of_one_id_are_no_library() -> None:
+    with pytest.raises(LibraryError, match=r"^id: two short scripts are called 'my-nap'"):
+        small(nap(), nap(summary="Another."))
 
 
-def test_a_file_without_a_last_line_end_is_not_spoilt(tmp_path: Path) -> None:
-    file = tmp_path / "scripts.jsonl"
-    file.write_text(json.dumps(NAP), encoding="utf-8")
-    ScriptLibrary.read(file, HashingEncoder()).add(nap(id="another"))
-    assert [script.id for script in ScriptLibrary.read(file, HashingEncoder()).scripts[-2:]] == ["my-nap", "another"]
+def test_a_script_is_got_by_its_id_or_missed_by_name() -> None:
+    library = small(nap())
+    assert library.get("my-nap") == nap()
+    with pytest.raises(LibraryError, match=r"^id: .*'my-sleep' among the 1"):
+        library.get("my-sleep")
 
 
-@pytest.mark.parametrize(
-    ("change", "fault"),
-    [
-        ({"id": built_in()[0].id}, "already; choose another id"),
-        (
-            {"keyframes": [{"skill": "touch", "caption": "x", "furniture": "spaceship"}]},
-            r"keyframes\.0\.furniture: .*spaceship",
-        ),
-        ({"keyframes": [{"skill": "loco", "caption": "x", "emotion": "purple"}]}, r"keyframes\.0\.emotion: .*purple"),
-    ],
-)
-def test_a_script_that_cannot_be_kept_is_refused_and_nothing_is_written(
-    tmp_path: Path, change: dict[str, object], fault: str
-) -> None:
-    library = ScriptLibrary.read(tmp_path / "scripts.jsonl", HashingEncoder())
-    with pytest.raises(LibraryError, match=rf"^scripts\.jsonl:.*{fault}"):
-        library.add(nap(**change))
-    assert list(tmp_path.iterdir()) == []
+@pytest.mark.parametrize("cached", [True, False])
+def test_each_sentence_is_encoded_once_though_libraries_follow_each_other(cached: bool, tmp_path: Path) -> None:
+    encoder = Counting()
+    features = Features(encoder, tmp_path if cached else None)
+    first = ScriptLibrary((nap(),), features)
+    second = ScriptLibrary((nap(), nap(id="other", summary="Something else.")), features)
+    query = HashingEncoder().encode(["naps"])
+    first.scores(query)
+    before = encoder.texts
+    assert second.scores(query)[0, 0] == first.scores(query)[0, 0]
+    assert encoder.texts == before + 1
 
 
-def test_a_library_without_a_file_cannot_be_added_to() -> None:
-    with pytest.raises(LibraryError, match="no file"):
-        small(nap()).add(nap(id="another"))
-
-
-@pytest.mark.parametrize(
-    ("lines", "where"),
-    [
-        (["{"], r"^scripts\.jsonl:1:line: "),
-        (["", json.dumps({**NAP, "emotion": "bored"})], r"^scripts\.jsonl:2:emotion: "),
-        (
-            [json.dumps({**NAP, "keyframes": [{"skill": "fly", "caption": "x"}]})],
-            r"^scripts\.jsonl:1:keyframes\.0\.skill: ",
-        ),
-        ([json.dumps(NAP), json.dumps(NAP)], r"^scripts\.jsonl:2:id: 'my-nap' is taken by scripts\.jsonl:1"),
-        ([json.dumps({**NAP, "id": built_in()[0].id})], r"^scripts\.jsonl:1:id: .* is taken by short_scripts\.jsonl"),
-    ],
-)
-def test_a_line_that_cannot_be_read_is_named_with_its_field(tmp_path: Path, lines: list[str], where: str) -> None:
-    file = tmp_path / "scripts.jsonl"
-    file.write_text("\n".join(lines), encoding="utf-8")
-    with pytest.raises(LibraryError, match=where):
-        ScriptLibrary.read(file, HashingEncoder())
-
-
-def test_bytes_that_are_not_text_are_named_with_their_line(tmp_path: Path) -> None:
-    file = tmp_path / "scripts.jsonl"
-    file.write_bytes(json.dumps(NAP).encode() + b"\n\xff\xfe")
-    with pytest.raises(LibraryError, match=r"^scripts\.jsonl:2: not UTF-8"):
-        ScriptLibrary.read(file, HashingEncoder())
+def test_threads_that_search_at_once_find_the_same(tmp_path: Path) -> None:
+    library = ScriptLibrary(built_in(), Features(HashingEncoder(), tmp_path))
+    queries = [script.summary for script in library.scripts[:40]]
+    with ThreadPoolExecutor(8) as pool:
+        found = list(pool.map(lambda query: library.search(query, 3), queries))
+    assert found == [ours().search(query, 3) for query in queries]
 
 
 def test_a_summary_finds_its_own_script_first() -> None:
-    library = ScriptLibrary.read(encoder=HashingEncoder())
+    library = ours()
     for script in library.scripts[::10]:
         found = library.search(script.summary, k=1)[0]
         assert (found.script.id, found.score) == (script.id, pytest.approx(1, abs=1e-3))
 
 
 def test_search_keeps_to_the_emotion_and_room_asked_for() -> None:
-    library = ScriptLibrary.read(encoder=HashingEncoder())
+    library = ours()
     found = library.search("drinks wine", k=4, emotion="sad", room="living room")
     assert len(found) == 4
     assert {(one.script.emotion, one.script.room) for one in found} == {("sad", "living_room")}
@@ -151,7 +131,7 @@ def test_scores_are_rounded_so_that_machines_rank_alike() -> None:
 
 
 def test_a_rare_word_tells_which_scripts_name_it() -> None:
-    library = ScriptLibrary.read(encoder=HashingEncoder())
+    library = ours()
     named = library.naming("wins the lottery")
     assert 1 <= named.sum() <= 5
     assert all("lottery" in library.scripts[index].summary for index in np.flatnonzero(named))
