@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import threading
+from dataclasses import dataclass, field
 from typing import Annotated
 
 from fastapi import Depends
@@ -23,6 +24,8 @@ class Parts:
     engine: Engine
     shelves: Shelves
     jobs: Jobs
+    stopping: threading.Event = field(default_factory=threading.Event)
+    """Set when the service is about to end, so that streams end too."""
 
     def close(self) -> None:
         """Let go of the database."""

@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 from dataclasses import dataclass, field
+from types import FrameType
 from typing import Final
 
 import structlog
@@ -116,7 +117,11 @@ def serve(settings: Settings) -> None:
     supervisor = Supervisor(settings)
 
     class Server(uvicorn.Server):
-        """Says when it is ready to answer, and where."""
+        """Says when it is ready to answer, and where; ends streams when it stops."""
+
+        def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+            parts.stopping.set()
+            super().handle_exit(sig, frame)
 
         async def startup(self, sockets: list[object] | None = None) -> None:  # type: ignore[override]
             await super().startup(sockets)  # type: ignore[arg-type]

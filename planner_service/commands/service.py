@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -26,7 +27,7 @@ def serve(
     from planner_service.telemetry import configure_logging
 
     settings = read_settings(host=host, port=port, workers=workers, data_dir=data_dir, database_url=database_url)
-    configure_logging(settings.log_level)
+    configure_logging(settings.log_level, sys.stderr)
     run(settings)
 
 
@@ -41,7 +42,7 @@ def worker(
     from planner_service.worker import run_worker
 
     settings = read_settings(worker_id=worker_id, data_dir=data_dir, database_url=database_url)
-    configure_logging(settings.log_level)
+    configure_logging(settings.log_level, sys.stderr)
     run_worker(settings, supervised)
 
 

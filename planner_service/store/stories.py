@@ -7,7 +7,7 @@ import json
 import secrets
 import time
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Final
 
 from sqlalchemy import Connection, Engine, Row, Select, delete, func, select, update
@@ -29,9 +29,20 @@ _LISTED: Final = (
     stories.c.backend,
     stories.c.stage,
     stories.c.progress,
+    stories.c.method,
+    stories.c.character,
     stories.c.error,
     workflow_status.c.status,
     workflow_status.c.recovery_attempts,
+)
+
+_SHOWN: Final = (
+    artifacts.c.position,
+    artifacts.c.kind,
+    artifacts.c.summary,
+    artifacts.c.etag,
+    artifacts.c.following,
+    artifacts.c.progress,
 )
 
 
@@ -67,6 +78,8 @@ class Artifact:
     kind: str
     summary: Json
     etag: str
+    following: str | None
+    progress: float
 
 
 @dataclass(frozen=True)
@@ -85,8 +98,9 @@ class Record:
     error: Json | None
     status: str | None
     attempts: int
-    artifacts: tuple[Artifact, ...] = field(default=())
-    request: Json = field(default_factory=dict)
+    method: str
+    character: Json
+    artifacts: tuple[Artifact, ...] = ()
 
 
 def new_id(milliseconds: int) -> str:
@@ -123,6 +137,8 @@ class Stories:
                 theme=request.theme,
                 seed=request.seed,
                 backend=request.backend,
+                method=request.method,
+                character=json.dumps(vars(request.character)),
                 request=json.dumps(request_to_dict(request), separators=(",", ":")),
                 progress=0.0,
             )
@@ -165,6 +181,8 @@ class Stories:
             "data": made.data,
             "state": None if made.state is None else json.dumps(made.state, separators=(",", ":")),
             "etag": hashlib.sha256(made.data).hexdigest()[:32],
+            "following": made.following,
+            "progress": made.progress,
             "seconds": made.seconds,
             "made": now(),
         }
@@ -216,15 +234,17 @@ class Stories:
 
     def get(self, story_id: str, after: int = -1) -> Record:
         """A story with what was made of it beyond the position `after`, data left out. StoryGone."""
-        columns = (artifacts.c.position, artifacts.c.kind, artifacts.c.summary, artifacts.c.etag)
         beyond = (artifacts.c.story_id == story_id) & (artifacts.c.position > after)
         with self.engine.connect() as connection:
-            row = connection.execute(_listed(stories.c.request).where(stories.c.id == story_id)).one_or_none()
+            row = connection.execute(_listed().where(stories.c.id == story_id)).one_or_none()
             if row is None:
                 raise StoryGone(story_id)
-            found = connection.execute(select(*columns).where(beyond).order_by(artifacts.c.position)).all()
-        made = tuple(Artifact(one.position, one.kind, json.loads(one.summary), one.etag) for one in found)
-        return _record(row, made, json.loads(row.request))
+            found = connection.execute(select(*_SHOWN).where(beyond).order_by(artifacts.c.position)).all()
+        made = tuple(
+            Artifact(one.position, one.kind, json.loads(one.summary), one.etag, one.following, one.progress)
+            for one in found
+        )
+        return _record(row, made)
 
     def page(self, limit: int, before: str | None = None) -> list[Record]:
         """Stories from newest to oldest, those after the id `before` in that order; artifacts left out."""
@@ -252,13 +272,13 @@ class Stories:
                 raise StoryGone(story_id)
 
 
-def _listed(*more: Any) -> Select[Any]:
+def _listed() -> Select[Any]:
     """Stories beside what the job engine says of them."""
     joined = stories.outerjoin(workflow_status, workflow_status.c.workflow_uuid == stories.c.id)
-    return select(*_LISTED, *more).select_from(joined)
+    return select(*_LISTED).select_from(joined)
 
 
-def _record(row: Row[Any], made: tuple[Artifact, ...] = (), request: Json | None = None) -> Record:
+def _record(row: Row[Any], made: tuple[Artifact, ...] = ()) -> Record:
     return Record(
         id=row.id,
         kind=row.kind,
@@ -272,8 +292,9 @@ def _record(row: Row[Any], made: tuple[Artifact, ...] = (), request: Json | None
         error=json.loads(row.error) if row.error else None,
         status=row.status,
         attempts=row.recovery_attempts or 0,
+        method=row.method,
+        character=json.loads(row.character),
         artifacts=made,
-        request=request or {},
     )
 
 

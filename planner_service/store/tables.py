@@ -21,6 +21,8 @@ stories = Table(
     Column("theme", Text, nullable=False),
     Column("seed", BigInteger, nullable=False),
     Column("backend", Text, nullable=False),
+    Column("method", Text, nullable=False),
+    Column("character", Text, nullable=False),  # JSON
     Column("request", Text, nullable=False),  # JSON: all that was asked for, own rooms included
     Column("stage", Text),  # what is being made
     Column("progress", Float, nullable=False, default=0.0),
@@ -39,6 +41,8 @@ artifacts = Table(
     Column("data", LargeBinary, nullable=False),  # JSON, npz or GLB
     Column("state", Text),  # JSON of the BodyState a segment left
     Column("etag", Text, nullable=False),  # SHA-256 of data, shortened
+    Column("following", Text),  # the stage that began then, if another one did
+    Column("progress", Float, nullable=False),  # of the whole story
     Column("seconds", Float, nullable=False),
     Column("made", BigInteger, nullable=False),
 )

@@ -1,0 +1,128 @@
+"""A stored story as clients see it: the resource put together from its artifacts, and its events in order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Any, Final
+
+from motion_backend.motion import FPS
+from planner_service.making import STAGES
+from planner_service.store.jobs import GIVEN_UP, state_of
+from planner_service.store.stories import Artifact, Record
+
+Json = dict[str, Any]
+STOPPED: Final = {"succeeded": "done", "failed": "failed", "cancelled": "cancelled"}
+"""The last event of a story in each state it can end in."""
+_SLOTS: Final = 4
+"""Event numbers of an artifact: a segment, a stage that begins, progress, and the end behind it."""
+
+
+@dataclass(frozen=True)
+class StoryEvent:
+    """One event of a story; the same number always stands for the same event."""
+
+    id: int
+    name: str
+    data: Json
+
+
+def story_summary(record: Record, frames: int) -> Json:
+    """A story in a list; `frames` are ready."""
+    return {
+        "id": record.id,
+        "kind": record.kind,
+        "state": state_of(record.status),
+        "stage": record.stage,
+        "progress": record.progress,
+        "created": datetime.fromtimestamp(record.created / 1000, UTC),
+        "theme": record.theme,
+        "title": record.title,
+        "seed": record.seed,
+        "backend": record.backend,
+        "duration": round(frames / FPS, 3),
+        "error": failure_of(record),
+        "links": _links(record.id),
+    }
+
+
+def story_shown(record: Record) -> Json:
+    """A story as far as it is made: later stages say more of its keyframes, so the last word counts."""
+    made: Json = {}
+    segments = []
+    for artifact in record.artifacts:
+        if artifact.kind == "segment":
+            segments.append(artifact.summary)
+        else:
+            made |= artifact.summary
+    frames = segments[-1]["end"] if segments else 0
+    complete = bool(made.get("count")) and len(segments) == made.get("count")
+    shown = {
+        "method": record.method,
+        "character": record.character,
+        "planner": made.get("planner"),
+        "encoder": made.get("encoder"),
+        "text": made.get("text"),
+        "graph": made.get("graph", {}),
+        "home": made.get("home"),
+        "keyframes": _keyframes(made, segments),
+        "motion": {"frames": frames, "duration": round(frames / FPS, 3), "complete": complete},
+        "report": made.get("report"),
+    }
+    lists = {name: made.get(name, []) for name in ("spans", "events", "uncovered", "repairs", "short_scripts")}
+    return story_summary(record, frames) | shown | lists
+
+
+def _keyframes(made: Json, segments: list[Json]) -> list[Json]:
+    rows = [row | {"start": None, "end": None, "reached": None} for row in made.get("keyframes", [])]
+    for row, object_id in zip(rows, made.get("objects", []), strict=False):
+        row["object_id"] = object_id
+    for segment in segments:
+        rows[segment["keyframe"]] |= {name: segment[name] for name in ("start", "end", "reached")}
+    return rows
+
+
+def failure_of(record: Record) -> Json | None:
+    """Why a story could not be made."""
+    if state_of(record.status) != "failed":
+        return None
+    if record.status == GIVEN_UP:
+        detail = f"its worker ended {record.attempts} times while it was made; post it again, or tell the operator"
+        return {"title": "Given up", "detail": detail}
+    return record.error or {"title": "Something went wrong on our side", "detail": "the service's log says more"}
+
+
+def _links(story_id: str) -> dict[str, str]:
+    here = f"/v1/stories/{story_id}"
+    parts = {name: f"{here}/{name}" for name in ("events", "cancel", "motion", "home")}
+    return {"self": here, **parts, "film": f"{here}/film.glb", "scene": f"{here}/scene.glb"}
+
+
+def events_of(record: Record) -> Iterator[StoryEvent]:
+    """The events that a story's artifacts stand for, in order, and the last one if the story has ended.
+
+    Numbers come from the positions of the artifacts: they are the same however often, and from where, one listens.
+    """
+    if record.stage is not None:
+        yield StoryEvent(1, "stage", {"stage": STAGES[0], "progress": 0.0})
+    for artifact in record.artifacts:
+        yield from _events_of(artifact)
+    state = state_of(record.status)
+    if state in STOPPED:
+        last = record.artifacts[-1].position if record.artifacts else -1
+        data: Json = {"state": state}
+        if state == "failed":
+            data["error"] = failure_of(record)
+        yield StoryEvent(_SLOTS * (last + 1) + 3, STOPPED[state], data)
+
+
+def _events_of(artifact: Artifact) -> Iterator[StoryEvent]:
+    number, summary, progress = _SLOTS * (artifact.position + 1), artifact.summary, artifact.progress
+    if artifact.kind == "segment":
+        names = ("index", "keyframe", "start", "end", "reached")
+        yield StoryEvent(number, "segment", {name: summary[name] for name in names} | {"progress": progress})
+    if artifact.following is not None:
+        yield StoryEvent(number + 1, "stage", {"stage": artifact.following, "progress": progress})
+    stage = artifact.following or ("move" if artifact.kind == "segment" else STAGES[-1])
+    yield StoryEvent(number + 2, "progress", {"stage": stage, "progress": progress})

@@ -1,0 +1,87 @@
+"""What happens to a story, as server-sent events that can be taken up again where they broke off."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from dataclasses import dataclass, replace
+from typing import Annotated, Final
+
+from fastapi import APIRouter, Depends, Header
+from fastapi.sse import EventSourceResponse, ServerSentEvent
+from sqlalchemy.exc import DBAPIError
+from starlette.concurrency import run_in_threadpool
+from starlette.exceptions import HTTPException
+
+from planner_service.parts import Parts, PartsDep
+from planner_service.presenting import StoryEvent, events_of
+from planner_service.routes.stories import RecordDep
+from planner_service.store.jobs import state_of
+from planner_service.store.stories import Record, Stories, StoryGone
+
+router = APIRouter(prefix="/v1/stories", tags=["stories"])
+POLL: Final = 0.1
+"""Seconds between two looks at a story in the making."""
+QUEUED_POLL: Final = 0.25
+"""Seconds between two looks at one that waits."""
+
+
+@dataclass
+class Watch:
+    """Somebody who follows a story, and the last event they have."""
+
+    parts: Parts
+    record: Record
+    last: int
+
+    def news(self) -> list[StoryEvent]:
+        """Events they do not have yet."""
+        found = [event for event in events_of(self.record) if event.id > self.last]
+        self.last = found[-1].id if found else self.last
+        return found
+
+    @property
+    def ended(self) -> bool:
+        """Whether there will be no more."""
+        return state_of(self.record.status) not in ("queued", "running")
+
+    def look(self) -> None:
+        """See what was made since. StoryGone."""
+        known = self.record.artifacts
+        after = known[-1].position if known else -1
+        fresh = Stories(self.parts.engine).get(self.record.id, after)
+        self.record = replace(fresh, artifacts=(*known, *fresh.artifacts))
+
+
+def watching(
+    record: RecordDep,
+    parts: PartsDep,
+    last_event_id: Annotated[
+        int | None, Header(alias="Last-Event-ID", ge=0, le=10**9, description="The last event that was received.")
+    ] = None,
+) -> Watch:
+    """Who follows; one who has the last event of a story that ended gets 204, which tells a browser to stop asking."""
+    watch = Watch(parts, record, last_event_id or 0)
+    if watch.ended and all(event.id <= watch.last for event in events_of(record)):
+        raise HTTPException(204)
+    return watch
+
+
+@router.get(
+    "/{story_id}/events",
+    response_class=EventSourceResponse,
+    responses={204: {"description": "The story has ended, and Last-Event-ID is its last event."}},
+)
+async def events(watch: Annotated[Watch, Depends(watching)]) -> AsyncIterator[ServerSentEvent]:
+    """`stage`, `progress` and `segment` as they happen; at the end `done`, `failed` or `cancelled`, once."""
+    while True:
+        for event in watch.news():
+            yield ServerSentEvent(data=event.data, event=event.name, id=str(event.id), retry=1000)
+        if watch.ended or watch.parts.stopping.is_set():
+            return
+        await asyncio.sleep(POLL if watch.record.stage else QUEUED_POLL)
+        try:
+            await run_in_threadpool(watch.look)
+        except (StoryGone, DBAPIError):
+            # Deleted, or the database is away: the client comes back with Last-Event-ID and is told which.
+            return

@@ -1,0 +1,34 @@
+"""Motions: keyframes of one's own, acted out in a room of the library or a home of one's own, without planning."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Request, Response
+
+from planner_service.errors import Unprocessable
+from planner_service.parts import PartsDep
+from planner_service.presenting import story_shown
+from planner_service.routes.stories import Key, accept, character_of, home_given, layout_named
+from planner_service.schemas.stories import Json, MotionAsk, StoryShown
+from planner_service.stories import StoryRequest
+
+router = APIRouter(prefix="/v1/motions", tags=["motions"])
+
+
+@router.post("", status_code=202, response_model=StoryShown)
+def create(ask: MotionAsk, request: Request, response: Response, parts: PartsDep, key: Key = None) -> Json:
+    """Act keyframes out. The answer is a story of kind "motion": the same resource, without a planned or told part."""
+    if (ask.layout_id is None) == (ask.home is None):
+        raise Unprocessable("/layout_id", "give either layout_id or home")
+    layouts = () if ask.layout_id is None else (layout_named(parts, ask.layout_id, "/layout_id"),)
+    wanted = StoryRequest(
+        theme="",
+        layouts=layouts,
+        home=home_given(ask.home),
+        keyframes=tuple(ask.keyframes),
+        backend=ask.backend or parts.settings.backend,
+        seed=ask.seed,
+        character=character_of(ask.character),
+    )
+    record = accept(parts, request, "motion", wanted, ask.model_dump_json(), key)
+    response.headers["Location"] = f"/v1/stories/{record.id}"
+    return story_shown(record)

@@ -1,0 +1,272 @@
+"""Stories: post a theme, follow it being made, fetch what is ready, stop it, forget it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from typing import Annotated, Final, Literal
+
+from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
+from sqlalchemy.exc import IntegrityError
+
+from motion_backend.formats.glb import scene_glb
+from motion_backend.formats.writing import FORMATS, encode
+from motion_backend.motion import Character
+from planner_service.errors import Conflict, NotFound, NotReady, TooMany, Unprocessable
+from planner_service.footage import Footage
+from planner_service.making import HOME
+from planner_service.parts import Parts, PartsDep
+from planner_service.presenting import story_shown, story_summary
+from planner_service.routes.caching import unchanging
+from planner_service.schemas.stories import CharacterAsk, Json, StoryAsk, StoryPage, StoryShown
+from planner_service.scripts.events import clean
+from planner_service.store.jobs import state_of
+from planner_service.store.stories import Record, Stories, StoryGone
+from planner_service.stories import StoryRequest
+from scene_graphs.homes import Home, home_from_dict
+from scene_graphs.layouts import Layout, LayoutError
+
+router = APIRouter(prefix="/v1/stories", tags=["stories"])
+StoryId = Annotated[str, Path(max_length=64, description="The id of a story.")]
+Key = Annotated[
+    str | None,
+    Header(
+        alias="Idempotency-Key", min_length=1, max_length=200, pattern=r"^[\x21-\x7e]+$",
+        description="The same key with the same body gives the same story, however often it is sent.",
+    ),
+]  # fmt: skip
+FULL_QUEUE: Final = 10
+"""Seconds after which a caller with too many stories may try again."""
+GLB: Final = "model/gltf-binary"
+
+
+def stories_of(parts: PartsDep) -> Stories:
+    """The table of stories."""
+    return Stories(parts.engine)
+
+
+StoriesDep = Annotated[Stories, Depends(stories_of)]
+
+
+def record_of(story_id: StoryId, stories: StoriesDep) -> Record:
+    """The story that a path names."""
+    try:
+        return stories.get(story_id)
+    except StoryGone as error:
+        raise NotFound("there is no such story; GET /v1/stories lists them") from error
+
+
+RecordDep = Annotated[Record, Depends(record_of)]
+
+
+@router.post("", status_code=202, response_model=StoryShown)
+def create(ask: StoryAsk, request: Request, response: Response, parts: PartsDep, key: Key = None) -> Json:
+    """Make a story of a theme. It is queued when this answers; follow it at `links.events`."""
+    wanted = StoryRequest(
+        theme=clean(ask.theme),
+        rooms=tuple(ask.rooms),
+        layouts=tuple(layout_named(parts, name, f"/layouts/{i}") for i, name in enumerate(ask.layouts)),
+        home=home_given(ask.home),
+        short_scripts=ask.short_scripts,
+        method=ask.method,
+        backend=ask.backend or parts.settings.backend,
+        seed=ask.seed,
+        character=character_of(ask.character),
+    )
+    record = accept(parts, request, "story", wanted, ask.model_dump_json(), key)
+    response.headers["Location"] = f"/v1/stories/{record.id}"
+    return story_shown(record)
+
+
+def accept(parts: Parts, request: Request, kind: str, wanted: StoryRequest, body: str, key: str | None) -> Record:
+    """Store and queue in one transaction: what is answered 202 is made, and one key makes one story."""
+    stories, caller = Stories(parts.engine), request.state.caller
+    body_hash = hashlib.sha256(f"{kind}\n{body}".encode()).hexdigest()
+    for last_try in (False, True):
+        try:
+            with stories.writing.begin() as connection:
+                known = stories.known_key(connection, caller, key) if key else None
+                if known is not None and known[1] != body_hash:
+                    raise Unprocessable("header:Idempotency-Key", "this key came with another body before; use a new")
+                story_id = known[0] if known else ""
+                if not known:
+                    if stories.waiting(connection, caller) >= parts.settings.most_stories:
+                        most = f"{parts.settings.most_stories} of your stories are waiting or being made"
+                        raise TooMany(f"{most}; wait until one has ended, or cancel one", FULL_QUEUE)
+                    story_id = stories.add(connection, kind, caller, wanted)
+                    if key:
+                        stories.remember_key(connection, caller, key, story_id, body_hash)
+                    parts.jobs.enqueue(connection, story_id)
+            return stories.get(story_id)
+        except IntegrityError:  # the same key at the same moment: the other one was first
+            if last_try:
+                raise
+    raise AssertionError
+
+
+def layout_named(parts: Parts, name: str, pointer: str) -> Layout:
+    """The room of that id."""
+    try:
+        return parts.shelves.layouts().layout(name)
+    except KeyError as error:
+        raise Unprocessable(pointer, "there is no such room; GET /v1/layouts lists them") from error
+
+
+def home_given(row: Json | None) -> Home | None:
+    """The home that a body holds."""
+    try:
+        return None if row is None else home_from_dict(row)
+    except LayoutError as error:
+        raise Unprocessable("/home", str(error)) from error
+
+
+def character_of(ask: CharacterAsk | None) -> Character:
+    """Who acts."""
+    return Character(ask.name, ask.pronouns, ask.height) if ask else Character()
+
+
+@router.get("", response_model=StoryPage)
+def list_stories(
+    stories: StoriesDep,
+    limit: Annotated[int, Query(ge=1, le=100)] = 20,
+    cursor: Annotated[str | None, Query(max_length=64, description="`next` of the page before.")] = None,
+) -> Json:
+    """Stories, newest first."""
+    if cursor is not None and not _is_id(cursor):
+        raise Unprocessable("?cursor", "not a cursor that this service gave; leave it out for the first page")
+    found = stories.page(limit + 1, cursor)
+    shown = found[:limit]
+    frames = stories.durations(record.id for record in shown)
+    items = [story_summary(record, frames.get(record.id, 0)) for record in shown]
+    return {"items": items, "next": shown[-1].id if len(found) > limit else None}
+
+
+def _is_id(text: str) -> bool:
+    return len(text) == 36 and all(letter in "0123456789abcdef-" for letter in text)
+
+
+@router.get("/{story_id}", response_model=StoryShown)
+def show(record: RecordDep) -> Json:
+    """A story, as far as it is made."""
+    return story_shown(record)
+
+
+@router.post("/{story_id}/cancel", status_code=202, response_model=StoryShown, responses={409: {}})
+def cancel(record: RecordDep, parts: PartsDep, stories: StoriesDep) -> Json:
+    """Stop a story: the segment in the making is the last. What was made can still be fetched."""
+    state = state_of(record.status)
+    if state in ("queued", "running"):
+        parts.jobs.cancel(record.id)
+        record = stories.get(record.id)
+        state = state_of(record.status)
+    elif state != "cancelled":
+        raise Conflict(f"this story has {state}; there is nothing to cancel")
+    return story_shown(record)
+
+
+@router.delete("/{story_id}", status_code=204)
+def forget(record: RecordDep, parts: PartsDep, stories: StoriesDep) -> None:
+    """Delete a story and all that was made of it; one in the making is stopped."""
+    running = state_of(record.status) in ("queued", "running")
+    if running:
+        parts.jobs.cancel(record.id)
+    try:
+        stories.delete(record.id)
+    except StoryGone as error:
+        raise NotFound("there is no such story; it was deleted a moment ago") from error
+    if not running:
+        parts.jobs.forget(record.id)
+
+
+@router.get("/{story_id}/home", response_model=Json)
+def home(record: RecordDep, request: Request, stories: StoriesDep) -> Response:
+    """The home whole: rooms with their furniture, walls, doorways. It can be posted again as `home`."""
+    etag = _made(record, "home")
+
+    def make() -> bytes:
+        return json.dumps(_home_row(stories, record), ensure_ascii=False).encode()
+
+    return unchanging(request, f"{etag}-home", make, "application/json")
+
+
+@router.get("/{story_id}/scene.glb", response_class=Response, responses={200: {"content": {GLB: {}}}})
+def scene(record: RecordDep, request: Request, stories: StoriesDep) -> Response:
+    """The home alone."""
+    etag = _made(record, "home")
+    return unchanging(request, f"{etag}-scene", lambda: scene_glb(home_from_dict(_home_row(stories, record))), GLB)
+
+
+@router.get("/{story_id}/film.glb", response_class=Response, responses={200: {"content": {GLB: {}}}})
+def film(record: RecordDep, request: Request, stories: StoriesDep) -> Response:
+    """The home and the animated character in one file."""
+    etag = _made(record, "film")
+    position = record.artifacts[-1].position
+    return unchanging(request, etag, lambda: stories.data(record.id, position), GLB, _named(record, ".glb"))
+
+
+@router.get(
+    "/{story_id}/motion",
+    response_class=Response,
+    responses={
+        200: {
+            "content": {one.media_type.partition(";")[0]: {} for one in FORMATS.values()},
+            "headers": {
+                "Sims-Frames": {"description": "The frames given, first-last.", "schema": {"type": "string"}},
+                "Sims-Ready": {"description": "Frames that can be had now.", "schema": {"type": "integer"}},
+                "Sims-Complete": {"description": "true when no more will come.", "schema": {"type": "string"}},
+            },
+        },
+        416: {"description": "None of these frames is there yet, or ever."},
+    },
+)
+def motion(
+    record: RecordDep,
+    request: Request,
+    stories: StoriesDep,
+    format_: Annotated[Literal["npz", "bvh", "glb", "json", "f32"], Query(alias="format")] = "npz",
+    first: Annotated[int, Query(alias="from", ge=0, le=10**9, description="First frame.")] = 0,
+    last: Annotated[int | None, Query(alias="to", ge=1, le=10**9, description="Behind the last frame.")] = None,
+) -> Response:
+    """The body alone: the frames from `from` to `to` (exclusive) as far as they are ready, 30 a second."""
+    if last is not None and last <= first:
+        raise Unprocessable("?to", f"must be more than from ({first}): the frame behind the last one")
+    footage = Footage(record)
+    ready, complete = footage.ready, footage.complete
+    if first >= ready:
+        ended = state_of(record.status) not in ("queued", "running")
+        if complete or ended:
+            raise Unprocessable("?from", f"the motion has {ready} frames; ask for one below that")
+        raise NotReady(f"not ready yet: {ready} frames are; follow links.events")
+    end = min(ready, last or ready)
+    headers = {"Sims-Frames": f"{first}-{end}", "Sims-Ready": str(ready), "Sims-Complete": str(complete).lower()}
+    chosen = FORMATS[format_]
+
+    def make() -> bytes:
+        return encode(footage.motion(stories, first, end), format_)
+
+    if end == last or complete:
+        headers |= _named(record, chosen.suffix)
+        return unchanging(request, f"{footage.etag(first, end)}-{format_}", make, chosen.media_type, headers)
+    return Response(make(), headers=headers | {"Cache-Control": "no-store"}, media_type=chosen.media_type)
+
+
+def _made(record: Record, kind: str) -> str:
+    """The ETag of what a stage made."""
+    for artifact in record.artifacts:
+        if artifact.kind == kind:
+            return artifact.etag
+    state = state_of(record.status)
+    if state in ("queued", "running"):
+        raise NotReady("not ready yet: it is still being made; follow links.events")
+    raise NotFound(f"this story was {state} before that was made")
+
+
+def _home_row(stories: Stories, record: Record) -> Json:
+    row: Json = json.loads(stories.data(record.id, HOME))["home"]
+    return row
+
+
+def _named(record: Record, suffix: str) -> dict[str, str]:
+    """A file name for those who save the answer."""
+    words = "".join(letter if letter.isascii() and letter.isalnum() else " " for letter in record.title or record.kind)
+    return {"Content-Disposition": f'inline; filename="{"-".join(words.lower().split()) or "story"}{suffix}"'}
