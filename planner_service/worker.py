@@ -66,7 +66,7 @@ def run_worker(settings: Settings, supervised: bool = False) -> None:
         _wait_for(engine)
         DBOS.launch()
         DBOS.register_queue(QUEUE, worker_concurrency=1, polling_interval_sec=POLL)
-        log.info("worker ready", worker=settings.worker_id)
+        log.info("worker ready", worker=settings.worker_id, pid=os.getpid())
         stop.wait()
         log.info("worker stops", worker=settings.worker_id)
         # A step in the making is left: it is made again at the next start, and nothing of it was stored.

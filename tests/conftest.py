@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import psycopg
 import pytest
+from running import RunningService
 from sqlalchemy import make_url
 
 if TYPE_CHECKING:
@@ -53,3 +54,10 @@ def postgres_url(postgres_server: PostgresServer) -> Iterator[str]:
     yield make_url(uri).set(database=name).render_as_string(hide_password=False)
     with psycopg.connect(uri, autocommit=True) as connection:
         connection.execute(f'DROP DATABASE IF EXISTS "{name}" WITH (FORCE)')
+
+
+@pytest.fixture(scope="session")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningService]:
+    """One service on SQLite for all tests that only use it; those that break it start their own."""
+    with RunningService(tmp_path_factory.mktemp("service")) as running:
+        yield running
