@@ -227,5 +227,5 @@ class Cors(CORSMiddleware):
         answer = super().preflight_response(request_headers)
         if answer.status_code == 200:
             return answer
-        problem = Malformed(f"{bytes(answer.body).decode()}; see SIMS_CORS_ORIGINS", headers=answer.headers)
-        return problem.response("")
+        said = {name: value for name, value in answer.headers.items() if not name.startswith("content-")}
+        return Malformed(f"{bytes(answer.body).decode()}; see SIMS_CORS_ORIGINS", headers=said).response("")

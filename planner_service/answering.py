@@ -114,7 +114,8 @@ async def _http(request: Request, error: Exception) -> Response:
     if error.status_code in (204, 304):
         return Response(status_code=error.status_code, headers=headers)
     if error.status_code == 405:
-        headers["Allow"] = ", ".join(allowed_methods(request))
+        # A route names its own methods, not those of its neighbours at the same path.
+        headers["Allow"] = ", ".join(allowed_methods(request)) or headers.get("Allow", "")
     phrase = HTTPStatus(error.status_code).phrase
     detail = error.detail if error.detail and error.detail != phrase else STATUS_TEXTS.get(error.status_code, phrase)
     if detail == "There was an error parsing the body":

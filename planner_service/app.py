@@ -24,7 +24,7 @@ from planner_service.parts import Parts
 from planner_service.routes import page, service
 from planner_service.telemetry import Figures, Telemetry
 
-ROUTES: Final = ("stories", "motions", "short_scripts", "long_scripts", "layouts", "layout_graphs")
+ROUTES: Final = ("stories", "events", "motions", "short_scripts", "long_scripts", "layouts", "layout_graphs")
 
 
 class Service(FastAPI):

@@ -24,10 +24,13 @@ METHODS: Final = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OP
 SECONDS: Final = (0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 UNKNOWN: Final = "unknown"
 """The route of a request that was refused before it reached one."""
+LONGEST_PATH: Final = 200
 HUNG_UP: Final = 499
 """The status in log and figures where the caller left before there was an answer."""
 QUIET: Final = ("dbos", "sqlalchemy", "httpx", "httpcore", "matplotlib")
 """Libraries whose own news below a warning would drown ours."""
+LIBRARIES: Final = ("uvicorn", *QUIET)
+DBOS_STORY: Final = "operationUUID"
 log = structlog.get_logger("sims.http")
 
 
@@ -36,13 +39,12 @@ def configure_logging(level: str, stream: TextIO) -> None:
     shared: list[Any] = [
         structlog.contextvars.merge_contextvars,
         structlog.stdlib.add_log_level,
-        structlog.stdlib.ExtraAdder(),
         structlog.processors.TimeStamper(fmt="iso", utc=True, key="time"),
         structlog.processors.format_exc_info,
         _without_absent,
     ]
     structlog.configure(
-        processors=[*shared[:2], *shared[3:], structlog.stdlib.ProcessorFormatter.wrap_for_formatter],
+        processors=[*shared, structlog.stdlib.ProcessorFormatter.wrap_for_formatter],
         wrapper_class=structlog.make_filtering_bound_logger(level),
         logger_factory=structlog.stdlib.LoggerFactory(),
         cache_logger_on_first_use=False,
@@ -50,34 +52,28 @@ def configure_logging(level: str, stream: TextIO) -> None:
     handler = logging.StreamHandler(stream)
     handler.setFormatter(
         structlog.stdlib.ProcessorFormatter(
-            foreign_pre_chain=shared,
+            foreign_pre_chain=[structlog.stdlib.ExtraAdder(allow=[DBOS_STORY]), *shared],
             processors=[
                 structlog.stdlib.ProcessorFormatter.remove_processors_meta,
-                structlog.processors.EventRenamer("event"),
-                structlog.processors.JSONRenderer(ensure_ascii=False, default=str),
+                structlog.processors.JSONRenderer(default=str),
             ],
         )
     )
     root = logging.getLogger()
     root.handlers = [handler]
     root.setLevel(level.upper())
-    _adopt(level)
-
-
-def _adopt(level: str) -> None:
-    """Libraries that brought handlers of their own write through ours."""
-    for name in ("uvicorn", "uvicorn.error", "uvicorn.access", *QUIET):
-        library = logging.getLogger(name)
-        library.handlers = []
-        library.propagate = True
-    logging.getLogger("uvicorn.access").disabled = True
     logging.captureWarnings(True)
-    for name in QUIET:
-        logging.getLogger(name).setLevel(max(logging.WARNING, logging.getLevelNamesMapping()[level.upper()]))
+    for name in LIBRARIES:
+        library = logging.getLogger(name)
+        # Not by propagation: DBOS prints in its own way unless its logger has a handler when it starts.
+        library.handlers, library.propagate = [handler], False
+        library.setLevel(max(logging.WARNING if name in QUIET else 0, root.level))
+    logging.getLogger("uvicorn.access").disabled = True
 
 
 def _without_absent(_logger: WrappedLogger, _method: str, line: EventDict) -> EventDict:
-    """A line names a story or a caller only where there is one."""
+    """A line names a story or a caller only where there is one; DBOS's workflows are stories."""
+    line.setdefault("story_id", line.pop(DBOS_STORY, None))
     return {name: value for name, value in line.items() if value is not None}
 
 
@@ -132,11 +128,15 @@ class Telemetry:
         status = watch.status or (HUNG_UP if watch.hung_up else 500)
         seconds = (watch.answered or now) - watch.begun
         self.figures.answers.labels(method, route, f"{status // 100}xx").observe(seconds)
-        story_id = scope.get("path_params", {}).get("story_id")
         log.info(
-            "request", method=method, path=printable(scope["path"], 200) if route is UNKNOWN else route, status=status, ms=round((now - watch.begun) * 1000, 1),
-            story_id=story_id, hung_up=watch.hung_up or None,
-        )  # fmt: skip
+            "request",
+            method=method,
+            path=printable(scope["path"], LONGEST_PATH) if route == UNKNOWN else route,
+            status=status,
+            ms=round((now - watch.begun) * 1000, 1),
+            story_id=scope.get("path_params", {}).get("story_id"),
+            hung_up=watch.hung_up or None,
+        )
 
 
 class Watch:

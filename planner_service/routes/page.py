@@ -50,9 +50,9 @@ color-scheme: light dark }</style>
 router = APIRouter(include_in_schema=False)
 
 
-def page_is_built(folder: Path = PAGE) -> bool:
+def page_is_built() -> bool:
     """Whether there is a page to show."""
-    return (folder / "index.html").is_file()
+    return (PAGE / "index.html").is_file()
 
 
 @router.get("/")
@@ -91,6 +91,6 @@ class Assets(StaticFiles):
         return answer
 
 
-def assets(folder: Path = PAGE / "assets") -> ASGIApp:
+def assets() -> ASGIApp:
     """What is mounted at /assets."""
-    return GZipMiddleware(Assets(folder), minimum_size=1024)
+    return GZipMiddleware(Assets(PAGE / "assets"), minimum_size=1024)
