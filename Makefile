@@ -5,7 +5,11 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 READY_DEV := $(VENV)/.ready-dev
-GLTF := tests/gltf/node_modules/.ready
+# What Node is needed for: the page, its tests in a browser, the Khronos glTF validator.
+PAGE := planner_service/page/index.html
+PAGE_SOURCES = $(shell find web -type f -not -path '*/node_modules/*' -not -name '.*')
+NODE_TESTS := $(patsubst %/package-lock.json,%/node_modules/.ready,$(wildcard tests/*/package-lock.json))
+NODE_20 := node -e 'process.exit(parseInt(process.versions.node) >= 20 ? 0 : 1)' 2>/dev/null && command -v npm >/dev/null
 
 THEME ?= A person is happy at first, but he is told in the phone that he fails the job interview and becomes very depressed.
 OUT ?= out/demo
@@ -15,13 +19,17 @@ TORCH_INDEX ?=
 export OMP_NUM_THREADS ?= 1
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help demo test lint bench format clean
+.PHONY: help demo serve page test lint bench format dist image clean
 
 help:
 	@echo "make demo    a theme becomes a film: writes $(OUT)/ (story, film.glb, motion, report, storyboard)"
+	@echo "make serve   the service and its page, on http://127.0.0.1:8000"
+	@echo "make page    only builds the page (Node 20 or newer)"
 	@echo "make test    the test suite"
-	@echo "make lint    ruff, mypy --strict"
+	@echo "make lint    ruff, mypy --strict, tsc"
 	@echo "make bench   speed and memory, printed beside their limits"
+	@echo "make dist    a wheel and a source archive, with the page in them, in dist/"
+	@echo "make image   the Dockerfile's steps as a plain script, without a container engine"
 	@echo "make clean   removes what set-up and runs made"
 
 # On Linux the usual index serves torch with gigabytes of CUDA, which we do not use: TORCH_INDEX asks for another build.
@@ -40,21 +48,32 @@ $(READY_DEV): $(READY)
 	@$(BIN)/python -m pip install --quiet -e ".[dev]"
 	@touch $@
 
-# The Khronos validator is a Node program; without Node the one test that needs it says so and is skipped.
-$(GLTF): tests/gltf/package-lock.json
-	@if command -v npm >/dev/null; then echo "· installing the Khronos glTF validator"; npm ci --silent --no-audit --no-fund --prefix tests/gltf && touch $@; \
-	else echo "· npm is not installed: the glTF validator's test will be skipped"; fi
+# Without Node everything but these works, and says so.
+%/node_modules/.ready: %/package-lock.json %/package.json
+	@if $(NODE_20); then echo "· installing what $* needs"; npm ci --silent --no-audit --no-fund --prefix $* && touch $@; \
+	else echo "· Node 20 or newer is not installed: $* is left out, all else works"; fi
+
+$(PAGE): web/node_modules/.ready $(PAGE_SOURCES)
+	@if $(NODE_20); then echo "· building the page"; npm run --silent build --prefix web && touch $@; fi
+
+page: $(PAGE)
+
+serve: $(READY) page
+	@$(BIN)/sims serve
 
 demo: $(READY)
 	@$(BIN)/sims story "$(THEME)" --out $(OUT) --seed 7
 
-test: $(READY_DEV) $(GLTF)
+test: $(READY_DEV) page $(NODE_TESTS)
+	@if $(NODE_20); then npm test --silent --prefix web; fi
 	@$(BIN)/python -m pytest
 
-lint: $(READY_DEV)
+lint: $(READY_DEV) web/node_modules/.ready
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
+	@$(BIN)/mypy docker
+	@if $(NODE_20); then npm run --silent check --prefix web; fi
 
 format: $(READY_DEV)
 	@$(BIN)/ruff check --fix .
@@ -63,5 +82,12 @@ format: $(READY_DEV)
 bench: $(READY_DEV)
 	@$(BIN)/python -m benchmarks
 
+dist: $(READY_DEV) page
+	@rm -rf dist
+	@$(BIN)/python -m hatchling build -d dist
+
+image:
+	@$(PYTHON) docker/run_steps.py $(if $(TORCH_INDEX),--build-arg TORCH_INDEX=$(TORCH_INDEX))
+
 clean:
-	rm -rf $(VENV) out .mypy_cache .ruff_cache .pytest_cache tests/gltf/node_modules
+	rm -rf $(VENV) out dist .mypy_cache .ruff_cache .pytest_cache planner_service/page web/node_modules tests/*/node_modules
