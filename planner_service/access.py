@@ -8,7 +8,7 @@ import ipaddress
 import re
 import time
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Final, NoReturn
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers
@@ -25,7 +25,8 @@ from planner_service.settings import LEAST_KEY, Settings, SettingsError
 COOKIE: Final = "sims_session"
 COOKIE_SECONDS: Final = 30 * 24 * 3600
 LOGINS: Final = "10/minute"
-"""Wrong keys that one address may try."""
+REFUSALS: Final = "600/minute"
+WRONG: Final = "this key is not one of the service's"
 OPEN: Final = frozenset({"/", "/healthz", "/readyz", "/session", "/openapi.json", "/favicon.ico", "/favicon.svg"})
 """Paths that need no key; the page's own files are open too."""
 SAFE: Final = frozenset({"GET", "HEAD", "OPTIONS"})
@@ -72,7 +73,10 @@ class Gate:
 
     keys: tuple[str, ...] = ()
     origins: tuple[str, ...] = ()
-    wrong_keys: Rate = field(default_factory=lambda: Rate(LOGINS))
+    refusals: Rate = field(default_factory=lambda: Rate(REFUSALS))
+    """By address. Counted, so that strangers cannot keep the service busy; a right key is never kept out by them."""
+    logins: Rate = field(default_factory=lambda: Rate(LOGINS))
+    """Wrong keys at POST /session, by address."""
 
     @property
     def locked(self) -> bool:
@@ -91,11 +95,15 @@ class Gate:
     def log_in(self, given: str, scope: Scope) -> str | None:
         """A cookie's value for a right key, None where no key is needed.
 
-        Unauthorised for a wrong key, TooMany for a wrong one after others from the same address.
+        Unauthorised for a wrong key; TooMany for any after some wrong ones from the same address.
         """
         if not self.locked:
             return None
-        self._caller_of_key(given, scope)
+        address = address_of(scope)
+        self.logins.check(address, "too many wrong keys")
+        if self.owner(given) is None:
+            self.logins.take(address, "too many wrong keys")
+            raise Unauthorised(WRONG)
         return self.cookie(given, int(time.time()) + COOKIE_SECONDS)
 
     def cookie(self, key: str, expiry: int) -> str:
@@ -121,31 +129,21 @@ class Gate:
             _check_local(headers)
             _check_origin(scope, headers, self.origins)
             return LOCAL
-        caller = self._bearer(scope, headers)
-        if caller is not None:
-            return caller
+        scheme, _, given = headers.get("authorization", "").partition(" ")
+        if scheme.lower() == "bearer":
+            return self.owner(given.strip()) or self._refuse(scope, WRONG)
         caller = self.cookie_owner(cookie_parser(headers.get("cookie", "")).get(COOKIE, ""))
         if caller is not None and scope["method"] not in SAFE:
             _check_same_site(headers)
         if caller is None and scope["path"] == "/session":
             _check_origin(scope, headers, ())
         if caller is None and not is_open(scope["path"]):
-            raise Unauthorised("a key is needed: send Authorization: Bearer KEY, or log in with POST /session")
+            self._refuse(scope, "a key is needed: send Authorization: Bearer KEY, or log in with POST /session")
         return caller
 
-    def _bearer(self, scope: Scope, headers: Headers) -> str | None:
-        scheme, _, given = headers.get("authorization", "").partition(" ")
-        if scheme.lower() != "bearer":
-            return None
-        return self._caller_of_key(given.strip(), scope)
-
-    def _caller_of_key(self, given: str, scope: Scope) -> str:
-        """A right key always passes, so that nobody is locked out by guesses from the same address."""
-        caller = self.owner(given)
-        if caller is None:
-            self.wrong_keys.take(address_of(scope), "too many wrong keys")
-            raise Unauthorised("this key is not one of the service's")
-        return caller
+    def _refuse(self, scope: Scope, why: str) -> NoReturn:
+        self.refusals.take(address_of(scope), "too many requests without a right key")
+        raise Unauthorised(why)
 
 
 def is_open(path: str) -> bool:

@@ -33,8 +33,15 @@ class Rate:
 
     def take(self, name: str, what: str) -> None:
         """Count one event. TooMany, with the seconds to wait, when the window is full."""
-        if self._window.hit(self._limit, name):
-            return
+        if not self._window.hit(self._limit, name):
+            self._refuse(name, what)
+
+    def check(self, name: str, what: str) -> None:
+        """TooMany when the window is full; counts nothing."""
+        if not self._window.test(self._limit, name):
+            self._refuse(name, what)
+
+    def _refuse(self, name: str, what: str) -> None:
         seconds = self._window.get_window_stats(self._limit, name).reset_time - time.time()
         wait = max(1, math.ceil(seconds))
         raise TooMany(f"{what}: {self.said.replace('/', ' a ')} are allowed; wait {wait} s", wait)
