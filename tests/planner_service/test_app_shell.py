@@ -176,3 +176,22 @@ def test_shutting_down_closes_the_parts(tmp_path: Path) -> None:
             assert httpx.get(f"{url}/readyz").status_code == 200
             assert app.state.parts.engine.pool.checkedin() == 1
         assert app.state.parts.engine.pool.checkedin() == 0
+
+
+async def test_postgresql_may_go_away_and_come_back(tmp_path: Path, postgres_server: Any, postgres_url: str) -> None:
+    with app_on(tmp_path, database_url=postgres_url) as app:
+        assert (await ask(app, "/v1/stories")).json()["items"] == []
+        postgres_server.stop()
+        try:
+            for path in ("/v1/stories", "/v1/stories/01a1fdd1-85c6-75fb-9e21-7b8be7295912"):
+                answer = await ask(app, path)
+                check_problem(answer, 503)
+                assert int(answer.headers["retry-after"]) >= 1
+            answer = await ask(app, "/v1/stories", "POST", json={"theme": "She reads a book."})
+            check_problem(answer, 503)
+            assert (await ask(app, "/readyz")).json()["status"] == "not ready"
+            assert (await ask(app, "/healthz")).status_code == 200
+        finally:
+            postgres_server.start()
+        assert (await ask(app, "/readyz")).json()["status"] == "ready"
+        assert (await ask(app, "/v1/stories", "POST", json={"theme": "She reads a book."})).status_code == 202

@@ -6,6 +6,8 @@ import io
 import json
 import logging
 import re
+import socket
+import time
 import warnings
 from collections.abc import AsyncIterator, Iterator
 from pathlib import Path
@@ -150,9 +152,19 @@ def test_a_client_that_hangs_up_leaves_a_line_but_no_traceback(app: FastAPI, lin
     assert not [line for line in lines.all() if line["level"] in ("warning", "error")]
 
 
-def wait_for(true: Any) -> None:
-    import time
+def test_a_client_that_hangs_up_while_sending_leaves_a_line_but_no_traceback(app: FastAPI, lines: Lines) -> None:
+    with running(app) as url:
+        with socket.create_connection(("127.0.0.1", int(url.rpartition(":")[2]))) as connection:
+            head = ("POST /session HTTP/1.1", "Host: localhost", "Content-Type: application/json", "Content-Length: 99")
+            connection.sendall("\r\n".join((*head, "", "{")).encode())
+            time.sleep(0.1)
+        wait_for(lambda: lines.of("request"))
+    assert lines.of("request")[0]["hung_up"] is True
+    assert "Traceback" not in lines.stream.getvalue()
+    assert not [line for line in lines.all() if line["level"] in ("warning", "error")]
 
+
+def wait_for(true: Any) -> None:
     deadline = time.monotonic() + 5
     while not true() and time.monotonic() < deadline:
         time.sleep(0.02)
