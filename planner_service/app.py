@@ -22,6 +22,7 @@ from planner_service.limiting import BodyLimit, Limiting, Rate
 from planner_service.openapi import document
 from planner_service.parts import Parts
 from planner_service.routes import page, service
+from planner_service.store.figures import StoreFigures
 from planner_service.telemetry import Figures, Telemetry
 
 ROUTES: Final = ("stories", "events", "motions", "short_scripts", "long_scripts", "layouts", "layout_graphs")
@@ -41,6 +42,7 @@ def create_app(parts: Parts) -> FastAPI:
     """The service on these parts; they are closed when it shuts down."""
     gate = Gate(parts.settings.api_keys, parts.settings.cors_origins)
     figures = Figures()
+    figures.register(StoreFigures(parts.engine, parts.jobs))
     app = Service(
         title="sims-stories",
         version=version("sims-stories"),
