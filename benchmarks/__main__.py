@@ -11,6 +11,7 @@ from pathlib import Path
 
 from benchmarks.demo import measure_demo
 from benchmarks.retrieval import retrieval_figures
+from benchmarks.service import service_figures
 from benchmarks.stories import file_figures, make_stories, quality_figures, speed_figures
 from benchmarks.tables import figure_rows, markdown, plain, story_rows
 from planner_service.shelves import Shelves
@@ -29,6 +30,7 @@ def main() -> int:
         figures += speed_figures(made)
         figures += retrieval_figures(studio)
         figures += file_figures(made, Path(folder))
+        figures += service_figures(Path(folder))
     figures += quality_figures(made)
     as_markdown = "--markdown" in sys.argv[1:]
     for rows, left in ((figure_rows(figures), (0, 3, 4)), (story_rows(made), (0,))):
