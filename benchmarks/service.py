@@ -65,10 +65,10 @@ def service_figures(folder: Path) -> list[Figure]:
         alone = batch_seconds(client)
     return [
         Figure("first segment, from posting", first, "s", FIRST_SECONDS, digits=2, note="posted, followed, fetched"),
-        Figure("story status, one after the other", 1000 * median(idle["seconds"]), "ms", note="no story in the making"),
+        Figure("story status, one caller", 1000 * median(idle["seconds"]), "ms", note="nothing in the making"),
         Figure(
             "story status, 8 callers", len(quick["seconds"]) / quick["wall"], "/s", PER_SECOND, bound="least", digits=0,
-            note="no story in the making",
+            note="nothing in the making",
         ),
         Figure("GET while 2 stories are made, median", 1000 * median(busy["seconds"]), "ms", MEDIAN_MS),
         Figure(
