@@ -92,16 +92,16 @@ class RunningService:
         return list(ready.values())
 
 
-def finished(client: httpx.Client, story_id: str, states: tuple[str, ...] = ENDED) -> dict[str, Any]:
-    """The story, once it is in one of these states."""
-    deadline = time.monotonic() + PATIENCE
+def finished(client: httpx.Client, story_id: str, patience: float = PATIENCE) -> dict[str, Any]:
+    """The story, once it has ended."""
+    deadline = time.monotonic() + patience
     while time.monotonic() < deadline:
         try:
             story: dict[str, Any] = client.get(f"/v1/stories/{story_id}").raise_for_status().json()
         except httpx.TransportError:
             time.sleep(0.2)
             continue
-        if story["state"] in states:
+        if story["state"] in ENDED:
             return story
         time.sleep(0.05)
     raise AssertionError(f"{story_id} is still {story['state']}, {story['stage']} {story['progress']}")
