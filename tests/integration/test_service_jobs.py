@@ -188,5 +188,5 @@ def test_a_service_stops_gracefully_and_goes_on_when_it_starts_again(tmp_path: P
     begun = time.monotonic()
     assert service.stop() == 0
     assert time.monotonic() - begun < 10
-    with service.start(), service.client() as client:
+    with service, service.client() as client:
         assert finished(client, story["id"])["state"] == "succeeded"
