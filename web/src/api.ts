@@ -1,0 +1,241 @@
+/** The service's resources, and the calls that the page makes. */
+
+import type { Span } from "./spans";
+
+export type State = "queued" | "running" | "succeeded" | "failed" | "cancelled";
+export type Stage = "plan" | "furnish" | "narrate" | "act" | "move" | "judge" | "film";
+export type Skill = "loco" | "sitdown" | "standup" | "getup" | "liedown" | "touch";
+
+export interface Failure {
+  readonly title: string;
+  readonly detail: string;
+}
+
+export interface Summary {
+  readonly id: string;
+  readonly kind: "story" | "motion";
+  readonly state: State;
+  readonly stage: Stage | null;
+  readonly progress: number;
+  readonly created: string;
+  readonly theme: string | null;
+  readonly title: string | null;
+  readonly seed: number;
+  readonly backend: string;
+  readonly duration: number | null;
+  readonly error: Failure | null;
+}
+
+export interface Keyframe {
+  readonly index: number;
+  readonly skill: Skill;
+  readonly emotion: string;
+  readonly caption: string;
+  readonly furniture: string;
+  readonly object_id: string | null;
+  readonly room: string | null;
+  readonly start: number | null;
+  readonly end: number | null;
+  readonly short_script_id: string | null;
+  readonly reached: boolean | null;
+}
+
+export interface FoundScript {
+  readonly id: string;
+  readonly summary: string;
+  readonly score: number;
+  readonly event: number;
+}
+
+export interface FoundRoom {
+  readonly layout_id: string;
+  readonly room_type: string;
+  readonly distance: number;
+  readonly exact: boolean;
+  readonly substitutions: readonly { readonly asked: string; readonly given: string; readonly level: string }[];
+  readonly missing: readonly string[];
+}
+
+export interface KeyframeFigures {
+  readonly keyframe: number;
+  readonly skill: Skill;
+  readonly seconds: number;
+  readonly reached: boolean;
+  readonly reason: string;
+  readonly contact_error: number | null;
+  readonly pen_max: number;
+}
+
+export interface Report {
+  readonly planner: string | null;
+  readonly encoder: string | null;
+  readonly backend: string;
+  readonly physics_mode: string;
+  readonly motion: {
+    readonly reached: number;
+    readonly keyframes: number;
+    readonly contact_error: number | null;
+    readonly pen_mean: number;
+    readonly pen_share: number;
+    readonly skate_ratio_loco: number | null;
+    readonly seconds: number;
+  };
+  readonly keyframes: readonly KeyframeFigures[];
+}
+
+export interface FurnitureGraph {
+  readonly nodes: readonly { readonly category: string; readonly instance: number; readonly room: string | null }[];
+  readonly edges: readonly (readonly [number, number])[];
+}
+
+export interface Story extends Summary {
+  readonly method: string;
+  readonly character: { readonly name: string; readonly pronouns: string; readonly height: number };
+  readonly planner: string | null;
+  readonly encoder: string | null;
+  readonly text: string | null;
+  readonly spans: readonly Span[];
+  readonly events: readonly { readonly text: string; readonly emotion: string }[];
+  readonly uncovered: readonly string[];
+  readonly repairs: readonly string[];
+  readonly keyframes: readonly Keyframe[];
+  readonly short_scripts: readonly FoundScript[];
+  readonly graph: FurnitureGraph | null;
+  readonly home: { readonly rooms: readonly FoundRoom[] } | null;
+  readonly motion: { readonly frames: number; readonly fps: number; readonly duration: number; readonly complete: boolean };
+  readonly report: Report | null;
+}
+
+export type Point2 = readonly [number, number];
+
+export interface Opening {
+  readonly segment: readonly [Point2, Point2];
+  readonly bottom: number;
+  readonly top: number;
+}
+
+export interface Placed {
+  readonly id: string;
+  readonly category: string;
+  readonly position: readonly [number, number, number];
+  readonly size: readonly [number, number, number];
+  readonly yaw: number;
+}
+
+export interface Home {
+  readonly rooms: readonly {
+    readonly layout: { readonly id: string; readonly room_type: string; readonly floor_polygon: readonly Point2[]; readonly objects: readonly Placed[] };
+    readonly offset: readonly [number, number, number];
+    readonly yaw: number;
+  }[];
+  readonly walls: readonly { readonly segment: readonly [Point2, Point2]; readonly height: number; readonly openings: readonly Opening[] }[];
+  readonly doorways: readonly Opening[];
+}
+
+export interface NewStory {
+  theme: string;
+  seed: number;
+  method: string;
+  rooms?: string[];
+  character: { name: string; pronouns: string; height: number };
+}
+
+/** An answer that is not the one hoped for; status 0 when there was no answer at all. */
+export class ApiError extends Error {
+  constructor(
+    readonly status: number,
+    readonly title: string,
+    readonly detail: string,
+    readonly errors: readonly { readonly pointer: string; readonly detail: string }[] = [],
+    /** Seconds after which to ask again. */
+    readonly retryAfter: number | null = null,
+  ) {
+    super(detail || title);
+  }
+
+  /** Whether the same call may well succeed later. */
+  get passing(): boolean {
+    return this.status === 0 || this.status === 429 || this.status >= 500;
+  }
+}
+
+async function call(path: string, init: RequestInit = {}): Promise<Response> {
+  let response: Response;
+  try {
+    response = await fetch(path, { credentials: "same-origin", ...init });
+  } catch (cause) {
+    if (cause instanceof DOMException && cause.name === "AbortError") throw cause;
+    throw new ApiError(0, "No answer", "The service does not answer. Is it still running, and are you connected to it?");
+  }
+  if (response.ok) return response;
+  throw await problem(response);
+}
+
+async function problem(response: Response): Promise<ApiError> {
+  const wait = Number(response.headers.get("Retry-After"));
+  const retryAfter = Number.isFinite(wait) && wait > 0 ? wait : null;
+  const said: unknown = await response.json().catch(() => null);
+  const body = (said !== null && typeof said === "object" ? said : {}) as Record<string, unknown>;
+  const title = typeof body["title"] === "string" ? body["title"] : `The service answered ${response.status}`;
+  const detail = typeof body["detail"] === "string" ? body["detail"] : "";
+  const errors = Array.isArray(body["errors"]) ? (body["errors"] as ApiError["errors"]) : [];
+  return new ApiError(response.status, title, detail, errors, retryAfter);
+}
+
+async function json<T>(path: string, init?: RequestInit): Promise<T> {
+  return (await (await call(path, init)).json()) as T;
+}
+
+const story = (id: string): string => `v1/stories/${encodeURIComponent(id)}`;
+
+/** Start a story. The same key posted again makes no second one. */
+export function postStory(request: NewStory, key: string): Promise<Story> {
+  const headers = { "Content-Type": "application/json", "Idempotency-Key": key };
+  return json("v1/stories", { method: "POST", headers, body: JSON.stringify(request) });
+}
+
+export const getStory = (id: string, signal?: AbortSignal): Promise<Story> => json(story(id), signal ? { signal } : {});
+
+export const getHome = (id: string): Promise<Home> => json(`${story(id)}/home`);
+
+export function listStories(cursor: string | null): Promise<{ items: Summary[]; next: string | null }> {
+  return json(`v1/stories?limit=12${cursor ? `&cursor=${encodeURIComponent(cursor)}` : ""}`);
+}
+
+export async function cancelStory(id: string): Promise<void> {
+  await call(`${story(id)}/cancel`, { method: "POST" });
+}
+
+export async function deleteStory(id: string): Promise<void> {
+  await call(story(id), { method: "DELETE" });
+}
+
+/** Frames [from, to) of a motion as npz. */
+export async function getMotion(id: string, from: number, to: number, signal?: AbortSignal): Promise<ArrayBuffer> {
+  return (await call(motionUrl(id, "npz", from, to), signal ? { signal } : {})).arrayBuffer();
+}
+
+export function motionUrl(id: string, format: string, from?: number, to?: number): string {
+  const range = from === undefined ? "" : `&from=${from}${to === undefined ? "" : `&to=${to}`}`;
+  return `${story(id)}/motion?format=${format}${range}`;
+}
+
+export const sceneUrl = (id: string): string => `${story(id)}/scene.glb`;
+export const filmUrl = (id: string): string => `${story(id)}/film.glb`;
+export const storyUrl = (id: string): string => story(id);
+export const eventsUrl = (id: string): string => `${story(id)}/events`;
+
+/** The bytes of a GLB file. */
+export async function getGlb(url: string): Promise<ArrayBuffer> {
+  return (await call(url)).arrayBuffer();
+}
+
+export const getSession = (): Promise<{ required: boolean; authenticated: boolean }> => json("session");
+
+export async function logIn(key: string): Promise<void> {
+  await call("session", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ key }) });
+}
+
+export async function logOut(): Promise<void> {
+  await call("session", { method: "DELETE" });
+}

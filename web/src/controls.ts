@@ -1,0 +1,79 @@
+/** Play, speed and camera: the row of buttons under the film. */
+
+import type { CameraMode } from "./camera";
+import { fill, h, icon } from "./dom";
+import { SPEEDS, type Player } from "./player";
+import { clock } from "./timing";
+
+export interface Wishes {
+  toggle(): void;
+  /** To the moment before or after this one. */
+  step(by: -1 | 1): void;
+  speed(speed: number): void;
+  camera(mode: CameraMode): void;
+  map(): void;
+  full(): void;
+  help(): void;
+}
+
+export class Controls {
+  readonly element: HTMLElement;
+  readonly #play: HTMLButtonElement;
+  readonly #time = h("span", { class: "time" });
+  readonly #speeds: HTMLInputElement[];
+  readonly #cameras: HTMLInputElement[];
+  readonly #map: HTMLButtonElement;
+
+  constructor(wishes: Wishes) {
+    const button = (name: string, picture: Parameters<typeof icon>[0], act: () => void, shown = "quiet round"): HTMLButtonElement =>
+      h("button", { type: "button", class: shown, "aria-label": name, title: name, onclick: act }, icon(picture));
+    this.#play = button("Play", "play", () => wishes.toggle(), "primary round");
+    this.#map = button("Plan of the home", "map", () => wishes.map());
+    this.#map.setAttribute("aria-pressed", "true");
+    const speeds = SPEEDS.map((speed) => radio("speed", String(speed), `${speed === 0.5 ? "½" : speed}×`, `${speed} times as fast`, () => wishes.speed(speed)));
+    const cameras = ([["follow", "Follow"], ["orbit", "Whole home"]] as const).map(([mode, words]) => radio("camera", mode, words, null, () => wishes.camera(mode)));
+    this.#speeds = speeds.map((label) => label.querySelector("input")!);
+    this.#cameras = cameras.map((label) => label.querySelector("input")!);
+    this.element = h(
+      "div",
+      { class: "controls", role: "group", "aria-label": "Film" },
+      h("div", { class: "transport" }, button("Moment before", "back", () => wishes.step(-1)), this.#play, button("Next moment", "next", () => wishes.step(1)), this.#time),
+      h("div", { class: "segment speeds", role: "radiogroup", "aria-label": "Speed" }, ...speeds),
+      h("div", { class: "segment cameras", role: "radiogroup", "aria-label": "Camera" }, ...cameras),
+      h("div", { class: "extras" }, this.#map, button("Full screen", "full", () => wishes.full()), button("Keys", "help", () => wishes.help())),
+    );
+  }
+
+  /** Without WebGL there is no camera to choose. */
+  hideCameras(): void {
+    for (const input of this.#cameras) input.closest<HTMLElement>(".segment")!.hidden = true;
+  }
+
+  showMode(mode: CameraMode): void {
+    for (const input of this.#cameras) input.checked = input.value === mode;
+  }
+
+  showMap(shown: boolean): void {
+    this.#map.setAttribute("aria-pressed", String(shown));
+  }
+
+  update(player: Player): void {
+    const look = player.running ? "pause" : player.state === "ended" ? "again" : "play";
+    const name = { pause: "Pause", again: "Play again", play: "Play" }[look];
+    if (this.#play.getAttribute("aria-label") !== name) {
+      this.#play.setAttribute("aria-label", name);
+      this.#play.title = name;
+      fill(this.#play, icon(look));
+    }
+    for (const input of this.#speeds) input.checked = Number(input.value) === player.speed;
+  }
+
+  tick(time: number, duration: number, growing: boolean): void {
+    const words = `${clock(time)} / ${clock(duration)}${growing ? " +" : ""}`;
+    if (this.#time.textContent !== words) this.#time.textContent = words;
+  }
+}
+
+function radio(name: string, value: string, words: string, spoken: string | null, act: () => void): HTMLLabelElement {
+  return h("label", {}, h("input", { type: "radio", name, value, "aria-label": spoken, onchange: act }), h("span", {}, words));
+}

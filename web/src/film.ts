@@ -1,0 +1,286 @@
+/** The film: stage, curtain, subtitle, plan and controls, kept in time by one clock. */
+
+import { getGlb, getHome, motionUrl, sceneUrl, type Keyframe, type Story } from "./api";
+import { color, isDark, isStill, onAppearance } from "./appearance";
+import type { CameraMode } from "./camera";
+import { Controls } from "./controls";
+import { fill, h } from "./dom";
+import { emotionOf } from "./emotions";
+import { listenKeys, showHelp } from "./keyboard";
+import { MiniMap } from "./minimap";
+import { Player } from "./player";
+import { emptyPose, jointPositions, type Point3 } from "./pose";
+import { Reel } from "./reel";
+import type { Stage } from "./stage";
+import { Timeline } from "./timeline";
+import { keyframeAt } from "./timing";
+
+const FPS = 30;
+
+export class Film {
+  readonly element = h("section", { class: "theatre", "aria-label": "Film" });
+  readonly player = new Player();
+  readonly reel: Reel;
+  readonly timeline: Timeline;
+  readonly controls: Controls;
+  keyframe: number | null = null;
+  readonly #id: string;
+  readonly #shown: (keyframe: number | null) => void;
+  readonly #map = new MiniMap();
+  readonly #holder = h("div", { class: "picture", tabindex: 0, role: "img", "aria-label": "The film. A, D, W and S turn the camera" });
+  readonly #subtitle = h("p", { class: "subtitle", hidden: true });
+  readonly #curtain = h("div", { class: "curtain" }, h("i", {}), h("i", {}));
+  readonly #wait = h("p", { class: "waiting", hidden: true }, "The next moment is being made …");
+  readonly #notice = h("div", { class: "notice", hidden: true });
+  readonly #arch: HTMLElement;
+  readonly #pose = emptyPose();
+  readonly #ends: (() => void)[] = [];
+  #stage: Stage | null = null;
+  #story: Story | null = null;
+  #mode: CameraMode = isStill() ? "orbit" : "follow";
+  #asked = { stage: false, home: false, body: false };
+  #opened = false;
+  #last = 0;
+  #drawn = -1;
+  #visible = true;
+
+  /** `shown` is told when another keyframe is being acted. */
+  constructor(id: string, shown: (keyframe: number | null) => void) {
+    this.#id = id;
+    this.#shown = shown;
+    this.reel = new Reel(id, () => this.#feed());
+    this.timeline = new Timeline((frame) => this.player.seek(frame / FPS), (keyframe) => this.seekKeyframe(keyframe), FPS);
+    this.controls = new Controls({ ...this.#moves(), full: () => this.#full() });
+    this.#arch = h("div", { class: "arch closed" }, this.#holder, h("div", { class: "plan" }, this.#map.element), this.#wait, this.#subtitle, this.#curtain, this.#notice);
+    fill(this.element, this.#arch, this.controls.element, this.timeline.element);
+    this.player.onChange(() => this.#showState());
+    this.controls.showMode(this.#mode);
+    this.#ends.push(listenKeys(this.#moves()), onAppearance(() => this.#mood()));
+    const sight = new IntersectionObserver(([entry]) => (this.#visible = entry?.isIntersecting ?? true));
+    sight.observe(this.#arch);
+    this.#ends.push(() => sight.disconnect());
+    this.#showState();
+    this.#loop(performance.now());
+  }
+
+  /** What buttons and keys ask for. */
+  #moves() {
+    return {
+      toggle: () => this.player.toggle(),
+      skip: (by: number) => this.player.seek(this.player.time + by),
+      step: (by: -1 | 1) => this.seekKeyframe(this.#neighbour(by)),
+      start: () => this.player.seek(0),
+      end: () => this.player.seek(Infinity),
+      speed: (speed: number) => this.player.setSpeed(speed),
+      camera: (mode: CameraMode) => this.#setMode(mode),
+      follow: () => this.#setMode(this.#mode === "follow" ? "orbit" : "follow"),
+      map: () => this.controls.showMap(!this.#arch.classList.toggle("without-plan")),
+      help: () => showHelp(),
+      turn: (around: number, up: number, zoom: number) => this.#stage?.cameraMan.turn(around, up, zoom),
+    };
+  }
+
+  /** Take in what is known of the story, and fetch what can be had. */
+  update(story: Story): void {
+    this.#story = story;
+    this.timeline.update(story.keyframes);
+    if (story.motion.frames > 0) this.reel.want(story.motion.frames);
+    if (story.home && story.stage !== "plan" && story.stage !== "furnish") void this.#fetchHome();
+    if (story.motion.frames > 0) void this.#fetchBody();
+    this.#feed();
+  }
+
+  /** Go to where a keyframe begins, if it is made. */
+  seekKeyframe(keyframe: number): void {
+    const start = this.#story?.keyframes[keyframe]?.start;
+    if (start === null || start === undefined) return;
+    this.player.seek(start / FPS);
+    this.#tick();
+    this.#stage?.cut();
+  }
+
+  /** World positions of the joints, as drawn; from the skeleton alone where nothing is drawn. */
+  joints(): Point3[] {
+    if (this.#stage?.hasBody) return this.#stage.joints();
+    const { skeleton, ready } = this.reel.track;
+    return skeleton && ready ? jointPositions(skeleton, this.#pose) : [];
+  }
+
+  get camera(): { mode: CameraMode; position: Point3 | null } {
+    return { mode: this.#mode, position: this.#stage?.cameraMan.camera.position.toArray() ?? null };
+  }
+
+  /** Say something on the closed stage. */
+  notice(...content: (Node | string)[]): void {
+    fill(this.#notice, ...content);
+    this.#notice.hidden = content.length === 0;
+  }
+
+  dispose(): void {
+    this.#last = -1;
+    this.reel.stop();
+    this.#map.dispose();
+    for (const end of this.#ends) end();
+    this.#stage?.dispose();
+  }
+
+  /** Load three.js and raise the stage; false without WebGL. */
+  async #raise(): Promise<boolean> {
+    if (this.#stage) return true;
+    if (this.#asked.stage) return false;
+    this.#asked.stage = true;
+    try {
+      const { Stage } = await import("./stage");
+      if (this.#last < 0) return false;
+      this.#stage = new Stage(this.#holder);
+    } catch (error) {
+      this.#withoutPicture(error);
+      return false;
+    }
+    this.#stage.cameraMan.calm = isStill();
+    const watch = new ResizeObserver(() => this.#stage?.resize(this.#holder.clientWidth, this.#holder.clientHeight));
+    watch.observe(this.#holder);
+    this.#ends.push(() => watch.disconnect());
+    // Scrolling the page must not zoom the film by accident.
+    this.#holder.addEventListener("wheel", (event) => {
+      if (this.#stage) this.#stage.cameraMan.controls.enableZoom = event.ctrlKey || this.#holder.contains(document.activeElement);
+    }, { capture: true, passive: true });
+    this.#holder.addEventListener("pointerdown", () => this.#holder.focus({ preventScroll: true }));
+    this.#mood();
+    return true;
+  }
+
+  /** The plan takes the stage where three dimensions cannot be drawn. */
+  #withoutPicture(error: unknown): void {
+    console.warn("The film cannot be drawn:", error);
+    this.#arch.classList.add("flat");
+    this.#arch.classList.remove("without-plan");
+    this.controls.hideCameras();
+    this.#holder.removeAttribute("tabindex");
+    this.#holder.setAttribute("aria-label", "No film: this browser draws no WebGL");
+    fill(this.#holder, h("p", { class: "no-webgl" }, "This browser cannot draw the film (it has no WebGL), so here is the plan. Everything else works, and the film can be downloaded below."));
+  }
+
+  async #fetchHome(): Promise<void> {
+    if (this.#asked.home) return;
+    this.#asked.home = true;
+    try {
+      const home = await getHome(this.#id);
+      this.#map.setHome(home);
+      const glb = getGlb(sceneUrl(this.#id));
+      if (await this.#raise()) await this.#stage?.setHome(await glb, home);
+      this.#mood();
+    } catch (error) {
+      this.#asked.home = false;
+      console.warn("The home cannot be shown yet:", error);
+    }
+  }
+
+  async #fetchBody(): Promise<void> {
+    if (this.#asked.body) return;
+    this.#asked.body = true;
+    try {
+      const glb = await getGlb(motionUrl(this.#id, "glb", 0, 1));
+      while (this.#asked.home && !this.#stage && !this.#arch.classList.contains("flat") && this.#last >= 0) await pause(50);
+      await this.#stage?.setBody(glb);
+    } catch (error) {
+      this.#asked.body = false;
+      console.warn("The body cannot be shown yet:", error);
+    }
+  }
+
+  /** Tell the player how far the film goes by now. */
+  #feed(): void {
+    const { track } = this.reel;
+    const story = this.#story;
+    const over = story !== null && (story.motion.complete || !["queued", "running"].includes(story.state));
+    this.player.feed(track.readyTime, over && track.ready >= (story?.motion.frames ?? 0));
+  }
+
+  #open(): void {
+    const ready = this.reel.track.ready > 0 && (this.#arch.classList.contains("flat") || (this.#stage?.hasHome && this.#stage.hasBody));
+    if (this.#opened || !ready) return;
+    this.#opened = true;
+    this.reel.track.sample(this.player.time, this.#pose);
+    this.#stage?.pose(this.#pose);
+    this.#stage?.setMode(this.#mode);
+    this.#arch.classList.remove("closed");
+    if (!isStill()) this.player.play();
+  }
+
+  #loop(now: number): void {
+    if (this.#last < 0) return;
+    const seconds = Math.min((now - this.#last) / 1000, 0.25);
+    this.#last = now;
+    this.#open();
+    if (this.#opened) {
+      this.player.advance(seconds);
+      this.#tick();
+      if (this.#visible) this.#stage?.render(seconds, this.player.state === "playing");
+    }
+    requestAnimationFrame((time) => this.#loop(time));
+  }
+
+  /** Show the moment everywhere. */
+  #tick(): void {
+    const { track } = this.reel;
+    const frame = this.player.time * FPS;
+    this.controls.tick(this.player.time, track.readyTime, !this.#over());
+    const keyframes = this.#story?.keyframes ?? [];
+    const keyframe = keyframeAt(keyframes, frame + 1e-6);
+    this.timeline.tick(frame, keyframe);
+    if (frame === this.#drawn && keyframe === this.keyframe) return;
+    this.#drawn = frame;
+    track.sample(this.player.time, this.#pose);
+    this.#stage?.pose(this.#pose);
+    this.#map.tick(this.#pose, track, frame);
+    if (keyframe !== this.keyframe) this.#showKeyframe(keyframe, keyframes);
+  }
+
+  #over(): boolean {
+    const story = this.#story;
+    return story !== null && (story.motion.complete || !["queued", "running"].includes(story.state));
+  }
+
+  #showKeyframe(index: number | null, keyframes: readonly Keyframe[]): void {
+    this.keyframe = index;
+    const keyframe = index === null ? undefined : keyframes[index];
+    this.#subtitle.hidden = !keyframe;
+    if (keyframe) {
+      this.#subtitle.dataset["emotion"] = emotionOf(keyframe.emotion);
+      fill(this.#subtitle, h("small", {}, keyframe.emotion), h("span", {}, keyframe.caption));
+    }
+    this.#map.show(keyframe?.object_id ?? null);
+    this.#mood();
+    this.#shown(index);
+  }
+
+  #mood(): void {
+    const emotion = this.keyframe === null ? "neutral" : emotionOf(this.#story?.keyframes[this.keyframe]?.emotion ?? "");
+    this.#stage?.setMood({ dark: isDark(), around: color("--stage"), ground: color("--stage-floor"), tint: color(`--${emotion}`) });
+  }
+
+  #showState(): void {
+    this.controls.update(this.player);
+    this.#wait.hidden = this.player.state !== "waiting" || !this.#opened;
+  }
+
+  #setMode(mode: CameraMode): void {
+    this.#mode = mode;
+    this.controls.showMode(mode);
+    this.#stage?.setMode(mode);
+  }
+
+  #neighbour(by: -1 | 1): number {
+    return (this.keyframe ?? 0) + by;
+  }
+
+  #full(): void {
+    if (document.fullscreenElement) void document.exitFullscreen();
+    else void this.element.requestFullscreen?.();
+  }
+}
+
+function pause(milliseconds: number): Promise<void> {
+  return new Promise((resolve) => setTimeout(resolve, milliseconds));
+}

@@ -1,0 +1,94 @@
+/** The page: what the address names is shown, and a key is asked for where one is needed. */
+
+import "./style/page.css";
+import { ApiError, getSession, logOut } from "./api";
+import { appearanceButton } from "./appearance";
+import { fill, h } from "./dom";
+import { Gallery } from "./gallery";
+import { loginForm } from "./login";
+import type { Point3 } from "./pose";
+import { StoryView } from "./story-view";
+import { ThemeForm } from "./theme-form";
+
+const main = document.querySelector<HTMLElement>("#main")!;
+let view: StoryView | null = null;
+
+function route(): void {
+  view?.dispose();
+  view = null;
+  const id = /^#\/stories\/([\w-]+)$/.exec(location.hash)?.[1];
+  if (id) {
+    view = new StoryView(id, () => (location.hash = "#/"));
+    fill(main, view.element);
+  } else {
+    showHome();
+  }
+  window.scrollTo(0, 0);
+}
+
+function showHome(): void {
+  document.title = "SIMS stories";
+  const form = new ThemeForm((story) => (location.hash = `#/stories/${story.id}`));
+  const gallery = new Gallery();
+  fill(main, h("div", { class: "front" }, h("section", { class: "arch-panel", "aria-label": "A new story" }, form.element), gallery.element));
+  gallery.load().catch((error: unknown) => {
+    if (error instanceof ApiError && error.status === 401) askForKey();
+    else throw error;
+  });
+}
+
+function askForKey(): void {
+  view?.dispose();
+  view = null;
+  fill(main, h("div", { class: "front" }, loginForm(() => void start())));
+}
+
+async function start(): Promise<void> {
+  const session = await getSession().catch(() => ({ required: false, authenticated: false }));
+  const tools = document.querySelector<HTMLElement>("#tools")!;
+  const leave = h("button", { type: "button", class: "plain small", onclick: () => void logOut().then(askForKey) }, "Leave");
+  fill(tools, session.authenticated && session.required ? leave : null, appearance);
+  if (session.required && !session.authenticated) askForKey();
+  else route();
+}
+
+/** What tests look at; it can be read, not written. */
+interface Seen {
+  storyId: string | null;
+  state: string | null;
+  frame: number;
+  time: number;
+  playing: boolean;
+  readyFrames: number;
+  framesTotal: number;
+  keyframe: number | null;
+  joints(): Point3[];
+  camera: { mode: string; position: Point3 | null } | null;
+}
+
+function seen(): Seen {
+  const film = view?.film;
+  return {
+    storyId: view?.id ?? null,
+    state: view?.story?.state ?? null,
+    frame: Math.floor((film?.player.time ?? 0) * 30 + 1e-6),
+    time: film?.player.time ?? 0,
+    playing: film?.player.state === "playing",
+    readyFrames: film?.reel.track.ready ?? 0,
+    framesTotal: view?.story?.motion.frames ?? 0,
+    keyframe: film?.keyframe ?? null,
+    joints: () => film?.joints() ?? [],
+    camera: film?.camera ?? null,
+  };
+}
+
+const appearance = appearanceButton();
+Object.defineProperty(window, "sims", { value: Object.freeze({ state: seen }) });
+// The address behind # names a story, so this link must not go there.
+document.querySelector(".skip")?.addEventListener("click", (event) => {
+  event.preventDefault();
+  main.focus();
+});
+window.addEventListener("hashchange", route);
+window.addEventListener("sims-login", askForKey);
+void start();

@@ -1,0 +1,61 @@
+/** How well the story was acted, in plain words, and honest labels of what made it. */
+
+import type { Keyframe, KeyframeFigures, Story } from "./api";
+import { fill, h } from "./dom";
+import { capital, centimetres, percent, placeWords, SKILL_WORDS } from "./words";
+
+/** From these on a moment is worth a remark, metres. */
+const WIDE_CONTACT = 0.03;
+const DEEP = 0.08;
+
+/** Who planned it: rules are not called a language model. */
+export function plannerWords(planner: string | null): string {
+  if (planner === null) return "The keyframes were given; nothing was planned.";
+  if (planner === "rules") return "Woven by rules, no language model.";
+  return `Planned by a language model, ${planner.replace(/^llm:/, "")}.`;
+}
+
+export function encoderWords(encoder: string | null): string {
+  if (encoder === null) return "No short scripts were looked up.";
+  if (encoder === "hashing") return "Scripts found by their words (hashing), the stand-in where no sentence encoder is.";
+  return `Scripts found by meaning with the sentence encoder ${encoder}, the only learned part.`;
+}
+
+export function backendWords(backend: string): string {
+  if (backend === "procedural") return "Procedural: rules and inverse kinematics. Nothing learned, nothing simulated, no balance, no force.";
+  return `Moved by the backend “${backend}”.`;
+}
+
+/** Fill a section with a story's report; false while there is none. */
+export function showReport(section: HTMLElement, story: Story, seek: (keyframe: number) => void): boolean {
+  const { report } = story;
+  if (!report) return false;
+  const { motion } = report;
+  const figures: [string, string][] = [
+    [`${motion.reached} of ${motion.keyframes}`, "moments reached their goal"],
+    ...(motion.contact_error === null ? [] : ([[centimetres(motion.contact_error), "from where hands, seat and back should touch, on average"]] as [string, string][])),
+    [centimetres(motion.pen_mean), `inside furniture on average; ${percent(motion.pen_share)} of the frames touch any`],
+    ...(motion.skate_ratio_loco === null ? [] : ([[percent(motion.skate_ratio_loco), "of walking is a foot sliding"]] as [string, string][])),
+    [`${Math.round(motion.seconds)} s`, "of motion at 30 frames a second"],
+  ];
+  const remarks = report.keyframes.flatMap((figure) => remark(figure, story.keyframes[figure.keyframe], seek));
+  fill(
+    section,
+    h("h2", {}, "How well it went"),
+    h("dl", { class: "figures" }, ...figures.flatMap(([value, words]) => [h("dt", {}, value), h("dd", {}, words)])),
+    remarks.length ? h("ul", { class: "remarks" }, ...remarks) : h("p", { class: "fine" }, "Nothing stands out: every moment came out as it was meant to."),
+    h("ul", { class: "labels" }, h("li", {}, plannerWords(report.planner)), h("li", {}, encoderWords(report.encoder)), h("li", {}, backendWords(report.backend))),
+  );
+  return true;
+}
+
+function remark(figure: KeyframeFigures, keyframe: Keyframe | undefined, seek: (keyframe: number) => void): HTMLElement[] {
+  const said: string[] = [];
+  if (!figure.reached) said.push(`not reached${figure.reason ? `: ${figure.reason}` : ""}`);
+  if (figure.contact_error !== null && figure.contact_error > WIDE_CONTACT) said.push(`${centimetres(figure.contact_error)} from its place`);
+  if (figure.pen_max > DEEP) said.push(`up to ${centimetres(figure.pen_max)} inside furniture`);
+  if (!said.length) return [];
+  const place = keyframe ? ` at the ${placeWords(keyframe)}` : "";
+  const name = `Moment ${figure.keyframe + 1}, ${SKILL_WORDS[figure.skill]}${place}`;
+  return [h("li", {}, h("button", { type: "button", class: "link", onclick: () => seek(figure.keyframe) }, capital(name)), ` – ${said.join(", ")}.`)];
+}

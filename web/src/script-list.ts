@@ -1,0 +1,56 @@
+/** The script, keyframe by keyframe, as it is written and then acted. */
+
+import type { Keyframe } from "./api";
+import { h } from "./dom";
+import { emotionOf } from "./emotions";
+import { clock } from "./timing";
+import { placeWords, SKILL_WORDS } from "./words";
+
+export class ScriptList {
+  readonly element = h("ol", { class: "cues" });
+  readonly #seek: (keyframe: number) => void;
+  #rows: { button: HTMLButtonElement; words: HTMLElement; time: HTMLElement }[] = [];
+  #current: number | null = null;
+
+  constructor(seek: (keyframe: number) => void) {
+    this.#seek = seek;
+  }
+
+  update(keyframes: readonly Keyframe[], fps: number, written: boolean): void {
+    while (this.#rows.length > keyframes.length) this.#rows.pop()?.button.parentElement?.remove();
+    const fresh = this.#rows.length;
+    for (const [index, keyframe] of keyframes.entries()) {
+      if (!this.#rows[index]) this.#add(index, written ? (index - fresh) * 45 : 0);
+      this.#show(index, keyframe, fps);
+    }
+  }
+
+  #add(index: number, delay: number): void {
+    const words = h("span", { class: "cue-words" });
+    const time = h("span", { class: "cue-time" });
+    const button = h("button", { type: "button", onclick: () => this.#seek(index) }, h("span", { class: "cue-number" }, String(index + 1)), words, time);
+    this.#rows.push({ button, words, time });
+    this.element.append(h("li", { class: "cue", style: `animation-delay: ${delay}ms` }, button));
+  }
+
+  #show(index: number, keyframe: Keyframe, fps: number): void {
+    const { button, words, time } = this.#rows[index]!;
+    const made = keyframe.start !== null;
+    button.disabled = !made;
+    button.parentElement!.dataset["emotion"] = emotionOf(keyframe.emotion);
+    button.parentElement!.classList.toggle("missed", keyframe.reached === false);
+    const missed = keyframe.reached === false ? " · not reached" : "";
+    words.replaceChildren(
+      h("b", {}, keyframe.caption),
+      h("small", {}, `${SKILL_WORDS[keyframe.skill]} · ${placeWords(keyframe)} · ${keyframe.emotion}${missed}`),
+    );
+    time.textContent = made ? clock(keyframe.start / fps) : "";
+  }
+
+  show(keyframe: number | null): void {
+    if (keyframe === this.#current) return;
+    this.#rows[this.#current ?? -1]?.button.removeAttribute("aria-current");
+    this.#current = keyframe;
+    this.#rows[keyframe ?? -1]?.button.setAttribute("aria-current", "true");
+  }
+}

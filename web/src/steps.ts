@@ -1,0 +1,59 @@
+/** The quiet line that says what is being done now. */
+
+import type { Stage, Story } from "./api";
+import { fill, h } from "./dom";
+import { announce } from "./live";
+import { capital, STAGE_SHORT, STAGE_WORDS, STAGES } from "./words";
+
+export class Steps {
+  readonly element = h("div", { class: "steps", hidden: true });
+  readonly #words = h("p", { class: "steps-words" });
+  readonly #line = h("ol", { class: "steps-line", "aria-hidden": "true" });
+  readonly #bar = h("progress", { max: 1, value: 0, "aria-label": "How far the story is" });
+  readonly #cancel: HTMLButtonElement;
+  #broken = false;
+  #story: Story | null = null;
+
+  constructor(cancel: () => void) {
+    this.#cancel = h("button", { type: "button", class: "plain small", onclick: cancel }, "Stop");
+    fill(this.#line, ...STAGES.map((stage) => h("li", { "data-stage": stage }, STAGE_SHORT[stage])));
+    fill(this.element, h("div", { class: "steps-head" }, this.#words, this.#cancel), this.#bar, this.#line);
+  }
+
+  update(story: Story): void {
+    this.#story = story;
+    const making = story.state === "queued" || story.state === "running";
+    this.element.hidden = !making;
+    if (making) this.show(story.stage, story.progress);
+  }
+
+  show(stage: Stage | null, progress: number): void {
+    const words = stage === null ? "waiting for a free worker" : STAGE_WORDS[stage];
+    const where = stage === "move" ? this.#moments() : "";
+    this.#words.textContent = this.#broken ? "The connection is lost; trying again …" : `${capital(words)}${where} …`;
+    this.#bar.value = progress;
+    const at = stage === null ? -1 : STAGES.indexOf(stage);
+    for (const [index, item] of [...this.#line.children].entries()) {
+      item.classList.toggle("past", index < at);
+      item.classList.toggle("now", index === at);
+    }
+    if (!this.#broken) announce(capital(words));
+  }
+
+  /** Say that nothing is heard, or is heard again. */
+  setBroken(broken: boolean): void {
+    if (broken === this.#broken) return;
+    this.#broken = broken;
+    if (this.#story) this.show(this.#story.stage, this.#story.progress);
+  }
+
+  setStopping(): void {
+    this.#cancel.disabled = true;
+    this.#cancel.textContent = "Stopping …";
+  }
+
+  #moments(): string {
+    const all = this.#story?.keyframes ?? [];
+    return all.length ? `, moment ${all.filter((keyframe) => keyframe.start !== null).length + 1} of ${all.length}`.replace(`${all.length + 1} of`, `${all.length} of`) : "";
+  }
+}

@@ -1,0 +1,180 @@
+/** One story on the page: film, text, script, report; kept up to date while it is being made. */
+
+import { ApiError, cancelStory, deleteStory, getStory, type Story } from "./api";
+import { fill, h } from "./dom";
+import { showDownloads } from "./downloads";
+import { follow } from "./events";
+import { Film } from "./film";
+import { confirmRemoval } from "./gallery";
+import { announce } from "./live";
+import { showMaking } from "./making";
+import { showReport } from "./report";
+import { ScriptList } from "./script-list";
+import { Steps } from "./steps";
+import { Telling } from "./telling";
+import { count } from "./words";
+
+const AGAIN_MS = 2500;
+
+export class StoryView {
+  readonly element = h("article", { class: "story" });
+  readonly film: Film;
+  readonly id: string;
+  readonly #steps: Steps;
+  readonly #telling: Telling;
+  readonly #script: ScriptList;
+  readonly #title = h("h1", {}, "…");
+  readonly #theme = h("p", { class: "theme" });
+  readonly #foot = h("div", { class: "row foot" });
+  readonly #sections: { readonly script: HTMLElement; readonly report: HTMLElement; readonly making: HTMLElement; readonly files: HTMLElement };
+  readonly #left: () => void;
+  #story: Story | null = null;
+  #unfollow: (() => void) | null = null;
+  #fetching = false;
+  #again = false;
+  #live = true;
+
+  /** `left` is called when the story is no more. */
+  constructor(id: string, left: () => void) {
+    this.id = id;
+    this.#left = left;
+    const seek = (keyframe: number): void => this.film.seekKeyframe(keyframe);
+    this.#steps = new Steps(() => void this.#cancel());
+    this.#telling = new Telling(seek);
+    this.#script = new ScriptList(seek);
+    this.film = new Film(id, (keyframe) => {
+      this.#telling.show(keyframe);
+      this.#script.show(keyframe);
+    });
+    const section = (name: string): HTMLElement => h("section", { class: name, hidden: true });
+    this.#sections = { script: section("script"), report: section("report"), making: section("making"), files: section("downloads") };
+    fill(this.#sections.script, h("h2", {}, "The script"), this.#script.element);
+    fill(
+      this.element,
+      h("header", { class: "title" }, this.#title, this.#theme),
+      this.#steps.element,
+      this.film.element,
+      h("section", { class: "book", "aria-label": "The told story" }, this.#telling.element),
+      h("div", { class: "backstage" }, this.#sections.script, h("div", { class: "column" }, this.#sections.report, this.#sections.files, this.#foot), this.#sections.making),
+    );
+    void this.refresh();
+  }
+
+  get story(): Story | null {
+    return this.#story;
+  }
+
+  /** Fetch the story again; calls while one is under way become one more. */
+  async refresh(): Promise<void> {
+    this.#again = this.#fetching;
+    if (this.#fetching) return;
+    this.#fetching = true;
+    try {
+      this.#show(await getStory(this.id));
+    } catch (error) {
+      this.#explain(error);
+    }
+    this.#fetching = false;
+    if (this.#again && this.#live) void this.refresh();
+  }
+
+  dispose(): void {
+    this.#live = false;
+    this.#unfollow?.();
+    this.film.dispose();
+  }
+
+  #show(story: Story): void {
+    if (!this.#live) return;
+    const before = this.#story;
+    this.#story = story;
+    const making = story.state === "queued" || story.state === "running";
+    this.#title.textContent = story.title ?? (story.kind === "motion" ? "A motion" : making ? "Being written …" : "Untitled");
+    this.#theme.textContent = story.theme ?? "";
+    document.title = `${story.title ?? "A story"} · SIMS stories`;
+    this.element.classList.toggle("without-text", !story.text && !making);
+    this.#steps.update(story);
+    this.#telling.update(story);
+    this.#script.update(story.keyframes, story.motion.fps, before !== null);
+    this.film.update(story);
+    const seek = (keyframe: number): void => this.film.seekKeyframe(keyframe);
+    this.#sections.script.hidden = story.keyframes.length === 0;
+    if (!making || before === null || before.stage !== story.stage) {
+      this.#sections.report.hidden = !showReport(this.#sections.report, story, seek);
+      this.#sections.making.hidden = !showMaking(this.#sections.making, story);
+      this.#sections.files.hidden = !showDownloads(this.#sections.files, story);
+    }
+    if (making && !this.#unfollow) this.#follow();
+    if (!making) this.#close(story, before);
+  }
+
+  #follow(): void {
+    this.#unfollow = follow(this.id, {
+      stage: (stage, progress) => {
+        this.#steps.show(stage, progress);
+        void this.refresh();
+      },
+      progress: (stage, progress) => this.#steps.show(stage, progress),
+      segment: (segment) => {
+        this.film.reel.want(segment.end);
+        void this.refresh();
+      },
+      ended: () => void this.refresh(),
+      broken: (broken) => this.#steps.setBroken(broken),
+    });
+  }
+
+  /** Say how it ended. */
+  #close(story: Story, before: Story | null): void {
+    this.#unfollow?.();
+    if (this.#foot.childElementCount === 0) {
+      fill(this.#foot, h("a", { href: "#/", class: "button plain" }, "Another story"), h("button", { type: "button", class: "plain", onclick: () => void this.#remove() }, "Remove this one"));
+    }
+    const watched = before !== null && before.state !== story.state;
+    if (story.state === "succeeded") {
+      if (watched) announce(`${story.title ?? "The motion"} is ready: ${count(story.keyframes.length, "moment")}`);
+      return;
+    }
+    const [head, detail] =
+      story.state === "cancelled"
+        ? ["Stopped", story.motion.frames ? "What was made until then can be watched." : "It was stopped before anything could be seen."]
+        : [story.error?.title ?? "It could not be made", story.error?.detail ?? "The service gives no reason."];
+    const note = h("div", { class: "outcome", role: "status" }, h("b", {}, head), h("p", {}, detail));
+    if (story.motion.frames) this.element.querySelector(".title")?.append(...(this.element.querySelector(".title .outcome") ? [] : [note]));
+    else this.film.notice(note, h("a", { href: "#/", class: "button primary" }, "Try another theme"));
+  }
+
+  #explain(error: unknown): void {
+    if (!this.#live) return;
+    if (!(error instanceof ApiError)) throw error;
+    if (error.status === 401) return void window.dispatchEvent(new Event("sims-login"));
+    if (error.passing) {
+      this.#steps.setBroken(true);
+      if (!this.#story) this.film.notice(h("div", { class: "outcome" }, h("b", {}, error.title), h("p", {}, error.detail)));
+      window.setTimeout(() => this.#live && void this.refresh(), AGAIN_MS);
+      return;
+    }
+    this.#title.textContent = error.status === 404 ? "No such story" : error.title;
+    this.film.notice(h("div", { class: "outcome" }, h("p", {}, error.detail)), h("a", { href: "#/", class: "button primary" }, "To the stories there are"));
+  }
+
+  async #cancel(): Promise<void> {
+    this.#steps.setStopping();
+    try {
+      await cancelStory(this.id);
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+    }
+    void this.refresh();
+  }
+
+  async #remove(): Promise<void> {
+    if (!(await confirmRemoval(this.#story?.title ?? "This story"))) return;
+    try {
+      await deleteStory(this.id);
+      this.#left();
+    } catch (error) {
+      this.#foot.append(h("p", { class: "wrong", role: "alert" }, error instanceof Error ? error.message : String(error)));
+    }
+  }
+}

@@ -1,0 +1,63 @@
+/** Words that a person understands for what the service names in short. */
+
+import type { Keyframe, Skill, Stage } from "./api";
+
+export const STAGES: readonly Stage[] = ["plan", "furnish", "narrate", "act", "move", "judge", "film"];
+
+export const STAGE_WORDS: Readonly<Record<Stage, string>> = {
+  plan: "weaving short scripts",
+  furnish: "finding rooms that fit",
+  narrate: "telling the story",
+  act: "finding where to sit, lie, touch and walk",
+  move: "moving the body",
+  judge: "measuring the motion",
+  film: "writing the film",
+};
+
+export const STAGE_SHORT: Readonly<Record<Stage, string>> = {
+  plan: "script",
+  furnish: "rooms",
+  narrate: "story",
+  act: "places",
+  move: "motion",
+  judge: "measure",
+  film: "film",
+};
+
+export const SKILL_WORDS: Readonly<Record<Skill, string>> = {
+  loco: "walk",
+  sitdown: "sit down",
+  standup: "stand up",
+  getup: "get up",
+  liedown: "lie down",
+  touch: "touch",
+};
+
+/** "multi_seat_sofa_1" as "multi seat sofa". */
+export function plain(name: string): string {
+  return name.replace(/^\d+\//, "").replace(/_\d+$/, "").replaceAll("_", " ");
+}
+
+/** Where a keyframe plays: "at the cabinet, living room". */
+export function placeWords(keyframe: Keyframe): string {
+  const piece = keyframe.object_id ? plain(keyframe.object_id) : plain(keyframe.furniture);
+  return keyframe.room ? `${piece}, ${plain(keyframe.room)}` : piece;
+}
+
+/** A length in centimetres, from metres. */
+export function centimetres(metres: number): string {
+  return `${(100 * metres).toFixed(1)} cm`;
+}
+
+export function percent(share: number): string {
+  return `${(100 * share).toFixed(1)} %`;
+}
+
+/** "1 room", "2 rooms". */
+export function count(number: number, noun: string): string {
+  return `${number} ${noun}${number === 1 ? "" : "s"}`;
+}
+
+export function capital(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
