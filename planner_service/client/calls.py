@@ -1,0 +1,233 @@
+"""Every call of the HTTP API as a value: what to send, and how to read the answer. Nothing here waits for anything."""
+
+from __future__ import annotations
+
+import io
+import uuid
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Generic, Literal, TypedDict, TypeVar, Unpack
+from urllib.parse import quote
+
+import httpx
+
+from planner_service.client.resources import Json, Page, Story, page_of
+
+if TYPE_CHECKING:
+    from motion_backend.motion import Motion
+
+T = TypeVar("T", covariant=True)
+Format = Literal["npz", "bvh", "glb", "json", "f32"]
+
+
+@dataclass(frozen=True)
+class Call(Generic[T]):
+    """One request, and how to read its answer."""
+
+    method: str
+    path: str
+    read: Callable[[httpx.Response], T]
+    query: Mapping[str, object] = field(default_factory=dict)
+    body: Json | None = None
+    headers: Mapping[str, str] = field(default_factory=dict)
+    repeatable: bool = True
+    """Whether sending it twice does what sending it once does."""
+
+
+class Options(TypedDict, total=False):
+    """What stories and motions have in common."""
+
+    backend: str
+    seed: int
+    character: Mapping[str, object]
+    """name, pronouns (he, she, they), height (metres)."""
+    idempotency_key: str
+    """Made up if not given: the call is safe to repeat. Give one to be safe over a restart of your own program."""
+
+
+class StoryOptions(Options, total=False):
+    """What may be said of a story besides its theme."""
+
+    rooms: Sequence[str]
+    layouts: Sequence[str]
+    home: Json
+    short_scripts: int
+    method: Literal["matching", "direct"]
+
+
+class MotionOptions(Options, total=False):
+    """Where keyframes are acted out, one of the two, and how."""
+
+    layout_id: str
+    home: Json
+
+
+class Choice(TypedDict, total=False):
+    """Which short scripts."""
+
+    emotion: str
+    room: str
+
+
+def tell(theme: str, **options: Unpack[StoryOptions]) -> Call[Story]:
+    """Post a theme; the story is queued when this returns."""
+    return _made("/v1/stories", {"theme": theme}, dict(options))
+
+
+def act(keyframes: Sequence[Json], **options: Unpack[MotionOptions]) -> Call[Story]:
+    """Act keyframes out in a room of the library (`layout_id`) or in a `home`, without planning."""
+    return _made("/v1/motions", {"keyframes": list(keyframes)}, dict(options))
+
+
+def _made(path: str, body: Json, options: Json) -> Call[Story]:
+    key = options.pop("idempotency_key", None) or str(uuid.uuid4())
+    return Call("POST", path, _story, body=body | options, headers={"Idempotency-Key": key})
+
+
+def stories(limit: int = 20, cursor: str | None = None) -> Call[Page[Story]]:
+    """Stories, newest first, without their texts and keyframes."""
+    return Call("GET", "/v1/stories", lambda answer: page_of(Story, answer.json()), _given(limit=limit, cursor=cursor))
+
+
+def story(story_id: str) -> Call[Story]:
+    """A story, as far as it is made."""
+    return Call("GET", _at("stories", story_id), _story)
+
+
+def cancel(story_id: str) -> Call[Story]:
+    """Stop a story; what was made can still be fetched. ApiError 409 if it has ended otherwise."""
+    return Call("POST", _at("stories", story_id, "cancel"), _story)
+
+
+def delete(story_id: str) -> Call[None]:
+    """Delete a story and all that was made of it."""
+    return Call("DELETE", _at("stories", story_id), _nothing)
+
+
+def motion(story_id: str, first: int = 0, last: int | None = None) -> Call[Motion]:
+    """Frames first to last (exclusive) as far as they are ready, as numpy arrays. Reading them loads the engine."""
+    return Call("GET", _at("stories", story_id, "motion"), _motion, _given(**{"from": first, "to": last}))
+
+
+def motion_file(story_id: str, format: Format, first: int = 0, last: int | None = None) -> Call[bytes]:  # noqa: A002
+    """The same frames in a format to be saved: npz, bvh, glb, json or f32."""
+    query = _given(**{"format": format, "from": first, "to": last})
+    return Call("GET", _at("stories", story_id, "motion"), _bytes, query)
+
+
+def film(story_id: str) -> Call[bytes]:
+    """The home and the animated character in one GLB."""
+    return Call("GET", _at("stories", story_id, "film.glb"), _bytes)
+
+
+def scene(story_id: str) -> Call[bytes]:
+    """The home alone, as GLB."""
+    return Call("GET", _at("stories", story_id, "scene.glb"), _bytes)
+
+
+def home(story_id: str) -> Call[Json]:
+    """The home whole; `tell` and `act` take it again as `home`."""
+    return Call("GET", _at("stories", story_id, "home"), _json)
+
+
+def short_scripts(limit: int = 20, cursor: str | None = None, **choice: Unpack[Choice]) -> Call[Page[Json]]:
+    """The short scripts that stories are woven from."""
+    return Call("GET", "/v1/short-scripts", _page, _given(limit=limit, cursor=cursor, **choice))
+
+
+def short_script(script_id: str) -> Call[Json]:
+    """One short script."""
+    return Call("GET", _at("short-scripts", script_id), _json)
+
+
+def search_short_scripts(q: str, k: int = 5, **choice: Unpack[Choice]) -> Call[list[Json]]:
+    """The nearest in meaning, best first: [{score, short_script}]."""
+    return Call("GET", "/v1/short-scripts/search", _items, _given(q=q, k=k, **choice))
+
+
+def add_short_script(script: Json) -> Call[Json]:
+    """Add one of your own."""
+    return Call("POST", "/v1/short-scripts", _json, body=script, repeatable=False)
+
+
+def delete_short_script(script_id: str) -> Call[None]:
+    """Remove one of your own."""
+    return Call("DELETE", _at("short-scripts", script_id), _nothing)
+
+
+def long_script(theme: str, **options: Any) -> Call[Json]:
+    """The plan for a theme at once, without a home or motion; options: method, short_scripts, rooms, seed."""
+    return Call("POST", "/v1/long-scripts", _json, body={"theme": theme} | options)
+
+
+def layouts(limit: int = 20, cursor: str | None = None, room: str | None = None) -> Call[Page[Json]]:
+    """The rooms that homes are joined from."""
+    return Call("GET", "/v1/layouts", _page, _given(limit=limit, cursor=cursor, room=room))
+
+
+def layout(layout_id: str) -> Call[Json]:
+    """One room."""
+    return Call("GET", _at("layouts", layout_id), _json)
+
+
+def add_layout(room: Json) -> Call[Json]:
+    """Add a room of your own; the answer says what was checked."""
+    return Call("POST", "/v1/layouts", _json, {"format": "native"}, room, repeatable=False)
+
+
+def layout_scene(layout_id: str) -> Call[bytes]:
+    """One room as GLB."""
+    return Call("GET", _at("layouts", layout_id, "scene.glb"), _bytes)
+
+
+def retrieve_layouts(graph: Json, **options: Any) -> Call[list[Json]]:
+    """The rooms nearest to a furniture graph; options: k, rooms, max_rooms."""
+    return Call("POST", "/v1/layouts/retrieve", _matches, body={"graph": graph} | options)
+
+
+def merge_graphs(graphs: Sequence[Json], **options: Any) -> Call[Json]:
+    """One furniture graph that serves all; options: method (canonical, aligned)."""
+    return Call("POST", "/v1/layout-graphs/merge", _json, body={"graphs": list(graphs)} | options)
+
+
+def _at(*steps: str) -> str:
+    return "/v1/" + "/".join(quote(step, safe="") for step in steps)
+
+
+def _given(**query: object) -> dict[str, object]:
+    return {name: value for name, value in query.items() if value is not None}
+
+
+def _story(answer: httpx.Response) -> Story:
+    return Story(answer.json())
+
+
+def _json(answer: httpx.Response) -> Json:
+    row: Json = answer.json()
+    return row
+
+
+def _page(answer: httpx.Response) -> Page[Json]:
+    return page_of(lambda row: row, answer.json())
+
+
+def _items(answer: httpx.Response) -> list[Json]:
+    return list(answer.json()["items"])
+
+
+def _matches(answer: httpx.Response) -> list[Json]:
+    return list(answer.json()["matches"])
+
+
+def _bytes(answer: httpx.Response) -> bytes:
+    return answer.content
+
+
+def _nothing(_answer: httpx.Response) -> None:
+    return None
+
+
+def _motion(answer: httpx.Response) -> Motion:
+    from motion_backend.formats.npz import read_npz
+
+    return read_npz(io.BytesIO(answer.content))
