@@ -87,7 +87,7 @@ dist: $(READY_DEV) page
 	@$(BIN)/python -m hatchling build -d dist
 
 image:
-	@$(PYTHON) docker/run_steps.py $(if $(TORCH_INDEX),--build-arg TORCH_INDEX=$(TORCH_INDEX))
+	@$(PYTHON) docker/run_steps.py --build-arg TORCH_INDEX=$(TORCH_INDEX)
 
 clean:
 	rm -rf $(VENV) out dist .mypy_cache .ruff_cache .pytest_cache planner_service/page web/node_modules tests/*/node_modules
