@@ -31,16 +31,18 @@ export class Controls {
     this.#map = button("Plan of the home", "map", () => wishes.map());
     this.#map.setAttribute("aria-pressed", "true");
     const speeds = SPEEDS.map((speed) => radio("speed", String(speed), `${speed === 0.5 ? "½" : speed}×`, `${speed} times as fast`, () => wishes.speed(speed)));
-    const cameras = ([["follow", "Follow"], ["orbit", "Whole home"]] as const).map(([mode, words]) => radio("camera", mode, words, null, () => wishes.camera(mode)));
+    const cameras = ([["follow", "Follow"], ["orbit", "Overview"]] as const).map(([mode, words]) => radio("camera", mode, words, null, () => wishes.camera(mode)));
     this.#speeds = speeds.map((label) => label.querySelector("input")!);
     this.#cameras = cameras.map((label) => label.querySelector("input")!);
+    const keys = button("Keys", "help", () => wishes.help());
+    keys.dataset["keys"] = "";
     this.element = h(
       "div",
       { class: "controls", role: "group", "aria-label": "Film" },
       h("div", { class: "transport" }, button("Moment before", "back", () => wishes.step(-1)), this.#play, button("Next moment", "next", () => wishes.step(1)), this.#time),
       h("div", { class: "segment speeds", role: "radiogroup", "aria-label": "Speed" }, ...speeds),
       h("div", { class: "segment cameras", role: "radiogroup", "aria-label": "Camera" }, ...cameras),
-      h("div", { class: "extras" }, this.#map, button("Full screen", "full", () => wishes.full()), button("Keys", "help", () => wishes.help())),
+      h("div", { class: "extras" }, this.#map, button("Full screen", "full", () => wishes.full()), keys),
     );
   }
 

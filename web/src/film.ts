@@ -114,6 +114,7 @@ export class Film {
   notice(...content: (Node | string)[]): void {
     fill(this.#notice, ...content);
     this.#notice.hidden = content.length === 0;
+    this.element.classList.toggle("empty", content.length > 0);
   }
 
   dispose(): void {

@@ -19,7 +19,7 @@ const HELP: readonly (readonly [string, string])[] = [
   ["← →", "two seconds back or on"],
   ["Shift + ← →", "the moment before or after"],
   ["Home, End", "beginning and end"],
-  ["F", "follow the body, or see the whole home"],
+  ["F", "follow the body, or see all of the home"],
   ["A D W S", "turn the camera"],
   ["+ −", "nearer, farther"],
   ["?", "this list"],

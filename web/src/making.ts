@@ -4,7 +4,7 @@ import type { FoundRoom, FoundScript, Story } from "./api";
 import { fill, h } from "./dom";
 import { emotionOf } from "./emotions";
 import { drawGraph } from "./graph";
-import { capital, count, plain } from "./words";
+import { capital, count, noteWords, plain } from "./words";
 
 /** Fill a section; false while nothing is known. */
 export function showMaking(section: HTMLElement, story: Story): boolean {
@@ -14,7 +14,7 @@ export function showMaking(section: HTMLElement, story: Story): boolean {
     h("h2", {}, "How it was made"),
     ...scripts(story),
     ...rooms(story),
-    ...list("Put right", "What the script needed so that a body can act it.", story.repairs),
+    ...list("Put right", "What the script needed so that a body can act it.", story.repairs.map(noteWords)),
     ...list("Left out", "Parts of the theme for which no short script was found.", story.uncovered),
   );
   return true;

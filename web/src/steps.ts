@@ -9,7 +9,7 @@ export class Steps {
   readonly element = h("div", { class: "steps", hidden: true });
   readonly #words = h("p", { class: "steps-words" });
   readonly #line = h("ol", { class: "steps-line", "aria-hidden": "true" });
-  readonly #bar = h("progress", { max: 1, value: 0, "aria-label": "How far the story is" });
+  readonly #bar = h("progress", { class: "unseen", max: 1, value: 0, "aria-label": "How far the story is" });
   readonly #cancel: HTMLButtonElement;
   #broken = false;
   #story: Story | null = null;
@@ -37,6 +37,7 @@ export class Steps {
       item.classList.toggle("past", index < at);
       item.classList.toggle("now", index === at);
     }
+    this.#line.style.setProperty("--share", String(stage === "move" ? this.#made() : 0.5));
     if (!this.#broken) announce(capital(words));
   }
 
@@ -52,8 +53,14 @@ export class Steps {
     this.#cancel.textContent = "Stopping …";
   }
 
+  /** Share of the moments whose motion is made. */
+  #made(): number {
+    const all = this.#story?.keyframes ?? [];
+    return all.length ? all.filter((keyframe) => keyframe.start !== null).length / all.length : 0;
+  }
+
   #moments(): string {
     const all = this.#story?.keyframes ?? [];
-    return all.length ? `, moment ${all.filter((keyframe) => keyframe.start !== null).length + 1} of ${all.length}`.replace(`${all.length + 1} of`, `${all.length} of`) : "";
+    return all.length ? `, moment ${Math.min(Math.round(this.#made() * all.length) + 1, all.length)} of ${all.length}` : "";
   }
 }

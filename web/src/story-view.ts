@@ -89,7 +89,7 @@ export class StoryView {
     const before = this.#story;
     this.#story = story;
     const making = story.state === "queued" || story.state === "running";
-    this.#title.textContent = story.title ?? (story.kind === "motion" ? "A motion" : making ? "Being written …" : "Untitled");
+    this.#title.textContent = story.title ?? (story.kind === "motion" ? "A motion" : making ? "Being written …" : "No story this time");
     this.#theme.textContent = story.theme ?? "";
     document.title = `${story.title ?? "A story"} · SIMS stories`;
     this.element.classList.toggle("without-text", !story.text && !making);
@@ -102,7 +102,7 @@ export class StoryView {
     if (!making || before === null || before.stage !== story.stage) {
       this.#sections.report.hidden = !showReport(this.#sections.report, story, seek);
       this.#sections.making.hidden = !showMaking(this.#sections.making, story);
-      this.#sections.files.hidden = !showDownloads(this.#sections.files, story);
+      this.#sections.files.hidden = making || !showDownloads(this.#sections.files, story);
     }
     if (making && !this.#unfollow) this.#follow();
     if (!making) this.#close(story, before);

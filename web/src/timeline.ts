@@ -36,6 +36,7 @@ export class Timeline {
   update(keyframes: readonly Keyframe[]): void {
     this.#keyframes = keyframes;
     this.#laid = blocks(keyframes);
+    this.element.classList.toggle("blank", keyframes.length === 0);
     while (this.#buttons.length > keyframes.length) this.#buttons.pop()?.parentElement?.remove();
     for (const [index, keyframe] of keyframes.entries()) this.#block(index, keyframe);
     const felt = EMOTIONS.filter((emotion) => keyframes.some((keyframe) => emotionOf(keyframe.emotion) === emotion));

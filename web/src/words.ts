@@ -61,3 +61,10 @@ export function count(number: number, noun: string): string {
 export function capital(text: string): string {
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
+
+/** What the planner noted, in the words and numbers that the page uses: keyframes are counted from 0 there, moments from 1 here. */
+export function noteWords(note: string): string {
+  return note
+    .replace(/keyframe (\d+)/g, (_, index: string) => `moment ${Number(index) + 1}`)
+    .replace(/\b(loco|sitdown|standup|getup|liedown)\b/g, (skill) => SKILL_WORDS[skill as Skill]);
+}

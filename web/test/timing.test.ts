@@ -109,7 +109,7 @@ describe("player", () => {
 });
 
 test("the first known emotion of a text counts", () => {
-  expect(["tired, sad", "very Happy", "gloomy", "", "Sad/angry"].map(emotionOf)).toEqual(["tired", "happy", "neutral", "neutral", "sad"]);
+  expect(["tired, sad", "very Happy", "greenish", "", "Sad/angry", "depressed"].map(emotionOf)).toEqual(["tired", "happy", "neutral", "neutral", "sad", "sad"]);
 });
 
 test("a clock shows minutes and two digits of seconds", () => {
