@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import math
 import time
+from collections import OrderedDict, deque
 from typing import Final
 
-from limits import parse
-from limits.storage import MemoryStorage
-from limits.strategies import MovingWindowRateLimiter
 from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -17,6 +15,7 @@ from planner_service.errors import TooLarge, TooMany
 
 MOST_BYTES: Final = 4 * 1024 * 1024
 """Of one body."""
+WINDOWS: Final = {"second": 1.0, "minute": 60.0, "hour": 3600.0}
 FREE: Final = ("/healthz", "/readyz", "/metrics")
 """Paths that probes ask for often, never counted; neither are the files of the page."""
 
@@ -25,26 +24,34 @@ class Rate:
     """So many events of one name in a moving window, such as "1200/minute". Counted in this process only."""
 
     def __init__(self, rate: str) -> None:
+        count, _, window = rate.partition("/")
         self.said = rate
-        self._limit = parse(rate)
-        # The strategy holds its storage weakly; without this one it would vanish.
-        self._storage = MemoryStorage()
-        self._window = MovingWindowRateLimiter(self._storage)
+        self.most = int(count)
+        self.seconds = WINDOWS[window]
+        self._times: OrderedDict[str, deque[float]] = OrderedDict()
+        """When each name's events of the last window were, the name heard of longest ago first."""
 
     def take(self, name: str, what: str) -> None:
         """Count one event. TooMany, with the seconds to wait, when the window is full."""
-        if not self._window.hit(self._limit, name):
-            self._refuse(name, what)
+        self.check(name, what)
+        self._times.setdefault(name, deque()).append(time.monotonic())
+        self._times.move_to_end(name)
+        self._forget()
 
     def check(self, name: str, what: str) -> None:
         """TooMany when the window is full; counts nothing."""
-        if not self._window.test(self._limit, name):
-            self._refuse(name, what)
+        times, now = self._times.get(name, deque()), time.monotonic()
+        while times and times[0] <= now - self.seconds:
+            times.popleft()
+        if len(times) >= self.most:
+            wait = max(1, math.ceil(times[0] + self.seconds - now))
+            raise TooMany(f"{what}: {self.said.replace('/', ' a ')} are allowed; wait {wait} s", wait)
 
-    def _refuse(self, name: str, what: str) -> None:
-        seconds = self._window.get_window_stats(self._limit, name).reset_time - time.time()
-        wait = max(1, math.ceil(seconds))
-        raise TooMany(f"{what}: {self.said.replace('/', ' a ')} are allowed; wait {wait} s", wait)
+    def _forget(self) -> None:
+        """Let go of names that have not been heard of for a window."""
+        name, times = next(iter(self._times.items()))
+        if not times or times[-1] <= time.monotonic() - self.seconds:
+            del self._times[name]
 
 
 class Limiting:

@@ -40,8 +40,8 @@ def open_parts(settings: Settings) -> Parts:
     return Parts(settings, engine, Shelves(engine, settings.cache_dir, settings.layouts), Jobs(engine, url))
 
 
-def parts_of(connection: HTTPConnection) -> Parts:
-    """The parts of the app that a request came to."""
+async def parts_of(connection: HTTPConnection) -> Parts:
+    """The parts of the app that a request came to; async, since a thread for it would cost more than it does."""
     parts: Parts = connection.app.state.parts
     return parts
 

@@ -22,13 +22,13 @@ router = APIRouter(tags=["service"])
 UNBUILT: Final = "the page is not built; `make page` builds it (needs Node 20 or newer), all else works without"
 
 
-def gate_of(request: Request) -> Gate:
+async def gate_of(request: Request) -> Gate:
     """The keys and origins of the app that a request came to."""
     gate: Gate = request.app.state.gate
     return gate
 
 
-def figures_of(request: Request) -> Figures:
+async def figures_of(request: Request) -> Figures:
     """The figures of the app that a request came to."""
     figures: Figures = request.app.state.figures
     return figures

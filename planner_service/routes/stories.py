@@ -40,7 +40,7 @@ FULL_QUEUE: Final = 10
 GLB: Final = "model/gltf-binary"
 
 
-def stories_of(parts: PartsDep) -> Stories:
+async def stories_of(parts: PartsDep) -> Stories:
     """The table of stories."""
     return Stories(parts.engine)
 
@@ -146,7 +146,7 @@ def _is_id(text: str) -> bool:
 
 
 @router.get("/{story_id}", response_model=StoryShown)
-def show(record: RecordDep) -> Json:
+async def show(record: RecordDep) -> Json:
     """A story, as far as it is made."""
     return story_shown(record)
 

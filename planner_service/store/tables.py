@@ -38,13 +38,14 @@ artifacts = Table(
     Column("position", Integer, primary_key=True),  # in the order of making
     Column("kind", Text, nullable=False),  # script, home, told, actions, segment, report, film
     Column("summary", Text, nullable=False),  # small JSON: what lists and events show of it
-    Column("data", LargeBinary, nullable=False),  # JSON, npz or GLB
     Column("state", Text),  # JSON of the BodyState a segment left
     Column("etag", Text, nullable=False),  # SHA-256 of data, shortened
     Column("following", Text),  # the stage that began then, if another one did
     Column("progress", Float, nullable=False),  # of the whole story
     Column("seconds", Float, nullable=False),
     Column("made", BigInteger, nullable=False),
+    # Last: SQLite reads through what comes before a column, and this is long.
+    Column("data", LargeBinary, nullable=False),  # JSON, npz or GLB
 )
 """What every recorded stage and segment made. Written once and never changed."""
 
