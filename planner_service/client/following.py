@@ -19,12 +19,12 @@ SILENCE: Final = 45.0
 """Seconds without a byte after which a connection counts as broken; the service sends something every 15."""
 LOOK, LEAST_LOOK = 5.0, 0.1
 """Seconds of silence after which one who waits for a limited time looks at the clock."""
-BREAKS: Final = 8
+BREAKS: Final = 30
 """Connections in a row that may break off without an event."""
 LATER: Final = (429, 502, 503, 504)
 """Answers of a service that is busy or on its way up."""
-PAUSE, LONGEST_PAUSE = 0.5, 10.0
-"""Seconds before one connects again, doubled with every break."""
+PAUSE, LONGEST_PAUSE = 0.5, 2.0
+"""Seconds before one connects again, doubled with every break; in all a minute, for a service that starts again."""
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import socketserver
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -254,14 +255,14 @@ def test_one_who_waits_hears_that_another_cancels(service: RunningService) -> No
 
 
 @contextmanager
-def cutting(url: str, budgets: Iterator[int | None]) -> Iterator[str]:
+def cutting(url: str, budgets: Iterator[int | None], port: int = 0) -> Iterator[str]:
     """A way to a service that breaks off: each connection after so many bytes of answers."""
-    host, _, port = url.removeprefix("http://").partition(":")
+    host, _, far_port = url.removeprefix("http://").partition(":")
 
     class Way(socketserver.BaseRequestHandler):
         def handle(self) -> None:
             budget = next(budgets)
-            with socket.create_connection((host, int(port))) as onwards:
+            with socket.create_connection((host, int(far_port))) as onwards:
                 threading.Thread(target=pump, args=(self.request, onwards), daemon=True).start()
                 while budget is None or budget > 0:
                     piece = onwards.recv(65536 if budget is None else budget)
@@ -270,8 +271,10 @@ def cutting(url: str, budgets: Iterator[int | None]) -> Iterator[str]:
                     self.request.sendall(piece)
                     budget = None if budget is None else budget - len(piece)
 
-    with socketserver.ThreadingTCPServer(("127.0.0.1", 0), Way) as server:
-        server.daemon_threads = True
+    class Ways(socketserver.ThreadingTCPServer):
+        daemon_threads = allow_reuse_address = True
+
+    with Ways(("127.0.0.1", port), Way) as server:
         threading.Thread(target=partial(server.serve_forever, 0.05), daemon=True).start()
         try:
             yield f"http://127.0.0.1:{server.server_address[1]}"
@@ -304,8 +307,23 @@ def test_events_go_on_where_the_connection_broke_off(
         assert anyio.run(ask, url) == whole
 
 
+def test_one_who_follows_stays_while_the_service_is_away(client: Client, story: Story) -> None:
+    whole = list(client.events(story.id))
+    with cutting(client.base_url, iter([900])) as url:
+        follower = Client(url)
+        events = follower.events(story.id)
+        heard = [next(events)]
+    with follower:
+        rest = threading.Thread(target=heard.extend, args=[events])
+        rest.start()
+        time.sleep(0.7)  # the first tries meet nobody
+        with cutting(client.base_url, repeat(None), int(url.rpartition(":")[2])):
+            rest.join(PATIENCE)
+    assert heard == whole
+
+
 def test_one_who_never_gets_an_event_gives_up(client: Client, story: Story, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(following, "PAUSE", 0.001)
+    monkeypatch.setattr(following, "LONGEST_PAUSE", 0.001)
     with cutting(client.base_url, repeat(40)) as url, Client(url) as cut_off, pytest.raises(Unreachable, match="broke"):
         list(cut_off.events(story.id))
 
