@@ -85,6 +85,11 @@ def error_of(response: httpx.Response) -> ApiError:
     )
 
 
+def not_ours(response: httpx.Response) -> ClientError:
+    """An answer that this service does not give."""
+    return ClientError(f"{response.request.url} is no call of this service; is base_url right?")
+
+
 def unreachable(base_url: str, error: Exception) -> Unreachable:
     """Nobody answered at an address: the remedy is mostly to start the service."""
     if isinstance(error, httpx.ConnectError):

@@ -12,7 +12,7 @@ from urllib.parse import quote
 
 import httpx
 
-from planner_service.client.errors import StoryCancelled, StoryFailed, WaitTimeout, error_of, unreachable
+from planner_service.client.errors import StoryCancelled, StoryFailed, WaitTimeout, error_of, not_ours, unreachable
 from planner_service.client.resources import Story, StoryEvent
 
 SILENCE: Final = 45.0
@@ -20,7 +20,7 @@ SILENCE: Final = 45.0
 LOOK, LEAST_LOOK = 5.0, 0.1
 """Seconds of silence after which one who waits for a limited time looks at the clock."""
 BREAKS: Final = 30
-"""Connections in a row that may break off without an event."""
+"""Tries in a row to connect that may fail."""
 LATER: Final = (429, 502, 503, 504)
 """Answers of a service that is busy or on its way up."""
 PAUSE, LONGEST_PAUSE = 0.5, 2.0
@@ -121,13 +121,17 @@ class Following:
         if response.is_error and (response.status_code not in LATER or self._give_up()):
             raise error_of(response)
         self.ended = response.status_code == 204
-        return response.status_code == 200
+        if self.ended or response.is_error:
+            return False
+        if not response.headers.get("content-type", "").startswith("text/event-stream"):
+            raise not_ours(response)
+        self._breaks = 0
+        return True
 
     def feed(self, piece: bytes) -> list[StoryEvent]:
         """The events that end in this piece. WaitTimeout."""
         found = [StoryEvent(int(one.id), one.event, json.loads(one.data)) for one in self._parser.feed(piece)]
         if found:
-            self._breaks = 0
             self.last = found[-1].id
             self.ended = found[-1].last
         if not self.ended:

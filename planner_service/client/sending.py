@@ -8,7 +8,7 @@ from typing import Any, Final, Generic, TypeVar
 import httpx
 
 from planner_service.client.calls import Call
-from planner_service.client.errors import ClientError, error_of, unreachable
+from planner_service.client.errors import error_of, not_ours, unreachable
 
 T = TypeVar("T")
 TRIES: Final = 4
@@ -67,7 +67,7 @@ class Sending(Generic[T]):
         try:
             return self.call.read(response)
         except (ValueError, KeyError, TypeError) as error:
-            raise ClientError(f"{response.request.url} is no call of this service; is base_url right?") from error
+            raise not_ours(response) from error
 
     def _again(self, wait: float) -> bool:
         self.wait = wait

@@ -322,7 +322,7 @@ def test_one_who_follows_stays_while_the_service_is_away(client: Client, story: 
     assert heard == whole
 
 
-def test_one_who_never_gets_an_event_gives_up(client: Client, story: Story, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_one_who_never_gets_an_answer_gives_up(client: Client, story: Story, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(following, "LONGEST_PAUSE", 0.001)
     with cutting(client.base_url, repeat(40)) as url, Client(url) as cut_off, pytest.raises(Unreachable, match="broke"):
         list(cut_off.events(story.id))
@@ -367,10 +367,9 @@ def test_what_another_service_says_is_not_taken_for_an_answer() -> None:
     with socketserver.ThreadingTCPServer(("127.0.0.1", 0), Other) as server:
         threading.Thread(target=partial(server.serve_forever, 0.05), daemon=True).start()
         with Client(f"http://127.0.0.1:{server.server_address[1]}") as client:
-            with pytest.raises(ClientError, match="is base_url right"):
-                client.stories()
-            with pytest.raises(ClientError, match="is base_url right"):
-                client.motion("a")
+            for ask in (client.stories, partial(client.motion, "a"), partial(client.wait, "a")):
+                with pytest.raises(ClientError, match="is base_url right"):
+                    ask()
         server.shutdown()
 
 
