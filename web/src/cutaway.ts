@@ -160,7 +160,7 @@ const WORLD_VERTEX = "varying vec3 vPlace;\n";
 const WORLD_PLACE = "#include <begin_vertex>\nvPlace = (modelMatrix * vec4(transformed, 1.0)).xyz;";
 
 /** Above its cut a wall is not drawn. */
-function patchWall(material: Material): void {
+export function patchWall(material: Material): void {
   material.onBeforeCompile = (shader) => {
     shader.vertexShader = `attribute float cut;\nvarying float vCut;\n${WORLD_VERTEX}${shader.vertexShader}`.replace(
       "#include <begin_vertex>",
@@ -175,7 +175,7 @@ function patchWall(material: Material): void {
 }
 
 /** Near the line from the eye to the body, and clearly before it, what is solid gets thin. */
-function patchSolid(material: Material, body: { value: Vector3 }): void {
+export function patchSolid(material: Material, body: { value: Vector3 }): void {
   // The share that is left goes to that share of a pixel's samples: nothing needs sorting.
   material.alphaToCoverage = true;
   material.onBeforeCompile = (shader) => {

@@ -36,9 +36,10 @@ export class Film {
   readonly #pose = emptyPose();
   readonly #ends: (() => void)[] = [];
   #stage: Stage | null = null;
+  #raised: Promise<Stage | null>;
   #story: Story | null = null;
   #mode: CameraMode = isStill() ? "orbit" : "follow";
-  #asked = { stage: false, home: false, body: false };
+  #asked = { home: false, body: false };
   #opened = false;
   #last = 0;
   #drawn = -1;
@@ -61,6 +62,8 @@ export class Film {
     this.#ends.push(() => sight.disconnect());
     this.#showState();
     this.#loop(performance.now());
+    // The stage takes a moment to build, and is wanted as soon as there is something to show.
+    this.#raised = this.#raise();
   }
 
   /** What buttons and keys ask for. */
@@ -125,18 +128,15 @@ export class Film {
     this.#stage?.dispose();
   }
 
-  /** Load three.js and raise the stage; false without WebGL. */
-  async #raise(): Promise<boolean> {
-    if (this.#stage) return true;
-    if (this.#asked.stage) return false;
-    this.#asked.stage = true;
+  /** Load three.js and build the stage; null without WebGL, or when nobody looks any more. */
+  async #raise(): Promise<Stage | null> {
     try {
       const { Stage } = await import("./stage");
-      if (this.#last < 0) return false;
+      if (this.#last < 0) return null;
       this.#stage = new Stage(this.#holder);
     } catch (error) {
       this.#withoutPicture(error);
-      return false;
+      return null;
     }
     this.#stage.cameraMan.calm = isStill();
     const watch = new ResizeObserver(() => this.#stage?.resize(this.#holder.clientWidth, this.#holder.clientHeight));
@@ -148,7 +148,7 @@ export class Film {
     }, { capture: true, passive: true });
     this.#holder.addEventListener("pointerdown", () => this.#holder.focus({ preventScroll: true }));
     this.#mood();
-    return true;
+    return this.#stage;
   }
 
   /** The plan takes the stage where three dimensions cannot be drawn. */
@@ -169,7 +169,7 @@ export class Film {
       const home = await getHome(this.#id);
       this.#map.setHome(home);
       const glb = getGlb(sceneUrl(this.#id));
-      if (await this.#raise()) await this.#stage?.setHome(await glb, home);
+      await (await this.#raised)?.setHome(await glb, home);
       this.#mood();
     } catch (error) {
       this.#asked.home = false;
@@ -182,8 +182,7 @@ export class Film {
     this.#asked.body = true;
     try {
       const glb = await getGlb(motionUrl(this.#id, "glb", 0, 1));
-      while (this.#asked.home && !this.#stage && !this.#arch.classList.contains("flat") && this.#last >= 0) await pause(50);
-      await this.#stage?.setBody(glb);
+      await (await this.#raised)?.setBody(glb);
     } catch (error) {
       this.#asked.body = false;
       console.warn("The body cannot be shown yet:", error);
@@ -280,8 +279,4 @@ export class Film {
     if (document.fullscreenElement) void document.exitFullscreen();
     else void this.element.requestFullscreen?.();
   }
-}
-
-function pause(milliseconds: number): Promise<void> {
-  return new Promise((resolve) => setTimeout(resolve, milliseconds));
 }

@@ -31,6 +31,9 @@ function showHome(): void {
   const form = new ThemeForm((story) => (location.hash = `#/stories/${story.id}`));
   const gallery = new Gallery();
   fill(main, h("div", { class: "front" }, h("section", { class: "arch-panel", "aria-label": "A new story" }, form.element), gallery.element));
+  // While a theme is being thought of, the stage is fetched; where it cannot be built, the film will say so.
+  const idle = window.requestIdleCallback ?? ((act: () => void) => window.setTimeout(act, 1500));
+  idle(() => void import("./stage").then(({ warmUp }) => warmUp()).catch(() => undefined), { timeout: 4000 });
   gallery.load().catch((error: unknown) => {
     if (error instanceof ApiError && error.status === 401) askForKey();
     else throw error;

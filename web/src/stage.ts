@@ -1,15 +1,16 @@
 /** The three.js scene: home, body, light, and the picture of them at one moment. */
 
-import {
-  Box3, BufferAttribute, CircleGeometry, Color, DirectionalLight, DoubleSide, HemisphereLight, Mesh, MeshBasicMaterial, NeutralToneMapping,
-  Object3D, PCFShadowMap, Scene, SkinnedMesh, Sphere, SpotLight, Vector3, WebGLRenderer,
-} from "three";
+import { Box3, BufferAttribute, CircleGeometry, Color, Mesh, MeshBasicMaterial, Object3D, Scene, SkinnedMesh, Sphere, Vector3 } from "three";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 import type { Home } from "./api";
 import { CameraMan, type CameraMode } from "./camera";
 import { Cutaway } from "./cutaway";
+import { Lighting } from "./lighting";
 import { heading, JOINT_NAMES, type Point3, type Pose } from "./pose";
+import { renderer, warmUp } from "./rendering";
 import { wallSides } from "./walls";
+
+export { warmUp };
 
 /** Colours and strengths that the page chooses. */
 export interface Mood {
@@ -20,56 +21,33 @@ export interface Mood {
   readonly tint: string;
 }
 
-const SHADOW_REACH = 4.2;
-
 export class Stage {
   readonly cameraMan: CameraMan;
   readonly canvas: HTMLCanvasElement;
   /** Set to have the next picture drawn. */
   dirty = true;
-  readonly #renderer: WebGLRenderer;
+  readonly #renderer = renderer();
   readonly #scene = new Scene();
-  readonly #sky = new HemisphereLight(0xffffff, 0x8a8078, 1.5);
-  readonly #sun = new DirectionalLight(0xfff1dc, 2);
-  readonly #spot = new SpotLight(0xffd9a0, 0, 0, 0.5, 0.9, 0);
+  readonly #lighting = new Lighting(this.#scene);
   readonly #ground: Mesh;
   readonly #body = new Vector3(0, 0.95, 0);
+  readonly #chest = new Vector3();
   #joints: Object3D[] = [];
   #bodyRoot: Object3D | null = null;
   #home: Object3D | null = null;
   #cutaway: Cutaway | null = null;
   #heading = 0;
-  #tint = new Color(1, 1, 1);
-  #tintGoal = new Color(1, 1, 1);
-  #skyColor = new Color();
-  #seconds = 0;
   #slow = 0;
 
   /** Throws where the browser has no WebGL. */
   constructor(holder: HTMLElement) {
-    this.#renderer = new WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
-    this.#renderer.shadowMap.enabled = true;
-    this.#renderer.shadowMap.type = PCFShadowMap;
-    this.#renderer.toneMapping = NeutralToneMapping;
     this.canvas = this.#renderer.domElement;
     holder.append(this.canvas);
     this.cameraMan = new CameraMan(this.canvas);
     this.cameraMan.controls.addEventListener("change", () => (this.dirty = true));
     this.#ground = groundDisc();
-    this.#light();
     this.#scene.add(this.#ground);
     this.resize(holder.clientWidth, holder.clientHeight);
-  }
-
-  #light(): void {
-    const { shadow } = this.#sun;
-    this.#sun.castShadow = true;
-    shadow.mapSize.set(1536, 1536);
-    shadow.radius = 4;
-    shadow.bias = -0.0004;
-    shadow.normalBias = 0.02;
-    Object.assign(shadow.camera, { left: -SHADOW_REACH, right: SHADOW_REACH, top: SHADOW_REACH, bottom: -SHADOW_REACH, near: 1, far: 16 });
-    this.#scene.add(this.#sky, this.#sun, this.#sun.target, this.#spot, this.#spot.target);
   }
 
   /** Build the home of a scene.glb; its walls get out of the way by the home's plan. */
@@ -83,13 +61,13 @@ export class Stage {
       object.receiveShadow = true;
     });
     this.#cutaway = new Cutaway(scene, wallSides(home));
-    this.#home = scene;
     this.#scene.add(scene);
     const box = new Box3().setFromObject(scene);
     const sphere = box.getBoundingSphere(new Sphere());
     this.cameraMan.setHome(new Vector3(sphere.center.x, 0.5, sphere.center.z), sphere.radius * 0.84);
     this.#ground.position.set(sphere.center.x, -0.02, sphere.center.z);
     this.#ground.scale.setScalar(sphere.radius * 2.2);
+    this.#home = scene;
     this.dirty = true;
   }
 
@@ -104,8 +82,8 @@ export class Stage {
     });
     this.#joints = JOINT_NAMES.map((name) => scene.getObjectByName(name)).filter((joint) => joint !== undefined);
     if (this.#joints.length !== JOINT_NAMES.length) throw new Error("the body lacks joints");
-    this.#bodyRoot = scene;
     this.#scene.add(scene);
+    this.#bodyRoot = scene;
     this.dirty = true;
   }
 
@@ -145,15 +123,7 @@ export class Stage {
   setMood({ dark, around, ground, tint }: Mood): void {
     this.#renderer.setClearColor(new Color(around));
     shade(this.#ground, new Color(ground), new Color(around));
-    this.#skyColor.set(dark ? 0xc3cde0 : 0xffffff);
-    this.#sky.groundColor.set(dark ? 0x7d7068 : 0xd8cfc4);
-    this.#sky.intensity = dark ? 1.35 : 2.75;
-    this.#sun.color.set(dark ? 0xffdcb4 : 0xfff4e4);
-    this.#sun.intensity = dark ? 1.1 : 1.6;
-    this.#spot.intensity = dark ? 1.5 : 0;
-    // A feeling gives the light a hue, not darkness.
-    const { r, g, b } = this.#tintGoal.set(tint);
-    this.#tintGoal.multiplyScalar(1 / Math.max(r, g, b, 0.01));
+    this.#lighting.set(dark, tint);
     if (this.#cutaway) this.#cutaway.color = new Color(dark ? 0x8a958f : 0xb9c4bc);
     this.dirty = true;
   }
@@ -168,30 +138,17 @@ export class Stage {
 
   /** Draw if anything has changed; seconds since the last call. */
   render(seconds: number, playing: boolean): void {
-    this.#seconds = Math.min(seconds, 0.1);
-    this.cameraMan.update(this.#seconds, this.#body, this.#heading, playing);
+    const step = Math.min(seconds, 0.1);
+    this.cameraMan.update(step, this.#body, this.#heading, playing);
     const eye = this.cameraMan.camera.position;
-    const chest = new Vector3(this.#body.x, this.#body.y + 0.15, this.#body.z);
-    if (this.#cutaway?.update(eye, chest, this.cameraMan.calm ? 1 : this.#seconds)) this.dirty = true;
-    if (this.#blend()) this.dirty = true;
+    this.#chest.set(this.#body.x, this.#body.y + 0.15, this.#body.z);
+    if (this.#cutaway?.update(eye, this.#chest, this.cameraMan.calm ? 1 : step)) this.dirty = true;
+    if (this.#lighting.drift(step)) this.dirty = true;
     if (!this.dirty) return;
     this.dirty = false;
-    this.#sun.target.position.set(this.#body.x, 0.6, this.#body.z);
-    this.#sun.position.copy(this.#sun.target.position).add(this.#spotPlace.set(2.6, 7, 3.2));
-    this.#spot.target.position.copy(chest);
-    this.#spot.position.copy(chest).add(this.#spotPlace.set(-1.2, 5, 1.5));
+    this.#lighting.aim(this.#chest);
     this.#renderer.render(this.#scene, this.cameraMan.camera);
     this.#watch(seconds);
-  }
-
-  readonly #spotPlace = new Vector3();
-
-  /** Let the light take on the feeling of the moment; whether it still changes. */
-  #blend(): boolean {
-    const miss = Math.hypot(this.#tint.r - this.#tintGoal.r, this.#tint.g - this.#tintGoal.g, this.#tint.b - this.#tintGoal.b);
-    this.#tint.lerp(this.#tintGoal, miss < 0.004 ? 1 : 1 - Math.exp(-1.5 * this.#seconds));
-    this.#sky.color.copy(this.#skyColor).lerp(this.#tint, 0.12);
-    return miss >= 0.004;
   }
 
   /** Fewer points where pictures take long. */
@@ -208,7 +165,8 @@ export class Stage {
       object.geometry.dispose();
       for (const material of [object.material].flat()) material.dispose();
     });
-    this.#renderer.dispose();
+    this.#lighting.dispose();
+    this.#renderer.renderLists.dispose();
     this.canvas.remove();
   }
 }
@@ -218,7 +176,7 @@ function groundDisc(): Mesh {
   const geometry = new CircleGeometry(1, 64);
   geometry.rotateX(-Math.PI / 2);
   geometry.setAttribute("color", new BufferAttribute(new Float32Array(geometry.getAttribute("position").count * 3), 3));
-  return new Mesh(geometry, new MeshBasicMaterial({ vertexColors: true, toneMapped: false, side: DoubleSide }));
+  return new Mesh(geometry, new MeshBasicMaterial({ vertexColors: true, toneMapped: false }));
 }
 
 function shade(disc: Mesh, middle: Color, rim: Color): void {

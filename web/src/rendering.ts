@@ -1,0 +1,71 @@
+/** The page's one renderer, made and warmed up before it is wanted. */
+
+import {
+  BoxGeometry, Bone, BufferAttribute, Mesh, MeshBasicMaterial, MeshStandardMaterial, NeutralToneMapping, PCFShadowMap, PerspectiveCamera, Scene,
+  Skeleton, SkinnedMesh, Vector3, WebGLRenderer,
+} from "three";
+import { patchSolid, patchWall } from "./cutaway";
+import { Lighting } from "./lighting";
+
+let shared: WebGLRenderer | null = null;
+/** Kept, since a program goes with the last material that uses it. */
+let warmer: Scene | null = null;
+
+/** Made on first use: making one takes long, and browsers give out few. Throws without WebGL. */
+export function renderer(): WebGLRenderer {
+  if (!shared) {
+    shared = new WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
+    shared.shadowMap.enabled = true;
+    shared.shadowMap.type = PCFShadowMap;
+    shared.toneMapping = NeutralToneMapping;
+  }
+  return shared;
+}
+
+/** Have the programs built that homes and bodies need, by drawing a small scene with every kind of surface. */
+export function warmUp(): void {
+  if (warmer) return;
+  warmer = new Scene();
+  const lighting = new Lighting(warmer);
+  lighting.aim(new Vector3(0, 1, 0));
+  const wall = new MeshStandardMaterial({ flatShading: true });
+  const pane = new MeshStandardMaterial({ flatShading: true, transparent: true, opacity: 0.3 });
+  const solid = new MeshStandardMaterial({ flatShading: true });
+  patchWall(wall);
+  patchWall(pane);
+  patchSolid(solid, { value: new Vector3() });
+  for (const material of [wall, pane, solid, new MeshStandardMaterial({ flatShading: true }), new MeshStandardMaterial()]) {
+    const mesh = new Mesh(box(), material);
+    // Homes come without normals, and programs differ by that.
+    if (material.flatShading) mesh.geometry.deleteAttribute("normal");
+    mesh.castShadow = mesh.receiveShadow = true;
+    warmer.add(mesh);
+  }
+  warmer.add(new Mesh(box(), new MeshBasicMaterial({ vertexColors: true, toneMapped: false })), body());
+  const camera = new PerspectiveCamera();
+  camera.position.set(0, 0, 4);
+  const drawing = renderer();
+  drawing.setSize(64, 64);
+  drawing.render(warmer, camera);
+}
+
+function box(): BoxGeometry {
+  const geometry = new BoxGeometry();
+  const { count } = geometry.getAttribute("position");
+  geometry.setAttribute("cut", new BufferAttribute(new Float32Array(count).fill(9), 1));
+  geometry.setAttribute("color", new BufferAttribute(new Float32Array(3 * count), 3));
+  return geometry;
+}
+
+function body(): SkinnedMesh {
+  const geometry = box();
+  const { count } = geometry.getAttribute("position");
+  geometry.setAttribute("skinIndex", new BufferAttribute(new Uint8Array(4 * count), 4));
+  geometry.setAttribute("skinWeight", new BufferAttribute(new Float32Array(4 * count).fill(0.25), 4));
+  const mesh = new SkinnedMesh(geometry, new MeshStandardMaterial());
+  const bone = new Bone();
+  mesh.add(bone);
+  mesh.bind(new Skeleton([bone]));
+  mesh.castShadow = mesh.receiveShadow = true;
+  return mesh;
+}
