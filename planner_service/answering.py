@@ -12,12 +12,12 @@ from typing import Any, Final
 import structlog
 from fastapi import FastAPI
 from fastapi.exceptions import RequestValidationError
+from fastapi.routing import iter_route_contexts
 from sqlalchemy.exc import DataError, DBAPIError, InterfaceError, OperationalError, SQLAlchemyError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import Response
-from starlette.routing import Match
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from motion_backend.language.minilm import WeightsError
@@ -38,7 +38,7 @@ from planner_service.schemas.problems import Fault
 from planner_service.scripts.events import ThemeError
 from planner_service.settings import SettingsError
 
-METHODS: Final = ("GET", "POST", "PUT", "PATCH", "DELETE")
+METHODS: Final = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
 OURS: Final = (OutputError, SettingsError, WeightsError)
 """Faults of the installation, not of a request."""
 FIELD: Final = re.compile(r"^(?P<field>[a-z_]+(?:[./\[][\w./\[\]-]*)?): (?P<fault>.+)$", re.DOTALL)
@@ -126,14 +126,11 @@ async def _http(request: Request, error: Exception) -> Response:
 
 
 def allowed_methods(request: Request) -> list[str]:
-    """The methods that the path has, over all routes."""
-    routes = request.app.router.routes
-    found = [
-        method
-        for method in METHODS
-        if any(route.matches(dict(request.scope, method=method))[0] is Match.FULL for route in routes)
-    ]
-    return ["GET", "HEAD", *found[1:]] if found[:1] == ["GET"] else found
+    """The methods that the path has, over all routes of its template."""
+    template = getattr(request.scope.get("route"), "path", None)
+    routes = [route for route in iter_route_contexts(request.app.routes) if route.path == template]
+    found = {method for route in routes for method in route.methods or ()}
+    return [method for method in METHODS if method in found or (method == "HEAD" and "GET" in found)]
 
 
 async def _engine(request: Request, error: Exception) -> Response:
