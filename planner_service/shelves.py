@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Mapping
+from functools import cached_property
 from pathlib import Path
 from threading import RLock
-from typing import TYPE_CHECKING, Final, Generic, TypeVar
+from typing import TYPE_CHECKING, Final
 
 from planner_service.scripts.checking import check
 from planner_service.scripts.keyframe import ShortScript
 from planner_service.scripts.library import Features, LibraryError, ScriptLibrary, built_in
 from planner_service.scripts.mending import Problem
+from planner_service.store.keeping import AbsentError, FixedError, FullError, Kept, ShelfError, TakenError
 from scene_graphs.layouts import Layout, LayoutError, layout_from_dict, layout_to_dict, read_layouts
 from scene_graphs.library import built_in_layouts
 from scene_graphs.retrieval import LayoutIndex
@@ -20,39 +23,18 @@ if TYPE_CHECKING:
     from sqlalchemy import Engine
 
     from planner_service.settings import Settings
-    from planner_service.store.shelving import Shelf
 
-T = TypeVar("T")
+__all__ = [
+    "AbsentError", "FixedError", "FullError", "ShelfError", "Shelves", "TakenError", "UnfitError", "open_shelves",
+]  # fmt: skip
+
+LONGEST_ID: Final = 120
+_ROOM_ID: Final = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.:-]*(?:/[A-Za-z0-9_][A-Za-z0-9_.:-]*)*")
+"""What is the end of an address as it stands."""
 MOST_SCRIPTS: Final = 20_000
 """Short scripts of the users': all are compared with every query."""
 MOST_LAYOUTS: Final = 5_000
 """Rooms of the users': all are kept in memory, and a graph is made of each."""
-
-
-class ShelfError(ValueError):
-    """Something cannot be put on a shelf or taken from it; the text says why.
-
-    TakenError    there is something of that id already
-    FixedError    it is ours, and stays
-    AbsentError   there is no such thing
-    FullError     there are too many already
-    """
-
-
-class TakenError(ShelfError):
-    """There is something of that id already."""
-
-
-class FixedError(ShelfError):
-    """It is shipped with the package and cannot be removed."""
-
-
-class AbsentError(ShelfError):
-    """There is nothing of that id."""
-
-
-class FullError(ShelfError):
-    """There are as many as can be kept."""
 
 
 class UnfitError(LibraryError):
@@ -77,8 +59,8 @@ class Shelves:
         self.engine = engine
         self.layouts_file = layouts_file
         self._features = Features(cache=cache)
-        self._scripts = _Kept(engine, "short_scripts", _read_script, lambda: {one.id: one for one in built_in()})
-        self._rooms = _Kept(engine, "layouts", _read_layout, self._fixed_rooms)
+        self._scripts = Kept(engine, "short_scripts", _read_script, lambda: {one.id: one for one in built_in()})
+        self._rooms = Kept(engine, "layouts", _read_layout, self._fixed_rooms)
         self._library: tuple[Mapping[str, ShortScript], ScriptLibrary] | None = None
         self._index: tuple[Mapping[str, Layout], LayoutIndex] | None = None
         self._lock = RLock()
@@ -125,9 +107,13 @@ class Shelves:
         self._scripts.take(script_id, "short script")
 
     def add_layouts(self, *layouts: Layout) -> None:
-        """Keep rooms, all or none of them. TakenError when an id is taken, FullError."""
+        """Keep rooms, all or none of them. TakenError when an id is taken, ShelfError for one that is no path,
+        FullError."""
         rows: dict[str, dict[str, str]] = {}
         for layout in layouts:
+            if not _ROOM_ID.fullmatch(layout.id) or len(layout.id) > LONGEST_ID or layout.id.endswith("/scene.glb"):
+                like = "letters, digits and _.:- between slashes, such as my-house/kitchen"
+                raise ShelfError(f"id: {layout.id!r:.80} is no id of a room; use at most {LONGEST_ID} {like}")
             if layout.id in self._rooms.fixed or layout.id in rows:
                 raise TakenError(f"id: there is a room {layout.id!r} already; choose another id")
             body = json.dumps(layout_to_dict(layout), separators=(",", ":"), allow_nan=False)
@@ -138,92 +124,25 @@ class Shelves:
         """Remove a room of the users'; stories keep their own copy. FixedError for one of ours, AbsentError."""
         self._rooms.take(layout_id, "room")
 
+    def is_fixed_script(self, script: ShortScript) -> bool:
+        """Whether a script is ours."""
+        return self._scripts.fixed.get(script.id) is script
+
+    def is_fixed_room(self, layout: Layout) -> bool:
+        """Whether a room is ours."""
+        return self._ours.get(layout.id) is layout
+
+    @cached_property
+    def _ours(self) -> Mapping[str, Layout]:
+        return {layout.id: layout for layout in built_in_layouts()}
+
     def _fixed_rooms(self) -> dict[str, Layout]:
-        fixed = {layout.id: layout for layout in built_in_layouts()}
+        fixed = dict(self._ours)
         for layout in read_layouts(self.layouts_file) if self.layouts_file else ():
             if layout.id in fixed:
                 raise LayoutError(f"{self.layouts_file}: {layout.id!r} is the id of a built-in room; choose another id")
             fixed[layout.id] = layout
         return fixed
-
-
-class _Kept(Generic[T]):
-    """One shelf: what does not change, and the rows of the database, of which only new ones are read and parsed."""
-
-    def __init__(
-        self, engine: Engine | None, shelf: Shelf, read: Callable[[str, str], T], fixed: Callable[[], dict[str, T]]
-    ) -> None:
-        self.engine, self.shelf = engine, shelf
-        self._read, self._make_fixed = read, fixed
-        self._fixed: dict[str, T] | None = None
-        self._rows: dict[str, tuple[int, T]] = {}
-        self._revision = -1
-        self._all: Mapping[str, T] = {}
-        self._lock = RLock()
-
-    @property
-    def fixed(self) -> Mapping[str, T]:
-        """What is not in the database."""
-        with self._lock:
-            if self._fixed is None:
-                self._fixed = self._make_fixed()
-            return self._fixed
-
-    def now(self) -> Mapping[str, T]:
-        """Everything by its id; the very same mapping as long as nothing has changed."""
-        revision = self._newest()
-        with self._lock:
-            if revision != self._revision:
-                self._refresh()
-            return self._all
-
-    def _newest(self) -> int:
-        if self.engine is None:
-            return 0
-        from planner_service.store.shelving import revision_of
-
-        return revision_of(self.engine, self.shelf)
-
-    def _refresh(self) -> None:
-        if self.engine is None:
-            self._all, self._revision = self.fixed, 0
-            return
-        from planner_service.store.shelving import bodies_of, stock_of
-
-        stock = stock_of(self.engine, self.shelf)
-        kept = {one: row for one, row in self._rows.items() if stock.rows.get(one) == row[0]}
-        bodies = bodies_of(self.engine, self.shelf, stock.rows.keys() - kept.keys())
-        kept |= {one: (stock.rows[one], self._read(one, body)) for one, body in bodies.items()}
-        self._rows = {one: kept[one] for one in sorted(kept, key=lambda one: (kept[one][0], one))}
-        # A user's comes before one of the same id that a later version of ours brought.
-        self._all = {**self.fixed, **{one: value for one, (_, value) in self._rows.items()}}
-        self._revision = stock.revision
-
-    def put(self, rows: Mapping[str, Mapping[str, str]], most: int, name: str) -> None:
-        """Write rows, all or none."""
-        if not rows:
-            return
-        if self.engine is None:
-            raise ShelfError(f"there is no database to keep a {name} in")
-        from planner_service.store.shelving import IdTaken, ShelfFull, put
-
-        try:
-            put(self.engine, self.shelf, rows, most)
-        except IdTaken as error:
-            raise TakenError(f"id: there is a {name} {error.row_id!r} already; choose another id") from error
-        except ShelfFull as error:
-            raise FullError(f"at most {most} {name}s of users' own are kept; remove some first") from error
-
-    def take(self, row_id: str, name: str) -> None:
-        """Remove a row."""
-        if self.engine is not None:
-            from planner_service.store.shelving import take
-
-            if take(self.engine, self.shelf, row_id):
-                return
-        if row_id in self.fixed:
-            raise FixedError(f"{row_id!r} is a {name} that is not in the database; it cannot be removed")
-        raise AbsentError(f"there is no {name} {row_id!r}")
 
 
 def open_shelves(settings: Settings, *, writes: bool = False) -> Shelves:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, islice
 from math import cos, pi, sin
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from scene_graphs.clearance import Clearance, measure_clearance, obstacles, part_outline
 from scene_graphs.forms import parts
@@ -23,6 +24,8 @@ DOOR_CLEAR = 0.6
 """Depth of the floor inside a door that nothing may stand on, in metres."""
 OUT_OF_REACH = 1.4
 """Things whose bottom hangs higher than this offer no spot a room must make reachable."""
+MOST_OVERLAPS = 100
+"""Overlaps that are told of one room; a heap of things has thousands."""
 _LEAST_OVERLAP = 2e-3
 _STEPS = (0.0, 0.1, 0.2, 0.3)
 _TURNS = (0.0, pi / 4, -pi / 4, pi / 2, -pi / 2)
@@ -93,11 +96,16 @@ class RoomCheck:
     def _tree(self) -> shapely.STRtree:
         return shapely.STRtree([outline for _, outline in self._obstacles])
 
+    @cached_property
+    def _owners(self) -> NDArray[np.str_]:
+        """The ids of the objects that the outlines of the tree belong to."""
+        return np.array([placed.id for placed, _ in self._obstacles], dtype=np.str_)
+
     def _distance_to_others(self, spot: Spot) -> float:
         here = shapely.Point(spot.standing)
         near = self._tree.query(here.buffer(STANDING_RADIUS))
-        others = (self._obstacles[index] for index in near)
-        return min((here.distance(outline) for placed, outline in others if placed.id != spot.object_id), default=1.0)
+        others = near[self._owners[near] != spot.object_id]
+        return float(shapely.distance(here, self._tree.geometries[others]).min(initial=1.0))
 
     def _is_walkable(self, point: Point2) -> bool:
         return self.clearance.region_at(point) == self.main_region
@@ -128,11 +136,12 @@ class RoomCheck:
 
     def _overlaps(self) -> list[str]:
         solid = [placed for placed in self.layout.objects if placed.category != "rug"]
-        return [
+        found = (
             f"{a.id} and {b.id} overlap"
             for a, b in combinations(solid, 2)
             if a.parent != b.id and b.parent != a.id and solids_overlap(a, b)
-        ]
+        )
+        return list(islice(found, MOST_OVERLAPS))
 
     def _blocked_doors(self) -> list[str]:
         found = []

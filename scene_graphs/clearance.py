@@ -18,6 +18,8 @@ BODY_RADIUS = 0.22
 """Radius of the disc a walking body keeps free."""
 LOWEST, HIGHEST = 0.02, 1.8
 """Heights above the floor between which a part is in a walker's way."""
+_AT_ONCE = 1000
+"""Points that are asked for in one call: other threads of the process wait until it is done."""
 _EIGHT = np.ones((3, 3), dtype=int)
 
 
@@ -90,8 +92,9 @@ def measure_clearance(
     tree = shapely.STRtree([*blocked, *walls])
     wanted = np.flatnonzero(inside)
     if len(wanted) and len(tree):
-        pairs, nearest = tree.query_nearest(centers.ravel()[wanted], return_distance=True, all_matches=False)
-        distances.ravel()[wanted[pairs[0]]] = nearest
+        for some in np.array_split(wanted, len(wanted) // _AT_ONCE + 1):
+            pairs, nearest = tree.query_nearest(centers.ravel()[some], return_distance=True, all_matches=False)
+            distances.ravel()[some[pairs[0]]] = nearest
     else:
         distances[inside] = np.inf
     return Clearance((float(x[0]), float(z[0])), cell, distances)

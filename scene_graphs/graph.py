@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 
 from scene_graphs.furniture import Furniture, affordances, canonical, class_of, is_known, is_minor
-from scene_graphs.layouts import Layout, Placed, Point3
+from scene_graphs.layouts import NEAR, Layout, Placed, Point3
 from scene_graphs.surfaces import spots
 
 if TYPE_CHECKING:
@@ -28,8 +28,6 @@ else:
     minor      whether it is a less important node
 """
 
-NEAR: Final = 1.2
-"""Objects whose footprints are this near, in metres, are joined in a room's graph."""
 FLOOR: Final = "floor"
 _OUT_OF_REACH: Final = 1.5
 """Objects whose underside is higher offer nothing, in metres."""
@@ -53,6 +51,17 @@ def graph_from_uses(uses: Sequence[tuple[str, int]], needs: Sequence[Iterable[st
     for first, second in pairwise(nodes):
         if FLOOR not in (first.category, second.category) and first != second:
             graph.add_edge(first, second)
+    return graph
+
+
+def graph_from_parts(
+    nodes: Sequence[Furniture], edges: Iterable[tuple[int, int]], needs: Sequence[Iterable[str]] = ()
+) -> FurnitureGraph:
+    """The graph of pieces and of pairs of places among them; `needs` are those of each piece (none if left out)."""
+    graph: FurnitureGraph = nx.Graph()
+    for node, need in zip(nodes, needs or [()] * len(nodes), strict=True):
+        _add(graph, node, frozenset(need))
+    graph.add_edges_from((nodes[first], nodes[second]) for first, second in edges)
     return graph
 
 

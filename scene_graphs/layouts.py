@@ -59,6 +59,10 @@ LARGEST = 30.0
 WIDEST = 60.0
 """No room is wider: maps of the floor take memory by its area."""
 MOST_TAGS = 100
+NEAR = 1.2
+"""Objects whose footprints are this near, in metres, are joined in a room's graph."""
+MOST_CROWDED = 1_000_000
+"""Objects of a room times pairs of them that stand near each other; 13,000 in the fullest of 539 real rooms."""
 _MOST_BYTES = 1 << 29
 
 
@@ -169,6 +173,7 @@ def layout_from_dict(row: Row, where: str = "layout") -> Layout:
     room_type = read_text(row, "room_type", where)
     objects = [_placed(item, place) for item, place in read_rows(row, "objects", where, MOST_OBJECTS)]
     _check_ids(objects, where)
+    _check_crowd(objects, where)
     return Layout(
         id=read_text(row, "id", where),
         room_type=room_type,
@@ -283,6 +288,18 @@ def _check_ids(objects: list[Placed], where: str) -> None:
             raise LayoutError(f"{where}.objects[{index}].id {placed.id!r} occurs twice; give every object its own id")
         if placed.parent is not None and (placed.parent == placed.id or placed.parent not in ids):
             raise LayoutError(f"{where}.objects[{index}].parent {placed.parent!r} is no other object's id")
+
+
+def _check_crowd(objects: list[Placed], where: str) -> None:
+    """Refuse a heap of things: what stands near what would take minutes to find."""
+    if len(objects) * len(objects) * (len(objects) - 1) / 2 <= MOST_CROWDED:
+        return
+    outlines = [shapely.Polygon(placed.footprint) for placed in objects]
+    pairs = len(shapely.STRtree(outlines).query(outlines, "dwithin", NEAR)[0]) // 2
+    if pairs * len(objects) > MOST_CROWDED:
+        raise LayoutError(
+            f"{where}.objects are a heap: {pairs} pairs of {len(objects)} stand within {NEAR} m; is it metres?"
+        )
 
 
 def _opening(row: Row, where: str) -> Opening:

@@ -88,11 +88,6 @@ class LayoutIndex:
             raise KeyError(f"no layout {layout_id!r} among the {len(self.layouts)} that are indexed")
         return self.layouts[self._numbers[layout_id]]
 
-    def graph(self, layout_id: str) -> FurnitureGraph:
-        """The graph of the room of that id, which is not to be changed; KeyError if there is none."""
-        self.layout(layout_id)
-        return self._graphs[self._numbers[layout_id]]
-
     def _coded_of(self, layout: Layout) -> tuple[FurnitureGraph, CodedRoom]:
         """What was made of a room, or is made now where it is not this very room that is indexed."""
         number = self._numbers.get(layout.id)
@@ -119,13 +114,19 @@ class LayoutIndex:
         return self.layouts[int(np.random.default_rng(seed).choice(numbers)) if seed else int(numbers[0])]
 
     def search(
-        self, graph: FurnitureGraph, k: int = 1, room_type: str | None = None, *, strict: bool = False
+        self,
+        graph: FurnitureGraph,
+        k: int = 1,
+        room_type: str | None = None,
+        *,
+        strict: bool = False,
+        limit: int | None = None,
     ) -> list[LayoutMatch]:
         """The k nearest rooms, nearest first, ordered by (distance, lower bound, id); fewer if there are fewer.
 
         With `strict` furniture is first matched by the very category or kind; only if the nearest room then misses
-        something, the search is repeated with substitutions, as in the paper. NoSuitableRoom if no room is of the type;
-        ValueError for an empty or too large query.
+        something, the search is repeated with substitutions, as in the paper. `limit` is that of this search alone.
+        NoSuitableRoom if no room is of the type; ValueError for an empty or too large query.
         """
         if k < 1:
             raise ValueError(f"k must be at least 1, got {k}")
@@ -134,10 +135,10 @@ class LayoutIndex:
         check_size(graph)
         numbers = self.of_type(room_type)
         if strict:
-            matches = self._nearest(CodedQuery.of(graph, self.costs, strict=True), k, numbers)
+            matches = self._nearest(CodedQuery.of(graph, self.costs, strict=True), k, numbers, limit)
             if not matches[0].missing:
                 return matches
-        return self._nearest(CodedQuery.of(graph, self.costs), k, numbers)
+        return self._nearest(CodedQuery.of(graph, self.costs), k, numbers, limit)
 
     def bounds(self, query: CodedQuery) -> Column:
         """The lower bound of every room, in one pass over the columns the query touches. (rooms,)."""
@@ -155,7 +156,7 @@ class LayoutIndex:
                 total += column
         return total
 
-    def _nearest(self, query: CodedQuery, k: int, numbers: NDArray[np.intp]) -> list[LayoutMatch]:
+    def _nearest(self, query: CodedQuery, k: int, numbers: NDArray[np.intp], limit: int | None) -> list[LayoutMatch]:
         """The k best of the rooms with these numbers: verify in the order of bounds until no bound is below the worst.
 
         Stopping at a bound equal to the worst kept is exact because ties are broken by (bound, id): a later room of
@@ -166,7 +167,7 @@ class LayoutIndex:
         doubtful = []
         for number in self._by_bound(bounds, numbers, lambda: kept[-1][0] if len(kept) == k else None):
             upper = kept[-1][0] if len(kept) == k else None
-            found = search(query, self._rooms[number], upper, self.limit)
+            found = search(query, self._rooms[number], upper, limit or self.limit)
             if found.capped:
                 doubtful.append(int(bounds[number]))
             if found.cost is not None:

@@ -18,7 +18,7 @@ from planner_service.commands.rooms import LARGEST_FILE, chosen_layouts
 from planner_service.settings import read_settings
 from planner_service.shelves import open_shelves
 from planner_service.stories import RequestError
-from scene_graphs.checking import validate
+from planner_service.surveying import survey
 from scene_graphs.furniture import ROOM_TYPES
 from scene_graphs.layouts import Layout, LayoutError, read_layouts, write_layouts
 
@@ -58,7 +58,7 @@ def import_layouts(file: Annotated[Path, typer.Argument(help="Rooms: .json, .jso
         shelves.add_layouts(*layouts)
     console = Console(markup=False)
     for layout in layouts:
-        problems = validate(layout)
+        problems = survey(layout).problems
         console.print(f"{layout.id}: {f'{len(problems)} problems' if problems else 'all can be used'}", highlight=False)
         for problem in problems:
             console.print(f"  {problem}", highlight=False)

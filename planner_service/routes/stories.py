@@ -17,6 +17,7 @@ from planner_service.footage import Footage
 from planner_service.making import HOME
 from planner_service.parts import Parts, PartsDep
 from planner_service.presenting import story_shown, story_summary
+from planner_service.routes import rooms
 from planner_service.routes.caching import unchanging
 from planner_service.schemas.stories import CharacterAsk, Json, StoryAsk, StoryPage, StoryShown
 from planner_service.scripts.events import clean
@@ -24,7 +25,7 @@ from planner_service.store.jobs import state_of
 from planner_service.store.stories import Record, Stories, StoryGone
 from planner_service.stories import StoryRequest
 from scene_graphs.homes import Home, home_from_dict
-from scene_graphs.layouts import Layout, LayoutError
+from scene_graphs.layouts import Layout
 
 router = APIRouter(prefix="/v1/stories", tags=["stories"])
 StoryId = Annotated[str, Path(max_length=64, description="The id of a story.")]
@@ -107,17 +108,14 @@ def accept(parts: Parts, request: Request, kind: str, wanted: StoryRequest, body
 def layout_named(parts: Parts, name: str, pointer: str) -> Layout:
     """The room of that id."""
     try:
-        return parts.shelves.layouts().layout(name)
+        return parts.shelves.rooms()[name]
     except KeyError as error:
         raise Unprocessable(pointer, "there is no such room; GET /v1/layouts lists them") from error
 
 
 def home_given(row: Json | None) -> Home | None:
     """The home that a body holds."""
-    try:
-        return None if row is None else home_from_dict(row)
-    except LayoutError as error:
-        raise Unprocessable("/home", str(error)) from error
+    return None if row is None else rooms.home_given(row, "/home")
 
 
 def character_of(ask: CharacterAsk | None) -> Character:

@@ -95,6 +95,10 @@ class ScriptLibrary:
             raise LibraryError(f"id: there is no short script {script_id!r} among the {len(self)} of the library")
         return self._by_id[script_id]
 
+    def find(self, script_id: str) -> ShortScript | None:
+        """The script of that id, or None."""
+        return self._by_id.get(script_id)
+
     def search(self, query: str, k: int = 5, emotion: str | None = None, room: str | None = None) -> tuple[Found, ...]:
         """The k scripts nearest to the query in meaning, nearest first, of one emotion and room if these are given."""
         if emotion is not None and emotion not in EMOTIONS:

@@ -1,0 +1,191 @@
+"""Rooms over HTTP: the native JSON of a layout, what a body can do there, and how well rooms fit a graph."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from planner_service.schemas.layout_graphs import GraphAsk, GraphNode
+from planner_service.schemas.stories import Ask
+from scene_graphs.layouts import MOST_CORNERS, MOST_OBJECTS, MOST_TAGS
+
+Affordance = Literal["sit", "lie", "touch"]
+Name = Annotated[str, Field(min_length=1, max_length=200)]
+Point2 = Annotated[list[float], Field(min_length=2, max_length=2)]
+Point3 = Annotated[list[float], Field(min_length=3, max_length=3)]
+MOST_OPENINGS = 100
+EXAMPLE: dict[str, Any] = {
+    "id": "my-nook",
+    "room_type": "study",
+    "floor_polygon": [[-1.5, -1.5], [-1.5, 1.5], [1.5, 1.5], [1.5, -1.5]],
+    "doors": [{"segment": [[-1.5, -0.4], [-1.5, 0.4]]}],
+    "objects": [
+        {"id": "armchair_1", "category": "armchair", "position": [0.8, 0.0, -0.8], "size": [0.8, 0.9, 0.8], "yaw": 0.0},
+        {"id": "bookshelf_1", "category": "bookshelf", "position": [1.0, 0.0, 1.3], "size": [0.8, 1.9, 0.3], "yaw": 3},
+    ],
+}  # fmt: skip
+
+
+class Opening(Ask):
+    """A door or window."""
+
+    segment: Annotated[list[Point2], Field(min_length=2, max_length=2)] = Field(
+        description="Two [x, z] points on the outline."
+    )
+    bottom: float = Field(0.0, description="Height in metres where the opening begins.")
+    top: float = Field(2.1, description="Height in metres where it ends.")
+
+
+class Piece(Ask):
+    """A piece of furniture."""
+
+    id: Name
+    category: Name = Field(description='A furniture word; synonyms such as "couch" are read as the word we use.')
+    position: Point3 = Field(description="Centre of the bottom face: [x, y, z] in metres, y up.")
+    size: Point3 = Field(description="Width x, height y and depth z in metres, at yaw 0.")
+    yaw: float = Field(0.0, description="Turn about +Y in radians, counter-clockwise from above; 0 faces +Z.")
+    parent: Name | None = Field(None, description="The object it stands on.")
+    mesh: Name | None = Field(None, description="A name of the maker's for its shape; kept, not used.")
+
+
+class LayoutAsk(Ask):
+    """One furnished room in our native format: right-handed, y up, metres, radians."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [EXAMPLE]})
+
+    id: str = Field(min_length=1, max_length=120, description="Letters, digits and _.:- between slashes.")
+    source: Name = Field("user", description="Where the room comes from.")
+    licence: Name = Field("unknown", description="Under which it may be passed on.")
+    room_type: Name = Field(description='"bedroom", "living_room", "dining_room", "study", or another name.')
+    tags: list[Name] = Field([], max_length=MOST_TAGS, description="Every room type it can serve as.")
+    floor_polygon: list[Point2] = Field(
+        min_length=3, max_length=MOST_CORNERS, description="[x, z] corners in order, not closed."
+    )
+    height: float = Field(2.7, description="Metres.")
+    doors: list[Opening] = Field([], max_length=MOST_OPENINGS)
+    windows: list[Opening] = Field([], max_length=MOST_OPENINGS)
+    objects: list[Piece] = Field([], max_length=MOST_OBJECTS)
+
+
+class LayoutLinks(BaseModel):
+    """Where else to ask about a room."""
+
+    self: str
+    scene: str = Field(description="The room as GLB.")
+
+
+class LayoutSummary(BaseModel):
+    """A room in a list."""
+
+    id: str
+    room_type: str
+    tags: list[str]
+    source: str
+    licence: str
+    built_in: bool = Field(description="Whether it is shipped with the service.")
+    area: float = Field(description="Of the floor, in square metres.")
+    objects: int = Field(description="How many pieces of furniture.")
+    furniture: dict[str, int] = Field(description="How many of each category.")
+    links: LayoutLinks
+
+
+class LayoutPage(BaseModel):
+    """Rooms, in the order of their ids."""
+
+    items: list[LayoutSummary]
+    next: str | None = Field(description="The cursor of the next page; null on the last.")
+
+
+class SpotShown(BaseModel):
+    """A place on an object where a body can do one thing, and where it stands before and after."""
+
+    object_id: str
+    affordance: Affordance
+    point: Point3 = Field(description="On the surface: under the pelvis, or where the hand goes.")
+    normal: Point3 = Field(description="Unit, out of the surface.")
+    facing: float = Field(description="Yaw the body looks to; lying: yaw from the pelvis to the head.")
+    standing: Point2 = Field(description="[x, z] of the pelvis standing before and after.")
+    approach: float = Field(description="Yaw of the body at `standing`, just before.")
+    height: Literal["low", "medium", "high"] = Field(description="Of what is touched.")
+    usable: bool = Field(description="Whether a body gets to `standing` from the door and fits there.")
+
+
+class RoomNode(GraphNode):
+    """A piece of furniture in a room's graph."""
+
+    object_id: str
+    minor: bool = Field(description="Whether it is a less important node (SIMS 3.2).")
+
+
+class RoomGraph(BaseModel):
+    """The furniture of a room; an edge joins what stands near each other with nothing between."""
+
+    nodes: list[RoomNode]
+    edges: list[tuple[int, int]] = Field(description="Pairs of places in `nodes`, the smaller first.")
+
+
+class LayoutShown(LayoutAsk):
+    """A room whole: its native JSON, what was found when it was checked, and its graph."""
+
+    id: str
+    built_in: bool
+    area: float = Field(description="Of the floor, in square metres.")
+    problems: list[str] = Field(description="What is wrong with the room, one sentence each; empty: all can be used.")
+    spots: list[SpotShown] = Field(description="Where a body can sit, lie or touch; of each object the usable first.")
+    graph: RoomGraph
+    links: LayoutLinks
+
+
+class RetrieveAsk(Ask):
+    """The furniture that is needed, and in which kinds of room it is looked for."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [
+                {
+                    "graph": {
+                        "nodes": [{"category": "sofa", "instance": 1, "needs": ["sit"]}, {"category": "bookshelf"}],
+                        "edges": [[0, 1]],
+                    },
+                    "k": 3,
+                    "rooms": ["living_room"],
+                }
+            ]
+        }
+    )
+
+    graph: GraphAsk
+    k: int = Field(5, ge=1, le=50, description="How many rooms at most.")
+    rooms: list[Annotated[str, Field(min_length=1, max_length=60)]] = Field(
+        [], max_length=4, description="Room types; empty: any."
+    )
+
+
+class MappedPiece(BaseModel):
+    """What stands in a room for a node of the query."""
+
+    node: int = Field(description="Place in the query's `nodes`.")
+    category: str
+    instance: int
+    object_id: str
+    level: Literal["same", "class", "group"] = Field(description="How near it is to what was asked for.")
+
+
+class LayoutMatch(BaseModel):
+    """How well one room has what was asked for (SIMS 3.2)."""
+
+    layout_id: str
+    room_type: str
+    distance: int = Field(description="Simplified graph edit distance; 0: exactly this.")
+    exact: bool = Field(description="Whether distance and rank are proven.")
+    lower_bound: int
+    mapping: list[MappedPiece]
+    missing: list[int] = Field(description="Places in the query's `nodes` of what the room lacks.")
+    extra: list[str] = Field(description="Ids of objects that the query does not use.")
+
+
+class LayoutMatches(BaseModel):
+    """The nearest rooms, nearest first."""
+
+    matches: list[LayoutMatch]

@@ -1,0 +1,61 @@
+"""Short scripts over HTTP: the words of the library with what belongs to its keeping."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from planner_service.scripts.keyframe import Keyframe, Room, ScriptGraph, Source
+
+EmotionName = Literal["neutral", "happy", "angry", "hurried", "tired", "sad", "stressed", "drunk", "relaxed"]
+RoomName = Room
+EXAMPLE: dict[str, Any] = {
+    "id": "water-the-plant",
+    "summary": "The character waters the plant and sits down content.",
+    "emotion": "relaxed",
+    "room": "living_room",
+    "keyframes": [
+        {"skill": "loco", "emotion": "relaxed", "caption": "stroll", "furniture": "plant"},
+        {"skill": "touch", "emotion": "relaxed", "caption": "right hand waters it", "furniture": "plant"},
+        {"skill": "loco", "emotion": "relaxed", "caption": "stroll", "furniture": "sofa"},
+        {"skill": "sitdown", "emotion": "happy", "caption": "sit content", "furniture": "sofa"},
+    ],
+}
+
+
+class ShortScriptShown(BaseModel):
+    """A few keyframes with one summary: what stories are woven from."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [EXAMPLE | {"source": "authored", "licence": "MIT"}]})
+
+    id: str = Field(description="A slug; the script is at /v1/short-scripts/{id}.")
+    summary: str = Field(description="What happens, in one or a few sentences; by this it is found.")
+    emotion: EmotionName
+    room: RoomName = Field(description="The type of room it plays in.")
+    keyframes: list[Keyframe]
+    graph: ScriptGraph | None = Field(description="Furniture and what belongs together; null: as the keyframes use it.")
+    source: Source = Field(description="How it came to be written.")
+    licence: str = Field(description="Under which it may be passed on.")
+    built_in: bool = Field(description="Whether it is shipped with the service; such a script cannot be deleted.")
+
+
+class ShortScriptPage(BaseModel):
+    """Short scripts, in the order of their ids."""
+
+    items: list[ShortScriptShown]
+    next: str | None = Field(description="The cursor of the next page; null on the last.")
+
+
+class ShortScriptFound(BaseModel):
+    """A short script and how near it is to what was asked."""
+
+    score: float = Field(ge=-1.001, le=1.001, description="Cosine of the angle between the two meanings.")
+    short_script: ShortScriptShown
+
+
+class ShortScriptsFound(BaseModel):
+    """The nearest short scripts, nearest first."""
+
+    items: list[ShortScriptFound]
+    encoder: str = Field(description='What compared the texts: "all-MiniLM-L6-v2", or "hashing" where it is missing.')

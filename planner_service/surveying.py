@@ -1,0 +1,52 @@
+"""What a body can do in a room: problems of the room, and every spot to sit, lie or touch with its standing point."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from math import sqrt
+from typing import Final
+
+import shapely
+
+from scene_graphs.checking import OUT_OF_REACH, RoomCheck
+from scene_graphs.furniture import AFFORDANCES
+from scene_graphs.graph import FurnitureGraph, graph_from_layout
+from scene_graphs.layouts import Layout
+from scene_graphs.surfaces import Spot, spots
+
+MOST_CELLS: Final = 150_000
+"""Cells of the map of a floor: 375 square metres at 5 cm; a larger room is looked at more coarsely."""
+MOST_SPOTS: Final = 8
+"""Of one object for one affordance, the usable ones first."""
+_CELL: Final = 0.05
+
+
+@dataclass(frozen=True, eq=False)
+class Survey:
+    """A room looked over once."""
+
+    problems: tuple[str, ...]
+    """One sentence each: outside the walls, overlaps, blocked doors, what nobody can get to."""
+    spots: tuple[tuple[Spot, bool], ...]
+    """Where a body could sit, lie or touch, object after object, and whether it gets there from the door."""
+    graph: FurnitureGraph
+    """Not to be changed."""
+
+
+@lru_cache(maxsize=256)
+def survey(layout: Layout) -> Survey:
+    """Look a room over; about 0.1 s for an ordinary one, and remembered."""
+    area = shapely.Polygon(layout.floor_polygon).area
+    check = RoomCheck(layout, max(_CELL, sqrt(area / MOST_CELLS)))
+    return Survey(tuple(check.problems()), tuple(_spots(check)), graph_from_layout(layout))
+
+
+def _spots(check: RoomCheck) -> Iterator[tuple[Spot, bool]]:
+    for placed in check.layout.objects:
+        if placed.position[1] >= OUT_OF_REACH:
+            continue
+        for affordance in AFFORDANCES:
+            found = [(spot, check.is_usable(spot)) for spot in spots(placed, affordance)]
+            yield from sorted(found, key=lambda one: not one[1])[:MOST_SPOTS]
