@@ -36,7 +36,7 @@ export class ThemeForm {
     const chips = SUGGESTIONS.map(([name, theme]) => h("button", { type: "button", class: "chip", title: theme, onclick: () => this.#suggest(theme) }, name));
     fill(
       this.element,
-      h("label", { for: "theme", class: "theme-label" }, "What shall be played?"),
+      h("h1", {}, h("label", { for: "theme" }, "What shall be played?")),
       h("div", { class: "theme-box" }, this.#theme, this.#error("/theme", this.#theme)),
       h("div", { class: "chips", role: "group", "aria-label": "Suggestions" }, ...chips),
       this.#options(),
