@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from importlib import import_module
 from importlib.metadata import version
-from importlib.util import find_spec
 from typing import Any, Final
 
 from fastapi import FastAPI
@@ -21,11 +19,22 @@ from planner_service.answering import Unforeseen, register_handlers
 from planner_service.limiting import BodyLimit, Limiting, Rate
 from planner_service.openapi import document
 from planner_service.parts import Parts
-from planner_service.routes import page, service
+from planner_service.routes import (
+    events,
+    layout_graphs,
+    layouts,
+    long_scripts,
+    motions,
+    page,
+    service,
+    short_scripts,
+    stories,
+)
 from planner_service.store.figures import StoreFigures
 from planner_service.telemetry import Figures, Telemetry
 
-ROUTES: Final = ("stories", "events", "motions", "short_scripts", "long_scripts", "layouts", "layout_graphs")
+ROUTES: Final = (stories, events, motions, short_scripts, long_scripts, layouts, layout_graphs, service, page)
+"""In the order in which paths are looked for."""
 
 
 class Service(FastAPI):
@@ -55,11 +64,8 @@ def create_app(parts: Parts) -> FastAPI:
     )
     app.state.parts, app.state.gate, app.state.figures = parts, gate, figures
     register_handlers(app)
-    for name in ROUTES:
-        if find_spec(f"planner_service.routes.{name}"):
-            app.include_router(import_module(f"planner_service.routes.{name}").router)
-    app.include_router(service.router)
-    app.include_router(page.router)
+    for module in ROUTES:
+        app.include_router(module.router)
     app.mount("/assets", page.assets())
     return app
 
