@@ -26,7 +26,7 @@ from planner_service.stories import Studio
 
 POLL: Final = 0.1
 """Seconds between two looks into the queue."""
-PATIENCE: Final = 20.0
+PATIENCE: Final = 8.0
 """Seconds that a worker waits for the one before it, of the same id, to be gone."""
 log = structlog.get_logger("sims.worker")
 

@@ -26,10 +26,15 @@ class RunningService:
     """`sims serve` on a free port; what it writes goes to `log`."""
 
     def __init__(
-        self, folder: Path, workers: int = 1, database_url: str = "", environment: Mapping[str, str] | None = None
+        self,
+        folder: Path,
+        workers: int = 1,
+        database_url: str = "",
+        environment: Mapping[str, str] | None = None,
+        log: Path | None = None,
     ) -> None:
         self.folder, self.workers = folder, workers
-        self.log = folder / "service.log"
+        self.log = log or folder / "service.log"
         given = {name: value for name, value in os.environ.items() if not name.startswith("SIMS_")}
         self.environment = given | {"SIMS_DATABASE_URL": database_url, "OMP_NUM_THREADS": "1"} | dict(environment or {})
         self.process: subprocess.Popen[str] | None = None
@@ -38,7 +43,7 @@ class RunningService:
     def start(self) -> RunningService:
         """Start it, and wait for the line that says it answers."""
         self.folder.mkdir(parents=True, exist_ok=True)
-        command = [sys.executable, "-m", "planner_service.cli", "serve", "--port", "0", "--workers", str(self.workers)]
+        command = self.command("serve", "--port", "0", "--workers", str(self.workers))
         with self.log.open("a") as log:
             self.process = subprocess.Popen(
                 [*command, "--data-dir", str(self.folder)],
@@ -50,6 +55,11 @@ class RunningService:
         assert match, f"the service did not start: {line!r}\n{self.log.read_text()[-3000:]}"
         self.url = match[1]
         return self
+
+    @staticmethod
+    def command(*words: str) -> list[str]:
+        """The command line of `sims`."""
+        return [sys.executable, "-m", "planner_service.cli", *words]
 
     def stop(self) -> int:
         """Ask it to end as an operator does; its exit code."""

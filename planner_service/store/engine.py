@@ -12,8 +12,8 @@ from planner_service.settings import Settings, SettingsError
 from planner_service.store.jobs import SCHEMA
 from planner_service.store.tables import SCHEMA_VERSION, metadata, schema_version
 
-BUSY_MS = 15_000
-"""How long a writer waits for another one's lock on SQLite, before it says that the database is locked."""
+BUSY_MS = 4_000
+"""How long a writer waits for a lock on SQLite before the database counts as busy; workers then try again."""
 STARTING_LOCK = 7_041_500_021
 """PostgreSQL's advisory lock while tables are made."""
 
