@@ -181,7 +181,7 @@ def layout_scene(layout_id: str) -> Call[bytes]:
 
 
 def retrieve_layouts(graph: Json, **options: Any) -> Call[list[Json]]:
-    """The rooms nearest to a furniture graph; options: k, rooms, max_rooms."""
+    """The rooms nearest to a furniture graph; options: k, rooms."""
     return Call("POST", "/v1/layouts/retrieve", _matches, body={"graph": graph} | options)
 
 

@@ -254,6 +254,58 @@ def test_one_who_waits_hears_that_another_cancels(service: RunningService) -> No
     anyio.run(wait)
 
 
+TRUMPET = {
+    "id": "polish-the-trumpet",
+    "summary": "The character sits down on the sofa and polishes a trumpet.",
+    "emotion": "relaxed",
+    "room": "living_room",
+    "keyframes": SIT,
+}
+NOOK = {
+    "room_type": "study",
+    "floor_polygon": [[-1.5, -1.5], [-1.5, 1.5], [1.5, 1.5], [1.5, -1.5]],
+    "doors": [{"segment": [[-1.5, -0.4], [-1.5, 0.4]]}],
+    "objects": [
+        {"id": "armchair_1", "category": "armchair", "position": [0.8, 0, -0.8], "size": [0.8, 0.9, 0.8], "yaw": 0}
+    ],
+}
+
+
+def test_short_scripts_are_found_added_and_removed(client: Client) -> None:
+    known = client.search_short_scripts("cannot sleep at night", k=3, emotion="tired")
+    assert [one["score"] for one in known] == sorted((one["score"] for one in known), reverse=True)
+    assert {one["short_script"]["emotion"] for one in known} == {"tired"}
+    assert not client.add_short_script(TRUMPET)["built_in"]
+    with pytest.raises(ApiError, match="409"):
+        client.add_short_script(TRUMPET)
+    assert client.short_script("polish-the-trumpet")["summary"] == TRUMPET["summary"]
+    plan = client.long_script("He polishes his trumpet.", seed=1)
+    assert "polish-the-trumpet" in [one["script"]["id"] for one in plan["short_scripts"]]
+    client.delete_short_script("polish-the-trumpet")
+    page = client.short_scripts(limit=100, room="study")
+    assert {one["room"] for one in page} == {"study"}
+
+
+def test_rooms_are_found_added_and_played_in(client: Client) -> None:
+    added = client.add_layout(NOOK | {"id": "house/nook:1"})
+    assert added["problems"] == []
+    assert client.layout("house/nook:1")["graph"] == added["graph"]
+    assert client.layout_scene("house/nook:1")[:4] == b"glTF"
+    keyframes = [{"skill": "sitdown", "caption": "sit down", "furniture": "armchair"}]
+    played = client.wait(client.act(keyframes, layout_id="house/nook:1").id, PATIENCE)
+    assert played.keyframes[-1]["object_id"] == "0/armchair_1"
+    seen = client.layouts(limit=5)
+    assert [one["id"] for one in client.layouts(5, seen.next)] > [one["id"] for one in seen]
+
+
+def test_graphs_are_merged_and_rooms_retrieved(client: Client) -> None:
+    graph = {"nodes": [{"category": "sofa", "needs": ["sit"]}, {"category": "bookshelf"}], "edges": [[0, 1]]}
+    merged = client.merge_graphs([graph, graph], method="aligned")
+    assert {node["category"] for node in merged["graph"]["nodes"]} == {"sofa", "bookshelf"}
+    matches = client.retrieve_layouts(graph, k=3)
+    assert [match["distance"] for match in matches] == sorted(match["distance"] for match in matches)
+
+
 @contextmanager
 def cutting(url: str, budgets: Iterator[int | None], port: int = 0) -> Iterator[str]:
     """A way to a service that breaks off: each connection after so many bytes of answers."""
