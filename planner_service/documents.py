@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import asdict, fields
 from typing import Any
 
-import networkx as nx
 import numpy as np
 
 from motion_backend.motion import Action, BodyState, Character, Posture, Skill
@@ -19,7 +18,7 @@ from planner_service.scripts.keyframe import Keyframe, LongScript
 from planner_service.scripts.narrating import Span, Told
 from planner_service.stories import StoryRequest
 from scene_graphs.furniture import Furniture
-from scene_graphs.graph import FurnitureGraph
+from scene_graphs.graph import FurnitureGraph, graph_from_parts
 from scene_graphs.homes import home_from_dict, home_to_dict
 from scene_graphs.layouts import layout_from_dict, layout_to_dict
 from scene_graphs.surfaces import Spot
@@ -66,7 +65,7 @@ def furnished_to_dict(stage: Furnished) -> Json:
         "home": home_to_dict(stage.home),
         "matches": [asdict(match) for match in stage.matches],
         "places": [[place.room, place.object_id] for place in stage.places],
-        "graphs": {room: _graph_to_dict(graph) for room, graph in stage.graphs.items()},
+        "graphs": {room: graph_to_dict(graph) for room, graph in stage.graphs.items()},
     }
 
 
@@ -81,23 +80,8 @@ def furnished_from_dict(row: Json) -> Furnished:
         home=home_from_dict(row["home"]),
         matches=tuple(RoomMatch(**match) for match in matches),
         places=tuple(Place(room, object_id) for room, object_id in row["places"]),
-        graphs={room: _graph_from_dict(graph) for room, graph in row["graphs"].items()},
+        graphs={room: graph_from_dict(graph) for room, graph in row["graphs"].items()},
     )
-
-
-def _graph_to_dict(graph: FurnitureGraph) -> Json:
-    nodes = sorted(graph)
-    numbers = {node: number for number, node in enumerate(nodes)}
-    edges = sorted(sorted((numbers[a], numbers[b])) for a, b in graph.edges)
-    return {"nodes": [[node.category, node.instance] for node in nodes], "edges": edges}
-
-
-def _graph_from_dict(row: Json) -> FurnitureGraph:
-    graph: FurnitureGraph = nx.Graph()
-    nodes = [Furniture(category, instance) for category, instance in row["nodes"]]
-    graph.add_nodes_from(nodes)
-    graph.add_edges_from((nodes[a], nodes[b]) for a, b in row["edges"])
-    return graph
 
 
 def told_to_dict(told: Told) -> Json:

@@ -15,6 +15,7 @@ from scene_graphs.furniture import ROOM_TYPES, canonical_room, display_name
 from scene_graphs.graph import FurnitureGraph, graph_from_layout, graph_from_uses
 from scene_graphs.homes import Home, home_from_layouts
 from scene_graphs.layouts import Layout
+from scene_graphs.library import built_in_layouts
 from scene_graphs.merging import merge
 from scene_graphs.retrieval import LayoutIndex, retrieve_rooms
 
@@ -119,7 +120,9 @@ def furnish(
         home = home_from_layouts(unique, seed)
     number = {room: unique.index(layout) for room, (layout, _) in chosen.items()}
     # Our own rooms were checked when they were made; in a user's room a chair may stand where nobody gets to.
-    placing = Placing(home, uses, number, usable_offers(home) if layouts else {})
+    checked = {layout.id: layout for layout in built_in_layouts()}
+    are_ours = not layouts and all(checked.get(layout.id) is layout for layout in unique)
+    placing = Placing(home, uses, number, {} if are_ours else usable_offers(home))
     try:
         places = placing.places(script, [_room_of(keyframe, wanted) for keyframe in script.keyframes])
     except MissingError as error:

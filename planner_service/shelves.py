@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from threading import RLock
@@ -15,6 +16,8 @@ from planner_service.scripts.keyframe import ShortScript
 from planner_service.scripts.library import Features, LibraryError, ScriptLibrary, built_in
 from planner_service.scripts.mending import Problem
 from planner_service.store.keeping import AbsentError, FixedError, FullError, Kept, ShelfError, TakenError
+from planner_service.surveying import survey
+from scene_graphs.grounding import Offers
 from scene_graphs.layouts import Layout, LayoutError, layout_from_dict, layout_to_dict, read_layouts
 from scene_graphs.library import built_in_layouts
 from scene_graphs.retrieval import LayoutIndex
@@ -46,6 +49,23 @@ class UnfitError(LibraryError):
         self.script, self.problems = script, problems
 
 
+@dataclass(frozen=True)
+class _Room:
+    """A room, and what its objects can really be used for where that was found out."""
+
+    layout: Layout
+    usable: Offers = field(default_factory=dict)
+
+
+@dataclass
+class _Floor:
+    """All rooms at one moment, and their index once it was asked for."""
+
+    rooms: Mapping[str, _Room]
+    layouts: Mapping[str, Layout]
+    index: LayoutIndex | None = None
+
+
 class Shelves:
     """Scripts and rooms, loaded on first use and read again when another process or thread has changed them.
 
@@ -60,9 +80,10 @@ class Shelves:
         self.layouts_file = layouts_file
         self._features = Features(cache=cache)
         self._scripts = Kept(engine, "short_scripts", _read_script, lambda: {one.id: one for one in built_in()})
-        self._rooms = Kept(engine, "layouts", _read_layout, self._fixed_rooms)
+        self._rooms = Kept(engine, "layouts", _read_room, self._fixed_rooms)
         self._library: tuple[Mapping[str, ShortScript], ScriptLibrary] | None = None
-        self._index: tuple[Mapping[str, Layout], LayoutIndex] | None = None
+        self._floor: _Floor | None = None
+        self._known: LayoutIndex | None = None
         self._lock = RLock()
 
     def scripts(self) -> ScriptLibrary:
@@ -75,16 +96,24 @@ class Shelves:
 
     def rooms(self) -> Mapping[str, Layout]:
         """The rooms as they are now, by id; quicker than `layouts`, where none is to be searched for."""
-        return self._rooms.now()
+        return self._floor_now().layouts
 
     def layouts(self) -> LayoutIndex:
         """The rooms as they are now, ready to be searched."""
+        floor = self._floor_now()
+        with self._lock:
+            if floor.index is None:
+                usable = {name: room.usable for name, room in floor.rooms.items() if room.usable}
+                floor.index = LayoutIndex(tuple(floor.layouts.values()), known=self._known, usable=usable)
+                self._known = floor.index
+            return floor.index
+
+    def _floor_now(self) -> _Floor:
         rooms = self._rooms.now()
         with self._lock:
-            if self._index is None or self._index[0] is not rooms:
-                known = self._index[1] if self._index else None
-                self._index = rooms, LayoutIndex(tuple(rooms.values()), known=known)
-            return self._index[1]
+            if self._floor is None or self._floor.rooms is not rooms:
+                self._floor = _Floor(rooms, {name: room.layout for name, room in rooms.items()})
+            return self._floor
 
     def add_scripts(self, *scripts: ShortScript) -> None:
         """Keep scripts, all or none of them; they are in the database before this returns.
@@ -116,7 +145,9 @@ class Shelves:
                 raise ShelfError(f"id: {layout.id!r:.80} is no id of a room; use at most {LONGEST_ID} {like}")
             if layout.id in self._rooms.fixed or layout.id in rows:
                 raise TakenError(f"id: there is a room {layout.id!r} already; choose another id")
-            body = json.dumps(layout_to_dict(layout), separators=(",", ":"), allow_nan=False)
+            usable = {name: sorted(found) for name, found in survey(layout).usable.items()}
+            whole = {"layout": layout_to_dict(layout), "usable": usable}
+            body = json.dumps(whole, separators=(",", ":"), allow_nan=False)
             rows[layout.id] = {"body": body, "room_type": layout.room_type}
         self._rooms.put(rows, MOST_LAYOUTS, "room")
 
@@ -136,13 +167,13 @@ class Shelves:
     def _ours(self) -> Mapping[str, Layout]:
         return {layout.id: layout for layout in built_in_layouts()}
 
-    def _fixed_rooms(self) -> dict[str, Layout]:
+    def _fixed_rooms(self) -> dict[str, _Room]:
         fixed = dict(self._ours)
         for layout in read_layouts(self.layouts_file) if self.layouts_file else ():
             if layout.id in fixed:
                 raise LayoutError(f"{self.layouts_file}: {layout.id!r} is the id of a built-in room; choose another id")
             fixed[layout.id] = layout
-        return fixed
+        return {name: _Room(layout) for name, layout in fixed.items()}
 
 
 def open_shelves(settings: Settings, *, writes: bool = False) -> Shelves:
@@ -166,5 +197,7 @@ def _read_script(script_id: str, body: str) -> ShortScript:
         raise LibraryError(f"database: short script {script_id!r} cannot be read: {error}") from error
 
 
-def _read_layout(layout_id: str, body: str) -> Layout:
-    return layout_from_dict(json.loads(body), f"database: room {layout_id!r}")
+def _read_room(layout_id: str, body: str) -> _Room:
+    row = json.loads(body)
+    usable = {name: frozenset(found) for name, found in row["usable"].items()}
+    return _Room(layout_from_dict(row["layout"], f"database: room {layout_id!r}"), usable)

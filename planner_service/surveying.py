@@ -34,6 +34,15 @@ class Survey:
     graph: FurnitureGraph
     """Not to be changed."""
 
+    @property
+    def usable(self) -> dict[str, frozenset[str]]:
+        """What each object can really be used for, by its id."""
+        found = {str(node["object_id"]): set[str]() for _, node in self.graph.nodes(data=True)}
+        for spot, usable in self.spots:
+            if usable and spot.object_id in found:
+                found[spot.object_id].add(spot.affordance)
+        return {name: frozenset(affordances) for name, affordances in found.items()}
+
 
 @lru_cache(maxsize=256)
 def survey(layout: Layout) -> Survey:

@@ -15,6 +15,7 @@ from scene_graphs.costs import CostTable, Key, Level
 from scene_graphs.distance import all_terms, check_size, pairs_of
 from scene_graphs.furniture import Furniture, canonical_room, display_name, is_minor
 from scene_graphs.graph import FurnitureGraph, graph_from_layout
+from scene_graphs.grounding import Offers
 from scene_graphs.layouts import Layout
 
 VARIETY: Final = 4
@@ -63,8 +64,12 @@ class LayoutIndex:
         limit: int = NODE_LIMIT,
         first_stage: int = 64,
         known: LayoutIndex | None = None,
+        usable: Mapping[str, Offers] | None = None,
     ) -> None:
         """Index rooms; what an earlier index `known` made of the same rooms is used again.
+
+        `usable` overrules, by the ids of rooms and objects, what objects can be used for, such as when one stands where
+        nobody gets to.
 
         ValueError if two share an id, or `first_stage`, the rooms verified at first, is below 1.
         """
@@ -77,7 +82,10 @@ class LayoutIndex:
             raise ValueError("layouts must have different ids; give every room its own")
         self.costs = costs or CostTable()
         self.limit, self.first_stage = limit, first_stage
-        coded = [_coded(layout) if known is None else known._coded_of(layout) for layout in self.layouts]
+        coded = [
+            (None if known is None else known._coded_of(layout)) or _coded(layout, (usable or {}).get(layout.id, {}))
+            for layout in self.layouts
+        ]
         self._graphs, self._rooms = [graph for graph, _ in coded], [room for _, room in coded]
         self._columns = _count_columns(self._rooms)
         self._bases = np.array([room.base(self.costs) for room in self._rooms], dtype=np.int64)
@@ -88,11 +96,11 @@ class LayoutIndex:
             raise KeyError(f"no layout {layout_id!r} among the {len(self.layouts)} that are indexed")
         return self.layouts[self._numbers[layout_id]]
 
-    def _coded_of(self, layout: Layout) -> tuple[FurnitureGraph, CodedRoom]:
-        """What was made of a room, or is made now where it is not this very room that is indexed."""
+    def _coded_of(self, layout: Layout) -> tuple[FurnitureGraph, CodedRoom] | None:
+        """What was made of a room, if it is this very room that is indexed."""
         number = self._numbers.get(layout.id)
         if number is None or self.layouts[number] is not layout:
-            return _coded(layout)
+            return None
         return self._graphs[number], self._rooms[number]
 
     def of_type(self, room_type: str | None) -> NDArray[np.intp]:
@@ -237,8 +245,10 @@ def _varied(found: Sequence[LayoutMatch], seed: int) -> LayoutMatch:
     return good[int(np.random.default_rng(seed).integers(len(good)))]
 
 
-def _coded(layout: Layout) -> tuple[FurnitureGraph, CodedRoom]:
+def _coded(layout: Layout, usable: Offers) -> tuple[FurnitureGraph, CodedRoom]:
     graph = graph_from_layout(layout)
+    for _, node in graph.nodes(data=True):
+        node["offers"] = usable.get(str(node["object_id"]), node["offers"])
     return graph, CodedRoom.of(graph)
 
 

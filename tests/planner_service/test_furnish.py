@@ -63,7 +63,7 @@ def test_a_substitution_is_said() -> None:
         ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)),
         objects=(Placed("a", "stool", (2.0, 0.0, 2.0), (0.45, 0.45, 0.45)),),
     )
-    found = furnish(script(("sitdown", "dining chair", "bedroom")), index(), layouts=[room])
+    found = furnish(script(("sitdown", "dining chair", "bedroom")), index(), given=[room])
     assert found.places[0].object_id == "0/a"
     assert found.matches[0].substitutions == (("dining chair", "stool", "class"),)
     assert "dining chair → stool" in found.explain()[0]
@@ -79,7 +79,7 @@ def test_a_users_room_without_the_very_thing_lends_another_and_says_so() -> None
             Placed("table", "dining_table", (1.0, 0.0, 1.0), (1.2, 0.75, 0.8)),
         ),
     )
-    found = furnish(script(("touch", "cabinet", "bedroom"), ("liedown", "bed", "bedroom")), index(), layouts=[room])
+    found = furnish(script(("touch", "cabinet", "bedroom"), ("liedown", "bed", "bedroom")), index(), given=[room])
     assert [place.object_id for place in found.places] == ["0/table", "0/bed"]
     assert ("cabinet", "dining table", "affordance") in found.matches[0].substitutions
     assert "cabinet" not in found.matches[0].missing
@@ -93,14 +93,14 @@ def test_a_users_chair_that_nobody_can_get_to_is_not_used() -> None:
     ]
     free = Placed("free", "dining_chair", (3.0, 0.0, 3.0), (0.45, 0.9, 0.5))
     room = Layout("mine", "bedroom", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)), objects=(corner, *guard, free))
-    found = furnish(script(("sitdown", "chair", "bedroom")), index(), layouts=[room])
+    found = furnish(script(("sitdown", "chair", "bedroom")), index(), given=[room])
     assert found.places[0].object_id == "0/free"
 
 
 def test_what_nothing_can_stand_for_is_an_error_that_names_it() -> None:
     empty = Layout("bare", "bedroom", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)))
     with pytest.raises(FurnishError, match="no bed to lie"):
-        furnish(script(("liedown", "bed", "bedroom")), index(), layouts=[empty])
+        furnish(script(("liedown", "bed", "bedroom")), index(), given=[empty])
 
 
 @pytest.mark.parametrize("rooms", [["cellar"], ["bedroom"] * 5])
