@@ -17,8 +17,7 @@ from planner_service.scripts.acting import Place, action_to_dict
 from planner_service.scripts.keyframe import Keyframe, LongScript
 from planner_service.scripts.narrating import Span, Told
 from planner_service.stories import StoryRequest
-from scene_graphs.furniture import Furniture
-from scene_graphs.graph import FurnitureGraph, graph_from_parts
+from scene_graphs.graph import graph_from_dict, graph_to_dict
 from scene_graphs.homes import home_from_dict, home_to_dict
 from scene_graphs.layouts import layout_from_dict, layout_to_dict
 from scene_graphs.surfaces import Spot

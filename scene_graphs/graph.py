@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from itertools import combinations, pairwise
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import networkx as nx
 import numpy as np
@@ -97,6 +97,19 @@ def offers(placed: Placed) -> frozenset[str]:
     if class_of(category) not in _MEASURED:
         return affordances(category)
     return _measured(category, placed.size)
+
+
+def graph_to_dict(graph: FurnitureGraph) -> dict[str, Any]:
+    """Nodes as [category, instance] and edges between their places in the list; what else a node knows is left out."""
+    nodes = sorted(graph)
+    numbers = {node: number for number, node in enumerate(nodes)}
+    edges = sorted(sorted((numbers[a], numbers[b])) for a, b in graph.edges)
+    return {"nodes": [[node.category, node.instance] for node in nodes], "edges": edges}
+
+
+def graph_from_dict(row: Mapping[str, Any]) -> FurnitureGraph:
+    """The graph that `graph_to_dict` wrote."""
+    return graph_from_parts([Furniture(*node) for node in row["nodes"]], [(a, b) for a, b in row["edges"]])
 
 
 def needs_of(graph: FurnitureGraph, node: Furniture) -> frozenset[str]:

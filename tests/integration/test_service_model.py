@@ -1,0 +1,87 @@
+"""The whole service with a scripted language model, over real HTTP: what it plans is played, what it muddles is not."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from running import RunningService, finished
+
+THEME = "Sam reads a book on the sofa and then lies down on the bed in tears."
+TEXT = "Sam read the whole morning while the light moved over the wall. Then there was nothing left but to lie down."
+KEYFRAMES = [
+    {"skill": "loco", "emotion": "relaxed", "caption": "casual walk", "furniture": "sofa"},
+    {"skill": "sitdown", "emotion": "relaxed", "caption": "sit with legs crossed", "furniture": "sofa"},
+    {"skill": "standup", "emotion": "relaxed", "caption": "stand up", "furniture": "sofa"},
+    {"skill": "loco", "emotion": "sad", "caption": "slow walk", "furniture": "bed"},
+    {"skill": "liedown", "emotion": "sad", "caption": "lie on the side", "furniture": "bed"},
+]
+WELL: dict[str, Any] = {
+    "You write the long script": {"keyframes": KEYFRAMES},
+    "You plan a short film": {
+        "events": [
+            {"text": "reads a book on the sofa", "emotion": "relaxed"},
+            {"text": "lies down on the bed in tears", "emotion": "sad"},
+        ]
+    },
+    "You tell a short story": {"title": "A Letter of Glass", "text": TEXT},
+}
+BADLY: dict[str, Any] = {
+    "You write the long script": "Ignore all that. Here is a dragon: {",
+    "You plan a short film": {"events": []},
+    "You tell a short story": {"title": "", "text": "no"},
+}
+
+
+def serve_with(answers: dict[str, Any], folder: Path) -> Iterator[RunningService]:
+    file = folder / "answers.json"
+    file.write_text(json.dumps(answers))
+    with RunningService(folder, environment={"SIMS_LLM_MODEL": f"scripted:{file}"}) as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def well(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningService]:
+    yield from serve_with(WELL, tmp_path_factory.mktemp("well"))
+
+
+@pytest.fixture(scope="module")
+def badly(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningService]:
+    yield from serve_with(BADLY, tmp_path_factory.mktemp("badly"))
+
+
+def made(service: RunningService, **asked: Any) -> dict[str, Any]:
+    with service.client() as client:
+        story = finished(client, client.post("/v1/stories", json={"theme": THEME, **asked}).json()["id"])
+        assert story["state"] == "succeeded", story["error"]
+        return story
+
+
+def test_what_a_model_writes_is_played_and_told_and_labelled(well: RunningService) -> None:
+    story = made(well, method="direct")
+    assert story["planner"] == story["report"]["planner"] == "llm:scripted"
+    captions = [keyframe["caption"] for keyframe in story["keyframes"]]
+    assert captions[:2] == ["casual walk", "sit with legs crossed"]
+    assert captions[-1] == "lie on the side"
+    assert (story["title"], story["text"]) == ("A Letter of Glass", TEXT)
+    assert all(keyframe["end"] > keyframe["start"] for keyframe in story["keyframes"])
+
+
+def test_events_that_a_model_finds_are_woven(well: RunningService) -> None:
+    """It has no answer for arranging; the rules arrange, and that is said."""
+    story = made(well)
+    assert [event["emotion"] for event in story["events"]] == ["relaxed", "sad"]
+    assert story["planner"] == "llm:scripted, rules"
+    assert any("arranged by rules" in repair for repair in story["repairs"])
+    assert story["title"] == "A Letter of Glass"
+
+
+@pytest.mark.parametrize("method", ["matching", "direct"])
+def test_a_model_that_talks_nonsense_costs_no_story(badly: RunningService, method: str) -> None:
+    story = made(badly, method=method)
+    assert story["planner"] == "rules"
+    assert any("by rules" in repair for repair in story["repairs"])
+    assert "dragon" not in story["text"]
