@@ -8,8 +8,6 @@ from functools import lru_cache
 from math import sqrt
 from typing import Final
 
-import shapely
-
 from scene_graphs.checking import OUT_OF_REACH, RoomCheck
 from scene_graphs.furniture import AFFORDANCES
 from scene_graphs.graph import FurnitureGraph, graph_from_layout
@@ -47,8 +45,7 @@ class Survey:
 @lru_cache(maxsize=256)
 def survey(layout: Layout) -> Survey:
     """Look a room over; about 0.1 s for an ordinary one, and remembered."""
-    area = shapely.Polygon(layout.floor_polygon).area
-    check = RoomCheck(layout, max(_CELL, sqrt(area / MOST_CELLS)))
+    check = RoomCheck(layout, max(_CELL, sqrt(layout.area / MOST_CELLS)))
     return Survey(tuple(check.problems()), tuple(_spots(check)), graph_from_layout(layout))
 
 

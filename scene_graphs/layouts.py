@@ -141,6 +141,11 @@ class Layout:
     source: str = "generated"
     licence: str = "MIT"
 
+    @cached_property
+    def area(self) -> float:
+        """Of the floor, in square metres."""
+        return float(shapely.Polygon(self.floor_polygon).area)
+
     def object(self, object_id: str) -> Placed:
         """The object of that id, or KeyError naming the ids there are."""
         for placed in self.objects:

@@ -9,7 +9,6 @@ from importlib.metadata import version
 from typing import Annotated, Final, Literal
 from urllib.parse import quote
 
-import shapely
 from fastapi import APIRouter, Path, Query, Request, Response
 
 from motion_backend.formats.glb import scene_glb
@@ -142,7 +141,7 @@ def _kept(parts: Parts, layout: Layout) -> Json:
     path = _path(layout.id)
     return {
         "built_in": parts.shelves.is_fixed_room(layout),
-        "area": round(shapely.Polygon(layout.floor_polygon).area, 2),
+        "area": round(layout.area, 2),
         "links": {"self": path, "scene": f"{path}/scene.glb"},
     }
 
