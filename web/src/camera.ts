@@ -9,15 +9,15 @@ export type CameraMode = "follow" | "orbit";
 const REST = 8;
 /** Radians a second at most. */
 const FASTEST = 0.55;
-/** How far from straight ahead the body is seen, radians. */
-const ASIDE = 0.75;
 const NEAR = 4.1;
 
 export class CameraMan {
   readonly camera = new PerspectiveCamera(38, 1, 0.05, 200);
   readonly controls: OrbitControls;
-  /** Whether the camera may move by itself. */
+  /** Whether the camera must not swing by itself. */
   calm = false;
+  /** How far from straight ahead the body is seen, radians. */
+  aside = 0.75;
   #mode: CameraMode = "orbit";
   #centre = new Vector3(0, 0.8, 0);
   #reach = 6;
@@ -55,7 +55,7 @@ export class CameraMan {
     this.#mode = mode;
     this.#touched = -Infinity;
     if (mode === "orbit") this.#overview();
-    else this.#stand(body, heading + ASIDE);
+    else this.#stand(body, heading + this.aside);
   }
 
   /** Note that somebody moves the camera by hand. */
@@ -120,8 +120,8 @@ export class CameraMan {
 
   /** How far the camera is from the nearer side of the body's front, radians. */
   #miss(heading: number): number {
-    const left = angle(heading + ASIDE - this.#orb.theta);
-    const right = angle(heading - ASIDE - this.#orb.theta);
+    const left = angle(heading + this.aside - this.#orb.theta);
+    const right = angle(heading - this.aside - this.#orb.theta);
     return Math.abs(left) < Math.abs(right) ? left : right;
   }
 

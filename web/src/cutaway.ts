@@ -61,7 +61,7 @@ export class Cutaway {
       const whole = next === goal && goal > STUMP;
       for (const part of this.#parts) if (part.wall === index) setCut(part, whole ? FULL : part.vanishes ? next - 2 * STUMP : next);
       this.#caps[index]!.visible = !whole;
-      this.#caps[index]!.position.y = next;
+      this.#caps[index]!.position.y = next + 0.003;
     }
     return moving;
   }

@@ -1,6 +1,6 @@
 /** The film: stage, curtain, subtitle, plan and controls, kept in time by one clock. */
 
-import { getGlb, getHome, motionUrl, sceneUrl, type Keyframe, type Story } from "./api";
+import { getGlb, getHome, motionUrl, sceneUrl, type Keyframe, type Skill, type Story } from "./api";
 import { color, isDark, isStill, onAppearance } from "./appearance";
 import type { CameraMode } from "./camera";
 import { Controls } from "./controls";
@@ -16,6 +16,8 @@ import { Timeline } from "./timeline";
 import { keyframeAt } from "./timing";
 
 const FPS = 30;
+/** From where each skill is seen best, radians from straight ahead: what is touched stands in front of the body. */
+const ASIDE: Readonly<Record<Skill, number>> = { touch: 2, loco: 0.85, sitdown: 0.7, standup: 0.7, getup: 0.7, liedown: 0.7 };
 
 export class Film {
   readonly element = h("section", { class: "theatre", "aria-label": "Film" });
@@ -203,6 +205,7 @@ export class Film {
     this.#opened = true;
     this.reel.track.sample(this.player.time, this.#pose);
     this.#stage?.pose(this.#pose);
+    this.#tick();
     this.#stage?.setMode(this.#mode);
     this.#arch.classList.remove("closed");
     if (!isStill()) this.player.play();
@@ -250,6 +253,7 @@ export class Film {
       this.#subtitle.dataset["emotion"] = emotionOf(keyframe.emotion);
       fill(this.#subtitle, h("small", {}, keyframe.emotion), h("span", {}, keyframe.caption));
     }
+    if (keyframe && this.#stage) this.#stage.cameraMan.aside = ASIDE[keyframe.skill];
     this.#map.show(keyframe?.object_id ?? null);
     this.#mood();
     this.#shown(index);

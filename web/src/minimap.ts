@@ -15,9 +15,18 @@ interface Piece {
   readonly top: number;
 }
 
+interface Label {
+  readonly name: string;
+  readonly x: number;
+  readonly y: number;
+  readonly half: number;
+}
+
 /** Frames of the way that are shown behind the body. */
 const TRAIL = 240;
 const MARGIN = 0.35;
+/** What hangs higher than this is not drawn: it would hide what stands below, metres. */
+const HANGING = 1.3;
 /** From this many pixels a metre on, furniture is named without being asked. */
 const NAMED = 46;
 
@@ -52,7 +61,7 @@ export class MiniMap {
     this.#home = home;
     this.#rooms = outlines(home);
     this.#pieces = home.rooms.flatMap((room, index) =>
-      room.layout.objects.map((object) => {
+      room.layout.objects.filter((object) => object.position[1] < HANGING).map((object) => {
         const [w, , d] = object.size;
         const at = (x: number, z: number): Point2 => {
           const [dx, dz] = toHome([x, z], { offset: [0, 0, 0], yaw: object.yaw });
@@ -119,7 +128,15 @@ export class MiniMap {
       const lit = piece.id === this.#target;
       trace(ink, piece.corners.map((p) => this.#at(p)), color(lit ? "--lamp" : rug ? "--map-rug" : "--map-piece"), color("--map-line"), rug ? 0 : 0.75);
     }
-    if (this.#scale >= NAMED) for (const piece of this.#pieces) if (piece.top >= 0.03) this.#name(ink, piece);
+    const taken: Label[] = [];
+    const large = this.#scale >= NAMED ? this.#pieces.filter((piece) => piece.top >= 0.03) : [];
+    for (const piece of large) {
+      const label = this.#label(ink, piece);
+      // What finds no room for its name tells it when it is pointed at.
+      if (taken.some((other) => Math.abs(other.x - label.x) < other.half + label.half && Math.abs(other.y - label.y) < 17)) continue;
+      taken.push(label);
+      this.#name(ink, label);
+    }
     this.#draw();
   }
 
@@ -153,7 +170,7 @@ export class MiniMap {
     ink.drawImage(this.#still, 0, 0, width, height);
     if (this.#last) this.#drawBody(ink, this.#last);
     const pointed = this.#pieces.find((piece) => piece.id === this.#pointed);
-    if (pointed && this.#scale < NAMED) this.#name(ink, pointed);
+    if (pointed) this.#name(ink, this.#label(ink, pointed));
   }
 
   #drawBody(ink: CanvasRenderingContext2D, { pose, track, frame }: { pose: Pose; track: Track; frame: number }): void {
@@ -187,20 +204,23 @@ export class MiniMap {
     ink.stroke();
   }
 
-  #name(ink: CanvasRenderingContext2D, piece: Piece): void {
-    const middle: Point2 = [(piece.corners[0]![0] + piece.corners[2]![0]) / 2, (piece.corners[0]![1] + piece.corners[2]![1]) / 2];
-    const [x, y] = this.#at(middle);
+  /** Where the name of a piece is written: over its middle, but not outside the picture. */
+  #label(ink: CanvasRenderingContext2D, { name, corners }: Piece): Label {
+    const [x, y] = this.#at([(corners[0]![0] + corners[2]![0]) / 2, (corners[0]![1] + corners[2]![1]) / 2]);
     ink.font = "600 11px system-ui, sans-serif";
+    const half = ink.measureText(name).width / 2 + 4;
+    return { name, half, y, x: Math.min(Math.max(x, half), Math.max(this.element.clientWidth - half, half)) };
+  }
+
+  #name(ink: CanvasRenderingContext2D, { name, x, y, half }: Label): void {
     ink.textAlign = "center";
     ink.textBaseline = "middle";
-    const half = ink.measureText(piece.name).width / 2 + 4;
-    const at = Math.min(Math.max(x, half), Math.max(this.element.clientWidth - half, half));
     ink.fillStyle = color("--map-label");
     ink.beginPath();
-    ink.roundRect(at - half, y - 8, 2 * half, 16, 4);
+    ink.roundRect(x - half, y - 8, 2 * half, 16, 4);
     ink.fill();
     ink.fillStyle = color("--ink");
-    ink.fillText(piece.name, at, y + 0.5);
+    ink.fillText(name, x, y + 0.5);
   }
 }
 

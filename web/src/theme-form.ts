@@ -3,6 +3,7 @@
 import { ApiError, postStory, type NewStory, type Story } from "./api";
 import { fill, h } from "./dom";
 import { announce } from "./live";
+import { capital } from "./words";
 
 const LONGEST = 2000;
 const SUGGESTIONS: readonly (readonly [string, string])[] = [
@@ -162,7 +163,7 @@ export class ThemeForm {
 
   #announce(error: ApiError): void {
     const again = h("button", { type: "button", class: "plain", onclick: () => void this.#send() }, "Try again");
-    fill(this.#problem, h("p", {}, h("b", {}, sentence(error.title)), " ", error.detail), again);
+    fill(this.#problem, h("p", {}, h("b", {}, sentence(error.title)), " ", error.detail && sentence(error.detail)), again);
     this.#problem.hidden = false;
     if (error.retryAfter === null) return;
     let left = Math.ceil(error.retryAfter);
@@ -191,7 +192,7 @@ function choices(name: string, items: readonly (readonly [string, string])[], ty
 }
 
 function sentence(text: string): string {
-  const trimmed = text.trim();
+  const trimmed = capital(text.trim());
   return /[.!?…]$/.test(trimmed) ? trimmed : `${trimmed}.`;
 }
 

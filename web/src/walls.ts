@@ -48,16 +48,32 @@ export function contains(polygon: readonly Point2[], [x, z]: Point2): boolean {
   return inside;
 }
 
+/** Room that the body is given on both sides, metres, and the share of the way to it that must be free there. */
+const ELBOW = 0.8;
+const BEFORE = 0.8;
+
 /** Whether a wall hides the room or the body from the eye: it is seen from outside, or stands between the two. */
 export function hides(wall: WallSide, eye: Point2, body: Point2): boolean {
   const middle: Point2 = [(wall.a[0] + wall.b[0]) / 2, (wall.a[1] + wall.b[1]) / 2];
-  const outside = (eye[0] - middle[0]) * wall.out[0] + (eye[1] - middle[1]) * wall.out[1];
-  return outside > 0.02 || crosses(wall.a, wall.b, eye, body);
+  if ((eye[0] - middle[0]) * wall.out[0] + (eye[1] - middle[1]) * wall.out[1] > 0.02) return true;
+  const sight = Math.hypot(body[0] - eye[0], body[1] - eye[1]) || 1;
+  const aside: Point2 = [(-ELBOW * (body[1] - eye[1])) / sight, (ELBOW * (body[0] - eye[0])) / sight];
+  // A wall that the body stands close to stays, so beside the body only what is well before it counts.
+  return [[0, 1], [1, BEFORE], [-1, BEFORE]].some(([side, share]) => {
+    const aim: Point2 = [body[0] + side! * aside[0], body[1] + side! * aside[1]];
+    return meeting(eye, aim, wall.a, wall.b) < share!;
+  });
 }
 
-function crosses(a: Point2, b: Point2, c: Point2, d: Point2): boolean {
-  const side = (p: Point2, q: Point2, r: Point2): number => (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
-  return side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0;
+/** Share of the way from `from` to `to` at which it meets the segment a b; infinite if it does not. */
+function meeting(from: Point2, to: Point2, a: Point2, b: Point2): number {
+  const way: Point2 = [to[0] - from[0], to[1] - from[1]];
+  const along: Point2 = [b[0] - a[0], b[1] - a[1]];
+  const turn = way[0] * along[1] - way[1] * along[0];
+  const gap: Point2 = [a[0] - from[0], a[1] - from[1]];
+  const share = (gap[0] * along[1] - gap[1] * along[0]) / turn;
+  const place = (gap[0] * way[1] - gap[1] * way[0]) / turn;
+  return turn !== 0 && share > 0 && place >= 0 && place <= 1 ? share : Infinity;
 }
 
 /** Distance from a point to a segment. */
