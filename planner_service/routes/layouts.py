@@ -63,8 +63,12 @@ def list_layouts(
 
 
 @router.post(
-    "", status_code=201, response_model=LayoutShown, responses={409: {"description": "The id is taken."}}
-)  # fmt: skip
+    "",
+    status_code=201,
+    response_model=LayoutShown,
+    response_model_exclude_unset=True,
+    responses={409: {"description": "The id is taken."}},
+)
 def create(
     ask: LayoutAsk,
     response: Response,

@@ -1,0 +1,98 @@
+"""Long scripts over HTTP: the engine's plan, the same for the same seed, and refusals that name the field."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from fastapi import FastAPI
+from service_app import app_on, calling, check_problem
+
+from planner_service.schemas.short_scripts import EXAMPLE
+from planner_service.scripts.checking import check
+from planner_service.scripts.keyframe import LongScript
+from planner_service.stories import StoryRequest, Studio
+
+pytestmark = pytest.mark.anyio
+THEME = "She comes home tired, reads a book on the sofa and falls asleep."
+
+
+@pytest.fixture
+def anyio_backend() -> str:
+    return "asyncio"
+
+
+@pytest.fixture(scope="module")
+def app(tmp_path_factory: pytest.TempPathFactory) -> Iterator[FastAPI]:
+    with app_on(tmp_path_factory.mktemp("long_scripts")) as app:
+        yield app
+
+
+async def ask(app: FastAPI, **body: Any) -> httpx.Response:
+    async with calling(app, timeout=60) as client:
+        return await client.post("/v1/long-scripts", json=body)
+
+
+async def test_the_plan_is_the_engines_own_and_can_be_acted_out(app: FastAPI) -> None:
+    answer = await ask(app, theme=THEME, seed=3)
+    script = LongScript.model_validate_json(answer.content)
+    assert script == Studio(app.state.parts.shelves).script(StoryRequest(THEME, seed=3))
+    assert check(script) == ()
+    assert (await ask(app, theme=THEME, seed=3)).content == answer.content
+
+
+async def test_rooms_and_number_of_short_scripts_are_kept_to(app: FastAPI) -> None:
+    script = LongScript.model_validate((await ask(app, theme=THEME, rooms=["bedroom"], short_scripts=1)).json())
+    assert len(script.short_scripts) == 1
+    assert {keyframe.room for keyframe in script.keyframes if keyframe.room} <= {"bedroom"}
+
+
+async def test_a_script_that_was_just_added_is_planned_with(app: FastAPI) -> None:
+    own = EXAMPLE | {"id": "zebra", "summary": "The character rides a zebra through the living room."}
+    async with calling(app, timeout=60) as client:
+        assert (await client.post("/v1/short-scripts", json=own)).status_code == 201
+    script = LongScript.model_validate((await ask(app, theme="She rides a zebra through the living room.")).json())
+    assert [chosen.script.id for chosen in script.short_scripts][:1] == ["zebra"]
+
+
+@pytest.mark.parametrize(
+    ("body", "pointer"),
+    [
+        ({"theme": ""}, "/theme"),
+        ({"theme": "   "}, "/theme"),
+        ({"theme": "... !?"}, "/theme"),
+        ({"theme": "xqzt wvbnm plkj"}, "/theme"),
+        ({"theme": "A \x07 bell"}, "/theme"),
+        ({"theme": "x" * 2001}, "/theme"),
+        ({"theme": THEME, "rooms": ["attic"]}, "/rooms/0"),
+        ({"theme": THEME, "rooms": ["study"] * 5}, "/rooms"),
+        ({"theme": THEME, "short_scripts": 0}, "/short_scripts"),
+        ({"theme": THEME, "short_scripts": 13}, "/short_scripts"),
+        ({"theme": THEME, "seed": -1}, "/seed"),
+        ({"theme": THEME, "seed": 2**53}, "/seed"),
+        ({"theme": THEME, "seed": True}, "/seed"),
+        ({"theme": THEME, "method": "guess"}, "/method"),
+        ({"theme": THEME, "mood": "blue"}, "/mood"),
+        ({}, "/theme"),
+    ],
+)
+async def test_what_cannot_be_planned_is_refused_by_its_field(app: FastAPI, body: Any, pointer: str) -> None:
+    problem = check_problem(await ask(app, **body), 422)
+    assert problem["errors"][0]["pointer"] == pointer
+
+
+async def test_a_language_model_finds_the_events_where_one_is_set_and_rules_do_what_it_cannot(tmp_path: Path) -> None:
+    answers = tmp_path / "answers.json"
+    events = [{"text": "She lies down on the bed and cries", "emotion": "sad"}]
+    answers.write_text(json.dumps({"a letter of glass": {"events": events}}), encoding="utf-8")
+    with app_on(tmp_path / "data", llm_model=f"scripted:{answers}") as app:
+        planned = LongScript.model_validate((await ask(app, theme="She gets a letter of glass.")).json())
+        by_rules = LongScript.model_validate((await ask(app, theme=THEME)).json())
+    assert [event.model_dump() for event in planned.events] == events
+    assert planned.planner.startswith("llm:")
+    assert by_rules.planner == "rules"
+    assert any("by rules" in repair for repair in by_rules.repairs)
