@@ -7,7 +7,7 @@ from contextlib import asynccontextmanager
 from importlib.metadata import version
 from typing import Any, Final
 
-from fastapi import FastAPI
+from fastapi import Depends, FastAPI
 from fastapi.routing import APIRoute
 from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import MutableHeaders
@@ -18,6 +18,7 @@ from planner_service.access import Access, Cors, Gate
 from planner_service.answering import Unforeseen, register_handlers
 from planner_service.limiting import BodyLimit, Limiting, Rate
 from planner_service.openapi import document
+from planner_service.parameters import only_known_parameters
 from planner_service.parts import Parts
 from planner_service.routes import (
     events,
@@ -61,6 +62,7 @@ def create_app(parts: Parts) -> FastAPI:
         generate_unique_id_function=_operation_id,
         lifespan=_closing,
         middleware=_middleware(gate, figures, parts),
+        dependencies=[Depends(only_known_parameters)],
     )
     app.state.parts, app.state.gate, app.state.figures = parts, gate, figures
     register_handlers(app)

@@ -139,7 +139,7 @@ class Studio:
     def script(self, request: StoryRequest) -> LongScript:
         """The long script of a theme; what the user wrote as keyframes is only checked and repaired."""
         if request.keyframes:
-            return script_of(request.keyframes, request.theme, request.seed)
+            return given_script(request)
         asked = Request(request.short_scripts, _rooms(request), request.seed, request.method)  # type: ignore[arg-type]
         return compose(request.theme, self.shelves.scripts(), asked, self.model)
 
@@ -165,6 +165,14 @@ class Studio:
         actions = act(planned.script.keyframes, planned.stage.places, planned.home, request.seed)
         motions = move(planned.home, actions, request, progress)
         return judge(planned, actions, motions, progress)
+
+
+def given_script(request: StoryRequest) -> LongScript:
+    """The script of a user's own keyframes. RequestError when there is nothing in it that a body can do."""
+    script = script_of(request.keyframes, request.theme, request.seed)
+    if not script.keyframes:
+        raise RequestError(f"keyframes: nothing is left of them: {'; '.join(script.repairs)}")
+    return script
 
 
 def _rooms(request: StoryRequest) -> tuple[str, ...]:

@@ -53,7 +53,7 @@ def make(maker: Maker, story_id: str) -> None:
         step("judge", maker.judge, story_id)
         step("film", maker.film, story_id)
     except StoryGone:
-        log.info("story deleted while it was made")
+        log.info("story deleted or cancelled while it was made")
     except USER_ERRORS as error:
         step("fail", maker.store.fail, story_id, "This story cannot be made", explain(error))
         raise

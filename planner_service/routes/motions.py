@@ -9,7 +9,7 @@ from planner_service.parts import PartsDep
 from planner_service.presenting import story_shown
 from planner_service.routes.stories import Key, accept, character_of, home_given, layout_named
 from planner_service.schemas.stories import Json, MotionAsk, StoryShown
-from planner_service.stories import StoryRequest
+from planner_service.stories import StoryRequest, given_script
 
 router = APIRouter(prefix="/v1/motions", tags=["motions"])
 
@@ -29,6 +29,7 @@ def create(ask: MotionAsk, request: Request, response: Response, parts: PartsDep
         seed=ask.seed,
         character=character_of(ask.character),
     )
+    given_script(wanted)
     record = accept(parts, request, "motion", wanted, ask.model_dump_json(), key)
     response.headers["Location"] = f"/v1/stories/{record.id}"
     return story_shown(record)

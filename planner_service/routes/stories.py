@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import uuid
 from typing import Annotated, Final, Literal
 
 from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
@@ -140,7 +141,10 @@ def list_stories(
 
 
 def _is_id(text: str) -> bool:
-    return len(text) == 36 and all(letter in "0123456789abcdef-" for letter in text)
+    try:
+        return str(uuid.UUID(text)) == text
+    except ValueError:
+        return False
 
 
 @router.get("/{story_id}", response_model=StoryShown)
@@ -214,7 +218,6 @@ def film(record: RecordDep, request: Request, stories: StoriesDep) -> Response:
                 "Sims-Complete": {"description": "true when no more will come.", "schema": {"type": "string"}},
             },
         },
-        416: {"description": "None of these frames is there yet, or ever."},
     },
 )
 def motion(
@@ -232,6 +235,8 @@ def motion(
     ready, complete = footage.ready, footage.complete
     if first >= ready:
         ended = state_of(record.status) not in ("queued", "running")
+        if ended and not ready:
+            raise NotFound(f"this story was {state_of(record.status)} before the body moved")
         if complete or ended:
             raise Unprocessable("?from", f"the motion has {ready} frames; ask for one below that")
         raise NotReady(f"not ready yet: {ready} frames are; follow links.events")

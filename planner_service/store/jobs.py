@@ -19,6 +19,7 @@ STATES: Final[dict[str, State]] = {
     "CANCELLED": "cancelled",
 }
 WAITING: Final = ("ENQUEUED", "DELAYED", "PENDING")
+CANCELLED: Final = "CANCELLED"
 GIVEN_UP: Final = "MAX_RECOVERY_ATTEMPTS_EXCEEDED"
 
 workflow_status = Table(

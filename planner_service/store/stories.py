@@ -14,7 +14,7 @@ from sqlalchemy import Connection, Engine, Row, Select, delete, func, select, up
 from sqlalchemy.exc import IntegrityError
 
 from planner_service.documents import request_from_dict, request_to_dict
-from planner_service.store.jobs import WAITING, workflow_status
+from planner_service.store.jobs import CANCELLED, WAITING, workflow_status
 from planner_service.store.tables import artifacts, idempotency_keys, stage_times, stories
 from planner_service.stories import StoryRequest
 
@@ -47,7 +47,7 @@ _SHOWN: Final = (
 
 
 class StoryGone(LookupError):  # noqa: N818
-    """A story that is not there, or no longer."""
+    """A story that is not there, or no longer wanted."""
 
 
 @dataclass(frozen=True)
@@ -172,7 +172,10 @@ class Stories:
         return request_from_dict(json.loads(text))
 
     def record(self, story_id: str, made: Made, worker: str) -> None:
-        """Store what a stage made, once: a stage that was made again after a crash changes nothing. StoryGone."""
+        """Store what a stage made, once: a stage that was made again after a crash changes nothing.
+
+        StoryGone when the story was deleted or cancelled meanwhile: nothing is added to what clients saw as its end.
+        """
         values = {
             "story_id": story_id,
             "position": made.position,
@@ -187,6 +190,11 @@ class Stories:
             "made": now(),
         }
         with self.writing.begin() as connection:
+            # Shared, so that no cancelling slips in between: what is stored was made before it.
+            mine = workflow_status.c.workflow_uuid == story_id
+            shared = select(workflow_status.c.status).where(mine).with_for_update(read=True)
+            if connection.execute(shared).scalar() == CANCELLED:
+                raise StoryGone(story_id)
             here = (artifacts.c.story_id == story_id) & (artifacts.c.position == made.position)
             if connection.execute(select(artifacts.c.position).where(here)).first():
                 return

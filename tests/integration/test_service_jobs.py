@@ -82,8 +82,11 @@ def test_a_story_that_is_cancelled_stops_within_one_segment(client: httpx.Client
     assert ended["state"] == later["state"] == "cancelled"
     moved_then = sum(keyframe["end"] is not None for keyframe in at_cancel["keyframes"])
     moved_later = sum(keyframe["end"] is not None for keyframe in later["keyframes"])
-    assert moved_later <= moved_then + 1 < len(later["keyframes"])
+    assert moved_later == moved_then < len(later["keyframes"])  # what was in the making then is thrown away
     assert not later["motion"]["complete"]
+    events = read_events(client, story["id"])
+    assert [name for _, name, _ in events].count("cancelled") == 1
+    assert read_events(client, story["id"], events[-2][0]) == events[-1:]
 
 
 def test_what_a_cancelled_story_has_can_still_be_fetched(client: httpx.Client) -> None:
@@ -94,7 +97,7 @@ def test_what_a_cancelled_story_has_can_still_be_fetched(client: httpx.Client) -
     ended = finished(client, story["id"])
     time.sleep(0.5)
     frames = client.get(story["links"]["self"]).json()["motion"]["frames"]
-    assert frames >= ended["motion"]["frames"] > 0
+    assert frames == ended["motion"]["frames"] > 0
     positions = read_raw(client.get(story["links"]["motion"], params={"format": "f32"}).content)
     assert len(positions) == frames
     assert client.get(story["links"]["film"]).status_code == 404
@@ -111,6 +114,9 @@ def test_a_story_that_waits_can_be_cancelled_and_is_never_begun(client: httpx.Cl
         finished(client, one["id"])
     time.sleep(0.5)
     assert client.get(story["links"]["self"]).json()["stage"] is None
+    nothing = client.get(story["links"]["motion"])
+    assert nothing.status_code == 404
+    assert "cancelled" in nothing.json()["detail"]
 
 
 def test_a_story_that_has_ended_cannot_be_cancelled(client: httpx.Client) -> None:
