@@ -54,8 +54,10 @@ Segment = tuple[Point2, Point2]
 MOST_OBJECTS = 500
 MOST_CORNERS = 400
 MOST_LAYOUTS = 200_000
-LARGEST = 30.0
-"""No object is longer, in metres."""
+SMALLEST, LARGEST = 1e-4, 30.0
+"""No object is shorter or longer, in metres."""
+LOWEST = 1.5
+"""No room is lower, in metres."""
 WIDEST = 60.0
 """No room is wider: maps of the floor take memory by its area."""
 MOST_TAGS = 100
@@ -183,7 +185,7 @@ def layout_from_dict(row: Row, where: str = "layout") -> Layout:
         id=read_text(row, "id", where),
         room_type=room_type,
         floor_polygon=_outline(row, where),
-        height=read_number(row.get("height", 2.7), f"{where}.height", 1.5, LARGEST),
+        height=read_number(row.get("height", 2.7), f"{where}.height", LOWEST, LARGEST),
         doors=tuple(_opening(item, place) for item, place in read_rows(row, "doors", where, 100)),
         windows=tuple(_opening(item, place) for item, place in read_rows(row, "windows", where, 100)),
         objects=tuple(objects),
@@ -279,7 +281,7 @@ def _placed(row: Row, where: str) -> Placed:
         id=read_text(row, "id", where),
         category=canonical(read_text(row, "category", where)),
         position=read_point3(position, f"{where}.position", -FARTHEST, FARTHEST),
-        size=read_point3(row.get("size"), f"{where}.size", 1e-4, LARGEST),
+        size=read_point3(row.get("size"), f"{where}.size", SMALLEST, LARGEST),
         yaw=read_number(row.get("yaw", 0.0), f"{where}.yaw", -100.0, 100.0),
         parent=None if row.get("parent") is None else read_text(row, "parent", where),
         mesh=None if row.get("mesh") is None else read_text(row, "mesh", where),

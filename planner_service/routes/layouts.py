@@ -31,7 +31,7 @@ from planner_service.surveying import survey
 from scene_graphs.furniture import ROOM_TYPES, Furniture, canonical_room
 from scene_graphs.homes import home_from_layouts
 from scene_graphs.layouts import Layout, layout_to_dict
-from scene_graphs.retrieval import LayoutIndex, LayoutMatch
+from scene_graphs.retrieval import LayoutIndex, LayoutMatch, NoSuitableRoom
 from scene_graphs.surfaces import Spot
 
 router = APIRouter(prefix="/v1/layouts", tags=["layouts"])
@@ -92,10 +92,10 @@ def retrieve(ask: RetrieveAsk, parts: PartsDep) -> Json:
     index = parts.shelves.layouts()
     kinds: list[str | None] = list(dict.fromkeys(canonical_room(room) for room in ask.rooms)) or [None]
     for place, room in enumerate(ask.rooms):
-        if canonical_room(room) not in ROOM_TYPES:
-            raise Unprocessable(f"/rooms/{place}", f"is none of {', '.join(ROOM_TYPES)}")
-    sizes = [len(index.of_type(kind)) for kind in kinds]
-    steps = min(max(EFFORT // (sum(sizes) * len(query)), LEAST_STEPS), MOST_STEPS)
+        if not _has(index, room):
+            raise Unprocessable(f"/rooms/{place}", f"there is no room of this type; try {', '.join(ROOM_TYPES)}")
+    size = sum(len(index.of_type(kind)) for kind in kinds)
+    steps = min(max(EFFORT // (size * len(query)), LEAST_STEPS), MOST_STEPS)
     found = {match.layout_id: match for kind in kinds for match in index.search(query, ask.k, kind, limit=steps)}
     best = sorted(found.values(), key=lambda match: (match.distance, match.lower_bound, match.layout_id))[: ask.k]
     places = {node: place for place, node in enumerate(nodes_of(ask.graph))}
@@ -122,6 +122,13 @@ def show(layout_id: LayoutId, request: Request, parts: PartsDep) -> Response:
         return json.dumps(_shown(parts, layout), ensure_ascii=False, allow_nan=False).encode()
 
     return unchanging(request, _etag(layout), make, "application/json", REVALIDATED)
+
+
+def _has(index: LayoutIndex, room: str) -> bool:
+    try:
+        return len(index.of_type(room)) > 0
+    except NoSuitableRoom:
+        return False
 
 
 def _layout(parts: Parts, layout_id: str) -> Layout:

@@ -8,12 +8,16 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from planner_service.schemas.layout_graphs import GraphAsk, GraphNode
 from planner_service.schemas.stories import Ask
-from scene_graphs.layouts import MOST_CORNERS, MOST_OBJECTS, MOST_TAGS
+from scene_graphs.fields import FARTHEST
+from scene_graphs.layouts import LARGEST, LOWEST, MOST_CORNERS, MOST_OBJECTS, MOST_TAGS, SMALLEST
 
 Affordance = Literal["sit", "lie", "touch"]
 Name = Annotated[str, Field(min_length=1, max_length=200)]
-Point2 = Annotated[list[float], Field(min_length=2, max_length=2)]
-Point3 = Annotated[list[float], Field(min_length=3, max_length=3)]
+Coordinate = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST)]
+Length = Annotated[float, Field(ge=SMALLEST, le=LARGEST)]
+Point2 = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
+Point3 = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
+Size3 = Annotated[list[Length], Field(min_length=3, max_length=3)]
 MOST_OPENINGS = 100
 EXAMPLE: dict[str, Any] = {
     "id": "my-nook",
@@ -33,8 +37,8 @@ class Opening(Ask):
     segment: Annotated[list[Point2], Field(min_length=2, max_length=2)] = Field(
         description="Two [x, z] points on the outline."
     )
-    bottom: float = Field(0.0, description="Height in metres where the opening begins.")
-    top: float = Field(2.1, description="Height in metres where it ends.")
+    bottom: float = Field(0.0, ge=0, le=LARGEST, description="Height in metres where the opening begins.")
+    top: float = Field(2.1, ge=0, le=LARGEST, description="Height in metres where it ends.")
 
 
 class Piece(Ask):
@@ -43,8 +47,10 @@ class Piece(Ask):
     id: Name
     category: Name = Field(description='A furniture word; synonyms such as "couch" are read as the word we use.')
     position: Point3 = Field(description="Centre of the bottom face: [x, y, z] in metres, y up.")
-    size: Point3 = Field(description="Width x, height y and depth z in metres, at yaw 0.")
-    yaw: float = Field(0.0, description="Turn about +Y in radians, counter-clockwise from above; 0 faces +Z.")
+    size: Size3 = Field(description="Width x, height y and depth z in metres, at yaw 0.")
+    yaw: float = Field(
+        0.0, ge=-100, le=100, description="Radians about +Y, counter-clockwise from above; 0 faces +Z."
+    )
     parent: Name | None = Field(None, description="The object it stands on.")
     mesh: Name | None = Field(None, description="A name of the maker's for its shape; kept, not used.")
 
@@ -62,7 +68,7 @@ class LayoutAsk(Ask):
     floor_polygon: list[Point2] = Field(
         min_length=3, max_length=MOST_CORNERS, description="[x, z] corners in order, not closed."
     )
-    height: float = Field(2.7, description="Metres.")
+    height: float = Field(2.7, ge=LOWEST, le=LARGEST, description="Metres.")
     doors: list[Opening] = Field([], max_length=MOST_OPENINGS)
     windows: list[Opening] = Field([], max_length=MOST_OPENINGS)
     objects: list[Piece] = Field([], max_length=MOST_OBJECTS)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import AliasChoices, BaseModel, ConfigDict, Field, field_validator
+from pydantic import AliasChoices, BaseModel, ConfigDict, Field, ValidationInfo, field_validator
 
 from motion_backend.motion import Skill
 
@@ -14,6 +14,11 @@ EMOTIONS = ("neutral", "happy", "angry", "hurried", "tired", "sad", "stressed", 
 
 Room = Literal["bedroom", "living_room", "dining_room", "study"]
 Source = Literal["authored", "video", "text", "imitation"]
+MOST_PIECES = 24
+"""Pieces of furniture in one short script: one a keyframe."""
+Word = Annotated[str, Field(min_length=1, max_length=60)]
+Instance = Annotated[int, Field(ge=1, le=99, strict=True)]
+Place = Annotated[int, Field(ge=0, lt=MOST_PIECES, strict=True)]
 _INSTANCE = re.compile(r"^(?P<name>.*?)[\s_#]+(?P<number>[1-9]\d?)$")
 
 
@@ -50,8 +55,16 @@ class ScriptGraph(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    nodes: tuple[tuple[str, int], ...] = ()
-    edges: tuple[tuple[int, int], ...] = ()
+    nodes: tuple[tuple[Word, Instance], ...] = Field((), max_length=MOST_PIECES)
+    edges: tuple[tuple[Place, Place], ...] = Field((), max_length=MOST_PIECES * (MOST_PIECES - 1) // 2)
+
+    @field_validator("edges")
+    @classmethod
+    def _between_nodes(cls, edges: tuple[tuple[int, int], ...], info: ValidationInfo) -> tuple[tuple[int, int], ...]:
+        nodes = info.data.get("nodes", ())
+        if any(max(edge) >= len(nodes) for edge in edges):
+            raise ValueError(f"an edge joins two places in nodes, which has {len(nodes)}")
+        return edges
 
 
 class ShortScript(BaseModel):
@@ -63,7 +76,7 @@ class ShortScript(BaseModel):
     summary: str = Field(min_length=1, max_length=400)
     emotion: Literal["neutral", "happy", "angry", "hurried", "tired", "sad", "stressed", "drunk", "relaxed"]
     room: Room
-    keyframes: tuple[Keyframe, ...] = Field(min_length=1, max_length=24)
+    keyframes: tuple[Keyframe, ...] = Field(min_length=1, max_length=MOST_PIECES)
     graph: ScriptGraph | None = None
     """Given, or derived from the keyframes: an edge between two pieces used one after the other."""
     source: Source = "authored"

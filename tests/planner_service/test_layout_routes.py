@@ -143,7 +143,7 @@ def with_object(place: int, **fields: Any) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("row", "pointer"),
     [
-        (with_object(1, size=[1, -1, 1]), "/objects/1/size"),
+        (with_object(1, size=[1, -1, 1]), "/objects/1/size/1"),
         (with_object(1, size=[1, 1]), "/objects/1/size"),
         (with_object(0, position=["a", 0, 0]), "/objects/0/position/0"),
         (with_object(2, parent="nobody"), "/objects/2/parent"),
@@ -153,6 +153,7 @@ def with_object(place: int, **fields: Any) -> dict[str, Any]:
         (with_object(0, category="\x07bell"), "/objects/0/category"),
         (changed(floor_polygon=[[0, 0], [4, 4], [4, 0], [0, 4]]), "/floor_polygon"),
         (changed(floor_polygon=[[0, 0], [0, 90], [90, 90], [90, 0]]), "/floor_polygon"),
+        (changed(floor_polygon=[[0, 0], [0, 2000], [9, 9]]), "/floor_polygon/1/1"),
         (changed(height=0), "/height"),
         (changed(doors=[{"segment": [[0, 0], [1, 0]], "bottom": 2, "top": 1}]), "/doors/0/top"),
         (changed(id="a b"), "/id"),
