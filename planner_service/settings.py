@@ -46,7 +46,7 @@ class Settings(BaseSettings):
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     most_stories: int = Field(100, ge=1)
     """Stories of one caller that may wait or be in the making at the same time."""
-    rate: str = Field("1200/minute", pattern=r"^[1-9]\d{0,6}/(second|minute|hour)$")
+    rate: str = Field("6000/minute", pattern=r"^[1-9]\d{0,6}/(second|minute|hour)$")
     """Requests of one caller."""
 
     @field_validator("api_keys", "cors_origins", mode="before")

@@ -36,7 +36,11 @@ class RunningService:
         self.folder, self.workers = folder, workers
         self.log = log or folder / "service.log"
         given = {name: value for name, value in os.environ.items() if not name.startswith("SIMS_")}
-        self.environment = given | {"SIMS_DATABASE_URL": database_url, "OMP_NUM_THREADS": "1"} | dict(environment or {})
+        self.environment = (
+            given
+            | {"SIMS_DATABASE_URL": database_url, "SIMS_RATE": "1000000/minute", "OMP_NUM_THREADS": "1"}
+            | dict(environment or {})
+        )
         self.process: subprocess.Popen[str] | None = None
         self.url = ""
 
