@@ -180,7 +180,7 @@ CASES: dict[str, Case] = {
     "half a letter": layout("half-letter.json", "id", "not text"),
     "two rooms of one id": layout("twice.json", "my-room", "twice"),
     "five rooms in a file": layout("five.json", "--layout", "at most 4", "5"),
-    "nothing to sit on": layout("bare.json", "room has no", "to sit on|to lie on", "--rooms, --layout"),
+    "nothing to sit on": layout("bare.json", "room has no", "to sit on|to lie on", "another room"),
     "layouts of the settings not there": Case(
         ("story", THEME), ("nowhere.json", "missing"), (("SIMS_LAYOUTS", "nowhere.json"),)
     ),
