@@ -48,9 +48,7 @@ class Piece(Ask):
     category: Name = Field(description='A furniture word; synonyms such as "couch" are read as the word we use.')
     position: Point3 = Field(description="Centre of the bottom face: [x, y, z] in metres, y up.")
     size: Size3 = Field(description="Width x, height y and depth z in metres, at yaw 0.")
-    yaw: float = Field(
-        0.0, ge=-100, le=100, description="Radians about +Y, counter-clockwise from above; 0 faces +Z."
-    )
+    yaw: float = Field(0.0, ge=-100, le=100, description="Radians about +Y, counter-clockwise from above; 0 faces +Z.")
     parent: Name | None = Field(None, description="The object it stands on.")
     mesh: Name | None = Field(None, description="A name of the maker's for its shape; kept, not used.")
 
