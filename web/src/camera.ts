@@ -2,6 +2,7 @@
 
 import { MathUtils, PerspectiveCamera, Spherical, Vector3 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import type { Lookout } from "./sight";
 
 export type CameraMode = "follow" | "orbit";
 
@@ -9,7 +10,14 @@ export type CameraMode = "follow" | "orbit";
 const REST = 8;
 /** Radians a second at most. */
 const FASTEST = 0.55;
-const NEAR = 4.1;
+const NEAR = 4.4;
+/** The camera's angle from straight above, radians. */
+const STEEP = 1.12;
+/** Seconds between looks for a better place, and how much better it must be. */
+const LOOK_EVERY = 0.7;
+const WORTH = 0.3;
+/** Radians added to the best angle where that is obstructed. */
+const DETOURS = [0, 0.45, -0.45, 0.9, 1.4, 2];
 
 export class CameraMan {
   readonly camera = new PerspectiveCamera(38, 1, 0.05, 200);
@@ -18,11 +26,16 @@ export class CameraMan {
   calm = false;
   /** How far from straight ahead the body is seen, radians. */
   aside = 0.75;
+  /** Knows what is in the way; without it nothing is. */
+  lookout: Lookout | null = null;
   #mode: CameraMode = "orbit";
   #centre = new Vector3(0, 0.8, 0);
   #reach = 6;
   #touched = -Infinity;
   #speed = 0;
+  /** The angle from the body's front that the camera makes for, and the seconds since that was considered. */
+  #offset = 0.75;
+  #considered = Infinity;
   #narrow = 1;
   #step = new Vector3();
   #orb = new Spherical();
@@ -55,7 +68,7 @@ export class CameraMan {
     this.#mode = mode;
     this.#touched = -Infinity;
     if (mode === "orbit") this.#overview();
-    else this.#stand(body, heading + this.aside);
+    else this.#stand(body, heading + (this.#offset = this.#best(body, heading, heading, 0)));
   }
 
   /** Note that somebody moves the camera by hand. */
@@ -67,8 +80,8 @@ export class CameraMan {
   cut(body: Vector3, heading: number): void {
     if (this.#mode !== "follow" || performance.now() / 1000 - this.#touched < REST) return;
     this.#orb.setFromVector3(this.#step.subVectors(this.camera.position, this.controls.target));
-    const miss = this.#miss(heading);
-    if (Math.abs(miss) > 0.5) this.#stand(body, this.#orb.theta + miss);
+    this.#offset = this.#best(body, heading, this.#orb.theta, 0.05);
+    if (Math.abs(angle(heading + this.#offset - this.#orb.theta)) > 0.5) this.#stand(body, heading + this.#offset);
   }
 
   resize(width: number, height: number): void {
@@ -112,17 +125,35 @@ export class CameraMan {
       return;
     }
     this.#orb.setFromVector3(goal.subVectors(this.camera.position, target));
-    const wanted = MathUtils.clamp(this.#miss(heading) * 0.6, -FASTEST, FASTEST);
+    if ((this.#considered += seconds) > LOOK_EVERY) this.#consider(body, heading);
+    const wanted = MathUtils.clamp(angle(heading + this.#offset - this.#orb.theta) * 0.6, -FASTEST, FASTEST);
     this.#speed += (wanted - this.#speed) * (1 - Math.exp(-1.5 * seconds));
     this.#orb.theta += this.#speed * seconds;
     this.camera.position.copy(target).add(goal.setFromSpherical(this.#orb));
   }
 
-  /** How far the camera is from the nearer side of the body's front, radians. */
-  #miss(heading: number): number {
-    const left = angle(heading + this.aside - this.#orb.theta);
-    const right = angle(heading - this.aside - this.#orb.theta);
-    return Math.abs(left) < Math.abs(right) ? left : right;
+  /** Make for another place if it is clearly better than the one made for. */
+  #consider(body: Vector3, heading: number): void {
+    this.#considered = 0;
+    const best = this.#best(body, heading, this.#orb.theta, 0.15);
+    const cost = (offset: number): number => this.#cost(body, heading, offset, this.#orb.theta, 0.15);
+    if (cost(this.#offset) - cost(best) > WORTH) this.#offset = best;
+  }
+
+  /** The angle from the body's front at which it is seen best. */
+  #best(body: Vector3, heading: number, from: number, effort: number): number {
+    const offsets = DETOURS.flatMap((detour) => [this.aside + detour, -this.aside - detour]);
+    const costs = offsets.map((offset) => this.#cost(body, heading, offset, from, effort));
+    return offsets[costs.indexOf(Math.min(...costs))]!;
+  }
+
+  /** What is in the way there, how far that is from the best angle, and the effort of a radian's swing. */
+  #cost(body: Vector3, heading: number, offset: number, from: number, effort: number): number {
+    const around = heading + offset;
+    const eye = this.#step.setFromSphericalCoords(NEAR * this.#narrow, STEEP, around);
+    eye.add(body).setY(eye.y - 0.4 * body.y + 0.35);
+    const hidden = this.lookout?.cost(eye.toArray(), body.toArray()) ?? 0;
+    return hidden + 0.35 * Math.abs(Math.abs(offset) - this.aside) + effort * Math.abs(angle(around - from));
   }
 
   #overview(): void {
@@ -133,7 +164,7 @@ export class CameraMan {
 
   #stand(body: Vector3, around: number): void {
     this.controls.target.set(body.x, 0.35 + 0.6 * body.y, body.z);
-    this.camera.position.setFromSphericalCoords(NEAR * this.#narrow, 1.12, around).add(this.controls.target);
+    this.camera.position.setFromSphericalCoords(NEAR * this.#narrow, STEEP, around).add(this.controls.target);
   }
 }
 

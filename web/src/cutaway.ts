@@ -1,7 +1,9 @@
-/** Makes a home transparent to the onlooker: walls in the way sink, furniture in the way gets a hole. */
+/** Walls in the way of the onlooker sink to stumps. */
 
-import { BufferAttribute, BufferGeometry, Color, Group, Material, Mesh, MeshStandardMaterial, Object3D, PlaneGeometry, Vector3 } from "three";
+import { BufferAttribute, Color, Group, Material, Mesh, MeshStandardMaterial, Object3D, PlaneGeometry, Vector3 } from "three";
 import type { Point2 } from "./api";
+import { meshesOf, middleOf, own, pieces } from "./pieces";
+import type { Point3 } from "./pose";
 import { distance, hides, stumps, WALL_DEPTH, type WallSide } from "./walls";
 
 /** Metres of a wall that stay, so that rooms keep their outline. */
@@ -9,7 +11,6 @@ const STUMP = 0.09;
 const FULL = 100;
 /** How fast walls sink and rise, a second. */
 const RATE = 7;
-const SOLID_NODES = ["furniture", "ceiling"];
 
 /** Runs of vertices of one geometry that belong to one wall. */
 interface Part {
@@ -24,18 +25,14 @@ export class Cutaway {
   readonly #sides: readonly WallSide[];
   readonly #parts: Part[] = [];
   readonly #heights: number[];
-  readonly #body = { value: new Vector3(0, 1, 0) };
   readonly #caps: Group[];
   readonly #capLook = new MeshStandardMaterial({ roughness: 1 });
 
   constructor(scene: Object3D, sides: readonly WallSide[]) {
     this.#sides = sides;
     this.#heights = sides.map((side) => side.height);
-    meshesOf(scene, "wall", (mesh) => this.#prepareWall(mesh, false));
-    for (const name of ["door", "window"]) meshesOf(scene, name, (mesh) => this.#prepareWall(mesh, true));
-    for (const name of SOLID_NODES) {
-      meshesOf(scene, name, (mesh) => patchSolid(own(mesh), this.#body));
-    }
+    for (const mesh of meshesOf(scene, "wall")) this.#prepareWall(mesh, false);
+    for (const mesh of ["door", "window"].flatMap((name) => meshesOf(scene, name))) this.#prepareWall(mesh, true);
     this.#caps = sides.map((side) => capsOf(side, this.#capLook));
     scene.add(...this.#caps);
   }
@@ -47,7 +44,6 @@ export class Cutaway {
 
   /** Lower and raise walls for this eye and body; whether anything still moves. */
   update(eye: Vector3, body: Vector3, seconds: number): boolean {
-    this.#body.value.copy(body);
     const share = 1 - Math.exp(-RATE * seconds);
     let moving = false;
     for (const [index, side] of this.#sides.entries()) {
@@ -77,11 +73,6 @@ export class Cutaway {
   }
 }
 
-/** The mesh's material, made its own: the loader shares one between meshes that look alike. */
-function own(mesh: Mesh): Material {
-  return (mesh.material = (mesh.material as Material).clone());
-}
-
 /** Lids on a wall's stumps, at height 0. */
 function capsOf(side: WallSide, look: Material): Group {
   const group = new Group();
@@ -104,53 +95,11 @@ function setCut(part: Part, cut: number): void {
   part.attribute.needsUpdate = true;
 }
 
-/** All meshes of the node of that name; several looks make it a group. */
-function meshesOf(scene: Object3D, name: string, act: (mesh: Mesh) => void): void {
-  scene.getObjectByName(name)?.traverse((object) => {
-    if (object instanceof Mesh) act(object);
-  });
-}
-
-/** Vertices that hang together by triangles: boxes and boards that were merged into one geometry. */
-function pieces(geometry: BufferGeometry): number[][] {
-  const count = geometry.getAttribute("position").count;
-  const parent = Int32Array.from({ length: count }, (_, i) => i);
-  const root = (i: number): number => {
-    while (parent[i] !== i) i = parent[i] = parent[parent[i]!]!;
-    return i;
-  };
-  const index = geometry.getIndex();
-  const corner = (i: number): number => (index ? index.getX(i) : i);
-  for (let i = 0; i + 2 < (index?.count ?? count); i += 3) {
-    parent[root(corner(i + 1))] = root(corner(i));
-    parent[root(corner(i + 2))] = root(corner(i));
-  }
-  const found = new Map<number, number[]>();
-  for (let i = 0; i < count; i++) {
-    const at = root(i);
-    const members = found.get(at);
-    if (members) members.push(i);
-    else found.set(at, [i]);
-  }
-  return [...found.values()];
-}
-
-function middleOf(geometry: BufferGeometry, vertices: readonly number[]): Point2 {
-  const position = geometry.getAttribute("position");
-  let x = 0;
-  let z = 0;
-  for (const vertex of vertices) {
-    x += position.getX(vertex);
-    z += position.getZ(vertex);
-  }
-  return [x / vertices.length, z / vertices.length];
-}
-
-function nearest(sides: readonly WallSide[], point: Point2): number {
+function nearest(sides: readonly WallSide[], [x, , z]: Point3): number {
   let best = -1;
   let least = Infinity;
   for (const [index, side] of sides.entries()) {
-    const gap = distance(point, side.a, side.b);
+    const gap = distance([x, z], side.a, side.b);
     if (gap < least) [best, least] = [index, gap];
   }
   return best;
@@ -172,25 +121,4 @@ export function patchWall(material: Material): void {
     );
   };
   material.customProgramCacheKey = () => "cut";
-}
-
-/** Near the line from the eye to the body, and clearly before it, what is solid gets thin. */
-export function patchSolid(material: Material, body: { value: Vector3 }): void {
-  // The share that is left goes to that share of a pixel's samples: nothing needs sorting.
-  material.alphaToCoverage = true;
-  material.onBeforeCompile = (shader) => {
-    shader.uniforms["bodyPlace"] = body;
-    shader.vertexShader = `${WORLD_VERTEX}${shader.vertexShader}`.replace("#include <begin_vertex>", WORLD_PLACE);
-    shader.fragmentShader = `uniform vec3 bodyPlace;\n${WORLD_VERTEX}${shader.fragmentShader}`.replace(
-      "#include <opaque_fragment>",
-      `#include <opaque_fragment>
-        vec3 sight = bodyPlace - cameraPosition;
-        float along = dot(vPlace - cameraPosition, sight) / dot(sight, sight);
-        float aside = distance(vPlace, cameraPosition + along * sight);
-        float before = smoothstep(0.5, 0.75, (1.0 - along) * length(sight)) * step(0.0, along);
-        gl_FragColor.a = max(smoothstep(0.3, 0.55, aside), 1.0 - before);
-        if (gl_FragColor.a < 0.1) discard;`,
-    );
-  };
-  material.customProgramCacheKey = () => "hole";
 }

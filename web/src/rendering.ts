@@ -4,7 +4,8 @@ import {
   BoxGeometry, Bone, BufferAttribute, Mesh, MeshBasicMaterial, MeshStandardMaterial, NeutralToneMapping, PCFShadowMap, PerspectiveCamera, Scene,
   Skeleton, SkinnedMesh, Vector3, WebGLRenderer,
 } from "three";
-import { patchSolid, patchWall } from "./cutaway";
+import { patchWall } from "./cutaway";
+import { glassOf, patchShare } from "./fading";
 import { Lighting } from "./lighting";
 
 let shared: WebGLRenderer | null = null;
@@ -24,7 +25,8 @@ export function renderer(): WebGLRenderer {
 
 /** Have the programs built that homes and bodies need, by drawing a small scene with every kind of surface. */
 export function warmUp(): void {
-  if (warmer) return;
+  // Whoever draws already has had them built, and must keep the canvas.
+  if (shared) return;
   warmer = new Scene();
   const lighting = new Lighting(warmer);
   lighting.aim(new Vector3(0, 1, 0));
@@ -33,8 +35,9 @@ export function warmUp(): void {
   const solid = new MeshStandardMaterial({ flatShading: true });
   patchWall(wall);
   patchWall(pane);
-  patchSolid(solid, { value: new Vector3() });
-  for (const material of [wall, pane, solid, new MeshStandardMaterial({ flatShading: true }), new MeshStandardMaterial()]) {
+  patchShare(solid, false);
+  const glass = glassOf(solid) as MeshStandardMaterial;
+  for (const material of [wall, pane, solid, glass, new MeshStandardMaterial({ flatShading: true }), new MeshStandardMaterial()]) {
     const mesh = new Mesh(box(), material);
     // Homes come without normals, and programs differ by that.
     if (material.flatShading) mesh.geometry.deleteAttribute("normal");
@@ -53,6 +56,7 @@ function box(): BoxGeometry {
   const geometry = new BoxGeometry();
   const { count } = geometry.getAttribute("position");
   geometry.setAttribute("cut", new BufferAttribute(new Float32Array(count).fill(9), 1));
+  geometry.setAttribute("share", new BufferAttribute(new Float32Array(count).fill(1), 1));
   geometry.setAttribute("color", new BufferAttribute(new Float32Array(3 * count), 3));
   return geometry;
 }

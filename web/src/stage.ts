@@ -1,13 +1,16 @@
 /** The three.js scene: home, body, light, and the picture of them at one moment. */
 
-import { Box3, BufferAttribute, CircleGeometry, Color, Mesh, MeshBasicMaterial, Object3D, Scene, SkinnedMesh, Sphere, Vector3 } from "three";
+import { Box3, Color, Mesh, Object3D, Scene, SkinnedMesh, Sphere, Vector3 } from "three";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 import type { Home } from "./api";
 import { CameraMan, type CameraMode } from "./camera";
 import { Cutaway } from "./cutaway";
+import { Fading } from "./fading";
+import { groundDisc, shade, subfloors } from "./ground";
 import { Lighting } from "./lighting";
 import { heading, JOINT_NAMES, type Point3, type Pose } from "./pose";
 import { renderer, warmUp } from "./rendering";
+import { boxesOf, Lookout } from "./sight";
 import { wallSides } from "./walls";
 
 export { warmUp };
@@ -36,6 +39,8 @@ export class Stage {
   #bodyRoot: Object3D | null = null;
   #home: Object3D | null = null;
   #cutaway: Cutaway | null = null;
+  #fading: Fading | null = null;
+  readonly #stale = (): void => void (this.dirty = true);
   #heading = 0;
   #slow = 0;
 
@@ -44,7 +49,8 @@ export class Stage {
     this.canvas = this.#renderer.domElement;
     holder.append(this.canvas);
     this.cameraMan = new CameraMan(this.canvas);
-    this.cameraMan.controls.addEventListener("change", () => (this.dirty = true));
+    this.cameraMan.controls.addEventListener("change", this.#stale);
+    this.canvas.addEventListener("webglcontextrestored", this.#stale);
     this.#ground = groundDisc();
     this.#scene.add(this.#ground);
     this.resize(holder.clientWidth, holder.clientHeight);
@@ -61,6 +67,9 @@ export class Stage {
       object.receiveShadow = true;
     });
     this.#cutaway = new Cutaway(scene, wallSides(home));
+    this.#fading = new Fading(scene, boxesOf(home));
+    this.cameraMan.lookout = new Lookout(home);
+    scene.add(...subfloors(scene, home));
     this.#scene.add(scene);
     const box = new Box3().setFromObject(scene);
     const sphere = box.getBoundingSphere(new Sphere());
@@ -133,7 +142,8 @@ export class Stage {
     this.#renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2) * (this.#slow > 1 ? 0.6 : 1));
     this.#renderer.setSize(width, height);
     this.cameraMan.resize(width, height);
-    this.dirty = true;
+    // Another size empties the canvas, and it would be shown so until the next picture.
+    this.#draw();
   }
 
   /** Draw if anything has changed; seconds since the last call. */
@@ -142,13 +152,19 @@ export class Stage {
     this.cameraMan.update(step, this.#body, this.#heading, playing);
     const eye = this.cameraMan.camera.position;
     this.#chest.set(this.#body.x, this.#body.y + 0.15, this.#body.z);
-    if (this.#cutaway?.update(eye, this.#chest, this.cameraMan.calm ? 1 : step)) this.dirty = true;
+    const pace = this.cameraMan.calm ? 1 : step;
+    if (this.#cutaway?.update(eye, this.#chest, pace)) this.dirty = true;
+    if (this.#fading?.update(eye, this.#body, pace)) this.dirty = true;
     if (this.#lighting.drift(step)) this.dirty = true;
     if (!this.dirty) return;
+    this.#draw();
+    this.#watch(seconds);
+  }
+
+  #draw(): void {
     this.dirty = false;
     this.#lighting.aim(this.#chest);
     this.#renderer.render(this.#scene, this.cameraMan.camera);
-    this.#watch(seconds);
   }
 
   /** Fewer points where pictures take long. */
@@ -160,6 +176,7 @@ export class Stage {
 
   dispose(): void {
     this.cameraMan.controls.dispose();
+    this.canvas.removeEventListener("webglcontextrestored", this.#stale);
     this.#scene.traverse((object) => {
       if (!(object instanceof Mesh)) return;
       object.geometry.dispose();
@@ -169,21 +186,4 @@ export class Stage {
     this.#renderer.renderLists.dispose();
     this.canvas.remove();
   }
-}
-
-/** A round floor of radius 1 that fades into what is around. */
-function groundDisc(): Mesh {
-  const geometry = new CircleGeometry(1, 64);
-  geometry.rotateX(-Math.PI / 2);
-  geometry.setAttribute("color", new BufferAttribute(new Float32Array(geometry.getAttribute("position").count * 3), 3));
-  return new Mesh(geometry, new MeshBasicMaterial({ vertexColors: true, toneMapped: false }));
-}
-
-function shade(disc: Mesh, middle: Color, rim: Color): void {
-  const colors = disc.geometry.getAttribute("color");
-  for (let i = 0; i < colors.count; i++) {
-    const { r, g, b } = i === 0 ? middle : rim;
-    colors.setXYZ(i, r, g, b);
-  }
-  colors.needsUpdate = true;
 }
