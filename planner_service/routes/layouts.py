@@ -26,7 +26,7 @@ from planner_service.schemas.layouts import (
 )
 from planner_service.schemas.pages import Cursor, Limit, page_of
 from planner_service.schemas.stories import Json
-from planner_service.shelves import FullError, TakenError
+from planner_service.shelves import AbsentError, FixedError, FullError, TakenError
 from planner_service.surveying import survey
 from scene_graphs.furniture import ROOM_TYPES, Furniture, canonical_room
 from scene_graphs.homes import home_from_layouts
@@ -122,6 +122,19 @@ def show(layout_id: LayoutId, request: Request, parts: PartsDep) -> Response:
         return json.dumps(_shown(parts, layout), ensure_ascii=False, allow_nan=False).encode()
 
     return unchanging(request, _etag(layout), make, "application/json", REVALIDATED)
+
+
+@router.delete(
+    "/{layout_id:path}", status_code=204, responses={409: {"description": "It is shipped, or in SIMS_LAYOUTS."}}
+)
+def delete(layout_id: LayoutId, parts: PartsDep) -> None:
+    """Remove a room that a user added; stories that play there keep their own copy."""
+    try:
+        parts.shelves.remove_layout(layout_id)
+    except AbsentError as error:
+        raise NotFound("there is no such room; GET /v1/layouts lists them") from error
+    except FixedError as error:
+        raise Conflict("this room is shipped with the service and cannot be deleted") from error
 
 
 def _has(index: LayoutIndex, room: str) -> bool:

@@ -129,6 +129,17 @@ async def test_a_room_that_was_added_is_there_with_what_was_checked(app: FastAPI
         check_problem(await ask(app, "/v1/layouts", "POST", json=row), 409)
 
 
+@pytest.mark.anyio
+async def test_a_room_that_was_added_can_be_removed_and_ours_cannot(app: FastAPI) -> None:
+    row = EXAMPLE | {"id": "house/soon-gone"}
+    assert (await ask(app, "/v1/layouts", "POST", json=row)).status_code == 201
+    assert (await ask(app, "/v1/layouts/house/soon-gone", "DELETE")).status_code == 204
+    for method in ("GET", "DELETE"):
+        check_problem(await ask(app, "/v1/layouts/house/soon-gone", method), 404)
+    check_problem(await ask(app, "/v1/layouts/study-0003", "DELETE"), 409)
+    assert (await ask(app, "/v1/layouts/study-0003")).status_code == 200
+
+
 def changed(**fields: Any) -> dict[str, Any]:
     return copy.deepcopy(ROOM) | {"id": "bad"} | fields
 
