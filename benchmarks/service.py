@@ -107,7 +107,7 @@ def wait(client: httpx.Client, story_id: str) -> dict[str, Any]:
             return story
         if story["state"] != "queued" and story["state"] != "running":
             raise RuntimeError(f"{story_id} {story['state']}: {story['error']}")
-        time.sleep(0.05)
+        time.sleep(0.2)
 
 
 def first_segment(client: httpx.Client) -> float:
