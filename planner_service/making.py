@@ -27,6 +27,7 @@ from planner_service.scripts.keyframe import LongScript
 from planner_service.scripts.narrating import Told
 from planner_service.store.stories import Made, Stories
 from planner_service.stories import Planned, Story, StoryRequest, Studio, judge, load_backend
+from planner_service.summaries import summary_of_home, summary_of_script
 
 Json = dict[str, Any]
 STAGES: Final = ("plan", "furnish", "narrate", "act", "move", "judge", "film")
@@ -177,11 +178,11 @@ class Maker:
 
     def _script(self, story: OpenStory) -> tuple[bytes, Json]:
         script = self.studio.script(story.request)
-        return _to_bytes(script.model_dump(mode="json")), script_view(script)
+        return _to_bytes(script.model_dump(mode="json")), summary_of_script(script)
 
     def _home(self, story: OpenStory) -> tuple[bytes, Json]:
         stage = self.studio.furnish(story.request, story.script())
-        return _to_bytes(documents.furnished_to_dict(stage)), home_view(stage)
+        return _to_bytes(documents.furnished_to_dict(stage)), summary_of_home(stage)
 
     def _told(self, story: OpenStory) -> tuple[bytes, Json]:
         stage, told = self.studio.tell(story.request, story.stage)
@@ -224,58 +225,6 @@ class Maker:
     def _end_of(self, story_id: str, position: int) -> int:
         found = self.store.get(story_id, position - 1).artifacts
         return int(found[0].summary["end"])
-
-
-def script_view(script: LongScript) -> Json:
-    """What a story shows of its script."""
-    return {
-        "planner": script.planner,
-        "encoder": script.encoder or None,
-        "events": [event.model_dump() for event in script.events],
-        "uncovered": list(script.uncovered),
-        "repairs": list(script.repairs),
-        "short_scripts": [
-            {"id": r.script.id, "summary": r.script.summary, "score": round(r.score, 4), "event": r.event}
-            for r in script.short_scripts
-        ],
-        "keyframes": _keyframes_view(script),
-    }
-
-
-def home_view(stage: Furnished) -> Json:
-    """What a story shows of its home: rooms, graph, and the object of every keyframe."""
-    nodes: list[Json] = []
-    edges: list[list[int]] = []
-    for room, graph in stage.graphs.items():
-        numbers = {node: len(nodes) + number for number, node in enumerate(sorted(graph))}
-        nodes += [{"category": node.category, "instance": node.instance, "room": room} for node in numbers]
-        edges += sorted(sorted((numbers[a], numbers[b])) for a, b in graph.edges)
-    keyframes = _keyframes_view(stage.script)
-    for row, place in zip(keyframes, stage.places, strict=True):
-        row["object_id"] = place.object_id
-    return {
-        "keyframes": keyframes,
-        "repairs": list(stage.script.repairs),
-        "graph": {"nodes": nodes, "edges": edges},
-        "home": {"rooms": stage.rooms_to_dicts()},
-    }
-
-
-def _keyframes_view(script: LongScript) -> list[Json]:
-    ids = [retrieved.script.id for retrieved in script.short_scripts]
-    return [
-        {
-            "index": index,
-            "skill": keyframe.skill.value,
-            "emotion": keyframe.emotion,
-            "caption": keyframe.caption,
-            "furniture": keyframe.furniture,
-            "object_id": None,
-            "room": keyframe.room,
-            "short_script_id": None if keyframe.short_script is None else ids[keyframe.short_script],
-        }
-        for index, keyframe in enumerate(script.keyframes)
-    ]
 
 
 def _to_bytes(value: Json) -> bytes:

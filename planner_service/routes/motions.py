@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request, Response
 
+from planner_service.accepting import accept
 from planner_service.errors import Unprocessable
 from planner_service.parts import PartsDep
 from planner_service.presenting import story_shown
-from planner_service.routes.stories import Key, accept, character_of, home_given, layout_named
+from planner_service.routes.stories import Key, character_of, home_given, layout_named
 from planner_service.schemas.stories import Json, MotionAsk, StoryShown
 from planner_service.stories import StoryRequest, given_script
 
@@ -30,6 +31,6 @@ def create(ask: MotionAsk, request: Request, response: Response, parts: PartsDep
         character=character_of(ask.character),
     )
     given_script(wanted)
-    record = accept(parts, request, "motion", wanted, ask.model_dump_json(), key)
+    record = accept(parts, request.state.caller, wanted, ask.model_dump_json(), key)
     response.headers["Location"] = f"/v1/stories/{record.id}"
     return story_shown(record)

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import uuid
 from typing import Annotated, Final, Literal
 
 from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
-from sqlalchemy.exc import IntegrityError
 
 from motion_backend.formats.glb import scene_glb
 from motion_backend.formats.writing import FORMATS, encode
 from motion_backend.motion import Character
-from planner_service.errors import Conflict, NotFound, NotReady, TooMany, Unprocessable
+from planner_service.accepting import accept
+from planner_service.errors import Conflict, NotFound, NotReady, Unprocessable
 from planner_service.footage import Footage
 from planner_service.making import HOME
 from planner_service.parts import Parts, PartsDep
@@ -37,8 +36,6 @@ Key = Annotated[
         description="The same key with the same body gives the same story, however often it is sent.",
     ),
 ]  # fmt: skip
-FULL_QUEUE: Final = 10
-"""Seconds after which a caller with too many stories may try again."""
 GLB: Final = "model/gltf-binary"
 
 
@@ -75,35 +72,9 @@ def create(ask: StoryAsk, request: Request, response: Response, parts: PartsDep,
         seed=ask.seed,
         character=character_of(ask.character),
     )
-    record = accept(parts, request, "story", wanted, ask.model_dump_json(), key)
+    record = accept(parts, request.state.caller, wanted, ask.model_dump_json(), key)
     response.headers["Location"] = f"/v1/stories/{record.id}"
     return story_shown(record)
-
-
-def accept(parts: Parts, request: Request, kind: str, wanted: StoryRequest, body: str, key: str | None) -> Record:
-    """Store and queue in one transaction: what is answered 202 is made, and one key makes one story."""
-    stories, caller = Stories(parts.engine), request.state.caller
-    body_hash = hashlib.sha256(f"{kind}\n{body}".encode()).hexdigest()
-    for last_try in (False, True):
-        try:
-            with stories.writing.begin() as connection:
-                known = stories.known_key(connection, caller, key) if key else None
-                if known is not None and known[1] != body_hash:
-                    raise Unprocessable("header:Idempotency-Key", "this key came with another body before; use a new")
-                story_id = known[0] if known else ""
-                if not known:
-                    if stories.waiting(connection, caller) >= parts.settings.most_stories:
-                        most = f"{parts.settings.most_stories} of your stories are waiting or being made"
-                        raise TooMany(f"{most}; wait until one has ended, or cancel one", FULL_QUEUE)
-                    story_id = stories.add(connection, kind, caller, wanted)
-                    if key:
-                        stories.remember_key(connection, caller, key, story_id, body_hash)
-                    parts.jobs.enqueue(connection, story_id)
-            return stories.get(story_id)
-        except IntegrityError:  # the same key at the same moment: the other one was first
-            if last_try:
-                raise
-    raise AssertionError
 
 
 def layout_named(parts: Parts, name: str, pointer: str) -> Layout:

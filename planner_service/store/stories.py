@@ -14,7 +14,7 @@ from sqlalchemy import Connection, Engine, Row, Select, delete, func, select, up
 from sqlalchemy.exc import IntegrityError
 
 from planner_service.documents import request_from_dict, request_to_dict
-from planner_service.store.jobs import CANCELLED, WAITING, workflow_status
+from planner_service.store.jobs import CANCELLED, workflow_status
 from planner_service.store.tables import artifacts, idempotency_keys, stage_times, stories
 from planner_service.stories import StoryRequest
 
@@ -124,14 +124,14 @@ class Stories:
         self.engine = engine
         self.writing = engine.execution_options(writes=True)
 
-    def add(self, connection: Connection, kind: str, caller: str, request: StoryRequest) -> str:
+    def add(self, connection: Connection, caller: str, request: StoryRequest) -> str:
         """A new story inside the caller's transaction; its id."""
         created = now()
         story_id = new_id(created)
         connection.execute(
             stories.insert().values(
                 id=story_id,
-                kind=kind,
+                kind="motion" if request.keyframes else "story",
                 caller=caller,
                 created=created,
                 theme=request.theme,
@@ -144,24 +144,6 @@ class Stories:
             )
         )
         return story_id
-
-    def waiting(self, connection: Connection, caller: str) -> int:
-        """How many stories of a caller have not ended."""
-        joined = stories.join(workflow_status, workflow_status.c.workflow_uuid == stories.c.id)
-        mine = (stories.c.caller == caller) & workflow_status.c.status.in_(WAITING)
-        return int(connection.execute(select(func.count()).select_from(joined).where(mine)).scalar_one())
-
-    def known_key(self, connection: Connection, caller: str, key: str) -> tuple[str, str] | None:
-        """Story id and body hash that an idempotency key stands for."""
-        mine = (idempotency_keys.c.caller == caller) & (idempotency_keys.c.key == key)
-        columns = (idempotency_keys.c.story_id, idempotency_keys.c.body_hash)
-        row = connection.execute(select(*columns).where(mine)).one_or_none()
-        return None if row is None else (row.story_id, row.body_hash)
-
-    def remember_key(self, connection: Connection, caller: str, key: str, story_id: str, body_hash: str) -> None:
-        """Bind an idempotency key to a story."""
-        values = {"caller": caller, "key": key, "story_id": story_id, "body_hash": body_hash, "created": now()}
-        connection.execute(idempotency_keys.insert().values(**values))
 
     def request(self, story_id: str) -> StoryRequest:
         """What was asked for. StoryGone."""
