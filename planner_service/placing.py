@@ -77,8 +77,7 @@ class Placing:
         if object_id is None and keyframe.skill in NEEDS:
             lacks = f"the {room.replace('_', ' ')} has no {display_name(word)} to {_DOING[NEEDS[keyframe.skill]]}"
             raise MissingError(
-                f"keyframe {index}: {lacks}, nor anything that could stand for it; choose another room "
-                "or story"
+                f"keyframe {index}: {lacks}, nor anything that could stand for it; choose another room or story"
             )
         return Place(self.numbers[room] if object_id is None else int(object_id.split("/")[0]), object_id)
 

@@ -61,9 +61,7 @@ class StoryAsk(Ask):
         [], max_length=MOST_ROOMS, description="Ids of rooms to play in, joined to a home in place of retrieved ones."
     )
     home: Json | None = Field(None, description="A whole home to play in, as GET /v1/stories/{id}/home gives it.")
-    short_scripts: int | None = Field(
-        None, ge=1, le=MOST, description="How many are woven; null: choose."
-    )
+    short_scripts: int | None = Field(None, ge=1, le=MOST, description="How many are woven; null: choose.")
     method: Literal["matching", "direct"] = Field(
         "matching", description="Woven from the library's short scripts, or written at once (SIMS 10's baseline)."
     )
