@@ -35,7 +35,10 @@ log = structlog.get_logger("sims.http")
 
 
 def configure_logging(level: str, stream: TextIO) -> None:
-    """Send structlog's and the standard library's lines to `stream`, one JSON object each. Called once a process."""
+    """Send structlog's and the standard library's lines to `stream`, one JSON object each, or in colour to a terminal.
+
+    Called once a process.
+    """
     shared: list[Any] = [
         structlog.contextvars.merge_contextvars,
         structlog.stdlib.add_log_level,
@@ -55,7 +58,7 @@ def configure_logging(level: str, stream: TextIO) -> None:
             foreign_pre_chain=[structlog.stdlib.ExtraAdder(allow=[DBOS_STORY]), *shared],
             processors=[
                 structlog.stdlib.ProcessorFormatter.remove_processors_meta,
-                structlog.processors.JSONRenderer(default=str),
+                structlog.dev.ConsoleRenderer() if stream.isatty() else structlog.processors.JSONRenderer(default=str),
             ],
         )
     )
