@@ -64,8 +64,9 @@ class Lines:
 
 def add_routes(app: FastAPI) -> None:
     @app.get("/v1/stories/{story_id}/test")
-    def story(story_id: str) -> dict[str, str]:
+    def story(story_id: str, secret: str = "") -> dict[str, str]:
         structlog.get_logger("sims.test").info("looked", story_id=story_id)
+        assert not secret or secret == "1"
         return {}
 
     @app.get("/v1/broken")
