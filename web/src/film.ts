@@ -1,6 +1,6 @@
 /** The film: stage, curtain, subtitle, plan and controls, kept in time by one clock. */
 
-import { getGlb, getHome, motionUrl, sceneUrl, type Keyframe, type Skill, type Story } from "./api";
+import { getGlb, getHome, motionUrl, sceneUrl, type Keyframe, type Point2, type Skill, type Story } from "./api";
 import { color, isDark, isStill, onAppearance } from "./appearance";
 import type { CameraMode } from "./camera";
 import { Controls } from "./controls";
@@ -109,6 +109,11 @@ export class Film {
     if (this.#stage?.hasBody) return this.#stage.joints();
     const { skeleton, ready } = this.reel.track;
     return skeleton && ready ? jointPositions(skeleton, this.#pose) : [];
+  }
+
+  /** The joints in the window, CSS pixels; empty where nothing is drawn. */
+  pixels(): Point2[] {
+    return this.#stage?.hasBody ? this.#stage.pixels() : [];
   }
 
   get camera(): { mode: CameraMode; position: Point3 | null } {

@@ -1,7 +1,7 @@
 /** The page: what the address names is shown, and a key is asked for where one is needed. */
 
 import "./style/page.css";
-import { ApiError, getSession, logOut } from "./api";
+import { ApiError, getSession, logOut, type Point2 } from "./api";
 import { appearanceButton } from "./appearance";
 import { fill, h } from "./dom";
 import { Gallery } from "./gallery";
@@ -66,6 +66,7 @@ interface Seen {
   framesTotal: number;
   keyframe: number | null;
   joints(): Point3[];
+  pixels(): Point2[];
   camera: { mode: string; position: Point3 | null } | null;
 }
 
@@ -81,6 +82,7 @@ function seen(): Seen {
     framesTotal: view?.story?.motion.frames ?? 0,
     keyframe: film?.keyframe ?? null,
     joints: () => film?.joints() ?? [],
+    pixels: () => film?.pixels() ?? [],
     camera: film?.camera ?? null,
   };
 }

@@ -2,7 +2,7 @@
 
 import { Box3, Color, Mesh, Object3D, Scene, SkinnedMesh, Sphere, Vector3 } from "three";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
-import type { Home } from "./api";
+import type { Home, Point2 } from "./api";
 import { CameraMan, type CameraMode } from "./camera";
 import { Cutaway } from "./cutaway";
 import { Fading } from "./fading";
@@ -116,6 +116,17 @@ export class Stage {
   joints(): Point3[] {
     this.#bodyRoot?.updateMatrixWorld(true);
     return this.#joints.map((joint) => joint.getWorldPosition(new Vector3()).toArray());
+  }
+
+  /** Where the joints are in the window, CSS pixels from its left and top. */
+  pixels(): Point2[] {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const { camera } = this.cameraMan;
+    camera.updateMatrixWorld();
+    return this.joints().map((joint) => {
+      const { x, y } = new Vector3(...joint).project(camera);
+      return [left + ((x + 1) / 2) * width, top + ((1 - y) / 2) * height];
+    });
   }
 
   /** The story jumped: look at the body from a good side. */

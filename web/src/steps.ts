@@ -12,6 +12,8 @@ export class Steps {
   readonly #bar = h("progress", { class: "unseen", max: 1, value: 0, "aria-label": "How far the story is" });
   readonly #cancel: HTMLButtonElement;
   #broken = false;
+  /** The stage that is shown, of STAGES. */
+  #at = -1;
   #story: Story | null = null;
 
   constructor(cancel: () => void) {
@@ -27,12 +29,15 @@ export class Steps {
     if (making) this.show(story.stage, story.progress);
   }
 
+  /** Say what is being done; what a late message tells of an earlier stage is passed over. */
   show(stage: Stage | null, progress: number): void {
+    const at = stage === null ? -1 : STAGES.indexOf(stage);
+    if (at < this.#at) return;
+    this.#at = at;
     const words = stage === null ? "waiting for a free worker" : STAGE_WORDS[stage];
     const where = stage === "move" ? this.#moments() : "";
     this.#words.textContent = this.#broken ? "The connection is lost; trying again …" : `${capital(words)}${where} …`;
     this.#bar.value = progress;
-    const at = stage === null ? -1 : STAGES.indexOf(stage);
     for (const [index, item] of [...this.#line.children].entries()) {
       item.classList.toggle("past", index < at);
       item.classList.toggle("now", index === at);

@@ -12,7 +12,7 @@ import { showReport } from "./report";
 import { ScriptList } from "./script-list";
 import { Steps } from "./steps";
 import { Telling } from "./telling";
-import { count } from "./words";
+import { capital, count } from "./words";
 
 const AGAIN_MS = 2500;
 
@@ -138,7 +138,7 @@ export class StoryView {
     const [head, detail] =
       story.state === "cancelled"
         ? ["Stopped", story.motion.frames ? "What was made until then can be watched." : "It was stopped before anything could be seen."]
-        : [story.error?.title ?? "It could not be made", story.error?.detail ?? "The service gives no reason."];
+        : [story.error?.title ?? "It could not be made", capital((story.error?.detail ?? "The service gives no reason.").replace(/^theme: /, ""))];
     const note = h("div", { class: "outcome", role: "status" }, h("b", {}, head), h("p", {}, detail));
     if (story.motion.frames) this.element.querySelector(".title")?.append(...(this.element.querySelector(".title .outcome") ? [] : [note]));
     else this.film.notice(note, h("a", { href: "#/", class: "button primary" }, "Try another theme"));

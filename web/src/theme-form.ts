@@ -192,7 +192,7 @@ function choices(name: string, items: readonly (readonly [string, string])[], ty
 }
 
 function sentence(text: string): string {
-  const trimmed = capital(text.trim());
+  const trimmed = capital(text.trim().replace(/^Input should/, "This should"));
   return /[.!?…]$/.test(trimmed) ? trimmed : `${trimmed}.`;
 }
 

@@ -1,0 +1,206 @@
+"""A visitor's way through the page, in a real browser, against a real service."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+from running import PATIENCE, RunningService, finished
+
+HERE = Path(__file__).parent
+PAGE = Path(__file__).parents[2] / "planner_service" / "page" / "index.html"
+THEME = "A person is happy at first, but hears on the phone that the job interview went wrong and becomes very sad."
+NONSENSE = "asdf qwer zxcv"
+SOON = 10.0
+"""Seconds from posting to playing on a machine that does much else; `make bench` measures against 3."""
+APART = 0.01
+"""Metres that a drawn joint may be from where the service says it is."""
+
+
+def missing() -> str | None:
+    """What the browser's tests need and is not here, with how to get it."""
+    if shutil.which("node") is None:
+        return "Node is not installed"
+    if not (HERE / "node_modules" / "playwright-core").is_dir():
+        return "the browser's driver is not installed: `make test` does that, or npm ci in tests/web"
+    if not os.environ.get("CHROMIUM") and not any(map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))):
+        return "no Chromium: install it, or name one by CHROMIUM"
+    return None if PAGE.is_file() else "the page is not built: `make page`"
+
+
+REASON = missing()
+pytestmark = pytest.mark.skipif(REASON is not None, reason=str(REASON))
+
+
+class Visit:
+    """Runs a scenario in the browser, and looks at how the page behaved whatever the scenario is about."""
+
+    def __init__(self, service: RunningService) -> None:
+        self.service = service
+
+    def __call__(self, name: str, *words: str, refused: tuple[str, ...] = ()) -> dict[str, Any]:
+        command = ["node", str(HERE / f"{name}.mjs"), self.service.url, *words]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=3 * PATIENCE, check=False)
+        assert done.returncode == 0, done.stderr
+        told: dict[str, Any] = json.loads(done.stdout)
+        foreign = [url for url in told["requests"] if not url.startswith((self.service.url + "/", "blob:", "data:"))]
+        assert foreign == [], "the page asks nobody but its own service"
+        assert told["errors"] == []
+        assert told["violations"] == [], "nothing on the page is against its own policy"
+        assert sorted(told["refused"]) == sorted(refused)
+        return told
+
+
+@pytest.fixture(scope="module")
+def visit(service: RunningService) -> Visit:
+    """Visitors come once the service is warm."""
+    deadline = time.monotonic() + PATIENCE
+    while len(service.worker_pids()) < service.workers:
+        assert time.monotonic() < deadline, "no worker is ready"
+        time.sleep(0.1)
+    return Visit(service)
+
+
+@pytest.fixture(scope="module")
+def client(service: RunningService) -> Iterator[httpx.Client]:
+    with service.client() as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def watched(visit: Visit) -> dict[str, Any]:
+    """A theme posted with the keyboard, its film played and looked at."""
+    return visit("watching", THEME)
+
+
+@pytest.fixture(scope="module")
+def story(watched: dict[str, Any], client: httpx.Client) -> dict[str, Any]:
+    """The story that was watched."""
+    return finished(client, watched["story"])
+
+
+def words(text: str) -> str:
+    """Text without regard to how it is broken into lines."""
+    return " ".join(text.split())
+
+
+def test_a_theme_posted_by_keyboard_is_seen_growing_and_plays_while_it_is_made(watched: dict[str, Any]) -> None:
+    grown = watched["grown"]
+    assert len({step for step in grown["steps"] if step}) >= 2, "what is being done is said"
+    assert grown["cues"][-1] > 1
+    assert len(grown["cues"]) >= 3, "the script appears keyframe by keyframe"
+    assert grown["cues"] == sorted(grown["cues"])
+    assert grown["made"] == sorted(grown["made"])
+    assert len(grown["made"]) >= 3, "moments light up as they are made"
+    first = grown["playing"]
+    assert first["open"]
+    assert first["state"] == "running" or first["readyFrames"] < first["framesTotal"], (
+        "it need not be whole to be played"
+    )
+    seconds = (first["at"] - grown["posted"]) / 1000
+    print(f"posting to playing: {seconds:.2f} s")
+    assert 0 < seconds < SOON
+
+
+def test_the_body_moves_as_the_service_says(watched: dict[str, Any], client: httpx.Client) -> None:
+    drawn = watched["drawn"]
+    seen = [drawn["first"], drawn["second"], watched["follow"]]
+    for moment in seen:
+        options: dict[str, str | int] = {"format": "f32", "from": moment["frame"], "to": moment["frame"] + 1}
+        answer = client.get(f"/v1/stories/{watched['story']}/motion", params=options).raise_for_status()
+        truth = np.frombuffer(answer.content, "<f4").reshape(22, 3)
+        apart = np.linalg.norm(np.array(moment["joints"]) - truth, axis=1)
+        assert apart.max() < APART
+    one, other = np.array(seen[0]["joints"]), np.array(seen[1]["joints"])
+    assert np.linalg.norm(one - other, axis=1).min() > 0.5, "no joint is where it was"
+    bent = np.linalg.norm((one - one[0]) - (other - other[0]), axis=1)
+    assert bent.max() > 0.1, "the body moves, it is not only moved about"
+
+
+def test_the_body_is_drawn_where_its_joints_are(watched: dict[str, Any]) -> None:
+    drawn = watched["drawn"]
+    assert drawn["first"]["camera"]["mode"] == drawn["second"]["camera"]["mode"] == "orbit"
+    assert drawn["still"] < 0.02, "a paused film stands still"
+    assert drawn["moved"] > 0.1, "where the body was there is something else once it has gone"
+    assert watched["colours"] > 200
+    assert watched["follow"]["camera"]["mode"] == "follow"
+    bounds = watched["bounds"]
+    for x, y in watched["follow"]["pixels"]:
+        assert bounds["x"] < x < bounds["x"] + bounds["width"]
+        assert bounds["y"] < y < bounds["y"] + bounds["height"]
+
+
+def test_the_text_follows_the_film_and_leads_back_to_it(watched: dict[str, Any], story: dict[str, Any]) -> None:
+    tells = {index: span for span in story["spans"] for index in span["keyframes"]}
+    assert len([lit for lit in watched["grown"]["lit"] if lit]) >= 2, (
+        "while it plays, one sentence after another is lit"
+    )
+    assert len({moment["words"] for moment in watched["told"]}) >= 3
+    for moment in watched["told"]:
+        span = tells[moment["keyframe"]]
+        assert words(moment["words"]) == words(story["text"][span["start"] : span["end"]])
+    for moment in watched["clicked"]:
+        keyframe = story["keyframes"][moment["keyframe"]]
+        assert moment["frame"] == keyframe["start"], "a sentence leads to where its moment begins"
+        span = tells[moment["keyframe"]]
+        assert words(moment["words"]) in words(story["text"][span["start"] : span["end"]])
+
+
+def test_stories_survive_a_reload_and_the_gallery_has_them_all(
+    visit: Visit, story: dict[str, Any], client: httpx.Client
+) -> None:
+    for seed in range(13):
+        posted = client.post("/v1/stories", json={"theme": "A person sits down.", "seed": seed}).raise_for_status()
+        # Whether it is stopped or done by now is all the same.
+        client.post(f"/v1/stories/{posted.json()['id']}/cancel")
+    told = visit("gallery", story["id"])
+    assert told["before"] == told["after"] == f"{story['title']} · SIMS stories"
+    assert told["opened"] == story["id"]
+    assert told["counts"][0] >= 12
+    assert len(told["counts"]) > 1, "more stories than a page holds"
+    assert told["counts"] == sorted(set(told["counts"]))
+    assert len(set(told["links"])) == len(told["links"]) == told["counts"][-1]
+    assert f"#/stories/{story['id']}" in told["links"]
+
+
+def test_it_is_fine_on_every_screen_by_day_and_by_night_and_for_those_who_want_it_still(
+    visit: Visit, story: dict[str, Any]
+) -> None:
+    told = visit("looks", story["id"])
+    assert len(told["shown"]) == 12
+    for shown in told["shown"]:
+        assert shown["overhang"] <= 0, shown
+        assert not shown["wrong"], shown
+    still = told["still"]
+    assert not still["playing"]
+    assert still["time"] == still["early"]
+    assert still["camera"]["mode"] == "orbit"
+    assert still["running"] == 0, "nothing moves that was not asked to"
+
+
+def test_what_goes_wrong_is_said_where_it_belongs(visit: Visit, client: httpx.Client) -> None:
+    refused = ("422 /v1/stories", "404 /v1/stories/00000000-0000-7000-8000-000000000000")
+    told = visit("trouble", NONSENSE, THEME, refused=refused)
+    assert told["empty"]["invalid"] == "true"
+    assert "Write what shall happen" in told["empty"]["words"]
+    assert told["tall"]["invalid"] == "true"
+    assert "2.2" in told["tall"]["words"]
+    assert told["tall"]["focused"]
+    assert "character-height-error" in told["tall"]["described"], "a screen reader says it with the field"
+    assert told["cleared"]["invalid"] is None
+    assert told["cleared"]["words"] == ""
+    assert NONSENSE in told["failed"]["words"], "why the story failed"
+    assert told["failed"]["again"] == 1
+    assert "Stopped" in told["stopped"]["words"]
+    assert told["stopped"]["hidden"], "nothing is being made any more"
+    ended = client.get(f"/v1/stories/{told['stopped']['id']}").raise_for_status().json()
+    assert ended["state"] == "cancelled"

@@ -1,0 +1,111 @@
+/** A theme is posted with the keyboard alone; its film begins while it is being made, the body moves, the text follows. */
+
+import { around, compare, scene, settle, shoot, state, until } from "./browser.mjs";
+
+const [, , , theme] = process.argv;
+
+/** Note, picture by picture, how the story grows and how it stood when the film began. */
+function note() {
+  const seen = { steps: [], cues: [], made: [], stages: [], playing: null, posted: null, lit: [] };
+  const add = (list, value) => list.at(-1) === value || list.push(value);
+  const look = () => {
+    const sims = window.sims.state();
+    if (sims.storyId) {
+      add(seen.steps, document.querySelector(".steps:not([hidden]) .steps-words")?.textContent ?? "");
+      add(seen.stages, document.querySelector(".steps-line .now")?.dataset.stage ?? "");
+      add(seen.cues, [...document.querySelectorAll(".cues .cue")].filter((cue) => Number(getComputedStyle(cue).opacity) > 0.5).length);
+      add(seen.made, document.querySelectorAll(".blocks .made").length);
+      add(seen.lit, document.querySelector(".told [aria-current]")?.textContent ?? "");
+    }
+    if (sims.playing && !seen.playing) {
+      seen.playing = { at: performance.now(), state: sims.state, readyFrames: sims.readyFrames, framesTotal: sims.framesTotal, open: !document.querySelector(".arch.closed") };
+    }
+    requestAnimationFrame(look);
+  };
+  document.addEventListener("keydown", (event) => event.key === "Enter" && (seen.posted ??= performance.now()), true);
+  window.seen = seen;
+  look();
+}
+
+async function post(page) {
+  await page.goto("/");
+  await page.waitForSelector("#theme");
+  // A visitor thinks for longer than this.
+  await page.waitForTimeout(2500);
+  await page.evaluate(note);
+  let tabs = 0;
+  while ((await page.evaluate(() => document.activeElement?.id)) !== "theme" && tabs++ < 12) await page.keyboard.press("Tab");
+  await page.keyboard.insertText(theme);
+  await page.keyboard.press("Enter");
+  await until(page, (seen) => seen.playing);
+}
+
+/** What is lit in the text beside what is being acted. */
+const lit = (page) =>
+  page.evaluate(() => ({
+    keyframe: window.sims.state().keyframe,
+    frame: window.sims.state().frame,
+    words: [...document.querySelectorAll(".told [aria-current]")].map((element) => element.textContent).join(""),
+  }));
+
+/** A still moment: the joints, and a picture of the stage. */
+async function moment(page, keyframe) {
+  await page.locator(".blocks button").nth(keyframe).click();
+  await settle(page);
+  return state(page);
+}
+
+/** Of the keyframes from one on, the first whose body is a step away from where it was. */
+async function farFrom(page, { joints }, keyframe) {
+  await page.locator(".blocks button").nth(keyframe).click();
+  const [x, , z] = (await state(page)).joints[0];
+  const far = Math.hypot(x - joints[0][0], z - joints[0][2]) > 1;
+  return far || keyframe + 1 === (await page.locator(".blocks button").count()) ? keyframe : farFrom(page, { joints }, keyframe + 1);
+}
+
+/** The same corner of the overview, where the camera stands still, with the body in it, once more, and with it gone elsewhere. */
+async function pictures(page, one, later) {
+  // The plan could lie over the body.
+  await page.getByRole("button", { name: "Plan of the home" }).click();
+  const first = await moment(page, one);
+  const other = await farFrom(page, first, later);
+  await moment(page, one);
+  const bounds = await page.locator(".picture").boundingBox();
+  const clip = around(first.pixels, 6, bounds);
+  const here = await shoot(page, clip);
+  const again = await shoot(page, clip);
+  const second = await moment(page, other);
+  const { changed } = await compare(page, here, again, await shoot(page, clip));
+  return { first, second, still: changed[0], moved: changed[1], clip };
+}
+
+await scene(async (page) => {
+  await post(page);
+  await page.waitForFunction(() => window.seen.lit.length > 2);
+  await until(page, (seen) => seen.state === "succeeded" && seen.readyFrames === seen.framesTotal);
+  const grown = await page.evaluate(() => window.seen);
+  await page.keyboard.press("Escape");
+  await page.locator(".picture").focus();
+  await page.keyboard.press("Space");
+  await until(page, (seen) => !seen.playing);
+  await page.keyboard.press("f");
+  const count = await page.locator(".blocks button").count();
+  const [early, late] = [Math.floor(count * 0.2), Math.floor(count * 0.6)];
+  const drawn = await pictures(page, early, late);
+  await page.keyboard.press("f");
+  const follow = await moment(page, Math.floor(count * 0.5));
+  const bounds = await page.locator(".picture").boundingBox();
+  const { colours } = await compare(page, await shoot(page, bounds));
+  const told = [];
+  for (const keyframe of [0, early, late, count - 1]) {
+    await page.locator(".blocks button").nth(keyframe).click();
+    told.push(await lit(page));
+  }
+  const sentences = await page.locator(".told .moment").count();
+  const clicked = [];
+  for (const sentence of [0, Math.floor(sentences / 2)]) {
+    await page.locator(".told .moment").nth(sentence).click();
+    clicked.push({ words: await page.locator(".told .moment").nth(sentence).textContent(), ...(await lit(page)) });
+  }
+  return { grown, drawn, follow, colours, bounds, told, clicked, story: (await state(page)).storyId };
+});
