@@ -6,6 +6,7 @@ import gzip
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import time
@@ -21,7 +22,8 @@ from benchmarks.themes import DEMO, THEMES
 
 MEDIAN_MS, P99_MS, PER_SECOND, FIRST_SECONDS, RATIO = 20.0, 100.0, 300.0, 3.0, 1.7
 LOAD_SECONDS, BATCH = 8.0, 12
-PAGE_KB = 250.0
+PAGE_KB, PAINT_SECONDS = 250.0, 1.0
+ROOT = Path(__file__).resolve().parents[1]
 
 
 @contextmanager
@@ -55,6 +57,7 @@ def service_figures(folder: Path) -> list[Figure]:
     """All figures of the service, on SQLite; the load comes from a second process."""
     with running(folder / "two", 2) as client:
         first = first_segment(client)
+        seen = browser_figures(client)
         batch = batch_seconds(client)
         story = wait(client, post(client, 0))
         idle = load(client, 1, 0.0, [story["links"]["self"]])
@@ -80,17 +83,34 @@ def service_figures(folder: Path) -> list[Figure]:
             note=f"{BATCH} stories: {batch:.1f} s against {alone:.1f} s",
         ),
         *page_figures(),
+        *seen,
     ]  # fmt: skip
 
 
 def page_figures() -> list[Figure]:
     """The size of the page, where it was built."""
-    folder = Path(__file__).resolve().parents[1] / "planner_service" / "page"
+    folder = ROOT / "planner_service" / "page"
     files = [path for path in folder.rglob("*") if path.suffix in (".html", ".js", ".css")]
     if not files:
         return []
     size = sum(len(gzip.compress(path.read_bytes())) for path in files)
     return [Figure("page, gzipped", size / 1000, "kB", PAGE_KB, digits=0, note=f"{len(files)} files")]
+
+
+def browser_figures(client: httpx.Client) -> list[Figure]:
+    """The page as Chromium shows it, by the script of its tests; where browser, driver or page is missing, nothing."""
+    script = ROOT / "tests" / "web" / "measure.mjs"
+    tools = [script.with_name("node_modules") / "playwright-core", ROOT / "planner_service" / "page" / "index.html"]
+    chromium = os.environ.get("CHROMIUM") or any(map(shutil.which, ("chromium", "chromium-browser", "google-chrome")))
+    if not chromium or shutil.which("node") is None or not all(tool.exists() for tool in tools):
+        return []
+    command = ["node", str(script), str(client.base_url), THEMES[DEMO]]
+    told = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+    note = "Chromium without a graphics card"
+    return [
+        Figure("first paint of the page", told["paint"], "s", PAINT_SECONDS, digits=2, note=note),
+        Figure("posting to playing in the page", told["playing"], "s", FIRST_SECONDS, digits=2, note=note),
+    ]
 
 
 def post(client: httpx.Client, seed: int) -> str:
