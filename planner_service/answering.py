@@ -10,6 +10,7 @@ from http import HTTPStatus
 from typing import Any, Final
 
 import structlog
+from anyio import BrokenResourceError, ClosedResourceError
 from fastapi import FastAPI
 from fastapi.exceptions import RequestValidationError
 from fastapi.routing import iter_route_contexts
@@ -91,10 +92,19 @@ class Unforeseen:
         try:
             await self.app(scope, receive, noticing)
         except Exception as error:
+            if begun and is_hang_up(error):
+                return
             log.exception("unforeseen", path=scope["path"], answer_begun=begun)
             if not begun:
                 known = database_problem(error) or _unforeseen(scope)
                 await known.response(scope["path"])(scope, receive, send)
+
+
+def is_hang_up(error: BaseException) -> bool:
+    """Whether this only says that a caller left a stream in the middle of an event (FastAPI's own queue was closed)."""
+    if isinstance(error, BaseExceptionGroup):
+        return all(is_hang_up(one) for one in error.exceptions)
+    return isinstance(error, BrokenResourceError | ClosedResourceError)
 
 
 def _unforeseen(scope: Scope) -> Problem:

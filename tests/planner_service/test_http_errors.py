@@ -11,6 +11,7 @@ from typing import Annotated, Any
 
 import httpx
 import pytest
+from anyio import BrokenResourceError, ClosedResourceError
 from fastapi import FastAPI, Header, Query
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -21,7 +22,7 @@ from sqlalchemy.exc import DataError, IntegrityError, InterfaceError, Operationa
 from sqlalchemy.exc import TimeoutError as PoolTimeout
 
 from planner_service import errors
-from planner_service.answering import database_problem, engine_problem
+from planner_service.answering import database_problem, engine_problem, is_hang_up
 from planner_service.errors import Problem, printable
 from planner_service.limiting import MOST_BYTES
 from planner_service.llm.protocol import ModelError
@@ -378,3 +379,11 @@ async def test_whatever_json_is_sent_the_answer_is_a_wish_or_a_problem(app: Fast
     answer = await ask(app, "POST", "/v1/wishes/1", content=json.dumps(body), headers=JSON)
     if answer.status_code != 200:
         check_problem(answer, 422)
+
+
+def test_only_a_stream_that_was_left_counts_as_hung_up() -> None:
+    left = BrokenResourceError()
+    assert is_hang_up(left)
+    assert is_hang_up(ExceptionGroup("tasks", [left, ExceptionGroup("inner", [ClosedResourceError()])]))
+    assert not is_hang_up(ExceptionGroup("tasks", [left, ValueError("ours")]))
+    assert not is_hang_up(OSError("disk"))
