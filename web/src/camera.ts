@@ -13,6 +13,8 @@ const FASTEST = 0.55;
 const NEAR = 4.4;
 /** The camera's angle from straight above, radians. */
 const STEEP = 1.12;
+/** Where the camera aims above 0.6 of the pelvis, metres: low, so that what is written below leaves the feet free. */
+const GAZE = 0.2;
 /** Seconds between looks for a better place, and how much better it must be. */
 const LOOK_EVERY = 0.7;
 const WORTH = 0.3;
@@ -114,7 +116,7 @@ export class CameraMan {
 
   #travel(seconds: number, body: Vector3, heading: number, playing: boolean): void {
     const target = this.controls.target;
-    const goal = this.#step.set(body.x, 0.35 + 0.6 * body.y, body.z);
+    const goal = this.#step.set(body.x, GAZE + 0.6 * body.y, body.z);
     const jump = goal.distanceTo(target) > 2.5;
     goal.sub(target).multiplyScalar(jump ? 1 : 1 - Math.exp(-2.6 * seconds));
     target.add(goal);
@@ -151,7 +153,7 @@ export class CameraMan {
   #cost(body: Vector3, heading: number, offset: number, from: number, effort: number): number {
     const around = heading + offset;
     const eye = this.#step.setFromSphericalCoords(NEAR * this.#narrow, STEEP, around);
-    eye.add(body).setY(eye.y - 0.4 * body.y + 0.35);
+    eye.add(body).setY(eye.y - 0.4 * body.y + GAZE);
     const hidden = this.lookout?.cost(eye.toArray(), body.toArray()) ?? 0;
     return hidden + 0.35 * Math.abs(Math.abs(offset) - this.aside) + effort * Math.abs(angle(around - from));
   }
@@ -163,7 +165,7 @@ export class CameraMan {
   }
 
   #stand(body: Vector3, around: number): void {
-    this.controls.target.set(body.x, 0.35 + 0.6 * body.y, body.z);
+    this.controls.target.set(body.x, GAZE + 0.6 * body.y, body.z);
     this.camera.position.setFromSphericalCoords(NEAR * this.#narrow, STEEP, around).add(this.controls.target);
   }
 }

@@ -1,4 +1,4 @@
-/** A furniture graph as a small picture: one ring a room, lines between what is used together. */
+/** A furniture graph as a small picture: one ring a room, room under room, lines between what is used together. */
 
 import type { FurnitureGraph } from "./api";
 import { s } from "./dom";
@@ -6,23 +6,30 @@ import { plain } from "./words";
 
 const RADIUS = 62;
 const WIDTH = 300;
-const HEIGHT = 210;
+/** Above and below a ring, for names. */
+const MARGIN = 22;
+const ROOM_NAME = 34;
 
 /** An SVG with a name for those who do not see it. */
 export function drawGraph(graph: FurnitureGraph): SVGSVGElement {
   const rooms = [...new Set(graph.nodes.map((node) => node.room))];
   const places: [number, number][] = [];
   const names: SVGElement[] = [];
-  for (const [column, room] of rooms.entries()) {
+  let top = 0;
+  for (const room of rooms) {
     const members = graph.nodes.flatMap((node, index) => (node.room === room ? [index] : []));
-    const middle: [number, number] = [column * WIDTH + WIDTH / 2, HEIGHT / 2];
+    // One stands alone, two stand side by side, more stand in a ring.
+    const [across, down] = members.length === 1 ? [0, 0] : members.length === 2 ? [0.7 * RADIUS, 0] : [1.15 * RADIUS, RADIUS];
+    const first = members.length === 2 ? Math.PI : -Math.PI / 2;
+    const middle: [number, number] = [WIDTH / 2, top + MARGIN + down];
     for (const [turn, index] of members.entries()) {
-      const angle = (2 * Math.PI * turn) / members.length - Math.PI / 2;
-      const reach = members.length === 1 ? 0 : 1;
-      places[index] = [middle[0] + reach * RADIUS * 1.15 * Math.cos(angle), middle[1] + reach * RADIUS * Math.sin(angle)];
-      names.push(label(graph.nodes[index]!, places[index], angle, reach));
+      const angle = (2 * Math.PI * turn) / members.length + first;
+      places[index] = [middle[0] + across * Math.cos(angle), middle[1] + down * Math.sin(angle)];
+      names.push(label(graph.nodes[index]!, places[index], angle, across ? 1 : 0));
     }
-    if (room) names.push(s("text", { x: middle[0], y: HEIGHT - 6, class: "graph-room", "text-anchor": "middle" }, plain(room)));
+    top = middle[1] + down + MARGIN;
+    if (room) names.push(s("text", { x: middle[0], y: (top += ROOM_NAME / 2), class: "graph-room", "text-anchor": "middle" }, plain(room)));
+    top += ROOM_NAME / 2;
   }
   const lines = graph.edges.map(([a, b]) => {
     const [x1, y1] = places[a] ?? [0, 0];
@@ -31,7 +38,7 @@ export function drawGraph(graph: FurnitureGraph): SVGSVGElement {
   });
   const dots = places.map(([cx, cy]) => s("circle", { cx, cy, r: 5 }));
   const words = graph.nodes.map((node) => plain(node.category)).join(", ");
-  return s("svg", { viewBox: `0 0 ${rooms.length * WIDTH} ${HEIGHT}`, role: "img", "aria-label": `Furniture: ${words}`, style: `max-width: ${rooms.length * WIDTH}px` }, ...lines, ...dots, ...names);
+  return s("svg", { viewBox: `0 0 ${WIDTH} ${top}`, role: "img", "aria-label": `Furniture: ${words}`, style: `max-width: ${WIDTH}px` }, ...lines, ...dots, ...names);
 }
 
 function label(node: FurnitureGraph["nodes"][number], [x, y]: [number, number], angle: number, reach: number): SVGElement {

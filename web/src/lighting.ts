@@ -30,7 +30,7 @@ export class Lighting {
   set(dark: boolean, tint: string): void {
     this.#skyColor.set(dark ? 0xc3cde0 : 0xffffff);
     this.#sky.groundColor.set(dark ? 0x7d7068 : 0xd8cfc4);
-    this.#sky.intensity = dark ? 1.35 : 2.75;
+    this.#sky.intensity = dark ? 1.6 : 2.75;
     this.#sun.color.set(dark ? 0xffdcb4 : 0xfff4e4);
     this.#sun.intensity = dark ? 1.1 : 1.6;
     this.#spot.intensity = dark ? 1.5 : 0;

@@ -21,6 +21,7 @@ const TIGHT = 0.06;
 const NEAR = 0.6;
 /** What is this near to the body is what it uses, metres. */
 const USED = 0.5;
+const SAT_ON = 0.16;
 /** Metres from the pelvis to the points that must be seen. */
 const SEEN = [0.1, 0.55] as const;
 const FLAT = 0.03;
@@ -56,8 +57,9 @@ export function boxAt(boxes: readonly Box[], point: Point3): number {
   return best;
 }
 
-/** Whether a box is in the way from an eye to a body, whose pelvis is given. */
+/** Whether a box is in the way from an eye to a body, whose pelvis is given; what the body sits or lies on is not. */
 export function stands(box: Box, eye: Point3, body: Point3): boolean {
+  if (gap(box, body) < SAT_ON) return false;
   return SEEN.some((up) => {
     const aim: Point3 = [body[0], body[1] + up, body[2]];
     const length = Math.hypot(aim[0] - eye[0], aim[1] - eye[1], aim[2] - eye[2]);

@@ -48,6 +48,12 @@ describe("sight", () => {
     expect(stands(boxes[1]!, [-2, 2.6, 2], [-2, 0.95, -1.5])).toBe(false);
   });
 
+  test("what the body sits on is not in the way, though it is around it", () => {
+    const sofa = boxesOf({ ...home(0), rooms: [{ ...home(0).rooms[0]!, layout: { ...home(0).rooms[0]!.layout, objects: [placed("sofa_1", [0, 0, 0], [2, 0.85, 0.9])] } }] })[0]!;
+    expect(stands(sofa, [0, 1.6, 3], [0, 0.55, 0.1])).toBe(false);
+    expect(stands(sofa, [0, 0.9, 3], [0, 0.55, -2])).toBe(true);
+  });
+
   test("of two places to look from the free one is the better", () => {
     const lookout = new Lookout(home(0));
     const body: [number, number, number] = [0, 0.95, -1];
