@@ -8,12 +8,13 @@ from typing import Annotated
 
 from fastapi import Depends
 from sqlalchemy import Engine
+from sqlalchemy.exc import SQLAlchemyError
 from starlette.requests import HTTPConnection
 
 from planner_service.jobs import Jobs
 from planner_service.settings import Settings
 from planner_service.shelves import Shelves
-from planner_service.store.engine import database_url, open_engine
+from planner_service.store.engine import database_url, open_engine, unopened
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,12 @@ def open_parts(settings: Settings) -> Parts:
     """Open the database and everything on it. SettingsError says what cannot be used."""
     url = database_url(settings)
     engine = open_engine(url)
-    return Parts(settings, engine, Shelves(engine, settings.cache_dir, settings.layouts), Jobs(engine, url))
+    try:
+        jobs = Jobs(engine, url)
+    except SQLAlchemyError as error:
+        engine.dispose()
+        raise unopened(url, error) from error
+    return Parts(settings, engine, Shelves(engine, settings.cache_dir, settings.layouts), jobs)
 
 
 async def parts_of(connection: HTTPConnection) -> Parts:

@@ -89,9 +89,11 @@ class Supervisor:
 
 def environment(settings: Settings, worker_id: str) -> dict[str, str]:
     """The environment of a worker: these very settings, and one thread a worker."""
+    from planner_service.store.engine import database_url
+
     given = {
         "SIMS_DATA_DIR": str(settings.data_dir.absolute()),
-        "SIMS_DATABASE_URL": settings.database_url,
+        "SIMS_DATABASE_URL": database_url(settings),  # never empty: an empty one would leave it to `.env`
         "SIMS_BACKEND": settings.backend,
         "SIMS_LAYOUTS": str(settings.layouts.absolute()) if settings.layouts else None,
         "SIMS_LLM_MODEL": settings.llm_model,
@@ -123,6 +125,8 @@ def serve(settings: Settings) -> None:
         def handle_exit(self, sig: int, frame: FrameType | None) -> None:  # noqa: ARG002
             # Not uvicorn's own, which raises the signal again at the end: that would leave no time to stop the workers.
             parts.stopping.set()
+            # Ctrl-C reaches the workers as well; started again now, they would take up stories only to leave them.
+            supervisor.stopping.set()
             self.force_exit = self.should_exit and sig == signal.SIGINT
             self.should_exit = True
 

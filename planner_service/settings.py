@@ -22,7 +22,7 @@ class SettingsError(ValueError):
 class Settings(BaseSettings):
     """Everything that may differ between installations; command-line options mirror it."""
 
-    model_config = SettingsConfigDict(env_prefix="SIMS_", env_file=".env", extra="ignore")
+    model_config = SettingsConfigDict(env_prefix="SIMS_", env_file=".env", env_ignore_empty=True, extra="ignore")
 
     data_dir: Path = Field(default_factory=lambda: user_data_path("sims"))
     """Holds the SQLite database and the cache of sentence features."""

@@ -62,7 +62,8 @@ def run_worker(settings: Settings, supervised: bool = False) -> None:
                 "log_level": "CRITICAL",
             }
         )
-        _wait_for(engine)
+        if not _wait_for(engine, stop):
+            os._exit(0)
         DBOS.launch()
         DBOS.register_queue(QUEUE, worker_concurrency=1, polling_interval_sec=POLL)
         log.info("worker ready", worker=settings.worker_id, pid=os.getpid())
@@ -132,19 +133,23 @@ def _hold_row(engine: Engine, settings: Settings) -> _Held | None:
     return None
 
 
-def _wait_for(engine: Engine) -> None:
-    """Until the database can be written: a start that fails would count against the stories that are resumed."""
+def _wait_for(engine: Engine, stop: threading.Event) -> bool:
+    """Until the database can be written: a start that fails would count against the stories that are resumed.
+
+    False if the worker is asked to end meanwhile.
+    """
     wait = 0.5
-    while True:
+    while not stop.is_set():
         try:
             with engine.execution_options(writes=True).begin() as connection:
                 connection.execute(text("UPDATE stage_times SET count = count WHERE worker = ''"))
         except (OperationalError, InterfaceError) as error:
             log.warning("database not usable, trying again", reason=str(error.orig), wait=wait)
-            time.sleep(wait)
+            stop.wait(wait)
             wait = min(2 * wait, 15.0)
         else:
-            return
+            return True
+    return False
 
 
 def _end_with_supervisor() -> None:

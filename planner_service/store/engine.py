@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import Connection, Engine, create_engine, event, make_url, select
+from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url, select
 from sqlalchemy.exc import ArgumentError, SQLAlchemyError
 
 from planner_service.settings import Settings, SettingsError
@@ -21,16 +21,24 @@ STARTING_LOCK = 7_041_500_021
 def database_url(settings: Settings) -> str:
     """Where the database is, as SQLAlchemy and DBOS both read it. SettingsError for an address that is neither kind."""
     if not settings.database_url:
-        return f"sqlite:///{settings.database_file}"
+        return _sqlite_url(settings.database_file)
     try:
         url = make_url(settings.database_url)
-    except ArgumentError as error:
+    except (ArgumentError, ValueError) as error:
         raise SettingsError("SIMS_DATABASE_URL: write postgresql://user:password@host:5432/name") from error
     if url.get_backend_name() == "sqlite" and url.database:
-        return f"sqlite:///{Path(url.database).absolute()}"
+        return _sqlite_url(Path(url.database).absolute())
     if url.get_backend_name() != "postgresql":
-        raise SettingsError(f"SIMS_DATABASE_URL: {url.drivername} is neither postgresql nor sqlite")
+        raise SettingsError(
+            f"SIMS_DATABASE_URL: {url.drivername} is not read here; write postgresql://user:password@host:5432/name, "
+            "or leave it empty for a file in SIMS_DATA_DIR"
+        )
     return url.set(drivername="postgresql+psycopg").render_as_string(hide_password=False)
+
+
+def _sqlite_url(file: Path) -> str:
+    """The address of a file, whatever its name: in a plain one what follows a question mark would be lost."""
+    return URL.create("sqlite", database=str(file)).render_as_string()
 
 
 def open_engine(url: str, pool_size: int = 8) -> Engine:
@@ -43,21 +51,28 @@ def open_engine(url: str, pool_size: int = 8) -> Engine:
         if url.startswith("sqlite"):
             Path(make_url(url).database or "").parent.mkdir(parents=True, exist_ok=True)
             plain_names = {"schema_translate_map": {SCHEMA: None}}
-            engine = create_engine(url, pool_size=pool_size, max_overflow=pool_size, execution_options=plain_names)
+            engine = create_engine(
+                url, pool_size=pool_size, max_overflow=pool_size, execution_options=plain_names, hide_parameters=True
+            )
             _tune_sqlite(engine)
         else:
             engine = create_engine(
                 url, pool_size=pool_size, max_overflow=pool_size, pool_pre_ping=True, pool_timeout=10,
-                connect_args={"connect_timeout": 5},
+                connect_args={"connect_timeout": 5}, hide_parameters=True,
             )  # fmt: skip
         _make_tables(engine)
     except (OSError, SQLAlchemyError) as error:
-        shown = make_url(url).render_as_string(hide_password=True)
-        reason = str(getattr(error, "orig", error)).splitlines()[0]
-        raise SettingsError(
-            f"SIMS_DATABASE_URL: {shown} cannot be opened: {reason}; see SIMS_DATA_DIR and SIMS_DATABASE_URL"
-        ) from error
+        raise unopened(url, error) from error
     return engine
+
+
+def unopened(url: str, error: Exception) -> SettingsError:
+    """What to say of a database that cannot be opened, without its password."""
+    shown = make_url(url).render_as_string(hide_password=True)
+    reason = str(getattr(error, "orig", error)).splitlines()[0]
+    return SettingsError(
+        f"SIMS_DATABASE_URL: {shown} cannot be opened: {reason}; see SIMS_DATA_DIR and SIMS_DATABASE_URL"
+    )
 
 
 def _tune_sqlite(engine: Engine) -> None:

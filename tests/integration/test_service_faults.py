@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
 import sqlite3
 import subprocess
 import time
@@ -145,6 +146,25 @@ def test_a_worker_that_dies_is_started_again_under_its_name(tmp_path: Path) -> N
         assert finished(client, post(client, 1).json()["id"])["state"] == "succeeded"
         assert service.worker_pids() != first
         assert {line["worker"] for line in service.lines() if line["event"] == "worker ready"} == {"worker-0"}
+
+
+def test_ctrl_c_reaches_everybody_and_nobody_is_started_again(tmp_path: Path) -> None:
+    service = RunningService(tmp_path).start()
+    assert service.process is not None
+    address = service.url.removeprefix("http://").split(":")
+    while not service.worker_pids():
+        time.sleep(0.1)
+    with socket.create_connection((address[0], int(address[1]))) as slow:  # so that there is something to wait for
+        slow.sendall(b"POST /v1/stories HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n")
+        slow.sendall(b"Content-Length: 100\r\n\r\n{")
+        time.sleep(0.2)
+        os.killpg(service.process.pid, signal.SIGINT)
+        time.sleep(3)
+    assert service.process.wait(20) == 0
+    stopped = [line["event"] for line in service.lines()]
+    assert stopped.count("worker stops") == 1
+    assert stopped.count("worker ready") == 1
+    service.stop()
 
 
 def test_two_workers_cannot_have_one_name(service: RunningService) -> None:
