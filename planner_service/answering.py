@@ -27,6 +27,7 @@ from planner_service.errors import (
     MOST_FAULTS,
     Malformed,
     ModelFailed,
+    NotFound,
     Problem,
     StorageFull,
     Unavailable,
@@ -38,6 +39,7 @@ from planner_service.llm.protocol import ModelError
 from planner_service.schemas.problems import Fault
 from planner_service.scripts.events import ThemeError
 from planner_service.settings import SettingsError
+from planner_service.store.stories import StoryGone
 
 METHODS: Final = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
 OURS: Final = (OutputError, SettingsError, WeightsError)
@@ -64,6 +66,7 @@ def register_handlers(app: FastAPI) -> None:
     app.add_exception_handler(Problem, _problem)
     app.add_exception_handler(HTTPException, _http)
     app.add_exception_handler(RequestValidationError, _invalid)
+    app.add_exception_handler(StoryGone, _gone)
     app.add_exception_handler(SQLAlchemyError, _database)
     app.add_exception_handler(OSError, _database)
     app.add_exception_handler(sqlite3.Error, _database)
@@ -163,6 +166,11 @@ def engine_problem(error: Exception, method: str = "POST") -> Problem:
         return Unprocessable("", text)
     field = NAMES.get(match["field"], match["field"])
     return Unprocessable(f"?{field}" if method in ("GET", "DELETE") else f"/{field.replace('.', '/')}", match["fault"])
+
+
+async def _gone(request: Request, _error: Exception) -> Response:
+    """It was there when the request came."""
+    return NotFound("there is no such story; it was deleted a moment ago").response(request.url.path)
 
 
 async def _database(request: Request, error: Exception) -> Response:

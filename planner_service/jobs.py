@@ -9,6 +9,7 @@ from dbos import DBOS, DBOSClient, DBOSPortableJSONSerializer, EnqueueOptions
 from sqlalchemy import Connection, Engine, func, select
 
 from planner_service.store.jobs import SCHEMA, WAITING, State, state_of, workflow_status
+from planner_service.store.tables import stories
 
 QUEUE: Final = "stories"
 WORKFLOW: Final = "act-out"
@@ -66,7 +67,9 @@ class Jobs:
 
     def counts(self) -> dict[State, int]:
         """How many stories are in each state."""
-        query = select(workflow_status.c.status, func.count()).group_by(workflow_status.c.status)
+        # A story that was deleted while it was made leaves its job behind.
+        there = workflow_status.join(stories, stories.c.id == workflow_status.c.workflow_uuid)
+        query = select(workflow_status.c.status, func.count()).select_from(there).group_by(workflow_status.c.status)
         counts: dict[State, int] = dict.fromkeys(("queued", "running", "succeeded", "failed", "cancelled"), 0)
         with self.engine.connect() as connection:
             for status, count in connection.execute(query):

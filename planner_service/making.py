@@ -91,7 +91,7 @@ class OpenStory:
 
 
 def read_segments(store: Stories, story_id: str, indices: Sequence[int]) -> list[Motion]:
-    """The motions of these segments, in order."""
+    """The motions of these segments, in order. StoryGone."""
     return [read_npz(io.BytesIO(data)) for data in store.parts(story_id, [FIRST_SEGMENT + i for i in indices])]
 
 

@@ -25,6 +25,8 @@ SECONDS: Final = (0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 
 UNKNOWN: Final = "unknown"
 """The route of a request that was refused before it reached one."""
 LONGEST_PATH: Final = 200
+LONGEST_ID: Final = 64
+"""Letters of a story's id that are written down: whoever asks may send any."""
 HUNG_UP: Final = 499
 """The status in log and figures where the caller left before there was an answer."""
 QUIET: Final = ("dbos", "sqlalchemy", "httpx", "httpcore", "matplotlib")
@@ -137,7 +139,7 @@ class Telemetry:
             path=printable(scope["path"], LONGEST_PATH) if route == UNKNOWN else route,
             status=status,
             ms=round((now - watch.begun) * 1000, 1),
-            story_id=scope.get("path_params", {}).get("story_id"),
+            story_id=scope.get("path_params", {}).get("story_id", "")[:LONGEST_ID] or None,
             hung_up=watch.hung_up or None,
         )
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import AsyncIterator
 from dataclasses import dataclass, replace
 from typing import Annotated, Final
 
 from fastapi import APIRouter, Depends, Header
 from fastapi.sse import EventSourceResponse, ServerSentEvent
-from sqlalchemy.exc import DBAPIError
+from sqlalchemy.exc import SQLAlchemyError
 from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
@@ -24,6 +25,8 @@ POLL: Final = 0.1
 """Seconds between two looks at a story in the making."""
 QUEUED_POLL: Final = 0.25
 """Seconds between two looks at one that waits."""
+SHARE: Final = 10
+"""A look that took long, since many follow, is not repeated before so many times as long: others have their turn."""
 
 
 @dataclass
@@ -74,14 +77,17 @@ def watching(
 )
 async def events(watch: Annotated[Watch, Depends(watching)]) -> AsyncIterator[ServerSentEvent]:
     """`stage`, `progress` and `segment` as they happen; at the end `done`, `failed` or `cancelled`, once."""
+    took = 0.0
     while True:
         for event in watch.news():
             yield ServerSentEvent(data=event.data, event=event.name, id=str(event.id), retry=1000)
         if watch.ended or watch.parts.stopping.is_set():
             return
-        await asyncio.sleep(POLL if watch.record.stage else QUEUED_POLL)
+        await asyncio.sleep(max(POLL if watch.record.stage else QUEUED_POLL, SHARE * took))
+        begun = time.monotonic()
         try:
             await run_in_threadpool(watch.look)
-        except (StoryGone, DBAPIError):
+        except (StoryGone, SQLAlchemyError):
             # Deleted, or the database is away: the client comes back with Last-Event-ID and is told which.
             return
+        took = time.monotonic() - begun

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request, Response
 
-from planner_service.accepting import accept
+from planner_service.accepting import accept, repeated
 from planner_service.errors import Unprocessable
-from planner_service.parts import PartsDep
+from planner_service.parts import Parts, PartsDep
 from planner_service.presenting import story_shown
 from planner_service.routes.stories import Key, character_of, home_given, layout_named
 from planner_service.schemas.stories import Json, MotionAsk, StoryShown
@@ -20,6 +20,13 @@ def create(ask: MotionAsk, request: Request, response: Response, parts: PartsDep
     """Act keyframes out. The answer is a story of kind "motion": the same resource, without a planned or told part."""
     if (ask.layout_id is None) == (ask.home is None):
         raise Unprocessable("/layout_id", "give either layout_id or home")
+    caller, body = request.state.caller, ask.model_dump_json()
+    record = repeated(parts, caller, "motion", body, key) or accept(parts, caller, _wanted(ask, parts), body, key)
+    response.headers["Location"] = f"/v1/stories/{record.id}"
+    return story_shown(record)
+
+
+def _wanted(ask: MotionAsk, parts: Parts) -> StoryRequest:
     layouts = () if ask.layout_id is None else (layout_named(parts, ask.layout_id, "/layout_id"),)
     wanted = StoryRequest(
         theme="",
@@ -31,6 +38,4 @@ def create(ask: MotionAsk, request: Request, response: Response, parts: PartsDep
         character=character_of(ask.character),
     )
     given_script(wanted)
-    record = accept(parts, request.state.caller, wanted, ask.model_dump_json(), key)
-    response.headers["Location"] = f"/v1/stories/{record.id}"
-    return story_shown(record)
+    return wanted

@@ -11,7 +11,7 @@ from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
 from motion_backend.formats.glb import scene_glb
 from motion_backend.formats.writing import FORMATS, encode
 from motion_backend.motion import Character
-from planner_service.accepting import accept
+from planner_service.accepting import accept, repeated
 from planner_service.errors import Conflict, NotFound, NotReady, Unprocessable
 from planner_service.footage import Footage
 from planner_service.making import HOME
@@ -61,7 +61,14 @@ RecordDep = Annotated[Record, Depends(record_of)]
 @router.post("", status_code=202, response_model=StoryShown)
 def create(ask: StoryAsk, request: Request, response: Response, parts: PartsDep, key: Key = None) -> Json:
     """Make a story of a theme. It is queued when this answers; follow it at `links.events`."""
-    wanted = StoryRequest(
+    caller, body = request.state.caller, ask.model_dump_json()
+    record = repeated(parts, caller, "story", body, key) or accept(parts, caller, _wanted(ask, parts), body, key)
+    response.headers["Location"] = f"/v1/stories/{record.id}"
+    return story_shown(record)
+
+
+def _wanted(ask: StoryAsk, parts: Parts) -> StoryRequest:
+    return StoryRequest(
         theme=clean(ask.theme),
         rooms=tuple(ask.rooms),
         layouts=tuple(layout_named(parts, name, f"/layouts/{i}") for i, name in enumerate(ask.layouts)),
@@ -72,9 +79,6 @@ def create(ask: StoryAsk, request: Request, response: Response, parts: PartsDep,
         seed=ask.seed,
         character=character_of(ask.character),
     )
-    record = accept(parts, request.state.caller, wanted, ask.model_dump_json(), key)
-    response.headers["Location"] = f"/v1/stories/{record.id}"
-    return story_shown(record)
 
 
 def layout_named(parts: Parts, name: str, pointer: str) -> Layout:
@@ -132,7 +136,7 @@ def cancel(record: RecordDep, parts: PartsDep, stories: StoriesDep) -> Json:
         parts.jobs.cancel(record.id)
         record = stories.get(record.id)
         state = state_of(record.status)
-    elif state != "cancelled":
+    if state != "cancelled":
         raise Conflict(f"this story has {state}; there is nothing to cancel")
     return story_shown(record)
 
@@ -143,10 +147,7 @@ def forget(record: RecordDep, parts: PartsDep, stories: StoriesDep) -> None:
     running = state_of(record.status) in ("queued", "running")
     if running:
         parts.jobs.cancel(record.id)
-    try:
-        stories.delete(record.id)
-    except StoryGone as error:
-        raise NotFound("there is no such story; it was deleted a moment ago") from error
+    stories.delete(record.id)
     if not running:
         parts.jobs.forget(record.id)
 

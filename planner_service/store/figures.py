@@ -8,7 +8,7 @@ from prometheus_client.core import GaugeMetricFamily, SummaryMetricFamily
 from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 from sqlalchemy import Engine, func, select
-from sqlalchemy.exc import DBAPIError
+from sqlalchemy.exc import SQLAlchemyError
 
 from planner_service.jobs import Jobs
 from planner_service.store.tables import stage_times
@@ -29,7 +29,7 @@ class StoreFigures(Collector):
         up = GaugeMetricFamily("sims_database_up", "Whether the database answers.")
         try:
             found = [self._stories(), self._stages()]
-        except DBAPIError:
+        except SQLAlchemyError:
             up.add_metric([], 0)
             yield up
             return

@@ -216,11 +216,15 @@ class Stories:
         return row.data, json.loads(row.state) if row.state else {}
 
     def parts(self, story_id: str, positions: Iterable[int]) -> list[bytes]:
-        """The data at several positions, in order; those that are not there are left out."""
-        here = (artifacts.c.story_id == story_id) & artifacts.c.position.in_(list(positions))
+        """The data at several positions, in order. StoryGone where one is not there."""
+        wanted = list(positions)
+        here = (artifacts.c.story_id == story_id) & artifacts.c.position.in_(wanted)
         with self.engine.connect() as connection:
             rows = connection.execute(select(artifacts.c.data).where(here).order_by(artifacts.c.position))
-            return [row.data for row in rows]
+            found = [row.data for row in rows]
+        if len(found) < len(wanted):
+            raise StoryGone(f"{story_id}: something is missing at {wanted}")
+        return found
 
     def get(self, story_id: str, after: int = -1) -> Record:
         """A story with what was made of it beyond the position `after`, data left out. StoryGone."""

@@ -104,6 +104,13 @@ async def test_a_request_leaves_one_line_that_says_who_asked_for_what(app: FastA
     assert inner["caller"] == "local"
 
 
+async def test_a_storys_id_is_cut_before_it_is_written_down(app: FastAPI, lines: Lines) -> None:
+    async with calling(app) as client:
+        await client.get(f"/v1/stories/{'a' * 5000}")
+    (line,) = lines.of("request")
+    assert line["story_id"] == "a" * 64
+
+
 @pytest.mark.parametrize("sent", ["", "two words", 'x"}{"level": "forged', "a" * 65, "né"])
 async def test_an_id_that_could_forge_a_line_is_replaced(app: FastAPI, lines: Lines, sent: str) -> None:
     async with calling(app) as client:
