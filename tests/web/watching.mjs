@@ -67,9 +67,9 @@ async function farFrom(page, { joints }, keyframe) {
 async function pictures(page, one, later) {
   // The plan could lie over the body.
   await page.getByRole("button", { name: "Plan of the home" }).click();
+  await page.locator(".blocks button").nth(one).click();
+  const other = await farFrom(page, await state(page), later);
   const first = await moment(page, one);
-  const other = await farFrom(page, first, later);
-  await moment(page, one);
   const bounds = await page.locator(".picture").boundingBox();
   const clip = around(first.pixels, 6, bounds);
   const here = await shoot(page, clip);
