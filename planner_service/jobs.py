@@ -44,15 +44,23 @@ class Jobs:
 
     def cancel(self, story_id: str) -> None:
         """Stop a story before its next step; one that has ended stays as it is."""
+        self._wait_for_turn()
         self._client.cancel_workflow(story_id)
 
     def resume(self, story_id: str) -> None:
         """Let a living worker go on with a story at the step it was in."""
+        self._wait_for_turn()
         self._client.resume_workflow(story_id, queue_name=QUEUE)
 
     def forget(self, story_id: str) -> None:
         """Remove what the job engine knows of a story."""
+        self._wait_for_turn()
         self._client.delete_workflow(story_id)
+
+    def _wait_for_turn(self) -> None:
+        """Raise OperationalError soon where SQLite is locked: DBOS itself would hold its caller for half a minute."""
+        with self.engine.execution_options(writes=True).begin():
+            pass
 
     def unfinished(self, worker: str | None = None) -> list[tuple[str, State, str | None]]:
         """Id, state and worker of every story that has not ended, oldest first; of one worker, those it has begun."""

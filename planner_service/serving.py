@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
 import subprocess
 import sys
 import threading
@@ -14,7 +15,7 @@ from typing import Final
 
 import structlog
 
-from planner_service.settings import Settings
+from planner_service.settings import Settings, SettingsError
 
 FIRST_WAIT, LONGEST_WAIT = 0.2, 15.0
 """Seconds before a worker that died is started again; doubled while it keeps dying."""
@@ -33,6 +34,8 @@ class Slot:
     process: subprocess.Popen[bytes] | None = None
     started: float = 0.0
     wait: float = FIRST_WAIT
+    due: float = 0.0
+    """When it is started again after it died."""
 
 
 @dataclass
@@ -71,20 +74,23 @@ class Supervisor:
 
     def _watch(self) -> None:
         while not self.stopping.wait(0.1):
+            now = time.monotonic()
             for slot in self.slots:
-                if slot.process is None or slot.process.poll() is None:
-                    continue
-                lived = time.monotonic() - slot.started
-                slot.wait = FIRST_WAIT if lived > LIVED else min(2 * slot.wait, LONGEST_WAIT)
-                log.warning("worker ended, starting it again", worker=slot.id, code=slot.process.returncode)
-                if self.stopping.wait(slot.wait):
-                    return
-                self._spawn(slot)
+                if slot.process is None and now >= slot.due:
+                    self._spawn(slot)
+                elif slot.process is not None and slot.process.poll() is not None:
+                    slot.wait = FIRST_WAIT if now - slot.started > LIVED else min(2 * slot.wait, LONGEST_WAIT)
+                    log.warning("worker ended, starting it again", worker=slot.id, code=slot.process.returncode)
+                    slot.process, slot.due = None, now + slot.wait
 
     def _spawn(self, slot: Slot) -> None:
         command = [sys.executable, "-m", "planner_service.cli", "worker", "--supervised"]
-        slot.process = subprocess.Popen(command, stdin=subprocess.PIPE, env=environment(self.settings, slot.id))
         slot.started = time.monotonic()
+        try:
+            slot.process = subprocess.Popen(command, stdin=subprocess.PIPE, env=environment(self.settings, slot.id))
+        except OSError as error:  # no memory or no process number left, for now
+            slot.due = slot.started + LONGEST_WAIT
+            log.error("worker cannot be started", worker=slot.id, reason=str(error))
 
 
 def environment(settings: Settings, worker_id: str) -> dict[str, str]:
@@ -133,13 +139,12 @@ def serve(settings: Settings) -> None:
         async def startup(self, sockets: list[object] | None = None) -> None:  # type: ignore[override]
             await super().startup(sockets)  # type: ignore[arg-type]
             if self.started:
-                port = self.servers[0].sockets[0].getsockname()[1]
+                port = listening.getsockname()[1]
                 print(f"sims: ready at {_address(settings.host, port)} ({settings.workers} workers)", flush=True)  # noqa: T201
 
+    listening = listen(settings)
     config = uvicorn.Config(
         create_app(parts),
-        host=settings.host,
-        port=settings.port,
         log_config=None,
         access_log=False,
         server_header=False,
@@ -148,9 +153,24 @@ def serve(settings: Settings) -> None:
     )
     supervisor.start()
     try:
-        Server(config).run()
+        Server(config).run(sockets=[listening])
     finally:
         supervisor.stop()
+
+
+def listen(settings: Settings) -> socket.socket:
+    """A socket at the address of the settings. SettingsError when it cannot be had."""
+    family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
+    listening = socket.socket(family, socket.SOCK_STREAM)
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listening.bind((settings.host, settings.port))
+        listening.listen(512)  # a port is only ours once we listen
+    except OSError as error:
+        listening.close()
+        where = f"{settings.host}:{settings.port}"
+        raise SettingsError(f"SIMS_PORT: {where} cannot be had: {error.strerror or error}; try another port") from error
+    return listening
 
 
 def _address(host: str, port: int) -> str:

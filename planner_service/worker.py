@@ -6,19 +6,17 @@ import os
 import signal
 import sys
 import threading
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Final
 
 import structlog
 from sqlalchemy import Engine, text
 from sqlalchemy.exc import InterfaceError, OperationalError
 
+from planner_service.holding import hold_name
 from planner_service.jobs import APPLICATION, QUEUE, VERSION
 from planner_service.llm.choosing import load_model
 from planner_service.making import Maker
-from planner_service.settings import Settings, SettingsError
+from planner_service.settings import Settings
 from planner_service.shelves import Shelves
 from planner_service.store.engine import database_url, open_engine
 from planner_service.store.stories import Stories
@@ -26,8 +24,8 @@ from planner_service.stories import Studio
 
 POLL: Final = 0.15
 """Seconds between two looks into the queue: an idle worker costs little, and a story starts at once."""
-PATIENCE: Final = 8.0
-"""Seconds that a worker waits for the one before it, of the same id, to be gone."""
+KEEP: Final = 3.0
+"""Seconds between two looks at whether this worker's name is still its own."""
 log = structlog.get_logger("sims.worker")
 
 
@@ -49,88 +47,38 @@ def run_worker(settings: Settings, supervised: bool = False) -> None:
     url = database_url(settings)
     engine = open_engine(url)
     studio = Studio(Shelves(engine, settings.cache_dir, settings.layouts), load_model(settings.llm_model))
-    with only_one(engine, settings):
-        warm_up(studio)
-        register(Maker(Stories(engine), studio, settings.worker_id))
-        DBOS(
-            config={
-                "name": APPLICATION,
-                "system_database_url": url,
-                "executor_id": settings.worker_id,
-                "application_version": VERSION,
-                "serializer": DBOSPortableJSONSerializer(),
-                "log_level": "CRITICAL",
-            }
-        )
-        if not _wait_for(engine, stop):
-            os._exit(0)
-        DBOS.launch()
-        DBOS.register_queue(QUEUE, worker_concurrency=1, polling_interval_sec=POLL)
-        log.info("worker ready", worker=settings.worker_id, pid=os.getpid())
-        stop.wait()
-        log.info("worker stops", worker=settings.worker_id)
-        # A step in the making is left: it is made again at the next start, and nothing of it was stored.
-        sys.stderr.flush()
+    hold = hold_name(engine, settings)
+    warm_up(studio)
+    register(Maker(Stories(engine), studio, settings.worker_id))
+    DBOS(
+        config={
+            "name": APPLICATION,
+            "system_database_url": url,
+            "executor_id": settings.worker_id,
+            "application_version": VERSION,
+            "serializer": DBOSPortableJSONSerializer(),
+            "log_level": "CRITICAL",
+        }
+    )
+    if not _wait_for(engine, stop):
         os._exit(0)
+    DBOS.launch()
+    DBOS.register_queue(QUEUE, worker_concurrency=1, polling_interval_sec=POLL)
+    log.info("worker ready", worker=settings.worker_id, pid=os.getpid())
+    while not stop.wait(KEEP):
+        if not hold.keep():
+            log.error("somebody else has this worker's name, leaving", worker=settings.worker_id)
+            os._exit(75)
+    log.info("worker stops", worker=settings.worker_id)
+    # A step in the making is left: it is made again at the next start, and nothing of it was stored.
+    sys.stderr.flush()
+    os._exit(0)
 
 
 def warm_up(studio: Studio) -> None:
     """Load scripts, rooms and the sentence encoder now, so that the first story does not wait for them."""
     studio.shelves.layouts()
     studio.shelves.scripts().search("warm up", 1)
-
-
-@contextmanager
-def only_one(engine: Engine, settings: Settings) -> Iterator[None]:
-    """Hold the name of this worker. SettingsError if another process holds it and does not let go."""
-    deadline = time.monotonic() + PATIENCE
-    hold = _hold_row if engine.dialect.name == "postgresql" else _hold_file
-    while (held := hold(engine, settings)) is None:
-        if time.monotonic() > deadline:
-            raise SettingsError(
-                f"SIMS_WORKER_ID: a worker {settings.worker_id!r} is running already; give this one another id"
-            )
-        time.sleep(0.2)
-    try:
-        yield
-    finally:
-        held.close()
-
-
-class _Held:
-    """A lock that the system lets go of when the process ends, however it ends."""
-
-    def __init__(self, thing: object, close: object) -> None:
-        self.thing, self._close = thing, close
-
-    def close(self) -> None:
-        """Let go."""
-        if callable(self._close):
-            self._close()
-
-
-def _hold_file(_engine: Engine, settings: Settings) -> _Held | None:
-    settings.data_dir.mkdir(parents=True, exist_ok=True)
-    handle = (settings.data_dir / f"{settings.worker_id}.lock").open("w")
-    try:
-        import fcntl
-    except ImportError:  # no such locks here; the supervisor alone keeps ids apart
-        return _Held(handle, handle.close)
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        handle.close()
-        return None
-    return _Held(handle, handle.close)
-
-
-def _hold_row(engine: Engine, settings: Settings) -> _Held | None:
-    connection = engine.connect().execution_options(isolation_level="AUTOCOMMIT")
-    asked = text("SELECT pg_try_advisory_lock(hashtext(:name))")
-    if connection.execute(asked, {"name": f"sims-worker/{settings.worker_id}"}).scalar():
-        return _Held(connection, connection.close)
-    connection.close()
-    return None
 
 
 def _wait_for(engine: Engine, stop: threading.Event) -> bool:

@@ -219,7 +219,7 @@ def motion(
     def make() -> bytes:
         return encode(footage.motion(stories, first, end), format_)
 
-    if end == last or complete:
+    if complete:  # until then the headers change
         headers |= _named(record, chosen.suffix)
         return unchanging(request, f"{footage.etag(first, end)}-{format_}", make, chosen.media_type, headers)
     return Response(make(), headers=headers | {"Cache-Control": "no-store"}, media_type=chosen.media_type)

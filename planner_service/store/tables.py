@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from sqlalchemy import BigInteger, Column, Float, ForeignKey, Index, Integer, LargeBinary, MetaData, Table, Text
+from sqlalchemy import BigInteger, Column, Float, ForeignKey, Integer, LargeBinary, MetaData, Table, Text
 
 SCHEMA_VERSION: Final = 1
 metadata = MetaData()
@@ -95,5 +95,3 @@ revisions = Table(
     Column("revision", BigInteger, nullable=False),
 )
 """Raised with every change of a shelf, so that other processes read it again."""
-
-Index("stories_by_caller", stories.c.caller)

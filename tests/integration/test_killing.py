@@ -17,8 +17,8 @@ from sqlalchemy import text
 from planner_service.settings import read_settings
 from planner_service.store.engine import database_url, open_engine
 
-KILLS = int(os.environ.get("SIMS_TEST_KILLS", "10"))
-"""Moments at which processes are killed, on each database."""
+KILLS = int(os.environ.get("SIMS_TEST_KILLS", "6"))
+"""Moments at which processes are killed, on each database; 20 before a release."""
 STORIES = 3
 """Stories that wait at the beginning; more are posted as these are made."""
 

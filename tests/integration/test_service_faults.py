@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import httpx
+import psycopg
 import pytest
 from running import SHORT, RunningService, finished
 
@@ -44,6 +45,7 @@ def test_while_the_database_is_locked_one_can_read_and_is_told_to_write_later(tm
             time.sleep(0.01)
         with locked(tmp_path / "sims.db"):
             refused = post(client, 1)
+            assert client.post(first["links"]["cancel"]).status_code == 503
             assert client.get(first["links"]["self"]).status_code == 200
             assert client.get("/v1/stories").status_code == 200
         assert refused.status_code == 503
@@ -117,6 +119,36 @@ def test_postgresql_may_go_away_and_come_back(
         ended = finished(client, story["id"])
         assert ended["state"] == "succeeded", ended["error"]
         assert finished(client, post(client, 1).json()["id"])["state"] == "succeeded"
+
+
+def test_a_worker_keeps_its_name_when_its_connections_are_cut(postgres_url: str, tmp_path: Path) -> None:
+    with RunningService(tmp_path, database_url=postgres_url) as service, service.client() as client:
+        finished(client, post(client).json()["id"])
+        name = postgres_url.rpartition("/")[2].partition("?")[0]
+        with psycopg.connect(postgres_url, autocommit=True) as connection:
+            others = "FROM pg_stat_activity WHERE datname = %s AND pid <> pg_backend_pid()"
+            connection.execute(f"SELECT pg_terminate_backend(pid) {others}", [name])
+            deadline = time.monotonic() + 15
+            held = 0
+            while held == 0 and time.monotonic() < deadline:
+                time.sleep(0.5)
+                locks = "SELECT count(*) FROM pg_locks WHERE locktype = 'advisory' AND objsubid = 1 AND granted"
+                row = connection.execute(f"{locks} AND classid IN (0, 4294967295)").fetchone()
+                held = row[0] if row else 0
+        assert held == 1
+        assert finished(client, post(client, 1).json()["id"])["state"] == "succeeded"
+
+
+def test_a_port_that_is_taken_is_one_line_and_no_worker(service: RunningService, tmp_path: Path) -> None:
+    port = service.url.rpartition(":")[2]
+    second = subprocess.run(
+        [*service.command("serve"), "--port", port, "--data-dir", str(tmp_path)],
+        env=service.environment, capture_output=True, text=True, check=False, timeout=60,
+    )  # fmt: skip
+    assert second.returncode == 2
+    assert second.stderr.startswith("sims: SIMS_PORT: ")
+    assert "try another port" in second.stderr
+    assert len(second.stderr.splitlines()) == 1
 
 
 def test_clients_that_hang_up_leave_nothing_behind(service: RunningService) -> None:
