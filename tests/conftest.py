@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import psycopg
 import pytest
-from running import RunningService
+from running import CACHE, RunningService
 from sqlalchemy import make_url
 
 if TYPE_CHECKING:
@@ -61,3 +61,10 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningService
     """One service on SQLite for all tests that only use it; those that break it start their own."""
     with RunningService(tmp_path_factory.mktemp("service")) as running:
         yield running
+
+
+@pytest.fixture(scope="session", autouse=True)
+def no_cache_left() -> Iterator[None]:
+    """What services of this run shared goes when it ends."""
+    yield
+    shutil.rmtree(CACHE, ignore_errors=True)
