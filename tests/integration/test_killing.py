@@ -17,7 +17,7 @@ from sqlalchemy import text
 from planner_service.settings import read_settings
 from planner_service.store.engine import database_url, open_engine
 
-KILLS = int(os.environ.get("SIMS_TEST_KILLS", "6"))
+KILLS = int(os.environ.get("SIMS_TEST_KILLS", "5"))
 """Moments at which processes are killed, on each database; 20 before a release."""
 STORIES = 3
 """Stories that wait at the beginning; more are posted as these are made."""

@@ -54,7 +54,10 @@ def test_a_database_in_which_the_jobs_may_not_be_kept_is_refused(tmp_path: Path,
 
 def test_a_variable_that_is_set_to_nothing_is_not_set(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
+    names = ("DATA_DIR", "LAYOUTS", "PORT", "LLM_MODEL", "API_KEYS", "WORKERS")
+    for name in names:
+        monkeypatch.delenv(f"SIMS_{name}", raising=False)
     unset = read_settings()
-    for name in ("DATA_DIR", "LAYOUTS", "PORT", "LLM_MODEL", "API_KEYS", "WORKERS"):
+    for name in names:
         monkeypatch.setenv(f"SIMS_{name}", "")
     assert read_settings() == unset
