@@ -167,7 +167,7 @@ class Maker:
         """Figures for every keyframe and the whole."""
         story = self._opened(story_id)
         position = FIRST_SEGMENT + len(story.actions)
-        self._record(story, "judge", position, "report", lambda: (b"{}", {"report": report_to_dict(story.acted)}))
+        self._record(story, "judge", position, "report", lambda: self._report(story))
 
     def film(self, story_id: str) -> None:
         """The home and the animated body in one file."""
@@ -194,6 +194,10 @@ class Maker:
         actions = act(stage.script.keyframes, stage.places, stage.home, story.request.seed)
         rows = [documents.action_to_dict(action) for action in actions]
         return _to_bytes({"actions": rows}), {"count": len(actions), "objects": [a.object_id for a in actions]}
+
+    def _report(self, story: OpenStory) -> tuple[bytes, Json]:
+        row = {"report": report_to_dict(story.acted)}
+        return _to_bytes(row), row
 
     def _record(
         self, story: OpenStory, stage: str, position: int, kind: str, make: Callable[[], tuple[bytes, Json]]
