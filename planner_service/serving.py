@@ -53,10 +53,6 @@ class Supervisor:
             self._spawn(slot)
         threading.Thread(target=self._watch, name="supervisor", daemon=True).start()
 
-    def alive(self) -> int:
-        """How many workers run now."""
-        return sum(slot.process is not None and slot.process.poll() is None for slot in self.slots)
-
     def stop(self) -> None:
         """Ask all workers to stop, and end those that do not."""
         self.stopping.set()
