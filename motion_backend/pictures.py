@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,13 +14,14 @@ from motion_backend.mannequin import build_mannequin
 from motion_backend.raster import Camera, orbit
 from motion_backend.rendering import Image, Solid, render
 from motion_backend.skinning import skin
+from motion_backend.walls import Side
 
 if TYPE_CHECKING:
     from motion_backend.motion import Motion
     from scene_graphs.homes import Home
 
-WALL_PREFIXES = ("wall", "door", "window", "ceiling", "frame")
-"""How the names of meshes begin that may stand between the camera and the body."""
+ON_WALLS, SHADOWLESS = ("wall", "door", "window"), ("wall", "door", "window", "ceiling")
+"""How the names of meshes begin that are a wall, in one or on one, and of those that would darken a whole room."""
 
 
 def body_solids(motion: Motion, frames: Sequence[int], opacity: float = 1.0) -> list[Solid]:
@@ -41,38 +42,53 @@ class Prop:
     high: NDArray[np.floating]
     """Corners of its box. (3,) each."""
     room: int | None
-    """The room its middle lies in."""
+    """The room its middle lies in, or that its wall bounds."""
+    side: Side | None = None
+    """The wall it is part of."""
 
-    @property
-    def is_wall(self) -> bool:
-        """Whether it may be cut open to look inside."""
-        return self.name.startswith(WALL_PREFIXES)
+    def stands_before(self, camera: Camera, points: NDArray[np.floating], room: int | None) -> bool:
+        """Whether a camera leaves it away to see points (N, 3) in a room, as a doll's house is open in front."""
+        eye = np.asarray(camera.eye)
+        if self.side is not None and self.side.crosses(eye[[0, 2]], points[:, [0, 2]]):
+            return True
+        if self.room == room:
+            return self.side is not None and not self.side.faces(eye[[0, 2]])
+        nearer = (np.asarray(camera.target) - (self.low + self.high) / 2) @ camera.axes[2]
+        return bool(nearer > 0 and self.high[1] > 0.1)
 
 
 def home_props(home: Home) -> list[Prop]:
-    """Everything of a home that can be drawn."""
+    """Everything of a home that can be drawn; walls, what hangs on them and lamps under the ceiling cast no shadow."""
     from scene_graphs.furnishing import home_meshes
 
+    sides = [side for wall in home.walls if (side := Side.of(wall, home)) is not None]
     props = []
     for mesh in home_meshes(home):
         low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
         middle = (float(low[0] + high[0]) / 2, float(low[2] + high[2]) / 2)
-        solid = Solid(mesh.vertices, mesh.faces, mesh.color, opacity=0.25 if mesh.color[3] < 1 else 1.0)
-        props.append(Prop(mesh.name, solid, low, high, home.room_at(middle)))
+        hangs = bool(sides) and mesh.name.startswith(ON_WALLS)
+        side = min(sides, key=lambda side: side.distance(np.array(middle))) if hangs else None
+        opacity = 0.25 if mesh.color[3] < 1 else 1.0
+        casts = not mesh.name.startswith(SHADOWLESS)
+        solid = Solid(mesh.vertices, mesh.faces, mesh.color, opacity=opacity, casts=casts)
+        props.append(Prop(mesh.name, solid, low, high, side.room if side else home.room_at(middle), side))
     return props
 
 
-def around(props: Sequence[Prop], camera: Camera, room: int | None = None, reach: float = 4.5) -> list[Solid]:
-    """What is within reach of the camera's target, cut open where walls or other rooms' things are before the room."""
+def around(
+    props: Sequence[Prop],
+    camera: Camera,
+    points: NDArray[np.floating],
+    room: int | None = None,
+    reach: float = 4.5,
+) -> list[Solid]:
+    """What is within reach of the camera's target, without what stands before the points (N, 3) of a body in a room."""
     target = np.asarray(camera.target)
-    distance = float(np.linalg.norm(target - camera.eye))
     shown = []
     for prop in props:
         gap = np.maximum(np.maximum(prop.low - target, target - prop.high), 0.0)
-        if np.hypot(gap[0], gap[2]) > reach:
-            continue
-        in_the_way = prop.is_wall or (room is not None and prop.room != room and prop.high[1] > 0.1)
-        shown.append(replace(prop.solid, cut=distance - 0.5) if in_the_way else prop.solid)
+        if np.hypot(gap[0], gap[2]) <= reach and not prop.stands_before(camera, points, room):
+            shown.append(prop.solid)
     return shown
 
 
@@ -90,12 +106,14 @@ def contact_sheet(
     """
     chosen = np.linspace(0, len(motion) - 1, frames).round().astype(int)
     props = [] if home is None else home_props(home)
+    joints = motion.joint_positions()
     pictures = []
     for frame in chosen:
         x, y, z = (float(v) for v in motion.root_positions[frame])
         camera = orbit((x, max(0.35, 0.9 * y), z), 4.2, yaw, 0.25, fov=0.58)
         room = None if home is None else home.room_at((x, z))
-        pictures.append(render([*body_solids(motion, [frame]), *around(props, camera, room)], camera, size))
+        solids = around(props, camera, joints[frame], room)
+        pictures.append(render([*body_solids(motion, [frame]), *solids], camera, size))
     return save_png(tile(pictures, columns=min(frames, 6)), path)
 
 

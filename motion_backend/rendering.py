@@ -70,8 +70,8 @@ class Solid:
     """(V, 3) for smooth shading of a closed shape; flat without."""
     opacity: float = 1.0
     """Quarters show: 0.25, 0.5, 0.75, 1."""
-    cut: float = 0.0
-    """Parts nearer to the camera than this are left away, as the front wall of a doll's house."""
+    casts: bool = True
+    """Whether it casts a shadow."""
 
 
 def render(
@@ -124,7 +124,7 @@ class _Scene:
     color: Array
     """(F, 3) float32, linear."""
     opacity: Array
-    cut: Array
+    casts: NDArray[np.bool_]
 
     @classmethod
     def of(cls, solids: Sequence[Solid]) -> _Scene:
@@ -144,7 +144,7 @@ class _Scene:
             np.repeat([s.normals is not None for s in solids], counts),
             np.concatenate(colors).astype(np.float32),
             np.repeat([s.opacity for s in solids], counts),
-            np.repeat([s.cut for s in solids], counts),
+            np.repeat([s.casts for s in solids], counts),
         )
 
 
@@ -159,17 +159,16 @@ def _visible(scene: _Scene, camera: Camera, size: tuple[int, int]) -> tuple[Ints
     """For every pixel the nearest triangle (-1 for none) and its nearness."""
     viewed, source = clip(camera.view(scene.corners), camera)
     screen = camera.project(viewed, size)
-    cut = scene.cut[source]
     # A smooth solid is closed: its far side is hidden by its near side, or by none when it is see-through.
-    shown = (~scene.is_smooth[source] | _turned_to_us(screen)) & (viewed[..., 2].max(axis=1) > cut)
-    partly = shown & ((scene.opacity[source] < 1) | (viewed[..., 2].min(axis=1) < cut))
+    shown = ~scene.is_smooth[source] | _turned_to_us(screen)
+    partly = shown & (scene.opacity[source] < 1)
     best = np.full(size[0] * size[1], -np.inf)
     layers = []
     for chosen in (np.flatnonzero(shown & ~partly), np.flatnonzero(partly)):
         pixel, piece, nearness = fragments(screen[chosen], *size)
         triangle = source[chosen][piece]
         if partly[chosen].any():
-            kept = _kept(scene, camera, triangle, (pixel % size[0], pixel // size[0]), nearness)
+            kept = _kept(scene, triangle, (pixel % size[0], pixel // size[0]))
             pixel, triangle, nearness = pixel[kept], triangle[kept], nearness[kept]
         np.maximum.at(best, pixel, nearness)
         layers.append((pixel, triangle, nearness))
@@ -180,11 +179,10 @@ def _visible(scene: _Scene, camera: Camera, size: tuple[int, int]) -> tuple[Ints
     return nearest, best
 
 
-def _kept(scene: _Scene, camera: Camera, triangle: Ints, place: tuple[Ints, Ints], nearness: Real) -> NDArray[np.bool_]:
-    """Which fragments of cut or see-through solids are there: these are holes in a pattern over a pixel's samples."""
+def _kept(scene: _Scene, triangle: Ints, place: tuple[Ints, Ints]) -> NDArray[np.bool_]:
+    """Which fragments of see-through solids are there: these are holes in a pattern over a pixel's samples."""
     order = (place[0] % 2) * 2 ^ (place[1] % 2) * 3
-    depth = -nearness if camera.span is not None else 1.0 / nearness
-    return np.asarray((order < scene.opacity[triangle] * 4 - 0.5) & (depth > scene.cut[triangle]))
+    return np.asarray(order < scene.opacity[triangle] * 4 - 0.5)
 
 
 def _turned_to_us(screen: Real) -> NDArray[np.bool_]:
@@ -237,7 +235,7 @@ def _dot(a: Real, b: Real) -> Real:
 
 def _light(scene: _Scene, camera: Camera, points: Real, quarter: Ints) -> tuple[Real, Real]:
     """Shares of the sun and of the sky that reach points. (N,) each."""
-    casting = scene.corners[(scene.opacity >= 1) & (scene.cut <= 0)]
+    casting = scene.corners[(scene.opacity >= 1) & scene.casts]
     reach = SHADOW_REACH if camera.span is None else max(SHADOW_REACH, 0.8 * camera.span)
     turn = quarter.astype(np.float32) * np.float32(np.pi / 8)
     cos, sin = np.cos(turn), np.sin(turn)

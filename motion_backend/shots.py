@@ -13,7 +13,7 @@ from motion_backend import rotations
 from motion_backend.motion import Motion, Skill
 from motion_backend.raster import Camera, orbit
 from motion_backend.skeleton import INDEX
-from scene_graphs.furnishing import parts
+from scene_graphs.furnishing import parts_of
 from scene_graphs.layouts import Placed
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ def visible_share(objects: Sequence[Placed], eye: tuple[float, float, float], po
     """The share of points (N, 3) that no part of the objects hides from the eye."""
     hidden = np.zeros(len(points), dtype=bool)
     for placed in objects:
-        boxes = parts(placed.category, placed.size)
+        boxes = parts_of(placed)
         low = np.array([part.low for part in boxes])[:, None]
         high = np.array([part.high for part in boxes])[:, None]
         origin, ends = placed.to_local(eye), placed.to_local(points)

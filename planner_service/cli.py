@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from planner_service.commands import layouts, scripts, service, story
+from planner_service.commands import layouts, models, scripts, service, story
 from planner_service.commands.errors import USER_ERRORS, explain
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
@@ -19,6 +19,7 @@ app.command("worker")(service.worker)
 app.add_typer(service.jobs, name="jobs")
 app.add_typer(scripts.app, name="scripts")
 app.add_typer(layouts.app, name="layouts")
+app.add_typer(models.app, name="models")
 
 
 @app.callback()

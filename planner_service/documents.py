@@ -16,9 +16,10 @@ from planner_service.furnish import Furnished, RoomMatch
 from planner_service.scripts.acting import Place, action_to_dict
 from planner_service.scripts.keyframe import Keyframe, LongScript
 from planner_service.scripts.narrating import Span, Told
+from planner_service.seating import pull_from_dict, pull_to_dict
 from planner_service.stories import StoryRequest
 from scene_graphs.graph import graph_from_dict, graph_to_dict
-from scene_graphs.homes import home_from_dict, home_to_dict
+from scene_graphs.home_rows import home_from_dict, home_to_dict
 from scene_graphs.layouts import layout_from_dict, layout_to_dict
 from scene_graphs.surfaces import Spot
 
@@ -62,7 +63,7 @@ def furnished_to_dict(stage: Furnished) -> Json:
     return {
         "script": stage.script.model_dump(mode="json"),
         "home": home_to_dict(stage.home),
-        "matches": [asdict(match) for match in stage.matches],
+        "matches": [asdict(match) | {"pulls": list(map(pull_to_dict, match.pulls))} for match in stage.matches],
         "places": [[place.room, place.object_id] for place in stage.places],
         "graphs": {room: graph_to_dict(graph) for room, graph in stage.graphs.items()},
     }
@@ -71,7 +72,13 @@ def furnished_to_dict(stage: Furnished) -> Json:
 def furnished_from_dict(row: Json) -> Furnished:
     """The inverse of `furnished_to_dict`, but for what only merging needs to know of a graph's nodes."""
     matches = (
-        match | {"substitutions": tuple(map(tuple, match["substitutions"])), "missing": tuple(match["missing"])}
+        match
+        | {
+            "substitutions": tuple(map(tuple, match["substitutions"])),
+            "missing": tuple(match["missing"]),
+            # Stories of earlier versions have none.
+            "pulls": tuple(map(pull_from_dict, match.get("pulls", ()))),
+        }
         for match in row["matches"]
     )
     return Furnished(

@@ -15,7 +15,7 @@ from motion_backend.formats.npz import write_npz
 from planner_service.scripts.acting import action_to_dict
 from planner_service.stories import Planned, Story
 from planner_service.storyboard import storyboard
-from scene_graphs.homes import home_to_dict
+from scene_graphs.home_rows import home_to_dict
 
 Writer = Callable[[Path], object]
 FILES = ("story.md", "story.json", "report.json", "motion.npz", "motion.bvh", "film.glb", "storyboard.png")

@@ -7,19 +7,20 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from planner_service.housing import housed
-from planner_service.placing import MissingError, Placing, StandIn, usable_offers
+from planner_service.placing import Placing, StandIn, usable_offers
 from planner_service.scripts.acting import NEEDS, Place
 from planner_service.scripts.keyframe import LongScript, PlannedKeyframe
+from planner_service.seating import pull_to_dict, seat, seat_with_pulls
 from scene_graphs.distance import MOST_NODES, exact_distance
+from scene_graphs.explaining import Explanation, explain
 from scene_graphs.furniture import ROOM_TYPES, canonical_room, display_name
 from scene_graphs.graph import FurnitureGraph, graph_from_layout, graph_from_uses
-from scene_graphs.homes import Home, home_from_layouts
+from scene_graphs.homes import MOST_ROOMS, Home, home_from_layouts
 from scene_graphs.layouts import Layout
 from scene_graphs.library import built_in_layouts
 from scene_graphs.merging import merge
+from scene_graphs.pulling import Pull
 from scene_graphs.retrieval import LayoutIndex, retrieve_rooms
-
-MOST_ROOMS = 4
 
 
 class FurnishError(ValueError):
@@ -38,6 +39,8 @@ class RoomMatch:
     substitutions: tuple[tuple[str, str, str], ...]
     """(asked, given, level) where the room has something else than asked: same class, group or, at last, affordance."""
     missing: tuple[str, ...]
+    pulls: tuple[Pull, ...] = ()
+    """Chairs that stand pulled out from the start, since nobody could sit on them where they stood."""
 
 
 @dataclass(frozen=True)
@@ -66,12 +69,16 @@ class Furnished:
     def explain(self) -> list[str]:
         """One line a room: which, how far from what was asked, what stands for what."""
         lines = []
-        for match in self.matches:
+        for number, match in enumerate(self.matches):
             line = f"{match.room_type.replace('_', ' ')}: {match.layout_id}, graph distance {match.distance}"
             line += "" if match.exact else " (not proven least)"
             given = [f"{asked} → {got} ({level})" for asked, got, level in match.substitutions]
-            lines.append("; ".join([line, *given, *[f"missing {name}" for name in match.missing]]))
+            pulls = [f"{self._name(number, pull)} pulled out by {pull.distance:.2f} m" for pull in match.pulls]
+            lines.append("; ".join([line, *given, *[f"missing {name}" for name in match.missing], *pulls]))
         return lines
+
+    def _name(self, room: int, pull: Pull) -> str:
+        return f"{display_name(self.home.object(f'{room}/{pull.object_id}').category)} {pull.object_id}"
 
     def rooms_to_dicts(self) -> list[dict[str, Any]]:
         """Plain values for JSON."""
@@ -85,6 +92,7 @@ class Furnished:
                     {"asked": asked, "given": given, "level": level} for asked, given, level in match.substitutions
                 ],
                 "missing": list(match.missing),
+                "pulled_out": [pull_to_dict(pull) for pull in match.pulls],
             }
             for match in self.matches
         ]
@@ -122,12 +130,14 @@ def furnish(
     # Our own rooms were checked when they were made; in a user's room a chair may stand where nobody gets to.
     checked = {layout.id: layout for layout in built_in_layouts()}
     are_ours = not layouts and all(checked.get(layout.id) is layout for layout in unique)
+    where = [_room_of(keyframe, wanted) for keyframe in script.keyframes]
     placing = Placing(home, uses, number, {} if are_ours else usable_offers(home))
-    try:
-        places = placing.places(script, [_room_of(keyframe, wanted) for keyframe in script.keyframes])
-    except MissingError as error:
-        raise FurnishError(str(error)) from error
-    return Furnished(script, home, _matches(unique, chosen, placing.said()), places, merged)
+    seating = seat(placing, script, where) if are_ours else seat_with_pulls(placing, script, where)
+    if seating.missing:
+        raise FurnishError(seating.missing)
+    matches = _matches(unique, chosen, seating.said)
+    pulled = tuple(replace(match, pulls=seating.pulls.get(room, ())) for room, match in enumerate(matches))
+    return Furnished(script, seating.placing.home, pulled, seating.places, merged)
 
 
 def _room_types(script: LongScript, rooms: Sequence[str]) -> list[str]:
@@ -163,9 +173,11 @@ Chosen = dict[str, tuple[Layout, RoomMatch]]
 
 def _retrieved(merged: dict[str, FurnitureGraph], index: LayoutIndex, seed: int) -> Chosen:
     """One of the nearest rooms of the library for every room type."""
-    found = retrieve_rooms(index, merged, seed=seed)
-    rooms = {room: index.layout(match.layout_id) for room, match in found.items()}
-    return {room: (layout, _explained(room, merged[room], layout)) for room, layout in rooms.items()}
+    chosen: Chosen = {}
+    for room, match in retrieve_rooms(index, merged, seed=seed).items():
+        told = explain(merged[room], index.graph(match.layout_id), match, index.costs)
+        chosen[room] = (index.layout(match.layout_id), _room_match(room, match.layout_id, told))
+    return chosen
 
 
 def _given(merged: dict[str, FurnitureGraph], layouts: Sequence[Layout]) -> Chosen:
@@ -182,14 +194,17 @@ def _given(merged: dict[str, FurnitureGraph], layouts: Sequence[Layout]) -> Chos
 
 
 def _explained(room: str, graph: FurnitureGraph, layout: Layout) -> RoomMatch:
-    match = exact_distance(graph, graph_from_layout(layout))
+    own = graph_from_layout(layout)
+    return _room_match(room, layout.id, explain(graph, own, exact_distance(graph, own)))
+
+
+def _room_match(room: str, layout_id: str, told: Explanation) -> RoomMatch:
     substitutions = tuple(
-        (display_name(pair.query.category), display_name(pair.room.category), pair.level)
-        for pair in match.pairs
-        if pair.level != "same"
+        (display_name(pair.asked.category), display_name(pair.given.category), pair.level)
+        for pair in told.substitutions
     )
-    missing = tuple(display_name(node.category) for node in match.missing)
-    return RoomMatch(room, layout.id, match.cost, match.exact, substitutions, missing)
+    missing = tuple(display_name(gap.asked.category) for gap in told.missing)
+    return RoomMatch(room, layout_id, told.distance, told.exact, substitutions, missing)
 
 
 def _matches(unique: Sequence[Layout], chosen: Chosen, stand_ins: Sequence[StandIn]) -> tuple[RoomMatch, ...]:

@@ -56,9 +56,12 @@ class FileHold:
         self.file = self.path.open("w")
         try:
             fcntl.flock(self.file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
+        except BlockingIOError:
             self.file.close()
             return False
+        except OSError as error:
+            self.file.close()
+            raise SettingsError(f"{self.path} cannot be locked: {error.strerror}; see SIMS_DATA_DIR") from error
         return True
 
     def keep(self) -> bool:

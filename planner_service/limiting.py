@@ -13,8 +13,10 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from planner_service.errors import TooLarge, TooMany
 
-MOST_BYTES: Final = 4 * 1024 * 1024
+MOST_BYTES: Final = 4 << 20
 """Of one body."""
+LARGER: Final = {("POST", "/v1/layouts"): 32 << 20}
+"""Calls that take other people's files."""
 WINDOWS: Final = {"second": 1.0, "minute": 60.0, "hour": 3600.0}
 FREE: Final = ("/healthz", "/readyz", "/metrics")
 """Paths that probes ask for often, never counted; neither are the files of the page."""
@@ -90,7 +92,10 @@ def address_of(scope: Scope) -> str:
 
 
 class BodyLimit:
-    """ASGI: no body of more than `MOST_BYTES` is read, whether its length was declared or it comes in chunks."""
+    """ASGI: no body of more than `MOST_BYTES` is read, whether its length was declared or it comes in chunks.
+
+    Calls that are `LARGER` may send more.
+    """
 
     def __init__(self, app: ASGIApp, most: int = MOST_BYTES) -> None:
         self.app = app
@@ -101,9 +106,10 @@ class BodyLimit:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        detail = f"a body has at most {self.most} bytes"
+        most = LARGER.get((scope["method"], scope["path"]), self.most)
+        detail = f"a body has at most {most} bytes"
         declared = Headers(scope=scope).get("content-length", "")
-        if declared.isdecimal() and int(declared) > self.most:
+        if declared.isdecimal() and int(declared) > most:
             problem = TooLarge(f"{detail}, {int(declared)} were announced")
             await problem.response(scope["path"])(scope, receive, send)
             return
@@ -113,7 +119,7 @@ class BodyLimit:
             nonlocal read
             message = await receive()
             read += len(message.get("body", b""))
-            if read > self.most:
+            if read > most:
                 # An HTTPException, because FastAPI turns any other one that comes up while it reads into a 400.
                 raise HTTPException(413, detail)
             return message

@@ -45,6 +45,12 @@ class OpenStory:
 
     store: Stories
     id: str
+    house: Studio
+
+    @cached_property
+    def studio(self) -> Studio:
+        """What it is made from, with a budget of its own."""
+        return self.house.for_story(self.request.seed)
 
     @cached_property
     def request(self) -> StoryRequest:
@@ -177,15 +183,15 @@ class Maker:
         self.open.pop(story_id, None)
 
     def _script(self, story: OpenStory) -> tuple[bytes, Json]:
-        script = self.studio.script(story.request)
+        script = story.studio.script(story.request)
         return _to_bytes(script.model_dump(mode="json")), summary_of_script(script)
 
     def _home(self, story: OpenStory) -> tuple[bytes, Json]:
-        stage = self.studio.furnish(story.request, story.script())
+        stage = story.studio.furnish(story.request, story.script())
         return _to_bytes(documents.furnished_to_dict(stage)), summary_of_home(stage)
 
     def _told(self, story: OpenStory) -> tuple[bytes, Json]:
-        stage, told = self.studio.tell(story.request, story.stage)
+        stage, told = story.studio.tell(story.request, story.stage)
         row = documents.told_to_dict(told) | {"repairs": list(stage.script.repairs)}
         return _to_bytes(row), row
 
@@ -215,7 +221,7 @@ class Maker:
 
     def _opened(self, story_id: str) -> OpenStory:
         if story_id not in self.open:
-            self.open[story_id] = OpenStory(self.store, story_id)
+            self.open[story_id] = OpenStory(self.store, story_id, self.studio)
         self.open.move_to_end(story_id)
         while len(self.open) > _OPEN:
             self.open.popitem(last=False)

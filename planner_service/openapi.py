@@ -9,6 +9,7 @@ from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 
 from planner_service.access import COOKIE, is_open
+from planner_service.schemas.layouts import LayoutAsk
 from planner_service.schemas.problems import PROBLEM_MEDIA, ProblemDetails
 
 DESCRIPTION: Final = """\
@@ -37,7 +38,7 @@ REFUSED: Final = {
 }
 WITH_BODY: Final = {
     400: "The body is not JSON in UTF-8.",
-    413: "The body has more than 4 MiB.",
+    413: "The body has more than 4 MiB, or 32 MiB where it is a scene file of another format.",
     415: "The body is not sent as application/json.",
     507: "No room is left on the disk.",
 }
@@ -58,6 +59,9 @@ def document(app: FastAPI, locked: bool) -> dict[str, Any]:
         schemas.pop(name, None)
     problem = ProblemDetails.model_json_schema(ref_template="#/components/schemas/{model}")
     schemas.update(problem.pop("$defs"), ProblemDetails=problem)
+    # The one body that FastAPI does not know of: its call takes other files as well.
+    room = LayoutAsk.model_json_schema(ref_template="#/components/schemas/{model}")
+    schemas.update(room.pop("$defs"), LayoutAsk=room)
     found["components"]["securitySchemes"] = {
         "bearer": {"type": "http", "scheme": "bearer", "description": "One of the service's keys."},
         "cookie": {"type": "apiKey", "in": "cookie", "name": COOKIE, "description": "Set by POST /session."},

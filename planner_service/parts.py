@@ -4,17 +4,25 @@ from __future__ import annotations
 
 import threading
 from dataclasses import dataclass, field
-from typing import Annotated
+from functools import partial
+from typing import Annotated, Final
 
+from anyio import CapacityLimiter
 from fastapi import Depends
 from sqlalchemy import Engine
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.requests import HTTPConnection
 
 from planner_service.jobs import Jobs
+from planner_service.llm.choosing import load_model
+from planner_service.llm.protocol import LanguageModel
+from planner_service.llm.served import ServedModel
 from planner_service.settings import Settings
 from planner_service.shelves import Shelves
 from planner_service.store.engine import database_url, open_engine, unopened
+
+MOST_PLANNED: Final = 8
+"""Requests that may wait for a language model at once: each holds a thread, and the others need some too."""
 
 
 @dataclass(frozen=True)
@@ -25,8 +33,19 @@ class Parts:
     engine: Engine
     shelves: Shelves
     jobs: Jobs
+    model: LanguageModel | None = None
+    """What plans; None for the rules."""
+    importing: CapacityLimiter = field(default_factory=partial(CapacityLimiter, 2))
+    """Scene files that are read at once: each may take a second and some hundred megabytes."""
+    planning: threading.BoundedSemaphore = field(default_factory=lambda: threading.BoundedSemaphore(MOST_PLANNED))
+    """Taken by every request that waits for the model."""
     stopping: threading.Event = field(default_factory=threading.Event)
     """Set when the service is about to end, so that streams end too."""
+
+    def hang_up(self) -> None:
+        """Let no request wait for the model any longer: what it has not said is left to the rules, or fails."""
+        if isinstance(self.model, ServedModel):
+            self.model.close()
 
     def close(self) -> None:
         """Let go of the database."""
@@ -36,6 +55,7 @@ class Parts:
 
 def open_parts(settings: Settings) -> Parts:
     """Open the database and everything on it. SettingsError says what cannot be used."""
+    model = load_model(settings)
     url = database_url(settings)
     engine = open_engine(url)
     try:
@@ -43,7 +63,7 @@ def open_parts(settings: Settings) -> Parts:
     except SQLAlchemyError as error:
         engine.dispose()
         raise unopened(url, error) from error
-    return Parts(settings, engine, Shelves(engine, settings.cache_dir, settings.layouts), jobs)
+    return Parts(settings, engine, Shelves(engine, settings.cache_dir, settings.layouts), jobs, model)
 
 
 async def parts_of(connection: HTTPConnection) -> Parts:

@@ -1,7 +1,8 @@
 """Which object every keyframe happens at: each short script mapped onto its room, and stand-ins for what it lacks.
 
-A stand-in is another object of the same room that a body can do the same at (a shelf touched in place of a cabinet).
-It is a last resort for rooms the story did not choose, and it is always said.
+A stand-in is another object of the same room that a body can do the same at (a shelf touched in place of a cabinet),
+or the floor, which affords sitting and lying. It is a last resort for rooms the story did not choose, and it is always
+said.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from motion_backend.motion import Skill
 from planner_service.scripts.acting import NEEDS, Place, can_stand
 from planner_service.scripts.keyframe import LongScript, PlannedKeyframe
 from scene_graphs.furniture import Furniture, canonical, display_name, group_of, is_known, is_minor
@@ -22,7 +24,7 @@ from scene_graphs.surfaces import spots
 
 ScriptGraphs = Mapping[str, Sequence[tuple[int | None, FurnitureGraph]]]
 """Room type to the graph of every short script that plays there, by the script's number."""
-_DOING = {"sit": "sit on", "lie": "lie on", "touch": "touch"}
+FLOOR = "floor"
 
 
 class MissingError(ValueError):
@@ -49,6 +51,7 @@ class Placing:
     usable: Offers
     """What objects can really be used for, where that is known."""
     stand_ins: dict[tuple[str, Furniture], str] = field(default_factory=dict)
+    """By room type and piece: the id of the object that serves for it, or `FLOOR`."""
 
     def __post_init__(self) -> None:
         self.grounded: dict[tuple[str, int | None], Grounding] = {
@@ -64,7 +67,7 @@ class Placing:
     def said(self) -> tuple[StandIn, ...]:
         """The stand-ins that were needed."""
         return tuple(
-            StandIn(self.numbers[room], display_name(node.category), display_name(self.home.object(chosen).category))
+            StandIn(self.numbers[room], display_name(node.category), self._named(chosen))
             for (room, node), chosen in self.stand_ins.items()
         )
 
@@ -74,11 +77,13 @@ class Placing:
         word, instance = keyframe.piece
         node = Furniture(canonical(word), instance)
         object_id = self._object(keyframe, room, node)
-        if object_id is None and keyframe.skill in NEEDS:
-            lacks = f"the {room.replace('_', ' ')} has no {display_name(word)} to {_DOING[NEEDS[keyframe.skill]]}"
+        if object_id is None and keyframe.skill is Skill.TOUCH:
+            lacks = f"the {room.replace('_', ' ')} has no {display_name(word)} to touch"
             raise MissingError(
                 f"keyframe {index}: {lacks}, nor anything that could stand for it; choose another room or story"
             )
+        if object_id is None and keyframe.skill in NEEDS:
+            self.stand_ins[room, node] = FLOOR
         return Place(self.numbers[room] if object_id is None else int(object_id.split("/")[0]), object_id)
 
     def _object(self, keyframe: PlannedKeyframe, room: str, node: Furniture) -> str | None:
@@ -89,13 +94,16 @@ class Placing:
         fit = (chosen for chosen in met if need is None or need in self._offers(chosen))
         return next(fit, None) or self._stand_in(room, node)
 
+    def _named(self, served: str) -> str:
+        return served if served == FLOOR else display_name(self.home.object(served).category)
+
     def _offers(self, object_id: str) -> frozenset[str]:
         return self.usable.get(object_id, offers(self.home.object(object_id)))
 
     def _stand_in(self, room: str, node: Furniture) -> str | None:
         """The object that serves all a piece is needed for: no small decor if it can be helped, no twice-used one."""
-        if (room, node) in self.stand_ins:
-            return self.stand_ins[room, node]
+        if (served := self.stand_ins.get((room, node))) is not None:
+            return None if served == FLOOR else served
         needed = frozenset[str]().union(*(needs_of(graph, node) for _, graph in self.uses[room] if node in graph))
         prefix = f"{self.numbers[room]}/"
         fitting = [

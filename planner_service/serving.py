@@ -23,6 +23,8 @@ LIVED: Final = 30.0
 """Seconds after which a worker counts as having lived."""
 GRACE: Final = 8
 """Seconds that requests and workers have to end when the service stops."""
+PATIENCE: Final = 5
+"""Seconds of these that a request may wait for the language model."""
 log = structlog.get_logger("sims.serve")
 
 
@@ -93,12 +95,16 @@ def environment(settings: Settings, worker_id: str) -> dict[str, str]:
     """The environment of a worker: these very settings, and one thread a worker."""
     from planner_service.store.engine import database_url
 
+    model = {f"SIMS_{name.upper()}": str(value) for name, value in settings if name.startswith("llm_")}
+    if settings.llm_story_dollars is None:
+        del model["SIMS_LLM_STORY_DOLLARS"]
     given = {
+        **model,
         "SIMS_DATA_DIR": str(settings.data_dir.absolute()),
         "SIMS_DATABASE_URL": database_url(settings),  # never empty: an empty one would leave it to `.env`
         "SIMS_BACKEND": settings.backend,
         "SIMS_LAYOUTS": str(settings.layouts.absolute()) if settings.layouts else None,
-        "SIMS_LLM_MODEL": settings.llm_model,
+        "SIMS_LLM_API_KEY": settings.llm_api_key.get_secret_value(),
         "SIMS_LOG_LEVEL": settings.log_level,
         "SIMS_WORKER_ID": worker_id,
     }
@@ -113,11 +119,9 @@ def serve(settings: Settings) -> None:
 
     from planner_service.access import check_exposure
     from planner_service.app import create_app
-    from planner_service.llm.choosing import load_model
     from planner_service.parts import open_parts
 
     check_exposure(settings)
-    load_model(settings.llm_model)
     parts = open_parts(settings)
     supervisor = Supervisor(settings)
 
@@ -127,6 +131,9 @@ def serve(settings: Settings) -> None:
         def handle_exit(self, sig: int, frame: FrameType | None) -> None:  # noqa: ARG002
             # Not uvicorn's own, which raises the signal again at the end: that would leave no time to stop the workers.
             parts.stopping.set()
+            patience = threading.Timer(PATIENCE, parts.hang_up)
+            patience.daemon = True
+            patience.start()
             # Ctrl-C reaches the workers as well; started again now, they would take up stories only to leave them.
             supervisor.stopping.set()
             self.force_exit = self.should_exit and sig == signal.SIGINT

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 from platformdirs import user_data_path
-from pydantic import Field, ValidationError, field_validator
+from pydantic import Field, SecretStr, ValidationError, field_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 LEAST_KEY = 16
@@ -32,7 +32,24 @@ class Settings(BaseSettings):
     layouts: Path | None = None
     """An extra layout file, read beside the built-in library."""
     llm_model: str = ""
-    """The language model that plans: "scripted:FILE" answers from a file of JSON lines; empty for rules."""
+    """The language model that plans and tells, such as "openai:gpt-5" or "ollama:qwen3"; empty for rules."""
+    llm_base_url: str = ""
+    """Where a server of one's own answers, such as http://127.0.0.1:8080/v1; empty for the vendor's."""
+    llm_api_key: SecretStr = SecretStr("")
+    llm_on_failure: Literal["rules", "error"] = "rules"
+    """What happens where the model gives no usable answer: the rules do it, or the story fails and says why."""
+    llm_timeout: float = Field(120.0, gt=0, le=3600)
+    """Seconds of one question, with all that is tried again."""
+    llm_answer_tokens: int = Field(16_384, ge=256, le=1_000_000)
+    """The longest answer, with the thoughts before it."""
+    llm_story_tokens: int = Field(200_000, ge=1)
+    llm_story_seconds: float = Field(900.0, gt=0, allow_inf_nan=False)
+    llm_story_dollars: float | None = Field(None, gt=0, allow_inf_nan=False)
+    """What one story may spend on the model; needs `llm_price`."""
+    llm_price: str = Field("", pattern=r"^(\d{1,6}(\.\d{1,6})?/\d{1,6}(\.\d{1,6})?)?$")
+    """Dollars a million tokens read, and a million written: "1.25/10"."""
+    llm_cache_mb: int = Field(64, ge=0, le=100_000)
+    """Answers kept on disk; 0 keeps none."""
     host: str = "127.0.0.1"
     port: int = Field(8000, ge=0, le=65535)
     workers: int = Field(1, ge=0, le=64)

@@ -20,6 +20,7 @@ from planner_service.surveying import survey
 from scene_graphs.grounding import Offers
 from scene_graphs.layouts import Layout, LayoutError, layout_from_dict, layout_to_dict, read_layouts
 from scene_graphs.library import built_in_layouts
+from scene_graphs.packed_library import built_in_index
 from scene_graphs.retrieval import LayoutIndex
 
 if TYPE_CHECKING:
@@ -32,6 +33,8 @@ __all__ = [
 ]  # fmt: skip
 
 LONGEST_ID: Final = 120
+_TAKEN_ENDINGS: Final = ("/scene.glb", "/drawing.svg", "/drawing.png")
+"""What follows the id of a room in an address."""
 _ROOM_ID: Final = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.:-]*(?:/[A-Za-z0-9_][A-Za-z0-9_.:-]*)*")
 """What is the end of an address as it stands."""
 MOST_SCRIPTS: Final = 20_000
@@ -104,7 +107,8 @@ class Shelves:
         with self._lock:
             if floor.index is None:
                 usable = {name: room.usable for name, room in floor.rooms.items() if room.usable}
-                floor.index = LayoutIndex(tuple(floor.layouts.values()), known=self._known, usable=usable)
+                known = self._known or built_in_index()
+                floor.index = LayoutIndex(tuple(floor.layouts.values()), known=known, usable=usable)
                 self._known = floor.index
             return floor.index
 
@@ -140,7 +144,7 @@ class Shelves:
         FullError."""
         rows: dict[str, dict[str, str]] = {}
         for layout in layouts:
-            if not _ROOM_ID.fullmatch(layout.id) or len(layout.id) > LONGEST_ID or layout.id.endswith("/scene.glb"):
+            if not _ROOM_ID.fullmatch(layout.id) or len(layout.id) > LONGEST_ID or layout.id.endswith(_TAKEN_ENDINGS):
                 like = "letters, digits and _.:- between slashes, such as my-house/kitchen"
                 raise ShelfError(f"id: {layout.id!r:.80} is no id of a room; use at most {LONGEST_ID} {like}")
             if layout.id in self._rooms.fixed or layout.id in rows:

@@ -9,15 +9,16 @@ from typing import Any
 from motion_backend import metrics
 from motion_backend.motion import Action, BodyState, Character, Motion, MotionBackend, join
 from motion_backend.obstacles import Obstacles
-from planner_service.furnish import MOST_ROOMS, Furnished, furnish
+from planner_service.furnish import Furnished, furnish
 from planner_service.llm.protocol import LanguageModel, ModelError
+from planner_service.llm.served import for_story
 from planner_service.scripts.acting import act
 from planner_service.scripts.composing import MOST, Request, compose, script_of
 from planner_service.scripts.keyframe import Keyframe, LongScript
 from planner_service.scripts.narrating import Told, narrate, narrate_with_model
 from planner_service.shelves import Shelves
 from scene_graphs.furniture import ROOM_TYPES, canonical_room
-from scene_graphs.homes import Home
+from scene_graphs.homes import MOST_ROOMS, Home
 from scene_graphs.layouts import Layout
 
 Progress = Callable[[str, float], None]
@@ -125,15 +126,22 @@ class Studio:
 
     shelves: Shelves = field(default_factory=Shelves)
     model: LanguageModel | None = None
+    insist: bool = False
+    """Whether a story fails where its model does; else the rules take over."""
+
+    def for_story(self, seed: int) -> Studio:
+        """The same studio for one story, with a budget of its own for the model."""
+        return replace(self, model=for_story(self.model, seed))
 
     def plan(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Planned:
         """Theme to narrated story in a furnished home, without motion."""
+        studio = self.for_story(request.seed)
         progress("plan", 0.0)
-        script = self.script(request)
+        script = studio.script(request)
         progress("furnish", 0.0)
-        stage = self.furnish(request, script)
+        stage = studio.furnish(request, script)
         progress("narrate", 0.0)
-        stage, told = self.tell(request, stage)
+        stage, told = studio.tell(request, stage)
         return Planned(request, stage.script, stage, told)
 
     def script(self, request: StoryRequest) -> LongScript:
@@ -141,7 +149,7 @@ class Studio:
         if request.keyframes:
             return given_script(request)
         asked = Request(request.short_scripts, _rooms(request), request.seed, request.method)  # type: ignore[arg-type]
-        return compose(request.theme, self.shelves.scripts(), asked, self.model)
+        return compose(request.theme, self.shelves.scripts(), asked, self.model, self.insist)
 
     def furnish(self, request: StoryRequest, script: LongScript) -> Furnished:
         """The home of a script, and every keyframe's place in it."""
@@ -154,6 +162,8 @@ class Studio:
             try:
                 return stage, narrate_with_model(stage.script, request.character, self.model, stage.names)
             except ModelError as error:
+                if self.insist:
+                    raise
                 repairs = (*stage.script.repairs, f"told by rules: {error}")
                 stage = replace(stage, script=stage.script.model_copy(update={"repairs": repairs}))
         return stage, narrate(stage.script, request.character, request.seed, stage.names)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -124,7 +124,8 @@ def _picture(stage: _Stage, shot: Shot) -> Image:
     """The body in its pose, with ghosts of the poses before and after."""
     camera = choose_camera(stage.home, stage.motion, stage.joints, shot, SIDE[0] / SIDE[1])
     x, _, z = stage.joints[shot.frame, 0].tolist()
-    solids = around(stage.props, camera, stage.home.room_at((x, z)))
+    poses = stage.joints[[shot.frame, *shot.ghosts]].reshape(-1, 3)
+    solids = around(stage.props, camera, poses, stage.home.room_at((x, z)))
     solids += body_solids(stage.motion, [shot.frame])
     if shot.ghosts:
         solids += body_solids(stage.motion, shot.ghosts, opacity=0.5)
@@ -132,12 +133,11 @@ def _picture(stage: _Stage, shot: Shot) -> Image:
 
 
 def _plan(stage: _Stage, window: tuple[float, float, float, float]) -> Image:
-    """That square of the home from above; its walls cast no shadow."""
+    """That square of the home from above."""
     left, far, right, near = window
     x, z = (left + right) / 2, (far + near) / 2
     camera = Camera((x, 8.0, z), (x, 0.0, z), span=right - left)
-    solids = [replace(p.solid, cut=0.01) if p.is_wall else p.solid for p in stage.props]
-    return render(solids, camera, PLAN, ground=None)
+    return render([prop.solid for prop in stage.props], camera, PLAN, ground=None)
 
 
 def _sheet(count: int, title: str) -> tuple[Figure, list[tuple[int, int]]]:
@@ -148,7 +148,7 @@ def _sheet(count: int, title: str) -> tuple[Figure, list[tuple[int, int]]]:
     step = (SIDE[0] + PLAN[0] + 4 + 2 * GAP, SIDE[1] + TEXT + GAP)
     width, height = columns * step[0], -(-count // columns) * step[1] + HEAD + GAP
     figure = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor="white")
-    figure.text(GAP / width, 1 - 0.5 * HEAD / height, title, fontsize=17, color=INK, va="center")
+    figure.text(GAP / width, 1 - 0.5 * HEAD / height, title, fontsize=17, color=INK, va="center", parse_math=False)
     places = [divmod(place, columns) for place in range(count)]
     return figure, [(GAP + column * step[0], height - HEAD - (row + 1) * step[1] + GAP) for row, column in places]
 
@@ -166,10 +166,11 @@ def _draw_pair(
     heading = f"{panel.index}  {keyframe.skill}  ·  {keyframe.furniture}  ·  {keyframe.emotion}"
     seconds = f"{panel.start / fps:.0f}–{panel.stop / fps:.0f} s"
     right = (left + PLAN[0] + SIDE[0] + 4) / width
-    figure.text(left / width, (bottom - 7) / height, heading, fontsize=9.5, weight="bold", color=INK, va="top")
+    plain: dict[str, Any] = {"x": left / width, "color": INK, "va": "top", "parse_math": False}
+    figure.text(y=(bottom - 7) / height, s=heading, fontsize=9.5, weight="bold", **plain)
     figure.text(right, (bottom - 7) / height, seconds, fontsize=8.5, color="#70757d", va="top", ha="right")
     caption = textwrap.fill(textwrap.shorten(keyframe.caption, 190, placeholder=" …"), 98)
-    figure.text(left / width, (bottom - 26) / height, caption, fontsize=9, color=INK, va="top", linespacing=1.25)
+    figure.text(y=(bottom - 26) / height, s=caption, fontsize=9, linespacing=1.25, **plain)
 
 
 def _draw_plan(axes: Axes, stage: _Stage, panel: _Panel, plan: Image) -> None:

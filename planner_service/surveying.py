@@ -10,7 +10,7 @@ from typing import Final
 
 from scene_graphs.checking import OUT_OF_REACH, RoomCheck
 from scene_graphs.furniture import AFFORDANCES
-from scene_graphs.graph import FurnitureGraph, graph_from_layout
+from scene_graphs.graph import FurnitureGraph, graph_from_layout, offers
 from scene_graphs.layouts import Layout
 from scene_graphs.surfaces import Spot, spots
 
@@ -45,14 +45,20 @@ class Survey:
 @lru_cache(maxsize=256)
 def survey(layout: Layout) -> Survey:
     """Look a room over; about 0.1 s for an ordinary one, and remembered."""
-    check = RoomCheck(layout, max(_CELL, sqrt(layout.area / MOST_CELLS)))
+    check = RoomCheck(layout, cell_of(layout))
     return Survey(tuple(check.problems()), tuple(_spots(check)), graph_from_layout(layout))
+
+
+def cell_of(layout: Layout) -> float:
+    """The cells of a map of its floor, in metres: coarser ones for a larger room."""
+    return max(_CELL, sqrt(layout.area / MOST_CELLS))
 
 
 def _spots(check: RoomCheck) -> Iterator[tuple[Spot, bool]]:
     for placed in check.layout.objects:
         if placed.position[1] >= OUT_OF_REACH:
             continue
-        for affordance in AFFORDANCES:
+        # Only what a piece is for: a side table has the height of a stool, and is no seat.
+        for affordance in (one for one in AFFORDANCES if one in offers(placed)):
             found = [(spot, check.is_usable(spot)) for spot in spots(placed, affordance)]
             yield from sorted(found, key=lambda one: not one[1])[:MOST_SPOTS]

@@ -29,7 +29,7 @@ LONGEST_ID: Final = 64
 """Letters of a story's id that are written down: whoever asks may send any."""
 HUNG_UP: Final = 499
 """The status in log and figures where the caller left before there was an answer."""
-QUIET: Final = ("dbos", "sqlalchemy", "httpx", "httpcore", "matplotlib")
+QUIET: Final = ("dbos", "sqlalchemy", "httpx", "httpcore", "httpx2", "httpcore2", "openai", "anthropic", "matplotlib")
 """Libraries whose own news below a warning would drown ours."""
 LIBRARIES: Final = ("uvicorn", *QUIET)
 DBOS_STORY: Final = "operationUUID"

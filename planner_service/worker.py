@@ -21,6 +21,7 @@ from planner_service.shelves import Shelves
 from planner_service.store.engine import database_url, open_engine
 from planner_service.store.stories import Stories
 from planner_service.stories import Studio
+from scene_graphs.packed_library import compile_search
 
 POLL: Final = 0.15
 """Seconds between two looks into the queue: an idle worker costs little, and a story starts at once."""
@@ -46,7 +47,8 @@ def run_worker(settings: Settings, supervised: bool = False) -> None:
         threading.Thread(target=_end_with_supervisor, daemon=True).start()
     url = database_url(settings)
     engine = open_engine(url)
-    studio = Studio(Shelves(engine, settings.cache_dir, settings.layouts), load_model(settings.llm_model))
+    shelves = Shelves(engine, settings.cache_dir, settings.layouts)
+    studio = Studio(shelves, load_model(settings), settings.llm_on_failure == "error")
     hold = hold_name(engine, settings)
     warm_up(studio)
     register(Maker(Stories(engine), studio, settings.worker_id))
@@ -76,8 +78,9 @@ def run_worker(settings: Settings, supervised: bool = False) -> None:
 
 
 def warm_up(studio: Studio) -> None:
-    """Load scripts, rooms and the sentence encoder now, so that the first story does not wait for them."""
+    """Load scripts, rooms, the compiled search and the encoder now, so that the first story does not wait for them."""
     studio.shelves.layouts()
+    compile_search()
     studio.shelves.scripts().search("warm up", 1)
 
 

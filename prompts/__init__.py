@@ -21,6 +21,21 @@ class PromptError(ValueError):
     """A prompt file is malformed, unknown, or was filled with the wrong values."""
 
 
+class Filled(str):
+    """What a model is told, and which version of which prompt it was filled from."""
+
+    __slots__ = ("name", "version")
+
+    name: str
+    version: int
+
+    def __new__(cls, text: str, name: str, version: int) -> Filled:
+        """A str like any other, with its origin."""
+        filled = super().__new__(cls, text)
+        filled.name, filled.version = name, version
+        return filled
+
+
 @dataclass(frozen=True)
 class Prompt:
     """One prompt file."""
@@ -33,7 +48,7 @@ class Prompt:
     """Blanks that hold what a user or a model wrote: fenced."""
     text: str
 
-    def fill(self, /, **values: str) -> str:
+    def fill(self, /, **values: str) -> Filled:
         """The text with every blank filled; PromptError names blanks without a value and values without a blank."""
         wanted = {*self.variables, *self.data}
         missing, extra = sorted(wanted - values.keys()), sorted(values.keys() - wanted)
@@ -43,7 +58,8 @@ class Prompt:
                 f"not asked for {', '.join(extra) or 'nothing'}; it takes {', '.join(sorted(wanted))}"
             )
         filled = {name: fence(name, values[name]) if name in self.data else values[name] for name in wanted}
-        return _BLANK.sub(lambda blank: filled[blank[1]], self.text)  # one pass: values are never read as blanks
+        text = _BLANK.sub(lambda blank: filled[blank[1]], self.text)  # one pass: values are never read as blanks
+        return Filled(text, self.name, self.version)
 
 
 def fence(name: str, text: str) -> str:
@@ -90,7 +106,7 @@ def read(name: str) -> Prompt:
     return prompt
 
 
-def render(name: str, /, **values: str) -> str:
+def render(name: str, /, **values: str) -> Filled:
     """The text of a prompt with its blanks filled."""
     return read(name).fill(**values)
 

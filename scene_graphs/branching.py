@@ -1,78 +1,38 @@
-"""Exact search for the cheapest way to find a query's furniture in one room: depth first, branch and bound."""
+"""Exact search for the cheapest way to find a query's furniture in a room: a query is put in order, laid out for a set
+of packed rooms, and searched for by `kernel`, depth first, branch and bound."""
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Sequence
+from bisect import bisect_left
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from itertools import accumulate
+from typing import TYPE_CHECKING, Final, NamedTuple
 
-from scene_graphs.costs import CostTable, Key, Term, edge_key, node_terms
-from scene_graphs.furniture import Furniture, canonical, class_of, group_of
+import numpy as np
+from numpy.typing import NDArray
+
+from scene_graphs.costs import CostTable, Key, Term, edge_terms, node_terms
+from scene_graphs.counting import Counts
+from scene_graphs.furniture import Furniture, canonical
 from scene_graphs.graph import FurnitureGraph
+from scene_graphs.packing import PackedRooms, refuse_loops
+from scene_graphs.texts import Ints
+from scene_graphs.vocabulary import COUNTED, COUNTS, FAR, KNOWN, LEVELS, NUMBER, flags, levels
+
+if TYPE_CHECKING:
+    from scene_graphs import kernel
 
 NODE_LIMIT: Final = 100_000
 """Search nodes expanded for one room before the best mapping so far is taken, marked as not exact."""
+EFFORT: Final = 20 * NODE_LIMIT
+"""Search nodes expanded for all rooms of one search; rooms left after that get the first mapping there is."""
 UNMAPPED: Final = -1
-
-Masks = list[tuple[int, int, int, list[tuple[int, int]]]]
-"""Terms of one room: coefficient, mask of members, generic count, (mask, count) of the parts."""
-
-
-@dataclass(frozen=True, eq=False)
-class CodedRoom:
-    """A room's graph as bit masks over its nodes (Python integers, so that no number of nodes is too many)."""
-
-    nodes: tuple[Furniture, ...]
-    categories: tuple[str, ...]
-    offers: tuple[frozenset[str], ...]
-    neighbours: tuple[int, ...]
-    """For every node the mask of its neighbours."""
-    masks: dict[Key, int]
-    """The nodes of every category, class and group."""
-    edges: dict[Key, int]
-    """How many edges join each pair of groups."""
-
-    @classmethod
-    def of(cls, graph: FurnitureGraph) -> CodedRoom:
-        """Code a room's graph; nodes are put in order, so that the order they were added in does not matter."""
-        nodes = sorted(graph)
-        number = {node: index for index, node in enumerate(nodes)}
-        categories = tuple(canonical(node[0]) for node in nodes)
-        masks: dict[Key, int] = defaultdict(int)
-        for index, category in enumerate(categories):
-            for key in _keys(category):
-                masks[key] |= 1 << index
-        edges: dict[Key, int] = defaultdict(int)
-        for a, b in graph.edges:
-            edges[edge_key(categories[number[a]], categories[number[b]])] += 1
-        offers = tuple(frozenset(graph.nodes[node].get("offers", frozenset())) for node in nodes)
-        neighbours = tuple(sum(1 << number[other] for other in graph[node]) for node in nodes)
-        return cls(tuple(nodes), categories, offers, neighbours, dict(masks), dict(edges))
-
-    @cached_property
-    def by_category(self) -> dict[str, list[int]]:
-        """The nodes of every category."""
-        found: dict[str, list[int]] = defaultdict(list)
-        for index, category in enumerate(self.categories):
-            found[category].append(index)
-        return found
-
-    def mask(self, keys: Sequence[Key]) -> int:
-        """The nodes that any of the keys names."""
-        joined = 0
-        for key in keys:
-            joined |= self.masks.get(key, 0)
-        return joined
-
-    def count(self, keys: Sequence[Key]) -> int:
-        """How many nodes, or edges, the keys name."""
-        return sum(self.edges.get(key, 0) for key in keys) + self.mask(keys).bit_count()
-
-    def base(self, costs: CostTable) -> int:
-        """The cost of the room if nothing of it is used."""
-        return sum(costs.of(c).insert for c in self.categories) + costs.extra_edge * sum(self.edges.values())
+Costs = NDArray[np.int32]
+_SLOTS: Final = {"part": 0, "category": 1, "kind": 1, "class": 2, "group": 3}
+"""A room's node is counted at most once as each."""
+_NOTHING: Final = np.empty(0, dtype=np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,29 +43,38 @@ class CodedQuery:
     words: tuple[str, ...]
     needs: tuple[frozenset[str], ...]
     edges: tuple[tuple[int, int], ...]
-    """Pairs of positions, the earlier first."""
+    """Pairs of positions, the earlier first, in the order of the later."""
     twins: tuple[int, ...]
     """For every node the last one before it that it could change places with, or -1."""
     deletes: tuple[int, ...]
-    suffixes: tuple[tuple[Term, ...], ...]
-    """For every position the bound's terms for the nodes from there on."""
     costs: CostTable
     strict: bool
 
     @classmethod
     def of(cls, graph: FurnitureGraph, costs: CostTable, strict: bool = False) -> CodedQuery:
-        """Code a query: nodes with most placed neighbours first, then the dearer, then those with more edges."""
+        """Code a query: nodes with most placed neighbours first, then the dearer, then those with more edges.
+
+        ValueError if a node is joined with itself.
+        """
+        refuse_loops(graph)
         nodes = _placing_order(graph, costs)
         number = {node: index for index, node in enumerate(nodes)}
         words = tuple(canonical(node[0]) for node in nodes)
-        needs = tuple(frozenset(graph.nodes[node].get("needs", frozenset())) for node in nodes)
-        pairs = sorted(sorted((number[a], number[b])) for a, b in graph.edges)
-        around = [frozenset(number[other] for other in graph[node]) for node in nodes]
+        needs = tuple(frozenset(graph.nodes[node].get("needs", ())) for node in nodes)
+        around = [frozenset(number[other] for other in graph.adj[node]) for node in nodes]
+        edges = tuple((a, b) for b in range(len(nodes)) for a in sorted(around[b]) if a < b)
         twins = tuple(_twin(i, words, needs, around) for i in range(len(nodes)))
-        suffixes = tuple(tuple(node_terms(words[i:], costs, strict)) for i in range(len(nodes) + 1))
-        deletes = tuple(costs.of(word).delete for word in words)
-        edges = tuple((a, b) for a, b in pairs)
-        return cls(tuple(nodes), words, needs, edges, twins, deletes, suffixes, costs, strict)
+        return cls(tuple(nodes), words, needs, edges, twins, tuple(costs.of(w).delete for w in words), costs, strict)
+
+    @cached_property
+    def node_terms(self) -> list[Term]:
+        """The terms of the bound that nodes make, those that the last nodes ask for first."""
+        return sorted(node_terms(self.words, self.costs, self.strict), key=lambda term: -term.last)
+
+    @cached_property
+    def edge_terms(self) -> list[Term]:
+        """The terms of the bound that edges make."""
+        return edge_terms([(self.words[a], self.words[b]) for a, b in self.edges], self.costs)
 
 
 @dataclass(frozen=True)
@@ -115,145 +84,164 @@ class Found:
     cost: int | None
     """None if it is proven to be at least the upper bound that was given."""
     images: tuple[int, ...]
-    """The room's node for every query node, or `UNMAPPED`."""
+    """For every query node the place of its image among the nodes of all rooms searched, or `UNMAPPED`."""
     capped: bool
     """Whether the node limit ended the search."""
+    expanded: int = 0
+    """Search nodes, where that was counted."""
 
 
-def search(query: CodedQuery, room: CodedRoom, upper: int | None = None, limit: int = NODE_LIMIT) -> Found:
-    """The cheapest mapping of the query into the room that costs less than `upper`, if there is one.
+class Ranked(NamedTuple):
+    """A room that was found."""
 
-    At the limit the best mapping so far is returned, at worst a greedy one.
-    """
-    if limit < 1:
-        raise ValueError(f"the node limit must be at least 1, got {limit}")
-    run = _Search(query, room, upper, limit)
-    run.descend(0, run.root, (1 << len(room.nodes)) - 1)
-    if run.capped and run.best_images is None:
-        greedy = _Search(query, room, None, len(query.nodes) + 1)
-        greedy.descend(0, greedy.root, (1 << len(room.nodes)) - 1)
-        return Found(greedy.best, greedy.best_images or (), True)
-    if run.best_images is None:
-        return Found(None, (), run.capped)
-    return Found(run.best, run.best_images, run.capped)
+    cost: int
+    bound: int
+    number: int
+    found: Found
 
 
-class _Search:
-    """One depth-first search. A query node is decided at every level: given a node of the room, or left out."""
+class Hunt:
+    """A query laid out for a set of rooms; the rooms' `counts` and `bases` are made here unless they are there."""
 
-    def __init__(self, query: CodedQuery, room: CodedRoom, upper: int | None, limit: int) -> None:
-        costs = query.costs
-        self.query, self.room, self.limit = query, room, limit
-        self.saved = costs.lost_edge + costs.extra_edge
-        self.root = room.base(costs) + costs.lost_edge * len(query.edges)
-        most = self.root + sum(query.deletes) + 1
-        self.best = most if upper is None else upper
-        self.best_images: tuple[int, ...] | None = None
-        self.images = [UNMAPPED] * len(query.nodes)
-        self.expanded, self.capped = 0, False
-        self.options = [self._options(index) for index in range(len(query.nodes))]
-        self.candidates = [sum(1 << r for _, r in options) for options in self.options]
-        self.left_out = [sum(query.deletes[i:]) for i in range(len(query.nodes) + 1)]
-        self.suffixes: list[Masks] = [self._masks(terms) for terms in query.suffixes]
-        self.placed = [[a for a, b in query.edges if b == i] for i in range(len(query.nodes))]
-        self.ahead = [
-            [(a, b, a >= i and self._consistent(a, b)) for a, b in query.edges if b >= i]
-            for i in range(len(query.nodes) + 1)
+    def __init__(
+        self, query: CodedQuery, rooms: PackedRooms, counts: Counts | None = None, bases: Costs | None = None
+    ) -> None:
+        self.query, self.rooms = query, rooms
+        self.counts = counts or Counts(rooms)
+        self.bases = rooms.bases(query.costs) if bases is None else bases
+        self._arrays = _rooms_of(rooms)
+        self._asked, self._rare = _laid_out(query, rooms, self.counts)
+
+    def bounds(self) -> Costs:
+        """The lower bound of every room. (rooms,)."""
+        from scene_graphs import kernel
+
+        return kernel.bounds_of(self._asked, self.counts.table, self._rare, self.bases)
+
+    def search(self, numbers: Sequence[int], upper: int | None = None, limit: int = NODE_LIMIT) -> Found:
+        """The cheapest mapping into rooms side by side that costs less than `upper`, if there is one.
+
+        At the limit the best mapping so far is returned, at worst the first that the search comes to.
+        """
+        from scene_graphs import kernel
+
+        if limit < 1:
+            raise ValueError(f"the node limit must be at least 1, got {limit}")
+        images = np.empty(len(self.query.nodes), dtype=np.int64)
+        chosen = np.array(numbers, dtype=np.int64)
+        most = kernel.ENDLESS if upper is None else upper
+        base = int(self.bases[chosen].sum())
+        cost, expanded, capped = kernel.search(self._asked, self._arrays, chosen, base, most, limit, images)
+        if cost == kernel.NONE:
+            return Found(None, (), bool(capped), int(expanded))
+        return Found(int(cost), tuple(images.tolist()), bool(capped), int(expanded))
+
+    def nearest(
+        self, among: NDArray[np.uint8], k: int, first_stage: int, limit: int = NODE_LIMIT, effort: int = EFFORT
+    ) -> tuple[list[Ranked], int]:
+        """The k best of the rooms that are not 0 in `among`, and the least bound of one whose search a limit ended."""
+        from scene_graphs import kernel
+
+        best, doubtful = kernel.nearest(
+            self._asked, self._arrays, self.bases, self.bounds(), among, k, first_stage, limit, effort
+        )
+        cost, bound, place, capped, images = (array.tolist() for array in best)
+        found = [
+            Ranked(cost[i], bound[i], place[i], Found(cost[i], tuple(images[i]), capped[i]))
+            for i in range(k)
+            if place[i] != UNMAPPED
         ]
-
-    def descend(self, depth: int, cost: int, free: int) -> None:
-        """Decide the node at this depth, given what the nodes before it cost and which room nodes are left."""
-        if self.expanded >= self.limit:
-            self.capped = True
-            return
-        self.expanded += 1
-        if depth == len(self.images):
-            if cost < self.best:
-                self.best, self.best_images = cost, tuple(self.images)
-            return
-        if cost + self._nodes_ahead(depth, free) - self.saved * self._edges_ahead(depth, free) >= self.best:
-            return
-        self._map(depth, cost, free)
-        self.images[depth] = UNMAPPED
-        self.descend(depth + 1, cost + self.query.deletes[depth], free)
-
-    def _map(self, depth: int, cost: int, free: int) -> None:
-        """Try every room node for the query node at this depth, cheapest first."""
-        anchors = [self.images[a] for a in self.placed[depth] if self.images[a] != UNMAPPED]
-        rest = self._nodes_ahead(depth + 1, free) - self.saved * self._edges_ahead(depth + 1, free, depth)
-        twin = self.query.twins[depth]
-        above = self.images[twin] if twin >= 0 else -1
-        if twin >= 0 and above == UNMAPPED:
-            return
-        for change, r in self.options[depth]:
-            if cost + change - self.saved * len(anchors) + rest >= self.best:
-                break
-            if r <= above or not free >> r & 1:
-                continue
-            kept = sum(self.room.neighbours[image] >> r & 1 for image in anchors)
-            self.images[depth] = r
-            self.descend(depth + 1, cost + change - self.saved * kept, free & ~(1 << r))
-
-    def _nodes_ahead(self, depth: int, free: int) -> int:
-        """At least what the undecided nodes add, edges aside, by clipped counts over the room's free nodes."""
-        bound = self.left_out[depth]
-        for coefficient, members, generic, parts in self.suffixes[depth]:
-            wanted = generic
-            for mask, number in parts:
-                wanted += min(number, (mask & free).bit_count())
-            bound -= coefficient * min(wanted, (members & free).bit_count())
-        return bound
-
-    def _edges_ahead(self, depth: int, free: int, deciding: int = -1) -> int:
-        """At most how many undecided edges can still be kept; those of the node `deciding` may all be."""
-        kept = 0
-        for a, b, both_ahead in self.ahead[depth]:
-            if a >= depth:
-                kept += both_ahead
-            elif a == deciding:
-                kept += 1
-            elif (image := self.images[a]) != UNMAPPED:
-                kept += (self.room.neighbours[image] & self.candidates[b] & free) != 0
-        return kept
-
-    def _options(self, index: int) -> list[tuple[int, int]]:
-        """(change of cost, room node) for every room node that may stand in for a query node, cheapest first."""
-        query, found = self.query, []
-        for category, members in self.room.by_category.items():
-            cost = query.costs.substitution(query.words[index], category, query.strict)
-            if cost is not None:
-                change = cost - query.costs.of(category).insert
-                found += [(change, r) for r in members if query.needs[index] <= self.room.offers[r]]
-        return sorted(found)
-
-    def _consistent(self, a: int, b: int) -> bool:
-        """Whether any candidates of two query nodes are neighbours in the room."""
-        return any(self.room.neighbours[r] & self.candidates[b] for _, r in self.options[a])
-
-    def _masks(self, terms: Sequence[Term]) -> Masks:
-        mask = self.room.mask
-        return [(t.coefficient, mask(t.members), t.generic, [(mask((k,)), n) for k, n in t.parts]) for t in terms]
+        return found, int(doubtful)
 
 
-def _keys(category: str) -> tuple[Key, ...]:
-    return ("category", category), ("class", class_of(category)), ("group", group_of(category))
+def _rooms_of(rooms: PackedRooms) -> kernel.Rooms:
+    from scene_graphs import kernel
+
+    return kernel.Rooms(rooms.categories, rooms.offers, rooms.node_starts, rooms.neighbours, rooms.neighbour_starts)
+
+
+def _laid_out(query: CodedQuery, rooms: PackedRooms, counts: Counts) -> tuple[kernel.Asked, NDArray[np.uint8]]:
+    """The arrays of a query for these rooms, and the counts that only it asks for."""
+    from scene_graphs import kernel
+
+    size, costs, terms = len(query.nodes), query.costs, query.node_terms
+    parts = [part for term in terms for part in term.parts]
+    keys: list[Key] = [term.key for term in terms] + [key for key, _ in parts]
+    rare = {word: number for word in query.words if (number := rooms.number_of(word)) >= len(KNOWN)}
+    code_of = {word: len(KNOWN) + 1 + place for place, word in enumerate(rare)}
+    level = np.full((size, len(KNOWN) + 1 + len(rare)), FAR, dtype=np.uint8)
+    for place, word in enumerate(query.words):
+        if word in NUMBER:
+            level[place, : len(KNOWN)] = levels()[NUMBER[word]]
+        elif word in rare:
+            level[place, code_of[word]] = 0
+    counters = np.full((level.shape[1], 1 + max(_SLOTS.values())), -1, dtype=np.int64)
+    for counter, key in enumerate(keys):
+        slot = _SLOTS[key[0]] if counter < len(terms) else _SLOTS["part"]
+        counters[code_of[key[1]] if key[1] in rare else COUNTS.get(key, _NOTHING), slot] = counter
+    rows, rare_counts = _rows([*keys, *(term.key for term in query.edge_terms)], counts)
+    last = [term.last for term in terms]
+    own = [costs.of(word) for word in query.words]
+    seconds = [b for _, b in query.edges]
+    asked = kernel.Asked(
+        rare=_ints(rare.values()),
+        known=len(KNOWN),
+        level=level,
+        change=_ints(cost - c.insert for c in own for cost in (0, c.sub_class, c.sub_group)).reshape(size, len(LEVELS)),
+        most_level=1 if query.strict else len(LEVELS),
+        needs=np.array([flags(needs) for needs in query.needs], dtype=np.uint8),
+        delete=_ints(query.deletes),
+        twin=_ints(query.twins),
+        first=_ints(a for a, _ in query.edges),
+        second=_ints(seconds),
+        edge_starts=_ints(bisect_left(seconds, depth) for depth in range(size + 1)),
+        lost=costs.lost_edge,
+        saved=costs.lost_edge + costs.extra_edge,
+        coefficient=_ints(term.coefficient for term in terms),
+        live=_ints(sum(place >= depth for place in last) for depth in range(size + 1)),
+        asked=_asked_from([term.places for term in terms], size),
+        part_starts=_ints(accumulate((len(term.parts) for term in terms), initial=0)),
+        part_asked=_asked_from([places for _, places in parts], size),
+        counters=counters,
+        rows=rows[: len(keys)],
+        edge_rows=rows[len(keys) :],
+        edge_asked=_ints(len(term.places) for term in query.edge_terms),
+    )
+    return asked, rare_counts
+
+
+def _ints(values: Iterable[int]) -> Ints:
+    return np.array(list(values), dtype=np.int64)
+
+
+def _rows(keys: Sequence[Key], counts: Counts) -> tuple[Ints, NDArray[np.uint8]]:
+    """The row of each key: in the table of counts, or after it in one that is made here."""
+    rare = list(dict.fromkeys(key for key in keys if key not in COUNTED))
+    row_of = {key: len(COUNTED) + place for place, key in enumerate(rare)}
+    rows = np.array([row_of[key] if key in row_of else COUNTED[key] for key in keys], dtype=np.int64)
+    made = np.zeros((len(rare), counts.table.shape[1]), dtype=np.uint8)
+    for place, key in enumerate(rare):
+        made[place] = counts.rare(key)
+    return rows, made
+
+
+def _asked_from(columns: Sequence[Sequence[int]], size: int) -> Ints:
+    """How many of each list of positions are at a position or later. (size + 1, columns)."""
+    places = [place * len(columns) + column for column, own in enumerate(columns) for place in own]
+    there = np.bincount(_ints(places), minlength=(size + 1) * len(columns)).reshape(size + 1, len(columns))
+    return np.ascontiguousarray(np.cumsum(there[::-1], axis=0)[::-1])
 
 
 def _placing_order(graph: FurnitureGraph, costs: CostTable) -> list[Furniture]:
+    placed = dict.fromkeys(graph, 0)
+    rank = {node: (-costs.of(node[0]).delete, -len(graph.adj[node]), node) for node in graph}
     order: list[Furniture] = []
-    left = sorted(graph)
-    while left:
-        best = min(
-            left,
-            key=lambda node: (
-                -sum(other in graph[node] for other in order),
-                -costs.of(node[0]).delete,
-                -len(graph[node]),
-                node,
-            ),
-        )
-        order.append(best)
-        left.remove(best)
+    while placed:
+        order.append(min(placed, key=lambda node: (-placed[node], rank[node])))
+        del placed[order[-1]]
+        for other in graph.adj[order[-1]]:
+            if other in placed:
+                placed[other] += 1
     return order
 
 

@@ -1,26 +1,28 @@
-"""How far every place on the floor is from furniture and walls: the raster that walking and checking rooms share."""
+"""How far every place on the floor is from furniture and walls, and what of furniture is in a walker's way."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from typing import Final
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from scene_graphs.forms import parts
+from scene_graphs.footing import Rectangles
+from scene_graphs.forms import parts_of
 from scene_graphs.layouts import Array, Placed, Point2
 
 BODY_RADIUS = 0.22
 """Radius of the disc a walking body keeps free."""
 LOWEST, HIGHEST = 0.02, 1.8
 """Heights above the floor between which a part is in a walker's way."""
-_AT_ONCE = 1000
-"""Points that are asked for in one call: other threads of the process wait until it is done."""
-_EIGHT = np.ones((3, 3), dtype=int)
+_MANY: Final = 150
+"""Obstacles of which the nearest is looked up in a tree."""
+_NEAR: Final = 0.6
+"""Up to here distances are found around each obstacle; the few cells farther from everything ask for the nearest."""
 
 
 @dataclass(frozen=True)
@@ -33,11 +35,6 @@ class Clearance:
     distances: Array
     """(nx, nz) metres, exact at the cell centres."""
 
-    def indices(self, points: Array) -> NDArray[np.int64]:
-        """The cells that points lie in, clipped to the raster. (..., 2) -> (..., 2)."""
-        cells = np.rint((np.asarray(points, dtype=float) - self.origin) / self.cell).astype(np.int64)
-        return np.clip(cells, 0, np.array(self.distances.shape) - 1)
-
     def at(self, points: Array) -> Array:
         """Clearance at points, interpolated between cell centres; 0 outside the raster. (..., 2) -> (...)."""
         cells = (np.asarray(points, dtype=float) - self.origin) / self.cell
@@ -45,23 +42,12 @@ class Clearance:
         values: Array = ndimage.map_coordinates(self.distances, flat, order=1, mode="constant", cval=0.0)
         return values.reshape(cells.shape[:-1])
 
-    @cached_property
-    def regions(self) -> NDArray[np.int32]:
-        """Label of the connected region each cell belongs to for a body of `BODY_RADIUS`; 0 where it does not fit."""
-        return np.asarray(ndimage.label(self.distances >= BODY_RADIUS, structure=_EIGHT)[0], dtype=np.int32)
-
-    def region_at(self, point: Point2) -> int:
-        """The region the cell of a point belongs to; 0 outside every region."""
-        column, row = self.indices(np.array(point))
-        outside = self.at(np.array(point)) <= 0.0
-        return 0 if outside else int(self.regions[column, row])
-
 
 def obstacles(objects: Iterable[Placed]) -> list[tuple[Placed, shapely.Polygon]]:
     """Plan outlines of every solid part that is in a walker's way, with the object it belongs to."""
     found = []
     for placed in objects:
-        for part in parts(placed.category, placed.size):
+        for part in parts_of(placed):
             bottom, top = part.low[1] + placed.position[1], part.high[1] + placed.position[1]
             if part.is_soft or top <= LOWEST or bottom >= HIGHEST:
                 continue
@@ -75,26 +61,35 @@ def part_outline(placed: Placed, low: Sequence[float], high: Sequence[float]) ->
     return placed.to_world(corners)[:, [0, 2]]
 
 
-def measure_clearance(
-    floor: shapely.Geometry, blocked: Sequence[shapely.Geometry], walls: Sequence[shapely.Geometry], cell: float = 0.05
-) -> Clearance:
+def rectangles_of(outlines: Sequence[shapely.Polygon] | NDArray[np.object_]) -> Rectangles:
+    """Plan outlines of `obstacles` as one value."""
+    return Rectangles.of(shapely.get_coordinates(np.asarray(outlines, dtype=object)).reshape(-1, 5, 2)[:, :4])
+
+
+def measure_clearance(floor: shapely.Geometry, blocked: Rectangles, walls: Rectangles, cell: float = 0.05) -> Clearance:
     """Clearance over a floor (one polygon or several): distance to `blocked` areas and to `walls`, 0 off the floor.
 
     What is neither blocked nor a wall may be stepped to the very edge of, so doorways belong to the floor.
     """
     low_x, low_z, high_x, high_z = shapely.bounds(floor)
-    x = np.arange(low_x + cell / 2, high_x, cell)
-    z = np.arange(low_z + cell / 2, high_z, cell)
-    centers = np.asarray(shapely.points(*np.meshgrid(x, z, indexing="ij")))
+    x, z = np.arange(low_x + cell / 2, high_x, cell), np.arange(low_z + cell / 2, high_z, cell)
     shapely.prepare(floor)
-    inside = shapely.contains(floor, centers)
-    distances = np.zeros(centers.shape)
-    tree = shapely.STRtree([*blocked, *walls])
-    wanted = np.flatnonzero(inside)
-    if len(wanted) and len(tree):
-        for some in np.array_split(wanted, len(wanted) // _AT_ONCE + 1):
-            pairs, nearest = tree.query_nearest(centers.ravel()[some], return_distance=True, all_matches=False)
-            distances.ravel()[some[pairs[0]]] = nearest
-    else:
-        distances[inside] = np.inf
+    distances = np.where(shapely.contains_xy(floor, x[:, None], z[None, :]), np.inf, 0.0)
+    for rectangles in (walls, blocked):
+        for window, found in rectangles.around(x, z, _NEAR):
+            np.minimum(distances[window], found, out=distances[window])
+    i, j = np.nonzero(distances > _NEAR)
+    distances[i, j] = _far(np.stack([x[i], z[j]], axis=-1), blocked, walls)
     return Clearance((float(x[0]), float(z[0])), cell, distances)
+
+
+def _far(points: Array, *obstacles: Rectangles) -> Array:
+    """Distances of points outside all rectangles to the nearest of them. (N, 2) -> (N,)."""
+    outlines = np.concatenate([rectangles.outlines for rectangles in obstacles])
+    rings = np.asarray(shapely.linearrings(outlines), dtype=object)
+    if len(rings) > _MANY and len(points):
+        found = shapely.STRtree(rings).query_nearest(shapely.points(points), return_distance=True, all_matches=False)
+        return np.asarray(found[1])
+    nearest = shapely.multilinestrings(rings)
+    shapely.prepare(nearest)
+    return np.asarray(shapely.distance(nearest, shapely.points(points)))

@@ -6,24 +6,27 @@ of clipped counts: over categories, classes and groups, `coefficient * min(query
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache
-from typing import Any, Literal
+from functools import lru_cache
+from typing import Final, Literal, TypeVar
 
 from scene_graphs.catalogue import KINDS
 from scene_graphs.furniture import categories_of, class_of, group_of, is_minor
 
 Level = Literal["same", "class", "group"]
-Key = tuple[str, str]
-"""What is counted in a room: ("category" | "class" | "group", its name), or ("edge", two group names)."""
+Key = tuple[str, ...]
+"""What is counted in a room: ("category" | "kind" | "class" | "group", its name), or ("edge", two group names)."""
+_Name = TypeVar("_Name", str, Key)
+DEAREST: Final = 10_000
+"""No cost is higher, so that no distance passes 32 bits."""
 
 
 def _check_integers(costs: object) -> None:
     for name, value in vars(costs).items():
-        if not isinstance(value, GroupCosts) and (type(value) is not int or value < 0):
-            raise ValueError(f"{name} must be a whole number, 0 or more, got {value!r}")
+        if not isinstance(value, GroupCosts) and (type(value) is not int or not 0 <= value <= DEAREST):
+            raise ValueError(f"{name} must be a whole number from 0 to {DEAREST}, got {value!r}")
 
 
 @dataclass(frozen=True)
@@ -79,20 +82,23 @@ class CostTable:
 
 @dataclass(frozen=True)
 class Term:
-    """`coefficient * min(room's count of members, generic + sum over parts of min(theirs, room's count))`."""
+    """What a query can save at most: `coefficient * min(room's count of key, asked + sum over parts of min(theirs,
+    room's count of the part))`."""
 
     coefficient: int
-    members: tuple[Key, ...]
-    generic: int
-    parts: tuple[tuple[Key, int], ...] = ()
+    key: Key
+    places: tuple[int, ...]
+    """Which of the query's nodes, or edges, ask for it, rising."""
+    parts: tuple[tuple[Key, tuple[int, ...]], ...] = ()
+    """The same for the categories inside a kind that are asked for by their own names."""
 
-    def saved(self, count: Callable[[Sequence[Key]], Any], least: Callable[[Any, Any], Any]) -> Any:
-        """The term's value for whatever `count` gives: an int for one room, a column of them for many."""
-        wanted = self.generic + sum(least(number, count((key,))) for key, number in self.parts)
-        return self.coefficient * least(wanted, count(self.members))
+    @property
+    def last(self) -> int:
+        """The last of all places that ask."""
+        return max(self.places[-1], *(places[-1] for _, places in self.parts)) if self.parts else self.places[-1]
 
 
-@cache
+@lru_cache(maxsize=65536)
 def level_between(word: str, category: str) -> Level | None:
     """How near a room's category is to a query's word; None across groups."""
     if category == word or category in categories_of(word):
@@ -102,52 +108,56 @@ def level_between(word: str, category: str) -> Level | None:
     return "group" if group_of(word) == group_of(category) else None
 
 
-def node_terms(words: Iterable[str], costs: CostTable, strict: bool = False) -> list[Term]:
-    """The terms that bound what the nodes of a query (with repetition) can save, per room."""
-    counts = Counter(words)
+def node_terms(words: Sequence[str], costs: CostTable, strict: bool = False) -> list[Term]:
+    """The terms that bound what the nodes of a query can save, given their words in order."""
+    classes, groups = _places(class_of(word) for word in words), _places(group_of(word) for word in words)
     terms: list[Term] = []
-    for word_class in sorted({class_of(word) for word in counts}):
-        inside = {word: n for word, n in counts.items() if class_of(word) == word_class}
-        own = costs.of(next(iter(inside)))
+    for name, places in classes.items():
+        own = costs.of(words[places[0]])
+        inside = {word: [i for i in places if words[i] == word] for word in sorted({words[i] for i in places})}
         terms += _label_terms(inside, own.delete + own.insert if strict else own.sub_class)
         if not strict:
-            members = (("class", word_class),)
-            terms.append(Term(own.sub_group - own.sub_class, members, sum(inside.values())))
+            terms.append(Term(own.sub_group - own.sub_class, ("class", name), tuple(places)))
     if not strict:
-        for group in sorted({group_of(word) for word in counts}):
-            inside = {word: n for word, n in counts.items() if group_of(word) == group}
-            own = costs.of(next(iter(inside)))
-            members = (("group", group),)
-            terms.append(Term(own.delete + own.insert - own.sub_group, members, sum(inside.values())))
+        for name, places in groups.items():
+            own = costs.of(words[places[0]])
+            terms.append(Term(own.delete + own.insert - own.sub_group, ("group", name), tuple(places)))
     return [term for term in terms if term.coefficient]
 
 
 def edge_key(first: str, second: str) -> Key:
     """What an edge between two categories counts as: the unordered pair of their groups."""
-    return "edge", "|".join(sorted((group_of(first), group_of(second))))
+    return "edge", *sorted((group_of(first), group_of(second)))
 
 
 def edge_terms(edges: Iterable[tuple[str, str]], costs: CostTable) -> list[Term]:
-    """The terms that bound what the edges of a query can save."""
-    counts = Counter(edge_key(first, second) for first, second in edges)
+    """The terms that bound what the edges of a query can save, given the words of their ends in order."""
     saved = costs.lost_edge + costs.extra_edge
-    return [Term(saved, (key,), number) for key, number in sorted(counts.items()) if saved]
+    places = _places(edge_key(first, second) for first, second in edges)
+    return [Term(saved, key, tuple(asked)) for key, asked in places.items() if saved]
 
 
-def _label_terms(counts: dict[str, int], coefficient: int) -> list[Term]:
+def _places(names: Iterable[_Name]) -> dict[_Name, list[int]]:
+    """Where each name is, in the order of names."""
+    found: dict[_Name, list[int]] = defaultdict(list)
+    for place, name in enumerate(names):
+        found[name].append(place)
+    return dict(sorted(found.items()))
+
+
+def _label_terms(inside: dict[str, list[int]], coefficient: int) -> list[Term]:
     """A term for every generic kind that is used, with the categories inside it, and for every other category."""
-    kinds = [word for word in sorted(counts) if word in KINDS]
-    inside = {kind: categories_of(kind) | {kind} for kind in kinds}
-    taken = frozenset[str]().union(*inside.values())
+    kinds = [word for word in inside if word in KINDS]
     terms = [
         Term(
             coefficient,
-            tuple(("category", name) for name in sorted(inside[kind])),
-            counts[kind],
-            tuple((("category", w), counts[w]) for w in sorted(counts) if w in inside[kind] and w != kind),
+            ("kind", kind),
+            tuple(inside[kind]),
+            tuple((("category", w), tuple(at)) for w, at in inside.items() if w != kind and w in categories_of(kind)),
         )
         for kind in kinds
     ]
+    taken = frozenset[str]().union(*(categories_of(kind) for kind in kinds), kinds)
     return terms + [
-        Term(coefficient, (("category", word),), counts[word]) for word in sorted(counts) if word not in taken
+        Term(coefficient, ("category", word), tuple(at)) for word, at in inside.items() if word not in taken
     ]

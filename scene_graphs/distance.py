@@ -9,14 +9,16 @@ It is a hemimetric: 0 from a graph to itself, a triangle inequality, not symmetr
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from scene_graphs.branching import NODE_LIMIT, UNMAPPED, CodedQuery, CodedRoom, search
-from scene_graphs.costs import CostTable, GroupCosts, Level, Term, edge_terms, level_between, node_terms
-from scene_graphs.furniture import Furniture
+from scene_graphs.branching import NODE_LIMIT, UNMAPPED, CodedQuery, Hunt
+from scene_graphs.costs import CostTable, GroupCosts, Level, level_between
+from scene_graphs.furniture import Furniture, canonical
 from scene_graphs.graph import FurnitureGraph
+from scene_graphs.packing import PackedRooms
 
-__all__ = ["CostTable", "GroupCosts", "Level", "Match", "Pair", "exact_distance", "lower_bound", "pairs_of"]
+__all__ = ["CostTable", "GroupCosts", "Level", "Match", "Pair", "check_size", "exact_distance", "lower_bound"]
 
 MOST_NODES = 52
 """A query with more nodes is refused: no script uses that much furniture, and the search would not end."""
@@ -49,9 +51,9 @@ class Match:
 def lower_bound(
     query: FurnitureGraph, room: FurnitureGraph, costs: CostTable | None = None, *, strict: bool = False
 ) -> int:
-    """A distance that `exact_distance` never falls below; equal to it without edges and needs."""
-    table = costs or CostTable()
-    return bound_of(CodedQuery.of(query, table, strict), CodedRoom.of(room))
+    """A distance that `exact_distance` never falls below; equal to it without edges and needs. ValueError as there."""
+    check_size(query)
+    return int(Hunt(CodedQuery.of(query, costs or CostTable(), strict), PackedRooms.of([room])).bounds()[0])
 
 
 def exact_distance(
@@ -65,15 +67,15 @@ def exact_distance(
     """The distance from a query to a room, and the mapping that attains it.
 
     A query node is only mapped to a room node that offers what it needs. `strict` forbids substitutions. ValueError if
-    the query has more than 52 nodes.
+    the query has more than 52 nodes, or a node of either is joined with itself.
     """
     check_size(query)
-    coded, coded_room = CodedQuery.of(query, costs or CostTable(), strict), CodedRoom.of(room)
-    found = search(coded, coded_room, None, limit)
+    hunt = Hunt(CodedQuery.of(query, costs or CostTable(), strict), PackedRooms.of([room]))
+    found = hunt.search([0], limit=limit)
     if found.cost is None:
         raise AssertionError("a search without an upper bound ends with a mapping")
-    pairs, missing, extra = pairs_of(coded, coded_room, found.images)
-    return Match(found.cost, not found.capped, bound_of(coded, coded_room), pairs, missing, extra)
+    pairs, missing, extra = _pairs(hunt.query, sorted(room), found.images)
+    return Match(found.cost, not found.capped, int(hunt.bounds()[0]), pairs, missing, extra)
 
 
 def check_size(query: FurnitureGraph) -> None:
@@ -82,22 +84,8 @@ def check_size(query: FurnitureGraph) -> None:
         raise ValueError(f"a query may have at most {MOST_NODES} pieces of furniture, got {len(query)}; split it")
 
 
-def all_terms(query: CodedQuery) -> list[Term]:
-    """The terms of the bound on the whole distance: nodes and edges."""
-    words = query.words
-    edges = [(words[a], words[b]) for a, b in query.edges]
-    return node_terms(words, query.costs, query.strict) + edge_terms(edges, query.costs)
-
-
-def bound_of(query: CodedQuery, room: CodedRoom) -> int:
-    """The lower bound for one room."""
-    constant = sum(query.deletes) + query.costs.lost_edge * len(query.edges)
-    saved = int(sum(term.saved(room.count, min) for term in all_terms(query)))
-    return room.base(query.costs) + constant - saved
-
-
-def pairs_of(
-    query: CodedQuery, room: CodedRoom, images: tuple[int, ...]
+def _pairs(
+    query: CodedQuery, nodes: Sequence[Furniture], images: tuple[int, ...]
 ) -> tuple[tuple[Pair, ...], tuple[Furniture, ...], tuple[Furniture, ...]]:
     """The pairs of a mapping, the query nodes it misses and the room nodes it leaves over."""
     pairs, missing = [], []
@@ -105,9 +93,9 @@ def pairs_of(
         if image == UNMAPPED:
             missing.append(node)
             continue
-        level = level_between(word, room.categories[image])
+        level = level_between(word, canonical(nodes[image][0]))
         if level is None:
             raise AssertionError("nothing is mapped across groups")
-        pairs.append(Pair(node, room.nodes[image], level))
-    extra = tuple(node for index, node in enumerate(room.nodes) if index not in images)
+        pairs.append(Pair(node, nodes[image], level))
+    extra = tuple(node for index, node in enumerate(nodes) if index not in images)
     return tuple(sorted(pairs, key=lambda pair: pair.query)), tuple(sorted(missing)), extra

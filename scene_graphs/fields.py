@@ -10,9 +10,19 @@ Row = Mapping[str, Any]
 FARTHEST = 1000.0
 """No coordinate lies farther from the origin, in metres."""
 
+_UNTOLD = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\ufffe\uffff")
+"""What turns the writing of a whole line round, and what no XML may hold."""
+
 
 class LayoutError(ValueError):
     """A room that cannot be read: names the place in the file, the field, what is wrong and what would be right."""
+
+
+def read_object(value: Any, where: str, what: str) -> Row:
+    """A JSON object, which must be `what`."""
+    if not isinstance(value, dict):
+        raise LayoutError(f"{where} must be {what}, got {type(value).__name__}")
+    return value
 
 
 def read_rows(row: Row, key: str, where: str, most: int) -> Iterator[tuple[Row, str]]:
@@ -27,12 +37,12 @@ def read_rows(row: Row, key: str, where: str, most: int) -> Iterator[tuple[Row, 
 
 
 def read_text(row: Row, key: str, where: str, default: str | None = None) -> str:
-    """A text of 1 to 200 characters, none of which controls a terminal or is half a letter."""
+    """A text of 1 to 200 characters, none of which controls a terminal, turns the line round or is half a letter."""
     value = row.get(key, default)
     if not isinstance(value, str) or not 0 < len(value) <= 200:
         raise LayoutError(f"{where}.{key} must be a text of 1 to 200 characters, got {value!r:.60}")
-    if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in value):
-        raise LayoutError(f"{where}.{key} has control characters or letters that are not text: {value!r:.60}")
+    if any(unicodedata.category(letter) in ("Cc", "Cs") or letter in _UNTOLD for letter in value):
+        raise LayoutError(f"{where}.{key} has control characters or letters that are not text: {value!a:.60}")
     return value
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from scene_graphs.forms import SOFT_ROLES, Part, parts
+from scene_graphs.forms import SOFT_ROLES, Part, parts, parts_of
 from scene_graphs.homes import Home
 from scene_graphs.looks.dressing import furniture_meshes
 from scene_graphs.looks.interiors import floor_meshes, wall_meshes
 from scene_graphs.looks.shapes import Mesh
 
-__all__ = ["SOFT_ROLES", "Mesh", "Part", "furniture_meshes", "home_meshes", "parts"]
+__all__ = ["SOFT_ROLES", "Mesh", "Part", "furniture_meshes", "home_meshes", "parts", "parts_of"]
 
 
 def home_meshes(home: Home) -> list[Mesh]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from functools import cache
+from functools import lru_cache
 from typing import Final, NamedTuple
 
 from scene_graphs.catalogue import (
@@ -21,6 +21,8 @@ from scene_graphs.catalogue import (
 ROOM_TYPES: Final = ("bedroom", "living_room", "dining_room", "study")
 AFFORDANCES: Final = ("sit", "lie", "touch")
 
+remembered: Final = lru_cache(maxsize=1 << 14)
+"""Words come from users too: what is remembered of them is bounded."""
 _ROOM_WORDS: Final = {"library": "study", "office": "study", "living": "living_room", "lounge": "living_room"}
 _UNKNOWN_SIZE: Final[Size] = (0.6, 0.8, 0.5)
 _PLURALS: Final = (("ves", "f"), ("ies", "y"), ("es", ""), ("s", ""))
@@ -38,7 +40,7 @@ class Furniture(NamedTuple):
     instance: int = 1
 
 
-@cache
+@remembered
 def canonical(word: str) -> str:
     """The category or generic kind a word means ("Couches" -> "sofa"), or its slug where we know neither.
 
@@ -63,21 +65,21 @@ def is_known(word: str) -> bool:
     return canonical(word) in _CLASS_OF
 
 
-@cache
+@remembered
 def categories_of(word: str) -> frozenset[str]:
     """The categories a word names exactly: several for a generic kind, else the category itself."""
     name = canonical(word)
     return frozenset(KINDS.get(name, (name,)))
 
 
-@cache
+@remembered
 def class_of(category: str) -> str:
     """The class, inside which furniture stands in for other furniture; an unknown word is a class of its own."""
     name = canonical(category)
     return _CLASS_OF.get(name, name)
 
 
-@cache
+@remembered
 def group_of(category: str) -> str:
     """The group, outside which nothing is ever substituted; an unknown word is a group of its own."""
     class_ = class_of(category)
@@ -89,7 +91,7 @@ def is_minor(category: str) -> bool:
     return group_of(category) in MINOR_GROUPS
 
 
-@cache
+@remembered
 def affordances(category: str) -> frozenset[str]:
     """What a body can usually do there, out of `AFFORDANCES`; for a kind, what at least one of it offers.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
-from itertools import combinations, pairwise
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import networkx as nx
@@ -14,6 +14,7 @@ import shapely
 
 from scene_graphs.furniture import Furniture, affordances, canonical, class_of, is_known, is_minor
 from scene_graphs.layouts import NEAR, Layout, Placed, Point3
+from scene_graphs.solids import Part
 from scene_graphs.surfaces import spots
 
 if TYPE_CHECKING:
@@ -32,6 +33,9 @@ FLOOR: Final = "floor"
 _OUT_OF_REACH: Final = 1.5
 """Objects whose underside is higher offer nothing, in metres."""
 _TOUCHING: Final = 0.02
+_HARDLY: Final = 1e-6
+_LINES: Final = 1000
+"""Lines between objects that are looked at together: what stands on them is a list of up to as many times objects."""
 _MEASURED: Final = ("seat", "sofa", "bed")
 
 
@@ -96,7 +100,7 @@ def offers(placed: Placed) -> frozenset[str]:
     category = canonical(placed.category)
     if class_of(category) not in _MEASURED:
         return affordances(category)
-    return _measured(category, placed.size)
+    return _measured(category, placed.size, placed.shape)
 
 
 def graph_to_dict(graph: FurnitureGraph) -> dict[str, Any]:
@@ -119,8 +123,8 @@ def needs_of(graph: FurnitureGraph, node: Furniture) -> frozenset[str]:
 
 
 @lru_cache(maxsize=8192)
-def _measured(category: str, size: Point3) -> frozenset[str]:
-    alone = Placed(category, category, (0.0, 0.0, 0.0), size)
+def _measured(category: str, size: Point3, shape: tuple[Part, ...]) -> frozenset[str]:
+    alone = Placed(category, category, (0.0, 0.0, 0.0), size, shape=shape)
     may_lie = class_of(category) != "seat" or category == "bench"
     asked = ("sit", "lie") if may_lie else ("sit",)
     return frozenset(affordance for affordance in asked if spots(alone, affordance)) | {"touch"}
@@ -139,23 +143,21 @@ def _add(
 def _neighbours(objects: Sequence[Placed]) -> list[tuple[int, int]]:
     """Pairs of objects that stand near each other with no third key object between them."""
     prints = np.array([shapely.Polygon(placed.footprint) for placed in objects], dtype=object)
-    pairs = np.array(list(combinations(range(len(objects)), 2)), dtype=np.intp).reshape(-1, 2)
-    first, second = prints[pairs[:, 0]], prints[pairs[:, 1]]
-    lines = shapely.shortest_line(first, second)
-    near = shapely.length(lines) <= NEAR
+    near = shapely.STRtree(prints).query(prints, predicate="dwithin", distance=NEAR + _HARDLY)
+    pairs = near.T[near[0] < near[1]]
+    lines = shapely.shortest_line(prints[pairs[:, 0]], prints[pairs[:, 1]])
+    within = shapely.length(lines) <= NEAR
+    pairs, lines = pairs[within], lines[within]
     # Shrunk, so that touching a corner is no obstruction; a key object is solid furniture that stands on the floor.
-    solid = np.array(
-        [
-            shapely.buffer(outline, -_TOUCHING)
-            if not is_minor(placed.category) and placed.parent is None and placed.position[1] < _OUT_OF_REACH
-            else shapely.Polygon()
-            for placed, outline in zip(objects, prints, strict=True)
-        ],
-        dtype=object,
-    )
-    blocked = shapely.intersects(lines[near][:, None], solid[None, :])  # (near pairs, objects)
-    kept = []
-    for (i, j), row in zip(pairs[near], blocked, strict=True):
-        if not np.delete(row, [i, j]).any():
-            kept.append((int(i), int(j)))
-    return kept
+    solid = [
+        number
+        for number, placed in enumerate(objects)
+        if not is_minor(placed.category) and placed.parent is None and placed.position[1] < _OUT_OF_REACH
+    ]
+    tree = shapely.STRtree(shapely.buffer(prints[solid], -_TOUCHING))
+    blocked = np.zeros(len(pairs), dtype=bool)
+    for start in range(0, len(pairs), _LINES):
+        line, place = tree.query(lines[start : start + _LINES], predicate="intersects")
+        third = (np.array(solid, dtype=np.intp)[place, None] != pairs[start + line]).all(axis=1)
+        blocked[start + line[third]] = True
+    return [(int(i), int(j)) for i, j in sorted(map(tuple, pairs[~blocked]))]

@@ -10,8 +10,9 @@ import networkx as nx
 from scene_graphs.costs import CostTable, Level
 from scene_graphs.distance import Match, exact_distance
 from scene_graphs.furniture import Furniture
-from scene_graphs.graph import FurnitureGraph, graph_from_objects
+from scene_graphs.graph import FurnitureGraph, graph_from_layout
 from scene_graphs.homes import Home
+from scene_graphs.merging import side_by_side
 
 Offers = Mapping[str, frozenset[str]]
 
@@ -57,18 +58,10 @@ def ground_script(
 
 
 def _graph_of(home: Home, rooms: Iterable[int], offers: Offers) -> FurnitureGraph:
-    """The graphs of some rooms side by side: relations never cross a wall."""
-    union: FurnitureGraph = nx.Graph()
-    for room in rooms:
-        graph = graph_from_objects(placed for placed in home.objects if placed.id.startswith(f"{room}/"))
-        # Instance numbers start again in every room: keep them different.
-        names = {node: Furniture(node.category, node.instance + 1000 * room) for node in graph}
-        union.update(nx.relabel_nodes(graph, names))
-    for node in union:
-        overruled = offers.get(str(union.nodes[node]["object_id"]))
-        if overruled is not None:
-            union.nodes[node]["offers"] = overruled
-    return union
+    graph = side_by_side({room: graph_from_layout(home.rooms[room].layout) for room in rooms})
+    for _, node in graph.nodes(data=True):
+        node["offers"] = offers.get(str(node["object_id"]), node["offers"])
+    return graph
 
 
 def _named(match: Match, graph: FurnitureGraph) -> tuple[dict[Furniture, str], dict[Furniture, Level]]:

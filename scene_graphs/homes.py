@@ -6,28 +6,29 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import shapely
 
-from scene_graphs.fields import FARTHEST, LayoutError, Row, read_number, read_point2, read_point3, read_rows
-from scene_graphs.joining import WALL_GAP, HomeError, Pose, plan_home, span_on
-from scene_graphs.layouts import (
-    Array,
-    Layout,
-    Opening,
-    Placed,
-    Point2,
-    Point3,
-    Segment,
-    layout_from_dict,
-    layout_to_dict,
-)
+from scene_graphs.clearance import BODY_RADIUS, obstacles, rectangles_of
+from scene_graphs.footing import find_footing
+from scene_graphs.joining import WALL_GAP, HomeError, Pose, arrangements, span_on
+from scene_graphs.layouts import Array, Layout, Opening, Placed, Point2, Point3, Segment
 
-__all__ = ["MOST_ROOMS", "Home", "HomeError", "Room", "Wall", "home_from_dict", "home_from_layouts", "home_to_dict"]
+__all__ = [
+    "MOST_ROOMS",
+    "Home",
+    "HomeError",
+    "Room",
+    "Wall",
+    "home_from_layouts",
+    "random_home",
+]
 
 MOST_ROOMS: Final = 4
+_DRAWS: Final = 12
+"""Of rooms for a random home, before it is told why they cannot be joined."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +90,13 @@ class Home:
     def _outlines(self) -> tuple[shapely.Polygon, ...]:
         return tuple(shapely.Polygon(self.room_polygon(index)) for index in range(len(self.rooms)))
 
+    @cached_property
+    def floor(self) -> shapely.Geometry:
+        """All rooms and the doorways between them, in [x, z]: one polygon if the doorways join all rooms."""
+        reach = WALL_GAP / 2 + 0.01
+        ways = [shapely.LineString(doorway.segment).buffer(reach, cap_style="flat") for doorway in self.doorways]
+        return shapely.union_all([*self._outlines, *ways])
+
     def room_at(self, point: Point2) -> int | None:
         """The room a point on the floor lies in; in a doorway the nearer room; None outside the home."""
         gaps = [outline.distance(shapely.Point(point)) for outline in self._outlines]
@@ -104,51 +112,44 @@ def home_from_layouts(layouts: Sequence[Layout], seed: int) -> Home:
     """Stand 1 to 4 rooms side by side and cut a doorway where two of them meet; the first room keeps its frame.
 
     Every room can be walked to from every other. The same layouts and seed give the same home. HomeError if there are
-    too few or many rooms, or a room has no free wall for a doorway.
+    too few or many rooms, a room has no free wall for a doorway, or one cannot be placed or walked to.
     """
     if not 1 <= len(layouts) <= MOST_ROOMS:
         raise HomeError(f"a home has 1 to {MOST_ROOMS} rooms, got {len(layouts)}")
-    plan = plan_home(layouts, seed)
-    rooms = tuple(
-        Room(layout, (pose.offset[0], 0.0, pose.offset[1]), pose.yaw)
-        for layout, pose in zip(layouts, plan.poses, strict=True)
-    )
-    return Home(rooms, _walls(rooms, plan.doorways), plan.doorways)
-
-
-def home_to_dict(home: Home) -> dict[str, Any]:
-    """The JSON of a home, whole layouts included; `home_from_dict` is its exact inverse."""
-    return {
-        "rooms": [
-            {"layout": layout_to_dict(room.layout), "offset": list(room.offset), "yaw": room.yaw} for room in home.rooms
-        ],
-        "walls": [
-            {
-                "segment": [list(end) for end in wall.segment],
-                "height": wall.height,
-                "openings": [_opening_to_dict(opening) for opening in wall.openings],
-            }
-            for wall in home.walls
-        ],
-        "doorways": [_opening_to_dict(doorway) for doorway in home.doorways],
-    }
-
-
-def home_from_dict(row: Row, where: str = "home") -> Home:
-    """Read a home. LayoutError naming the field that is missing, out of bounds or of another type."""
-    rooms = tuple(_room(item, place) for item, place in read_rows(row, "rooms", where, MOST_ROOMS))
-    if not rooms:
-        raise LayoutError(f"{where}.rooms must hold 1 to {MOST_ROOMS} rooms, each with layout, offset and yaw")
-    walls = tuple(
-        Wall(
-            _segment(item, place),
-            read_number(item.get("height"), f"{place}.height", 0.0, 30.0),
-            tuple(_opening(inner, at) for inner, at in read_rows(item, "openings", place, 50)),
+    cut_off = None
+    for plan in arrangements(layouts, seed):
+        rooms = tuple(
+            Room(layout, (pose.offset[0], 0.0, pose.offset[1]), pose.yaw)
+            for layout, pose in zip(layouts, plan.poses, strict=True)
         )
-        for item, place in read_rows(row, "walls", where, 2000)
-    )
-    doorways = tuple(_opening(item, place) for item, place in read_rows(row, "doorways", where, 50))
-    return Home(rooms, walls, doorways)
+        home = Home(rooms, _walls(rooms, plan.doorways), plan.doorways)
+        cut_off = _cut_off(home)
+        if cut_off is None:
+            return home
+    name = "" if cut_off is None else layouts[cut_off].id
+    raise HomeError(f"room {name!r} cannot be walked to from the others: furniture is in the way; take another room")
+
+
+def random_home(layouts: Sequence[Layout], room_types: Sequence[str], seed: int) -> Home:
+    """A home of one room of each asked type, in that order, drawn from layouts that can serve it (SIMS 8.2).
+
+    No layout is taken twice. The same arguments give the same home. HomeError naming the type there are too few rooms
+    of, or, when no draw can be joined, why the last cannot.
+    """
+    rng = np.random.default_rng(seed)
+    for left in reversed(range(_DRAWS)):
+        chosen = list[Layout]()
+        for room_type in room_types:
+            fitting = [one for one in layouts if room_type in (one.room_type, *one.tags) and one not in chosen]
+            if not fitting:
+                raise HomeError(f"there is no room of type {room_type!r} left among {len(layouts)}; give more rooms")
+            chosen.append(fitting[int(rng.integers(len(fitting)))])
+        try:
+            return home_from_layouts(chosen, seed)
+        except HomeError:
+            if not (left and room_types):
+                raise
+    raise AssertionError("the last draw is returned or told")
 
 
 def _at_home(placed: Placed, room: Room, index: int) -> Placed:
@@ -160,6 +161,22 @@ def _at_home(placed: Placed, room: Room, index: int) -> Placed:
         yaw=placed.yaw + room.yaw,
         parent=None if placed.parent is None else f"{index}/{placed.parent}",
     )
+
+
+def _cut_off(home: Home) -> int | None:
+    """The first room whose largest stretch of walkable floor is not joined to that of the others; None if all are."""
+    if len(home.rooms) == 1:
+        return None
+    blocked = rectangles_of([outline for _, outline in obstacles(home.objects)])
+    footing = find_footing(home.floor, blocked, BODY_RADIUS)
+    cells = np.argwhere(footing.free)
+    regions, (x, z) = footing.regions[footing.free], (np.asarray(footing.origin) + footing.cell * cells).T
+    largest = []
+    for index in range(len(home.rooms)):
+        inside = shapely.contains_xy(shapely.Polygon(home.room_polygon(index)), x, z)
+        largest.append(int(np.bincount(regions[inside], minlength=1).argmax()))
+    main = int(np.bincount(largest).argmax())
+    return next((index for index, region in enumerate(largest) if region != main or region == 0), None)
 
 
 def _walls(rooms: tuple[Room, ...], doorways: tuple[Opening, ...]) -> tuple[Wall, ...]:
@@ -206,31 +223,3 @@ def _moved(opening: Opening, pose: Pose) -> Opening:
 
 def _pair(point: Array) -> Point2:
     return float(point[0]), float(point[1])
-
-
-def _opening_to_dict(opening: Opening) -> dict[str, Any]:
-    return {"segment": [list(end) for end in opening.segment], "bottom": opening.bottom, "top": opening.top}
-
-
-def _room(row: Row, where: str) -> Room:
-    layout = row.get("layout")
-    if not isinstance(layout, dict):
-        raise LayoutError(f"{where}.layout must be an object, got {type(layout).__name__}")
-    return Room(
-        layout_from_dict(layout, f"{where}.layout"),
-        read_point3(row.get("offset"), f"{where}.offset", -FARTHEST, FARTHEST),
-        read_number(row.get("yaw", 0.0), f"{where}.yaw", -100.0, 100.0),
-    )
-
-
-def _segment(row: Row, where: str) -> Segment:
-    ends = row.get("segment")
-    if not isinstance(ends, list) or len(ends) != 2:
-        raise LayoutError(f"{where}.segment must be two [x, z] points, got {ends!r:.60}")
-    start, end = (read_point2(point, f"{where}.segment[{index}]") for index, point in enumerate(ends))
-    return start, end
-
-
-def _opening(row: Row, where: str) -> Opening:
-    bottom = read_number(row.get("bottom", 0.0), f"{where}.bottom", 0.0, 30.0)
-    return Opening(_segment(row, where), bottom, read_number(row.get("top", 2.1), f"{where}.top", bottom, 30.0))

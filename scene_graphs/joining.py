@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import islice
 from typing import Final
 
@@ -12,8 +12,10 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from scene_graphs.clearance import measure_clearance, obstacles
+from scene_graphs.clearance import BODY_RADIUS, obstacles, rectangles_of
+from scene_graphs.footing import find_footing
 from scene_graphs.layouts import Array, Layout, Opening, Point2
+from scene_graphs.placed import wrap
 
 WALL_GAP: Final = 0.12
 """Between the facing walls of two rooms, in metres."""
@@ -26,8 +28,6 @@ _WIDEST_DOOR: Final = 1.4
 _NARROWEST_DOOR: Final = 0.75
 _FROM_CORNER: Final = 0.1
 _STEP: Final = 0.2
-_CELL: Final = 0.1
-"""Raster by which the floor that leads on is told from pockets: coarser than walking needs, four times as fast."""
 _ENTERED: Final = 0.5
 """How far into the room the way through a doorway is kept free; from there the rest of the room must be reached."""
 _BESIDE: Final = 0.03
@@ -51,10 +51,14 @@ class Pose:
 
     def turn(self, vectors: Array) -> Array:
         """Turn [x, z] vectors of the room's frame into the home's. (..., 2)."""
-        cos, sin = np.cos(self.yaw), np.sin(self.yaw)
-        x, z = vectors[..., 0], vectors[..., 1]
-        turned: Array = np.stack([cos * x + sin * z, cos * z - sin * x], axis=-1)
+        turned: Array = vectors @ self._turning
         return turned
+
+    @cached_property
+    def _turning(self) -> Array:
+        """What a row vector [x, z] is multiplied by. (2, 2)."""
+        cos, sin = np.cos(self.yaw), np.sin(self.yaw)
+        return np.array([[cos, -sin], [sin, cos]])
 
     def to_home(self, points: Array) -> Array:
         """Turn and move [x, z] points of the room's frame into the home's. (..., 2)."""
@@ -83,20 +87,26 @@ class Plan:
     doorways: tuple[Opening, ...]
 
 
-def plan_home(layouts: Sequence[Layout], seed: int) -> Plan:
-    """Place rooms side by side; the first keeps its own frame.
+def arrangements(layouts: Sequence[Layout], seed: int) -> Iterator[Plan]:
+    """Ways to place rooms side by side, all different and at most a few; the first room keeps its own frame.
 
-    HomeError if a room has no stretch of wall where a doorway would be free, or no arrangement was found.
+    HomeError if a room has no stretch of wall where a doorway would be free, or fits nowhere beside the others.
     """
     if len(layouts) == 1:
-        return Plan((Pose(),), ())
+        yield Plan((Pose(),), ())
+        return
     sites = [doorway_sites(layout) for layout in layouts]
+    stuck: HomeError | None = None
     for attempt in range(_ATTEMPTS):
-        plan = _arrange(layouts, sites, np.random.default_rng((seed, attempt)))
-        if plan is not None:
-            return plan
-    names = ", ".join(layout.id for layout in layouts)
-    raise HomeError(f"found no arrangement of the rooms {names} with a doorway to each; try fewer or other rooms")
+        try:
+            plan = _arrange(layouts, sites, np.random.default_rng((seed, attempt)))
+        except HomeError as error:
+            stuck = error
+        else:
+            stuck = None
+            yield plan
+    if stuck is not None:
+        raise stuck
 
 
 @lru_cache(maxsize=512)
@@ -104,15 +114,15 @@ def doorway_sites(layout: Layout) -> tuple[Site, ...]:
     """Every place of a room's walls where a doorway would open on free, connected floor. HomeError if there is none."""
     floor = shapely.Polygon(layout.floor_polygon)
     furniture = np.array([outline for _, outline in obstacles(layout.objects)], dtype=object)
-    clearance = measure_clearance(floor, list(furniture), [floor.exterior], _CELL)
-    main = 1 + int(np.argmax(np.bincount(clearance.regions.ravel())[1:])) if clearance.regions.any() else -1
+    footing = find_footing(floor, rectangles_of(furniture), BODY_RADIUS)
+    main = 1 + int(np.argmax(np.bincount(footing.regions.ravel())[1:])) if footing.free.any() else -1
     found = []
     for start, along, inward, length in _edges(layout):
         for center, width, top, penalty in _stretches(layout, start, along, length):
             entered, half = center + _ENTERED * inward, along * width / 2
             clear = _gap(furniture, center, entered)
             framed = _gap(furniture, center - half, center + half) >= _BESIDE
-            leads_on = clearance.region_at((float(entered[0]), float(entered[1]))) == main
+            leads_on = footing.region_at((float(entered[0]), float(entered[1]))) == main
             if clear >= TIGHT and framed and leads_on:
                 found.append(Site(center, inward, width, top, penalty + 4 * max(CLEAR - clear, 0.0)))
     if not found:
@@ -163,8 +173,8 @@ def _gap(furniture: NDArray[np.object_], start: Array, end: Array) -> float:
     return float(np.min(shapely.distance(shapely.LineString([start, end]), furniture), initial=np.inf))
 
 
-def _arrange(layouts: Sequence[Layout], sites: Sequence[Sequence[Site]], rng: np.random.Generator) -> Plan | None:
-    """Add room after room at the best of the sampled joints; None where one fits nowhere."""
+def _arrange(layouts: Sequence[Layout], sites: Sequence[Sequence[Site]], rng: np.random.Generator) -> Plan:
+    """Add room after room at the best of the sampled joints. HomeError for one that fits nowhere."""
     poses, doorways = [Pose()], list[Opening]()
     outlines = [shapely.Polygon(layouts[0].floor_polygon)]
     for index in range(1, len(layouts)):
@@ -178,7 +188,11 @@ def _arrange(layouts: Sequence[Layout], sites: Sequence[Sequence[Site]], rng: np
         )
         best = min(islice(fitting, _COMPARED), key=lambda joint: _sprawl(outlines, joint[2]), default=None)
         if best is None:
-            return None
+            others = ", ".join(repr(layout.id) for layout in layouts[:index])
+            raise HomeError(
+                f"room {layouts[index].id!r} fits nowhere beside {others}: wherever two free walls meet, rooms would "
+                "overlap; take another room or fewer"
+            )
         poses.append(best[0])
         doorways.append(best[1])
         outlines.append(best[2])
@@ -201,7 +215,7 @@ def _join(pose: Pose, old: Site, new: Site) -> tuple[Pose, Opening]:
     yaw = float(np.arctan2(-inward[0], -inward[1]) - np.arctan2(new.inward[0], new.inward[1]))
     quarter = round(yaw / (np.pi / 2)) * np.pi / 2
     yaw = quarter if abs(yaw - quarter) < 1e-9 else yaw
-    yaw = float((yaw + np.pi) % (2 * np.pi) - np.pi)
+    yaw = wrap(yaw)
     offset = center - WALL_GAP * inward - Pose(yaw=yaw).turn(new.center)
     along = np.array([inward[1], -inward[0]]) * min(old.width, new.width) / 2
     middle = center - WALL_GAP / 2 * inward

@@ -9,29 +9,46 @@ import gzip
 import json
 import zlib
 from collections.abc import Iterable, Iterator
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import shapely
-from numpy.typing import NDArray
 
-from scene_graphs.fields import (
-    FARTHEST,
-    LayoutError,
-    Row,
-    read_number,
-    read_point2,
-    read_point3,
-    read_rows,
-    read_text,
-    read_texts,
+from scene_graphs.fields import LayoutError, Row, read_number, read_rows, read_text, read_texts
+from scene_graphs.layout_rows import (
+    LARGEST,
+    LOWEST,
+    MOST_CORNERS,
+    MOST_CROWDED,
+    MOST_OBJECTS,
+    MOST_TAGS,
+    NEAR,
+    SMALLEST,
+    WIDEST,
+    check_crowd,
+    check_ids,
+    opening_from_row,
+    opening_to_row,
+    placed_from_row,
+    placed_to_row,
+    read_outline,
 )
-from scene_graphs.furniture import canonical
+from scene_graphs.placed import Array, Opening, Placed, Point2, Segment
+from scene_graphs.solids import Point3
 
 __all__ = [
+    "LARGEST",
+    "LOWEST",
+    "MOST_CORNERS",
+    "MOST_CROWDED",
+    "MOST_OBJECTS",
+    "MOST_TAGS",
+    "NEAR",
+    "SMALLEST",
+    "WIDEST",
     "Array",
     "Layout",
     "LayoutError",
@@ -46,83 +63,8 @@ __all__ = [
     "write_layouts",
 ]
 
-Array = NDArray[np.float64]
-Point2 = tuple[float, float]
-Point3 = tuple[float, float, float]
-Segment = tuple[Point2, Point2]
-
-MOST_OBJECTS = 500
-MOST_CORNERS = 400
 MOST_LAYOUTS = 200_000
-SMALLEST, LARGEST = 1e-4, 30.0
-"""No object is shorter or longer, in metres."""
-LOWEST = 1.5
-"""No room is lower, in metres."""
-WIDEST = 60.0
-"""No room is wider: maps of the floor take memory by its area."""
-MOST_TAGS = 100
-NEAR = 1.2
-"""Objects whose footprints are this near, in metres, are joined in a room's graph."""
-MOST_CROWDED = 1_000_000
-"""Objects of a room times pairs of them that stand near each other; 13,000 in the fullest of 539 real rooms."""
 _MOST_BYTES = 1 << 29
-
-
-@dataclass(frozen=True)
-class Placed:
-    """One object standing in a room (or, with a `room_index/object_id` id, in a home)."""
-
-    id: str
-    category: str
-    position: Point3
-    """Centre of the bottom face."""
-    size: Point3
-    """Width x, height y, depth z at yaw 0."""
-    yaw: float = 0.0
-    parent: str | None = None
-    """The object it stands on, if any."""
-    mesh: str | None = None
-
-    def to_world(self, points: Array | Point3) -> Array:
-        """Turn points of the object's own frame (origin at the bottom centre, front +Z) into the room's. (..., 3)."""
-        local = np.asarray(points, dtype=float)
-        cos, sin = np.cos(self.yaw), np.sin(self.yaw)
-        x, y, z = local[..., 0], local[..., 1], local[..., 2]
-        turned: Array = np.stack([cos * x + sin * z, y, -sin * x + cos * z], axis=-1) + np.asarray(self.position)
-        return turned
-
-    def to_local(self, points: Array | Point3) -> Array:
-        """The inverse of `to_world`. (..., 3)."""
-        moved = np.asarray(points, dtype=float) - np.asarray(self.position)
-        cos, sin = np.cos(self.yaw), np.sin(self.yaw)
-        x, y, z = moved[..., 0], moved[..., 1], moved[..., 2]
-        return np.stack([cos * x - sin * z, y, sin * x + cos * z], axis=-1)
-
-    @cached_property
-    def footprint(self) -> Array:
-        """The four corners on the floor as [x, z], in order around the box. (4, 2)."""
-        w, _, d = self.size
-        corners = np.array([[-w, 0, -d], [-w, 0, d], [w, 0, d], [w, 0, -d]]) / 2
-        return self.to_world(corners)[:, [0, 2]]
-
-    @property
-    def front(self) -> Array:
-        """Unit vector of the front as [x, z]. (2,)."""
-        return np.array([np.sin(self.yaw), np.cos(self.yaw)])
-
-    @property
-    def top(self) -> float:
-        """Height of the top face above the floor."""
-        return self.position[1] + self.size[1]
-
-
-@dataclass(frozen=True)
-class Opening:
-    """A door or window: two points on the outline and the heights between which the wall is open."""
-
-    segment: Segment
-    bottom: float = 0.0
-    top: float = 2.1
 
 
 @dataclass(frozen=True)
@@ -166,9 +108,9 @@ def layout_to_dict(layout: Layout) -> dict[str, Any]:
         "tags": list(layout.tags),
         "floor_polygon": [list(corner) for corner in layout.floor_polygon],
         "height": layout.height,
-        "doors": [_opening_to_dict(door) for door in layout.doors],
-        "windows": [_opening_to_dict(window) for window in layout.windows],
-        "objects": [_placed_to_dict(placed) for placed in layout.objects],
+        "doors": [opening_to_row(door) for door in layout.doors],
+        "windows": [opening_to_row(window) for window in layout.windows],
+        "objects": [placed_to_row(placed) for placed in layout.objects],
     }
 
 
@@ -178,16 +120,16 @@ def layout_from_dict(row: Row, where: str = "layout") -> Layout:
     `where` names the row in errors. LayoutError if a field is missing, out of bounds or of another type.
     """
     room_type = read_text(row, "room_type", where)
-    objects = [_placed(item, place) for item, place in read_rows(row, "objects", where, MOST_OBJECTS)]
-    _check_ids(objects, where)
-    _check_crowd(objects, where)
+    objects = [placed_from_row(item, place) for item, place in read_rows(row, "objects", where, MOST_OBJECTS)]
+    check_ids(objects, where)
+    check_crowd(objects, where)
     return Layout(
         id=read_text(row, "id", where),
         room_type=room_type,
-        floor_polygon=_outline(row, where),
+        floor_polygon=read_outline(row, where),
         height=read_number(row.get("height", 2.7), f"{where}.height", LOWEST, LARGEST),
-        doors=tuple(_opening(item, place) for item, place in read_rows(row, "doors", where, 100)),
-        windows=tuple(_opening(item, place) for item, place in read_rows(row, "windows", where, 100)),
+        doors=tuple(opening_from_row(item, place) for item, place in read_rows(row, "doors", where, 100)),
+        windows=tuple(opening_from_row(item, place) for item, place in read_rows(row, "windows", where, 100)),
         objects=tuple(objects),
         tags=read_texts(row, "tags", where, MOST_TAGS) or (room_type,),
         source=read_text(row, "source", where, "user"),
@@ -220,14 +162,17 @@ def read_layouts(path: str | Path, most_bytes: int = _MOST_BYTES) -> list[Layout
 def write_layouts(path: str | Path, layouts: Iterable[Layout]) -> None:
     """Write rooms as .json (a list) or .jsonl, gzipped if the name ends in .gz; the same rooms give the same bytes."""
     file = Path(path)
-    rows = [layout_to_dict(layout) for layout in layouts]
+    rows = (layout_to_dict(layout) for layout in layouts)
+    texts: Iterable[str]
     if ".jsonl" in file.suffixes:
-        text = "".join(json.dumps(row, separators=(",", ":"), allow_nan=False) + "\n" for row in rows)
+        texts = (json.dumps(row, separators=(",", ":"), allow_nan=False) for row in rows)
     else:
-        text = json.dumps(rows, indent=1, allow_nan=False) + "\n"
-    # No time stamp, so that a library made again is the same file.
-    data = gzip.compress(text.encode(), 9, mtime=0) if file.suffix == ".gz" else text.encode()
-    file.write_bytes(data)
+        texts = [json.dumps(list(rows), indent=1, allow_nan=False)]
+    with file.open("wb") as plain:
+        # No name and no time stamp, so that a library made again is the same file.
+        packed = gzip.GzipFile("", "wb", 9, plain, mtime=0) if file.suffix == ".gz" else nullcontext(plain)
+        with packed as stream:
+            stream.writelines(f"{text}\n".encode() for text in texts)
 
 
 def _read_rows(file: Path, most_bytes: int) -> Iterator[tuple[str, Any]]:
@@ -244,7 +189,7 @@ def _read_rows(file: Path, most_bytes: int) -> Iterator[tuple[str, Any]]:
     except (OSError, EOFError, zlib.error) as error:
         raise LayoutError(f"{file.name} cannot be read, it is missing, cut off or damaged: {error}") from error
     if ".jsonl" in file.suffixes:
-        for number, line in enumerate(text.splitlines(), start=1):
+        for number, line in enumerate(text.split("\n"), start=1):
             if line.strip():
                 yield f"{file.name} line {number}", _parse(line, f"{file.name} line {number}")
         return
@@ -258,81 +203,3 @@ def _parse(text: str, where: str) -> Any:
         return json.loads(text)
     except (ValueError, RecursionError) as error:
         raise LayoutError(f"{where} is not JSON: {error}") from error
-
-
-def _placed_to_dict(placed: Placed) -> dict[str, Any]:
-    row: dict[str, Any] = {
-        "id": placed.id,
-        "category": placed.category,
-        "position": list(placed.position),
-        "size": list(placed.size),
-        "yaw": placed.yaw,
-    }
-    return row | {key: value for key in ("parent", "mesh") if (value := getattr(placed, key)) is not None}
-
-
-def _opening_to_dict(opening: Opening) -> dict[str, Any]:
-    return {"segment": [list(end) for end in opening.segment], "bottom": opening.bottom, "top": opening.top}
-
-
-def _placed(row: Row, where: str) -> Placed:
-    position = row.get("position", row.get("pos"))
-    return Placed(
-        id=read_text(row, "id", where),
-        category=canonical(read_text(row, "category", where)),
-        position=read_point3(position, f"{where}.position", -FARTHEST, FARTHEST),
-        size=read_point3(row.get("size"), f"{where}.size", SMALLEST, LARGEST),
-        yaw=read_number(row.get("yaw", 0.0), f"{where}.yaw", -100.0, 100.0),
-        parent=None if row.get("parent") is None else read_text(row, "parent", where),
-        mesh=None if row.get("mesh") is None else read_text(row, "mesh", where),
-    )
-
-
-def _check_ids(objects: list[Placed], where: str) -> None:
-    ids = [placed.id for placed in objects]
-    for index, placed in enumerate(objects):
-        if placed.id in ids[:index]:
-            raise LayoutError(f"{where}.objects[{index}].id {placed.id!r} occurs twice; give every object its own id")
-        if placed.parent is not None and (placed.parent == placed.id or placed.parent not in ids):
-            raise LayoutError(f"{where}.objects[{index}].parent {placed.parent!r} is no other object's id")
-
-
-def _check_crowd(objects: list[Placed], where: str) -> None:
-    """Refuse a heap of things: what stands near what would take minutes to find."""
-    if len(objects) * len(objects) * (len(objects) - 1) / 2 <= MOST_CROWDED:
-        return
-    outlines = [shapely.Polygon(placed.footprint) for placed in objects]
-    pairs = len(shapely.STRtree(outlines).query(outlines, "dwithin", NEAR)[0]) // 2
-    if pairs * len(objects) > MOST_CROWDED:
-        raise LayoutError(
-            f"{where}.objects are a heap: {pairs} pairs of {len(objects)} stand within {NEAR} m; is it metres?"
-        )
-
-
-def _opening(row: Row, where: str) -> Opening:
-    ends = row.get("segment")
-    if not isinstance(ends, list) or len(ends) != 2:
-        raise LayoutError(f"{where}.segment must be two [x, z] points on the outline, got {ends!r}")
-    start, end = (read_point2(point, f"{where}.segment[{index}]") for index, point in enumerate(ends))
-    bottom = read_number(row.get("bottom", 0.0), f"{where}.bottom", 0.0, LARGEST)
-    top = read_number(row.get("top", 2.1), f"{where}.top", 0.0, LARGEST)
-    if top <= bottom:
-        raise LayoutError(f"{where}.top must be above bottom, got {top} and {bottom}")
-    return Opening((start, end), bottom, top)
-
-
-def _outline(row: Row, where: str) -> tuple[Point2, ...]:
-    corners, place = row.get("floor_polygon"), f"{where}.floor_polygon"
-    if not isinstance(corners, list) or not 3 <= len(corners) <= MOST_CORNERS:
-        raise LayoutError(f"{place} must be a list of 3 to {MOST_CORNERS} [x, z] corners in metres")
-    points = [read_point2(corner, f"{place}[{index}]") for index, corner in enumerate(corners)]
-    if points[0] == points[-1]:
-        points.pop()
-    polygon = shapely.Polygon(points) if len(points) >= 3 else None
-    if polygon is None or not polygon.is_valid or polygon.area < 0.5:
-        raise LayoutError(f"{place} must be a simple polygon of at least 0.5 square metres; order its corners around")
-    low_x, low_z, high_x, high_z = polygon.bounds
-    if max(high_x - low_x, high_z - low_z) > WIDEST:
-        raise LayoutError(f"{place} must fit in {WIDEST:g} by {WIDEST:g} metres; is it in centimetres?")
-    # Seen from above [x, z] is a left-handed pair: counter-clockwise there is clockwise to shapely.
-    return tuple(reversed(points)) if polygon.exterior.is_ccw else tuple(points)

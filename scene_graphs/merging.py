@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, permutations, product
@@ -25,7 +25,7 @@ class Merged:
 
     graph: FurnitureGraph
     instance_maps: tuple[Instances, ...]
-    """One a script: its nodes to nodes of `graph`; injective, and every edge of the script is an edge of `graph`."""
+    """One a script: its nodes to nodes of `graph`; injective, and every relation of the script is one of `graph`."""
 
 
 def merge(graphs: Sequence[FurnitureGraph], method: Literal["canonical", "aligned"] = "canonical") -> Merged:
@@ -49,6 +49,23 @@ def merge(graphs: Sequence[FurnitureGraph], method: Literal["canonical", "aligne
     return Merged(merged, maps)
 
 
+def side_by_side(rooms: Mapping[int, FurnitureGraph]) -> FurnitureGraph:
+    """The graphs of a home's rooms, by their numbers, as one: relations never cross a wall.
+
+    Instances are counted on from room to room, and objects have the ids they have in a home, "room number/object id".
+    """
+    union: FurnitureGraph = nx.Graph()
+    counts: Counter[str] = Counter()
+    for room, graph in rooms.items():
+        names = {node: Furniture(node[0], node[1] + counts[node[0]]) for node in graph}
+        for node, data in graph.nodes(data=True):
+            union.add_node(names[node], **data | {"object_id": f"{room}/{data.get('object_id')}"})
+        union.add_edges_from((names[a], names[b]) for a, b in graph.edges)
+        for category, instance in graph:
+            counts[category] = max(counts[category], names[Furniture(category, instance)].instance)
+    return union
+
+
 def categorised(graph: FurnitureGraph) -> Instances:
     """New names of a script's nodes: the canonical category, instances 1..n in the order of the old ones."""
     by_category: dict[str, list[Furniture]] = defaultdict(list)
@@ -62,12 +79,12 @@ def categorised(graph: FurnitureGraph) -> Instances:
 
 
 def _integrate(merged: FurnitureGraph, graph: FurnitureGraph, names: Mapping[Furniture, Furniture]) -> None:
-    """Add a script's nodes and edges under their new names; needs are united."""
+    """Add a script's nodes and edges under their new names; needs are united, and nothing is joined to itself."""
     for node in sorted(graph):
         new = names[node]
         needs = needs_of(graph, node) | (needs_of(merged, new) if new in merged else frozenset())
         merged.add_node(new, needs=needs, offers=frozenset(), object_id=None, minor=is_minor(new.category))
-    merged.add_edges_from(sorted((names[a], names[b]) for a, b in graph.edges))
+    merged.add_edges_from(sorted((names[a], names[b]) for a, b in graph.edges if a != b))
 
 
 def _align(graphs: Sequence[FurnitureGraph]) -> list[Instances]:

@@ -11,21 +11,23 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse import csgraph
 
-from scene_graphs.clearance import BODY_RADIUS, Clearance, measure_clearance, obstacles
+from scene_graphs.clearance import BODY_RADIUS, measure_clearance, obstacles, rectangles_of
+from scene_graphs.footing import edges_of
 from scene_graphs.homes import Home
-from scene_graphs.joining import WALL_GAP
 from scene_graphs.layouts import Array, Point2
-from scene_graphs.smoothing import along_line, smooth_path
+from scene_graphs.smoothing import along_lines, smooth_path
 
 COMFORT: Final = 0.45
 """Beyond this clearance more room is worth no detour, in metres."""
 CARE: Final = 2.0
 """How many times longer than its length a step counts, beyond itself, where the body only just fits."""
 TIGHT: Final = 3.0
-"""The same for a step that might touch: between two free cells clearance can dip by 0.7 of a cell."""
+"""The same for a step with less than 0.7 of a cell to spare."""
 WITHIN: Final = 0.6
 """How far from walkable floor a start or goal may be, in metres."""
 _STEPS: Final = ((1, 0), (0, 1), (1, 1), (1, -1))
+_SHARES: Final = np.arange(1, 8) / 8
+"""Of a line, where one looks first whether it is free at all."""
 
 Cells = NDArray[np.int64]
 
@@ -44,7 +46,9 @@ class Walkable:
     def __init__(self, home: Home, radius: float = BODY_RADIUS, cell: float = 0.05) -> None:
         self.home = home
         self.radius = radius
-        self.field = _measure(home, cell)
+        shapely.prepare(home.floor)
+        blocked = rectangles_of([outline for _, outline in obstacles(home.objects)])
+        self.field = measure_clearance(home.floor, blocked, edges_of(home.floor), cell)
         self._free = self.field.distances >= radius
         self._cells: Cells = np.argwhere(self._free)
         self._numbers = np.full(self._free.shape, -1, dtype=np.int64)
@@ -70,10 +74,17 @@ class Walkable:
         first, last = self._enter(start, WITHIN), self._enter(goal, WITHIN)
         return first is not None and last is not None and bool(self._regions[first] == self._regions[last])
 
-    def path(self, start: Point2, goal: Point2) -> Array:
-        """A smooth way from start to goal, about 0.1 m between points, ends included. (N, 2).
+    def sees(self, start: Point2, goal: Point2) -> bool:
+        """Whether no wall is between two points of the floor; furniture does not count."""
+        line, _ = along_lines(np.asarray(start, dtype=float)[None], np.asarray(goal, dtype=float)[None], 0.02)
+        return self._on_floor(line)
 
-        It is shortest for a cost in which a step counts more the less clearance there is (`CARE`, `COMFORT`).
+    def path(self, start: Point2, goal: Point2) -> Array:
+        """A smooth way from start to goal, at most about 0.1 m between points, ends included. (N, 2).
+
+        All of it keeps the radius from furniture and walls: between two cells where the body fits it may come nearer to
+        a corner, by less than cell² / (4 radius), 3 mm. It is shortest for a cost in which a step counts more the less
+        clearance there is (`CARE`, `COMFORT`).
         NoPath if start or goal is farther than `WITHIN` from walkable floor, or nothing leads from one to the other.
         """
         first, last = self._entry("start", start, goal), self._entry("goal", start, goal)
@@ -82,7 +93,7 @@ class Walkable:
         inner = self._shortest(first, last)
         inner[0] = start if self.is_free(start) else inner[0]
         inner[-1] = goal if self.is_free(goal) else inner[-1]
-        smooth = smooth_path(inner, self._cost, lambda points: bool((self.field.at(points) >= self.radius).all()))
+        smooth = smooth_path(inner, self._costs, lambda points: bool((self.field.at(points) >= self.radius).all()))
         ends = ([] if self.is_free(start) else [start], [] if self.is_free(goal) else [goal])
         return np.concatenate([np.reshape(ends[0], (-1, 2)), smooth, np.reshape(ends[1], (-1, 2))])
 
@@ -140,12 +151,19 @@ class Walkable:
         weights: Array = 1.0 + CARE * np.clip(tight, 0.0, 1.0) + TIGHT * touching
         return weights
 
-    def _cost(self, start: Array, end: Array) -> float:
-        """Cost of walking straight from start to end; infinite where the body does not fit."""
-        clearance = self.field.at(along_line(start, end, self.field.cell / 2))
-        if clearance.min() < self.radius:
-            return float("inf")
-        return float(np.hypot(*(end - start)) * self._weights(clearance).mean())
+    def _costs(self, starts: Array, ends: Array) -> Array:
+        """Costs of walking straight from starts to ends; infinite where the body does not fit. (K, 2) twice -> (K,)."""
+        costs = np.full(len(starts), np.inf)
+        few = starts[:, None] + _SHARES[:, None] * (ends - starts)[:, None]
+        open_lines = np.flatnonzero((self.field.at(few) >= self.radius).all(axis=1))
+        if len(open_lines):
+            starts, ends = starts[open_lines], ends[open_lines]
+            points, first = along_lines(starts, ends, self.field.cell)
+            clearance = self.field.at(points)
+            fits = np.minimum.reduceat(clearance, first) >= self.radius
+            means = np.add.reduceat(self._weights(clearance), first) / np.diff([*first, len(points)])
+            costs[open_lines[fits]] = (np.hypot(*(ends - starts).T) * means)[fits]
+        return costs
 
     def _shortest(self, first: int, last: int) -> Array:
         """Centres of the cells on the cheapest way between two free cells. (N, 2)."""
@@ -186,7 +204,7 @@ class Walkable:
         for number in near:
             if best is not None and away[number] >= best[0]:
                 break
-            line = along_line(here, self._centers[number], 0.02)
+            line, _ = along_lines(here[None], self._centers[number][None], 0.02)
             if not self._on_floor(line):
                 continue
             blocked = float((self.field.at(line) <= 0.0).mean())
@@ -195,31 +213,8 @@ class Walkable:
                 best = (cost, int(number))
         return None if best is None else best[1]
 
-    @cached_property
-    def _floor(self) -> shapely.Geometry:
-        floor = _floor(self.home)
-        shapely.prepare(floor)
-        return floor
-
     def _on_floor(self, line: Array) -> bool:
-        return bool(shapely.intersects_xy(self._floor, line[:, 0], line[:, 1]).all())
-
-
-def _floor(home: Home) -> shapely.Geometry:
-    """All rooms and the doorways between them."""
-    rooms = [shapely.Polygon(home.room_polygon(index)) for index in range(len(home.rooms))]
-    reach = WALL_GAP / 2 + 0.01
-    return shapely.union_all(
-        [*rooms, *(shapely.LineString(d.segment).buffer(reach, cap_style="flat") for d in home.doorways)]
-    )
-
-
-def _measure(home: Home, cell: float) -> Clearance:
-    """The clearance of a home's floor: solid furniture and the floor's own edge are in the way."""
-    floor = _floor(home)
-    return measure_clearance(
-        floor, [outline for _, outline in obstacles(home.objects)], [shapely.boundary(floor)], cell
-    )
+        return bool(shapely.intersects_xy(self.home.floor, line[:, 0], line[:, 1]).all())
 
 
 def _name(point: Point2) -> str:

@@ -2,30 +2,30 @@
 
 from __future__ import annotations
 
-from bisect import insort
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from scene_graphs.branching import NODE_LIMIT, CodedQuery, CodedRoom, Found, search
-from scene_graphs.costs import CostTable, Key, Level
-from scene_graphs.distance import all_terms, check_size, pairs_of
+from scene_graphs.branching import NODE_LIMIT, UNMAPPED, CodedQuery, Hunt, Ranked
+from scene_graphs.costs import CostTable, Level, level_between
+from scene_graphs.counting import Counts
+from scene_graphs.distance import check_size, exact_distance
 from scene_graphs.furniture import Furniture, canonical_room, display_name, is_minor
 from scene_graphs.graph import FurnitureGraph, graph_from_layout
 from scene_graphs.grounding import Offers
 from scene_graphs.layouts import Layout
+from scene_graphs.packing import PackedRooms
+from scene_graphs.texts import Ints
 
 VARIETY: Final = 4
 """With a seed, rooms this little farther than the nearest are as good: four pieces of unused furniture."""
 _VARIANTS: Final = 12
-
-Column = NDArray[np.int64]
-_Worst = Callable[[], int | None]
-_Kept = tuple[int, int, int, Found]
-"""Cost, lower bound, place of the id in order, what the search found."""
+FIRST_STAGE: Final = 256
+"""Rooms that are put in order by their bounds at first; the others only if there may be nearer ones among them."""
 
 
 class NoSuitableRoom(ValueError):  # noqa: N818
@@ -54,7 +54,7 @@ class LayoutMatch:
 
 
 class LayoutIndex:
-    """Rooms ready to be searched: one clipped-count column for every category, class, group and pair of groups."""
+    """Rooms ready to be searched: their packed graphs, and the counts that bound every room's distance at once."""
 
     def __init__(
         self,
@@ -62,7 +62,7 @@ class LayoutIndex:
         costs: CostTable | None = None,
         *,
         limit: int = NODE_LIMIT,
-        first_stage: int = 64,
+        first_stage: int = FIRST_STAGE,
         known: LayoutIndex | None = None,
         usable: Mapping[str, Offers] | None = None,
     ) -> None:
@@ -73,48 +73,77 @@ class LayoutIndex:
 
         ValueError if two share an id, or `first_stage`, the rooms verified at first, is below 1.
         """
+        # In the order of ids, so that a room's number decides ties.
+        ordered = tuple(sorted(layouts, key=lambda layout: layout.id))
+        for first, second in pairwise(ordered):
+            if first.id == second.id:
+                raise ValueError(f"layouts must have different ids, two have {first.id!r}; give every room its own")
+        self._set_up(ordered, _packed(ordered, known, usable or {}), costs, limit, first_stage)
+
+    @classmethod
+    def of_packed(
+        cls,
+        rooms: PackedRooms,
+        layouts: Sequence[Layout],
+        costs: CostTable | None = None,
+        *,
+        limit: int = NODE_LIMIT,
+        first_stage: int = FIRST_STAGE,
+    ) -> LayoutIndex:
+        """Index packed rooms, in the order of their ids. `layouts` has the same rooms in that order, and need not have
+        read them; it is only asked for single ones."""
+        if len(rooms) != len(layouts):
+            raise ValueError(f"there must be as many layouts as packed rooms, got {len(layouts)} and {len(rooms)}")
+        index = cls.__new__(cls)
+        index._set_up(layouts, rooms, costs, limit, first_stage)
+        return index
+
+    def _set_up(
+        self, layouts: Sequence[Layout], rooms: PackedRooms, costs: CostTable | None, limit: int, first_stage: int
+    ) -> None:
         if first_stage < 1:
             raise ValueError(f"first_stage must be at least 1, got {first_stage}")
-        # In the order of ids, so that a room's number decides ties.
-        self.layouts = tuple(sorted(layouts, key=lambda layout: layout.id))
-        self._numbers = {layout.id: number for number, layout in enumerate(self.layouts)}
-        if len(self._numbers) < len(self.layouts):
-            raise ValueError("layouts must have different ids; give every room its own")
+        if limit < 1:
+            raise ValueError(f"the node limit must be at least 1, got {limit}")
+        self.layouts, self.rooms = layouts, rooms
         self.costs = costs or CostTable()
         self.limit, self.first_stage = limit, first_stage
-        coded = [
-            (None if known is None else known._coded_of(layout)) or _coded(layout, (usable or {}).get(layout.id, {}))
-            for layout in self.layouts
-        ]
-        self._graphs, self._rooms = [graph for graph, _ in coded], [room for _, room in coded]
-        self._columns = _count_columns(self._rooms)
-        self._bases = np.array([room.base(self.costs) for room in self._rooms], dtype=np.int64)
+        self.counts, self.bases = Counts(rooms), rooms.bases(self.costs)
+        self._types: dict[str | None, tuple[Ints, NDArray[np.uint8]]] = {}
 
     def layout(self, layout_id: str) -> Layout:
         """The room of that id; KeyError if there is none."""
-        if layout_id not in self._numbers:
+        return self.layouts[self.number(layout_id)]
+
+    def number(self, layout_id: str) -> int:
+        """The place of a room in the order of ids; KeyError if there is none."""
+        number = self.rooms.ids.find(layout_id)
+        if number is None:
             raise KeyError(f"no layout {layout_id!r} among the {len(self.layouts)} that are indexed")
-        return self.layouts[self._numbers[layout_id]]
+        return number
 
-    def _coded_of(self, layout: Layout) -> tuple[FurnitureGraph, CodedRoom] | None:
-        """What was made of a room, if it is this very room that is indexed."""
-        number = self._numbers.get(layout.id)
-        if number is None or self.layouts[number] is not layout:
-            return None
-        return self._graphs[number], self._rooms[number]
+    def graph(self, layout_id: str) -> FurnitureGraph:
+        """The graph that room is searched as, with what its objects can really be used for; KeyError if there is
+        none."""
+        return self.rooms.graph(self.number(layout_id))
 
-    def of_type(self, room_type: str | None) -> NDArray[np.intp]:
-        """Numbers of the rooms that can serve as a room type. NoSuitableRoom if there are none."""
+    def of_type(self, room_type: str | None) -> Ints:
+        """Numbers of the rooms that can serve as a room type, rising. NoSuitableRoom if there are none."""
+        return self._chosen(room_type)[0]
+
+    def _chosen(self, room_type: str | None) -> tuple[Ints, NDArray[np.uint8]]:
+        """The numbers of the rooms of a type, and a 1 for each of them among all."""
         wanted = None if room_type is None else canonical_room(room_type)
-        fitting = [
-            number
-            for number, layout in enumerate(self.layouts)
-            if wanted is None or wanted == layout.room_type or wanted in layout.tags
-        ]
-        if not fitting:
-            known = ", ".join(sorted({layout.room_type for layout in self.layouts})) or "none"
+        if wanted in self._types:
+            return self._types[wanted]
+        numbers = np.arange(len(self.rooms)) if wanted is None else self.rooms.of_type(wanted)
+        if not len(numbers):
+            known = ", ".join(self.rooms.room_types) or "none"
             raise NoSuitableRoom(f"no room of type {wanted or 'any'} is indexed; there are: {known}")
-        return np.array(fitting, dtype=np.intp)
+        among = np.zeros(len(self.rooms), dtype=np.uint8)
+        among[numbers] = 1
+        self._types[wanted] = numbers, among
+        return numbers, among
 
     def first(self, room_type: str, seed: int = 0) -> Layout:
         """A room of a type for a script that uses no furniture, chosen by the seed."""
@@ -136,79 +165,58 @@ class LayoutIndex:
         something, the search is repeated with substitutions, as in the paper. `limit` is that of this search alone.
         NoSuitableRoom if no room is of the type; ValueError for an empty or too large query.
         """
-        if k < 1:
-            raise ValueError(f"k must be at least 1, got {k}")
+        if k < 1 or (limit is not None and limit < 1):
+            raise ValueError(f"k and limit must be at least 1, got {k} and {limit}")
         if not len(graph):
             raise ValueError("the query has no furniture: every keyframe is on the floor; ask for a room by its type")
         check_size(graph)
-        numbers = self.of_type(room_type)
         if strict:
-            matches = self._nearest(CodedQuery.of(graph, self.costs, strict=True), k, numbers, limit)
+            matches = self._nearest(CodedQuery.of(graph, self.costs, strict=True), k, room_type, limit)
             if not matches[0].missing:
                 return matches
-        return self._nearest(CodedQuery.of(graph, self.costs), k, numbers, limit)
+        return self._nearest(CodedQuery.of(graph, self.costs), k, room_type, limit)
 
-    def bounds(self, query: CodedQuery) -> Column:
-        """The lower bound of every room, in one pass over the columns the query touches. (rooms,)."""
-        constant = sum(query.deletes) + query.costs.lost_edge * len(query.edges)
-        saved = np.zeros(len(self._rooms), dtype=np.int64)
-        for term in all_terms(query):
-            saved += term.saved(self._count, np.minimum)
-        bounds: Column = self._bases + constant - saved
-        return bounds
+    def hunt(self, query: CodedQuery) -> Hunt:
+        """A query laid out for these rooms."""
+        return Hunt(query, self.rooms, self.counts, self.bases)
 
-    def _count(self, keys: Sequence[Key]) -> Column:
-        total = np.zeros(len(self._rooms), dtype=np.int64)
-        for key in keys:
-            if (column := self._columns.get(key)) is not None:
-                total += column
-        return total
+    def bounds(self, query: CodedQuery) -> NDArray[np.int32]:
+        """The lower bound of every room, in one pass over the counts the query touches. (rooms,)."""
+        return self.hunt(query).bounds()
 
-    def _nearest(self, query: CodedQuery, k: int, numbers: NDArray[np.intp], limit: int | None) -> list[LayoutMatch]:
-        """The k best of the rooms with these numbers: verify in the order of bounds until no bound is below the worst.
+    @property
+    def nbytes(self) -> int:
+        """Memory of what is searched: graphs, counts and costs, without the layouts."""
+        return self.rooms.nbytes + self.counts.nbytes + self.bases.nbytes
 
-        Stopping at a bound equal to the worst kept is exact because ties are broken by (bound, id): a later room of
-        equal cost loses.
-        """
-        bounds = self.bounds(query)
-        kept: list[_Kept] = []
-        doubtful = []
-        for number in self._by_bound(bounds, numbers, lambda: kept[-1][0] if len(kept) == k else None):
-            upper = kept[-1][0] if len(kept) == k else None
-            found = search(query, self._rooms[number], upper, limit or self.limit)
-            if found.capped:
-                doubtful.append(int(bounds[number]))
-            if found.cost is not None:
-                insort(kept, (found.cost, int(bounds[number]), number, found), key=lambda entry: entry[:3])
-                del kept[k:]
-        least_doubtful = min(doubtful, default=None)
-        return [self._match(query, entry, least_doubtful) for entry in kept]
+    def _nearest(self, query: CodedQuery, k: int, room_type: str | None, limit: int | None) -> list[LayoutMatch]:
+        numbers, among = self._chosen(room_type)
+        most = min(k, len(numbers))
+        found, least_doubtful = self.hunt(query).nearest(among, most, self.first_stage, limit or self.limit)
+        return [self._match(query, entry, least_doubtful) for entry in found]
 
-    def _by_bound(self, bounds: Column, numbers: NDArray[np.intp], worst: _Worst) -> Iterator[int]:
-        """Rooms by (bound, id) while they can be among the best: a first stage, then what else is needed."""
-        own = bounds[numbers]
-        size = min(self.first_stage, len(numbers))
-        limit = int(np.partition(own, size - 1)[size - 1])
-        for stage in (own <= limit, own > limit):
-            inside = numbers[stage if (known := worst()) is None else stage & (own < known)]
-            for number in inside[np.argsort(bounds[inside], kind="stable")]:
-                known = worst()
-                if known is not None and bounds[number] >= known:
-                    return
-                yield int(number)
-
-    def _match(self, query: CodedQuery, entry: _Kept, least_doubtful: int | None) -> LayoutMatch:
-        cost, bound, number, found = entry
-        nodes = self._graphs[number].nodes
-        pairs, missing, extra = pairs_of(query, self._rooms[number], found.images)
+    def _match(self, query: CodedQuery, entry: Ranked, least_doubtful: int) -> LayoutMatch:
+        nodes = self.rooms.nodes(entry.number)
+        ids = self.rooms.object_ids[nodes.start : nodes.stop]
+        categories = self.rooms.categories[nodes.start : nodes.stop].tolist()
+        mapping: list[tuple[Furniture, str, Level]] = []
+        missing: list[Furniture] = []
+        for node, word, image in zip(query.nodes, query.words, entry.found.images, strict=True):
+            if image == UNMAPPED:
+                missing.append(node)
+            elif (level := level_between(word, self.rooms.word(categories[image]))) is not None:
+                mapping.append((node, ids[image], level))
+        used = set(entry.found.images)
         return LayoutMatch(
-            layout_id=self.layouts[number].id,
-            distance=cost,
-            exact=not found.capped and (least_doubtful is None or least_doubtful >= cost),
-            mapping=tuple((pair.query, str(nodes[pair.room]["object_id"]), pair.level) for pair in pairs),
-            missing=missing,
-            extra=tuple(str(nodes[node]["object_id"]) for node in extra),
-            lower_bound=bound,
+            layout_id=self.rooms.ids[entry.number],
+            distance=entry.cost,
+            # The least doubtful bound is that of this room too, if the limit was met here. A room of the same bound
+            # and cost may come first by its id.
+            exact=least_doubtful > entry.cost or (least_doubtful == entry.cost > entry.bound),
+            mapping=tuple(sorted(mapping)),
+            missing=tuple(sorted(missing)),
+            extra=tuple([object_id for place, object_id in enumerate(ids) if place not in used]),
+            lower_bound=entry.bound,
         )
 
 
@@ -225,8 +233,10 @@ def retrieve_rooms(
     for room_type, graph in graphs.items():
         if not len(graph):
             layout = index.first(room_type, seed or 0)
-            extra = tuple(placed.id for placed in layout.objects)
-            matches[room_type] = LayoutMatch(layout.id, 0, True, (), (), extra)
+            own = index.graph(layout.id)
+            cost = exact_distance(graph, own, index.costs).cost
+            extra = tuple(str(name) for _, name in own.nodes(data="object_id"))
+            matches[room_type] = LayoutMatch(layout.id, cost, True, (), (), extra, cost)
             continue
         found = index.search(graph, 1 if seed is None else _VARIANTS, room_type, strict=True)
         match = found[0] if seed is None else _varied(found, seed)
@@ -245,18 +255,34 @@ def _varied(found: Sequence[LayoutMatch], seed: int) -> LayoutMatch:
     return good[int(np.random.default_rng(seed).integers(len(good)))]
 
 
-def _coded(layout: Layout, usable: Offers) -> tuple[FurnitureGraph, CodedRoom]:
+def _packed(layouts: Sequence[Layout], known: LayoutIndex | None, usable: Mapping[str, Offers]) -> PackedRooms:
+    """The graphs of rooms, those that an index knows already taken from there."""
+    old = [None if known is None else _place(known, layout) for layout in layouts]
+    new = [layout for layout, place in zip(layouts, old, strict=True) if place is None]
+    made = pack([_graph(layout, usable.get(layout.id, {})) for layout in new], new)
+    if known is None:
+        return made
+    taken = known.rooms.take(np.array([place for place in old if place is not None], dtype=np.int64))
+    # Both lots are in the order of ids; put them into one.
+    places = np.array([place is None for place in old])
+    order = np.where(places, len(taken) + np.cumsum(places) - 1, np.cumsum(~places) - 1)
+    return PackedRooms.join([taken, made]).take(order)
+
+
+def pack(graphs: Sequence[FurnitureGraph], layouts: Sequence[Layout]) -> PackedRooms:
+    """The graphs of rooms with the rooms' ids and types."""
+    types = [(layout.room_type, *layout.tags) for layout in layouts]
+    return PackedRooms.of(graphs, [layout.id for layout in layouts], types)
+
+
+def _place(index: LayoutIndex, layout: Layout) -> int | None:
+    """The number of a room in an index, if it is this very room that is there."""
+    number = index.rooms.ids.find(layout.id)
+    return number if number is not None and index.layouts[number] is layout else None
+
+
+def _graph(layout: Layout, usable: Offers) -> FurnitureGraph:
     graph = graph_from_layout(layout)
     for _, node in graph.nodes(data=True):
         node["offers"] = usable.get(str(node["object_id"]), node["offers"])
-    return graph, CodedRoom.of(graph)
-
-
-def _count_columns(rooms: Sequence[CodedRoom]) -> dict[Key, NDArray[np.uint8]]:
-    """For everything that can be counted, how often each room has it; a count stops at 255, above any query's."""
-    keys = {key for room in rooms for key in (*room.masks, *room.edges)}
-    columns = {key: np.zeros(len(rooms), dtype=np.uint8) for key in sorted(keys)}
-    for number, room in enumerate(rooms):
-        for key in (*room.masks, *room.edges):
-            columns[key][number] = min(room.count((key,)), 255)
-    return columns
+    return graph

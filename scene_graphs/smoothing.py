@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from scene_graphs.layouts import Array
 
@@ -21,35 +22,49 @@ _ENDLESS: Final = 1e6
 _TURN: Final = 0.45
 """A corner is rounded from this far before it, in metres, space permitting."""
 
-Cost = Callable[[Array, Array], float]
+_TOGETHER: Final = 64
+"""Straight lines that are tried in one go."""
+
+Costs = Callable[[Array, Array], Array]
 Fits = Callable[[Array], bool]
 
 
-def smooth_path(raw: Array, cost: Cost, fits: Fits) -> Array:
+def smooth_path(raw: Array, costs: Costs, fits: Fits) -> Array:
     """Pull a path of free points tight, round its corners and space its points evenly. (N, 2) -> (M, 2).
 
-    `cost(start, end)` is that of a straight line, infinite if it is not free; `fits(points)` says whether all points
-    are free. Both ends stay.
+    `costs(starts, ends)` are those of straight lines, infinite where they are not free. (K, 2), (K, 2) -> (K,).
+    `fits(points)` says whether all points are free. Both ends stay.
     """
-    return space_evenly(round_corners(pull_tight(raw, cost), fits))
+    rounded = round_corners(pull_tight(raw, costs), fits)
+    even = space_evenly(rounded)
+    if fits((even[1:] + even[:-1]) / 2):
+        return even
+    # Even steps would cut a corner that is too tight to be rounded: there every corner stays.
+    pieces = [space_evenly(np.stack(piece))[:-1] for piece in pairwise(rounded)]
+    return np.concatenate([*pieces, rounded[-1:]])
 
 
-def along_line(start: Array, end: Array, spacing: float) -> Array:
-    """Points from start to end, ends included, at most `spacing` apart. (N, 2)."""
-    count = int(np.ceil(np.hypot(*(end - start)) / spacing)) + 1
-    line: Array = start + np.linspace(0.0, 1.0, max(count, 2))[:, None] * (end - start)
-    return line
+def along_lines(starts: Array, ends: Array, spacing: float) -> tuple[Array, NDArray[np.int64]]:
+    """Points at most `spacing` apart along lines, both ends of each included, and where each line begins in them.
+
+    (K, 2), (K, 2) -> (N, 2), (K,).
+    """
+    ways = ends - starts
+    counts = np.maximum(np.ceil(np.hypot(*ways.T) / spacing).astype(np.int64) + 1, 2)
+    first = np.cumsum(counts) - counts
+    line = np.repeat(np.arange(len(counts)), counts)
+    share = (np.arange(len(line)) - first[line]) / (counts - 1)[line]
+    points: Array = starts[line] + share[:, None] * ways[line]
+    return points, first
 
 
-def pull_tight(raw: Array, cost: Cost) -> Array:
+def pull_tight(raw: Array, costs: Costs) -> Array:
     """The corners left when straight lines replace every piece of a path that is not cheaper than they."""
-    knots = _thin(raw, cost)
-    pieces = [min(cost(start, end), _ENDLESS) for start, end in pairwise(knots)]
-    so_far = np.concatenate([[0.0], np.cumsum(pieces)])
+    knots = _thin(raw, costs)
+    so_far = np.concatenate([[0.0], np.cumsum(np.minimum(costs(knots[:-1], knots[1:]), _ENDLESS))])
     kept = [0]
     while kept[-1] < len(knots) - 1:
-        here = kept[-1]
-        kept.append(_farthest(knots, so_far, here, cost))
+        kept.append(_farthest(knots, so_far, kept[-1], costs))
     return knots[kept]
 
 
@@ -85,21 +100,26 @@ def space_evenly(points: Array, spacing: float = SPACING) -> Array:
     return even
 
 
-def _thin(raw: Array, cost: Cost) -> Array:
+def _thin(raw: Array, costs: Costs) -> Array:
     """Every `_KNOT` metres one point of the path, and both ends; all points where it is too tight to leave any out."""
     arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(raw, axis=0).T))])
     marks = np.unique([0, *np.searchsorted(arc, np.arange(_KNOT, arc[-1], _KNOT)), len(raw) - 1])
+    straight = np.isfinite(costs(raw[marks[:-1]], raw[marks[1:]]))
     kept = [0]
-    for low, high in pairwise(marks):
-        kept += [high] if np.isfinite(cost(raw[low], raw[high])) else range(low + 1, high + 1)
+    for low, high, is_free in zip(marks[:-1], marks[1:], straight, strict=True):
+        kept += [high] if is_free else range(low + 1, high + 1)
     return raw[kept]
 
 
-def _farthest(knots: Array, so_far: Array, here: int, cost: Cost) -> int:
+def _farthest(knots: Array, so_far: Array, here: int, costs: Costs) -> int:
     """The farthest knot a straight line reaches at no more than the path's own cost; at least the next one."""
-    for there in range(len(knots) - 1, here + 1, -1):
-        if cost(knots[here], knots[there]) <= _SLACK * (so_far[there] - so_far[here]):
-            return there
+    for last in range(len(knots) - 1, here + 1, -_TOGETHER):
+        there = np.arange(last, max(last - _TOGETHER, here + 1), -1)
+        cheap = costs(np.broadcast_to(knots[here], (len(there), 2)), knots[there]) <= _SLACK * (
+            so_far[there] - so_far[here]
+        )
+        if cheap.any():
+            return int(there[cheap.argmax()])
     return here + 1
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from math import cos, inf, pi, sin
 
 from scene_graphs.affording.resting import TO_FOOT, TO_HEAD, lying, sitting
-from scene_graphs.affording.spot import Spot, wrap
+from scene_graphs.affording.spot import Spot
 from scene_graphs.affording.touching import touching
-from scene_graphs.forms import parts
+from scene_graphs.forms import parts_of
 from scene_graphs.layouts import Placed, Point2
+from scene_graphs.placed import wrap
 
 __all__ = ["Spot", "floor_spot", "spots"]
 
@@ -16,12 +17,15 @@ __all__ = ["Spot", "floor_spot", "spots"]
 def spots(placed: Placed, affordance: str) -> tuple[Spot, ...]:
     """Candidate spots of an object for "sit", "lie" or "touch", best first; empty where its shape offers none.
 
-    They look at the object alone: whether a standing point is free in a room is for the caller to find.
+    They are found on its seats, mattresses and tops, those of its form or those measured from its mesh (`shaping`): one
+    spot is a place on a surface with the height, the distance to its edge and to the backrest behind it, where to stand
+    before and how to approach. Spots look at the object alone: whether a standing point is free in a room is for the
+    caller to find.
     """
     makers = {"sit": sitting, "lie": lying, "touch": touching}
     if affordance not in makers:
         raise ValueError(f"affordance must be one of {', '.join(makers)}, got {affordance!r}")
-    solid = [part for part in parts(placed.category, placed.size) if not part.is_soft]
+    solid = [part for part in parts_of(placed) if not part.is_soft]
     return tuple(makers[affordance](placed, solid))
 
 

@@ -21,6 +21,7 @@ HOMES = {
     "torch": {"motion_backend/language"},
     "safetensors": {"motion_backend/language"},
     "networkx": {"scene_graphs"},
+    "numba": {"scene_graphs"},
     "shapely": {"scene_graphs"},
     "trimesh": {"scene_graphs"},
     "typer": {"planner_service"},
@@ -36,6 +37,10 @@ HOMES = {
     "structlog": {"planner_service"},
     "prometheus_client": {"planner_service"},
     "limits": {"planner_service"},
+    "pydantic_ai": {"planner_service/llm"},
+    "openai": {"planner_service/llm"},
+    "anthropic": {"planner_service/llm"},
+    "httpx2": {"planner_service/llm"},
 }
 """Where a third-party library may be imported; libraries not named here may be used anywhere they are needed."""
 FORBIDDEN = {"pickle", "shelve", "marshal"}

@@ -1,4 +1,4 @@
-"""The README's pictures, made by our own code: `python docs/images/draw.py` writes storyboard.png and plan.png here."""
+"""The pictures of the docs, made by our own code: `python docs/images/draw.py` writes them here, all but page.png."""
 
 from __future__ import annotations
 
@@ -8,9 +8,12 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from planner_service.commands.finding import graph_of_words
+from planner_service.picturing import Shown, picture
 from planner_service.stories import Story, StoryRequest, Studio
 from planner_service.storyboard import COLUMNS, GAP, HEAD, PLAN, SIDE, TEXT, storyboard
-from scene_graphs.drawing import draw_layout
+from scene_graphs.matching_view import draw_match
+from scene_graphs.retrieval import LayoutIndex
 
 HERE = Path(__file__).parent
 THEME = (
@@ -22,18 +25,24 @@ SEED = 7
 SHOWN = (1, 7, 10, 17)
 """Keyframes cut out of the storyboard, two in a row."""
 PLAN_OF = "living-room-0016"
+ASKED = ("sofa:lie", "coffee-table", "tv-stand,", "bench:sit", "bookshelf", "wardrobe,", "piano")
+"""The query of the match view, as `sims layouts find` takes it."""
+ASKED_OF = "living_room"
 COLORS = 200
 
 
 def main() -> None:
-    """Make the demo's story and write both pictures."""
+    """Make the demo's story and write the pictures."""
     studio = Studio()
+    index = studio.shelves.layouts()
     with tempfile.TemporaryDirectory() as folder:
         board = draw_board(studio.make(StoryRequest(THEME, seed=SEED)), Path(folder, "board.png"))
-        plan = Path(folder, "plan.png")
-        draw_layout(studio.shelves.layouts().layout(PLAN_OF), plan)
+        picture(index.layout(PLAN_OF), Shown(), Path(folder, "plan.png"))
+        draw_found(index, Path(folder, "match.png"))
         save(cut(board, SHOWN), HERE / "storyboard.png")
-        save(np.asarray(Image.open(plan).convert("RGB")), HERE / "plan.png")
+        for name in ("plan.png", "match.png"):
+            # Lines of few pixels keep their colours, which mean something.
+            save(np.asarray(Image.open(Path(folder, name)).convert("RGB")), HERE / name, Image.Quantize.MAXCOVERAGE)
 
 
 def draw_board(story: Story, path: Path) -> np.ndarray:
@@ -41,6 +50,13 @@ def draw_board(story: Story, path: Path) -> np.ndarray:
     planned, targets = story.planned, [action.object_id for action in story.actions]
     storyboard(planned.home, story.motion, planned.script.keyframes, path, planned.told.title, targets)
     return np.asarray(Image.open(path).convert("RGB"))
+
+
+def draw_found(index: LayoutIndex, path: Path) -> None:
+    """The query beside the room that is nearest to it."""
+    query = graph_of_words(list(ASKED))
+    (match,) = index.search(query, 1, ASKED_OF)
+    draw_match(query, [index.layout(match.layout_id)], match, path)
 
 
 def cut(board: np.ndarray, shown: tuple[int, ...]) -> np.ndarray:
@@ -54,9 +70,9 @@ def cut(board: np.ndarray, shown: tuple[int, ...]) -> np.ndarray:
     return np.concatenate([np.concatenate(cells[i : i + 2], axis=1) for i in range(0, len(cells), 2)])
 
 
-def save(pixels: np.ndarray, path: Path) -> None:
+def save(pixels: np.ndarray, path: Path, method: Image.Quantize = Image.Quantize.MEDIANCUT) -> None:
     """Write a PNG with a palette, as small as it gets."""
-    flat = Image.fromarray(pixels).quantize(COLORS, dither=Image.Dither.NONE)
+    flat = Image.fromarray(pixels).quantize(COLORS, method, dither=Image.Dither.NONE)
     flat.save(path, optimize=True)
 
 

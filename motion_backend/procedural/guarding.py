@@ -18,8 +18,8 @@ Array = NDArray[np.float64]
 HAND_LENGTH = 0.14
 THICKNESS = 0.034
 """Radius of hand and wrist (metres)."""
-WIDE, NARROW = 0.80, 0.45
-"""Clearance (metres at 1.70 m) from which arms may be spread, and below which they are not."""
+ALL_IN = 0.56
+"""Arms are brought in altogether at this share of the clearance that they need."""
 UPWARDS = 0.12
 """A way out upwards may be this much longer than the nearest way out sideways: hands rest on things."""
 
@@ -49,18 +49,23 @@ def hands_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles, touching: 
     return replace(pose, reach=reach, reaching=reaching)
 
 
-def arms_in(pose: Pose, room: Array, narrow: str) -> Pose:
-    """Spread arms brought into the pose `narrow` where the way is; `room` (T,) is the clearance at 1.70 m."""
+def arms_in(pose: Pose, room: Array, narrow: str, wide: float) -> Pose:
+    """Arms brought into the pose `narrow` where the way is: `room` (T,) is the clearance there, `wide` what they need.
+
+    Both are metres for a body of 1.70 m, from its middle.
+    """
     from scipy.ndimage import gaussian_filter1d, minimum_filter1d
 
     least = gaussian_filter1d(minimum_filter1d(room, 17, mode="nearest"), 4.0, mode="nearest")
+    share = smooth((wide - least) / (wide - ALL_IN * wide))
     # A segment begins in the pose the one before left.
-    share = (smooth((WIDE - least) / (WIDE - NARROW)) * smooth(np.arange(len(room)) / 15))[:, None, None]
+    share = (share * smooth(np.arange(len(room)) / 15))[:, None, None]
     wrists, elbows = arm_arrays(narrow, narrow)
-    # Only as far as they are spread: arms that have come down at the end of the way stay down.
-    hang, _ = arm_arrays("hang", "hang")
-    down = np.sum(rotations.normalize(pose.arms) * rotations.normalize(hang), axis=-1, keepdims=True)
-    share = share * smooth((0.9 - down) / 0.5)
+    if narrow != "hang":
+        # Only as far as they are spread: arms that have come down at the end of the way stay down.
+        hang, _ = arm_arrays("hang", "hang")
+        down = np.sum(rotations.normalize(pose.arms) * rotations.normalize(hang), axis=-1, keepdims=True)
+        share = share * smooth((0.9 - down) / 0.5)
     lengths = np.linalg.norm(pose.arms, axis=-1, keepdims=True)
     along = rotations.normalize(pose.arms + share * (wrists - pose.arms))
     return replace(

@@ -40,8 +40,14 @@ FACING_IT = 0.12
 
 TURNING_ROUND = 1.2
 """A body that arrives turned away from where it will face by more (radians) turns before the last step."""
-NARROW_ARMS = {"open": "raised", "balance": "hang"}
-"""What spread arms do where there is no room for them: joy goes up, balance comes down."""
+NARROW_ARMS = {
+    "open": ("raised", 0.80),
+    "balance": ("hang", 0.80),
+    "hips": ("hang", 0.50),
+    "pockets": ("hang", 0.45),
+    "behind_back": ("hang", 0.40),
+}
+"""What arms do where elbows or hands would meet furniture, and the clearance (metres) they need: joy goes up."""
 FINGER = 0.02
 """Half a finger's thickness (metres)."""
 ELBOW_ROOM = 0.26
@@ -127,11 +133,10 @@ def _go(body: Body, goal: Point, facing: float | None, action: Action) -> None:
 def _stride(body: Body, path: Array, facing: float | None, style: Walk) -> None:
     """Walk along a path; arms that are spread come in where there is no room for them."""
     frames = walk(body.pose, path, facing, style, body.skeleton, body.rng)
-    narrow = NARROW_ARMS.get(style.bearing.arms[0])
-    if narrow is not None:
+    if style.bearing.arms[0] in NARROW_ARMS:
         places = frames.pelvis[:, [0, 2]]
         room = np.array([body.scene.walkable.clearance((float(x), float(z))) for x, z in places])
-        frames = arms_in(frames, room / body.skeleton.scale, narrow)
+        frames = arms_in(frames, room / body.skeleton.scale, *NARROW_ARMS[style.bearing.arms[0]])
     body.add(frames)
 
 

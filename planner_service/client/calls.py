@@ -29,6 +29,8 @@ class Call(Generic[T]):
     read: Callable[[httpx.Response], T]
     query: Mapping[str, object] = field(default_factory=dict)
     body: Json | None = None
+    content: bytes | None = None
+    """A body that is a file, instead of JSON."""
     headers: Mapping[str, str] = field(default_factory=dict)
     repeatable: bool = True
     """Whether sending it twice does what sending it once does."""
@@ -175,13 +177,33 @@ def add_layout(room: Json) -> Call[Json]:
     return Call("POST", "/v1/layouts", _json, {"format": "native"}, room, repeatable=False)
 
 
+def import_layouts(file: bytes, format: str, **options: Any) -> Call[Json]:  # noqa: A002
+    """Add all rooms of a scene file in another format; options: name, scan, room, up, front, unit.
+
+    The answer lists the rooms with what was kept, dropped and why.
+    """
+    binary = {"Content-Type": "application/octet-stream"}
+    query = {"format": format} | options
+    return Call("POST", "/v1/layouts", _json, query, content=file, headers=binary, repeatable=False)
+
+
+def delete_layout(layout_id: str) -> Call[None]:
+    """Remove a room of your own."""
+    return Call("DELETE", _at("layouts", layout_id), _nothing)
+
+
+def layout_drawing(layout_id: str, ending: Literal["svg", "png"] = "svg", **options: Any) -> Call[bytes]:
+    """A room from above; options: graph, spots, path, to."""
+    return Call("GET", _at("layouts", layout_id, f"drawing.{ending}"), _bytes, options)
+
+
 def layout_scene(layout_id: str) -> Call[bytes]:
     """One room as GLB."""
     return Call("GET", _at("layouts", layout_id, "scene.glb"), _bytes)
 
 
 def retrieve_layouts(graph: Json, **options: Any) -> Call[list[Json]]:
-    """The rooms nearest to a furniture graph; options: k, rooms."""
+    """The rooms nearest to a furniture graph, or homes; options: k, rooms, max_rooms."""
     return Call("POST", "/v1/layouts/retrieve", _matches, body={"graph": graph} | options)
 
 

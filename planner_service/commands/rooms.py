@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from planner_service.furnish import MOST_ROOMS
 from planner_service.shelves import Shelves
+from scene_graphs.homes import MOST_ROOMS
 from scene_graphs.layouts import Layout, LayoutError, read_layouts
 
 LARGEST_FILE = 64 << 20

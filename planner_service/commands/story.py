@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from motion_backend.motion import Character
+from planner_service.llm.choosing import load_model
 from planner_service.scripts.events import clean
 from planner_service.settings import read_settings
 from planner_service.shelves import open_shelves
@@ -56,7 +57,7 @@ def story(
 
     settings = read_settings()
     check_writable(out, FILES)
-    studio = Studio(open_shelves(settings))
+    studio = Studio(open_shelves(settings), load_model(settings), settings.llm_on_failure == "error")
     request = StoryRequest(
         theme=clean(read_theme(theme)),
         rooms=() if rooms is None else read_rooms(rooms),

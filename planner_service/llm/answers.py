@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 
 from pydantic import ValidationError
@@ -11,6 +12,8 @@ from planner_service.llm.protocol import InvalidAnswerError, T
 
 _SHOWN = 8
 """Problems told to the model at once."""
+_CONTROL = re.compile(r"(?<!\\)(?:\\\\)*\\(?:u00[01][0-9a-f]|[bf])")
+"""A control character in JSON, other than the ends of lines and tabs: no terminal or database is safe from them."""
 
 
 def read_answer(text: str, schema: type[T]) -> T:
@@ -22,9 +25,13 @@ def read_answer(text: str, schema: type[T]) -> T:
     failure: ValidationError | None = None
     for value in reversed(list(_objects(text))):
         try:
-            return schema.model_validate(value)
+            answer = schema.model_validate(value)
         except ValidationError as error:
             failure = failure or error
+            continue
+        if _CONTROL.search(answer.model_dump_json()):
+            raise InvalidAnswerError(text, ["there are control characters in it"])
+        return answer
     if failure is not None:
         raise InvalidAnswerError(text, problems_of(failure)) from failure
     broken = "the JSON is not complete" if "{" in text else "there is no JSON object in it"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import prompts
-from planner_service.llm.protocol import InvalidAnswerError, LanguageModel, ModelError, T
+from planner_service.llm.protocol import InvalidAnswerError, LanguageModel, ModelError, Remembering, T
 
 _SHOWN = 4000
 """Letters of a refused answer that the model is shown again."""
@@ -34,8 +34,13 @@ def ask(
 ) -> T:
     """An answer that fits the schema and in which `check` finds no problem, after at most `repairs` second tries.
 
+    A model that remembers is not asked for what it answered well before, if that still passes the check.
     Raises ModelAnswerError when the last try is no better; errors of the connection pass through unchanged.
     """
+    if isinstance(model, Remembering):
+        known = model.recall(prompt, schema, images)
+        if known is not None and not (check and check(known)):
+            return known
     question, problems = prompt, ["nothing was asked"]
     for _ in range(repairs + 1):
         try:
@@ -45,6 +50,8 @@ def ask(
         else:
             problems = list(check(answer)) if check else []
             if not problems:
+                if isinstance(model, Remembering):
+                    model.keep(prompt, answer, images)
                 return answer
             text = answer.model_dump_json()
         question = prompts.render(

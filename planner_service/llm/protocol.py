@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol, TypeVar
+from typing import Protocol, TypeVar, runtime_checkable
 
 from pydantic import BaseModel
 
@@ -15,7 +15,10 @@ class ModelError(RuntimeError):
 
     ModelError
     ├── InvalidAnswerError  it answered, and the answer does not fit what was asked
-    └── ModelAnswerError    it was told what was wrong, and still did not answer well (asking.py)
+    ├── ModelAnswerError    it was told what was wrong, and still did not answer well (asking.py)
+    ├── BudgetError         the story has spent what it may (budgets.py)
+    ├── ServerError         its server was not reached, refused, or sent what cannot be read (carrying.py)
+    └── RecordingError      a recording does not have the answer, or cannot be read (replaying.py)
     """
 
 
@@ -41,4 +44,17 @@ class LanguageModel(Protocol):
 
         Raises InvalidAnswerError when the model's text does not fit the schema, ModelError when no text came at all.
         """
+        ...
+
+
+@runtime_checkable
+class Remembering(LanguageModel, Protocol):
+    """A language model that may be handed the answers that were used, so as to give them again."""
+
+    def recall(self, prompt: str, schema: type[T], images: Sequence[bytes] = ()) -> T | None:
+        """The answer that was used the last time, or None."""
+        ...
+
+    def keep(self, prompt: str, answer: T, images: Sequence[bytes] = ()) -> None:
+        """Remember an answer."""
         ...

@@ -3,45 +3,79 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import json
-from collections import Counter
+from collections.abc import Callable
+from functools import partial
 from importlib.metadata import version
-from typing import Annotated, Final, Literal
-from urllib.parse import quote
+from typing import Annotated, Final, Literal, ParamSpec, TypeVar
 
-from fastapi import APIRouter, Path, Query, Request, Response
+from anyio import to_thread
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from fastapi.concurrency import run_in_threadpool
 
 from motion_backend.formats.glb import scene_glb
-from planner_service.errors import Conflict, NotFound, Unprocessable
+from planner_service.errors import Conflict, NotFound, TooLarge, Unavailable, Unprocessable
+from planner_service.importing import take_in
+from planner_service.limiting import MOST_BYTES
 from planner_service.parts import Parts, PartsDep
+from planner_service.picturing import Shown, picture
+from planner_service.retrieving import retrieved, retrieved_to_dict
+from planner_service.routes.bodies import parsed
 from planner_service.routes.caching import unchanging
-from planner_service.routes.layout_graphs import edges_of, graph_of, nodes_of
+from planner_service.routes.layout_graphs import graph_of, nodes_of
 from planner_service.routes.rooms import layout_given
+from planner_service.routes.showing import path_of, room_shown, room_summary
 from planner_service.schemas.layouts import (
     LayoutAsk,
     LayoutMatches,
     LayoutPage,
     LayoutShown,
+    LayoutsImported,
     RetrieveAsk,
 )
 from planner_service.schemas.pages import Cursor, Limit, page_of
 from planner_service.schemas.stories import Json
 from planner_service.shelves import AbsentError, FixedError, FullError, TakenError
-from planner_service.surveying import survey
-from scene_graphs.furniture import ROOM_TYPES, Furniture, canonical_room
+from scene_graphs.furniture import ROOM_TYPES, canonical_room
 from scene_graphs.homes import home_from_layouts
-from scene_graphs.layouts import Layout, layout_to_dict
-from scene_graphs.retrieval import LayoutIndex, LayoutMatch, NoSuitableRoom
-from scene_graphs.surfaces import Spot
+from scene_graphs.layouts import Layout, LayoutError, layout_to_dict
+from scene_graphs.loaders import Options, Source
+from scene_graphs.retrieval import LayoutIndex, NoSuitableRoom
 
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+def _shown_over(
+    graph: Annotated[bool, Query(description="Whether the furniture graph is drawn.")] = True,
+    spots: Annotated[bool, Query(description="Whether surfaces and standing points are drawn.")] = True,
+    path: Annotated[bool, Query(description="Whether a path from the door is drawn.")] = True,
+    to: Annotated[str | None, Query(max_length=200, description="The object the path leads to.")] = None,
+) -> Shown:
+    return Shown(graph, spots, path, to)
+
+
+ShownDep = Annotated[Shown, Depends(_shown_over)]
 router = APIRouter(prefix="/v1/layouts", tags=["layouts"])
 LayoutId = Annotated[str, Path(max_length=400, description="The id of a room; it may hold slashes.")]
 GLB: Final = "model/gltf-binary"
+SVG: Final = "image/svg+xml"
+PNG: Final = "image/png"
+OTHER: Final = "application/octet-stream"
+"""A scene file of another format, sent as it is."""
+Format = Literal["native", "3d-front", "procthor", "virtualhome", "glb", "obj"]
+"""What is one file; scans that are folders of files are taken in on the command line."""
+MOST_UNPACKED: Final = 32 << 20
+"""Bytes of a scene file that was sent packed."""
+MOST_WAITING: Final = 8
+"""Scene files that wait to be read, each held in memory."""
+MOST_ROOMS: Final = 200
+"""Of one scene file: each is looked over while the caller waits, about 0.1 s."""
+DRAWN: Final = {"Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'"}
+"""A picture that is opened by itself runs nothing and loads nothing."""
 REVALIDATED: Final = {"Cache-Control": "private, no-cache"}
 """Kept, but asked for again each time: a room may be removed and another be given its id."""
-EFFORT: Final = 4_000_000
-"""Rooms, times nodes of the query, times steps of the search in each: some seconds at most."""
-LEAST_STEPS, MOST_STEPS = 50, 100_000
 
 
 @router.get("", response_model=LayoutPage)
@@ -59,47 +93,81 @@ def list_layouts(
         if kind is None or kind == layout.room_type or kind in layout.tags
     }
     shown, following = page_of(wanted, limit, cursor)
-    return {"items": [_summary(parts, layout) for layout in shown], "next": following}
+    return {"items": [room_summary(parts.shelves, layout) for layout in shown], "next": following}
 
 
 @router.post(
     "",
     status_code=201,
-    response_model=LayoutShown,
+    response_model=LayoutShown | LayoutsImported,
     response_model_exclude_unset=True,
-    responses={409: {"description": "The id is taken."}},
+    responses={409: {"description": "The id of a room is taken, or the library is full."}},
+    openapi_extra={
+        "requestBody": {
+            "required": True,
+            "content": {
+                "application/json": {"schema": {"$ref": "#/components/schemas/LayoutAsk"}},
+                OTHER: {"schema": {"type": "string", "format": "binary"}},
+            },
+        }
+    },
 )
-def create(
-    ask: LayoutAsk,
+async def create(
+    request: Request,
     response: Response,
     parts: PartsDep,
-    _format: Annotated[Literal["native"], Query(alias="format", description="What the body is written in.")] = "native",
+    format_name: Annotated[Format, Query(alias="format", description="What the body is written in.")] = "native",
+    name: Annotated[
+        str, Query(min_length=1, max_length=120, description="The file's name; rooms that have none are named by it.")
+    ] = "body",
+    scan: Annotated[
+        str | None, Query(max_length=200, description="procthor: the numbers of the houses to take, 17 or 0-99.")
+    ] = None,
+    room: Annotated[str | None, Query(max_length=60, description="The room type, where the file does not say.")] = None,
+    up: Annotated[Literal["y", "z"], Query(description="glb, obj: the axis that points up.")] = "y",
+    front: Annotated[Literal["+z", "-z", "+x", "-x"], Query(description="glb, obj: where fronts point.")] = "+z",
+    unit: Annotated[float, Query(gt=0, le=1000, description="glb, obj: metres a unit; 0.01 for centimetres.")] = 1.0,
 ) -> Json:
-    """Add a room to the library. The answer says what was found when it was checked; a room with problems is kept."""
-    layout = layout_given(ask)
+    """Add a room of your own in our native JSON, or all rooms of a scene file in another format.
+
+    A room with problems is kept; the answer says what they are. Of another format the body is the file itself (gzip is
+    unpacked), and the answer lists the rooms with what was kept, dropped and guessed.
+    """
+    if format_name != "native" and parts.importing.statistics().tasks_waiting >= MOST_WAITING:
+        raise Unavailable("other scene files are being read; send it again", retry_after=10)
+    body = await request.body()
+    if format_name == "native":
+        if len(body) > MOST_BYTES:
+            raise TooLarge(f"a body of this format has at most {MOST_BYTES} bytes")
+        layout = layout_given(await run_in_threadpool(parsed, LayoutAsk, request, body))
+        await run_in_threadpool(_adding, parts.shelves.add_layouts, layout)
+        response.headers["Location"] = path_of(layout.id)
+        return await run_in_threadpool(room_shown, parts.shelves, layout)
+    options = Options(scan=scan, room_type=room, up=up, front=front, unit=unit, most_rooms=MOST_ROOMS)
+    source = Source.of_bytes(name, body, MOST_UNPACKED)
     try:
-        parts.shelves.add_layouts(layout)
-    except (TakenError, FullError) as error:
-        raise Conflict(str(error)) from error
-    response.headers["Location"] = _path(layout.id)
-    return _shown(parts, layout)
+        take = partial(_adding, take_in, parts.shelves, source, format_name, options)
+        taken = await to_thread.run_sync(take, limiter=parts.importing)
+    except LayoutError as error:
+        raise Unprocessable("", str(error)) from error
+    return {
+        "items": [room_summary(parts.shelves, layout) for layout in taken.imported.layouts],
+        "problems": {name: list(found) for name, found in taken.problems.items() if found},
+        "report": taken.imported.report.to_dict(),
+    }
 
 
 @router.post("/retrieve", response_model=LayoutMatches)
 def retrieve(ask: RetrieveAsk, parts: PartsDep) -> Json:
-    """The rooms that have the furniture of a graph, nearest first, and what would stand for each of its pieces."""
+    """The rooms that have the furniture of a graph, nearest first, and what would stand for each of its pieces; or,
+    with `max_rooms` above 1, the homes of one room and more."""
     query = graph_of(ask.graph, "/graph")
     index = parts.shelves.layouts()
-    kinds: list[str | None] = list(dict.fromkeys(canonical_room(room) for room in ask.rooms)) or [None]
     for place, room in enumerate(ask.rooms):
         if not _has(index, room):
             raise Unprocessable(f"/rooms/{place}", f"there is no room of this type; try {', '.join(ROOM_TYPES)}")
-    size = sum(len(index.of_type(kind)) for kind in kinds)
-    steps = min(max(EFFORT // (size * len(query)), LEAST_STEPS), MOST_STEPS)
-    found = {match.layout_id: match for kind in kinds for match in index.search(query, ask.k, kind, limit=steps)}
-    best = sorted(found.values(), key=lambda match: (match.distance, match.lower_bound, match.layout_id))[: ask.k]
-    places = {node: place for place, node in enumerate(nodes_of(ask.graph))}
-    return {"matches": [_matched(index, match, places) for match in best]}
+    found = retrieved(index, query, ask.k, ask.rooms, ask.max_rooms)
+    return {"matches": [retrieved_to_dict(index, one, nodes_of(ask.graph)) for one in found]}
 
 
 @router.get("/{layout_id:path}/scene.glb", response_class=Response, responses={200: {"content": {GLB: {}}}})
@@ -113,13 +181,25 @@ def scene(layout_id: LayoutId, request: Request, parts: PartsDep) -> Response:
     return unchanging(request, f"{_etag(layout)}-scene", make, GLB, REVALIDATED)
 
 
+@router.get("/{layout_id:path}/drawing.svg", response_class=Response, responses={200: {"content": {SVG: {}}}})
+def drawing_svg(layout_id: LayoutId, request: Request, parts: PartsDep, shown: ShownDep) -> Response:
+    """The room from above: names, graph, surfaces and standing points, and a path from the door."""
+    return _drawing(_layout(parts, layout_id), shown, request, "svg")
+
+
+@router.get("/{layout_id:path}/drawing.png", response_class=Response, responses={200: {"content": {PNG: {}}}})
+def drawing_png(layout_id: LayoutId, request: Request, parts: PartsDep, shown: ShownDep) -> Response:
+    """The same as pixels."""
+    return _drawing(_layout(parts, layout_id), shown, request, "png")
+
+
 @router.get("/{layout_id:path}", response_model=LayoutShown)
 def show(layout_id: LayoutId, request: Request, parts: PartsDep) -> Response:
     """A room whole: its native JSON, its problems, where a body can sit, lie or touch, and its graph."""
     layout = _layout(parts, layout_id)
 
     def make() -> bytes:
-        return json.dumps(_shown(parts, layout), ensure_ascii=False, allow_nan=False).encode()
+        return json.dumps(room_shown(parts.shelves, layout), ensure_ascii=False, allow_nan=False).encode()
 
     return unchanging(request, _etag(layout), make, "application/json", REVALIDATED)
 
@@ -135,6 +215,29 @@ def delete(layout_id: LayoutId, parts: PartsDep) -> None:
         raise NotFound("there is no such room; GET /v1/layouts lists them") from error
     except FixedError as error:
         raise Conflict("this room is shipped with the service and cannot be deleted") from error
+
+
+def _adding(add: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
+    """What `add` gives; Conflict where the library does not take it."""
+    try:
+        return add(*given, **named)
+    except (TakenError, FullError) as error:
+        raise Conflict(str(error)) from error
+
+
+def _drawing(layout: Layout, shown: Shown, request: Request, ending: str) -> Response:
+    if shown.to is not None and all(placed.id != shown.to for placed in layout.objects):
+        raise Unprocessable("?to", "the room has no object of this id")
+
+    def make() -> bytes:
+        stream = io.BytesIO()
+        picture(layout, shown, stream, ending)
+        return stream.getvalue()
+
+    drawn = hashlib.sha256(repr(shown).encode()).hexdigest()[:8]
+    return unchanging(
+        request, f"{_etag(layout)}-{drawn}-{ending}", make, {"svg": SVG, "png": PNG}[ending], REVALIDATED | DRAWN
+    )
 
 
 def _has(index: LayoutIndex, room: str) -> bool:
@@ -155,88 +258,3 @@ def _etag(layout: Layout) -> str:
     """Of the room and of the program that looks it over."""
     text = json.dumps([version("sims-stories"), layout_to_dict(layout)])
     return hashlib.sha256(text.encode()).hexdigest()[:32]
-
-
-def _path(layout_id: str) -> str:
-    return f"/v1/layouts/{quote(layout_id)}"
-
-
-def _kept(parts: Parts, layout: Layout) -> Json:
-    path = _path(layout.id)
-    return {
-        "built_in": parts.shelves.is_fixed_room(layout),
-        "area": round(layout.area, 2),
-        "links": {"self": path, "scene": f"{path}/scene.glb"},
-    }
-
-
-def _summary(parts: Parts, layout: Layout) -> Json:
-    counts = Counter(placed.category for placed in layout.objects)
-    return {
-        "id": layout.id,
-        "room_type": layout.room_type,
-        "tags": list(layout.tags),
-        "source": layout.source,
-        "licence": layout.licence,
-        "objects": len(layout.objects),
-        "furniture": dict(sorted(counts.items())),
-        **_kept(parts, layout),
-    }
-
-
-def _shown(parts: Parts, layout: Layout) -> Json:
-    looked = survey(layout)
-    graph, nodes = looked.graph, list(looked.graph)
-    places = {node: place for place, node in enumerate(nodes)}
-    shown = [
-        {
-            "category": node.category,
-            "instance": node.instance,
-            "object_id": graph.nodes[node]["object_id"],
-            "minor": graph.nodes[node]["minor"],
-        }
-        for node in nodes
-    ]
-    return {
-        **layout_to_dict(layout),
-        **_kept(parts, layout),
-        "problems": list(looked.problems),
-        "spots": [_spot(spot, usable) for spot, usable in looked.spots],
-        "graph": {"nodes": shown, "edges": edges_of(graph, places)},
-    }
-
-
-def _spot(spot: Spot, usable: bool) -> Json:
-    return {
-        "object_id": spot.object_id,
-        "affordance": spot.affordance,
-        "point": [round(value, 4) for value in spot.point],
-        "normal": [round(value, 4) for value in spot.normal],
-        "facing": round(spot.facing, 4),
-        "standing": [round(value, 4) for value in spot.standing],
-        "approach": round(spot.approach, 4),
-        "height": spot.height,
-        "usable": usable,
-    }
-
-
-def _matched(index: LayoutIndex, match: LayoutMatch, places: dict[Furniture, int]) -> Json:
-    return {
-        "layout_id": match.layout_id,
-        "room_type": index.layout(match.layout_id).room_type,
-        "distance": match.distance,
-        "exact": match.exact,
-        "lower_bound": match.lower_bound,
-        "mapping": [
-            {
-                "node": places[node],
-                "category": node.category,
-                "instance": node.instance,
-                "object_id": name,
-                "level": level,
-            }
-            for node, name, level in sorted(match.mapping, key=lambda entry: places[entry[0]])
-        ],
-        "missing": sorted(places[node] for node in match.missing),
-        "extra": list(match.extra),
-    }

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from fastapi import APIRouter
 
-from planner_service.llm.choosing import load_model
-from planner_service.parts import PartsDep
+from planner_service.errors import Unavailable
+from planner_service.parts import Parts, PartsDep
 from planner_service.schemas.long_scripts import LongScriptAsk
 from planner_service.scripts.events import clean
 from planner_service.scripts.keyframe import LongScript
@@ -17,7 +20,7 @@ router = APIRouter(prefix="/v1/long-scripts", tags=["long scripts"])
 @router.post("", response_model=LongScript)
 def compose(ask: LongScriptAsk, parts: PartsDep) -> LongScript:
     """Plan a theme: its events, the short scripts chosen for them, and every keyframe. Nothing is stored."""
-    studio = Studio(parts.shelves, load_model(parts.settings.llm_model))
+    studio = Studio(parts.shelves, parts.model, parts.settings.llm_on_failure == "error")
     request = StoryRequest(
         theme=clean(ask.theme),
         rooms=tuple(ask.rooms),
@@ -25,4 +28,19 @@ def compose(ask: LongScriptAsk, parts: PartsDep) -> LongScript:
         method=ask.method,
         seed=ask.seed,
     )
-    return studio.script(request)
+    with waiting_for_model(parts):
+        return studio.for_story(request.seed).script(request)
+
+
+@contextmanager
+def waiting_for_model(parts: Parts) -> Iterator[None]:
+    """One of the few places of those who wait for a language model. Unavailable when all are taken."""
+    if parts.model is None:
+        yield
+        return
+    if not parts.planning.acquire(blocking=False):
+        raise Unavailable("the language model is busy with other requests; ask again", retry_after=5)
+    try:
+        yield
+    finally:
+        parts.planning.release()

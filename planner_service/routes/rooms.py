@@ -8,7 +8,8 @@ from typing import Final
 from planner_service.errors import Unprocessable
 from planner_service.schemas.layouts import LayoutAsk
 from planner_service.schemas.stories import Json
-from scene_graphs.homes import Home, home_from_dict
+from scene_graphs.home_rows import home_from_dict
+from scene_graphs.homes import Home
 from scene_graphs.layouts import Layout, LayoutError, layout_from_dict
 
 _BODY: Final = "body"

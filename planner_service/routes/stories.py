@@ -24,7 +24,8 @@ from planner_service.scripts.events import clean
 from planner_service.store.jobs import state_of
 from planner_service.store.stories import Record, Stories, StoryGone
 from planner_service.stories import StoryRequest
-from scene_graphs.homes import Home, home_from_dict
+from scene_graphs.home_rows import home_from_dict
+from scene_graphs.homes import Home
 from scene_graphs.layouts import Layout
 
 router = APIRouter(prefix="/v1/stories", tags=["stories"])

@@ -7,9 +7,11 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from planner_service.schemas.layout_graphs import GraphAsk, GraphNode
-from planner_service.schemas.stories import Ask
+from planner_service.schemas.stories import Ask, SubstitutionShown
 from scene_graphs.fields import FARTHEST
+from scene_graphs.homes import MOST_ROOMS
 from scene_graphs.layouts import LARGEST, LOWEST, MOST_CORNERS, MOST_OBJECTS, MOST_TAGS, SMALLEST
+from scene_graphs.solids import MOST_PARTS, ROLES
 
 Affordance = Literal["sit", "lie", "touch"]
 Name = Annotated[str, Field(min_length=1, max_length=200)]
@@ -19,6 +21,7 @@ Point2 = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
 Point3 = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
 Size3 = Annotated[list[Length], Field(min_length=3, max_length=3)]
 MOST_OPENINGS = 100
+Box = Annotated[list[str | Point3], Field(min_length=3, max_length=3)]
 EXAMPLE: dict[str, Any] = {
     "id": "my-nook",
     "room_type": "study",
@@ -51,6 +54,12 @@ class Piece(Ask):
     yaw: float = Field(0.0, ge=-100, le=100, description="Radians about +Y, counter-clockwise from above; 0 faces +Z.")
     parent: Name | None = Field(None, description="The object it stands on.")
     mesh: Name | None = Field(None, description="A name of the maker's for its shape; kept, not used.")
+    shape: list[Box] | None = Field(
+        None,
+        max_length=MOST_PARTS,
+        description="Solid boxes it is made of, each [role, low, high] in its own frame (origin at the bottom centre, "
+        f"front +z), with a role of {', '.join(sorted(ROLES))}; left out: the usual form of its category.",
+    )
 
 
 class LayoutAsk(Ask):
@@ -77,6 +86,7 @@ class LayoutLinks(BaseModel):
 
     self: str
     scene: str = Field(description="The room as GLB.")
+    drawing: str = Field(description="The room from above, as SVG.")
 
 
 class LayoutSummary(BaseModel):
@@ -141,6 +151,31 @@ class LayoutShown(LayoutAsk):
     links: LayoutLinks
 
 
+class Dropped(BaseModel):
+    """Things of a file that were left out for one reason."""
+
+    why: str
+    count: int
+    examples: list[str] = Field(description="The first few of them, by name.")
+
+
+class ImportReport(BaseModel):
+    """What a reader made of a file."""
+
+    rooms: int
+    objects: dict[str, int] = Field(description="What was kept, by category.")
+    dropped: list[Dropped] = Field(description="What was left out and why, the most frequent reason first.")
+    estimated: dict[str, int] = Field(description="How often something was guessed that the file does not say.")
+
+
+class LayoutsImported(BaseModel):
+    """The rooms that a file held, now in the library, and what was kept, dropped and guessed."""
+
+    items: list[LayoutSummary]
+    problems: dict[str, list[str]] = Field(description="By room: what is wrong with it, where anything is.")
+    report: ImportReport
+
+
 class RetrieveAsk(Ask):
     """The furniture that is needed, and in which kinds of room it is looked for."""
 
@@ -160,10 +195,11 @@ class RetrieveAsk(Ask):
     )
 
     graph: GraphAsk
-    k: int = Field(5, ge=1, le=50, description="How many rooms at most.")
+    k: int = Field(5, ge=1, le=50, description="How many rooms, or homes, at most.")
     rooms: list[Annotated[str, Field(min_length=1, max_length=60)]] = Field(
         [], max_length=4, description="Room types; empty: any."
     )
+    max_rooms: int = Field(1, ge=1, le=MOST_ROOMS, description="Above 1, homes of one to so many rooms are looked for.")
 
 
 class MappedPiece(BaseModel):
@@ -172,24 +208,72 @@ class MappedPiece(BaseModel):
     node: int = Field(description="Place in the query's `nodes`.")
     category: str
     instance: int
-    object_id: str
+    object_id: str = Field(description='The room\'s; in a home "place in `rooms`/object".')
+    given: str = Field(description="The category of that object.")
     level: Literal["same", "class", "group"] = Field(description="How near it is to what was asked for.")
+    cost: int
 
 
-class LayoutMatch(BaseModel):
-    """How well one room has what was asked for (SIMS 3.2)."""
+class MissingPiece(BaseModel):
+    """Why nothing stands for a node of the query."""
+
+    node: int = Field(description="Place in the query's `nodes`.")
+    why: Literal["absent", "unfit", "taken", "spare"] = Field(
+        description="Nothing of its group is there; what is there cannot be used so; all that could is used already; "
+        "or something could, but the search ended before it was tried."
+    )
+    nearest: str | None = Field(description="The category of what came nearest.")
+    unmet: list[Affordance] = Field(description="What cannot be done there.")
+
+
+class CostSplit(BaseModel):
+    """What a distance is made of; the sum is the distance."""
+
+    substitutions: int
+    missing: int
+    extra: int = Field(description="For furniture that the query does not use.")
+    lost_relations: int
+    extra_relations: int
+    more_rooms: int
+
+
+class Match(BaseModel):
+    """How well something has what was asked for (SIMS 3.2), and why."""
+
+    distance: int = Field(description="Simplified graph edit distance; 0: exactly this.")
+    exact: bool = Field(description="Whether distance and rank are proven; of several rooms: that none are nearer.")
+    lower_bound: int
+    mapping: list[MappedPiece]
+    substitutions: list[SubstitutionShown] = Field(description="Where something else than asked stands in.")
+    missing: list[int] = Field(description="Places in the query's `nodes` of what is lacking.")
+    reasons: list[MissingPiece] = Field(description="Why each of those is.")
+    extra: list[str] = Field(description="Ids of objects that the query does not use.")
+    lost: list[tuple[int, int]] = Field(description="Edges of the query whose pieces do not stand near each other.")
+    costs: CostSplit
+    explanation: list[str] = Field(description="All of this in plain English.")
+
+
+class LayoutMatch(Match):
+    """How well one room has what was asked for."""
 
     layout_id: str
     room_type: str
-    distance: int = Field(description="Simplified graph edit distance; 0: exactly this.")
-    exact: bool = Field(description="Whether distance and rank are proven.")
-    lower_bound: int
-    mapping: list[MappedPiece]
-    missing: list[int] = Field(description="Places in the query's `nodes` of what the room lacks.")
-    extra: list[str] = Field(description="Ids of objects that the query does not use.")
+
+
+class MatchedRoom(BaseModel):
+    """A room of a home."""
+
+    layout_id: str
+    room_type: str
+
+
+class HomeMatch(Match):
+    """How well one room or several together have what was asked for."""
+
+    rooms: list[MatchedRoom]
 
 
 class LayoutMatches(BaseModel):
-    """The nearest rooms, nearest first."""
+    """The nearest rooms, nearest first; homes if more than one room was allowed."""
 
-    matches: list[LayoutMatch]
+    matches: list[LayoutMatch | HomeMatch]

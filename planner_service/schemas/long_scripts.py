@@ -6,10 +6,10 @@ from typing import Literal
 
 from pydantic import ConfigDict, Field
 
-from planner_service.furnish import MOST_ROOMS
 from planner_service.schemas.stories import Ask, RoomType, Seed
 from planner_service.scripts.composing import MOST
 from planner_service.scripts.events import LONGEST
+from scene_graphs.homes import MOST_ROOMS
 
 
 class LongScriptAsk(Ask):

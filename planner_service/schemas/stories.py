@@ -8,11 +8,11 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from motion_backend.motion import Skill
-from planner_service.furnish import MOST_ROOMS
 from planner_service.scripts.composing import MOST
 from planner_service.scripts.events import LONGEST
 from planner_service.scripts.keyframe import Event, Keyframe
 from planner_service.stories import LARGEST_SEED, LEAST_HEIGHT, LONGEST_NAME, MOST_HEIGHT
+from scene_graphs.homes import MOST_ROOMS
 
 State = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 Stage = Literal["plan", "furnish", "narrate", "act", "move", "judge", "film"]
@@ -159,6 +159,22 @@ class SubstitutionShown(BaseModel):
     level: str = Field(description="How near: same, class, group or, at last, affordance.")
 
 
+class StandingShown(BaseModel):
+    """Where a piece of furniture stands, in its room's own frame."""
+
+    position: tuple[float, float, float]
+    yaw: float
+
+
+class PullShown(BaseModel):
+    """A chair that stands pulled out from the start, since nobody could sit on it where the room had it."""
+
+    object_id: str = Field(description="As in the room's own layout.")
+    from_: StandingShown = Field(alias="from")
+    to: StandingShown
+    distance: float = Field(description="Metres.")
+
+
 class RoomShown(BaseModel):
     """A room of the home and how well it fits."""
 
@@ -168,6 +184,7 @@ class RoomShown(BaseModel):
     exact: bool
     substitutions: list[SubstitutionShown]
     missing: list[str]
+    pulled_out: list[PullShown] = []
 
 
 class HomeShown(BaseModel):

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import cos, sin
 from typing import Any
 
 import numpy as np
@@ -26,8 +27,10 @@ LAST_HOLD = 1.5
 """Seconds more for the last keyframe."""
 PACING = 1.5
 """A wandering walk goes at least this far, where the room allows it (metres)."""
-STEP = 0.35
-"""From free floor to a standing point is at most one step (metres)."""
+WALLED = 0.08
+"""How far a point of furniture may lie in the wall of its room (metres)."""
+STEP = 0.40
+"""From free floor to a standing point is at most one step: what a room's check allows, and half a cell (metres)."""
 Point = tuple[float, float]
 
 
@@ -96,15 +99,20 @@ class _Stage:
             # Fronts before tops of what is taller than the chest: an arm does not go over an edge by itself.
             found = [s for s in found if s.normal[1] < 0.5 or s.point[1] < 1.2] or found
             if wanted == "high":
+                found = self._roomiest(found)
                 found.sort(key=lambda s: -s.point[1])
                 found = [s for s in found if s.point[1] > found[0].point[1] - 0.1]
             least = min(self._cluttered(s) for s in found)
             found = [s for s in found if self._cluttered(s) == least]
-            room = [self._elbow_room(s) for s in found]
             # The body may come back to a piece: it need not touch the very same place again.
-            found = [s for s, space in zip(found, room, strict=True) if space >= max(room) - 0.03]
+            found = self._roomiest(found)
             return found[int(self.rng.integers(min(len(found), 3)))]
         return found[0]
+
+    def _roomiest(self, found: list[Spot]) -> list[Spot]:
+        """Those with as much elbow room as any."""
+        room = [self._elbow_room(s) for s in found]
+        return [s for s, space in zip(found, room, strict=True) if space >= max(room) - 0.03]
 
     def _elbow_room(self, spot: Spot) -> float:
         """Clearance where a body stands and, since it may crouch, a step behind; more than enough counts alike."""
@@ -122,6 +130,7 @@ class _Stage:
             found.sort(
                 key=lambda s: (
                     self._cluttered(s),
+                    _scoots(s),
                     round(float(np.hypot(s.standing[0] - start[0], s.standing[1] - start[1])), 1),
                 )
             )
@@ -195,8 +204,20 @@ class _Stage:
 
 
 def can_stand(walkable: Walkable, start: Point, spot: Spot) -> bool:
-    """Whether the standing point of a spot is nearly free and can be walked to."""
-    return walkable.nearest_free(spot.standing, within=STEP) is not None and walkable.reachable(start, spot.standing)
+    """Whether a spot's standing point is nearly free, can be walked to, and no wall is between the two."""
+    if walkable.nearest_free(spot.standing, within=STEP) is None or not walkable.reachable(start, spot.standing):
+        return False
+    # Furniture may stand a little into its own wall; the next room's wall is farther from it than that.
+    goal, here = np.array(spot.point)[[0, 2]], np.array(spot.standing)
+    way = goal - here
+    length = float(np.hypot(*way))
+    return walkable.sees(spot.standing, tuple(here + way * max(1.0 - WALLED / max(length, WALLED), 0.0)))
+
+
+def _scoots(spot: Spot) -> float:
+    """How far along a bed one moves between sitting down on its edge and lying (metres)."""
+    (x, _, z), (stand_x, stand_z) = spot.point, spot.standing
+    return round(abs((stand_x - x) * sin(spot.facing) + (stand_z - z) * cos(spot.facing)), 1)
 
 
 def height_of(caption: str) -> str:

@@ -65,27 +65,35 @@ class _Record:
 
     planners: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    insist: bool = False
 
     @property
     def planner(self) -> str:
         return ", ".join(dict.fromkeys(self.planners))
 
     def failed(self, doing: str, error: ModelError) -> None:
+        if self.insist:
+            raise error
         self.notes.append(f"{doing} by rules: {error}")
 
 
 def compose(
-    theme: str, library: ScriptLibrary, request: Request | None = None, model: LanguageModel | None = None
+    theme: str,
+    library: ScriptLibrary,
+    request: Request | None = None,
+    model: LanguageModel | None = None,
+    insist: bool = False,
 ) -> LongScript:
     """The long script of a theme, checked and repaired; `planner` names who planned it.
 
     A model finds the events and arranges what was retrieved for them ("matching": it never writes keyframes), or
-    writes the keyframes itself ("direct"). Where it gives no usable answer the rules take over and `repairs` says why.
+    writes the keyframes itself ("direct"). Where it gives no usable answer the rules take over and `repairs`
+    says why; with `insist` its ModelError is raised instead.
     Raises ThemeError when no event of the theme is understood.
     """
     request = request or Request()
     by_rules = clauses_of(theme)
-    record = _Record()
+    record = _Record(insist=insist)
     if request.method == "direct":
         return _direct(theme, by_rules, model, request, record)
     clauses = grouped(_events(theme, by_rules, model, record), request.short_scripts or MOST)

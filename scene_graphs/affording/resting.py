@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import atan2, inf
 
-from scene_graphs.affording.spot import FORWARD, REACH_AHEAD, Spot, ahead, dot, extent, to_world, wrap
+from scene_graphs.affording.spot import FORWARD, REACH_AHEAD, Spot, ahead, dot, extent, to_world
 from scene_graphs.forms import Part, form_of
 from scene_graphs.layouts import Placed, Point2, Point3
+from scene_graphs.placed import wrap
 
 EDGE = 0.33
 """How far behind a seat's front edge the pelvis comes to rest, depth permitting."""
@@ -15,11 +16,16 @@ TORSO = 0.16
 """Least distance of a seated pelvis to the backrest plane."""
 BESIDE_BED = 0.12
 """Distance of the standing pelvis from the edge of what it will lie on: near enough to sit down on it first."""
+ALONG_BED = (0.0, -0.3, 0.3, -0.6)
+"""How much nearer to the head than one lies one may sit down first, where something stands beside a bed, in metres."""
+SEAT_END = 0.2
+"""Least distance of the one who sits there to the end of the bed."""
 SIT_HEIGHTS = (0.28, 0.68)
 LIE_HEIGHTS = (0.18, 0.80)
-TO_HEAD, TO_FOOT, SHORTEST = 0.85, 0.95, 1.60
+TO_HEAD, TO_FOOT, SHORTEST = 0.85, 0.95, 1.55
 _LOW_TABLES = frozenset({"coffee_table", "pedestal_table", "table"})
 _UP = (0.0, 1.0, 0.0)
+_AROUND = [FORWARD, (1.0, 0.0), (-1.0, 0.0), (0.0, -1.0)]
 Room = tuple[Point3, Point3]
 """Opposite corners of a box in a piece's frame."""
 
@@ -58,15 +64,22 @@ def lying(placed: Placed, solid: list[Part]) -> Iterator[Spot]:
         if not LIE_HEIGHTS[0] <= placed.position[1] + bed.top <= LIE_HEIGHTS[1]:
             continue
         if bed.size[2] >= SHORTEST and bed.size[0] >= 0.5:
-            for u in ((1.0, 0.0), (-1.0, 0.0)):
-                yield from _lying_along(placed, solid, bed, u, (0.0, -1.0))
+            ways = [(u, (0.0, -1.0)) for u in ((1.0, 0.0), (-1.0, 0.0))]
         elif bed.size[0] >= SHORTEST and bed.size[2] >= 0.5:
-            for head in ((-1.0, 0.0), (1.0, 0.0)):
-                yield from _lying_along(placed, solid, bed, FORWARD, head)
+            ways = [(FORWARD, head) for head in ((-1.0, 0.0), (1.0, 0.0))]
+        else:
+            continue
+        for shift in ALONG_BED:
+            for u, head in ways:
+                yield from _lying_along(placed, solid, bed, (u, head), shift)
 
 
-def _lying_along(placed: Placed, solid: list[Part], bed: Part, u: Point2, head: Point2) -> Iterator[Spot]:
-    """The spot reached from the edge in direction u, with the head towards `head`; none where the legs would cut."""
+def _lying_along(
+    placed: Placed, solid: list[Part], bed: Part, way: tuple[Point2, Point2], shift: float
+) -> Iterator[Spot]:
+    """The spot reached from the edge in direction u, the head towards `head`, sitting down `shift` nearer to the head
+    than one lies; none where the legs would cut or the bed ends."""
+    u, head = way
     length, width = extent(bed, head), extent(bed, u)
     spare = length - TO_HEAD - TO_FOOT
     back = TO_HEAD + min(0.25 * spare, 0.1) if spare >= 0 else TO_HEAD * length / (TO_HEAD + TO_FOOT)
@@ -74,22 +87,34 @@ def _lying_along(placed: Placed, solid: list[Part], bed: Part, u: Point2, head: 
     along, sideways = length / 2 - back, width / 2 - edge
     x, z = (bed.center[axis] + head[axis // 2] * along + u[axis // 2] * sideways for axis in (0, 2))
     local = (x, bed.top, z)
-    if _cuts(solid, bed, _legs_room(ahead(local, u, edge - EDGE), u, EDGE)):
+    seat = ahead(ahead(local, head, shift), u, edge - EDGE)
+    if abs(along + shift) > length / 2 - SEAT_END or _cuts(solid, bed, _legs_room(seat, u, EDGE)):
         return
-    standing = to_world(placed, ahead(local, u, edge + BESIDE_BED))
+    standing = to_world(placed, ahead(seat, u, EDGE + BESIDE_BED))
     facing, approach = (wrap(placed.yaw + atan2(*direction)) for direction in (head, u))
     stand, point = (standing[0], standing[2]), to_world(placed, local)
     yield Spot("lie", placed.id, point, _UP, facing, stand, approach, edge, back, length - back)
 
 
 def _directions(seat: Part, solid: list[Part]) -> list[Point2]:
-    """Edges to sit on: the long sides of a bed and its foot; only the front of a chair or sofa; all round a stool."""
-    has_arms, has_back = (any(part.role == role for part in solid) for role in ("arm", "back"))
-    if seat.role == "mattress" or (seat.size[2] > 1.2 and not has_arms):
+    """Edges to sit on: the long sides of a bed and its foot; away from the back of a chair or of each wing of a sofa;
+    all round a stool."""
+    has_arms, backs = any(part.role == "arm" for part in solid), [part for part in solid if part.role == "back"]
+    if seat.role == "mattress" or (seat.size[2] > 1.2 and not (has_arms or _is_backed(seat, backs, (1.0, 0.0)))):
         return [(1.0, 0.0), (-1.0, 0.0), FORWARD]
-    if has_arms or has_back:
-        return [FORWARD]
-    return [FORWARD, (1.0, 0.0), (-1.0, 0.0), (0.0, -1.0)]
+    if has_arms or backs:
+        return [u for u in _AROUND if _is_backed(seat, backs, u) and not _is_shut(seat, solid, u)] or [FORWARD]
+    return _AROUND
+
+
+def _is_backed(seat: Part, backs: list[Part], u: Point2) -> bool:
+    """Whether there is a back behind one who sits on the seat looking to u."""
+    return _backrest(seat, backs, u) < inf
+
+
+def _is_shut(seat: Part, solid: list[Part], u: Point2) -> bool:
+    """Whether something rises right at the edge in direction u."""
+    return _backrest(seat, solid, (-u[0], -u[1])) < extent(seat, u) + REACH_AHEAD
 
 
 def _backrest(seat: Part, solid: list[Part], u: Point2) -> float:

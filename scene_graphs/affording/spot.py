@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, pi
+from math import cos, inf, sin
 
 from scene_graphs.forms import Part
 from scene_graphs.layouts import Placed, Point2, Point3
@@ -64,10 +64,10 @@ def plan_distance(part: Part, point: Point3) -> float:
 
 def to_world(placed: Placed, local: Point3) -> Point3:
     """A point of the piece's own frame in the frame it is placed in."""
-    x, y, z = placed.to_world(local).tolist()
-    return (x, y, z)
-
-
-def wrap(yaw: float) -> float:
-    """The same angle in [-pi, pi)."""
-    return (yaw + pi) % (2 * pi) - pi
+    x, y, z = local
+    turn, straight = sin(placed.yaw), cos(placed.yaw)
+    return (
+        straight * x + turn * z + placed.position[0],
+        y + placed.position[1],
+        -turn * x + straight * z + placed.position[2],
+    )

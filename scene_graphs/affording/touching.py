@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import atan2
 
-from scene_graphs.affording.spot import FORWARD, Spot, ahead, dot, extent, plan_distance, to_world, wrap
+from scene_graphs.affording.spot import FORWARD, Spot, ahead, dot, extent, plan_distance, to_world
 from scene_graphs.forms import Part
 from scene_graphs.layouts import Placed, Point2, Point3
+from scene_graphs.placed import wrap
 
 TOUCH_HEIGHTS = {"medium": (0.68, 1.0, 1.15), "low": (0.30, 0.45, 0.55), "high": (1.38, 1.55, 1.68)}
 """Least, wanted and greatest height above the floor of a touched point."""

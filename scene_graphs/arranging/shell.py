@@ -1,18 +1,28 @@
-"""An empty rectangular room: walls, doors and windows."""
+"""An empty room with straight corners: walls, doors and windows."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from math import cos, pi, sin
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from math import atan2, cos, hypot, inf, sin
 
 import numpy as np
+import shapely
 
+from scene_graphs.arranging.rectangle import Rectangle
 from scene_graphs.layouts import Opening, Point2
 
 DOOR_WIDTH = 0.9
 DOOR_TOP = 2.05
+WINDOW = (0.9, 2.1)
+"""Heights between which a window opens the wall."""
+NARROWEST = 2.3
+"""Neither wing of an L-shaped room is narrower, in metres."""
 _FROM_CORNER = 0.25
+_DOOR_WALL, _WINDOW_WALL = 1.6, 1.9
+"""Walls shorter than this have no door, no window."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +34,9 @@ class Side:
     """Middle of the wall on the floor, [x, z]."""
     length: float
     reach: float
-    """Distance to the opposite wall."""
+    """Distance from the middle to the wall opposite."""
+    corners: tuple[bool, bool]
+    """Whether the wall ends (at its -x, at its +x) in a corner of the room, and not where the room turns outward."""
 
     def at(self, along: float, away: float) -> Point2:
         """The point `along` the wall from its middle and `away` from it into the room."""
@@ -36,68 +48,143 @@ class Side:
         """Where a point lies along the wall, from its middle."""
         return (point[0] - self.center[0]) * cos(self.yaw) - (point[1] - self.center[1]) * sin(self.yaw)
 
+    def away(self, point: Point2) -> float:
+        """How far a point lies from the wall's line, into the room."""
+        return (point[0] - self.center[0]) * sin(self.yaw) + (point[1] - self.center[1]) * cos(self.yaw)
+
 
 @dataclass(frozen=True)
 class Shell:
-    """A rectangular room centred on the origin, width along x and depth along z."""
+    """A room whose walls run along x and z, with its doors and windows."""
 
-    width: float
-    depth: float
+    outline: tuple[Point2, ...]
+    """The corners, counter-clockwise seen from above."""
     height: float
     doors: tuple[tuple[int, float], ...] = ()
     """(index of the side, position of the middle along it)."""
     windows: tuple[tuple[int, float, float], ...] = ()
     """(index of the side, position of the middle along it, width)."""
 
-    @property
-    def sides(self) -> tuple[Side, Side, Side, Side]:
-        """The walls at -z, -x, +z and +x, so that neighbours and opposites are one and two indices apart."""
-        w, d = self.width, self.depth
-        return (
-            Side(0.0, (0.0, -d / 2), w, d),
-            Side(pi / 2, (-w / 2, 0.0), d, w),
-            Side(pi, (0.0, d / 2), w, d),
-            Side(-pi / 2, (w / 2, 0.0), d, w),
-        )
+    @cached_property
+    def sides(self) -> tuple[Side, ...]:
+        """The walls in the order of the outline; side i runs from corner i to corner i + 1."""
+        count = len(self.outline)
+        turns = [
+            _turns_inward(self.outline[i - 1], self.outline[i], self.outline[(i + 1) % count]) for i in range(count)
+        ]
+        return tuple(self._side(i, (turns[(i + 1) % count], turns[i])) for i in range(count))
 
-    @property
-    def outline(self) -> tuple[Point2, ...]:
-        """The corners, counter-clockwise seen from above."""
-        x, z = self.width / 2, self.depth / 2
-        return ((-x, -z), (-x, z), (x, z), (x, -z))
+    @cached_property
+    def floor(self) -> Rectangle:
+        """The upright rectangle around the outline."""
+        xs, zs = zip(*self.outline, strict=True)
+        (x0, x1), (z0, z1) = (min(xs), max(xs)), (min(zs), max(zs))
+        return Rectangle((x0 + x1) / 2, (z0 + z1) / 2, (x1 - x0) / 2, (z1 - z0) / 2)
+
+    @cached_property
+    def outside(self) -> tuple[Rectangle, ...]:
+        """Rectangles that fill what of `floor` lies outside the outline."""
+        xs, zs = (sorted(set(values)) for values in zip(*self.outline, strict=True))
+        room = shapely.Polygon(self.outline)
+        cells = [
+            Rectangle((x0 + x1) / 2, (z0 + z1) / 2, (x1 - x0) / 2, (z1 - z0) / 2)
+            for x0, x1 in pairwise(xs)
+            for z0, z1 in pairwise(zs)
+        ]
+        return tuple(cell for cell in cells if not room.contains(shapely.Point(cell.x, cell.z)))
+
+    def holds(self, piece: Rectangle, margin: float = 0.005) -> bool:
+        """Whether a rectangle lies inside the walls, or reaches into them by no more than the margin."""
+        room = self.floor
+        return all(
+            abs(x - room.x) <= room.half_width + margin and abs(z - room.z) <= room.half_depth + margin
+            for x, z in piece.corners
+        ) and not any(piece.meets(cell, -margin) for cell in self.outside)
 
     def door_openings(self) -> tuple[Opening, ...]:
         """The doors as openings on the outline."""
-        return tuple(self._opening(side, along, DOOR_WIDTH, 0.0, DOOR_TOP) for side, along in self.doors)
+        return tuple(self._opening(side, along, DOOR_WIDTH, (0.0, DOOR_TOP)) for side, along in self.doors)
 
     def window_openings(self) -> tuple[Opening, ...]:
         """The windows as openings on the outline."""
-        return tuple(self._opening(side, along, width, 0.9, 2.1) for side, along, width in self.windows)
+        return tuple(self._opening(side, along, width, WINDOW) for side, along, width in self.windows)
 
     def spans(self, side: int) -> list[tuple[float, float]]:
         """Stretches of a wall that doors and windows take up, from its middle."""
         doors = [(along - DOOR_WIDTH / 2, along + DOOR_WIDTH / 2) for index, along in self.doors if index == side]
         return doors + [(along - w / 2, along + w / 2) for index, along, w in self.windows if index == side]
 
-    def _opening(self, side: int, along: float, width: float, bottom: float, top: float) -> Opening:
+    def _side(self, index: int, corners: tuple[bool, bool]) -> Side:
+        (ax, az), (bx, bz) = self.outline[index], self.outline[(index + 1) % len(self.outline)]
+        length, middle = hypot(bx - ax, bz - az), ((ax + bx) / 2, (az + bz) / 2)
+        inward = ((bz - az) / length, (ax - bx) / length)
+        return Side(atan2(*inward), middle, length, self._reach(middle, inward), corners)
+
+    def _reach(self, start: Point2, direction: Point2) -> float:
+        """Distance from a point straight on to the next wall that crosses the way."""
+        nearest = inf
+        for a, b in pairwise((*self.outline, self.outline[0])):
+            ahead, beside = (
+                [(x - start[0]) * u + (z - start[1]) * v for x, z in (a, b)]
+                for u, v in (direction, (direction[1], -direction[0]))
+            )
+            if min(ahead) > 1e-6 and min(beside) <= 0.0 < max(beside):
+                nearest = min(nearest, *ahead)
+        return nearest
+
+    def _opening(self, side: int, along: float, width: float, heights: tuple[float, float]) -> Opening:
         wall = self.sides[side]
         start, end = (_tidy(wall.at(along + half, 0.0)) for half in (-width / 2, width / 2))
-        return Opening((start, end), bottom, top)
+        return Opening((start, end), *heights)
 
 
-def build_shell(rng: np.random.Generator, least: Sequence[float], most: Sequence[float]) -> Shell:
-    """A room of random size (metres, to 5 cm) with one or two doors on different walls and one or two windows."""
-    width, depth = (round(float(rng.uniform(low, high)) * 20) / 20 for low, high in zip(least, most, strict=True))
-    empty = Shell(width, depth, round(float(rng.uniform(2.55, 2.85)), 2))
-    order = [int(side) for side in rng.permutation(4)]
-    doors = [(side, _door_place(rng, empty.sides[side].length)) for side in order[: 1 + int(rng.random() < 0.45)]]
+def build_shell(rng: np.random.Generator, area: float, is_l_shaped: bool = False) -> Shell:
+    """A room of about that floor (square metres; its walls to 5 cm), with one or two doors and one or two windows.
+
+    An L-shaped room is a rectangle without one corner; where that would leave a narrow wing it stays a rectangle.
+    """
+    # What is cut off is made up for: the rectangle around an L is larger.
+    stretch = float(rng.uniform(0.8, 1.25))
+    cut = (float(rng.uniform(0.3, 0.5)), float(rng.uniform(0.3, 0.5))) if is_l_shaped else (0.0, 0.0)
+    whole = area / (1 - cut[0] * cut[1])
+    width, depth = (max(_to_step(side), 2.6) for side in (stretch * whole**0.5, whole**0.5 / stretch))
+    notch = tuple(
+        min(_to_step(part * side), _to_step(side - NARROWEST)) for part, side in zip(cut, (width, depth), strict=True)
+    )
+    outline = _outline(width, depth, (notch[0], notch[1]), int(rng.integers(4)))
+    empty = Shell(outline, round(float(rng.uniform(2.55, 2.85)), 2))
+    order = [int(side) for side in rng.permutation(len(empty.sides))]
+    doors = [
+        (side, _door_place(rng, empty.sides[side].length)) for side in order if empty.sides[side].length >= _DOOR_WALL
+    ][: 1 + int(rng.random() < 0.45)]
+    free = [side for side in order if side not in dict(doors) and empty.sides[side].length >= _WINDOW_WALL]
     windows = []
-    for side in order[2 : 3 + int(rng.random() < 0.5)]:
+    for side in free[: 1 + int(rng.random() < 0.5)]:
         length = empty.sides[side].length
         wide = round(min(float(rng.uniform(1.1, 1.9)), 0.5 * length), 2)
-        slack = length / 2 - wide / 2 - 0.5
+        slack = length / 2 - wide / 2 - 0.3
         windows.append((side, round(float(rng.uniform(-slack, slack)) * 0.6, 2), wide))
-    return Shell(width, depth, empty.height, tuple(doors), tuple(windows))
+    return replace(empty, doors=tuple(doors), windows=tuple(windows))
+
+
+def _outline(width: float, depth: float, notch: Sequence[float], corner: int) -> tuple[Point2, ...]:
+    """A rectangle centred on the origin without a notch at one of its corners; too small a notch is left in place."""
+    x, z = width / 2, depth / 2
+    corners = [(-x, -z), (-x, z), (x, z), (x, -z)]
+    if min(notch) < 0.8:
+        return tuple(corners)
+    cx, cz = corners[corner]
+    nx, nz = cx - notch[0] * (1 if cx > 0 else -1), cz - notch[1] * (1 if cz > 0 else -1)
+    inner = [(cx, nz), (nx, nz), (nx, cz)]
+    # Going round, the wall before corners 0 and 2 runs along x, so there the notch is entered along x first.
+    corners[corner : corner + 1] = inner if corner in (1, 3) else inner[::-1]
+    return tuple((round(a, 3), round(b, 3)) for a, b in corners)
+
+
+def _turns_inward(before: Point2, here: Point2, after: Point2) -> bool:
+    """Whether a corner is one of the room's own (90 degrees inside), and not one around which the room lies."""
+    cross = (here[0] - before[0]) * (after[1] - here[1]) - (here[1] - before[1]) * (after[0] - here[0])
+    return cross < 0
 
 
 def _door_place(rng: np.random.Generator, length: float) -> float:
@@ -105,6 +192,10 @@ def _door_place(rng: np.random.Generator, length: float) -> float:
     slack = length / 2 - DOOR_WIDTH / 2 - _FROM_CORNER
     side = 1.0 if rng.random() < 0.5 else -1.0
     return round(side * slack * float(rng.uniform(0.55, 1.0)), 2)
+
+
+def _to_step(length: float) -> float:
+    return round(length * 20) / 20
 
 
 def _tidy(point: Point2) -> Point2:

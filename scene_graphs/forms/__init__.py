@@ -6,10 +6,10 @@ from collections.abc import Callable
 from functools import lru_cache
 
 from scene_graphs.forms import decor, resting, standing
-from scene_graphs.forms.solids import SOFT_ROLES, Part, inside
-from scene_graphs.layouts import Point3
+from scene_graphs.placed import Placed
+from scene_graphs.solids import SOFT_ROLES, Part, Point3, inside
 
-__all__ = ["FORMS", "SOFT_ROLES", "Part", "form_of", "parts"]
+__all__ = ["FORMS", "SOFT_ROLES", "Part", "form_of", "parts", "parts_of"]
 
 Form = Callable[[float, float, float], list[Part]]
 
@@ -54,6 +54,11 @@ FORMS: dict[str, Form] = {category: form for form, members in _MEMBERS for categ
 def form_of(category: str) -> str:
     """The name of the form a category has: "chair", "sofa", "bed", "table", ..., "panel" if it has none."""
     return FORMS.get(category, standing.panel).__name__
+
+
+def parts_of(placed: Placed) -> tuple[Part, ...]:
+    """The boxes of an object, in its own frame: those measured from its mesh, or the form of its category."""
+    return placed.shape or parts(placed.category, placed.size)
 
 
 @lru_cache(maxsize=4096)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from scene_graphs.forms.solids import Part, box
+from scene_graphs.solids import Part, box
 
 
 def floor_lamp(w: float, h: float, d: float) -> list[Part]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from scene_graphs.forms.solids import Part, box, ends, legs
+from scene_graphs.solids import Part, box, ends, legs
 
 
 def chair(w: float, h: float, d: float) -> list[Part]:
@@ -105,8 +105,8 @@ def l_shaped_sofa(w: float, h: float, d: float) -> list[Part]:
         box("back", (-free, free), (base, h - 0.08), (-d / 2 + u.frame, seat_back)),
         box("back", (-w / 2, w / 2), (base, h), (-d / 2, -d / 2 + u.frame)),
         *(box("arm", xs, (base, u.arm_top), (-d / 2 + u.frame, front)) for xs in ends(w, u.arm)),
-        *legs(w, 0.07, body, 0.06, 0.05)[2:0:-1],
-        box("leg", (-w / 2 + 0.05, -w / 2 + 0.11), (0, 0.07), (-d / 2 + 0.05, -d / 2 + 0.11)),
+        *(box("leg", xs, (0, 0.07), (-d / 2 + 0.05, -d / 2 + 0.11)) for xs in ends(w - 0.1, 0.06)),
+        box("leg", (-w / 2 + 0.05, -w / 2 + 0.11), (0, 0.07), (front - 0.11, front - 0.05)),
         *(box("leg", (x, x + 0.06), (0, 0.07), (d / 2 - 0.11, d / 2 - 0.05)) for x in (chaise + 0.05, free - 0.11)),
     ]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from scene_graphs.forms.solids import Part, box, ends, legs
+from scene_graphs.solids import Part, box, ends, legs
 
 WORK_HEIGHT = 0.75
 """Above this a desk or dressing table carries something on its back edge, which is no working surface."""

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from scene_graphs.forms import Part, form_of, parts
+from scene_graphs.forms import Part, form_of, parts_of
 from scene_graphs.layouts import Placed
 from scene_graphs.looks import materials as m
 from scene_graphs.looks.canvas import Canvas
@@ -24,7 +24,7 @@ def furniture_meshes(placed: Placed) -> list[Mesh]:
     drawn beyond the parts (blankets, handles, books, leaves) is thin or stays inside the piece's box.
     """
     canvas, form = Canvas(placed), form_of(placed.category)
-    for part in parts(placed.category, placed.size):
+    for part in parts_of(placed):
         _STYLES.get((form, part.role), _STYLES.get(("", part.role), _wooden))(canvas, part)
     return canvas.meshes()
 
@@ -124,9 +124,7 @@ def _carcass(canvas: Canvas, part: Part) -> None:
 def _board(canvas: Canvas, part: Part) -> None:
     """A shelf with books on it, except on the top board."""
     canvas.add(canvas.wood, block(part.low, part.high))
-    above = [
-        other.low[1] for other in parts(canvas.placed.category, canvas.placed.size) if other.low[1] > part.top + 0.05
-    ]
+    above = [other.low[1] for other in parts_of(canvas.placed) if other.low[1] > part.top + 0.05]
     shelves = [y for y in above if y < part.top + 0.6]
     if shelves:
         for material, shapes in books(part, min(shelves) - part.top, canvas.placed).items():

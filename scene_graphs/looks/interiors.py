@@ -150,10 +150,12 @@ def _window(
     ]
     yield _mesh(f"window bars {name}", _FRAME, frame)
     yield _mesh(f"window pane {name}", m.PANE, [side.box((left, right), (low, high), (0.028, 0.036))])
-    rod = side.box((left - 0.3, right + 0.3), (high + 0.1, high + 0.12), (-0.06, -0.04))
+    # Beside a window in a corner there is less room for them.
+    rod_ends = (max(left - 0.3, 0.0), min(right + 0.3, side.length))
+    rod = side.box(rod_ends, (high + 0.1, high + 0.12), (-0.06, -0.04))
     yield _mesh(f"window rod {name}", m.METAL, [rod])
     folds = []
-    for begin in (left - 0.26, right - 0.02):
+    for begin in (max(left - 0.26, 0.0), min(right - 0.02, side.length - 0.284)):
         for fold in range(4):
             x, depth = begin + 0.07 * fold, -0.05 + 0.016 * (fold % 2)
             folds.append(side.box((x, x + 0.074), (low - 0.06, high + 0.11), (depth - 0.014, depth + 0.006)))

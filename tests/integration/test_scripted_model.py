@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import pytest
+from good_model import EVENTS, TEXT, THEME, answer_to, chosen_in
 from pydantic import BaseModel
 
 from motion_backend.motion import Character
@@ -15,31 +15,10 @@ from planner_service.llm.scripted import Answer, ScriptedModel
 from planner_service.shelves import Shelves
 from planner_service.stories import Planned, StoryRequest, Studio
 
-THEME = "Sam reads a book on the sofa, hears bad news on the phone and lies down on the bed in tears."
-EVENTS = ("reads a book on the sofa", "hears bad news on the phone", "lies down on the bed in tears")
-TEXT = (
-    "Sam read the whole morning, and the light moved slowly over the wall. Then the telephone rang. After that there "
-    "was nothing left to do but to lie down and to weep until the evening came."
-)
 
-
-def answer_well(prompt: str, schema: type[BaseModel]) -> Answer:
-    """A model that reads what it is asked: three events, the last script offered for each, a text of its own."""
-    if schema.__name__ == "PlannedEvents":
-        moods = ("relaxed", "stressed", "sad")
-        return {"events": [{"text": text, "emotion": mood} for text, mood in zip(EVENTS, moods, strict=True)]}
-    if schema.__name__ == "Arrangement":
-        return {"choices": [{"event": event, "script": script} for event, script in chosen_in(prompt).items()]}
-    return {"title": "A Letter of Glass", "text": TEXT}
-
-
-def chosen_in(prompt: str) -> dict[int, str]:
-    """For every event the last script that is offered for it and not taken yet."""
-    chosen: dict[int, str] = {}
-    for block in re.split(r"^event (?=\d+:)", prompt, flags=re.MULTILINE)[1:]:
-        offered = re.findall(r"^  ([a-z0-9-]+) \[", block, flags=re.MULTILINE)
-        chosen[int(block.split(":")[0])] = [script for script in offered if script not in chosen.values()][-1]
-    return chosen
+def answer_well(prompt: str, _schema: type[BaseModel]) -> Answer:
+    """As a good model does."""
+    return answer_to(prompt)
 
 
 def plan(model: ScriptedModel, cache: Path, **asked: object) -> Planned:

@@ -13,6 +13,7 @@ from running import SHORT, RunningService, finished
 
 from motion_backend.formats.jsonfmt import read_json
 from motion_backend.formats.raw import read_raw
+from planner_service.schemas.layouts import EXAMPLE
 
 WALK = {"skill": "loco", "caption": "walk", "furniture": "sofa"}
 SIT = {"skill": "sitdown", "caption": "sit", "furniture": "sofa"}
@@ -167,10 +168,14 @@ def test_keyframes_of_ones_own_are_acted_out_and_not_told(client: httpx.Client) 
 
 
 def test_a_room_that_lacks_what_is_needed_fails_with_the_reason(client: httpx.Client) -> None:
-    body = {"keyframes": [{"skill": "liedown", "caption": "lie", "furniture": "bed"}], "layout_id": "study-0000"}
-    made = finished(client, client.post("/v1/motions", json=body).json()["id"])
+    rug = {"id": "rug", "category": "rug", "position": [0, 0, 0], "size": [1, 0.02, 1]}
+    bare = EXAMPLE | {"id": "inputs/bare", "objects": [rug]}
+    client.post("/v1/layouts", json=bare).raise_for_status()
+    keyframe = {"skill": "touch", "caption": "take a book", "furniture": "bookshelf"}
+    made = client.post("/v1/motions", json={"keyframes": [keyframe], "layout_id": "inputs/bare"}).json()
+    made = finished(client, made["id"])
     assert made["state"] == "failed"
-    assert "to lie on" in made["error"]["detail"]
+    assert "to touch" in made["error"]["detail"]
     assert "--" not in made["error"]["detail"]
 
 

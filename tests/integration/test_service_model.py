@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from model_server import ModelServer, failing
 from running import RunningService, finished
 
 THEME = "Sam reads a book on the sofa and then lies down on the bed in tears."
@@ -85,3 +86,19 @@ def test_a_model_that_talks_nonsense_costs_no_story(badly: RunningService, metho
     assert story["planner"] == "rules"
     assert any("by rules" in repair for repair in story["repairs"])
     assert "dragon" not in story["text"]
+
+
+def test_a_story_whose_model_is_refused_fails_and_says_why_where_settings_insist(tmp_path: Path) -> None:
+    key = "sk-test-0123456789abcdef"
+    with ModelServer(lambda _: failing(401, {"error": {"message": f"wrong key {key}"}})) as server:
+        given = {"MODEL": "openai:gpt-x", "BASE_URL": server.url, "API_KEY": key, "ON_FAILURE": "error"}
+        environment = {f"SIMS_LLM_{name}": value for name, value in given.items()} | {"SIMS_LOG_LEVEL": "debug"}
+        with RunningService(tmp_path, environment=environment) as service, service.client() as client:
+            story = finished(client, client.post("/v1/stories", json={"theme": THEME}).json()["id"])
+    assert story["state"] == "failed"
+    assert "openai:gpt-x" in str(story["error"])
+    assert "SIMS_LLM_API_KEY" in str(story["error"])
+    assert len(server.asked) == 1
+    for file in tmp_path.rglob("*"):
+        assert not file.is_file() or key.encode() not in file.read_bytes(), file
+    assert THEME not in service.log.read_text()

@@ -23,7 +23,7 @@ from motion_backend.formats.npz import read_npz
 from motion_backend.motion import Action, Skill
 from motion_backend.obstacles import Obstacles
 from planner_service.filing import FILES
-from scene_graphs.homes import home_from_dict, home_to_dict
+from scene_graphs.home_rows import home_from_dict, home_to_dict
 
 SIMS = [sys.executable, "-m", "planner_service.cli"]
 TESTS = Path(__file__).resolve().parents[1]

@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from motion_backend.obstacles import Obstacles
 from motion_backend.procedural.guarding import arms_in, hands_clear
+from motion_backend.procedural.performing import NARROW_ARMS
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.solving import solve
 from motion_backend.procedural.stances import standing
@@ -29,20 +31,32 @@ def wrists(pose: Pose) -> np.ndarray:
 
 def test_open_arms_stay_open_where_there_is_room() -> None:
     pose = stood("open")
-    np.testing.assert_allclose(arms_in(pose, np.full(60, 2.0), "raised").arms, pose.arms, atol=1e-9)
+    np.testing.assert_allclose(arms_in(pose, np.full(60, 2.0), "raised", 0.8).arms, pose.arms, atol=1e-9)
 
 
 def test_open_arms_rise_where_it_is_narrow_and_hanging_arms_hang_on() -> None:
     narrow = np.full(60, 0.3)
     raised, _ = arm_arrays("raised", "raised")
-    np.testing.assert_allclose(arms_in(stood("open"), narrow, "raised").arms[-1], raised, atol=1e-6)
+    np.testing.assert_allclose(arms_in(stood("open"), narrow, "raised", 0.8).arms[-1], raised, atol=1e-6)
     hanging = stood("hang")
-    np.testing.assert_allclose(arms_in(hanging, narrow, "raised").arms, hanging.arms, atol=1e-9)
+    np.testing.assert_allclose(arms_in(hanging, narrow, "raised", 0.8).arms, hanging.arms, atol=1e-9)
+
+
+@pytest.mark.parametrize(("arms", "needed"), [(arms, needed) for arms, (_, needed) in NARROW_ARMS.items()])
+def test_arms_that_stick_out_come_in_only_where_they_would_meet_something(arms: str, needed: float) -> None:
+    pose = stood(arms)
+    root, local = solve(pose, SKELETON)
+    chest = SKELETON.forward_kinematics(root, local)[0][0, [INDEX["left_elbow"], INDEX["left_wrist"]]][:, [0, 2]]
+    assert np.linalg.norm(chest, axis=1).max() < needed
+    assert (arms_in(pose, np.full(60, needed), "hang", needed).arms == pose.arms).all()
+    came_in = arms_in(pose, np.full(60, 0.55 * needed), "hang", needed)
+    np.testing.assert_allclose(came_in.arms[-1], stood("hang").arms[-1], atol=1e-6)
+    np.testing.assert_allclose(came_in.elbows[-1], stood("hang").elbows[-1], atol=1e-6)
 
 
 def test_a_segment_begins_in_the_pose_it_was_given() -> None:
     pose = stood("open")
-    np.testing.assert_allclose(arms_in(pose, np.full(60, 0.3), "raised").arms[0], pose.arms[0], atol=1e-9)
+    np.testing.assert_allclose(arms_in(pose, np.full(60, 0.3), "raised", 0.8).arms[0], pose.arms[0], atol=1e-9)
 
 
 def test_a_hand_stretched_through_a_wall_comes_back_to_its_own_side() -> None:

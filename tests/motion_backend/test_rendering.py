@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
@@ -75,11 +76,6 @@ def test_half_opacity_lets_half_of_what_is_behind_through():
     assert int(veiled[20, 20, 1]) > 60
 
 
-def test_parts_in_front_of_their_cut_are_left_away():
-    hidden = Solid(*square(1.0), RED, cut=4.5)
-    assert not is_red(render([Solid(*square(0.0), GREEN), hidden], FRONT, (40, 40), ground=None)[20, 20])
-
-
 def test_a_floor_that_runs_behind_the_camera_is_cut_and_not_turned_inside_out():
     camera = Camera((0.0, 1.0, 0.0), (0.0, 0.9, 1.0))
     picture = render([], camera, (40, 40)).astype(int)
@@ -94,8 +90,10 @@ def test_a_floor_that_runs_behind_the_camera_is_cut_and_not_turned_inside_out():
 def test_the_floor_is_darker_under_a_thing():
     camera = Camera((0.0, 2.0, 6.0), (0.0, 0.0, 0.0))
     floating = Solid(box().vertices + np.array([0, 0.6, 0]), box().faces, RED)
-    bare, shaded = (render(solids, camera, (80, 60)).astype(int) for solids in ([], [floating]))
+    lit = replace(floating, casts=False)
+    bare, shaded, unshaded = (render(solids, camera, (80, 60)).astype(int) for solids in ([], [floating], [lit]))
     assert shaded[32, 40].sum() < bare[32, 40].sum() - 35
+    np.testing.assert_array_equal(unshaded[32, 40], bare[32, 40])
 
 
 def test_a_top_is_lighter_than_a_side():

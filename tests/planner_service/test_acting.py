@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from motion_backend.motion import Skill
-from planner_service.scripts.acting import Place, UnreachableError, act, height_of
+from planner_service.scripts.acting import Place, UnreachableError, act, can_stand, height_of
 from planner_service.scripts.keyframe import Keyframe
 from scene_graphs.homes import Home, home_from_layouts
 from scene_graphs.layouts import Layout, Placed
 from scene_graphs.navigation import Walkable
+from scene_graphs.surfaces import spots
 
 ROOM = Layout(
     "room",
@@ -47,6 +50,33 @@ def test_a_walk_to_a_thing_nobody_uses_ends_beside_it() -> None:
     shelf = HOME.object("0/shelf")
     assert walk.goal is not None
     assert np.hypot(walk.goal[0] - shelf.position[0], walk.goal[1] - shelf.position[2]) < 1.2
+
+
+def test_nothing_is_touched_through_a_wall() -> None:
+    """Cabinets stand with their backs to every wall: behind some of them is free floor of the other room."""
+    cabinets = tuple(
+        Placed(
+            f"cabinet_{number}",
+            "cabinet",
+            (2.0 + 1.82 * np.sin(yaw) + x, 0.0, 2.0 + 1.82 * np.cos(yaw) + z),
+            (0.6, 1.2, 0.34),
+            yaw + np.pi,
+        )
+        for number, (yaw, x, z) in enumerate(
+            [(0.0, 1.2, 0.0), (np.pi / 2, 0.0, 1.2), (np.pi, 1.2, 0.0), (-np.pi / 2, 0.0, 1.2)]
+        )
+    )
+    room = Layout("one", "study", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)), objects=cabinets)
+    home = home_from_layouts([room, replace(room, id="two")], 0)
+    walkable = Walkable(home)
+    start = walkable.random_point(np.random.default_rng(0), 0)
+    beside = [(placed, spot) for placed in home.objects for spot in spots(placed, "touch")]
+    through = [placed.id for placed, spot in beside if home.room_at(spot.standing) not in (None, int(placed.id[0]))]
+    assert through
+    for placed, spot in beside:
+        if can_stand(walkable, start, spot):
+            assert home.room_at(spot.standing) == int(placed.id[0])
+    assert {placed.id for placed, spot in beside if can_stand(walkable, start, spot)} == {p.id for p in home.objects}
 
 
 def test_wandering_goes_some_way_and_stays_on_free_floor() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import socket
 import socketserver
 import subprocess
@@ -296,6 +297,15 @@ def test_rooms_are_found_added_and_played_in(client: Client) -> None:
     assert played.keyframes[-1]["object_id"] == "0/armchair_1"
     seen = client.layouts(limit=5)
     assert [one["id"] for one in client.layouts(5, seen.next)] > [one["id"] for one in seen]
+    assert client.layout_drawing("house/nook:1", "png", path=False)[:4] == b"\x89PNG"
+    file = json.dumps([NOOK | {"id": "house/den"}, {"id": "no room"}]).encode()
+    with pytest.raises(ApiError, match="415"):
+        client.import_layouts(file, "native")
+    with pytest.raises(ApiError, match="room"):
+        client.import_layouts(file, "procthor")
+    client.delete_layout("house/nook:1")
+    with pytest.raises(ApiError, match="404"):
+        client.layout("house/nook:1")
 
 
 def test_graphs_are_merged_and_rooms_retrieved(client: Client) -> None:

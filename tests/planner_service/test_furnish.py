@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import replace
 from functools import lru_cache
+from math import pi
 
 import pytest
 
 from motion_backend.motion import Skill
+from planner_service import documents
 from planner_service.furnish import FurnishError, furnish
+from planner_service.schemas.stories import HomeShown
 from planner_service.scripts.keyframe import Event, LongScript, PlannedKeyframe
+from scene_graphs.checking import validate
 from scene_graphs.layouts import Layout, Placed
 from scene_graphs.library import built_in_layouts
 from scene_graphs.retrieval import LayoutIndex
@@ -97,10 +103,59 @@ def test_a_users_chair_that_nobody_can_get_to_is_not_used() -> None:
     assert found.places[0].object_id == "0/free"
 
 
+TABLE = Placed("table", "dining_table", (2.0, 0.0, 2.0), (1.6, 0.76, 0.9))
+UNDER = Placed("under", "dining_chair", (2.0, 0.0, 2.5), (0.47, 0.87, 0.54), pi)
+DINING = Layout(
+    "mine", "dining_room", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)), objects=(TABLE, UNDER), source="user"
+)
+
+
+def test_a_chair_pushed_under_a_table_is_pulled_out_and_that_is_said() -> None:
+    found = furnish(script(("sitdown", "chair", "dining_room")), index(), given=[DINING])
+    (pull,) = found.matches[0].pulls
+    assert found.places[0].object_id == "0/under"
+    assert found.home.object("0/under").position == pull.end != UNDER.position
+    assert found.home.object("0/table").position == TABLE.position
+    assert f"dining chair under pulled out by {pull.distance:.2f} m" in found.explain()[0]
+    (told,) = found.rooms_to_dicts()[0]["pulled_out"]
+    assert told["object_id"] == "under"
+    assert told["from"] == {"position": list(UNDER.position), "yaw": UNDER.yaw}
+    shown = HomeShown.model_validate({"rooms": found.rooms_to_dicts()})
+    assert shown.model_dump(mode="json", by_alias=True)["rooms"] == found.rooms_to_dicts()
+    assert documents.furnished_from_dict(json.loads(json.dumps(documents.furnished_to_dict(found)))).matches == (
+        found.matches
+    )
+
+
+def test_nothing_is_pulled_out_where_another_chair_is_free_or_nobody_sits() -> None:
+    free = Placed("free", "dining_chair", (0.6, 0.0, 3.0), (0.45, 0.9, 0.5))
+    room = replace(DINING, objects=(*DINING.objects, free))
+    assert furnish(script(("sitdown", "chair", "dining_room")), index(), given=[room]).matches[0].pulls == ()
+    assert furnish(script(("touch", "table", "dining_room")), index(), given=[DINING]).matches[0].pulls == ()
+
+
+def test_the_second_of_two_chairs_minds_where_the_first_was_pulled_to() -> None:
+    other = replace(UNDER, id="other", position=(2.0, 0.0, 1.5), yaw=0.0)
+    room = replace(DINING, objects=(*DINING.objects, other))
+    both = script(("sitdown", "chair", "dining_room"), ("sitdown", "chair 2", "dining_room"))
+    found = furnish(both, index(), given=[room])
+    assert {place.object_id for place in found.places} == {"0/under", "0/other"}
+    assert {pull.object_id for pull in found.matches[0].pulls} == {"under", "other"}
+    assert not [problem for problem in validate(found.home.rooms[0].layout) if "chair" in problem]
+
+
+def test_where_nothing_else_serves_a_body_sits_and_lies_on_the_floor_and_that_is_said() -> None:
+    bare = Layout("bare", "bedroom", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)))
+    found = furnish(script(("loco", "bed", "bedroom"), ("liedown", "bed", "bedroom")), index(), given=[bare])
+    assert [place.object_id for place in found.places] == [None, None]
+    assert found.matches[0].substitutions == (("bed", "floor", "affordance"),)
+    assert found.matches[0].missing == ()
+
+
 def test_what_nothing_can_stand_for_is_an_error_that_names_it() -> None:
     empty = Layout("bare", "bedroom", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)))
-    with pytest.raises(FurnishError, match="no bed to lie"):
-        furnish(script(("liedown", "bed", "bedroom")), index(), given=[empty])
+    with pytest.raises(FurnishError, match="no wardrobe to touch"):
+        furnish(script(("touch", "wardrobe", "bedroom")), index(), given=[empty])
 
 
 @pytest.mark.parametrize("rooms", [["cellar"], ["bedroom"] * 5])

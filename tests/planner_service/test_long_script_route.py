@@ -10,8 +10,10 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI
+from model_server import ModelServer, failing
 from service_app import app_on, calling, check_problem
 
+from planner_service.parts import MOST_PLANNED
 from planner_service.schemas.short_scripts import EXAMPLE
 from planner_service.scripts.checking import check
 from planner_service.scripts.keyframe import LongScript
@@ -96,3 +98,31 @@ async def test_a_language_model_finds_the_events_where_one_is_set_and_rules_do_w
     assert planned.planner.startswith("llm:")
     assert by_rules.planner == "rules"
     assert any("by rules" in repair for repair in by_rules.repairs)
+
+
+@pytest.mark.parametrize(("wanted", "status"), [("error", 502), ("rules", 200)])
+async def test_a_model_that_refuses_is_an_error_or_done_without_as_settings_say(
+    wanted: str, status: int, tmp_path: Path
+) -> None:
+    key = "sk-test-0123456789abcdef"
+    with ModelServer(lambda _: failing(401, {"error": {"message": f"wrong key {key}"}})) as server:
+        chosen = {"llm_model": "openai:gpt-x", "llm_base_url": server.url, "llm_api_key": key}
+        with app_on(tmp_path, **chosen, llm_on_failure=wanted) as app:
+            answer = await ask(app, theme=THEME)
+    assert answer.status_code == status
+    assert "openai:gpt-x at" in answer.text
+    assert "SIMS_LLM_API_KEY" in answer.text
+    assert key not in answer.text
+
+
+async def test_only_so_many_wait_for_a_model_at_once(tmp_path: Path) -> None:
+    answers = tmp_path / "answers.json"
+    answers.write_text("{}", encoding="utf-8")
+    with app_on(tmp_path / "data", llm_model=f"scripted:{answers}") as app:
+        for _ in range(MOST_PLANNED):
+            assert app.state.parts.planning.acquire(blocking=False)
+        problem = check_problem(await ask(app, theme=THEME), 503)
+        assert "the language model is busy" in problem["detail"]
+        app.state.parts.planning.release()
+        for _ in range(2):
+            assert (await ask(app, theme=THEME)).status_code == 200

@@ -268,7 +268,7 @@ def test_a_users_room_is_not_chosen_for_a_seat_that_nobody_gets_to(shelves: Shel
     free = replace(walled, id="free", objects=(chair,))
     shelves.add_layouts(walled, free)
     query = graph_from_uses([("armchair", 1)], [["sit"]])
-    found = {match.layout_id: match for match in shelves.layouts().search(query, 300)}
+    found = {match.layout_id: match for match in shelves.layouts().search(query, 500)}
     assert not found["free"].missing
     assert [node.category for node in found["walled"].missing] == [node.category for node in query]
 

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-import pytest
+from itertools import combinations
 
-from scene_graphs.furniture import Furniture
-from scene_graphs.graph import graph_from_layout, graph_from_uses, offers
-from scene_graphs.layouts import Layout, Placed
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from scene_graphs.furniture import Furniture, is_minor
+from scene_graphs.graph import graph_from_layout, graph_from_objects, graph_from_uses, offers
+from scene_graphs.layouts import NEAR, Layout, Placed
 
 SQUARE = ((0.0, 0.0), (0.0, 6.0), (6.0, 6.0), (6.0, 0.0))
 
@@ -90,3 +96,43 @@ def test_lying_is_measured() -> None:
 
 def test_what_hangs_offers_nothing() -> None:
     assert not offers(Placed("a", "floor_lamp", (1.0, 2.0, 1.0), (0.4, 0.4, 0.4)))
+
+
+@st.composite
+def furnished(draw: st.DrawFn) -> list[Placed]:
+    """Objects on a grid of half metres, so that they often touch, overlap or hide one another."""
+    words = st.sampled_from(["desk", "stool", "wardrobe", "floor_lamp", "pendant_lamp", "vase"])
+    half = st.integers(0, 8).map(lambda number: number / 2)
+    sizes = st.tuples(*[st.integers(1, 4).map(lambda number: number / 2)] * 3)
+    yaws = st.sampled_from([0.0, 0.3, np.pi / 4, np.pi / 2])
+    spots = st.tuples(half, st.sampled_from([0.0, 0.0, 1.6]), half)
+    rows = draw(st.lists(st.tuples(words, spots, sizes, yaws, st.booleans()), max_size=9))
+    return [
+        Placed(f"o{i}", word, place, size, yaw, parent="o0" if i and stands else None)
+        for i, (word, place, size, yaw, stands) in enumerate(rows)
+    ]
+
+
+@given(furnished())
+@settings(max_examples=150, deadline=None)
+def test_who_is_joined_is_what_looking_at_every_three_finds(objects: list[Placed]) -> None:
+    prints = [shapely.Polygon(placed.footprint) for placed in objects]
+    solid = [not is_minor(o.category) and o.parent is None and o.position[1] < 1.5 for o in objects]
+    joined = set()
+    for i, j in combinations(range(len(objects)), 2):
+        line = shapely.shortest_line(prints[i], prints[j])
+        between = [k for k in range(len(objects)) if k not in (i, j) and solid[k]]
+        if line.length <= NEAR and not any(line.intersects(prints[k].buffer(-0.02)) for k in between):
+            joined.add(frozenset((f"o{i}", f"o{j}")))
+    graph = graph_from_objects(objects)
+    assert {frozenset(str(graph.nodes[end]["object_id"]) for end in edge) for edge in graph.edges} == joined
+
+
+def test_five_hundred_objects_in_a_heap_are_a_graph_within_seconds() -> None:
+    rng = np.random.default_rng(0)
+    points = rng.uniform(0, 4, (500, 2))
+    heap = [
+        Placed(f"o{i}", "desk", (x, 0.0, z), (1.4, 0.75, 0.6), yaw=i / 9) for i, (x, z) in enumerate(points.tolist())
+    ]
+    assert len(graph_from_objects(heap)) == 500
+    assert graph_from_objects([]).number_of_nodes() == 0

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from scene_graphs.forms import parts_of
 from scene_graphs.layouts import (
     Layout,
     LayoutError,
@@ -63,6 +64,41 @@ def test_a_row_is_read_with_pos_for_position_and_canonical_categories() -> None:
 def test_writing_a_row_and_reading_it_is_the_identity() -> None:
     layout = layout_from_dict(ROW)
     assert layout_from_dict(json.loads(json.dumps(layout_to_dict(layout)))) == layout
+
+
+SHAPE = [["seat", [-1.0, 0.2, -0.3], [1.0, 0.43, 0.47]], ["back", [-1.0, 0.2, -0.47], [1.0, 0.85, -0.3]]]
+
+
+def shaped(shape: Any) -> dict[str, Any]:
+    return changed(objects=[{**ROW["objects"][0], "shape": shape}])
+
+
+def test_a_measured_shape_is_written_and_read_to_the_last_bit_and_left_out_where_there_is_none() -> None:
+    layout = layout_from_dict(shaped(SHAPE))
+    row = layout_to_dict(layout)
+    assert row["objects"][0]["shape"] == SHAPE
+    assert layout_from_dict(json.loads(json.dumps(row))) == layout
+    assert parts_of(layout.objects[0]) == layout.objects[0].shape
+    assert "shape" not in layout_to_dict(layout_from_dict(ROW))["objects"][0]
+
+
+@pytest.mark.parametrize(
+    ("shape", "message"),
+    [
+        ("box", "shape must be a list of at most 64"),
+        (SHAPE * 33, "shape must be a list of at most 64"),
+        ([["throne", *SHAPE[0][1:]]], r"shape\[0\] must be \[role, low, high\] with a role of arm, back"),
+        ([[["seat"], *SHAPE[0][1:]]], r"shape\[0\] must be \[role"),
+        ([["seat", [0, 0, 0]]], r"shape\[0\] must be \[role"),
+        ([["seat", [0, 0], [1, 1, 1]]], r"shape\[0\] must be three numbers"),
+        ([["seat", [0, 0, 0], [0.1, float("nan"), 0.1]]], r"shape\[0\] must be a number"),
+        ([["seat", [0, 0, 0], [0.1, 1.2, 0.1]]], r"shape\[0\] must lie in its piece's box"),
+        ([["seat", [0, 0.2, 0], [0.1, 0.1, 0.1]]], r"shape\[0\] must lie in its piece's box"),
+    ],
+)
+def test_a_shape_that_is_none_is_refused_with_its_place(shape: Any, message: str) -> None:
+    with pytest.raises(LayoutError, match=rf"layout.objects\[0\].{message}"):
+        layout_from_dict(shaped(shape))
 
 
 def test_an_outline_is_counter_clockwise_seen_from_above_whatever_its_order() -> None:

@@ -12,7 +12,7 @@ from scene_graphs.catalogue import CATALOGUE
 from scene_graphs.furnishing import Mesh, furniture_meshes, home_meshes
 from scene_graphs.furniture import typical_size
 from scene_graphs.homes import home_from_layouts
-from scene_graphs.layouts import Placed
+from scene_graphs.layouts import Layout, Opening, Placed
 from scene_graphs.library import built_in_layouts
 from scene_graphs.looks.shapes import block, cylinder, flat, turned
 
@@ -113,3 +113,14 @@ def test_every_mesh_faces_out_as_a_whole() -> None:
         if mesh.name.startswith("floor"):
             continue
         assert trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).volume > 0, mesh.name
+
+
+@pytest.mark.parametrize("span", [(0.0, 1.0), (3.0, 4.0), (0.1, 3.9)])
+def test_curtains_of_a_window_in_a_corner_stay_within_its_wall(span: tuple[float, float]) -> None:
+    window = Opening(((span[0], 0.0), (span[1], 0.0)), 0.9, 2.0)
+    room = Layout("corner", "study", ((0, 0), (0, 4), (4, 4), (4, 0)), windows=(window,))
+    hung = [mesh for mesh in home_meshes(home_from_layouts([room], 0)) if mesh.name.startswith("window")]
+    along = np.concatenate([mesh.vertices[:, 0] for mesh in hung if "curtain" in mesh.name or "rod" in mesh.name])
+    assert along.min() >= -1e-6
+    assert along.max() <= 4 + 1e-6
+    assert along.max() - along.min() >= span[1] - span[0]

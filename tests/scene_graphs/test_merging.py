@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import Literal
 
+import networkx as nx
 import pytest
 from graphs_at_random import CATEGORIES, GENERIC, graphs
 from hypothesis import given, settings
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 
 from scene_graphs.furniture import Furniture
 from scene_graphs.graph import FurnitureGraph, graph_from_uses
-from scene_graphs.merging import categorised, merge
+from scene_graphs.merging import categorised, merge, side_by_side
 
 Method = Literal["canonical", "aligned"]
 METHODS = st.sampled_from(["canonical", "aligned"])
@@ -84,6 +85,51 @@ def test_the_canonical_merge_is_associative(a: FurnitureGraph, b: FurnitureGraph
 def test_aligning_two_scripts_never_makes_more_edges(a: FurnitureGraph, b: FurnitureGraph) -> None:
     aligned, canonical = (merge([a, b], method).graph.number_of_edges() for method in ("aligned", "canonical"))
     assert aligned <= canonical
+
+
+@given(SCRIPTS, METHODS)
+@QUICK
+def test_no_script_and_empty_scripts_add_nothing(scripts: list[FurnitureGraph], method: Method) -> None:
+    empty: FurnitureGraph = nx.Graph()
+    assert same(merge([], method).graph, empty)
+    with_empty = merge([empty, *scripts, empty], method)
+    assert same(with_empty.graph, merge(scripts, method).graph)
+    assert with_empty.instance_maps[0] == with_empty.instance_maps[-1] == {}
+
+
+@given(SCRIPTS, METHODS)
+@QUICK
+def test_less_important_pieces_are_marked(scripts: list[FurnitureGraph], method: Method) -> None:
+    marks = merge(scripts, method).graph.nodes(data="minor")
+    assert {node.category for node, minor in marks if minor} <= {"floor_lamp", "table_lamp", "vase", "lamp"}
+    assert all(minor for node, minor in marks if node.category in {"floor_lamp", "table_lamp", "vase", "lamp"})
+
+
+@given(SCRIPTS, METHODS)
+@QUICK
+def test_what_is_joined_to_itself_is_not_once_merged(scripts: list[FurnitureGraph], method: Method) -> None:
+    looped = [graph.copy() for graph in scripts]
+    for graph in looped:
+        graph.add_edges_from((node, node) for node in list(graph)[::2])
+    assert same(merge(looped, method).graph, merge(scripts, method).graph)
+
+
+@given(st.lists(graphs(5, CATEGORIES[:4], "offers"), max_size=4))
+@QUICK
+def test_rooms_side_by_side_keep_all_they_have_and_nothing_joins_them(rooms: list[FurnitureGraph]) -> None:
+    for graph in rooms:
+        for number, node in enumerate(graph):
+            graph.nodes[node]["object_id"] = f"o{number}"
+    places = {3 * number: graph for number, graph in enumerate(rooms)}
+    union = side_by_side(places)
+    named = {str(name): node for node, name in union.nodes(data="object_id")}
+    assert len(named) == len(union) == sum(map(len, rooms))
+    for place, graph in places.items():
+        for node, data in graph.nodes(data=True):
+            twin = named[f"{place}/{data['object_id']}"]
+            assert (twin.category, union.nodes[twin]["offers"]) == (node.category, data["offers"])
+            around = {named[f"{place}/{graph.nodes[other]['object_id']}"] for other in graph[node]}
+            assert set(union[twin]) == around
 
 
 def test_chair_seven_alone_becomes_the_first_chair() -> None:

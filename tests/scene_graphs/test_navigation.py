@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import combinations, pairwise
 
+import networkx as nx
 import numpy as np
 import pytest
 import shapely
@@ -12,12 +13,14 @@ from hypothesis import strategies as st
 
 from scene_graphs.clearance import obstacles
 from scene_graphs.homes import Home, home_from_layouts
-from scene_graphs.layouts import Layout, Placed
-from scene_graphs.navigation import NoPath, Walkable
+from scene_graphs.layouts import Array, Layout, Placed
+from scene_graphs.library import built_in_layouts
+from scene_graphs.navigation import CARE, COMFORT, TIGHT, NoPath, Walkable
+from scene_graphs.smoothing import smooth_path
 
 SQUARE = ((0.0, 0.0), (0.0, 6.0), (6.0, 6.0), (6.0, 0.0))
-DIP = 0.036
-"""Between two free cells of 5 cm clearance can be less than the radius by 0.71 of a cell."""
+DIP = 0.004
+"""Between two free cells of 5 cm a corner can be nearer than the radius by 3 mm, and a step is straight."""
 
 
 def furnished(name: str = "a", *objects: Placed) -> Layout:
@@ -50,8 +53,65 @@ def test_a_path_joins_its_ends_over_free_floor(walkable: Walkable, seed: int) ->
     path = walkable.path(start, goal)
     assert tuple(path[0]) == start
     assert tuple(path[-1]) == goal
-    dense = np.concatenate([np.linspace(a, b, 8) for a, b in pairwise(path)])
-    assert all(walkable.clearance((x, z)) >= walkable.radius - DIP for x, z in dense)
+    assert nearest_to(walkable, path) >= walkable.radius - DIP
+
+
+@given(SEEDS)
+@settings(max_examples=8, deadline=None)
+def test_nothing_of_a_path_through_furnished_rooms_comes_nearer_than_the_radius(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rooms = built_in_layouts()
+    home = home_from_layouts([rooms[int(index)] for index in rng.choice(len(rooms), 2, replace=False)], seed)
+    walkable = Walkable(home, float(rng.uniform(0.15, 0.25)))
+    starts, goals = ([walkable.random_point(rng, room) for _ in range(3)] for room in (0, 1))
+    for start, goal in zip(starts, goals, strict=True):
+        if walkable.reachable(start, goal):
+            assert nearest_to(walkable, walkable.path(start, goal)) >= walkable.radius - 1.2 * DIP
+
+
+@given(SEEDS)
+@settings(max_examples=10, deadline=None)
+def test_no_way_over_the_cells_is_cheaper_than_a_path(
+    one_room: Walkable, grid: nx.Graph[tuple[int, int]], seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    start, goal = one_room.random_point(rng, 0), one_room.random_point(rng, 0)
+    path = one_room.path(start, goal)
+    steps = np.concatenate([np.linspace(a, b, 6)[:-1] for a, b in pairwise(path)] + [path[-1:]])
+    middles, lengths = (steps[1:] + steps[:-1]) / 2, np.hypot(*np.diff(steps, axis=0).T)
+    (i, j), (k, m) = (
+        ((np.array([start, goal]) - one_room.field.origin) / one_room.field.cell).round().astype(int).tolist()
+    )
+    cheapest = nx.dijkstra_path_length(grid, (i, j), (k, m))
+    assert float(lengths @ price(one_room, one_room.field.at(middles))) <= 1.03 * cheapest + 0.05
+
+
+def price(walkable: Walkable, clearance: Array) -> Array:
+    """What a metre costs, as the module says: more the less clearance there is, most where nothing is to spare."""
+    narrow = np.clip((COMFORT - clearance) / (COMFORT - walkable.radius), 0.0, 1.0)
+    return 1 + CARE * narrow + TIGHT * (clearance < walkable.radius + 0.71 * walkable.field.cell)
+
+
+@pytest.fixture(scope="module")
+def grid(one_room: Walkable) -> nx.Graph[tuple[int, int]]:
+    """Free cells joined to their neighbours by the cost of a step, one by one."""
+    distances = one_room.field.distances
+    graph: nx.Graph[tuple[int, int]] = nx.Graph()
+    prices = price(one_room, distances)
+    free = {(int(i), int(j)) for i, j in np.argwhere(distances >= one_room.radius)}
+    for i, j in free:
+        for other in ((i + 1, j), (i, j + 1), (i + 1, j + 1), (i + 1, j - 1)):
+            if other in free:
+                length = one_room.field.cell * float(np.hypot(other[0] - i, other[1] - j))
+                graph.add_edge((i, j), other, weight=length * (prices[i, j] + prices[other]) / 2)
+    return graph
+
+
+def nearest_to(walkable: Walkable, path: Array) -> float:
+    """The least exact distance of a line to furniture and to the edge of the floor."""
+    solid = [outline for _, outline in obstacles(walkable.home.objects)]
+    edge = shapely.boundary(walkable.home.floor)
+    return float(shapely.distance(shapely.LineString(path), [*solid, edge]).min())
 
 
 @given(SEEDS)
@@ -90,6 +150,36 @@ def test_in_the_open_a_path_is_straight(one_room: Walkable) -> None:
     path = one_room.path((2.6, 0.8), (5.3, 1.9))
     length = np.hypot(*np.diff(path, axis=0).T).sum()
     assert length == pytest.approx(np.hypot(2.7, 1.1), rel=1e-3)
+
+
+@given(SEEDS)
+@settings(max_examples=6, deadline=None)
+def test_who_gets_there_gets_back_and_who_is_slimmer_too(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rooms = built_in_layouts()
+    home = home_from_layouts([rooms[int(index)] for index in rng.choice(len(rooms), 2, replace=False)], seed)
+    slim, usual, stout = (Walkable(home, radius) for radius in (0.15, 0.22, 0.30))
+    points = [usual.random_point(rng, room) for room in (0, 1, 0, 1)]
+    for start, goal in combinations(points, 2):
+        assert usual.reachable(start, goal) == usual.reachable(goal, start)
+        assert slim.reachable(start, goal) or not usual.reachable(start, goal)
+        assert usual.reachable(start, goal) or not (
+            stout.is_free(start) and stout.is_free(goal) and stout.reachable(start, goal)
+        )
+
+
+def test_a_corner_too_tight_to_be_rounded_is_not_cut() -> None:
+    raw = np.array([*((0.05 * i, 0.0) for i in range(10)), *((0.45, 0.05 * i) for i in range(1, 9))])
+    corridor = shapely.LineString(raw).buffer(1e-6)
+
+    def costs(starts: Array, ends: Array) -> Array:
+        lines = shapely.linestrings(np.stack([starts, ends], axis=1))
+        return np.where(shapely.contains(corridor, lines), shapely.length(lines), np.inf)
+
+    smooth = smooth_path(raw, costs, lambda points: bool(shapely.intersects_xy(corridor, points).all()))
+    assert corridor.contains(shapely.LineString(smooth))
+    assert np.array_equal(smooth[[0, -1]], raw[[0, -1]])
+    assert np.hypot(*np.diff(smooth, axis=0).T).max() <= 0.1 + 1e-9
 
 
 def test_paths_keep_off_furniture_where_there_is_space() -> None:

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
 import networkx as nx
 import numpy as np
 import pytest
@@ -9,12 +13,15 @@ from graphs_at_random import CATEGORIES, GENERIC, build, graphs
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from scene_graphs.branching import CodedQuery
+from scene_graphs.branching import CodedQuery, Hunt
+from scene_graphs.costs import CostTable
 from scene_graphs.distance import exact_distance, lower_bound
 from scene_graphs.furniture import Furniture, typical_size
 from scene_graphs.graph import FurnitureGraph, graph_from_layout
 from scene_graphs.layouts import Layout, Placed
-from scene_graphs.retrieval import LayoutIndex, NoSuitableRoom, retrieve_rooms
+from scene_graphs.merging import side_by_side
+from scene_graphs.packing import PackedRooms
+from scene_graphs.retrieval import LayoutIndex, NoSuitableRoom, pack, retrieve_rooms
 
 SQUARE = ((0.0, 0.0), (0.0, 8.0), (8.0, 8.0), (8.0, 0.0))
 WORDS = CATEGORIES + GENERIC
@@ -118,6 +125,128 @@ def test_a_room_found_at_the_node_limit_is_marked_but_not_dropped() -> None:
     assert match.lower_bound <= match.distance
 
 
+@pytest.mark.parametrize("first_stage", [1, 2, 3])
+def test_a_room_whose_bound_promises_too_much_comes_second_in_any_stage(first_stage: int) -> None:
+    query = build(["desk", "stool"], {(0, 1)})
+    # Its stool stands by a table, not by the desk: a bound of 1, but a distance of 21.
+    hopeful, honest = build(["desk", "stool", "coffee_table"], {(1, 2)}), build(["desk", "stool"], set())
+    rooms = [room("honest", []), room("hopeful", [])]
+    index = LayoutIndex.of_packed(pack([honest, hopeful], rooms), rooms, first_stage=first_stage)
+    found = [(match.layout_id, match.lower_bound, match.distance) for match in index.search(query, 2)]
+    assert found == [("honest", 20, 20), ("hopeful", 1, 21)]
+    assert index.search(query)[0].layout_id == "honest"
+
+
+def test_a_room_is_not_called_the_nearest_while_one_that_met_the_limit_may_be_nearer() -> None:
+    query = build(["stool"] * 3, {(0, 1), (1, 2)})
+    apart, hidden = build(["stool"] * 3, set()), build(["stool"] * 6, {(3, 4), (4, 5)})
+    rooms = [room("apart", []), room("hidden", [])]
+    offers = frozenset({"sit"})
+    for graph in (apart, hidden):
+        nx.set_node_attributes(graph, offers, "offers")
+    index = LayoutIndex.of_packed(pack([apart, hidden], rooms), rooms)
+    assert [(match.layout_id, match.distance) for match in index.search(query, 2)] == [("hidden", 3), ("apart", 40)]
+    (match,) = index.search(query, limit=4)
+    assert (match.layout_id, match.distance, match.lower_bound) == ("apart", 40, 40)
+    assert not match.exact
+
+
+@given(libraries(), graphs(6, WORDS), st.integers(1, 5), st.integers(1, 30), st.integers(0, 200))
+@settings(max_examples=60, deadline=None)
+def test_no_limit_drops_a_room_or_hides_that_it_may_be_wrong(
+    layouts: list[Layout], query: FurnitureGraph, k: int, limit: int, effort: int
+) -> None:
+    assume(len(query))
+    index = LayoutIndex(layouts)
+    everywhere = np.ones(len(layouts), dtype=np.uint8)
+    hunt = index.hunt(CodedQuery.of(query, index.costs))
+    found, doubtful = hunt.nearest(everywhere, min(k, len(layouts)), 1, limit, effort)
+    assert len(found) == min(k, len(layouts))
+    exact, _ = hunt.nearest(everywhere, min(k, len(layouts)), 1)
+    for entry, right in zip(found, exact, strict=True):
+        assert entry.cost >= right.cost
+        if not entry.found.capped and (doubtful > entry.cost or doubtful == entry.cost > entry.bound):
+            assert entry[:3] == right[:3]
+
+
+@given(libraries(), graphs(5, WORDS), st.integers(0, 60))
+@settings(max_examples=40, deadline=None)
+def test_below_a_distance_a_room_is_found_if_it_is_nearer(
+    layouts: list[Layout], query: FurnitureGraph, upper: int
+) -> None:
+    index = LayoutIndex(layouts)
+    hunt = index.hunt(CodedQuery.of(query, index.costs))
+    for number in range(len(layouts)):
+        whole = hunt.search([number]).cost
+        assert whole is not None
+        assert hunt.search([number], whole + 1).cost == whole
+        assert hunt.search([number], whole + upper + 1).cost == whole
+        assert hunt.search([number], whole - upper).cost is None
+
+
+@given(libraries(), graphs(5, WORDS, "needs"))
+@settings(max_examples=40, deadline=None)
+def test_rooms_side_by_side_are_searched_as_one(layouts: list[Layout], query: FurnitureGraph) -> None:
+    index = LayoutIndex(layouts)
+    hunt = index.hunt(CodedQuery.of(query, index.costs))
+    numbers = list(range(min(3, len(layouts))))
+    union = side_by_side({number: index.graph(index.layouts[number].id) for number in numbers})
+    assert hunt.search(numbers).cost == exact_distance(query, union).cost
+
+
+def test_relations_of_every_room_side_by_side_count() -> None:
+    rooms = PackedRooms.of([build(["double_bed", "wardrobe"], {(0, 1)}), build(["desk", "stool"], {(0, 1)})])
+    hunt = Hunt(CodedQuery.of(build(["double_bed", "desk", "stool"], {(1, 2)}), CostTable()), rooms)
+    assert hunt.search([0, 1]).cost == hunt.search([1, 0]).cost == 1
+
+
+def test_the_effort_is_that_of_all_rooms_together() -> None:
+    rooms = [room(f"r{i:02}", ["stool", "stool", "desk"], seed=i) for i in range(30)]
+    index = LayoutIndex(rooms)
+    hunt = index.hunt(CodedQuery.of(build(["stool", "stool", "desk"], {(0, 1), (1, 2)}), index.costs))
+    everywhere = np.ones(len(rooms), dtype=np.uint8)
+    for effort, is_capped in ((100_000, False), (100, True)):
+        found, _ = hunt.nearest(everywhere, len(rooms), 1, effort=effort)
+        assert len(found) == len(rooms)
+        assert any(entry.found.capped for entry in found) == is_capped
+
+
+def test_searches_at_once_find_what_they_find_alone() -> None:
+    words = list(CATEGORIES[:6])
+    rooms = [room(f"r{i:02}", words[i % 3 :], seed=i) for i in range(40)]
+    queries = [build([words[i % 6], words[(i + 2) % 6], "chair"], {(0, 1), (1, 2)}) for i in range(12)]
+    index = LayoutIndex(rooms)
+    alone = [index.search(query, 5) for query in queries]
+    with ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(lambda query: index.search(query, 5), queries * 3)) == alone * 3
+
+
+def test_words_that_nobody_knows_are_found_by_their_own_name_only() -> None:
+    rooms = [room("a", ["harp", "desk"]), room("b", ["lyre", "desk"]), room("c", ["desk"])]
+    query = build(["lyre", "desk"], {(0, 1)})
+    found = LayoutIndex(rooms).search(query, 3)
+    assert [match.layout_id for match in found] == ["b", "c", "a"]
+    assert [node for match in found for node in match.missing] == [("lyre", 1)] * 2
+    strange = LayoutIndex(rooms).search(build(["zither"], set()), 3)
+    assert {match.missing for match in strange} == {(Furniture("zither", 1),)}
+
+
+def test_importing_retrieval_does_not_wait_for_the_compiler() -> None:
+    code = "import sys, scene_graphs.retrieval; print([name for name in sys.modules if 'numba' in name])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_where_no_folder_takes_compiled_code_it_is_compiled_all_the_same() -> None:
+    """As in a container whose every folder is read-only: the compiler then refuses to be asked to keep anything."""
+    code = (
+        "import numba.core.caching as caching; caching.CacheImpl._locator_classes = []\n"
+        "from scene_graphs.kernel import bounds_of; print(bounds_of.stats.cache_path)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "None"
+
+
 def test_rooms_are_found_by_their_type_and_tags() -> None:
     both = Layout("both", "living_room", SQUARE, objects=room("x", ["desk"]).objects, tags=("living_room", "study"))
     index = LayoutIndex([both, room("bed", ["desk"], "bedroom")])
@@ -135,6 +264,11 @@ def test_an_empty_query_and_an_absent_type_are_refused() -> None:
         index.search(nx.Graph())
     with pytest.raises(NoSuitableRoom, match="no room of type study is indexed; there are: bedroom"):
         index.search(build(["desk"], set()), room_type="study")
+    for k, limit in ((0, 1), (1, 0)):
+        with pytest.raises(ValueError, match=f"k and limit must be at least 1, got {k} and {limit}"):
+            index.search(build(["desk"], set()), k, limit=limit)
+    with pytest.raises(ValueError, match="at most 52 pieces of furniture, got 1000; split it"):
+        index.search(build(["desk"] * 1000, set()))
     with pytest.raises(NoSuitableRoom, match="there are: none"):
         LayoutIndex([]).search(build(["desk"], set()))
 

@@ -11,8 +11,9 @@ import pytest
 import shapely
 
 from scene_graphs.checking import RoomCheck, solids_overlap, validate
-from scene_graphs.clearance import measure_clearance, obstacles
+from scene_graphs.clearance import measure_clearance, obstacles, rectangles_of
 from scene_graphs.drawing import draw_layout
+from scene_graphs.footing import edges_of
 from scene_graphs.homes import home_from_layouts
 from scene_graphs.layouts import Layout, Opening, Placed
 from scene_graphs.library import built_in_layouts
@@ -66,9 +67,26 @@ def test_usable_spots_are_a_part_of_the_possible_ones() -> None:
     assert len(approaches) == 1
 
 
+def test_what_lies_on_a_seat_is_in_nobodys_way_to_it_but_what_stands_before_it_is() -> None:
+    sofa = Placed("sofa", "loveseat_sofa", (0.0, 0.0, 1.0), (1.6, 0.85, 0.9), pi)
+    laptop = Placed("laptop", "laptop", (0.0, 0.43, 0.7), (1.4, 0.05, 0.3), 0.0, "sofa")
+    box = Placed("box", "box", (0.0, 0.0, 0.2), (1.4, 0.5, 0.5))
+    assert ("sofa", "sit") not in RoomCheck(room(sofa, laptop)).unreachable()
+    assert ("sofa", "sit") in RoomCheck(room(sofa, box)).unreachable()
+
+
+def test_a_room_is_entered_by_another_door_where_the_first_is_blocked() -> None:
+    shelf = Placed("shelf", "cabinet", (0.0, 0.0, -1.7), (1.6, 1.5, 0.4))
+    other = Opening(((2.0, 0.5), (2.0, 1.4)))
+    two_doors = replace(room(BED, shelf), doors=(DOOR, other))
+    assert ("bed", "lie") in RoomCheck(room(BED, shelf)).unreachable()
+    assert ("bed", "lie") not in RoomCheck(two_doors).unreachable()
+    assert "door 0 is blocked by shelf" in validate(two_doors)
+
+
 def test_clearance_is_the_distance_to_the_nearest_thing() -> None:
     floor = shapely.box(0, 0, 4, 4)
-    clearance = measure_clearance(floor, [shapely.box(1.9, 1.9, 2.1, 2.1)], [floor.exterior])
+    clearance = measure_clearance(floor, rectangles_of([shapely.box(1.9, 1.9, 2.1, 2.1)]), edges_of(floor))
     points = np.array([[1.0, 2.0], [2.0, 2.0], [0.3, 1.5], [9.0, 9.0]])
     assert np.allclose(clearance.at(points), [0.9, 0.0, 0.3, 0.0], atol=0.03)
 

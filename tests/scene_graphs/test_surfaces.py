@@ -98,7 +98,30 @@ def test_a_person_who_lies_down_stands_beside_the_bed() -> None:
     placed = standing("double_bed")
     for spot in spots(placed, "lie"):
         assert abs(spot.standing[0]) > placed.size[0] / 2 + 0.1
-        assert spot.standing[1] == pytest.approx(spot.point[2])
+        assert abs(spot.standing[1]) < placed.size[2] / 2 - 0.1
+    assert spots(placed, "lie")[0].standing[1] == pytest.approx(spots(placed, "lie")[0].point[2])
+
+
+def test_where_one_side_of_a_bed_is_taken_one_sits_down_farther_along_it_and_lies_in_the_same_place() -> None:
+    lying = spots(standing("double_bed"), "lie")
+    for approach in {spot.approach for spot in lying}:
+        same_side = [spot for spot in lying if spot.approach == approach]
+        assert len({spot.standing for spot in same_side}) == len(same_side) >= 3
+        assert len({spot.point for spot in same_side}) == 1
+
+
+def test_each_wing_of_a_corner_sofa_is_sat_on_away_from_its_own_back() -> None:
+    shape = (
+        Part("seat", (-0.9, 0.25, -0.9), (-0.3, 0.43, 1.2)),
+        Part("seat", (-0.3, 0.25, -0.9), (1.2, 0.43, -0.3)),
+        Part("back", (-1.2, 0.0, -1.2), (1.2, 0.9, -0.9)),
+        Part("back", (-1.2, 0.0, -0.9), (-0.9, 0.9, 1.2)),
+        Part("arm", (1.05, 0.0, -0.9), (1.2, 0.6, -0.3)),
+    )
+    found = spots(Placed("a", "l_shaped_sofa", (0, 0, 0), (2.4, 0.9, 2.4), shape=shape), "sit")
+    wings = {(round(spot.facing / (pi / 2)), spot.point[0] > -0.3) for spot in found}
+    assert {(1, False), (0, True)} <= wings
+    assert all(spot.back == pytest.approx(0.27) for spot in found if spot.facing > 0.1)
 
 
 @pytest.mark.parametrize("category", ["wardrobe", "bookshelf", "cabinet"])

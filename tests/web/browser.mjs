@@ -1,6 +1,7 @@
 /** One Chromium for a test: what it asked for and complained about is kept, and told as JSON at the end. */
 
-import { accessSync, constants } from "node:fs";
+import { accessSync, constants, readFileSync } from "node:fs";
+import { createRequire } from "node:module";
 import { delimiter, join } from "node:path";
 import { chromium } from "playwright-core";
 
@@ -8,6 +9,7 @@ const NAMES = ["chromium", "chromium-browser", "google-chrome"];
 const FLAGS = [
   "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-component-update", "--disable-sync",
 ];
+const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 /** Milliseconds for anything that has to happen. */
 export const PATIENCE = 60000;
 
@@ -122,4 +124,14 @@ export function around(points, margin, bounds) {
   const right = Math.min(Math.ceil(Math.max(...xs) + margin), bounds.x + bounds.width);
   const bottom = Math.min(Math.ceil(Math.max(...ys) + margin), bounds.y + bounds.height);
   return { x, y, width: Math.max(Math.floor(right - x), 1), height: Math.max(Math.floor(bottom - y), 1) };
+}
+
+/** How far the page sticks out to the right, pixels. */
+export const overhang = (page) => page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+
+/** What axe holds against the page, as it is: rule, and the first place. */
+export async function complaints(page) {
+  await page.evaluate(AXE);
+  const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
+  return violations.filter(({ impact }) => impact === "serious" || impact === "critical").map(({ id, nodes }) => `${id}: ${nodes[0].html.slice(0, 160)}`);
 }

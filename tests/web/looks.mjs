@@ -1,21 +1,8 @@
 /** The page at three sizes, light and dark: nothing sticks out, nothing that axe calls serious, and it stands still if asked to. */
 
-import { createRequire } from "node:module";
-import { readFileSync } from "node:fs";
-import { scene, until } from "./browser.mjs";
+import { complaints, overhang, scene, until } from "./browser.mjs";
 
-const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const SIZES = [[390, 844], [820, 1180], [1440, 900]];
-
-/** How far the page sticks out to the right, pixels. */
-const overhang = (page) => page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-
-/** What axe holds against the page, as it is: rule, and the first place. */
-async function complaints(page) {
-  await page.evaluate(AXE);
-  const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
-  return violations.filter(({ impact }) => impact === "serious" || impact === "critical").map(({ id, nodes }) => `${id}: ${nodes[0].html.slice(0, 160)}`);
-}
 
 async function visit(page, address, look) {
   await page.goto("about:blank");

@@ -204,3 +204,88 @@ def test_what_goes_wrong_is_said_where_it_belongs(visit: Visit, client: httpx.Cl
     assert told["stopped"]["hidden"], "nothing is being made any more"
     ended = client.get(f"/v1/stories/{told['stopped']['id']}").raise_for_status().json()
     assert ended["state"] == "cancelled"
+
+
+def test_the_library_is_looked_through_searched_added_to_and_played_in(visit: Visit, client: httpx.Client) -> None:
+    refused = ("422 /v1/layouts", "422 /v1/layouts", "409 /v1/layouts", "404 /v1/layouts/page-nook")
+    told = visit("rooms", refused=refused)
+    client.post(f"/v1/stories/{told['used']['story']}/cancel")
+    _browsed(told["browsed"], client)
+    _searched(told["searched"], client)
+    _looked_at(told["looked"], told["searched"]["room"], client)
+    brought = told["brought"]
+    assert brought["kept"]["matches"] == told["searched"]["count"], "who comes back finds what was left"
+    assert brought["kept"]["words"].startswith("Sofa:sit")
+    assert [brought[name]["format"] for name in ("spoiled", "cut", "obj", "own")] == ["native", "glb", "obj", "native"]
+    assert "/floor_polygon: " in brought["spoiled"]["words"], "which field is wrong"
+    assert "cut.glb is cut off" in brought["cut"]["words"]
+    assert "sofa" in brought["obj"]["words"]
+    assert "What was guessed" in brought["obj"]["words"]
+    assert "page-nook is in the library: 2 pieces" in brought["own"]["words"]
+    assert "choose another id" in brought["again"]["words"]
+    for shown in told["judged"]:
+        assert shown["overhang"] <= 0, shown
+        assert not shown.get("wrong"), shown
+    assert told["used"]["asked"]["layouts"] == ["page-nook"]
+    assert "Played in page-nook" in told["used"]["words"]
+
+
+def _browsed(told: dict[str, Any], client: httpx.Client) -> None:
+    """All rooms and the studies among them, plans only of those on the screen."""
+    first = client.get("/v1/layouts", params={"limit": 48}).raise_for_status().json()["items"]
+    assert told["names"] == [room["id"] for room in first]
+    assert told["all"]["pieces"] == first[0]["objects"]
+    assert 0 < told["all"]["plans"] < told["all"]["cards"], "only what is on the screen is fetched"
+    studies = client.get("/v1/layouts", params={"room": "study", "limit": 24}).raise_for_status().json()["items"]
+    assert len(told["studies"]) == len(studies)
+    assert told["address"] == "#/rooms?type=study"
+
+
+def _searched(told: dict[str, Any], client: httpx.Client) -> None:
+    """The page shows the service's first answer, piece by piece."""
+    assert "sit, lie or touch" in told["wrong"]["words"]
+    assert told["wrong"]["invalid"] == "true"
+    assert told["wrong"]["focused"]
+    nodes = [
+        {"category": "Sofa", "needs": ["sit"]},
+        *({"category": one} for one in ("coffee table", "piano", "tv stand")),
+    ]
+    ask = {"graph": {"nodes": nodes, "edges": [[0, 1], [2, 0]]}, "k": 6}
+    matches = client.post("/v1/layouts/retrieve", json=ask).raise_for_status().json()["matches"]
+    best = matches[0]
+    assert told["count"] == len(matches)
+    assert told["room"] == best["layout_id"]
+    levels = {pair["node"]: pair["level"] for pair in best["mapping"]}
+    assert told["found"] == [[str(node + 1), level] for node, level in levels.items()]
+    assert told["asked"] == [[str(node + 1), levels.get(node, "missing")] for node in range(4)]
+    assert 2 in best["missing"], "no room of ours has a piano"
+    assert "nothing of its kind" in told["list"][2]
+    assert told["marked"] == len(best["mapping"])
+    assert [told["lost"], told["relations"]] == [len(best["lost"]), 2]
+    assert told["sum"].startswith(f"Distance {best['distance']} = ")
+    assert ("this is proven" in told["sum"]) == best["exact"]
+
+
+def _looked_at(told: dict[str, Any], room_id: str, client: httpx.Client) -> None:
+    """What the plan shows is what the service says of the room; the keyboard gets to every piece."""
+    room = client.get(f"/v1/layouts/{room_id}").raise_for_status().json()
+    done = {(spot["object_id"], spot["affordance"]) for spot in room["spots"]}
+    shown = {name: layer["on"] for name, layer in told["layers"].items()}
+    assert shown["Neighbours"] == len(room["graph"]["edges"])
+    assert shown["Touching"] == sum(affordance == "touch" for _, affordance in done)
+    assert shown["Sitting and lying"] == len(done) - shown["Touching"]
+    assert 0 < shown["Names"] <= len(room["objects"])
+    assert [layer["off"] for layer in told["layers"].values()] == [0, 0, 0, 0]
+    ids = [placed["id"] for placed in room["objects"]]
+    assert [told["first"]["id"], told["second"]["id"], told["chosen"]] == [ids[0], ids[1], ids[1]]
+    for step in (told["first"], told["second"]):
+        ends = [{room["graph"]["nodes"][end]["object_id"] for end in edge} for edge in room["graph"]["edges"]]
+        near = [pair for pair in ends if step["id"] in pair]
+        assert [step["edges"], step["near"]] == [len(near), len(near)]
+        assert step["label"] == step["caption"], "what is seen is said as well"
+    assert told["left"] == 0
+    assert told["rows"] == len(ids)
+    assert told["title"] == f"{room_id} · SIMS stories"
+    links = room["links"]
+    drawings = [links["drawing"], links["drawing"].replace(".svg", ".png")]
+    assert [f"/{address}" for address in told["files"]] == [*drawings, links["scene"], links["self"]]

@@ -137,6 +137,8 @@ export interface NewStory {
   seed: number;
   method: string;
   rooms?: string[];
+  /** Ids of rooms to play in. */
+  layouts?: readonly string[];
   character: { name: string; pronouns: string; height: number };
 }
 
@@ -159,7 +161,8 @@ export class ApiError extends Error {
   }
 }
 
-async function call(path: string, init: RequestInit = {}): Promise<Response> {
+/** Ask the service; ApiError for every answer that is an error. */
+export async function call(path: string, init: RequestInit = {}): Promise<Response> {
   let response: Response;
   try {
     response = await fetch(path, { credentials: "same-origin", ...init });
@@ -182,7 +185,8 @@ async function problem(response: Response): Promise<ApiError> {
   return new ApiError(response.status, title, detail, errors, retryAfter);
 }
 
-async function json<T>(path: string, init?: RequestInit): Promise<T> {
+/** The same, where the answer is JSON. */
+export async function json<T>(path: string, init?: RequestInit): Promise<T> {
   return (await (await call(path, init)).json()) as T;
 }
 

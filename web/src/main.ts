@@ -12,23 +12,57 @@ import { ThemeForm } from "./theme-form";
 
 const main = document.querySelector<HTMLElement>("#main")!;
 let view: StoryView | null = null;
+/** Leaves the rooms, where they are shown. */
+let leaveRooms: (() => void) | null = null;
+/** Counts what was shown, so that what comes late is not shown over what was asked for since. */
+let turn = 0;
 
 function route(): void {
-  view?.dispose();
-  view = null;
-  const id = /^#\/stories\/([\w-]+)$/.exec(location.hash)?.[1];
+  clear();
+  const [path = "", query = ""] = location.hash.split("?");
+  const id = /^#\/stories\/([\w-]+)$/.exec(path)?.[1];
+  const room = /^#\/rooms(?:\/(.*))?$/.exec(path);
+  roomsLink.ariaCurrent = room ? "page" : null;
   if (id) {
     view = new StoryView(id, () => (location.hash = "#/"));
     fill(main, view.element);
+  } else if (room) {
+    void showRooms(room[1] ?? "", query);
   } else {
-    showHome();
+    showHome(new URLSearchParams(query).getAll("in"));
   }
   window.scrollTo(0, 0);
 }
 
-function showHome(): void {
+function clear(): void {
+  turn++;
+  view?.dispose();
+  view = null;
+  leaveRooms?.();
+  leaveRooms = null;
+}
+
+/** The library, or one of its rooms; its code is fetched when it is first asked for. */
+async function showRooms(id: string, query: string): Promise<void> {
+  const mine = turn;
+  fill(main);
+  const { rooms } = await import("./rooms");
+  if (mine === turn) leaveRooms = rooms.show(main, decode(id), query);
+}
+
+/** An id from an address; one that is not well written names no room. */
+function decode(text: string): string {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return text;
+  }
+}
+
+/** `layouts` are rooms of the library that were chosen to play in. */
+function showHome(layouts: readonly string[] = []): void {
   document.title = "SIMS stories";
-  const form = new ThemeForm((story) => (location.hash = `#/stories/${story.id}`));
+  const form = new ThemeForm((story) => (location.hash = `#/stories/${story.id}`), layouts);
   const gallery = new Gallery();
   fill(main, h("div", { class: "front" }, h("section", { class: "arch-panel", "aria-label": "A new story" }, form.element), gallery.element));
   // While a theme is being thought of, the stage is fetched; where it cannot be built, the film will say so.
@@ -41,8 +75,7 @@ function showHome(): void {
 }
 
 function askForKey(): void {
-  view?.dispose();
-  view = null;
+  clear();
   fill(main, h("div", { class: "front" }, loginForm(() => void start())));
 }
 
@@ -50,7 +83,7 @@ async function start(): Promise<void> {
   const session = await getSession().catch(() => ({ required: false, authenticated: false }));
   const tools = document.querySelector<HTMLElement>("#tools")!;
   const leave = h("button", { type: "button", class: "plain small", onclick: () => void logOut().then(askForKey) }, "Leave");
-  fill(tools, session.authenticated && session.required ? leave : null, appearance);
+  fill(tools, roomsLink, session.authenticated && session.required ? leave : null, appearance);
   if (session.required && !session.authenticated) askForKey();
   else route();
 }
@@ -88,6 +121,7 @@ function seen(): Seen {
 }
 
 const appearance = appearanceButton();
+const roomsLink = h("a", { href: "#/rooms", class: "button quiet small" }, "Rooms");
 Object.defineProperty(window, "sims", { value: Object.freeze({ state: seen }) });
 // The address behind # names a story, so this link must not go there.
 document.querySelector(".skip")?.addEventListener("click", (event) => {

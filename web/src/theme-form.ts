@@ -29,17 +29,21 @@ export class ThemeForm {
   readonly #problem = h("div", { class: "problem", role: "alert", hidden: true });
   /** Pointer in the request to the control that it is about. */
   readonly #fields = new Map<string, HTMLElement>();
+  #layouts: readonly string[];
   #key = newKey();
   #timer = 0;
 
-  constructor(started: (story: Story) => void) {
+  /** `layouts` are the ids of rooms to play in; without any they are found for the story. */
+  constructor(started: (story: Story) => void, layouts: readonly string[] = []) {
     this.#started = started;
+    this.#layouts = layouts;
     const chips = SUGGESTIONS.map(([name, theme]) => h("button", { type: "button", class: "chip", title: theme, onclick: () => this.#suggest(theme) }, name));
     fill(
       this.element,
       h("h1", {}, h("label", { for: "theme" }, "What shall be played?")),
       h("div", { class: "theme-box" }, this.#theme, this.#error("/theme", this.#theme)),
       h("div", { class: "chips", role: "group", "aria-label": "Suggestions" }, ...chips),
+      this.#stage(),
       this.#options(),
       this.#problem,
       h("div", { class: "row send" }, this.#submit, h("span", { class: "hint", id: "theme-hint" }, "In English, a few sentences. Enter starts, Shift + Enter is a new line.")),
@@ -67,6 +71,23 @@ export class ThemeForm {
     this.#theme.focus();
   }
 
+  /** The rooms that were chosen from the library, and a way to do without them. */
+  #stage(): HTMLElement | null {
+    if (!this.#layouts.length) return null;
+    const names = this.#layouts.flatMap((id, place) => [place ? " and " : null, h("a", { href: `#/rooms/${encodeURI(id)}` }, id)]);
+    const drop = h("button", { type: "button", class: "plain small" }, "Play anywhere");
+    const stage = h("div", { class: "stage-chosen", tabindex: -1 }, h("p", {}, "Played in ", ...names, "."), drop, this.#error("/layouts"));
+    drop.addEventListener("click", () => {
+      this.#layouts = [];
+      this.#key = newKey();
+      stage.remove();
+      for (const choice of this.element.querySelectorAll<HTMLFieldSetElement>("fieldset:disabled")) choice.disabled = false;
+      this.#theme.focus();
+    });
+    this.#fields.set("/layouts", stage);
+    return stage;
+  }
+
   #options(): HTMLElement {
     const name = h("input", { id: "name", name: "name", value: "Sam", maxlength: 40, autocomplete: "off" });
     const pronouns = choices("pronouns", [["she", "she"], ["he", "he"], ["they", "they"]], "radio", "they");
@@ -84,7 +105,7 @@ export class ThemeForm {
         this.#field("Name", name, "/character/name"),
         this.#group("Pronouns", pronouns, "/character/pronouns"),
         this.#field("Height in metres", height, "/character/height"),
-        this.#group("Rooms", rooms, "/rooms", "None chosen: whatever suits the story."),
+        this.#group("Rooms", rooms, "/rooms", "None chosen: whatever suits the story.", this.#layouts.length > 0),
         this.#group("Woven", method, "/method"),
         this.#field("Seed", seed, "/seed", "Another number, another staging of the same theme."),
       ),
@@ -95,15 +116,15 @@ export class ThemeForm {
     return h("div", { class: "field" }, h("label", { for: control.id }, name), control, hint ? h("p", { class: "hint" }, hint) : null, this.#error(pointer, control));
   }
 
-  #group(name: string, control: HTMLElement, pointer: string, hint?: string): HTMLElement {
-    return h("fieldset", { class: "field" }, h("legend", {}, name), control, hint ? h("p", { class: "hint" }, hint) : null, this.#error(pointer, control));
+  #group(name: string, control: HTMLElement, pointer: string, hint?: string, disabled = false): HTMLElement {
+    return h("fieldset", { class: "field", disabled }, h("legend", {}, name), control, hint ? h("p", { class: "hint" }, hint) : null, this.#error(pointer, control));
   }
 
   /** An empty place for what is wrong with a control. */
-  #error(pointer: string, control: HTMLElement): HTMLElement {
+  #error(pointer: string, control?: HTMLElement): HTMLElement {
     const id = `${pointer.slice(1).replaceAll("/", "-")}-error`;
-    this.#fields.set(pointer, control);
-    if (!control.hasAttribute("aria-describedby")) control.setAttribute("aria-describedby", id);
+    if (control) this.#fields.set(pointer, control);
+    if (control && !control.hasAttribute("aria-describedby")) control.setAttribute("aria-describedby", id);
     return h("p", { class: "wrong", id, hidden: true });
   }
 
@@ -116,6 +137,7 @@ export class ThemeForm {
       seed: Number(text("seed") || 0),
       method: text("method"),
       ...(rooms.length ? { rooms } : {}),
+      ...(this.#layouts.length ? { layouts: this.#layouts } : {}),
       character: { name: text("name").trim() || "Sam", pronouns: text("pronouns"), height: Number(text("height") || 1.7) },
     };
   }

@@ -7,14 +7,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from scene_graphs.layouts import Point3
-
+Point3 = tuple[float, float, float]
 Range = tuple[float, float]
 
+_RESTED_ON = {"seat", "mattress", "back", "arm", "headboard", "base", "pillow"}
+_STORAGE = {"top", "shelf", "panel", "doors", "drawers", "leg", "pole", "foot"}
+_DECOR = {"shade", "screen", "mirror", "picture", "pot", "stem", "foliage", "rug"}
+ROLES = frozenset(_RESTED_ON | _STORAGE | _DECOR)
+"""What a part can be."""
 SOFT_ROLES = frozenset({"pillow", "foliage", "rug"})
 """Roles a body may sink into or step on: drawn, but no obstacle."""
 THINNEST = 0.004
 """Parts thinner than this are left out."""
+MOST_PARTS = 64
+"""No piece is made of more."""
 
 
 @dataclass(frozen=True)
@@ -22,26 +28,28 @@ class Part:
     """One axis-aligned box of a piece, in the piece's own frame (metres)."""
 
     role: str
-    """seat, back, arm, leg, top, shelf, panel, mattress, pillow, headboard, pole, shade, screen, pot, foliage, ..."""
-    center: Point3
-    size: Point3
+    """One of `ROLES`."""
+    low: Point3
+    """Corner of least x, y, z."""
+    high: Point3
+    """Corner of greatest x, y, z."""
 
     @property
-    def low(self) -> Point3:
-        """Corner of least x, y, z."""
-        (x, y, z), (w, h, d) = self.center, self.size
-        return (x - w / 2, y - h / 2, z - d / 2)
+    def center(self) -> Point3:
+        """The middle of the box."""
+        (x0, y0, z0), (x1, y1, z1) = self.low, self.high
+        return ((x0 + x1) / 2, (y0 + y1) / 2, (z0 + z1) / 2)
 
     @property
-    def high(self) -> Point3:
-        """Corner of greatest x, y, z."""
-        (x, y, z), (w, h, d) = self.center, self.size
-        return (x + w / 2, y + h / 2, z + d / 2)
+    def size(self) -> Point3:
+        """Width x, height y, depth z."""
+        (x0, y0, z0), (x1, y1, z1) = self.low, self.high
+        return (x1 - x0, y1 - y0, z1 - z0)
 
     @property
     def top(self) -> float:
         """Height of the top face above the piece's bottom."""
-        return self.center[1] + self.size[1] / 2
+        return self.high[1]
 
     @property
     def is_soft(self) -> bool:
@@ -51,8 +59,7 @@ class Part:
 
 def box(role: str, x: Range, y: Range, z: Range) -> Part:
     """A part by its ranges on the three axes."""
-    center = ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2, (z[0] + z[1]) / 2)
-    return Part(role, center, (x[1] - x[0], y[1] - y[0], z[1] - z[0]))
+    return Part(role, (x[0], y[0], z[0]), (x[1], y[1], z[1]))
 
 
 def ends(width: float, thick: float) -> tuple[Range, Range]:

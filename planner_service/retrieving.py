@@ -1,0 +1,109 @@
+"""Rooms and homes that have what a graph asks for, found in bounded time, each with its explanation."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Final
+
+from planner_service.schemas.stories import Json
+from scene_graphs.combining import HomeMatch, retrieve_home
+from scene_graphs.explaining import Explanation, explain
+from scene_graphs.furniture import Furniture, canonical_room, display_name
+from scene_graphs.graph import FurnitureGraph
+from scene_graphs.merging import side_by_side
+from scene_graphs.retrieval import LayoutIndex, LayoutMatch
+
+EFFORT: Final = 4_000_000
+"""Nodes of the query, times steps of the search in all rooms or homes: a second or two at most."""
+LEAST_STEPS, MOST_STEPS = 50, 100_000
+MOST_HOMES: Final = 5_000
+"""Homes of several rooms that are searched."""
+
+
+@dataclass(frozen=True)
+class Retrieved:
+    """A room, or several, and why."""
+
+    match: LayoutMatch | HomeMatch
+    told: Explanation
+
+    @property
+    def layout_ids(self) -> tuple[str, ...]:
+        """The rooms, one or more."""
+        return (self.match.layout_id,) if isinstance(self.match, LayoutMatch) else self.match.layout_ids
+
+
+def retrieved(
+    index: LayoutIndex, query: FurnitureGraph, k: int, rooms: Sequence[str] = (), max_rooms: int = 1
+) -> list[Retrieved]:
+    """The k nearest rooms of the types, all if none is named; with `max_rooms` above 1 the nearest homes of so many.
+
+    What the bounded effort cannot prove is not `exact`. Raises NoSuitableRoom where there is no room of a type, and
+    ValueError for a query that is empty or too large.
+    """
+    named = list(dict.fromkeys(canonical_room(room) for room in rooms))
+    kinds: Sequence[str | None] = named or [None]
+    effort = max(EFFORT // max(len(query), 1), LEAST_STEPS)
+    if max_rooms > 1:
+        homes = retrieve_home(index, query, max_rooms, k, named, limit=MOST_STEPS, budget=MOST_HOMES, effort=effort)
+        return [Retrieved(match, explain(query, _together(index, match), match, index.costs)) for match in homes]
+    size = sum(len(index.of_type(kind)) for kind in kinds)
+    steps = min(max(effort // size, LEAST_STEPS), MOST_STEPS)
+    matches = [match for kind in kinds for match in index.search(query, k, kind, limit=steps)]
+    # Where one type's search was cut, its nearest may be missing from all of them.
+    proven = len(kinds) == 1 or all(match.exact for match in matches)
+    found = {match.layout_id: replace(match, exact=match.exact and proven) for match in matches}
+    best = sorted(found.values(), key=lambda match: (match.distance, match.lower_bound, match.layout_id))[:k]
+    return [Retrieved(match, explain(query, index.graph(match.layout_id), match, index.costs)) for match in best]
+
+
+def retrieved_to_dict(index: LayoutIndex, found: Retrieved, nodes: Sequence[Furniture]) -> Json:
+    """Plain values for JSON; `nodes` are the query's as they were sent, and named by their places."""
+    places = {node: place for place, node in enumerate(nodes)}
+    told = found.told
+    rooms = [{"layout_id": name, "room_type": index.layout(name).room_type} for name in found.layout_ids]
+    return {
+        **(rooms[0] if isinstance(found.match, LayoutMatch) else {"rooms": rooms}),
+        "distance": told.distance,
+        "exact": told.exact,
+        "lower_bound": found.match.lower_bound,
+        "mapping": [
+            {
+                "node": places[pair.asked],
+                "category": pair.asked.category,
+                "instance": pair.asked.instance,
+                "object_id": pair.object_id,
+                "given": pair.given.category,
+                "level": pair.level,
+                "cost": pair.cost,
+            }
+            for pair in sorted(told.given, key=lambda pair: places[pair.asked])
+        ],
+        "substitutions": [
+            {
+                "asked": display_name(pair.asked.category),
+                "given": display_name(pair.given.category),
+                "level": pair.level,
+            }
+            for pair in told.substitutions
+        ],
+        "missing": sorted(places[gap.asked] for gap in told.missing),
+        "reasons": [
+            {
+                "node": places[gap.asked],
+                "why": gap.why,
+                "nearest": None if gap.nearest is None else gap.nearest.category,
+                "unmet": list(gap.unmet),
+            }
+            for gap in sorted(told.missing, key=lambda gap: places[gap.asked])
+        ],
+        "extra": list(found.match.extra),
+        "lost": sorted(sorted((places[first], places[second])) for first, second in told.lost),
+        "costs": asdict(told.costs),
+        "explanation": told.lines(),
+    }
+
+
+def _together(index: LayoutIndex, match: HomeMatch) -> FurnitureGraph:
+    return side_by_side({place: index.graph(name) for place, name in enumerate(match.layout_ids)})

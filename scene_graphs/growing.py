@@ -1,0 +1,223 @@
+"""Homes grown room by room: bounds for all of them at once, an exact search for those that can be among the best."""
+
+from __future__ import annotations
+
+from bisect import insort
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scene_graphs.branching import CodedQuery, Found
+from scene_graphs.costs import Key
+from scene_graphs.retrieval import LayoutIndex
+
+ANOTHER_ROOM: Final = 50
+"""What every room after the first costs: half a missing key object."""
+MOST_PAIRED: Final = 1000
+"""Of more rooms the nearest of each type are taken, and what that may have missed is not called exact."""
+_BLOCK: Final = 1 << 20
+
+Rooms = tuple[int, ...]
+"""Numbers of different rooms of an index, rising."""
+Sets = NDArray[np.intp]
+"""Homes of one size, a row each. (homes, rooms)."""
+_Column = NDArray[np.int32]
+
+
+class Grown(NamedTuple):
+    """A home that was searched; homes are ordered by this."""
+
+    cost: int
+    size: int
+    bound: int
+    rooms: Rooms
+
+
+@dataclass
+class Effort:
+    """What may still be spent on searching."""
+
+    limit: int
+    steps: int
+    budget: int
+
+    def __post_init__(self) -> None:
+        self.homes = self.budget
+
+    def limit_for(self, rooms: int) -> int:
+        """Search nodes for the next home, of so many rooms."""
+        # Which three are nearest is not proven anyway: looking at more of them gains more than looking for long.
+        return max(1, min(self.limit if rooms < 3 else self.limit // 10, self.steps))
+
+    def spend(self, rooms: int, expanded: int) -> None:
+        """A home was searched; single rooms are not counted among the homes."""
+        self.steps -= expanded
+        self.homes -= rooms > 1
+
+
+class Homes:
+    """The k best homes so far, and the least bound of any home that was not properly looked at."""
+
+    def __init__(
+        self, index: LayoutIndex, query: CodedQuery, numbers: NDArray[np.intp], k: int, effort: Effort
+    ) -> None:
+        self.index, self.query, self.numbers = index, query, numbers
+        self.k, self.effort = k, effort
+        self.kept: list[Grown] = []
+        self.doubt = np.inf
+        self.known: dict[Rooms, _Known] = {}
+        self._hunt = index.hunt(query)
+        self._terms = [*query.node_terms, *query.edge_terms]
+        self._constant = sum(query.deletes) + query.costs.lost_edge * len(query.edges)
+        self._columns: dict[Key, _Column] = {}
+        self._bases = self._hunt.bases
+        self._changes = self._hunt.bounds() - self._constant
+        """What each room adds to the bound of a home, at least."""
+
+    @property
+    def worst(self) -> float:
+        """What a home must cost less than to be among the k best."""
+        return self.kept[-1].cost if len(self.kept) == self.k else np.inf
+
+    def best(self, homes: Sets, width: int = 0) -> Sets:
+        """Add every room to every home, keep the k best of what comes of it, and return the `width` best.
+
+        A home is searched, in the order of bounds, as long as it can be among the one or the other.
+        """
+        beam: list[Grown] = []
+        for bound, rooms in self._grown(homes, np.inf if width else self.worst):
+            unfilled = len(beam) < width
+            upper = np.inf if unfilled else max([self.worst, *(entry.cost for entry in beam[-1:])])
+            if bound >= upper:
+                break
+            if not self.effort.homes and len(rooms) > 1 and rooms not in self.known:
+                self.doubt = min(self.doubt, bound)
+                break
+            if (entry := self._entry(bound, rooms, upper)) is not None:
+                for entries, most in ((self.kept, self.k), (beam, width)):
+                    if entry not in entries:
+                        insort(entries, entry)
+                        del entries[most:]
+        return np.array([entry.rooms for entry in beam], dtype=np.intp).reshape(len(beam), homes.shape[1] + 1)
+
+    def grow(self, homes: Sets, width: int, most: int) -> None:
+        """Add rooms one after the other until homes have `most` of them, going on with the `width` best."""
+        while len(homes) and homes.shape[1] < most:
+            homes = self.best(homes, width if homes.shape[1] + 1 < most else 0)
+
+    def exchange(self, size: int) -> None:
+        """Put another room in the place of one of the best home of a size, as long as that helps."""
+        entries = (known.entry for known in self.known.values() if known.entry is not None)
+        best = min((entry for entry in entries if entry.size == size), default=None)
+        while best is not None:
+            rooms = best.rooms
+            without = [[room for room in rooms if room != left_out] for left_out in rooms]
+            swapped = self.best(np.array(without, dtype=np.intp), 1)
+            found = self.known[tuple(swapped[0].tolist())].entry if len(swapped) else None
+            best = found if found is not None and found < best else None
+
+    def worthwhile(self, most: int) -> int:
+        """The largest number of rooms, up to `most`, with which a home might be among the k best."""
+        return max((size for size in range(2, most + 1) if self._floor(size) < self.worst), default=1)
+
+    def narrow(self, most: int) -> None:
+        """Prepare for homes of 2 to `most` rooms: of too many rooms choose the nearest of each type in turn."""
+        self.doubt = min([self.doubt, *(self._floor(size) for size in range(3, most + 1))])
+        changes = self._changes[self.numbers]
+        if len(changes) <= MOST_PAIRED:
+            return
+        turns: Counter[str] = Counter()
+        ranked = []
+        for rank, place in enumerate(np.argsort(changes, kind="stable")):
+            room_type = self.index.rooms.room_type(int(self.numbers[place]))
+            turns[room_type] += 1
+            ranked.append((turns[room_type], rank, place))
+        chosen = np.sort([place for *_, place in sorted(ranked)[:MOST_PAIRED]])
+        hidden = self._constant + _fare(2) + np.delete(changes, chosen).min() + changes.min()
+        self.doubt = min(self.doubt, float(hidden))
+        self.numbers = self.numbers[chosen]
+
+    def _floor(self, size: int) -> float:
+        """A distance that no home of that many rooms falls below."""
+        if len(self.numbers) < size:
+            return np.inf
+        saved = sum(t.coefficient * (len(t.places) + sum(len(own) for _, own in t.parts)) for t in self._terms)
+        least = np.sort(self._bases[self.numbers])[:size].sum() - saved
+        return float(self._constant + _fare(size) + max(least, np.sort(self._changes[self.numbers])[:size].sum()))
+
+    def _grown(self, homes: Sets, ceiling: float) -> Iterator[tuple[int, Rooms]]:
+        """Every home with every room it has not, by (bound, rooms), as far as bounds are below the ceiling."""
+        size = homes.shape[1] + 1
+        # A home can be grown from as many smaller ones as it has rooms; one more than are searched shows what is cut.
+        most = len(self.numbers) if size == 1 else size * (self.effort.budget + 1)
+        bounds, grown = np.empty(0, dtype=np.int32), np.empty((0, size), dtype=np.intp)
+        rows = max(1, _BLOCK // len(self.numbers))
+        for start in range(0, len(homes), rows):
+            block = homes[start : start + rows]
+            values = self._bounds(block)
+            new = (block[:, :, None] != self.numbers).all(axis=1) & (values < ceiling)
+            home, place = np.nonzero(new)
+            bounds = np.concatenate([bounds, values[home, place]])
+            grown = np.concatenate([grown, np.column_stack([block[home], self.numbers[place]])])
+            if len(bounds) > most:
+                least = np.argpartition(bounds, most - 1)[:most]
+                bounds, grown = bounds[least], grown[least]
+        grown.sort(axis=1)
+        order = np.lexsort((*grown.T[::-1], bounds))
+        before: Rooms = ()
+        for number in order:
+            if (rooms := tuple(map(int, grown[number]))) != before:
+                yield int(bounds[number]), rooms
+            before = rooms
+
+    def _bounds(self, homes: Sets) -> _Column:
+        """The lower bound of every home with every room added. (homes, rooms)."""
+
+        def together(column: _Column) -> _Column:
+            joined: _Column = column[homes].sum(axis=1, dtype=np.int32)[:, None] + column[self.numbers]
+            return joined
+
+        bounds: _Column = together(self._bases) + (self._constant + _fare(homes.shape[1] + 1))
+        for term in self._terms:
+            asked = np.full(bounds.shape, len(term.places), dtype=np.int32)
+            for key, places in term.parts:
+                asked += np.minimum(together(self._column(key)), len(places))
+            bounds -= term.coefficient * np.minimum(together(self._column(term.key)), asked)
+        return bounds
+
+    def _column(self, key: Key) -> _Column:
+        if key not in self._columns:
+            self._columns[key] = self.index.counts.column(key)
+        return self._columns[key]
+
+    def _entry(self, bound: int, rooms: Rooms, upper: float) -> Grown | None:
+        """What a home costs, unless that is at least the upper bound."""
+        known = self.known.get(rooms)
+        if known is None or (known.entry is None and known.below < upper):
+            fare = _fare(len(rooms))
+            below = None if upper == np.inf else int(upper) - fare
+            found = self._hunt.search(rooms, below, self.effort.limit_for(len(rooms)))
+            self.effort.spend(len(rooms), found.expanded)
+            entry = None if found.cost is None else Grown(found.cost + fare, len(rooms), bound, rooms)
+            known = self.known[rooms] = _Known(upper, entry, found)
+            if found.capped:
+                self.doubt = min(self.doubt, bound)
+        return known.entry
+
+
+@dataclass(frozen=True)
+class _Known:
+    """What the search of a home came to."""
+
+    below: float
+    entry: Grown | None
+    """None if the cost is not below."""
+    found: Found
+
+
+def _fare(rooms: int) -> int:
+    return ANOTHER_ROOM * (rooms - 1)

@@ -1,0 +1,172 @@
+"""ScanNet: a scan's decimated mesh, its segments and their labels, as a room of labelled boxes.
+
+Scans have Z up: (x, y, z) -> (x, z, -y) after the scan's own axis alignment.
+"""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from scene_graphs.fields import FARTHEST, LayoutError, read_object, read_rows
+from scene_graphs.layouts import Array, Layout, Point2
+from scene_graphs.loaders.floors import corners_around
+from scene_graphs.loaders.intake import Intake
+from scene_graphs.loaders.plan_boxes import box_around
+from scene_graphs.loaders.ply import read_ply_vertices
+from scene_graphs.loaders.scanned import MOST_THINGS, Scan, Thing, room_of_scan
+from scene_graphs.loaders.source import Source
+
+LICENCE: Final = "ScanNet terms of use: research only, not to be passed on"
+AGGREGATION, SEGMENTS = ".aggregation.json", "_vh_clean_2.0.010000.segs.json"
+MESH, INFO = "_vh_clean_2.ply", ".txt"
+DENSE: Final = "_vh_clean.aggregation.json"
+_SMOOTH: Final = 0.05
+"""Corners of the floor's hull nearer than this to the line between others go, in metres."""
+_FEWEST: Final = 10
+"""A thing of fewer points is none."""
+
+
+class _Files(NamedTuple):
+    name: str
+    aggregation: Source
+    segments: Source
+    mesh: Source
+    info: Source | None
+
+
+def read_scannet(source: Source, intake: Intake) -> list[Layout]:
+    """The room of a scan: its folder, a folder of scans with the option `scan`, or its .aggregation.json.
+
+    LayoutError if one of the scan's files is missing or damaged, or they belong to different meshes.
+    """
+    files = _files(source, intake.options.scan)
+    info = _info(files.info)
+    segments, points = _segments(files), _aligned(read_ply_vertices(files.mesh), info, files)
+    if len(segments) != len(points):
+        raise LayoutError(
+            f"{files.segments.name} has {len(segments)} segIndices, {files.mesh.name} {len(points)} vertices: "
+            f"one is of the dense mesh; take {files.name}{SEGMENTS} and {files.name}{MESH}"
+        )
+    groups = _groups(files, segments, intake)
+    under = [rows for label, _, rows in groups if label == "floor"]
+    floor_points = points[np.concatenate(under)] if under else points
+    things = [
+        Thing(f"{label}-{name}", label, box_around(points[rows])) for label, name, rows in groups if label != "floor"
+    ]
+    layout = room_of_scan(
+        Scan(
+            id=f"scannet/{files.name}",
+            room_type=_room_type(info.get("sceneType", "")) or intake.options.room_type,
+            things=things,
+            floor=_hull(floor_points),
+            level=float(np.quantile(floor_points[:, 1], 0.5 if under else 0.01)) if len(points) else 0.0,
+            source="scannet",
+            licence=LICENCE,
+        ),
+        intake,
+    )
+    if not under:
+        intake.guess("floor")
+    return [] if layout is None else [layout]
+
+
+def _files(source: Source, scan: str | None) -> _Files:
+    """The files of the scan. LayoutError names the first that is missing."""
+    if source.is_folder:
+        places = (f"{scan}/{scan}", f"scans/{scan}/{scan}", scan) if scan else ()
+        inner = next((place for place in places if source.beside(place + AGGREGATION)), None)
+        found = source.beside(inner + AGGREGATION) if inner else None if scan else source.find("*" + AGGREGATION)
+        if found is None:
+            raise LayoutError(
+                f"{source.name} has no {scan or '<scan>'}{AGGREGATION}; give a scan's folder or name the scan"
+            )
+        stem = inner if inner else found.name.removesuffix(AGGREGATION)
+    else:
+        found, stem = source, source.name.removesuffix(AGGREGATION)
+    if found.name.endswith(DENSE) or not found.name.endswith(AGGREGATION):
+        raise LayoutError(f"{found.name}: give <scan>{AGGREGATION}, which is of the decimated mesh")
+    name = stem.rsplit("/", 1)[-1]
+    segments, mesh = source.beside(stem + SEGMENTS), source.beside(stem + MESH)
+    if segments is None or mesh is None:
+        raise LayoutError(f"{found.name} needs {name}{SEGMENTS if segments is None else MESH} beside it")
+    return _Files(name, found, segments, mesh, source.beside(stem + INFO))
+
+
+def _info(file: Source | None) -> dict[str, str]:
+    """The lines "name = value" of the scan's .txt."""
+    pairs = (line.split("=", 1) for line in (file.text().splitlines() if file else ()))
+    return {pair[0].strip(): pair[1].strip() for pair in pairs if len(pair) == 2}
+
+
+def _segments(files: _Files) -> NDArray[np.int64]:
+    """The segment of every vertex. (N,)."""
+    row = read_object(files.segments.json(), files.segments.name, "a JSON object")
+    try:
+        segments = np.asarray(row.get("segIndices"), dtype=np.int64)
+    except (TypeError, ValueError, OverflowError):
+        segments = np.zeros((0, 0), dtype=np.int64)
+    if segments.ndim != 1:
+        raise LayoutError(f"{files.segments.name}.segIndices must be a list of whole numbers, one a vertex")
+    return segments
+
+
+def _aligned(points: Array, info: dict[str, str], files: _Files) -> Array:
+    """The points along the room's walls, Y up. (N, 3)."""
+    if "axisAlignment" in info:
+        place = f"{files.name}{INFO}: axisAlignment"
+        try:
+            matrix = np.array([float(number) for number in info["axisAlignment"].split()[:17]]).reshape(4, 4)
+        except ValueError as error:
+            raise LayoutError(f"{place} must be 16 numbers") from error
+        turn, move = matrix[:3, :3], matrix[:3, 3]
+        if not (np.abs(matrix) <= FARTHEST).all() or not np.allclose(turn @ turn.T, np.eye(3), atol=1e-3):
+            raise LayoutError(f"{place} must be a rotation and a move within {FARTHEST:g} m")
+        points = points @ turn.T + move
+    upright: Array = np.stack([points[:, 0], points[:, 2], -points[:, 1]], axis=-1)
+    return upright
+
+
+def _groups(files: _Files, segments: NDArray[np.int64], intake: Intake) -> list[tuple[str, str, NDArray[np.intp]]]:
+    """Label, id and vertices of every labelled thing."""
+    row = read_object(files.aggregation.json(), files.aggregation.name, "a JSON object")
+    order = np.argsort(segments, kind="stable")
+    names, starts = np.unique(segments[order], return_index=True)
+    vertices = dict(zip(names.tolist(), np.split(order, starts[1:]), strict=True)) if len(names) else {}
+    asked = missing = 0
+    found: list[tuple[str, str, NDArray[np.intp]]] = []
+    for group, place in read_rows(row, "segGroups", files.aggregation.name, MOST_THINGS):
+        listed = group.get("segments")
+        if not isinstance(listed, list) or not all(isinstance(number, int) for number in listed):
+            raise LayoutError(f"{place}.segments must be a list of whole numbers")
+        label = word.strip().lower() if isinstance(word := group.get("label"), str) else ""
+        owned = [vertices[number] for number in set(listed) if number in vertices]
+        asked, missing = asked + len(set(listed)), missing + len(set(listed)) - len(owned)
+        rows = np.sort(np.concatenate(owned)) if owned else np.zeros(0, dtype=np.intp)
+        if len(rows) < _FEWEST:
+            intake.drop(f"it has fewer than {_FEWEST} points", label)
+        else:
+            found.append((label, str(group.get("objectId", len(found)))[:20], rows))
+    if missing * 2 > asked:
+        raise LayoutError(
+            f"{files.aggregation.name} names {missing} of {asked} segments that {files.segments.name} does not have: "
+            "one is of the dense mesh"
+        )
+    return found
+
+
+def _hull(points: Array) -> list[Point2] | None:
+    """The outline around points seen from above."""
+    hull = shapely.MultiPoint(points[:, [0, 2]]).convex_hull.simplify(_SMOOTH)
+    if not isinstance(hull, shapely.Polygon) or hull.is_empty:
+        return None
+    return corners_around(hull.exterior)
+
+
+def _room_type(scene: str) -> str | None:
+    """ "Bedroom / Hotel" -> "bedroom"."""
+    word = scene.split("/")[0].strip()[:60]
+    return word if word.isprintable() and word else None

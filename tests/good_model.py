@@ -1,0 +1,37 @@
+"""A language model that reads what it is asked and answers well, for tests of what is made of its answers."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+THEME = "Sam reads a book on the sofa, hears bad news on the phone and lies down on the bed in tears."
+EVENTS = ("reads a book on the sofa", "hears bad news on the phone", "lies down on the bed in tears")
+TITLE = "A Letter of Glass"
+TEXT = (
+    "Sam read the whole morning, and the light moved slowly over the wall. Then the telephone rang. After that there "
+    "was nothing left to do but to lie down and to weep until the evening came."
+)
+
+
+def answer_to(prompt: str) -> dict[str, Any]:
+    """Three events, the last script offered for each, a text of its own; by what the prompt asks for."""
+    if "You plan a short film" in prompt:
+        moods = ("relaxed", "stressed", "sad")
+        return {"events": [{"text": text, "emotion": mood} for text, mood in zip(EVENTS, moods, strict=True)]}
+    if "You arrange short scripts" in prompt:
+        return {"choices": [{"event": event, "script": script} for event, script in chosen_in(prompt).items()]}
+    if "You tell a short story" in prompt:
+        return {"title": TITLE, "text": TEXT}
+    if "This is a trial" in prompt:
+        return {"furniture": "kitchen chair", "legs": 4}
+    raise AssertionError(f"nobody taught it to answer {prompt!r:.200}")
+
+
+def chosen_in(prompt: str) -> dict[int, str]:
+    """For every event the last script that is offered for it and not taken yet."""
+    chosen: dict[int, str] = {}
+    for block in re.split(r"^event (?=\d+:)", prompt, flags=re.MULTILINE)[1:]:
+        offered = re.findall(r"^  ([a-z0-9-]+) \[", block, flags=re.MULTILINE)
+        chosen[int(block.split(":")[0])] = [script for script in offered if script not in chosen.values()][-1]
+    return chosen

@@ -1,0 +1,190 @@
+"""A VirtualHome flat becomes rooms: floors from tiles, fronts from what stands around, and junk is refused."""
+
+from __future__ import annotations
+
+import json
+import os
+from contextlib import suppress
+from math import pi, remainder, tau
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from spoiling import spoiled
+
+from scene_graphs.fields import LayoutError
+from scene_graphs.layouts import Layout, layout_from_dict, layout_to_dict, read_layouts
+from scene_graphs.loaders import Imported, Source, read_scene
+
+DATA = Path(os.environ.get("SIMS_TEST_DATA", ".")) / "layouts"
+FLAT = DATA / "extra" / "virtualhome_TestScene2_graph.json.gz"
+HANGING = {"ceiling_lamp", "coffee_maker", "coffee_pot", "toaster", "computer", "mouse", "radio"}
+"""Things without a front that anybody could tell."""
+
+
+def node(
+    number: int, class_name: str, category: str, center: tuple[float, ...], size: tuple[float, ...], prefab: str = ""
+) -> dict[str, Any]:
+    box = {"center": list(center), "size": list(size)}
+    return {"id": number, "class_name": class_name, "category": category, "prefab_name": prefab, "bounding_box": box}
+
+
+def edge(start: int, relation: str, end: int) -> dict[str, Any]:
+    return {"from_id": start, "to_id": end, "relation_type": relation}
+
+
+def flat() -> dict[str, Any]:
+    """A bedroom of two tiles beside a living room of one, with a door between them. Unity's frame."""
+    furniture = [
+        node(10, "bed", "Furniture", (4.0, 0.14, 1.25), (2.0, 0.28, 1.4)),
+        node(11, "pillow", "Decor", (4.8, 0.5, 1.25), (0.4, 0.1, 0.5)),
+        node(12, "closet", "Furniture", (1.0, 1.0, 0.3), (1.5, 2.0, 0.6)),
+        node(13, "sink", "Furniture", (1.5, 0.9, 2.2), (0.6, 0.0, 0.4)),
+        node(14, "mug", "Props", (1.5, 0.9, 2.2), (0.1, 0.1, 0.1)),
+    ]
+    sofa = [node(20, "sofa", "Furniture", (-1.25, 0.43, 2.0), (1.9, 0.86, 0.9))]
+    inside = [edge(n["id"], "INSIDE", 1) for n in furniture] + [edge(20, "INSIDE", 2)]
+    tiles = [
+        *(node(3 + i, "floor", "Floor", (1.25 + 2.5 * i, 0.0, 1.25), (2.5, 0.0, 2.5)) for i in range(2)),
+        node(6, "floor", "Floor", (-1.25, 0.0, 1.25), (2.5, 0.0, 2.5)),
+    ]
+    rooms = [
+        node(1, "bedroom", "Rooms", (2.5, 1.25, 1.25), (5.5, 2.5, 3.0)),
+        node(2, "livingroom", "Rooms", (-1.25, 1.25, 1.25), (2.5, 2.5, 2.5)),
+    ]
+    jamb = node(7, "doorjamb", "Doors", (0.0, 1.03, 1.25), (0.12, 2.06, 0.93))
+    return {
+        "nodes": [*rooms, *tiles, jamb, *furniture, *sofa],
+        "edges": [
+            *inside,
+            *(edge(tile["id"], "INSIDE", 2 if tile["id"] == 6 else 1) for tile in tiles),
+            edge(7, "INSIDE", 1),
+            edge(11, "ON", 10),
+        ],
+    }
+
+
+def read(graph: Any) -> Imported:
+    return read_scene(Source.of_bytes("flat.json", json.dumps(graph).encode()), "virtualhome")
+
+
+def test_a_room_is_the_union_of_its_tiles_mirrored_into_our_frame() -> None:
+    bedroom, living_room = read(flat()).layouts
+    assert (bedroom.id, bedroom.room_type, living_room.room_type) == ("flat/1", "bedroom", "living_room")
+    assert shapely.Polygon(bedroom.floor_polygon).symmetric_difference(shapely.box(-5, 0, 0, 2.5)).area < 0.01
+    assert bedroom.height == 2.5
+
+
+def test_a_door_frame_opens_the_wall_of_both_rooms() -> None:
+    for layout in read(flat()).layouts:
+        [door] = layout.doors
+        assert np.allclose(sorted(door.segment), [(0.0, 0.785), (0.0, 1.715)], atol=1e-3)
+        assert door.top == pytest.approx(2.06)
+
+
+def test_furniture_has_its_box_its_height_and_a_front_that_was_guessed() -> None:
+    result = read(flat())
+    bedroom = result.layouts[0]
+    bed, pillow, wardrobe = (bedroom.object(name) for name in ("10", "11", "12"))
+    assert bed.category == "double_bed"
+    assert bed.size == pytest.approx((1.4, 0.65, 2.0))
+    # The pillow lies at Unity's +x, ours is -x: the foot looks the other way.
+    assert np.allclose(bed.front, (1.0, 0.0))
+    assert pillow.parent == "10"
+    assert wardrobe.category == "wardrobe"
+    assert np.allclose(wardrobe.front, (0.0, 1.0))
+    assert bedroom.object("13").size[1] > 0
+    assert result.report.guessed["front"] == 5
+    assert result.report.dropped["a small thing to pick up, or nobody's furniture"] == 1
+
+
+def test_a_turned_chair_has_a_footprint_though_its_stored_size_is_none() -> None:
+    graph = flat()
+    chair = node(30, "chair", "Furniture", (2.0, 0.5, 1.0), (0.0, 1.0, 0.87), "PRE_FUR_CPU_chair_03_05")
+    graph["nodes"].append(chair)
+    graph["edges"].append(edge(30, "INSIDE", 1))
+    placed = read(graph).layouts[0].object("30")
+    assert (placed.category, placed.size[0], placed.size[2]) == ("office_chair", 0.62, 0.62)
+
+
+def test_a_program_holds_its_graph_as_init_graph() -> None:
+    assert read({"init_graph": flat(), "final_graph": {}}).layouts == read(flat()).layouts
+
+
+def test_a_room_without_tiles_has_its_own_box_for_a_floor() -> None:
+    graph = flat()
+    graph["nodes"] = [row for row in graph["nodes"] if row["category"] != "Floor"]
+    result = read(graph)
+    assert result.report.guessed["floor"] == 2
+    assert result.layouts[0].area == pytest.approx(16.5, abs=0.01)
+
+
+def test_what_is_no_graph_is_refused() -> None:
+    for junk in ({"rooms": []}, [1], "graph", None):
+        with pytest.raises(LayoutError, match="nodes and edges"):
+            read(junk)
+
+
+def test_things_on_each_other_in_a_circle_do_no_harm() -> None:
+    graph = flat()
+    graph["edges"] += [edge(10, "ON", 11), edge(11, "ON", 11), edge(12, "INSIDE", 12), edge(1, "INSIDE", 1)]
+    assert len(read(graph).layouts) == 2
+
+
+def test_a_hundred_thousand_nodes_are_refused_in_bounded_time() -> None:
+    graph = flat()
+    graph["nodes"] += [node(n, "chair", "Furniture", (1, 0, 1), (0.5, 1, 0.5)) for n in range(100, 100_000)]
+    with pytest.raises(LayoutError, match="at most 20000"):
+        read(graph)
+
+
+@settings(max_examples=150, deadline=None)
+@given(spoiled(flat()))
+def test_whatever_a_graph_says_it_is_read_or_refused(graph: Any) -> None:
+    with suppress(LayoutError):
+        for layout in read(graph).layouts:
+            assert layout_from_dict(layout_to_dict(layout)) == layout
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, len(json.dumps(flat())) - 1))
+def test_a_file_that_is_cut_off_is_refused(length: int) -> None:
+    with pytest.raises(LayoutError):
+        read_scene(Source.of_bytes("flat.json", json.dumps(flat())[:length].encode()), "virtualhome")
+
+
+@pytest.mark.skipif(not FLAT.is_file(), reason="SIMS_TEST_DATA holds no layouts/extra")
+def test_an_original_flat_agrees_with_its_rooms_as_others_converted_them() -> None:
+    rooms = {layout.id.rsplit("/")[-1]: layout for layout in read_scene(FLAT, "virtualhome").layouts}
+    converted = [
+        layout
+        for layout in read_layouts(DATA / "rooms" / "virtualhome_rooms.jsonl.gz")
+        if layout.id.startswith("virtualhome/TestScene2/")
+    ]
+    fronts = []
+    for theirs in converted:
+        ours = rooms[theirs.id.rsplit("/")[-1]]
+        assert (ours.room_type, set(ours.tags)) == (theirs.room_type, set(theirs.tags))
+        assert _outline(ours).symmetric_difference(_outline(theirs)).area < 0.02
+        assert (len(ours.doors), len(ours.windows)) == (len(theirs.doors), len(theirs.windows))
+        mine = {placed.id: placed for placed in ours.objects}
+        for placed in theirs.objects:
+            found = mine[placed.id]
+            assert found.category == placed.category
+            assert np.allclose(
+                [found.position[axis] for axis in (0, 2)], [placed.position[axis] for axis in (0, 2)], atol=1e-3
+            )
+            assert abs(found.position[1] - placed.position[1]) < 0.13
+            assert np.allclose(sorted(found.size), sorted(placed.size), atol=3e-3)
+            if placed.category not in HANGING:
+                fronts.append(abs(remainder(found.yaw - placed.yaw, tau)) < pi / 4)
+    assert len(converted) == 4
+    assert np.mean(fronts) > 0.95
+
+
+def _outline(layout: Layout) -> shapely.Polygon:
+    return shapely.Polygon(layout.floor_polygon)

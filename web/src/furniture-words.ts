@@ -1,0 +1,41 @@
+/** Furniture in the words that people use. */
+
+import { plain } from "./words";
+
+const NAMES: Readonly<Record<string, string>> = {
+  multi_seat_sofa: "sofa",
+  loveseat_sofa: "loveseat",
+  l_shaped_sofa: "corner sofa",
+  chaise_longue_sofa: "chaise longue",
+  lazy_sofa: "bean bag",
+  kids_bed: "children’s bed",
+  children_cabinet: "children’s cabinet",
+  tv_stand: "TV stand",
+  tv: "TV",
+  corner_side_table: "side table",
+  round_end_table: "end table",
+};
+
+/** "loveseat_sofa" as "loveseat". */
+export const nameOf = (category: string): string => NAMES[category] ?? plain(category);
+
+/** "2 bookshelves", "a desk" as "desk". */
+export function several(count: number, name: string): string {
+  if (count === 1) return name;
+  const many = /(?:ch|sh|s|x)$/.test(name) ? `${name}es` : /shelf$/.test(name) ? name.replace(/f$/, "ves") : `${name}s`;
+  return `${count} ${many}`;
+}
+
+/** Counts by category as a list, in the order given; what has the same name is counted together. */
+export function listing(furniture: Readonly<Record<string, number>>): string {
+  const counts = new Map<string, number>();
+  for (const [category, count] of Object.entries(furniture)) counts.set(nameOf(category), (counts.get(nameOf(category)) ?? 0) + count);
+  return [...counts].map(([name, count]) => several(count, name)).join(", ");
+}
+
+/** The names of a room's objects by their ids; where several have one, they are counted: "dining chair 2". */
+export function namesIn(objects: readonly { readonly id: string; readonly category: string }[]): Map<string, string> {
+  const all = new Map<string, string[]>();
+  for (const { id, category } of objects) all.set(nameOf(category), [...(all.get(nameOf(category)) ?? []), id]);
+  return new Map([...all].flatMap(([name, ids]) => ids.map((id, place) => [id, ids.length > 1 ? `${name} ${place + 1}` : name] as const)));
+}
