@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from planner_service.scripts.keyframe import Keyframe, Room, ScriptGraph, Source
+from planner_service.scripts.keyframe import Keyframe, Origin, Room, ScriptGraph, Source
 
 EmotionName = Literal["neutral", "happy", "angry", "hurried", "tired", "sad", "stressed", "drunk", "relaxed"]
 RoomName = Room
@@ -27,7 +27,7 @@ EXAMPLE: dict[str, Any] = {
 class ShortScriptShown(BaseModel):
     """A few keyframes with one summary: what stories are woven from."""
 
-    model_config = ConfigDict(json_schema_extra={"examples": [EXAMPLE | {"source": "authored", "licence": "MIT"}]})
+    model_config = ConfigDict(json_schema_extra={"examples": [EXAMPLE | {"source": "authored", "licence": "MIT", "version": 1}]})
 
     id: str = Field(description="A slug; the script is at /v1/short-scripts/{id}.")
     summary: str = Field(description="What happens, in one or a few sentences; by this it is found.")
@@ -37,6 +37,8 @@ class ShortScriptShown(BaseModel):
     graph: ScriptGraph | None = Field(description="Furniture and what belongs together; null: as the keyframes use it.")
     source: Source = Field(description="How it came to be written.")
     licence: str = Field(description="Under which it may be passed on.")
+    origin: Origin | None = Field(description="Film and seconds, text or scripts it was made from; null: written.")
+    version: int = Field(description="Raised when the script is kept again under its id.")
     built_in: bool = Field(description="Whether it is shipped with the service; such a script cannot be deleted.")
 
 

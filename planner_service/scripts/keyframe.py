@@ -67,6 +67,30 @@ class ScriptGraph(BaseModel):
         return edges
 
 
+class Origin(BaseModel):
+    """Where a short script was found, or what it was made in the manner of."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: str = Field(min_length=1, max_length=200)
+    """What the film, text or model is called; a name, never a path."""
+    start: float | None = Field(None, ge=0, allow_inf_nan=False)
+    """Where in a film it begins (seconds)."""
+    end: float | None = Field(None, ge=0, allow_inf_nan=False)
+    by: str = Field("", max_length=200)
+    """Who wrote it down: "rules" or "llm:<model>"."""
+    like: tuple[str, ...] = Field((), max_length=20)
+    """Ids of the scripts it imitates."""
+
+    @field_validator("end")
+    @classmethod
+    def _after_start(cls, end: float | None, info: ValidationInfo) -> float | None:
+        start = info.data.get("start")
+        if end is not None and start is not None and end < start:
+            raise ValueError("a span ends where it begins, or later")
+        return end
+
+
 class ShortScript(BaseModel):
     """A few keyframes with one summary: what the library keeps and a story is woven from."""
 
@@ -80,7 +104,11 @@ class ShortScript(BaseModel):
     graph: ScriptGraph | None = None
     """Given, or derived from the keyframes: an edge between two pieces used one after the other."""
     source: Source = "authored"
-    licence: str = "MIT"
+    licence: str = Field("MIT", min_length=1, max_length=200)
+    origin: Origin | None = None
+    """Where it was found; None for what somebody wrote."""
+    version: int = Field(1, ge=1, le=1_000_000, strict=True)
+    """Raised when a script is kept again under its id."""
 
 
 class PlannedKeyframe(Keyframe):
