@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -22,12 +22,13 @@ EXAMPLE: dict[str, Any] = {
         {"skill": "sitdown", "emotion": "happy", "caption": "sit content", "furniture": "sofa"},
     ],
 }
+SHOWN: Final = EXAMPLE | {"source": "authored", "licence": "MIT", "version": 1}
 
 
 class ShortScriptShown(BaseModel):
     """A few keyframes with one summary: what stories are woven from."""
 
-    model_config = ConfigDict(json_schema_extra={"examples": [EXAMPLE | {"source": "authored", "licence": "MIT", "version": 1}]})
+    model_config = ConfigDict(json_schema_extra={"examples": [SHOWN]})
 
     id: str = Field(description="A slug; the script is at /v1/short-scripts/{id}.")
     summary: str = Field(description="What happens, in one or a few sentences; by this it is found.")
