@@ -1,0 +1,1 @@
+"""Short scripts out of films and texts (SIMS 3.2)."""

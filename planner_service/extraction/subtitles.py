@@ -1,0 +1,173 @@
+"""Subtitles: SRT, WebVTT and ASS from bytes of any encoding to cues."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+from planner_service.extraction.decoding import decode
+from planner_service.extraction.speaking import spoken
+
+LARGEST: Final = 10_000_000
+"""Bytes of a subtitle file."""
+MOST_CUES: Final = 50_000
+LATEST: Final = 24 * 3600.0
+"""Seconds; no cue is later."""
+_SHOWN: Final = 2.0
+"""Seconds that a cue is given whose end is not after its beginning."""
+_LONGEST: Final = 2000
+"""Letters of one cue."""
+_TIME: Final = r"(-?)(?:(\d{1,4}):)?(\d{1,3}):(\d{1,2})[.,:](\d{1,3})"
+_ARROW: Final = re.compile(rf"^\s*{_TIME}\s*-->\s*{_TIME}")
+_ASS_TIME: Final = re.compile(_TIME)
+_ASS_FIELDS: Final = ("layer", "start", "end", "style", "name", "marginl", "marginr", "marginv", "effect", "text")
+_DRAWING: Final = re.compile(r"\\p[1-9]")
+_CONTROL: Final = re.compile(r"[\x00-\x08\x0b\x0e-\x1f]")
+_LINES: Final = re.compile(r"\r\n?|\n")
+
+
+class SubtitleError(ValueError):
+    """Bytes that are no subtitles we read."""
+
+
+@dataclass(frozen=True)
+class Cue:
+    """What is said, by whom, and from when to when (seconds)."""
+
+    start: float
+    end: float
+    text: str
+    """Without tags, names and sounds; empty where only a sound is told."""
+    speaker: str | None = None
+    sounds: tuple[str, ...] = ()
+    """What was in brackets, such as "door slams"."""
+
+
+@dataclass(frozen=True)
+class Subtitles:
+    """The cues of a file in the order of time, and how they were read."""
+
+    cues: tuple[Cue, ...]
+    form: str
+    """srt, vtt or ass."""
+    encoding: str
+    notes: tuple[str, ...] = ()
+
+
+@dataclass
+class _Faults:
+    """How often something was wrong with a cue."""
+
+    seen: dict[str, int] = field(default_factory=dict)
+
+    def count(self, what: str) -> None:
+        self.seen[what] = self.seen.get(what, 0) + 1
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        return tuple(f"{many} {'cue' if many == 1 else 'cues'} {what}" for what, many in self.seen.items())
+
+
+def read_subtitles(data: bytes) -> Subtitles:
+    """The cues of an SRT, WebVTT or ASS file, whatever it is called. SubtitleError."""
+    if len(data) > LARGEST:
+        raise SubtitleError(f"subtitles: {len(data)} bytes, at most {LARGEST} are read; give those of one film")
+    if not data.strip():
+        raise SubtitleError("subtitles: the file is empty; give SRT, WebVTT or ASS")
+    decoded = decode(data)
+    if len(_CONTROL.findall(decoded.text, 0, 20_000)) > 20:
+        raise SubtitleError("subtitles: these bytes are no text; give SRT, WebVTT or ASS, best in UTF-8")
+    form = form_of(decoded.text)
+    if form is None:
+        raise SubtitleError("subtitles: it is neither SRT nor WebVTT nor ASS; a cue needs a line of two times with -->")
+    faults = _Faults()
+    lines = _LINES.split(decoded.text)
+    cues: list[Cue] = []
+    for cue in _ass_cues(lines) if form == "ass" else _arrow_cues(lines):
+        cues.extend(_tidy(cue, faults))
+        if len(cues) > MOST_CUES:
+            raise SubtitleError(f"subtitles: there are more than {MOST_CUES} cues; give those of one film")
+    if not cues:
+        raise SubtitleError("subtitles: there is no cue with words in it")
+    notes = ([decoded.note] if decoded.note else []) + list(faults.notes)
+    return Subtitles(ordered(cues), form, decoded.encoding, tuple(notes))
+
+
+def form_of(text: str) -> str | None:
+    """ "srt", "vtt" or "ass" by what a text holds, None for anything else."""
+    if text.lstrip("\ufeff \t\r\n").startswith("WEBVTT"):
+        return "vtt"
+    if re.search(r"^\s*(Dialogue|Format)\s*:.*,", text, re.MULTILINE) and re.search(r"^\s*\[Events\]", text, re.M):
+        return "ass"
+    return "srt" if any("-->" in line and _ARROW.match(line) for line in _LINES.split(text)) else None
+
+
+def ordered(cues: list[Cue]) -> tuple[Cue, ...]:
+    """The cues in the order of time, each once."""
+    return tuple(sorted(dict.fromkeys(cues), key=lambda cue: (cue.start, cue.end)))
+
+
+def cues_of(start: float, end: float, text: str, speaker: str | None = None) -> list[Cue]:
+    """One cue for each who speaks in a text that may hold tags, names and sounds."""
+    return [
+        Cue(start, end, part.text, part.speaker or speaker, part.sounds)
+        for part in spoken(text[:_LONGEST])
+        if part.text or part.sounds
+    ]
+
+
+def _tidy(cue: Cue, faults: _Faults) -> list[Cue]:
+    """What the cue says, in a time that can be; nothing for a cue before the beginning or without words."""
+    if cue.end < 0 or max(cue.start, cue.end) > LATEST:
+        faults.count("outside of any film, left out")
+        return []
+    if cue.start < 0:
+        faults.count("with a negative time, moved to the beginning")
+        cue = replace(cue, start=0.0)
+    if cue.end <= cue.start:
+        faults.count(f"that ended before they began, given {_SHOWN:.0f} seconds")
+        cue = replace(cue, end=cue.start + _SHOWN)
+    if len(cue.text) > _LONGEST:
+        faults.count(f"of more than {_LONGEST} letters, cut")
+    return cues_of(round(cue.start, 3), round(cue.end, 3), cue.text, cue.speaker)
+
+
+def _arrow_cues(lines: list[str]) -> Iterator[Cue]:
+    """SRT and WebVTT: a line of two times, and the lines below it up to an empty one."""
+    arrows = [at for at, line in enumerate(lines) if "-->" in line and _ARROW.match(line)]
+    for at, following in zip(arrows, [*arrows[1:], len(lines)], strict=True):
+        match = _ARROW.match(lines[at])
+        assert match is not None
+        text = lines[at + 1 : following]
+        if following < len(lines) and text and text[-1].strip().isdecimal():
+            text = text[:-1]  # the next cue's number, where the empty line before it is missing
+        blank = next((index for index, line in enumerate(text) if not line.strip()), len(text))
+        times = match.groups()
+        yield Cue(_seconds(times[:5]), _seconds(times[5:]), "\n".join(text[:blank]))
+
+
+def _ass_cues(lines: list[str]) -> Iterator[Cue]:
+    """ASS and SSA: the dialogue lines of the events, by the fields that the format line names."""
+    fields, inside = list(_ASS_FIELDS), False
+    for line in lines:
+        kind, _, rest = line.partition(":")
+        kind = kind.strip().lower()
+        if line.lstrip().startswith("["):
+            inside = line.strip().lower() == "[events]"
+        elif inside and kind == "format":
+            fields = [name.strip().lower() for name in rest.split(",")[:40]]
+        elif inside and kind == "dialogue":
+            row = dict(zip(fields, rest.split(",", len(fields) - 1), strict=False))
+            start, end = (_ASS_TIME.match(row.get(name, "").strip()) for name in ("start", "end"))
+            if start and end and not _DRAWING.search(row.get("text", "")):
+                name = " ".join(row.get("name", row.get("actor", "")).split())[:60]
+                yield Cue(_seconds(start.groups()), _seconds(end.groups()), row.get("text", ""), name or None)
+
+
+def _seconds(parts: tuple[str | None, ...]) -> float:
+    """Of sign, hours, minutes, seconds and a fraction as it is written."""
+    sign, hours, minutes, seconds, fraction = parts
+    value = int(hours or 0) * 3600 + int(minutes or 0) * 60 + int(seconds or 0) + float(f"0.{fraction}")
+    return -value if sign else value
