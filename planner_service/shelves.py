@@ -4,18 +4,27 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from threading import RLock
 from typing import TYPE_CHECKING, Final
 
+from planner_service.renewing import Added, body_of, changing, replacing
 from planner_service.scripts.checking import check
 from planner_service.scripts.keyframe import ShortScript
 from planner_service.scripts.library import Features, LibraryError, ScriptLibrary, built_in
 from planner_service.scripts.mending import Problem
-from planner_service.store.keeping import AbsentError, FixedError, FullError, Kept, ShelfError, TakenError
+from planner_service.store.keeping import (
+    AbsentError,
+    ChangedError,
+    FixedError,
+    FullError,
+    Kept,
+    ShelfError,
+    TakenError,
+)
 from planner_service.surveying import survey
 from scene_graphs.grounding import Offers
 from scene_graphs.layouts import Layout, LayoutError, layout_from_dict, layout_to_dict, read_layouts
@@ -29,7 +38,8 @@ if TYPE_CHECKING:
     from planner_service.settings import Settings
 
 __all__ = [
-    "AbsentError", "FixedError", "FullError", "ShelfError", "Shelves", "TakenError", "UnfitError", "open_shelves",
+    "AbsentError", "Added", "ChangedError", "FixedError", "FullError", "ShelfError", "Shelves", "TakenError",
+    "UnfitError", "open_shelves",
 ]  # fmt: skip
 
 LONGEST_ID: Final = 120
@@ -39,6 +49,8 @@ _ROOM_ID: Final = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.:-]*(?:/[A-Za-z0-9_][A-Za
 """What is the end of an address as it stands."""
 MOST_SCRIPTS: Final = 20_000
 """Short scripts of the users': all are compared with every query."""
+RESERVED: Final = frozenset({"search", "export", "extract"})
+"""Paths of their own beside /v1/short-scripts/{id}, so no script can be called that."""
 MOST_LAYOUTS: Final = 5_000
 """Rooms of the users': all are kept in memory, and a graph is made of each."""
 
@@ -119,24 +131,59 @@ class Shelves:
                 self._floor = _Floor(rooms, {name: room.layout for name, room in rooms.items()})
             return self._floor
 
-    def add_scripts(self, *scripts: ShortScript) -> None:
+    def add_scripts(self, *scripts: ShortScript, replace: bool = False) -> Added:
         """Keep scripts, all or none of them; they are in the database before this returns.
 
-        UnfitError when a furniture word or emotion is not known, TakenError when an id is taken, FullError.
+        UnfitError when a furniture word or emotion is not known, TakenError when an id is taken, FullError. To
+        `replace` keeps a user's script of that id as the next version; FixedError for one of ours.
         """
-        taken = set(self._scripts.fixed)
+        added = Added()
+        _fit(scripts)
+        if replace:
+            ours = self._scripts.fixed
+            renewals = {one.id: replacing(one, ours, partial(_read_script, one.id), added) for one in scripts}
+            self._scripts.renew(renewals, MOST_SCRIPTS, "short script")
+            return added
         for script in scripts:
-            if script.id in taken:
-                raise TakenError(f"id: there is a short script {script.id!r} already; choose another id")
-            taken.add(script.id)
-            # Missing walks and risings are put in when a story is composed.
-            if problems := tuple(problem for problem in check(script) if problem.field != "skill"):
-                raise UnfitError(script, problems)
-        rows = {one.id: {"body": one.model_dump_json(exclude_none=True)} for one in scripts}
-        self._scripts.put(rows, MOST_SCRIPTS, "short script")
+            if script.id in self._scripts.fixed:
+                raise _taken(script.id)
+        self._scripts.put({one.id: {"body": body_of(one)} for one in scripts}, MOST_SCRIPTS, "short script")
+        added.new.extend(script.id for script in scripts)
+        return added
+
+    def change_script(self, script: ShortScript) -> ShortScript:
+        """Keep a user's script again, as the version after the one it names. Gives it with its new version.
+
+        UnfitError, AbsentError, FixedError for one of ours, ChangedError when somebody else changed it meanwhile.
+        """
+        _fit((script,))
+        renewal = changing(script, self._scripts.fixed, partial(_read_script, script.id))
+        self._scripts.renew({script.id: renewal}, MOST_SCRIPTS, "short script")
+        return self.scripts().get(script.id)
+
+    def script_versions(self, script_id: str) -> tuple[ShortScript, ...]:
+        """A script as it was and is, the oldest version that is kept first. AbsentError."""
+        script = self.scripts().find(script_id)
+        if script is None:
+            raise AbsentError(f"there is no short script {script_id!r}")
+        if self.engine is None:
+            return (script,)
+        from planner_service.store.versions import versions_of
+
+        older = [_read_script(script_id, body) for body in versions_of(self.engine, script_id)]
+        return (*(one for one in older if one.version < script.version), script)
+
+    def script_version(self, script_id: str, version: int) -> ShortScript:
+        """A script as it was at that version. AbsentError names the versions that can be read."""
+        versions = {script.version: script for script in self.script_versions(script_id)}
+        if version not in versions:
+            told = ", ".join(map(str, versions))
+            raise AbsentError(f"version: there is no version {version} of {script_id!r}; there are {told}")
+        return versions[version]
 
     def remove_script(self, script_id: str) -> None:
-        """Remove a script of the users'. FixedError for one of ours, AbsentError if there is none of that id."""
+        """Remove a script of the users' and all its versions. FixedError for one of ours, AbsentError if there is none
+        of that id."""
         self._scripts.take(script_id, "short script")
 
     def add_layouts(self, *layouts: Layout) -> None:
@@ -192,6 +239,24 @@ def open_shelves(settings: Settings, *, writes: bool = False) -> Shelves:
 
         engine = open_engine(database_url(settings))
     return Shelves(engine, settings.cache_dir, settings.layouts)
+
+
+def _fit(scripts: Iterable[ShortScript]) -> None:
+    """UnfitError for what cannot be acted out; ids that are used twice or that are paths are refused."""
+    ids: set[str] = set()
+    for script in scripts:
+        if script.id in RESERVED:
+            raise ShelfError(f"id: {script.id!r} is a path of its own; choose another id")
+        if script.id in ids:
+            raise _taken(script.id)
+        ids.add(script.id)
+        # Missing walks and risings are put in when a story is composed.
+        if problems := tuple(problem for problem in check(script) if problem.field != "skill"):
+            raise UnfitError(script, problems)
+
+
+def _taken(script_id: str) -> TakenError:
+    return TakenError(f"id: there is a short script {script_id!r} already; choose another id")
 
 
 def _read_script(script_id: str, body: str) -> ShortScript:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import uuid
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -69,6 +70,10 @@ class Choice(TypedDict, total=False):
 
     emotion: str
     room: str
+    furniture: Sequence[str]
+    """Those that use all of this."""
+    source: str
+    licence: str
 
 
 def tell(theme: str, **options: Unpack[StoryOptions]) -> Call[Story]:
@@ -137,9 +142,19 @@ def short_scripts(limit: int = 20, cursor: str | None = None, **choice: Unpack[C
     return Call("GET", "/v1/short-scripts", _page, _given(limit=limit, cursor=cursor, **choice))
 
 
-def short_script(script_id: str) -> Call[Json]:
-    """One short script."""
-    return Call("GET", _at("short-scripts", script_id), _json)
+def short_script(script_id: str, version: int | None = None) -> Call[Json]:
+    """One short script, as it is or as it was at a version."""
+    return Call("GET", _at("short-scripts", script_id), _json, _given(version=version))
+
+
+def short_script_versions(script_id: str) -> Call[list[Json]]:
+    """One short script as it was and is, oldest first."""
+    return Call("GET", _at("short-scripts", script_id, "versions"), _items)
+
+
+def export_short_scripts(own: bool = False, **choice: Unpack[Choice]) -> Call[list[Json]]:
+    """The short scripts as they can be added again; `own` leaves out those that are shipped."""
+    return Call("GET", "/v1/short-scripts/export", _lines, _given(own=own, **choice))
 
 
 def search_short_scripts(q: str, k: int = 5, **choice: Unpack[Choice]) -> Call[list[Json]]:
@@ -150,6 +165,12 @@ def search_short_scripts(q: str, k: int = 5, **choice: Unpack[Choice]) -> Call[l
 def add_short_script(script: Json) -> Call[Json]:
     """Add one of your own."""
     return Call("POST", "/v1/short-scripts", _json, body=script, repeatable=False)
+
+
+def change_short_script(script: Json) -> Call[Json]:
+    """Change one of your own: whole, with the version that you read. ApiError 409 if it was changed meanwhile."""
+    row = {name: value for name, value in script.items() if name != "built_in"}
+    return Call("PUT", _at("short-scripts", str(script["id"])), _json, body=row)
 
 
 def delete_short_script(script_id: str) -> Call[None]:
@@ -235,6 +256,10 @@ def _page(answer: httpx.Response) -> Page[Json]:
 
 def _items(answer: httpx.Response) -> list[Json]:
     return list(answer.json()["items"])
+
+
+def _lines(answer: httpx.Response) -> list[Json]:
+    return [json.loads(line) for line in answer.text.split("\n") if line]
 
 
 def _matches(answer: httpx.Response) -> list[Json]:

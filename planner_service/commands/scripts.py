@@ -1,42 +1,49 @@
-"""`sims scripts search|add|remove|check`: the library of short scripts."""
+"""`sims scripts search|list|show|add|export|remove|check`: the library of short scripts."""
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, get_args
 
 import typer
-from pydantic import ValidationError
 from rich.console import Console
 from rich.table import Table
 
 from planner_service.commands.errors import writing_database
-from planner_service.llm.answers import problems_of
+from planner_service.commands.script_files import read_scripts
+from planner_service.filing import check_writable, write_files
 from planner_service.scripts.checking import check as find_problems
-from planner_service.scripts.keyframe import ShortScript
+from planner_service.scripts.keyframe import ShortScript, Source
 from planner_service.scripts.library import LibraryError
+from planner_service.scripts.picking import UNKNOWN, Choice, unknown_licences, unlicensed
 from planner_service.settings import read_settings
-from planner_service.shelves import TakenError, UnfitError, open_shelves
+from planner_service.shelves import FixedError, TakenError, UnfitError, open_shelves
 
 app = typer.Typer(no_args_is_help=True, help="Search, check and extend the library of short scripts.")
-LARGEST = 2_000_000
-"""Bytes of a script file."""
+SHOWN = 10
+"""Ids that a warning names."""
+Emotion = Annotated[str | None, typer.Option(help="Only scripts of this emotion.")]
+Room = Annotated[str | None, typer.Option(help="Only scripts of this room type.")]
+Furniture = Annotated[str, typer.Option(help="Only scripts that use all of this, such as bed,desk.")]
+Written = Annotated[str | None, typer.Option(help=f"Only scripts of this source: {', '.join(get_args(Source))}.")]
+Licence = Annotated[str | None, typer.Option(help="Only scripts under exactly this licence.")]
+Own = Annotated[bool, typer.Option("--own", help="Only your own, without those that are shipped.")]
 
 
 @app.command()
 def search(
     query: Annotated[str, typer.Argument(help="What happens, in your own words.")],
     k: Annotated[int, typer.Option(min=1, max=100, help="How many to show.")] = 5,
-    emotion: Annotated[str | None, typer.Option(help="Only scripts of this emotion.")] = None,
-    room: Annotated[str | None, typer.Option(help="Only scripts of this room type.")] = None,
+    emotion: Emotion = None,
+    room: Room = None,
+    furniture: Furniture = "",
+    source: Written = None,
+    licence: Licence = None,
 ) -> None:
     """Show the short scripts whose summary is nearest in meaning."""
     library = open_shelves(read_settings()).scripts()
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    for column in ("score", "id", "emotion", "room", "summary"):
-        table.add_column(column)
-    for found in library.search(query, k, emotion, room):
+    table = _table("score", "id", "emotion", "room", "summary")
+    for found in _choice(emotion, room, furniture, source, licence).search(library, query, k):
         script = found.script
         table.add_row(f"{found.score:.3f}", script.id, script.emotion, script.room, script.summary)
     console = Console(markup=False)
@@ -44,25 +51,92 @@ def search(
     console.print(f"{len(library)} scripts, encoder {library.encoder.name}", highlight=False)
 
 
+@app.command("list")
+def list_scripts(
+    emotion: Emotion = None,
+    room: Room = None,
+    furniture: Furniture = "",
+    source: Written = None,
+    licence: Licence = None,
+    own: Own = False,
+) -> None:
+    """Show the short scripts there are."""
+    chosen = _chosen(_choice(emotion, room, furniture, source, licence), own)
+    table = _table("id", "emotion", "room", "source", "licence", "summary")
+    for script in sorted(chosen, key=lambda script: script.id):
+        table.add_row(script.id, script.emotion, script.room, script.source, script.licence, script.summary)
+    console = Console(markup=False)
+    console.print(table)
+    console.print(f"{len(chosen)} scripts", highlight=False)
+
+
 @app.command()
-def add(file: Annotated[Path, typer.Argument(help="JSON with one short script, or JSON lines with several.")]) -> None:
+def show(
+    script_id: Annotated[str, typer.Argument(help="The id of a script.")],
+    version: Annotated[int | None, typer.Option(min=1, help="As it was at that version; left out: as it is.")] = None,
+) -> None:
+    """Show one short script whole, as JSON."""
+    shelves = open_shelves(read_settings())
+    script = shelves.scripts().get(script_id)
+    if version is not None:
+        script = shelves.script_version(script_id, version)
+    typer.echo(script.model_dump_json(indent=2, exclude_none=True))
+
+
+@app.command()
+def add(
+    file: Annotated[Path, typer.Argument(help="JSON with one short script, or JSON lines with several.")],
+    replace: Annotated[
+        bool, typer.Option("--replace", help="Keep your script of the same id as an older version, instead of failing.")
+    ] = False,
+) -> None:
     """Check short scripts and add them to your own library; one that does not fit adds none."""
     scripts = read_scripts(file)
+    for number, script in enumerate(scripts):
+        if unlicensed(script):
+            said = f'say under which licence what comes from a {script.source} may be passed on, or "{UNKNOWN}"'
+            raise LibraryError(f"{file.name} [{number}]: licence: {said}")
     shelves = open_shelves(read_settings(), writes=True)
     try:
         with writing_database():
-            shelves.add_scripts(*scripts)
-    except TakenError as error:
+            added = shelves.add_scripts(*scripts, replace=replace)
+    except (TakenError, FixedError) as error:
         raise LibraryError(f"{file.name}: {error}") from error
     except UnfitError as error:
         raise LibraryError(f"{file.name}: {error.script.id}: {error.problems[0]}") from error
-    console = Console(markup=False)
-    console.print(f"added {len(scripts)}; the library has {len(shelves.scripts())} scripts", highlight=False)
+    told = f"added {len(added.new)}"
+    if replace:
+        told += f", replaced {len(added.replaced)}, left {len(added.unchanged)} as they were"
+    Console(markup=False).print(f"{told}; the library has {len(shelves.scripts())} scripts", highlight=False)
+    _warn_of_licences(scripts)
+
+
+@app.command()
+def export(
+    out: Annotated[Path | None, typer.Option(help="The file to write; left out: the terminal.")] = None,
+    emotion: Emotion = None,
+    room: Room = None,
+    furniture: Furniture = "",
+    source: Written = None,
+    licence: Licence = None,
+    own: Own = False,
+) -> None:
+    """Write short scripts as JSON lines, with origin, licence and version; `sims scripts add` reads them again."""
+    if out is not None:
+        check_writable(out.parent, [out.name])
+    scripts = _chosen(_choice(emotion, room, furniture, source, licence), own)
+    lines = "".join(f"{script.model_dump_json(exclude_none=True)}\n" for script in scripts)
+    if out is None:
+        typer.echo(lines, nl=False)
+    else:
+        write_files(out.parent, {out.name: lambda path: path.write_text(lines, encoding="utf-8")})
+        Console(markup=False).print(f"wrote {len(scripts)} scripts to {out}", highlight=False, soft_wrap=True)
+    _warn_of_licences(scripts)
 
 
 @app.command()
 def remove(script_id: Annotated[str, typer.Argument(help="The id of a script you added.")]) -> None:
-    """Remove a short script from your own library."""
+    """Remove a short script from your own library, with all its versions."""
     shelves = open_shelves(read_settings())
     with writing_database():
         shelves.remove_script(script_id)
@@ -87,58 +161,31 @@ def check(
         raise typer.Exit(1)
 
 
-def read_scripts(file: Path) -> list[ShortScript]:
-    """Short scripts of a JSON or JSON-lines file. Raises LibraryError naming file, line and what is wrong."""
-    try:
-        with file.open("rb") as stream:
-            data = stream.read(LARGEST + 1)
-    except OSError as error:
-        raise LibraryError(f"FILE: {file} cannot be read: {error.strerror}") from error
-    if len(data) > LARGEST:
-        raise LibraryError(f"{file.name}: larger than {LARGEST // 1_000_000} MB; split it")
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise LibraryError(
-            f"{file.name}: not UTF-8 text ({error.reason} at byte {error.start}); save it as UTF-8"
-        ) from error
-    rows = _rows(text, file.name)
-    if not rows:
-        raise LibraryError(f"{file.name}: no short script in it; one is an object with id, summary and keyframes")
-    return [_script(row, f"{file.name} [{number}]") for number, row in enumerate(rows)]
+def _choice(emotion: str | None, room: str | None, furniture: str, source: str | None, licence: str | None) -> Choice:
+    if source is not None and source not in get_args(Source):
+        raise LibraryError(f"--source: {source!r:.80} is none of {', '.join(get_args(Source))}")
+    return Choice(emotion, room, words_of(furniture), source, licence)
 
 
-def _script(row: Any, where: str) -> ShortScript:
-    try:
-        return ShortScript.model_validate(row)
-    except ValidationError as error:
-        raise LibraryError(f"{where}: {'; '.join(problems_of(error))}") from error
+def words_of(listed: str) -> tuple[str, ...]:
+    """The words between commas, each once."""
+    return tuple(dict.fromkeys(word for part in listed.split(",") if (word := part.strip())))
 
 
-def _rows(text: str, name: str) -> list[Any]:
-    try:
-        whole = json.loads(text)
-        return whole if isinstance(whole, list) else [whole]
-    except RecursionError as error:
-        raise LibraryError(f"{name}: not a script: brackets within brackets without end") from error
-    except ValueError as error:
-        lines = [line for line in text.splitlines() if line.strip()]
-        rows = []
-        for number, line in enumerate(lines, 1):
-            try:
-                rows.append(json.loads(line))
-            except (ValueError, RecursionError) as fault:
-                raise LibraryError(_not_json(name, error if _spread(lines) else fault, number)) from fault
-        return rows
+def _chosen(choice: Choice, own: bool) -> list[ShortScript]:
+    shelves = open_shelves(read_settings())
+    return [one for one in choice.of(shelves.scripts()) if not (own and shelves.is_fixed_script(one))]
 
 
-def _spread(lines: list[str]) -> bool:
-    """Whether this is one object written over several lines, not one a line."""
-    return len(lines) == 1 or not lines[0].rstrip().endswith("}")
+def _table(*columns: str) -> Table:
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    for column in columns:
+        table.add_column(column)
+    return table
 
 
-def _not_json(name: str, error: Exception, number: int) -> str:
-    if isinstance(error, json.JSONDecodeError):
-        line = error.lineno if error.lineno > 1 else number
-        return f"{name}:{line}: not JSON: {error.msg} at column {error.colno}"
-    return f"{name}:{number}: not JSON: {error}"
+def _warn_of_licences(scripts: list[ShortScript]) -> None:
+    """Say of which scripts nobody knows whether they may be passed on."""
+    if found := unknown_licences(scripts):
+        more = f" and {len(found) - SHOWN} more" if len(found) > SHOWN else ""
+        typer.echo(f"warning: licence unknown, do not pass on: {', '.join(found[:SHOWN])}{more}", err=True)

@@ -50,6 +50,12 @@ class ShortScriptPage(BaseModel):
     next: str | None = Field(description="The cursor of the next page; null on the last.")
 
 
+class ShortScriptVersions(BaseModel):
+    """A short script as it was and is."""
+
+    items: list[ShortScriptShown] = Field(description="Oldest first, at most 100 older ones; the last is as it is.")
+
+
 class ShortScriptFound(BaseModel):
     """A short script and how near it is to what was asked."""
 

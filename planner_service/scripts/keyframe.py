@@ -16,6 +16,7 @@ Room = Literal["bedroom", "living_room", "dining_room", "study"]
 Source = Literal["authored", "video", "text", "imitation"]
 MOST_PIECES = 24
 """Pieces of furniture in one short script: one a keyframe."""
+MOST_VERSIONS = 1_000_000
 Word = Annotated[str, Field(min_length=1, max_length=60)]
 Instance = Annotated[int, Field(ge=1, le=99, strict=True)]
 Place = Annotated[int, Field(ge=0, lt=MOST_PIECES, strict=True)]
@@ -107,7 +108,7 @@ class ShortScript(BaseModel):
     licence: str = Field("MIT", min_length=1, max_length=200)
     origin: Origin | None = None
     """Where it was found; None for what somebody wrote."""
-    version: int = Field(1, ge=1, le=1_000_000, strict=True)
+    version: int = Field(1, ge=1, le=MOST_VERSIONS, strict=True)
     """Raised when a script is kept again under its id."""
 
 

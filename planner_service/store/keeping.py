@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from sqlalchemy import Engine
 
     from planner_service.store.shelving import Shelf
+    from planner_service.store.versions import Renewal
 
 T = TypeVar("T")
 
@@ -20,6 +21,7 @@ class ShelfError(ValueError):
     TakenError    there is something of that id already
     FixedError    it is ours, and stays
     AbsentError   there is no such thing
+    ChangedError  somebody else has changed it meanwhile
     FullError     there are too many already
     """
 
@@ -29,11 +31,15 @@ class TakenError(ShelfError):
 
 
 class FixedError(ShelfError):
-    """It is shipped with the package and cannot be removed."""
+    """It is shipped with the package and can be neither removed nor replaced."""
 
 
 class AbsentError(ShelfError):
     """There is nothing of that id."""
+
+
+class ChangedError(ShelfError):
+    """It is not what it was when it was read."""
 
 
 class FullError(ShelfError):
@@ -105,7 +111,19 @@ class Kept(Generic[T]):
         except IdTaken as error:
             raise TakenError(f"id: there is a {name} {error.row_id!r} already; choose another id") from error
         except ShelfFull as error:
-            raise FullError(f"at most {most} {name}s of users' own are kept; remove some first") from error
+            raise _full(most, name) from error
+
+    def renew(self, renewals: Mapping[str, Renewal], most: int, name: str) -> None:
+        """Write rows of short scripts, all or none, over those that there are."""
+        if self.engine is None:
+            raise ShelfError(f"there is no database to keep a {name} in")
+        from planner_service.store.shelving import ShelfFull
+        from planner_service.store.versions import renew
+
+        try:
+            renew(self.engine, renewals, most)
+        except ShelfFull as error:
+            raise _full(most, name) from error
 
     def take(self, row_id: str, name: str) -> None:
         """Remove a row."""
@@ -117,3 +135,7 @@ class Kept(Generic[T]):
         if row_id in self.fixed:
             raise FixedError(f"{row_id!r} is a {name} that is not in the database; it cannot be removed")
         raise AbsentError(f"there is no {name} {row_id!r}")
+
+
+def _full(most: int, name: str) -> FullError:
+    return FullError(f"at most {most} {name}s of users' own are kept; remove some first")

@@ -14,7 +14,7 @@ from planner_service.store.tables import layouts, revisions, short_scripts
 
 Shelf = Literal["short_scripts", "layouts"]
 TABLES: Final[Mapping[Shelf, Table]] = {"short_scripts": short_scripts, "layouts": layouts}
-_MANY: Final = 500
+MANY: Final = 500
 """Ids in one question: SQLite binds at most some thousands of values."""
 
 
@@ -60,8 +60,8 @@ def bodies_of(engine: Engine, shelf: Shelf, ids: Collection[str]) -> dict[str, s
     table, wanted = TABLES[shelf], sorted(ids)
     found: dict[str, str] = {}
     with engine.connect() as connection:
-        for start in range(0, len(wanted), _MANY):
-            asked = select(table.c.id, table.c.body).where(table.c.id.in_(wanted[start : start + _MANY]))
+        for start in range(0, len(wanted), MANY):
+            asked = select(table.c.id, table.c.body).where(table.c.id.in_(wanted[start : start + MANY]))
             found |= {str(row.id): str(row.body) for row in connection.execute(asked)}
     return found
 
@@ -73,16 +73,13 @@ def put(engine: Engine, shelf: Shelf, rows: Mapping[str, Mapping[str, str]], mos
     """
     table = TABLES[shelf]
     with engine.execution_options(writes=True).begin() as connection:
-        # Held until the end, so that two writers on PostgreSQL come one after the other.
-        revision = _raised(connection, shelf)
+        revision = raised(connection, shelf)
         wanted = list(rows)
-        for start in range(0, len(wanted), _MANY):
-            asked = select(table.c.id).where(table.c.id.in_(wanted[start : start + _MANY])).order_by(table.c.id)
+        for start in range(0, len(wanted), MANY):
+            asked = select(table.c.id).where(table.c.id.in_(wanted[start : start + MANY])).order_by(table.c.id)
             if (taken := connection.execute(asked).scalars().first()) is not None:
                 raise IdTaken(taken)
-        count = connection.execute(select(func.count()).select_from(table)).scalar_one()
-        if count + len(rows) > most:
-            raise ShelfFull
+        refuse_more(connection, table, len(rows), most)
         values = [{"id": row_id, "created": revision, **columns} for row_id, columns in rows.items()]
         connection.execute(insert(table), values)
 
@@ -91,10 +88,10 @@ def take(engine: Engine, shelf: Shelf, row_id: str) -> bool:
     """Remove a row; False if there is none of that id."""
     table = TABLES[shelf]
     with engine.execution_options(writes=True).begin() as connection:
-        if connection.execute(delete(table).where(table.c.id == row_id)).rowcount == 0:
+        if connection.execute(select(table.c.id).where(table.c.id == row_id)).first() is None:
             return False
-        _raised(connection, shelf)
-    return True
+        raised(connection, shelf)
+        return connection.execute(delete(table).where(table.c.id == row_id)).rowcount > 0
 
 
 def _revision(connection: Connection, shelf: Shelf) -> int:
@@ -102,8 +99,18 @@ def _revision(connection: Connection, shelf: Shelf) -> int:
     return int(connection.execute(asked).scalar() or 0)
 
 
-def _raised(connection: Connection, shelf: Shelf) -> int:
-    """The next revision, which is also the time in milliseconds since 1970 unless the clock was turned back."""
+def refuse_more(connection: Connection, table: Table, more: int, most: int) -> None:
+    """ShelfFull if so many more rows would be too many."""
+    count = connection.execute(select(func.count()).select_from(table)).scalar_one()
+    if count + more > most:
+        raise ShelfFull
+
+
+def raised(connection: Connection, shelf: Shelf) -> int:
+    """The next revision, which is also the time in milliseconds since 1970 unless the clock was turned back.
+
+    Its row is held until the transaction ends, so that writers of one shelf come one after the other.
+    """
     # Both dialects know the clause; each has its own insert for it.
     made = postgresql.insert(revisions) if connection.dialect.name == "postgresql" else sqlite.insert(revisions)
     connection.execute(made.values(shelf=shelf, revision=0).on_conflict_do_nothing())

@@ -78,6 +78,15 @@ short_scripts = Table(
 )
 """The users' own short scripts; ours are in the package."""
 
+script_versions = Table(
+    "script_versions",
+    metadata,
+    Column("script_id", Text, ForeignKey("short_scripts.id", ondelete="CASCADE"), primary_key=True),
+    Column("version", Integer, primary_key=True),
+    Column("body", Text, nullable=False),  # JSON of a ShortScript
+)
+"""What users' short scripts were before they were replaced."""
+
 layouts = Table(
     "layouts",
     metadata,
