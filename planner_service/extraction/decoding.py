@@ -128,7 +128,7 @@ def _value(letter: str, before: str, after: str) -> float:
 
 
 def _script(letter: str) -> str:
-    """latin, cyrillic, greek, arabic …; cjk for the writings of East Asia, but for halfwidth katakana: a usual error."""
+    """latin, cyrillic, greek …; cjk for the writings of East Asia, but for halfwidth katakana, a usual error."""
     if letter < "\x80":
         return "latin"
     name = unicodedata.name(letter, "").partition(" ")[0].lower()
