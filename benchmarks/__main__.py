@@ -16,6 +16,7 @@ from benchmarks.retrieval import retrieval_figures
 from benchmarks.service import service_figures
 from benchmarks.stories import file_figures, make_stories, quality_figures, speed_figures
 from benchmarks.tables import figure_rows, markdown, plain, story_rows
+from benchmarks.weaving import weaving_figures
 from planner_service.shelves import Shelves
 from planner_service.stories import Studio
 
@@ -30,6 +31,7 @@ def main() -> int:
         studio = Studio(Shelves(cache=Path(folder)))
         made = make_stories(studio)
         figures += speed_figures(made)
+        figures += weaving_figures()
         figures += retrieval_figures()
         figures += geometry_figures()
         figures += reading_figures()

@@ -20,7 +20,7 @@ Vectors = NDArray[np.float32]
 Prefer = Literal["minilm", "hashing"]
 
 _WORD = re.compile(r"[^\W_]+")
-_CACHED_AT_MOST = 50_000
+_CACHED_AT_MOST = 300_000
 """Rows kept on disk by encoder: about 77 MB at 384 dimensions."""
 
 

@@ -123,7 +123,9 @@ def _events(theme: str, by_rules: Sequence[Clause], model: LanguageModel | None,
 def _rows(reading: Reading, count: int) -> list[int]:
     """The event of each short script, in order: each covered event once, then those with most to choose from."""
     rows = list(reading.covered)
-    ranked = np.sort(reading.suits, axis=1)  # the best last
+    if len(rows) >= count:
+        return rows
+    ranked = np.sort(_largest(reading.suits, count), axis=1)  # the best last
     while len(rows) < count:
         spare = {event: _spare(ranked[event], rows.count(event)) for event in reading.covered}
         spare = {event: score for event, score in spare.items() if score > 0}
@@ -133,6 +135,11 @@ def _rows(reading: Reading, count: int) -> list[int]:
     return sorted(rows)
 
 
+def _largest(suits: Scores, count: int) -> Scores:
+    """The largest `count` of each row, in any order."""
+    return np.partition(suits, -count, axis=1)[:, -count:] if count < suits.shape[1] else suits
+
+
 def _spare(ranked: Scores, taken: int) -> float:
     """How well the best script suits that is left after so many were taken; negative when none is."""
     return float(ranked[-1 - taken]) if taken < len(ranked) else -1.0
@@ -140,7 +147,8 @@ def _spare(ranked: Scores, taken: int) -> float:
 
 def _matched(reading: Reading, rows: Sequence[int], library: ScriptLibrary, seed: int) -> list[tuple[int, int]]:
     """Event and script for each row that found one, by the rules."""
-    scripts = cast(reading.suits[list(rows)], library.scripts, seed)
+    moods = [reading.events[event].emotion for event in rows]
+    scripts = cast(reading.suits[list(rows)], moods, library, seed)
     return [(event, script) for event, script in zip(rows, scripts, strict=True) if script is not None]
 
 
@@ -171,7 +179,7 @@ def _arranged(
 def _offers(reading: Reading, event: int, library: ScriptLibrary) -> list[Found]:
     """The scripts that suit an event best."""
     suits = reading.suits[event]
-    best = sorted((i for i in range(len(library)) if suits[i] > 0), key=lambda i: (-suits[i], library.scripts[i].id))
+    best = sorted(np.flatnonzero(suits > 0), key=lambda index: (-suits[index], library.scripts[index].id))
     return [Found(library.scripts[index], float(reading.scores[event, index])) for index in best[:_OFFERED]]
 
 

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from motion_backend.language.text import CachedEncoder, SentenceEncoder, Vectors, load_encoder
 from planner_service.scripts.keyframe import EMOTIONS, ShortScript
-from scene_graphs.furniture import ROOM_TYPES, canonical_room
+from planner_service.scripts.traits import Traits
+from scene_graphs.furniture import ROOM_TYPES, canonical_room, categories_of, is_known
 
 Scores = NDArray[np.float64]
 BUILT_IN: Final = "short_scripts.jsonl"
@@ -99,32 +100,69 @@ class ScriptLibrary:
         """The script of that id, or None."""
         return self._by_id.get(script_id)
 
-    def search(self, query: str, k: int = 5, emotion: str | None = None, room: str | None = None) -> tuple[Found, ...]:
-        """The k scripts nearest to the query in meaning, nearest first, of one emotion and room if these are given."""
+    @cached_property
+    def traits(self) -> Traits:
+        """What of every script counts besides its meaning."""
+        return Traits(self.scripts)
+
+    def search(
+        self,
+        query: str,
+        k: int = 5,
+        emotion: str | None = None,
+        room: str | None = None,
+        furniture: Sequence[str] = (),
+    ) -> tuple[Found, ...]:
+        """The k scripts nearest to the query in meaning, nearest first.
+
+        Only those of one emotion, in one room and with all of this furniture, where these are given.
+        """
+        if k < 1 or not query.strip():
+            raise LibraryError("query: ask for at least one script, with at least one word")
+        fitting = np.flatnonzero(self.fitting(emotion, room, furniture))
+        scores = self.scores(self.encoder.encode([query]))[0][fitting]
+        order = np.lexsort((self._by_name[fitting], -scores))[:k]
+        return tuple(Found(self.scripts[fitting[place]], float(scores[place])) for place in order)
+
+    def fitting(
+        self, emotion: str | None = None, room: str | None = None, furniture: Sequence[str] = ()
+    ) -> NDArray[np.bool_]:
+        """Which scripts are of that emotion, in that room and use all of that furniture. (scripts,)."""
         if emotion is not None and emotion not in EMOTIONS:
             raise LibraryError(f"emotion: {emotion!r} is none of {', '.join(EMOTIONS)}")
         if room is not None and canonical_room(room) not in ROOM_TYPES:
             raise LibraryError(f"room: {room!r} is none of {', '.join(ROOM_TYPES)}")
-        if k < 1 or not query.strip():
-            raise LibraryError("query: ask for at least one script, with at least one word")
-        scores = self.scores(self.encoder.encode([query]))[0]
-        fitting = [
-            index
-            for index, script in enumerate(self.scripts)
-            if (emotion is None or script.emotion == emotion) and (room is None or script.room == canonical_room(room))
-        ]
-        fitting.sort(key=lambda index: (-scores[index], self.scripts[index].id))
-        return tuple(Found(self.scripts[index], float(scores[index])) for index in fitting[:k])
+        mask = np.ones(len(self), dtype=np.bool_)
+        if emotion is not None:
+            mask &= self.traits.of_emotion(emotion)
+        if room is not None:
+            mask &= self.traits.in_rooms([canonical_room(room)])
+        for word in furniture:
+            if not is_known(word):
+                raise LibraryError(f"furniture: {word!r:.80} is not known; say for example bed, sofa, desk or wardrobe")
+            mask &= self.traits.using(categories_of(word))
+        return mask
+
+    @cached_property
+    def _by_name(self) -> NDArray[np.intp]:
+        """The place of each script among all in the order of ids."""
+        places = np.empty(len(self), dtype=np.intp)
+        places[sorted(range(len(self)), key=lambda index: self.scripts[index].id)] = np.arange(len(self))
+        return places
 
     def scores(self, vectors: NDArray[np.float32]) -> Scores:
         """How near each script is to each vector of `encoder`: by its summary, a sentence or caption. (N, scripts).
 
         Rounded to 1e-4, so that another machine ranks alike.
         """
-        texts, weights, owners = self._features
-        near = vectors @ texts.T * weights  # (N, texts)
+        rows, places, weights, owners = self._features
+        near = (vectors @ rows.T)[:, places] * weights  # (N, texts)
         best: Scores = np.maximum.reduceat(near, owners, axis=1).astype(np.float64)
         return best.round(4)
+
+    def summaries(self, indices: Sequence[int]) -> NDArray[np.float32]:
+        """Vectors of these scripts' summaries. (N, D)."""
+        return self.features.of([self.scripts[index].summary for index in indices])
 
     def naming(self, text: str) -> NDArray[np.bool_]:
         """Which scripts' summaries have a word of the text that few summaries have ("lottery"). (scripts,)."""
@@ -149,20 +187,19 @@ class ScriptLibrary:
         return self.features.of(texts)
 
     @cached_property
-    def _features(self) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.intp]]:
-        """A vector and weight for each text, script after script, and where each script begins."""
-        texts: list[str] = []
+    def _features(self) -> tuple[Vectors, NDArray[np.intp], NDArray[np.float32], NDArray[np.intp]]:
+        """A vector for each distinct text; for each text of a script which, and its weight; where scripts begin."""
+        distinct: dict[str, int] = {}
+        places: list[int] = []
         weights: list[float] = []
         owners: list[int] = []
         for script in self.scripts:
-            owners.append(len(texts))
+            owners.append(len(places))
             for text, weight in texts_of(script).items():
-                texts.append(text)
+                places.append(distinct.setdefault(text, len(distinct)))
                 weights.append(weight)
-        distinct = {text: index for index, text in enumerate(dict.fromkeys(texts))}
         rows = self.features.of(list(distinct))
-        places = [distinct[text] for text in texts]
-        return rows[places], np.array(weights, dtype=np.float32), np.array(owners, dtype=np.intp)
+        return rows, np.array(places, np.intp), np.array(weights, np.float32), np.array(owners, np.intp)
 
 
 def texts_of(script: ShortScript) -> dict[str, float]:

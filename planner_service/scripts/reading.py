@@ -78,7 +78,7 @@ def read(theme: str, clauses: Sequence[Clause], library: ScriptLibrary, limits: 
         for clause, mood in zip(clauses, moods, strict=True)
     ]
     events = tuple(Event(text=clause.text, emotion=mood) for clause, mood in zip(clauses, moods, strict=True))
-    suits = suitability(wishes, scores, library.scripts, limits)
+    suits = suitability(wishes, scores, library.traits, limits)
     weights = np.array([[_MOOD_CONTEXT if state_words(clause.text) else _CONTEXT] for clause in clauses])
     named = np.array([library.naming(clause.text) for clause in clauses])
     return Reading(events, scores, np.where(suits > 0, suits + weights * context + _NAMED * named, suits))

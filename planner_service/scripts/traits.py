@@ -1,0 +1,130 @@
+"""What of every short script counts besides its meaning, as arrays that are made once a library."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from enum import IntEnum
+from functools import cache
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion_backend.motion import Skill
+from planner_service.scripts.keyframe import EMOTIONS, ShortScript
+from scene_graphs import furniture
+from scene_graphs.furniture import ROOM_TYPES
+
+Mask = NDArray[np.bool_]
+Codes = NDArray[np.intp]
+
+
+class Before(IntEnum):
+    """What must have been, for a script to begin as it does."""
+
+    ANYTHING = 0
+    ASLEEP = 1
+    """It begins with waking."""
+    AWAY = 2
+    """It begins with coming home."""
+
+
+class After(IntEnum):
+    """How a script leaves the character."""
+
+    ABOUT = 0
+    ASLEEP = 1
+    AWAY = 2
+    """Out of the house."""
+
+
+_WAKES: Final = re.compile(
+    r"\b(?:wakes?|waking|woken|alarm (?:clock )?(?:rings|goes)|gets? out of bed|jolts? upright)\b"
+)
+_ARRIVES: Final = re.compile(r"\b(?:(?:comes?|gets?|arrives?|returns?|back|coming) (?:back )?home|comes? in from)\b")
+_LEAVES: Final = re.compile(
+    r"\b(?:leaves? (?:the house|home|for)|sets? off|out of the (?:door|house)|heads? out|goes out)\b"
+)
+_SLEEPS: Final = re.compile(r"\b(?:asleep|sleeps?|dozes? off|drifts? off|naps?|nods? off|passes out)\b")
+_SLEEPLESS: Final = re.compile(r"\b(?:cannot|can't|unable|no|not|without|hardly|sleepless|awake)\b")
+
+
+class Traits:
+    """Arrays over N scripts, in their order."""
+
+    def __init__(self, scripts: Sequence[ShortScript]) -> None:
+        self.emotions: Codes = _codes(EMOTIONS.index(script.emotion) for script in scripts)
+        self.rooms: Codes = _codes(ROOM_TYPES.index(script.room) for script in scripts)
+        self.runs: Codes = _numbered(_run(script) for script in scripts)
+        """The same number for scripts with the same keyframes."""
+        self.before: Codes = _codes(before_of(script) for script in scripts)
+        self.after: Codes = _codes(after_of(script) for script in scripts)
+        self._count = len(scripts)
+        self._using = _owners(scripts, lambda script: {name for k in script.keyframes for name in _kinds(k.piece[0])})
+        self._doing = _owners(scripts, lambda script: {keyframe.skill for keyframe in script.keyframes})
+
+    def of_emotion(self, emotion: str) -> Mask:
+        """Scripts of an emotion. (N,)."""
+        return np.asarray(self.emotions == EMOTIONS.index(emotion))
+
+    def in_rooms(self, rooms: Iterable[str]) -> Mask:
+        """Scripts that play in one of these room types. (N,)."""
+        return np.isin(self.rooms, [ROOM_TYPES.index(room) for room in rooms])
+
+    def using(self, categories: Iterable[str]) -> Mask:
+        """Scripts that use furniture of any of these categories. (N,)."""
+        return self._any(self._using, categories)
+
+    def doing(self, skills: Iterable[Skill]) -> Mask:
+        """Scripts with a keyframe of any of these skills. (N,)."""
+        return self._any(self._doing, skills)
+
+    def _any(self, owners: dict[Any, Codes], names: Iterable[Any]) -> Mask:
+        mask = np.zeros(self._count, dtype=np.bool_)
+        for name in names:
+            mask[owners.get(name, ())] = True
+        return mask
+
+
+def before_of(script: ShortScript) -> Before:
+    """What a script's first sentence takes for granted."""
+    first = re.split(r"(?<=[.!?])\s", script.summary.lower(), maxsplit=1)[0]
+    if _WAKES.search(first):
+        return Before.ASLEEP
+    return Before.AWAY if _ARRIVES.search(first) else Before.ANYTHING
+
+
+def after_of(script: ShortScript) -> After:
+    """How a script ends: on a bed in sleep, out of the house, or neither."""
+    last = re.split(r"(?<=[.!?])\s", script.summary.lower())[-1]
+    if script.keyframes[-1].skill is Skill.LIEDOWN and _SLEEPS.search(last) and not _SLEEPLESS.search(last):
+        return After.ASLEEP
+    return After.AWAY if _LEAVES.search(last) else After.ABOUT
+
+
+def _run(script: ShortScript) -> tuple[object, ...]:
+    return tuple((keyframe.skill, keyframe.caption, keyframe.furniture) for keyframe in script.keyframes)
+
+
+@cache
+def _kinds(word: str) -> frozenset[str]:
+    return frozenset(furniture.categories_of(word))
+
+
+def _codes(values: Iterable[int]) -> Codes:
+    return np.array(list(values), dtype=np.intp)
+
+
+def _numbered(values: Iterable[object]) -> Codes:
+    numbers: dict[object, int] = {}
+    return _codes(numbers.setdefault(value, len(numbers)) for value in values)
+
+
+def _owners(scripts: Sequence[ShortScript], names_of: Callable[[ShortScript], set[Any]]) -> dict[Any, Codes]:
+    """For each name, the scripts that have it."""
+    owners: dict[Any, list[int]] = {}
+    for index, script in enumerate(scripts):
+        for name in names_of(script):
+            owners.setdefault(name, []).append(index)
+    return {name: _codes(found) for name, found in owners.items()}
