@@ -22,7 +22,7 @@ EXAMPLE: dict[str, Any] = {
         {"skill": "sitdown", "emotion": "happy", "caption": "sit content", "furniture": "sofa"},
     ],
 }
-SHOWN: Final = EXAMPLE | {"source": "authored", "licence": "MIT", "version": 1}
+SHOWN: Final = EXAMPLE | {"source": "authored", "licence": "MIT", "version": 1, "cues": []}
 
 
 class ShortScriptShown(BaseModel):
@@ -35,6 +35,7 @@ class ShortScriptShown(BaseModel):
     emotion: EmotionName
     room: RoomName = Field(description="The type of room it plays in.")
     keyframes: list[Keyframe]
+    cues: list[str] = Field(description="Other words for what happens, by which it is found too.")
     graph: ScriptGraph | None = Field(description="Furniture and what belongs together; null: as the keyframes use it.")
     source: Source = Field(description="How it came to be written.")
     licence: str = Field(description="Under which it may be passed on.")

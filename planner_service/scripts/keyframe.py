@@ -102,6 +102,8 @@ class ShortScript(BaseModel):
     emotion: Literal["neutral", "happy", "angry", "hurried", "tired", "sad", "stressed", "drunk", "relaxed"]
     room: Room
     keyframes: tuple[Keyframe, ...] = Field(min_length=1, max_length=MOST_PIECES)
+    cues: tuple[Annotated[str, Field(min_length=1, max_length=200)], ...] = Field((), max_length=12)
+    """Other words for what happens, by which it is found too; they are never told."""
     graph: ScriptGraph | None = None
     """Given, or derived from the keyframes: an edge between two pieces used one after the other."""
     source: Source = "authored"
