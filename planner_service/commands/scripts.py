@@ -1,4 +1,4 @@
-"""`sims scripts search|list|show|add|export|remove|check`: the library of short scripts."""
+"""`sims scripts search|list|show|add|export|remove|check|imitate|rephrase-captions`: the library of short scripts."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from planner_service.commands.errors import writing_database
+from planner_service.commands.imitating import imitate, rephrase_captions, words_of
 from planner_service.commands.script_files import read_scripts
 from planner_service.filing import check_writable, write_files
 from planner_service.scripts.checking import check as find_problems
@@ -20,6 +21,8 @@ from planner_service.settings import read_settings
 from planner_service.shelves import FixedError, TakenError, UnfitError, open_shelves
 
 app = typer.Typer(no_args_is_help=True, help="Search, check and extend the library of short scripts.")
+app.command()(imitate)
+app.command("rephrase-captions")(rephrase_captions)
 SHOWN = 10
 """Ids that a warning names."""
 Emotion = Annotated[str | None, typer.Option(help="Only scripts of this emotion.")]
@@ -165,11 +168,6 @@ def _choice(emotion: str | None, room: str | None, furniture: str, source: str |
     if source is not None and source not in get_args(Source):
         raise LibraryError(f"--source: {source!r:.80} is none of {', '.join(get_args(Source))}")
     return Choice(emotion, room, words_of(furniture), source, licence)
-
-
-def words_of(listed: str) -> tuple[str, ...]:
-    """The words between commas, each once."""
-    return tuple(dict.fromkeys(word for part in listed.split(",") if (word := part.strip())))
 
 
 def _chosen(choice: Choice, own: bool) -> list[ShortScript]:

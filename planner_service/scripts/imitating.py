@@ -1,0 +1,221 @@
+"""New short scripts that a language model writes in the manner of stored ones (SIMS 3.2)."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+import prompts
+from motion_backend.motion import Skill
+from planner_service.llm.answers import problems_of
+from planner_service.llm.asking import ModelAnswerError, ask
+from planner_service.llm.protocol import LanguageModel, ModelError
+from planner_service.scripts.checking import read_keyframe, repair
+from planner_service.scripts.emotions import emotion_of
+from planner_service.scripts.keyframe import EMOTIONS, MOST_PIECES, Keyframe, Origin, ShortScript
+from planner_service.scripts.library import ScriptLibrary
+from planner_service.scripts.likeness import Likeness
+from planner_service.scripts.mending import is_floor
+from planner_service.scripts.picking import UNKNOWN
+from planner_service.scripts.planning import DirectKeyframe
+from planner_service.scripts.wishes import Wish, examples
+from scene_graphs.furniture import categories_of, display_name
+
+MOST_QUESTIONS: Final = 4
+"""How often a model is asked, its one second try at each question not counted."""
+_LEAST_KEYFRAMES: Final = 2
+_SHORTEST: Final = 20
+"""Letters of a summary by which something can be found."""
+_MOST_KEYFRAMES: Final = 12
+_SHOWN: Final = 12
+"""Refused scripts that a model is told of."""
+_FILLING: Final = re.compile(
+    r"a|an|and|at|by|for|from|his|her|in|into|is|it|its|of|on|or|the|their|then|to|with|character"
+)
+
+
+class WrittenScript(BaseModel):
+    """One short script as a model writes it."""
+
+    model_config = ConfigDict(extra="ignore")
+
+    summary: str
+    keyframes: list[DirectKeyframe]
+
+
+class WrittenScripts(BaseModel):
+    """The answer to `prompts/imitate_scripts.md`."""
+
+    model_config = ConfigDict(extra="ignore")
+
+    scripts: list[WrittenScript]
+
+
+@dataclass(frozen=True)
+class Refused:
+    """A script that a model wrote and that cannot be used."""
+
+    summary: str
+    why: str
+
+
+@dataclass(frozen=True)
+class Imitated:
+    """What came of it; none of it is stored yet."""
+
+    scripts: tuple[ShortScript, ...]
+    refused: tuple[Refused, ...]
+    notes: tuple[str, ...]
+    """What was repaired, and what is missing and why."""
+
+
+class _Unfit(ValueError):  # noqa: N818
+    """Why a script of a model cannot be used."""
+
+
+@dataclass
+class _Desk:
+    """The scripts that were written so far."""
+
+    model: LanguageModel
+    wish: Wish
+    like: tuple[ShortScript, ...]
+    likeness: Likeness
+    taken: set[str]
+    scripts: list[ShortScript] = field(default_factory=list)
+    refused: list[Refused] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def missing(self) -> int:
+        return self.wish.count - len(self.scripts)
+
+    def read(self, written: WrittenScript) -> None:
+        """Keep one script, or note why not."""
+        try:
+            script, repairs = _script(written, self.wish)
+            if (twin := self.likeness.twin(script)) is not None:
+                raise _Unfit(f"it is like {twin.script_id}: {twin.why}")
+        except _Unfit as reason:
+            self.refused.append(Refused(" ".join(written.summary.split())[:400], str(reason)))
+            return
+        name, like = self.model.name, [one.id for one in self.like]
+        script = script.model_copy(
+            update={
+                "id": _free_id(self.wish, script.summary, self.taken),
+                "licence": _licence(self.like),
+                "origin": Origin.model_validate({"name": name[:200], "by": f"llm:{name}"[:200], "like": like}),
+            }
+        )
+        self.taken.add(script.id)
+        self.likeness.add(script)
+        self.scripts.append(script)
+        self.notes += [f"{script.id}: {line}" for line in repairs]
+
+
+def imitate(
+    model: LanguageModel, library: ScriptLibrary, wish: Wish, captions: Mapping[str, Sequence[str]], seed: int = 0
+) -> Imitated:
+    """Short scripts like stored ones of an emotion and room, valid, repaired and unlike all there are.
+
+    What is missing is asked for again, at most MOST_QUESTIONS times; fewer than wished for are better than none.
+    ModelError when nothing at all can be used.
+    """
+    like = examples(library, wish, seed)
+    desk = _Desk(model, wish, like, Likeness(library), {script.id for script in library.scripts})
+    questions = 0
+    while desk.missing and questions < MOST_QUESTIONS:
+        questions += 1
+        try:
+            answer = ask(model, _question(desk, captions), WrittenScripts, _some, repairs=1)
+        except ModelError as error:
+            if not desk.scripts:
+                raise
+            desk.notes.append(f"asked no further: {error}")
+            break
+        for written in answer.scripts[: 2 * desk.missing]:
+            if desk.missing:
+                desk.read(written)
+    if not desk.scripts:
+        raise ModelAnswerError(model.name, "short script", questions, [one.why for one in desk.refused[-_SHOWN:]])
+    if desk.missing:
+        made = f"{len(desk.scripts)} of {wish.count} short scripts after {questions} questions"
+        desk.notes.append(f"{made}; {len(desk.refused)} were refused")
+    return Imitated(tuple(desk.scripts), tuple(desk.refused), tuple(desk.notes))
+
+
+def _some(answer: WrittenScripts) -> list[str]:
+    return [] if answer.scripts else ["scripts: there is none"]
+
+
+def _question(desk: _Desk, captions: Mapping[str, Sequence[str]]) -> str:
+    wish = desk.wish
+    written = [f"- {script.summary}" for script in desk.scripts]
+    refused = [f"- refused ({one.why}): {one.summary}" for one in desk.refused[-_SHOWN:]]
+    return prompts.render(
+        "imitate_scripts",
+        count=str(desk.missing),
+        emotion=wish.emotion,
+        room=display_name(wish.room),
+        furniture=", ".join(sorted({display_name(word) for word in wish.furniture})),
+        skills=", ".join(Skill),
+        emotions=", ".join(EMOTIONS),
+        most=str(_MOST_KEYFRAMES),
+        captions="\n".join(f"{skill}: {'; '.join(known)}" for skill, known in captions.items()),
+        examples="\n".join(map(_shown, desk.like)),
+        before="\n".join([*written, *refused]) or "nothing",
+    )
+
+
+def _shown(script: ShortScript) -> str:
+    """An example in the form of the answer."""
+    keyframes = [keyframe.model_dump(mode="json") for keyframe in script.keyframes]
+    return json.dumps({"summary": script.summary, "keyframes": keyframes}, ensure_ascii=False)
+
+
+def _script(written: WrittenScript, wish: Wish) -> tuple[ShortScript, tuple[str, ...]]:
+    """A script as it can be acted out, and what was repaired; _Unfit says why it cannot be used."""
+    summary = " ".join(written.summary.split())
+    if not _SHORTEST <= len(summary) <= 400:
+        raise _Unfit(f"summary: {len(summary)} letters, it must have {_SHORTEST} to 400")
+    try:
+        keyframes = [read_keyframe(keyframe.model_dump()) for keyframe in written.keyframes[: MOST_PIECES + 1]]
+    except ValidationError as error:
+        raise _Unfit(f"keyframes: {problems_of(error)[0]}") from error
+    _refuse_strange(keyframes, wish.categories)
+    kept, repairs = repair(keyframes)
+    _refuse_strange(kept, wish.categories)
+    if not _LEAST_KEYFRAMES <= len(kept) <= MOST_PIECES:
+        raise _Unfit(f"keyframes: {len(kept)} of them, there must be {_LEAST_KEYFRAMES} to {_MOST_KEYFRAMES}")
+    if not any(emotion_of(keyframe.emotion) == wish.emotion for keyframe in kept):
+        raise _Unfit(f"emotion: no keyframe is {wish.emotion}")
+    row = {"id": "unnamed", "summary": summary, "emotion": wish.emotion, "room": wish.room, "keyframes": kept}
+    return ShortScript.model_validate({**row, "source": "imitation"}), repairs
+
+
+def _refuse_strange(keyframes: Iterable[Keyframe], offered: Collection[str]) -> None:
+    for index, keyframe in enumerate(keyframes):
+        word = keyframe.piece[0]
+        if not is_floor(word) and not categories_of(word) & set(offered):
+            raise _Unfit(f"keyframes.{index}.furniture: {word!r:.60} is not there")
+
+
+def _licence(like: Iterable[ShortScript]) -> str:
+    """Of what imitates these: theirs where all have the same."""
+    licences = {script.licence for script in like}
+    return licences.pop() if len(licences) == 1 else UNKNOWN
+
+
+def _free_id(wish: Wish, summary: str, taken: Collection[str]) -> str:
+    """A slug of the first words that tell something, with a number where it is taken."""
+    words = [
+        word for word in re.findall(r"[a-z0-9]+", summary.lower().replace("'", "")) if not _FILLING.fullmatch(word)
+    ]
+    slug = "-".join([wish.emotion, *(words[:5] or [wish.room.replace("_", "-")])])[:70].rstrip("-")
+    names = (slug if number == 1 else f"{slug}-{number}" for number in range(1, len(taken) + 2))
+    return next(name for name in names if name not in taken)
