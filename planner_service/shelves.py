@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Final
 
 from planner_service.renewing import Added, body_of, changing, replacing
 from planner_service.scripts.checking import check
+from planner_service.scripts.fitting import Problem
 from planner_service.scripts.keyframe import ShortScript
 from planner_service.scripts.library import Features, LibraryError, ScriptLibrary, built_in
-from planner_service.scripts.mending import Problem
 from planner_service.store.keeping import (
     AbsentError,
     ChangedError,

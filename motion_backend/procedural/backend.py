@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from motion_backend.motion import FPS, Action, BodyState, Character, ContactGoal, Motion, Posture, Skill
 from motion_backend.obstacles import Obstacles
 from motion_backend.procedural.guarding import hands_clear
+from motion_backend.procedural.handling import with_both_hands
 from motion_backend.procedural.performing import SKILLS, Body, Scene
 from motion_backend.procedural.pose import Pose, concatenate
 from motion_backend.procedural.solving import released, solve
@@ -104,7 +105,9 @@ def _spot_from_lists(values: dict[str, Any] | None) -> Spot | None:
 
 
 def _to_motion(body: Body, action: Action, reason: str) -> Motion:
-    touching = action.hand if action.skill is Skill.TOUCH else None
+    touching = None
+    if action.skill is Skill.TOUCH:
+        touching = "both" if with_both_hands(action.caption) else action.hand
     pose = hands_clear(concatenate(body.frames), body.skeleton, body.scene.obstacles.solid(), touching)
     body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)

@@ -25,7 +25,7 @@ UPWARDS = 0.12
 
 
 def hands_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles, touching: str | None = None) -> Pose:
-    """The same motion with hands moved out of what is solid; the hand that touches is left where it is laid."""
+    """The same motion with hands moved out of what is solid; those that touch ("left", "right", "both") stay there."""
     reach, reaching = pose.reach.copy(), pose.reaching.copy()
     frame = chest_frame(pose, skeleton)
     for index, (name, side) in enumerate(SIDES):
@@ -36,7 +36,7 @@ def hands_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles, touching: 
         wrist = elbow + lower * arm.lower
         tip = wrist + HAND_LENGTH * skeleton.scale * arm.lower
         push = _way_out(np.stack([tip, wrist, 0.5 * (elbow + wrist)], axis=1), shoulder, obstacles)
-        if name == touching:
+        if touching in (name, "both"):
             push = push * (1 - pose.pressing[:, index, None])
         moved = np.linalg.norm(push, axis=1) > 1e-4
         if not moved.any():

@@ -9,6 +9,9 @@ from typing import Any
 
 from motion_backend.procedural.styles import THIGHS, Bearing, Lying, Seated, Walk
 
+STILL = 0.3
+"""Restlessness, against its mood, of who keeps still."""
+
 BEARINGS: dict[str, Bearing] = {
     "neutral": Bearing(),
     "happy": Bearing(lean=-3, head=-7, tempo=1.2, restless=1.5),
@@ -65,6 +68,8 @@ def bearing_of(emotion: str, caption: str = "") -> Bearing:
         return replace(bearing, tempo=min(bearing.tempo, 0.7))
     if re.search(r"abrupt|quick|sudden|leap|jump", caption.lower()):
         return replace(bearing, tempo=max(bearing.tempo, 1.5))
+    if re.search(r"\bstill\b", caption.lower()):
+        return replace(bearing, restless=STILL * bearing.restless)
     return bearing
 
 
@@ -103,6 +108,8 @@ _WALK_WORDS: tuple[tuple[str, dict[str, Any]], ...] = (
     (r"skip", {"speed": 1.6, "double": -0.22, "bounce": 0.075, "swing": 40.0, "elbow": 30.0, "clearance": 0.14}),
     (r"open arms|arms open|arms wide|arms opened", {"arms": ("open", "open"), "swing": 0.0}),
     (r"spin|danc|twirl", {"spin": 1.0, "arms": ("balance", "balance"), "swing": 0.0}),
+    (r"\bwav(e|ing)\b", {"arms": ("hang", "wave"), "swing": 0.0, "doing": "wave"}),
+    (r"\bwav(e|ing)\b.*left", {"arms": ("wave", "hang")}),
     (r"danc", {"bounce": 0.05, "sway": 0.05, "speed": 1.3}),
 )
 _SIT_WORDS: tuple[tuple[str, dict[str, Any]], ...] = (
@@ -127,7 +134,14 @@ _SIT_WORDS: tuple[tuple[str, dict[str, Any]], ...] = (
         {"arms": ("face", "face"), "recline": -28.0, "head": 24.0},
     ),
     (r"chin|one hand on (the )?(face|cheek)|thinking", {"arms": (THIGHS, "chin"), "head": 10.0}),
-    (r"\bread|book|writing|typing|letter|photo", {"arms": ("read", "read"), "head": 20.0}),
+    (r"\bread|book|letter|photo", {"arms": ("read", "read"), "head": 20.0}),
+    (r"\bwrit(e|ing)|drawing|sketch", {"arms": ("desk", "desk"), "head": 20.0, "recline": -14.0, "doing": "write"}),
+    (r"\btyp(e|ing)|keyboard|laptop", {"arms": ("desk", "desk"), "head": 10.0, "recline": -8.0, "doing": "type"}),
+    (r"piano|keys\b", {"arms": ("keys", "keys"), "head": 10.0, "recline": -6.0, "doing": "piano"}),
+    (r"game|controller", {"arms": ("gamepad", "gamepad"), "recline": -8.0, "doing": "game"}),
+    (r"drink|sip|\bcup\b|\bmug\b", {"arms": (THIGHS, "cup"), "doing": "drink"}),
+    (r"\beat(ing)?\b|spoon|\bfork\b", {"arms": ("desk", "desk"), "head": 8.0, "recline": -10.0, "doing": "eat"}),
+    (r"music|at (the |his |her )?ears", {"arms": ("ears", "ears"), "doing": "music"}),
     (r"phone.*left", {"arms": ("ear", THIGHS)}),
     (r"phone(?!.*left)", {"arms": (THIGHS, "ear")}),
     (r"legs? (straight|extended|stretched)|straight legs|stretched out", {"legs": "straight"}),
@@ -147,6 +161,7 @@ _LIE_WORDS: tuple[tuple[str, dict[str, Any]], ...] = (
     (r"left (arm|hand) .*head", {"arms": ("behind_head", "belly")}),
     (r"right hand on belly", {"arms": ("sides", "belly")}),
     (r"cover", {"arms": ("face", "face")}),
+    (r"\bread|book", {"arms": ("held_above", "held_above")}),
     (r"elbows? support|propp", {"prop": 32.0, "arms": ("elbows", "elbows")}),
     (r"legs (are )?bent|knees bent|curled", {"legs": "bent"}),
     (r"legs crossed", {"legs": "crossed"}),

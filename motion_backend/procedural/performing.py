@@ -16,15 +16,18 @@ from motion_backend.motion import FPS, Action, Posture, Skill
 from motion_backend.obstacles import Obstacles
 from motion_backend.procedural.footsteps import yaw_of
 from motion_backend.procedural.gait import walk
+from motion_backend.procedural.gestures import gesture
 from motion_backend.procedural.guarding import arms_in
+from motion_backend.procedural.handling import LONGER, Laid, handling_of, with_both_hands
 from motion_backend.procedural.interactions import edge_seat, lie_down, rise_to_edge, sit_down, stand_up
 from motion_backend.procedural.lying import Bed
 from motion_backend.procedural.moods import bearing_of, lie_style, sit_style, walk_style
-from motion_backend.procedural.pose import Pose, settle_from
-from motion_backend.procedural.reaching import Laid, touch
+from motion_backend.procedural.palms import free_palm, other_hand
+from motion_backend.procedural.pose import Pose, interpolate, settle_from
+from motion_backend.procedural.reaching import touch
 from motion_backend.procedural.route import resample
-from motion_backend.procedural.stances import SHIN_REACH, Seat, idle
-from motion_backend.procedural.styles import Bearing, Walk
+from motion_backend.procedural.stances import SHIN_REACH, Seat, bend, idle
+from motion_backend.procedural.styles import Bearing, Walk, arm_arrays
 from motion_backend.skeleton import HAND_REST, Skeleton
 from scene_graphs.homes import Home
 from scene_graphs.navigation import NoPath, Walkable
@@ -48,8 +51,8 @@ NARROW_ARMS = {
     "behind_back": ("hang", 0.40),
 }
 """What arms do where elbows or hands would meet furniture, and the clearance (metres) they need: joy goes up."""
-FINGER = 0.02
-"""Half a finger's thickness (metres)."""
+STAYING = 0.7
+"""How long arms take into the pose they are held in where the body stays, and out of it (seconds)."""
 ELBOW_ROOM = 0.26
 """Clearance beyond which there is no better place to turn on the spot (metres)."""
 
@@ -167,11 +170,33 @@ def _turning_place(body: Body, path: Array, goal: Point, facing: float | None) -
 def _loco(body: Body, action: Action) -> None:
     bearing = bearing_of(action.emotion, action.caption)
     _rise(body, bearing)
+    if action.goal is None:
+        _stay(body, action)
+        return
     before = len(body.frames)
-    if action.goal is not None:
-        _go(body, action.goal, action.facing, action)
+    _go(body, action.goal, action.facing, action)
     if len(body.frames) == before:
         body.add(idle(body.pose, 1.0, bearing.restless, body.rng, FPS))
+
+
+def _stay(body: Body, action: Action) -> None:
+    """Stand where the body is, arms as the caption has them, and let them hang again."""
+    style = walk_style(action.emotion, action.caption)
+    bearing = style.bearing
+    at_ease = replace(body.pose, **_carriage(replace(bearing, arms=("hang", "hang"))))
+    held = replace(body.pose, **_carriage(bearing))
+    body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, held], FPS))
+    restless = bearing_of(action.emotion, action.caption).restless
+    body.add(gesture(idle(body.pose, action.hold, restless, body.rng, FPS), style.doing))
+    if bearing.arms != ("hang", "hang"):
+        body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, at_ease], FPS))
+
+
+def _carriage(bearing: Bearing) -> dict[str, Array]:
+    """How a standing body holds trunk, head and arms."""
+    wrists, elbows = arm_arrays(*bearing.arms)
+    lean, head = np.radians(bearing.lean), np.radians(bearing.head)
+    return {"spine": bend(0.7 * lean), "head": bend(head), "arms": wrists, "elbows": elbows}
 
 
 def _spot_of(action: Action) -> Spot:
@@ -195,7 +220,7 @@ def _sitdown(body: Body, action: Action) -> None:
     _at_standing_point(body, action, seat)
     reach = _leg_room(body, seat)
     body.add(sit_down(body.pose, seat, style, body.skeleton, reach))
-    body.add(idle(body.pose, action.hold, style.bearing.restless, body.rng, FPS))
+    body.add(gesture(idle(body.pose, action.hold, style.bearing.restless, body.rng, FPS), style.doing))
     body.posture, body.rest = Posture.SEATED, spot
 
 
@@ -250,37 +275,16 @@ def _touch(body: Body, action: Action) -> None:
     _go(body, spot.standing, spot.facing, action)
     normal = np.asarray(spot.normal, dtype=np.float64)
     goal = np.asarray(spot.point) + HAND_REST * normal
-    palm = _free_palm(body, spot, goal, action.hand)
-    hold = max(action.hold, 1.2)
-    laid, depth = Laid(goal, palm, normal, action.hand), body.scene.obstacles.solid().depth
-    body.add(touch(body.pose, laid, (bearing, hold), body.skeleton, depth))
-
-
-def _free_palm(body: Body, spot: Spot, wrist: Array, hand: str) -> Array:
-    """The hand laid straight ahead, or turned aside where its fingers would be in something else."""
-    others = body.scene.obstacles.solid()
-    others = others.only(np.array([owner != spot.object_id for owner in others.owners], dtype=bool))
-    fingers = np.array([[0.05, 0.0, 0.0], [0.10, 0.0, 0.0], [0.14, 0.0, 0.0]]) * (1.0 if hand == "left" else -1.0)
-    inward = -1.0 if hand == "left" else 1.0
-    best: tuple[float, Array] | None = None
-    for turn in (0.0, 0.5 * inward, -0.5 * inward, 1.0 * inward, -1.0 * inward):
-        palm = palm_on(np.asarray(spot.normal), spot.facing + turn, hand)
-        depth = float(np.max(others.depth(wrist + rotations.rotate(palm, fingers)), initial=-1.0))
-        if depth < -FINGER:
-            return palm
-        if best is None or depth < best[0]:
-            best = (depth, palm)
-    return best[1] if best else palm_on(np.asarray(spot.normal), spot.facing, hand)
-
-
-def palm_on(normal: Array, facing: float, hand: str) -> Array:
-    """World rotation of a hand laid flat on a surface: palm against it, fingers forwards or up it. (4,)."""
-    side = 1.0 if hand == "left" else -1.0
-    ahead = np.array([np.sin(facing), 0.0, np.cos(facing)])
-    fingers = ahead if normal[1] > 0.7 else 0.8 * np.array([0.0, 1.0, 0.0]) + 0.2 * ahead
-    fingers = rotations.normalize(fingers - (fingers @ normal) * normal)
-    x, y = side * fingers, normal
-    return rotations.basis_to_quat(x, y, np.cross(x, y))
+    palm = free_palm(body.scene.obstacles, spot, goal, action.hand)
+    doing = handling_of(action.caption)
+    hold = max(action.hold, 1.2, LONGER.get(doing, 0.0))
+    other = (
+        other_hand(body.scene.obstacles, spot, goal, action.hand, body.skeleton.scale)
+        if with_both_hands(action.caption)
+        else None
+    )
+    laid, depth = Laid(goal, palm, normal, action.hand, other), body.scene.obstacles.solid().depth
+    body.add(touch(body.pose, laid, (bearing, hold), body.skeleton, depth, doing))
 
 
 SKILLS: dict[Skill, Callable[[Body, Action], None]] = {

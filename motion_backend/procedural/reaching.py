@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.footsteps import yaw_of
+from motion_backend.procedural.handling import CARRY, KEPT, Laid, carrying, handled
 from motion_backend.procedural.interactions import knees_over_feet
 from motion_backend.procedural.pose import Pose, concatenate, interpolate, settle_from, smooth
 from motion_backend.procedural.solving import chest_frame, released
@@ -36,51 +37,49 @@ HEAD_ROOM = 0.13
 """Distance of the middle of the head to furniture that a reaching body keeps (metres)."""
 
 
-@dataclass(frozen=True)
-class Laid:
-    """Where a hand is to lie."""
-
-    wrist: Array
-    """(3,) world."""
-    palm: Array
-    """(4,) hand to world."""
-    normal: Array
-    """(3,) out of the surface."""
-    hand: str
-
-
-def touch(start: Pose, laid: Laid, style: tuple[Bearing, float], skeleton: Skeleton, depth: Depth) -> Pose:
+def touch(
+    start: Pose, laid: Laid, style: tuple[Bearing, float], skeleton: Skeleton, depth: Depth, doing: str = ""
+) -> Pose:
     """Bring a hand from outside onto a surface, keep it there, and come back to standing.
 
-    `style` is the bearing and the seconds to hold; `depth` says how deep points (N, 3) are in furniture.
+    `style` is the bearing and the seconds to hold; `depth` says how deep points (N, 3) are in furniture; `doing` is
+    what the hand does there, a word of `handling.HANDLINGS`, "" for a plain touch.
     """
     bearing, hold = style
-    index = 0 if laid.hand == "left" else 1
     pace = 1 / bearing.tempo
-    bent = _reaching(start, laid, index, skeleton, depth)
+    bent = _reaching(start, laid, skeleton, depth)
     # A deep bend takes its time, however hurried.
     pace *= max(1.0, float(start.pelvis[1] - bent.pelvis[1]) / (DEEP * skeleton.scale))
     reached = _hand_at(start, bent, laid, 0.0, skeleton)
     over = _hand_at(start, bent, laid, 0.12, skeleton)
     away = replace(start, reach=over.reach, palms=over.palms)
     lead = replace(away, head=0.7 * reached.head + 0.3 * start.head)
-    go = interpolate([0.0, 0.3 * pace, 0.85 * pace, 1.2 * pace], [away, lead, over, reached], FPS)
-    back = interpolate([0.0, 0.3 * pace, 1.05 * pace], [reached, over, away], FPS)
     frames = max(round(hold * FPS), 1)
-    held = reached.repeat(frames)
-    held = _feeling_about(held, laid, frames)
-    whole = concatenate([go, held, back])
+    held = _feeling_about(reached.repeat(frames), laid, frames, sliding=not doing)
+    held = handled(held, laid, doing)
+    carried = carrying(away, [index for index, *_ in laid.hands])
+    if doing == "put":
+        lead = replace(lead, arms=carried.arms, elbows=carried.elbows)
+        go = interpolate(
+            [0.0, CARRY * pace, (CARRY + 0.3) * pace, (CARRY + 0.85) * pace, (CARRY + 1.2) * pace],
+            [away, carried, lead, over, reached],
+            FPS,
+        )
+    else:
+        go = interpolate([0.0, 0.3 * pace, 0.85 * pace, 1.2 * pace], [away, lead, over, reached], FPS)
+    back = interpolate([0.0, 0.3 * pace, 1.05 * pace], [reached, over, carried if doing == "pick" else away], FPS)
+    whole = concatenate([go, held, back, *([carried.repeat(KEPT)] if doing == "pick" else [])])
     return settle_from(start, replace(whole, knees=knees_over_feet(whole)), FPS, seconds=0.3)
 
 
-def _feeling_about(held: Pose, laid: Laid, frames: int) -> Pose:
+def _feeling_about(held: Pose, laid: Laid, frames: int, sliding: bool) -> Pose:
     """A held touch, alive: breath, and the hand sliding a little to and fro along what it lies on."""
     time = np.arange(frames) / FPS
     breath = 0.02 * np.sin(2 * np.pi * 0.35 * time)
     along = rotations.rotate(laid.palm, np.array([0.0, 0.0, 1.0]))
     slide = SLIDE * np.sin(2 * np.pi * 0.55 * time) * smooth(time / 0.3) * smooth((time[-1] - time) / 0.3)
     reach = held.reach.copy()
-    reach[:, 0 if laid.hand == "left" else 1] += slide[:, None] * along
+    reach[:, laid.hands[0][0]] += float(sliding) * slide[:, None] * along
     look = np.stack([0.03 * breath / 0.02, 0.08 * np.sin(2 * np.pi * 0.3 * time), 0 * time], axis=1)
     look *= smooth(time / 0.4)[:, None]
     return replace(
@@ -89,37 +88,38 @@ def _feeling_about(held: Pose, laid: Laid, frames: int) -> Pose:
 
 
 def _hand_at(start: Pose, bent: Pose, laid: Laid, off: float, skeleton: Skeleton) -> Pose:
-    """A bent posture with the hand on the surface, or `off` metres out from it."""
-    index, side = (0, 1.0) if laid.hand == "left" else (1, -1.0)
-    one = np.eye(2)[index]
+    """A bent posture with the hands on the surface, or `off` metres out from it."""
+    reaching = np.zeros(2)
     reach, palms, elbows = start.reach.copy(), start.palms.copy(), start.elbows.copy()
     yaw = float(yaw_of(start.hips))
     # A raised hand hangs its elbow below, a lowered one keeps it behind; over the edge of a top it is lifted aside.
     high = float(np.clip((laid.wrist[1] / skeleton.scale - 1.2) / 0.25, 0.0, 1.0))
     # Onto a top the hand comes over its edge from the body's side.
     back = off * laid.normal[1] * (0.3 + 0.9 * high) * np.array([np.sin(yaw), 0.0, np.cos(yaw)])
-    reach[index], palms[index] = laid.wrist + off * laid.normal - back, laid.palm
-    elbows[index] = np.array([0.45 * side, -0.25 - 0.75 * high, -1.0 + 0.75 * high])
-    if laid.wrist[1] < 0.7 * skeleton.scale:
-        # Down low it goes outwards: behind is the thigh.
-        elbows[index] = np.array([1.0 * side, -0.1, -0.3])
-    if laid.normal[1] > 0.7 and high > 0:
-        elbows[index] = np.array([1.0 * side, 0.25, -0.3])
-    pressing = one * (1.0 if off == 0.0 else 0.6)
-    posed = replace(bent, reach=reach, reaching=one, palms=palms, pressing=pressing, elbows=elbows)
+    for index, wrist, palm in laid.hands:
+        side = 1.0 if index == 0 else -1.0
+        reaching[index], reach[index], palms[index] = 1.0, wrist + off * laid.normal - back, palm
+        elbows[index] = np.array([0.45 * side, -0.25 - 0.75 * high, -1.0 + 0.75 * high])
+        if wrist[1] < 0.7 * skeleton.scale:
+            # Down low it goes outwards: behind is the thigh.
+            elbows[index] = np.array([1.0 * side, -0.1, -0.3])
+        if laid.normal[1] > 0.7 and high > 0:
+            elbows[index] = np.array([1.0 * side, 0.25, -0.3])
+    pressing = reaching * (1.0 if off == 0.0 else 0.6)
+    posed = replace(bent, reach=reach, reaching=reaching, palms=palms, pressing=pressing, elbows=elbows)
     # The same place held from the chest, so that the arm swings there round its shoulder.
     return replace(posed, arms=released(posed, skeleton).arms)
 
 
-def _reaching(start: Pose, laid: Laid, index: int, skeleton: Skeleton, depth: Depth) -> Pose:
-    """The least bent posture from which the hand gets to the goal: a search over lean and crouch."""
+def _reaching(start: Pose, laid: Laid, skeleton: Skeleton, depth: Depth) -> Pose:
+    """The least bent posture from which the hands get to their goals: a search over lean and crouch."""
     goal = laid.wrist
     yaw = float(yaw_of(start.hips))
     lean, crouch = (grid.ravel() for grid in np.meshgrid(np.radians(np.arange(0, 76, 5)), np.arange(0, 0.50, 0.05)))
     lean, crouch = lean[:, None], crouch[:, None] * skeleton.scale
     ahead = np.array([np.sin(yaw), 0.0, np.cos(yaw)])
     tries = start.repeat(len(lean))
-    turn = 0.22 if index == 1 else -0.22
+    turn = 0.0 if laid.other is not None else 0.22 if laid.hand == "right" else -0.22
     back = 0.06 * np.sin(lean) + 0.25 * crouch
     tries = replace(
         tries,
@@ -127,9 +127,11 @@ def _reaching(start: Pose, laid: Laid, index: int, skeleton: Skeleton, depth: De
         hips=np.stack([upright(yaw, 0.45 * float(a[0])) for a in lean]),
         spine=np.concatenate([0.55 * lean + 0.02, turn * np.minimum(lean / 0.3, 1.0), 0 * lean], axis=1),
     )
-    gap = np.linalg.norm(goal - shoulders(tries, skeleton)[:, index], axis=1)
     arm = 0.54 * skeleton.scale
-    miss = np.maximum(gap - 0.955 * arm, 0.0) + np.maximum(0.45 * arm - gap, 0.0)
+    miss = np.zeros(len(lean))
+    for index, wrist, _ in laid.hands:
+        gap = np.linalg.norm(wrist - shoulders(tries, skeleton)[:, index], axis=1)
+        miss = miss + np.maximum(gap - 0.955 * arm, 0.0) + np.maximum(0.45 * arm - gap, 0.0)
     # The head stays clear of what is touched: before a front one bends the knees instead.
     chest, place = chest_frame(tries, skeleton)
     head = place + rotations.rotate(chest, np.array([0.0, 0.38, 0.05]) * skeleton.scale)

@@ -44,6 +44,15 @@ ARMS: dict[str, ArmPose] = {
     "raised": ArmPose((0.40, 0.86, 0.14), (0.5, -0.4, -0.6)),
     "wide": ArmPose((0.95, 0.05, -0.06), (0.0, -0.6, -0.2)),
     "read": ArmPose((-0.10, -0.34, 0.58), (0.7, -0.8, -0.1)),
+    "held_above": ArmPose((-0.08, 0.02, 0.70), (0.9, -0.5, 0.1)),
+    "desk": ArmPose((0.0, -0.53, 0.66), (0.45, -0.8, -0.3)),
+    "keys": ArmPose((0.06, -0.51, 0.66), (0.45, -0.8, -0.3)),
+    "gamepad": ArmPose((-0.15, -0.52, 0.48), (0.6, -0.7, -0.3)),
+    "cup": ArmPose((-0.16, -0.40, 0.50), (0.7, -0.7, -0.1)),
+    "mouth": ArmPose((-0.22, 0.0, 0.36), (0.6, -0.9, 0.2)),
+    "ears": ArmPose((-0.01, 0.23, 0.10), (0.9, -0.8, 0.35)),
+    "wave": ArmPose((0.30, 0.42, 0.30), (0.5, -1.0, -0.1)),
+    "carry": ArmPose((-0.12, -0.56, 0.48), (0.5, -0.6, -0.6)),
 }
 THIGHS = "thighs"
 """Hands laid on the thighs: their place follows the legs, so it is not in the table."""
@@ -109,6 +118,8 @@ class Walk:
     """Whole turns about itself along the way."""
     tap: bool = False
     """Hands tap the chest."""
+    doing: str = ""
+    """What the hands do where the body stays: a name in `gestures.GESTURES`."""
     release: bool = False
     """Whether arms come down at the end of the way, where something else begins."""
 
@@ -124,6 +135,8 @@ class Seated:
     recline: float = 4.0
     """Backward lean of the trunk once seated; negative is forward. The backrest limits it."""
     head: float = 0.0
+    doing: str = ""
+    """What the hands do while seated: a name in `gestures.GESTURES`."""
 
 
 @dataclass(frozen=True)

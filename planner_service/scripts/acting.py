@@ -13,8 +13,10 @@ from typing import Any
 import numpy as np
 
 from motion_backend.motion import Action, Skill
-from planner_service.scripts.checking import hand_of
+from planner_service.scripts.checking import free_hand, hand_of
+from planner_service.scripts.handling import Hands
 from planner_service.scripts.keyframe import Keyframe
+from planner_service.scripts.wandering import in_front, stays
 from scene_graphs.homes import Home
 from scene_graphs.layouts import Placed
 from scene_graphs.navigation import Walkable
@@ -51,8 +53,10 @@ def act(keyframes: Sequence[Keyframe], places: Sequence[Place], home: Home, seed
     stage = _Stage(home, Walkable(home), np.random.default_rng([seed, 7]))
     drafts: list[Action] = []
     for index, (keyframe, place) in enumerate(zip(keyframes, places, strict=True)):
-        drafts.append(stage.contact(index, keyframe, place))
-    return tuple(stage.walks(drafts, places))
+        before = keyframes[index - 1] if index else None
+        drafts.append(stage.contact(index, keyframe, place, free_hand(before)))
+    hands = Hands()
+    return tuple(hands.follow(action) for action in stage.walks(drafts, places))
 
 
 class _Stage:
@@ -64,7 +68,7 @@ class _Stage:
         self.resting: Spot | None = None
         self.by_object: dict[tuple[str, str], Spot] = {}
 
-    def contact(self, index: int, keyframe: Keyframe, place: Place) -> Action:
+    def contact(self, index: int, keyframe: Keyframe, place: Place, free: str = "right") -> Action:
         """The action of a keyframe; walks get their goal later, when what follows them is known."""
         action = Action(
             keyframe.skill, keyframe.caption, keyframe.emotion, keyframe.furniture, place.object_id, keyframe=index
@@ -74,7 +78,7 @@ class _Stage:
             self.at = spot.standing
             if keyframe.skill is not Skill.TOUCH:
                 self.resting = spot
-            hand = hand_of(keyframe.caption, default="right")
+            hand = hand_of(keyframe.caption, default=free)
             return replace(action, object_id=spot.object_id, spot=spot, hand=hand, hold=HOLDS[keyframe.skill])
         if keyframe.skill in (Skill.STANDUP, Skill.GETUP) and self.resting is not None:
             return replace(action, object_id=self.resting.object_id, spot=self.resting)
@@ -162,16 +166,20 @@ class _Stage:
 
     def walks(self, drafts: list[Action], places: Sequence[Place]) -> list[Action]:
         """Give every walk its goal: where the next contact with the same thing begins, beside a thing, or anywhere."""
-        done: list[Action] = []
+        done: list[tuple[Action, Point | None]] = []
         at: Point | None = None
         for index, action in enumerate(drafts):
-            if action.skill is Skill.LOCO:
+            wanders = action.skill is Skill.LOCO and places[index].object_id is None
+            ahead = in_front(action.caption, self.walkable, at, done) if wanders else None
+            if ahead is not None:
+                action = replace(action, goal=ahead, facing=None)
+            elif action.skill is Skill.LOCO and not (wanders and stays(action.caption)):
                 following = drafts[index + 1] if index + 1 < len(drafts) else None
                 action = self._walk(action, following, places[index], at)
-            at = action.goal or (action.spot.standing if action.spot else at)
             last = index == len(drafts) - 1
-            done.append(replace(action, hold=action.hold + LAST_HOLD) if last else action)
-        return done
+            done.append((replace(action, hold=action.hold + LAST_HOLD) if last else action, at))
+            at = action.goal or (action.spot.standing if action.spot else at)
+        return [action for action, _ in done]
 
     def _walk(self, action: Action, following: Action | None, place: Place, at: Point | None) -> Action:
         same = following is not None and following.skill in NEEDS and following.object_id == action.object_id
@@ -222,7 +230,7 @@ def _scoots(spot: Spot) -> float:
 
 def height_of(caption: str) -> str:
     """The height a touch caption asks for: low, medium or high."""
-    text = caption.lower()
+    text = caption.rpartition(";")[2].lower()
     if "high" in text or "above" in text or "up to" in text:
         return "high"
     if "low" in text or "prone" in text or "bend" in text or "under" in text:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any, Final, TypeVar
 
 from motion_backend.motion import Posture, Skill
+from planner_service.scripts.captions import Vocabulary
+from planner_service.scripts.fitting import Problem, phone_hand
 from planner_service.scripts.keyframe import Keyframe, LongScript, ShortScript
-from planner_service.scripts.mending import Mending, Problem
+from planner_service.scripts.mending import Mending
 
 K = TypeVar("K", bound=Keyframe)
 
@@ -25,22 +27,31 @@ _SKILLS: Final = {skill.value: skill for skill in Skill} | {
 }
 
 
-def check(script: ShortScript | LongScript | Sequence[Keyframe]) -> tuple[Problem, ...]:
+def check(
+    script: ShortScript | LongScript | Sequence[Keyframe],
+    vocabulary: Vocabulary | None = None,
+    furniture: Collection[str] | None = None,
+) -> tuple[Problem, ...]:
     """Everything that keeps the script from being acted out, in order; empty when it can be.
 
-    After a problem the script is read on as if that had been repaired, so that one fault is told once.
+    With a `vocabulary` captions must be known, without one they are free words for the body to read; `furniture` are
+    the categories a home has, any if not given. After a problem the script is read on as if that had been repaired,
+    so that one fault is told once.
     """
     keyframes = script.keyframes if isinstance(script, ShortScript | LongScript) else script
-    return tuple(Mending(keyframes).problems)
+    return tuple(Mending(keyframes, vocabulary, furniture).problems)
 
 
-def repair(keyframes: Sequence[K]) -> tuple[tuple[K, ...], tuple[str, ...]]:
-    """Keyframes that pass `check`, and what was changed and why, one sentence a change.
+def repair(
+    keyframes: Sequence[K], vocabulary: Vocabulary | None = None, furniture: Collection[str] | None = None
+) -> tuple[tuple[K, ...], tuple[str, ...]]:
+    """Keyframes that pass `check` with the same arguments, and what was changed and why, one sentence a change.
 
-    Unknown or unfit furniture is replaced; walks and risings that are missing are put in; what cannot happen (rising
-    while standing, the same keyframe twice) is left out. What passes is returned unchanged.
+    Unknown or unfit furniture is replaced, and with a `vocabulary` unknown captions by the nearest known ones; walks
+    and risings that are missing are put in; a touch leaves the hand alone that holds a phone; what cannot happen
+    (rising while standing, the same keyframe twice) is left out. What passes is returned unchanged.
     """
-    mending = Mending(keyframes)
+    mending = Mending(keyframes, vocabulary, furniture)
     return tuple(mending.kept), tuple(map(str, mending.problems))
 
 
@@ -67,6 +78,11 @@ def hand_of(caption: str, default: str = "right") -> str:
     """The hand a touch uses, "left" or "right": the one its caption names last, else `default`."""
     named: list[str] = re.findall(r"\b(left|right)\b", caption.lower())
     return named[-1] if named else default
+
+
+def free_hand(before: Keyframe | None) -> str:
+    """The hand a touch may use where its caption names none: "left" after a walk with the phone in the right hand."""
+    return "left" if before is not None and phone_hand(before) == "right" else "right"
 
 
 def _plain(word: str) -> str:

@@ -101,6 +101,20 @@ WALKS: Final[dict[str, Walk]] = {
         ("feel {their} way {to}", "step carefully {to}"), ("feel {their} way {about}",)
     ),
     "marching with swinging arms": Walk(("march {to}",), ("march {about}",)),
+    "walk to the front left": Walk(
+        ("bear left and ~walk {to}", "turn half left and ~walk {to}"),
+        ("take a few steps to the left", "wander off to the left"),
+    ),
+    "walk to the front right": Walk(
+        ("bear right and ~walk {to}", "turn half right and ~walk {to}"),
+        ("take a few steps to the right", "wander off to the right"),
+    ),
+    "stand still": Walk(
+        ("stop and ~stand still before {the}",), ("stand still for a moment", "stop and ~stand there, quite still")
+    ),
+    "wave with the right hand": Walk(
+        ("wave {their} right hand and ~go {to}",), ("wave {their} right hand", "raise {their} right hand and ~wave")
+    ),
 }
 
 WALKS_IN_MOOD: Final[dict[str, Walk]] = {
@@ -158,6 +172,30 @@ SITS: Final[dict[str, tuple[str, ...]]] = {
     "sitting upright, phone at the right ear": ("with the phone at {their} ear",),
     "cross-legged, hands on knees": ("cross-legged, hands on {their} knees",),
     "leaning forward, forearms on the table": ("leaning forward on {their} forearms",),
+    "writing at the table, right hand moving": ("writing line after line", "with a pen in {their} right hand, writing"),
+    "typing, both hands on the keyboard": ("typing with both hands", "with both hands on the keyboard"),
+    "playing a game, controller held in both hands": (
+        "playing a game, the controller in both hands",
+        "with the controller in both hands",
+    ),
+    "drinking from a cup in the right hand": (
+        "sipping from the cup in {their} right hand",
+        "with a cup in {their} right hand",
+    ),
+    "eating at the table, right hand to the mouth": ("eating slowly with {their} right hand", "eating a little"),
+    "listening to music, both hands at the ears": (
+        "listening to music with both hands at {their} ears",
+        "with both hands at {their} ears, listening to music",
+    ),
+    "playing the piano, both hands on the keys": (
+        "playing the piano with both hands",
+        "with both hands on the piano keys",
+    ),
+    "talking on the phone with the left hand": (
+        "talking on the phone in {their} left hand",
+        "with the phone at {their} left ear",
+    ),
+    "sitting still": ("keeping quite still", "without stirring"),
 }
 
 LIES_IN_MOOD: Final[dict[str, tuple[str, ...]]] = {
@@ -194,6 +232,11 @@ LIES: Final[dict[str, tuple[str, ...]]] = {
     "lying with hands under head, legs crossed": ("with crossed legs, hands under {their} head",),
     "lying on the back, arms spread wide": ("on {their} back, arms spread wide",),
     "curled up on the left side, knees drawn up": ("curled up, knees to {their} chest",),
+    "lying still": ("keeping quite still", "without stirring"),
+    "reading on the back, book held above the chest": (
+        "reading, the book held above {their} chest",
+        "on {their} back, a book held above {their} chest",
+    ),
 }
 
 RISES: Final[dict[str, tuple[str, ...]]] = {
@@ -211,24 +254,37 @@ TOUCHES: Final[dict[str, tuple[str, ...]]] = {
 TOUCHES_AT: Final[dict[tuple[str, str], tuple[str, ...]]] = {
     ("bed", "low"): ("bend down and ~reach under {the}", "reach low beneath {the}"),
     ("bed", "prone"): ("crouch down and ~feel about under {the}",),
-    ("bed", "medium"): ("smooth {the} with {hand}", "run {hand} over {the}"),
+    ("bed", "medium"): ("smooth {the} with {hand}", "run {hand} over {the}", "lay {hand} on {the}"),
     ("closet", "low"): ("bend down to the lowest drawer of {the}", "stoop to the lowest shelf of {the}"),
-    ("closet", "medium"): ("open {the}", "reach into {the}", "put {hand} on the door of {the}"),
+    ("closet", "medium"): ("open {the}", "reach into {the}", "put {hand} on the door of {the}", "look into {the}"),
     ("closet", "high"): ("reach for the top shelf of {the}", "stretch up to the highest shelf of {the}"),
     ("shelf", "low"): ("stoop to the lowest row of {the}",),
-    ("shelf", "medium"): ("run {hand} along {the}", "reach into {the}"),
-    ("shelf", "high"): ("reach up to the top row of {the}", "stretch for the highest shelf of {the}"),
+    ("shelf", "medium"): ("run {hand} along {the}", "reach into {the}", "lay {hand} on {the}"),
+    ("shelf", "high"): ("reach up to the top row of {the}", "stretch to the very top of {the}"),
     ("table", "low"): ("bend down to {the}", "bend over {the}", "reach low across {the}"),
-    ("table", "medium"): ("lay {hand} on {the}", "reach across {the}", "lean {hand} on {the}"),
-    ("side", "medium"): ("lay {hand} on {the}", "reach for {the}"),
+    ("table", "medium"): (
+        "lay {hand} on {the}", "reach across {the}", "lean {hand} on {the}", "rest {hand} on {the}",
+        "run {hand} along the edge of {the}", "stop at {the}",
+    ),
+    ("side", "medium"): ("lay {hand} on {the}", "reach for {the}", "rest {hand} on {the}", "reach across {the}"),
     ("side", "low"): ("bend down to {the}", "pull open the drawer of {the}"),
     ("media", "low"): ("bend down to {the}", "crouch before {the}"),
-    ("media", "medium"): ("lay {hand} on {the}", "lean over {the}"),
+    ("media", "medium"): ("lay {hand} on {the}", "lean over {the}", "stop before {the}"),
     ("sofa", "low"): ("reach down between the cushions of {the}", "feel along the bottom of {the}"),
     ("sofa", "medium"): ("pat {the} with {hand}", "run {hand} over {the}"),
     ("light", "medium"): ("touch {the}", "reach out for {the}"),
 }
 """By class of furniture and height, where the general wording would be pale."""
+TOUCHES_DOING: Final[dict[str, tuple[str, ...]]] = {
+    "pick up with the right hand": ("pick something up from {the} with {hand}", "take something from {the} in {hand}"),
+    "pick up with the left hand": ("pick something up from {the} with {hand}", "take something from {the} in {hand}"),
+    "put down with the right hand": ("put down on {the} what {they} held in {hand}", "set something down on {the}"),
+    "put down with the left hand": ("put down on {the} what {they} held in {hand}", "set something down on {the}"),
+    "turn on with the right hand": ("reach for the switch at {the} with {hand}", "press a switch at {the} with {hand}"),
+    "wash with both hands": ("wash {the} with both hands", "scrub {the} with both hands"),
+    "rotate with the right hand": ("turn something round on {the} with {hand}",),
+}
+"""By caption, where it says what is done."""
 
 MOODS: Final[dict[str, tuple[str, ...]]] = {
     "happy": ("beaming", "full of joy", "light at heart", "glowing"),

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
-from importlib import resources
 from typing import Final
 
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -14,6 +12,7 @@ from motion_backend.motion import Skill
 from planner_service.llm.answers import problems_of
 from planner_service.llm.asking import ask
 from planner_service.llm.protocol import LanguageModel
+from planner_service.scripts.captions import captions
 from planner_service.scripts.checking import check, read_keyframe
 from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.keyframe import EMOTIONS, Event, Keyframe
@@ -161,10 +160,3 @@ def direct(model: LanguageModel, theme: str) -> tuple[Keyframe, ...]:
 
 def _keyframes(answer: DirectScript) -> list[Keyframe]:
     return [read_keyframe(keyframe.model_dump()) for keyframe in answer.keyframes]
-
-
-def captions() -> dict[str, list[str]]:
-    """The captions our short scripts use, by skill."""
-    text = resources.files("planner_service").joinpath("data", "captions.json").read_text(encoding="utf-8")
-    known: dict[str, list[str]] = json.loads(text)
-    return known

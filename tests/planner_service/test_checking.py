@@ -14,7 +14,7 @@ from motion_backend.motion import Posture, Skill
 from planner_service.scripts.checking import check, hand_of, last_posture, read_keyframe, repair, skill_of
 from planner_service.scripts.keyframe import Keyframe, PlannedKeyframe
 from planner_service.scripts.library import built_in
-from planner_service.scripts.mending import WALKS
+from planner_service.scripts.usual import WALKS
 
 
 def script(*rows: str) -> list[Keyframe]:

@@ -1,0 +1,103 @@
+"""The captions that the body and the narrator know, other words for them, and the known one nearest to any other."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from functools import cache
+from importlib import resources
+from typing import Any, Final, Self
+
+import numpy as np
+
+from motion_backend.language.text import SentenceEncoder, Vectors
+from motion_backend.motion import Skill
+
+NEAR: Final = 0.5
+"""Below this score nothing known means the same: the usual caption of skill and mood is better."""
+PHONE: Final = re.compile(r"phone.*\b(left|right)\b|\b(left|right)\b.*phone", re.IGNORECASE)
+_SIDES: Final = re.compile(r"\b(?:(left|right)|(?:both|two) (?:hands|arms|palms|elbows|fists|legs|knees|feet))\b")
+_WORD: Final = re.compile(r"[^\W_]+")
+
+
+def captions() -> dict[str, list[str]]:
+    """The captions that the body and the narrator know, by skill."""
+    return _read("captions.json")
+
+
+def synonyms() -> dict[str, dict[str, list[str]]]:
+    """Five other ways to say every known caption, by skill and caption; same meaning, same hands and sides."""
+    return _read("caption_synonyms.json")
+
+
+def sides(caption: str) -> frozenset[str]:
+    """The sides that a caption names: "left", "right", "both"."""
+    return frozenset(match[1] or "both" for match in _SIDES.finditer(caption.lower()))
+
+
+def agree(one: str, other: str) -> bool:
+    """Whether two captions may mean one thing as far as left and right go: the same sides, or one names none."""
+    return not sides(one) or not sides(other) or sides(one) == sides(other)
+
+
+class Vocabulary:
+    """Known captions and what is near to them in meaning; sentences are encoded when they are first needed."""
+
+    def __init__(
+        self,
+        known: Mapping[str, Sequence[str]],
+        other_words: Mapping[str, Mapping[str, Sequence[str]]],
+        encoder: SentenceEncoder,
+    ) -> None:
+        self._known = {Skill(skill): tuple(some) for skill, some in known.items()}
+        self._encoder = encoder
+        self._says: dict[Skill, list[tuple[str, str]]] = {
+            skill: [
+                (text, caption) for caption in some for text in (caption, *other_words.get(skill, {}).get(caption, ()))
+            ]
+            for skill, some in self._known.items()
+        }
+        self._vectors: dict[Skill, Vectors] = {}
+
+    @classmethod
+    def built_in(cls, encoder: SentenceEncoder) -> Self:
+        """The captions that ship with the service."""
+        return cls(captions(), synonyms(), encoder)
+
+    def known(self, skill: Skill, caption: str) -> bool:
+        """Whether it is one of the captions for this skill, letter for letter."""
+        return caption in self._known.get(skill, ())
+
+    def nearest(self, skill: Skill, caption: str) -> tuple[str, float]:
+        """The known caption of a skill that is nearest in meaning, and how near (cosine, 1 for its own words).
+
+        Left never becomes right, nor one hand both. Of equally near ones the first of the list. Raises ValueError for
+        a skill without captions or without one whose sides agree.
+        """
+        says = self._says.get(skill, [])
+        allowed = [place for place, (_, known) in enumerate(says) if agree(caption, known)]
+        if not allowed:
+            raise ValueError(f"caption: no caption of {skill} has the sides of {caption!r}; add one to the vocabulary")
+        plain = _plain(caption)
+        for place in allowed:
+            if _plain(says[place][0]) == plain:
+                return says[place][1], 1.0
+        if skill not in self._vectors:
+            self._vectors[skill] = self._encoder.encode([text for text, _ in says])
+        scores = np.round(self._vectors[skill][allowed] @ self._encoder.encode([caption])[0], 4)
+        best = int(np.argmax(scores))
+        return says[allowed[best]][1], float(scores[best])
+
+
+def _plain(text: str) -> tuple[str, ...]:
+    return tuple(_WORD.findall(text.lower()))
+
+
+@cache
+def _text(name: str) -> str:
+    return resources.files("planner_service").joinpath("data", name).read_text(encoding="utf-8")
+
+
+def _read(name: str) -> Any:
+    return json.loads(_text(name))
