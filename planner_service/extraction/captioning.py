@@ -10,13 +10,13 @@ from typing import Final
 
 from motion_backend.language.text import SentenceEncoder
 from motion_backend.motion import Skill
+from planner_service.scripts.captions import captions
 from planner_service.scripts.checking import hand_of
 from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.library import built_in
-from planner_service.scripts.mending import WALKS
-from planner_service.scripts.planning import captions
+from planner_service.scripts.usual import WALKS
 
-_OF_THE_MOOD: Final = 0.3
+_OF_THE_MOOD: Final = 0.5
 """What it counts that all authored keyframes of a caption have the mood, beside the nearness of the words (-1 to 1)."""
 _SPECIAL: Final = (
     ("reading", r"read\w*|books?|novel|letters?|diary|newspaper|magazine"),
@@ -93,7 +93,7 @@ def captions_for(deeds: Sequence[tuple[Skill, str, str]], encoder: SentenceEncod
     near = vectors[len(known) :] @ vectors[: len(known)].T  # (deeds, captions)
     at = {caption: index for index, caption in enumerate(known)}
     return [
-        max(offer, key=lambda caption: (round(float(row[at[caption]]) + offer[caption], 4), caption))  # noqa: B023
+        max(offer, key=lambda caption: (round(float(row[at[caption]]) + offer[caption], 4), caption))
         for row, offer in zip(near, offers, strict=True)
     ]
 
@@ -122,7 +122,8 @@ def _hands_agree(skill: Skill, caption: str, words: str) -> bool:
     said = hand_of(words, "") if re.search(r"\bhand\b", words) else ""
     if said:
         return not hands or said in hands
-    return not hands or "right" in hands if skill is not Skill.TOUCH else not hands or "pick" in caption
+    plain_touch = skill is Skill.TOUCH and ("touch" in caption or "reaching" in caption)
+    return not hands or ("right" in hands and not plain_touch)
 
 
 def _usual(skill: Skill, emotion: str) -> str:

@@ -1,12 +1,12 @@
-"""Bytes of a text file to text that is safe to read on: encodings, control characters, bounds, language."""
+"""A text file to text that is safe to read on: no control characters, bounded, in a language we can tell."""
 
 from __future__ import annotations
 
-import codecs
 import re
 import unicodedata
-from dataclasses import dataclass
 from typing import Final
+
+from planner_service.extraction.decoding import decode
 
 LONGEST: Final = 200_000
 """Letters of one text: about 35,000 words."""
@@ -18,11 +18,6 @@ _BREAKS: Final = str.maketrans({"\r": "\n", "\f": "\n\n", "\v": "\n", "\x85": "\
 _HIDDEN: Final = ("Cc", "Cf", "Cs", "Co")
 _MOST_HIDDEN: Final = 0.01
 """Share of control characters above which bytes are no text."""
-_BOMS: Final = (
-    (codecs.BOM_UTF8, "utf-8-sig"),
-    (codecs.BOM_UTF16_LE, "utf-16"),
-    (codecs.BOM_UTF16_BE, "utf-16"),
-)
 _COMMON_WORDS: Final = {
     ENGLISH: "the and to of a in he she it is was his her on with that for at they their up from as into then not i",
     "German": "der die das und ist nicht ein eine einen sie er sich auf mit den dem zu im von es war ich",
@@ -42,20 +37,17 @@ class ExtractionError(ValueError):
     """A film, text or subtitle file that nothing can be extracted from; the text says why, and what would help."""
 
 
-@dataclass(frozen=True)
-class Decoded:
-    """A text, and what was guessed or dropped as it was read."""
+def read_text(data: bytes, name: str) -> tuple[str, tuple[str, ...]]:
+    """The text of a file, and what was guessed about it.
 
-    text: str
-    notes: tuple[str, ...] = ()
-
-
-def decode(data: bytes, name: str) -> Decoded:
-    """The text of a file. ExtractionError for what is no text, empty, or longer than `LONGEST` letters."""
+    ExtractionError for what is no text, has no word in it, or is longer than `LONGEST` letters.
+    """
     if len(data) > MOST_BYTES:
         raise too_long(name, f"more than {MOST_BYTES:,} bytes")
-    text, notes = _letters(data, name)
-    return Decoded(tidy(text, name), notes)
+    if not data.strip():
+        raise ExtractionError(f"{name}: is empty; give a text, subtitles or a film")
+    decoded = decode(data)
+    return tidy(decoded.text, name), (f"{name}: {decoded.note}",) if decoded.note else ()
 
 
 def tidy(text: str, name: str) -> str:
@@ -92,22 +84,3 @@ def language_of(text: str) -> str:
     if shares[best] < _LEAST_ENGLISH:
         return "another language" if len(words) >= 3 * _FEW else ENGLISH
     return ENGLISH if shares[ENGLISH] >= shares[best] else best
-
-
-def _letters(data: bytes, name: str) -> tuple[str, tuple[str, ...]]:
-    for mark, encoding in _BOMS:
-        if data.startswith(mark):
-            try:
-                return data.decode(encoding), ()
-            except UnicodeDecodeError as error:
-                raise ExtractionError(f"{name}: is not the {encoding} text it says; save it as UTF-8") from error
-    if b"\0" in data:
-        raise ExtractionError(f"{name}: is no text (zero bytes in it); give a text, subtitles or a film")
-    try:
-        return data.decode("utf-8"), ()
-    except UnicodeDecodeError:
-        note = f"{name}: is not UTF-8; read as Western European text (cp1252), so letters may be wrong"
-        try:
-            return data.decode("cp1252"), (note,)
-        except UnicodeDecodeError:
-            return data.decode("latin-1"), (note.replace("cp1252", "latin-1"),)

@@ -20,10 +20,12 @@ _LONGEST_SENTENCE: Final = 300
 """Letters after which subtitles are no longer joined."""
 _RUNS_ON: Final = 2.0
 """Seconds between two subtitles of one sentence."""
-_ENOUGH: Final = 30
+_ENOUGH: Final = 12
 """Words of a narrative that are a scene: shorter paragraphs are read together."""
 _QUOTED: Final = re.compile(r"“[^“”]{0,2000}”|\"[^\"]{0,2000}\"|«[^«»]{0,2000}»|„[^„“”]{0,2000}[“”]")
-_BREAK: Final = re.compile(r"^\s*(?:[*#~=_–—-][\s*#~=_–—-]*|(?:chapter|part|scene)\s+[\divxlc]+\b.{0,60}|#+\s.*)$", re.I)
+_BREAK: Final = re.compile(
+    r"^\s*(?:[*#~=_–—-][\s*#~=_–—-]*|(?:chapter|part|scene)\s+[\divxlc]+\b.{0,60}|#+\s.*)$", re.I
+)
 _ADDRESSED: Final = re.compile(
     r"\b(?:I|you|we|me|us|my|your|our|mine|yours|let's)\b|\b(?:he|she|it|that|there|they|who|what)['’]\w", re.IGNORECASE
 )
@@ -155,6 +157,6 @@ def _paragraphs(text: str) -> Iterator[str | None]:
 
 
 def _said_and_done(paragraph: str) -> list[Line]:
-    said = [Line(quoted[0].strip("\"“”„«» "), spoken=True) for quoted in _QUOTED.finditer(paragraph)]
+    said = [Line(quoted[0].strip('"“”„«» '), spoken=True) for quoted in _QUOTED.finditer(paragraph)]
     done = " ".join(_QUOTED.sub(" ", paragraph).split())
     return [*said, Line(done)] if re.search(r"[^\W\d_]", done) else said

@@ -1,0 +1,104 @@
+"""A short script from what was read of it: mended, named, labelled with where it was found and who wrote it down."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Final
+
+from motion_backend.language.text import SentenceEncoder
+from planner_service.extraction.writing import slug_of, summarise
+from planner_service.scripts.checking import repair
+from planner_service.scripts.keyframe import MOST_PIECES, Keyframe, Origin, ShortScript, Source
+from planner_service.scripts.library import ScriptLibrary
+
+RULES: Final = "rules"
+UNKNOWN: Final = "unknown"
+"""The licence of what nobody has said one for."""
+Span = tuple[float | None, float | None]
+ALIKE: Final = 0.93
+"""Cosine of two summaries that tell the same."""
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A short script that was extracted."""
+
+    script: ShortScript
+    repairs: tuple[str, ...] = ()
+    """What was changed so that a body can act it out, and why."""
+    like: str = ""
+    """Id of a script of the library that is nearly the same; empty where there is none."""
+
+
+@dataclass
+class Maker:
+    """Makes short scripts of one text or film, with ids unlike each other and all that are `taken`."""
+
+    name: str
+    library: ScriptLibrary
+    source: Source = "text"
+    licence: str = UNKNOWN
+    taken: set[str] = field(default_factory=set)
+
+    @property
+    def encoder(self) -> SentenceEncoder:
+        """What turns texts into vectors here."""
+        return self.library.encoder
+
+    def by_rules(
+        self,
+        clauses: Sequence[str],
+        keyframes: Sequence[Keyframe],
+        emotion: str,
+        room: str,
+        span: Span,
+        names: Sequence[str],
+    ) -> Draft:
+        """The script of some clauses, with a summary in their words."""
+        return self.make(summarise(clauses, keyframes, emotion, names), keyframes, emotion, room, span, RULES)
+
+    def make(self, summary: str, keyframes: Sequence[Keyframe], emotion: str, room: str, span: Span, by: str) -> Draft:
+        """A script that a body can act out. ValidationError where a field does not fit."""
+        kept, repairs = repair(keyframes)
+        start, end = span
+        script = ShortScript.model_validate(
+            {
+                "id": slug_of(summary, self.name, self._taken),
+                "summary": summary,
+                "emotion": emotion,
+                "room": room,
+                "keyframes": repair(kept[:MOST_PIECES])[0][:MOST_PIECES],
+                "source": self.source,
+                "licence": self.licence,
+                "origin": Origin(name=self.name[:200], start=start, end=end, by=by[:200]),
+            }
+        )
+        self._taken.add(script.id)
+        return Draft(script, repairs, self._like(script))
+
+    @cached_property
+    def _taken(self) -> set[str]:
+        return self.taken | {script.id for script in self.library.scripts}
+
+    @cached_property
+    def _by_skills(self) -> dict[tuple[str, ...], list[ShortScript]]:
+        found: dict[tuple[str, ...], list[ShortScript]] = {}
+        for script in self.library.scripts:
+            found.setdefault(_skills(script), []).append(script)
+        return found
+
+    def _like(self, script: ShortScript) -> str:
+        """The script of the library with the same skills whose summary means the same."""
+        others = self._by_skills.get(_skills(script), [])
+        if not others:
+            return ""
+        known = self.library.vectors_of(tuple(other.summary for other in others))
+        near = (known @ self.encoder.encode([script.summary])[0]).round(4)
+        best = max(range(len(others)), key=lambda index: (near[index], others[index].id))
+        return others[best].id if near[best] >= ALIKE else ""
+
+
+def _skills(script: ShortScript) -> tuple[str, ...]:
+    return tuple(keyframe.skill.value for keyframe in script.keyframes)

@@ -1,0 +1,149 @@
+"""What a short script says of itself: a summary in the text's own words, told of "the character" now, and an id."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import unicodedata
+from collections.abc import Collection, Sequence
+from functools import cache
+from typing import Final
+
+from motion_backend.motion import Skill
+from planner_service.scripts.keyframe import Keyframe
+from planner_service.scripts.tense import BASES, gerund, is_verb_form, past, third_person
+from planner_service.scripts.voice import Voice, retell
+
+_LONGEST: Final = 110
+"""Letters of one clause in a summary."""
+_A_SENTENCE: Final = 3
+"""Clauses of one sentence."""
+_NOW: Final = {
+    "was": "is", "were": "is", "are": "is", "am": "is", "had": "has", "have": "has", "did": "does", "do": "does",
+    "could": "can", "would": "will", "might": "may", "couldn't": "cannot", "didn't": "does not", "wasn't": "is not",
+    "weren't": "is not", "hadn't": "has not", "wouldn't": "will not", "can't": "cannot",
+    "can": "can", "cannot": "cannot",
+}  # fmt: skip
+_OURS: Final = (
+    (r"\b(?:him|her|my|them)(?:self|selves)\b", "themself"),
+    (r"\b(?:his|my|our)\b", "their"),
+    (r"\bher\b(?=\s+(?!(?:to|in|on|at|with|from|for|and|but|into|up|down|out|home|back)\b)\w)", "their"),
+    (r"\b(?:me|him|her|us)\b", "them"),
+    (r"\b(?:I|he|she|we)\b", "they"),
+)
+_UNSAFE: Final = re.compile(r"[^\w\s,;'’.&%-]")
+_HOW: Final = {"drunk": "drunk", "angry": "angry", "hurried": "hurried", "sad": "sad", "stressed": "stressed",
+               "tired": "tired", "happy": "happy", "relaxed": "relaxed"}  # fmt: skip
+_PLAINLY: Final = {
+    Skill.LOCO: "walks about", Skill.SITDOWN: "sits on the {}", Skill.LIEDOWN: "lies on the {}",
+    Skill.TOUCH: "reaches for the {}", Skill.STANDUP: "stands up", Skill.GETUP: "gets up",
+}  # fmt: skip
+_PALE_WORDS: Final = "the character a an and their is are of to in on at for with from it they then them has"
+_PALE: Final = frozenset(_PALE_WORDS.split())
+_SMALL_WORDS: Final = "then just still also finally again now soon even once always often"
+_SMALL: Final = frozenset(_SMALL_WORDS.split())
+
+
+def summarise(clauses: Sequence[str], keyframes: Sequence[Keyframe], emotion: str, names: Collection[str] = ()) -> str:
+    """One or two sentences in the present about "the character", at most 400 letters, that `voice.retell` can tell.
+
+    `clauses` are without subjects ("slumped onto the couch"); those that cannot be told of one person alone are left
+    out, and where none is left the keyframes are told plainly.
+    """
+    told = [told for clause in clauses if (told := in_present(clause, names)) and _tells(told)]
+    if not told:
+        told = [_PLAINLY[keyframe.skill].format(keyframe.piece[0]) for keyframe in keyframes]
+    told = list(dict.fromkeys(told))[: 2 * _A_SENTENCE]
+    how = f"{_HOW[emotion]} " if emotion in _HOW and not re.search(rf"\b{_HOW[emotion][:4]}", " ".join(told)) else ""
+    first, second = told[:_A_SENTENCE], told[_A_SENTENCE:]
+    whole = f"The {how}character {_listed(first)}." + (f" Then the character {_listed(second)}." if second else "")
+    while len(whole) > 400:
+        told.pop()
+        first, second = told[:_A_SENTENCE], told[_A_SENTENCE:]
+        whole = f"The {how}character {_listed(first)}." + (f" Then the character {_listed(second)}." if second else "")
+    return whole
+
+
+def in_present(clause: str, names: Collection[str] = ()) -> str:
+    """A clause without its subject in the present of "the character": "sat by her bed" is "sits by their bed".
+
+    Empty where it does not begin with a verb we know.
+    """
+    text = " ".join(_UNSAFE.sub(" ", clause).split()).strip(" .,;-'’&")
+    for name in names:
+        text = re.sub(rf"\b{re.escape(name)}(?P<own>['’]s)?\b", lambda m: "their" if m["own"] else "them", text)
+    for pattern, instead in _OURS:
+        text = re.sub(pattern, instead, text, flags=re.IGNORECASE)
+    words = _cut(text).split()
+    at = next(
+        (index for index, word in enumerate(words) if not word.lower().endswith("ly") and word.lower() not in _SMALL), 0
+    )
+    if not words:
+        return ""
+    now = _present(words[at].lower())
+    if now is None:
+        return ""
+    words[at] = now
+    for index in range(at + 1, len(words)):
+        if words[index - 1].lower() in ("and", "then", "who", "but"):
+            word = words[index].lower()
+            if word.endswith("ed") and word not in _pasts():
+                return " ".join(words[: index - 1]).rstrip(",")
+            words[index] = _pasts().get(word, words[index])
+    return " ".join([words[0].lower() if words[0].lower() in _SMALL else words[0], *words[1:]])
+
+
+def slug_of(summary: str, name: str, taken: Collection[str]) -> str:
+    """An id of the summary's telling words, unlike all that are `taken`."""
+    plain = unicodedata.normalize("NFKD", summary).encode("ascii", "ignore").decode().lower()
+    words = [word for word in re.findall(r"[a-z0-9]+", plain) if word not in _PALE][:6]
+    slug = "-".join(words)[:60].strip("-") or f"scene-{hashlib.sha256(f'{name}{summary}'.encode()).hexdigest()[:8]}"
+    return next(
+        one for number in range(1, len(taken) + 2) if (one := f"{slug}-{number}" if number > 1 else slug) not in taken
+    )
+
+
+def _tells(told: str) -> bool:
+    return retell(f"The character {told}.", Voice("Sam", "they")) is not None
+
+
+def _listed(clauses: Sequence[str]) -> str:
+    if len(clauses) < 2:
+        return "".join(clauses)
+    comma = "," if len(clauses) > 2 or " and " in clauses[0] else ""
+    return f"{', '.join(clauses[:-1])}{comma} and {clauses[-1]}"
+
+
+def _cut(text: str) -> str:
+    """At most so many letters, cut at a comma or else at a word."""
+    if len(text) <= _LONGEST:
+        return text
+    short = text[:_LONGEST].rsplit(" ", 1)[0]
+    comma = short.rfind(",")
+    short = short[:comma] if comma > _LONGEST // 3 else short
+    return re.sub(r"(?:\s+(?:and|or|the|a|an|of|to|in|on|at|with|for|from|into|their|that|who|which|by))+$", "", short)
+
+
+def _present(word: str) -> str | None:
+    """The present of he and she: sat, sit, sitting and sits are all "sits"; None for what is no verb we know."""
+    if word in _NOW:
+        return _NOW[word]
+    if word in _pasts():
+        return _pasts()[word]
+    if is_verb_form(word):
+        return word
+    if word.endswith("ied"):
+        return f"{word[:-1]}s"
+    return _gerunds().get(word) or (third_person(word) if word in BASES else None)
+
+
+@cache
+def _pasts() -> dict[str, str]:
+    """The present of every simple past; "lay" and "found" are those of "lie" and "find"."""
+    forms = {past(base): third_person(base) for base in sorted(BASES) if past(base) != base}
+    return forms | {"lay": "lies", "found": "finds", "fell": "falls", "left": "leaves", "saw": "sees", "wound": "winds"}
+
+
+@cache
+def _gerunds() -> dict[str, str]:
+    return {gerund(base): third_person(base) for base in sorted(BASES)}
