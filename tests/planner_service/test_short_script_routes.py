@@ -17,7 +17,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from service_app import app_on, calling, check_problem
 
-from planner_service.schemas.short_scripts import EXAMPLE, ShortScriptPage, ShortScriptsFound, ShortScriptShown
+from planner_service.schemas.short_scripts import (
+    EXAMPLE,
+    ShortScriptPage,
+    ShortScriptsFound,
+    ShortScriptShown,
+    ShortScriptVersions,
+)
 from planner_service.scripts.keyframe import ShortScript
 from planner_service.scripts.library import built_in
 
@@ -99,9 +105,89 @@ async def test_the_nearest_scripts_come_first_and_those_of_users_are_among_them(
     assert left.items[0].short_script.id != "zebra"
 
 
+async def listed(app: FastAPI, query: str) -> set[str]:
+    answer = await ask(app, f"/export{query}")
+    assert answer.status_code == 200, answer.text
+    assert answer.headers["content-type"].startswith("application/jsonl")
+    return {ShortScript.model_validate_json(line).id for line in answer.text.splitlines()}
+
+
+async def test_lists_searches_and_exports_keep_to_the_same_choice(app: FastAPI) -> None:
+    ours = built_in()
+    for query, wanted in {
+        "?furniture=nightstand": {s.id for s in ours if any(k.piece[0] == "nightstand" for k in s.keyframes)},
+        "?emotion=sad&room=bedroom": {s.id for s in ours if (s.emotion, s.room) == ("sad", "bedroom")},
+        "?source=video": set(),
+        "?licence=MIT": {s.id for s in ours if s.licence == "MIT"},
+        "?own=true": set(),
+        "": {s.id for s in ours},
+    }.items():
+        assert await listed(app, query) == wanted
+    both = await listed(app, "?furniture=bed&furniture=wardrobe")
+    assert both == await listed(app, "?furniture=bed") & await listed(app, "?furniture=wardrobe")
+    page = (await ask(app, "?furniture=bed&furniture=wardrobe&limit=100")).json()
+    assert {item["id"] for item in page["items"]} == set(sorted(both)[:100])
+    found = (await ask(app, "/search?q=getting+dressed&k=3&furniture=bed&furniture=wardrobe&licence=MIT")).json()
+    assert len(found["items"]) == 3
+    assert {item["short_script"]["id"] for item in found["items"]} <= both
+
+
+async def test_a_script_is_changed_by_its_version_and_the_older_ones_stay(app: FastAPI) -> None:
+    path = f"/{EXAMPLE['id']}"
+    await ask(app, method="POST", json=EXAMPLE)
+    etag = (await ask(app, path)).headers["etag"]
+    changed = EXAMPLE | {"summary": "The character waters all plants.", "version": 1}
+    answer = await ask(app, path, "PUT", json=changed, headers={"If-Match": etag})
+    assert (answer.status_code, answer.json()["version"]) == (200, 2)
+    assert (await ask(app, path, "PUT", json=changed)).json() == answer.json()
+    check_problem(await ask(app, path, "PUT", json=EXAMPLE | {"summary": "Another."}), 409)
+    check_problem(await ask(app, path, "PUT", json=answer.json() | {"built_in": False}), 422)
+    late = EXAMPLE | {"summary": "Another.", "version": 2}
+    check_problem(await ask(app, path, "PUT", json=late, headers={"If-Match": etag}), 409)
+    assert (await ask(app, path)).json() == answer.json()
+    assert (await ask(app, f"{path}?version=1")).json()["summary"] == EXAMPLE["summary"]
+    versions = ShortScriptVersions.model_validate((await ask(app, f"{path}/versions")).json())
+    assert [(one.version, one.summary) for one in versions.items] == [
+        (1, EXAMPLE["summary"]), (2, changed["summary"]),
+    ]  # fmt: skip
+    check_problem(await ask(app, f"{path}?version=3"), 404)
+    await ask(app, path, "DELETE")
+    for gone in (path, f"{path}?version=1", f"{path}/versions"):
+        check_problem(await ask(app, gone), 404)
+    check_problem(await ask(app, path, "PUT", json=EXAMPLE), 404)
+
+
+async def test_ours_cannot_be_changed_nor_one_under_the_path_of_another(app: FastAPI) -> None:
+    mine = EXAMPLE | {"id": OURS.id}
+    check_problem(await ask(app, f"/{OURS.id}", "PUT", json=mine), 409)
+    assert check_problem(await ask(app, f"/{OURS.id}", "PUT", json=EXAMPLE), 422)["errors"][0]["pointer"] == "/id"
+    assert [one["version"] for one in (await ask(app, f"/{OURS.id}/versions")).json()["items"]] == [1]
+
+
+async def test_what_comes_from_a_film_says_its_licence_and_an_export_counts_the_unknown(app: FastAPI) -> None:
+    film = EXAMPLE | {"id": "from-a-film", "source": "video", "origin": {"name": "A film", "start": 1, "end": 4}}
+    assert check_problem(await ask(app, method="POST", json=film), 422)["errors"][0]["pointer"] == "/licence"
+    for licence in ("CC-BY-4.0", "unknown"):
+        row = film | {"id": f"from-a-film-{licence[:2].lower()}", "licence": licence}
+        assert (await ask(app, method="POST", json=row)).status_code == 201
+    whole = await ask(app, "/export?own=true&source=video")
+    rows = [json.loads(line) for line in whole.text.splitlines()]
+    assert whole.headers["sims-licence-unknown"] == "1"
+    assert [(row["licence"], row["origin"]["end"], row["version"]) for row in rows] == [
+        ("CC-BY-4.0", 4.0, 1), ("unknown", 4.0, 1),
+    ]  # fmt: skip
+    assert await listed(app, "?own=true&licence=CC-BY-4.0") == {"from-a-film-cc"}
+    for row in rows:
+        await ask(app, f"/{row['id']}", "DELETE")
+
+
 @pytest.mark.parametrize(
     ("query", "pointer"),
     [
+        ("?furniture=spaceship", "?furniture"),
+        ("/export?furniture=", "?furniture"),
+        ("?source=hearsay", "?source"),
+        ("/insomnia-at-three?version=0", "?version"),
         ("?limit=0", "?limit"),
         ("?cursor=nonsense!", "?cursor"),
         ("?emotion=bored", "?emotion"),
