@@ -71,6 +71,10 @@ class Action:
     """Seconds to stay in the reached pose."""
     keyframe: int = 0
     """Index of the keyframe it serves."""
+    holds: str | None = None
+    """What is in the hands during it, in words ("cup, book"); no backend draws it."""
+    interaction: str | None = None
+    """What is done in the pose, in words ("watch TV"): LINGO's interaction steps."""
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,66 @@
+"""What a caption says is done and held, besides how the body looks: LINGO's grasp and interaction steps (appendix C).
+
+Such a caption is "what; how": "pick up the cup with the left hand; pick up with the left hand", or "turn on the TV,
+watch TV; hands behind head, legs straight". The part behind the last semicolon is a caption like any other.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+from motion_backend.motion import Action, Skill
+
+LONGEST_CAPTION: Final = 200
+GRASPING: Final = 0.6
+"""Seconds that a hand stays longer on what it takes or lays down."""
+DOING: Final = 2.5
+"""Seconds that a pose is held longer for each thing done in it."""
+LONGEST_HOLD: Final = 12.0
+"""LINGO's longest motion (B.2.3), in seconds."""
+_TAKEN: Final = re.compile(r"^(?:pick up|take|grab|get|fetch|grasp|hold|lift|bring|carry) (?P<thing>.+)$")
+_LAID: Final = re.compile(r"^(?:put(?: down| back| away)?|place|set(?: down)?|lay|drop|return) (?P<thing>.+)$")
+_WITH: Final = re.compile(r"^(?:the |an? |my |your |his |her |their )|\s+(?:with|in|from|on|onto|into|to|at|off)\b.*$")
+
+
+def caption_of(done: Sequence[str], how: str) -> str:
+    """The caption of things done in a pose."""
+    return f"{', '.join(done)}; {how}"
+
+
+def done_in(caption: str) -> tuple[str, ...]:
+    """What is done, thing after thing; empty for a caption that only says how the body looks."""
+    done, _, how = caption.rpartition(";")
+    return tuple(part.strip() for part in done.split(",") if part.strip()) if how.strip() else ()
+
+
+@dataclass
+class Hands:
+    """What is held as the actions of a script follow one another."""
+
+    things: list[str] = field(default_factory=list)
+
+    def follow(self, action: Action) -> Action:
+        """The action with what is held and done in it, and held for longer where that takes time."""
+        done = done_in(action.caption)
+        grasps = [text for text in done if self._grasp(text)]
+        rest = [text for text in done if text not in grasps]
+        held = ", ".join(self.things) or None
+        if not done and held is None:
+            return action
+        hold = action.hold
+        if action.skill in (Skill.TOUCH, Skill.SITDOWN, Skill.LIEDOWN):
+            hold = min(hold + GRASPING * len(grasps) + DOING * len(rest), max(hold, LONGEST_HOLD))
+        return replace(action, holds=held, interaction=", ".join(rest) or None, hold=hold)
+
+    def _grasp(self, text: str) -> bool:
+        """Take or lay down what a text speaks of; whether it does."""
+        if (match := _TAKEN.match(text)) is not None:
+            thing = _WITH.sub("", match["thing"]).strip()
+            self.things = [*(held for held in self.things if held != thing), thing]
+        elif (match := _LAID.match(text)) is not None:
+            thing = _WITH.sub("", match["thing"]).strip()
+            self.things = [held for held in self.things if held != thing]
+        return match is not None

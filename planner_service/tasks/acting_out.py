@@ -1,0 +1,269 @@
+"""Steps to keyframes: what a body can do of each step, and with which captions (LINGO appendix C, SIMS 3.4)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from motion_backend.motion import Posture, Skill
+from planner_service.scripts.handling import LONGEST_CAPTION, caption_of
+from planner_service.scripts.keyframe import Keyframe
+from planner_service.tasks.deeds import LIE, LYING, PHONE, SIT, TOUCH, WALK, WALKS
+from planner_service.tasks.plan import Step, SubTask
+from planner_service.tasks.reading import Clause, clause_of, is_furniture
+from planner_service.tasks.surroundings import Surroundings
+from planner_service.tasks.things import FIXED, is_one, kept_at
+
+_RISES: Final = {Posture.SEATED: (Skill.STANDUP, "stand up"), Posture.LYING: (Skill.GETUP, "get up")}
+_RISES_FOR_IT: Final = "it rises for it: a hand reaches things standing"
+_FROM_THERE: Final = "done from where it rests: the pose is held, and nothing moves"
+_UNDRAWN: Final = "nothing is drawn in the hands"
+
+
+def act_out(tasks: Sequence[SubTask], room: Surroundings, seed: int) -> tuple[list[Step], list[Keyframe]]:
+    """Every step with what becomes of it, and the keyframes, which a body can act in this order as they are.
+
+    A step that a body cannot act has none and says why. What is done in one rest shares its keyframe; the seed chooses
+    among captions that show the same.
+    """
+    actor = _Actor(room, np.random.default_rng([seed, 11]))
+    steps = [actor.step(number, task) for number, task in enumerate(tasks, 1)]
+    return steps, actor.keyframes
+
+
+class _CannotError(Exception):
+    """A step that the body has no way to act; the text says why."""
+
+
+class _Actor:
+    """The body while steps become keyframes: where it is, what it rests on, where the plan has it seated."""
+
+    def __init__(self, room: Surroundings, rng: np.random.Generator) -> None:
+        self.room, self.rng = room, rng
+        self.keyframes: list[Keyframe] = []
+        self.posture = Posture.STANDING
+        self.at = ""
+        self.seat: tuple[Skill, str] | None = None
+        """What the plan has the body rest on, though it may have risen to reach for something."""
+        self.done: dict[int, list[str]] = {}
+        """What is done in a keyframe, for its caption."""
+        self.held: set[str] = set()
+
+    def step(self, number: int, task: SubTask) -> Step:
+        """One step acted, or the reason why not."""
+        acted, why, used, furniture = True, "", list[int](), None
+        first = len(self.keyframes)
+        try:
+            shared, why = self._act(task)
+            used = [*range(first, len(self.keyframes))] or shared
+            furniture = next((self.keyframes[i].furniture for i in reversed(used)), None)
+            furniture = None if furniture == "floor" else furniture
+        except _CannotError as error:
+            acted, why = False, str(error)
+        return Step(
+            step=task.text, step_id=number, category=task.category, hand=task.hand, object=task.object,
+            furniture=furniture, acted=acted, why=why, keyframes=used,
+        )  # fmt: skip
+
+    def _act(self, task: SubTask) -> tuple[list[int], str]:
+        """Add what a step needs; keyframes that it shares, and what its acting leaves out."""
+        clause = clause_of(task.text)
+        if clause is None:
+            return self._unknown(task)
+        if clause.deed.kind == "never":
+            raise _CannotError(clause.deed.why)
+        word = task.furniture or clause.furniture or _furniture_of(task)
+        match clause.deed.kind:
+            case "walk":
+                return self._walk(clause, word)
+            case "sit" | "lie" if task.category != "interaction":
+                need, skill = ("sit", Skill.SITDOWN) if clause.deed.kind == "sit" else ("lie", Skill.LIEDOWN)
+                return self._rest(skill, self._found(word or self.at, need) if word or self.at else "floor")
+            case "rise":
+                return self._rise()
+            case "take" | "put" | "carry" | "touch":
+                return self._handle(task, clause, word)
+            case "operate":
+                return self._operate(task, clause, word)
+            case "stand":
+                self._stand()
+                how = clause.deed.how
+                return self._add(Skill.LOCO, caption_of([task.text], how), "floor"), clause.deed.why
+            case _:
+                return self._use(task, clause, word)
+
+    def _unknown(self, task: SubTask) -> tuple[list[int], str]:
+        """A step whose verb we do not know, by its category."""
+        word = task.furniture or _furniture_of(task)
+        if task.category == "locomotion":
+            raise _CannotError("no such movement is known; the body walks, sits, lies, rises and reaches")
+        if self.seat is not None and task.category == "interaction":
+            return self._while_resting(task.text, "", "the pose is held: the body knows no such movement")
+        where = self.room.find(word) if word else self._near()
+        if not where:
+            raise _CannotError(self.room.missing(word) if word else "there is no furniture near to do it at")
+        return self._touch(task, where, TOUCH), "the body only lays a hand there: it knows no such movement"
+
+    # Moving.
+
+    def _walk(self, clause: Clause, word: str) -> tuple[list[int], str]:
+        self.seat = None
+        self._stand()
+        caption = WALKS.get(clause.verb.split()[0], WALK)
+        if word:
+            return self._go(self._found(word, "touch"), caption), ""
+        named = [noun for preposition, noun in clause.places if preposition not in ("for", "with")]
+        if named:
+            raise _CannotError(f"“{named[0]}” is no furniture we know, so there is no place to walk to")
+        self.at = ""
+        return self._add(Skill.LOCO, caption, "floor"), ""
+
+    def _go(self, word: str, caption: str = WALK) -> list[int]:
+        """Walk to a piece of furniture, unless the body is there."""
+        if self.at == word and self.keyframes:
+            return [len(self.keyframes) - 1]
+        self._stand()
+        self.at = word
+        return self._add(Skill.LOCO, caption, word)
+
+    def _rest(self, skill: Skill, word: str) -> tuple[list[int], str]:
+        """Sit or lie down, or stay as one is."""
+        posture = Posture.SEATED if skill is Skill.SITDOWN else Posture.LYING
+        self.seat = (skill, word)
+        if self.posture is posture and self.at == word:
+            return [len(self.keyframes) - 1], ""
+        if word != "floor":
+            self._go(word)
+        else:
+            self._stand()
+        self._add(skill, self._one_of(SIT if skill is Skill.SITDOWN else LIE), word)
+        self.posture, self.at = posture, word
+        return [], ""
+
+    def _rise(self) -> tuple[list[int], str]:
+        if self.posture is Posture.STANDING:
+            raise _CannotError("it is on its feet already")
+        self.seat = None
+        return self._stand(), ""
+
+    def _stand(self) -> list[int]:
+        """Leave what the body rests on."""
+        if self.posture is Posture.STANDING:
+            return []
+        skill, caption = _RISES[self.posture]
+        self.posture = Posture.STANDING
+        return self._add(skill, caption, self.at)
+
+    # Reaching.
+
+    def _handle(self, task: SubTask, clause: Clause, word: str) -> tuple[list[int], str]:
+        """A grasp: lay the named hand where the thing is, or is to be."""
+        thing = task.object if task.object and not is_furniture(task.object) else clause.thing
+        rises = self.posture is not Posture.STANDING
+        where = self._found(word, "touch") if word else self._keeper(thing)
+        how = clause.deed.how or "pick up with the {hand} hand"
+        used = self._touch(task, where, how)
+        (self.held.discard if clause.deed.kind == "put" else self.held.add)(thing)
+        return used, "; ".join(filter(None, (_RISES_FOR_IT if rises else "", clause.deed.why)))
+
+    def _keeper(self, thing: str) -> str:
+        """Where a thing of which nobody says where it is may be: here, or where such things are kept."""
+        options = kept_at(thing)
+        if self.at and self.room.find(self.at) and (self.at in options or thing in self.held):
+            return self.at
+        found = self.room.first(options) or self._near()
+        if not found:
+            raise _CannotError(f"there is no {', '.join(options[:3])} or the like here to have the {thing} on")
+        return found
+
+    def _operate(self, task: SubTask, clause: Clause, word: str) -> tuple[list[int], str]:
+        """An interaction with something that stands there: a hand is laid on it, unless it is done from one's seat."""
+        if self.posture is not Posture.STANDING and (not word or word == self.at or "remote" in self.held):
+            return self._while_resting(task.text, "", _FROM_THERE)
+        if self.seat is not None and "remote" in self.held:
+            self._rest(*self.seat)
+            return self._while_resting(task.text, "", _FROM_THERE)
+        thing = clause.thing
+        where = self._found(word, "touch") if word else self._near()
+        if not where or is_one(thing, FIXED):
+            raise _CannotError(f"“{thing or task.text}” is no furniture with a surface that a hand could be laid on")
+        rises = self.posture is not Posture.STANDING
+        how = clause.deed.how
+        if "{hand}" not in how and task.hand not in (None, "right", "both"):
+            how = TOUCH
+        used = self._touch(task, where, how)
+        return used, "; ".join(filter(None, (_RISES_FOR_IT if rises else "", clause.deed.why)))
+
+    def _touch(self, task: SubTask, where: str, how: str) -> list[int]:
+        self._stand()
+        self._go(where)
+        hand = "left" if task.hand == "left" else "right"
+        return self._add(Skill.TOUCH, caption_of([task.text], how.format(hand=hand)), where)
+
+    # Doing something for a while.
+
+    def _use(self, task: SubTask, clause: Clause, word: str) -> tuple[list[int], str]:
+        """An interaction that has a pose: at rest where the plan has the body, else where one does it, else standing."""
+        deed = clause.deed
+        on_the_phone = deed.takes == "phone"
+        if word and word != self.at and self.seat is None and not on_the_phone:
+            need = "touch" if self.room.find(word) and not self.room.find(word, "sit") else "sit"
+            where = self._found(word, need)
+            if need == "touch":
+                return self._touch(task, where, TOUCH), _UNDRAWN
+            self._rest(Skill.SITDOWN, where)
+        elif self.seat is not None and self.posture is Posture.STANDING:
+            self._rest(*self.seat)
+        if self.posture is not Posture.STANDING:
+            how = PHONE["left" if task.hand == "left" else "right"] if on_the_phone else deed.how
+            if self.posture is Posture.LYING:
+                how = LYING.get(clause.verb, "")
+            other = "it is shown with the right hand" if task.hand == "left" and "right hand" in how else ""
+            return self._while_resting(task.text, how, "; ".join(filter(None, (deed.why, other))))
+        if on_the_phone:
+            hand = "left" if task.hand == "left" else "right"
+            self.at = ""
+            return self._add(Skill.LOCO, caption_of([task.text], deed.how.format(hand=hand)), "floor"), deed.why
+        where = self._near()
+        if not where:
+            raise _CannotError("there is no seat and no furniture near to do it at")
+        return self._touch(task, where, TOUCH), _UNDRAWN
+
+    def _while_resting(self, text: str, how: str, why: str) -> tuple[list[int], str]:
+        """Do it in the rest the body is in; the caption names it, and a pose of its own shows it."""
+        if self.posture is Posture.STANDING and self.seat is not None:
+            self._rest(*self.seat)
+        index = len(self.keyframes) - 1
+        done = [*self.done.get(index, []), text]
+        pose = self._one_of(how) if how else self.keyframes[index].caption.rpartition("; ")[2]
+        caption = caption_of(done, pose)
+        if len(caption) > LONGEST_CAPTION:
+            return [index], "the caption of this rest names no more than is done before it"
+        self.done[index] = done
+        self.keyframes[index] = self.keyframes[index].model_copy(update={"caption": caption})
+        return [index], why
+
+    # Smaller things.
+
+    def _add(self, skill: Skill, caption: str, word: str) -> list[int]:
+        self.keyframes.append(Keyframe(skill=skill, emotion="neutral", caption=caption, furniture=word))
+        return [len(self.keyframes) - 1]
+
+    def _found(self, word: str, need: str) -> str:
+        if found := self.room.find(word, need):
+            return found
+        raise _CannotError(self.room.missing(word, need))
+
+    def _near(self) -> str:
+        """What the body stands at, if it can be touched."""
+        return self.room.find(self.at) if self.at else ""
+
+    def _one_of(self, captions: str) -> str:
+        options = captions.split("|")
+        return options[int(self.rng.integers(len(options)))]
+
+
+def _furniture_of(task: SubTask) -> str:
+    return task.object if task.object and is_furniture(task.object) else ""
