@@ -10,7 +10,7 @@ import numpy as np
 
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts import planning
-from planner_service.scripts.casting import Limits, cast
+from planner_service.scripts.casting import cast
 from planner_service.scripts.checking import repair
 from planner_service.scripts.directing import direct_by_rules
 from planner_service.scripts.events import (
@@ -24,8 +24,10 @@ from planner_service.scripts.events import (
     rooms_in,
 )
 from planner_service.scripts.keyframe import Event, Keyframe, LongScript, PlannedKeyframe, Retrieved
-from planner_service.scripts.library import Found, Scores, ScriptLibrary
+from planner_service.scripts.library import Found, ScriptLibrary
 from planner_service.scripts.reading import Reading, read
+from planner_service.scripts.suiting import Limits
+from planner_service.scripts.traits import Scores
 from scene_graphs.furniture import ROOM_TYPES, canonical_room
 
 Method = Literal["matching", "direct"]

@@ -25,14 +25,16 @@ _WORDS: Final[dict[str, str]] = {
     "playful* childish childlike grin* smil* triumph* proud* overjoyed enthusias* wins won win lottery jackpot lucky "
     "love loves dance* dancing confident party birthday picnic amused pleased jubilant hopeful eager*",
     "relaxed": "relax* calm* peace* cozy cosy comfort* leisure* content* serene mellow unwind* chill* lazy lazily "
-    "quietly meditat* tranquil* carefree ease soothed weekend vacation holiday",
+    "cool*_off cool*_down quietly meditat* tranquil* carefree ease soothed weekend vacation holiday",
     "neutral": "neutral ordinary normal thinking thoughtful pensive ponder* curious steady cold composed focused",
 }
 HINTS: Final[dict[str, str]] = {
     "tired": "sleep* nap naps napping to_bed in_bed bedtime doze dozes dozing collapse* collapsing",
-    "relaxed": "enjoy* rest rests resting rested stroll* sunbath* tea cocoa afternoon bath",
-    "happy": "sing sings singing sang skip skips skipping promot* pass* gift present surprise* cake sweet",
-    "sad": "fail* reject* fired widow* alone funeral divorce* breakup",
+    "relaxed": "enjoy* rest rests resting rested stroll* sunbath* tea cocoa afternoon bath forgiv* reconcil* make_up "
+    "makes_up made_up",
+    "happy": "sing sings singing sang skip skips skipping promot* pass* gift present surprise* cake sweet "
+    "look*_forward finds_it finds_them found_it found_them cannot_wait good_news",
+    "sad": "fail* reject* bad_news turned_down fired widow* alone funeral divorce* breakup",
     "stressed": "deadline* exam* bill bills debt* interview thunder*",
     "angry": "unfair rude broken cheat* betray* fight* fights fought spill* noise noisy",
     "drunk": "whisky whiskey beers cocktail* booze",

@@ -150,7 +150,7 @@ def _clause(moment: str, before: str, sentence: int) -> Clause:
     query = text
     if idiom is not None:
         query = idiom.meaning
-    elif before and _BACK.search(text):
+    elif before and (_BACK.search(text) or (len(text.split()) <= 2 and emotion is None)):
         query = f"{before}, {text}"
     return Clause(text, query, emotion, sure, next(iter(rooms_in(text)), None), has_verb(text), sentence)
 

@@ -39,7 +39,12 @@ IDIOMS: Final = (
         "remembers somebody dead and is full of grief",
         "sad",
     ),
-    Idiom(r"(?:get|got|land)\w* the job", "gets good news: the job is theirs", "happy"),
+    Idiom(r"(?:get|got|land|has|have|had)\w* the job", "gets good news: the job is theirs", "happy"),
+    Idiom(
+        r"(?:did|do|does)(?:n't| not) (?:get|make|win) (?:the|a|an|any|it)\b|miss\w* out on|pass\w* over for",
+        "is told that it was a failure, and is disappointed",
+        "sad",
+    ),
     Idiom(
         r"heart(?:broken| is broken)|(?:got|gets?|was|been) dumped|br(?:eak|oke)\w* up", "weeps for a lost love", "sad"
     ),

@@ -16,10 +16,9 @@ from numpy.typing import NDArray
 
 from motion_backend.language.text import CachedEncoder, SentenceEncoder, Vectors, load_encoder
 from planner_service.scripts.keyframe import EMOTIONS, ShortScript
-from planner_service.scripts.traits import Traits
+from planner_service.scripts.traits import Scores, Traits
 from scene_graphs.furniture import ROOM_TYPES, canonical_room, categories_of, is_known
 
-Scores = NDArray[np.float64]
 BUILT_IN: Final = "short_scripts.jsonl"
 CAPTION_WEIGHT: Final = 0.7
 _TELLING: Final = 0.03

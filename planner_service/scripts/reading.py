@@ -9,11 +9,12 @@ from typing import Final
 import numpy as np
 
 from motion_backend.language.text import Vectors
-from planner_service.scripts.casting import Limits, Wish, suitability
 from planner_service.scripts.events import Clause, moods_of
 from planner_service.scripts.keyframe import Event
-from planner_service.scripts.library import Scores, ScriptLibrary
+from planner_service.scripts.library import ScriptLibrary
 from planner_service.scripts.sentences import state_words
+from planner_service.scripts.suiting import Limits, Wish, suitability
+from planner_service.scripts.traits import Scores
 
 NEAREST: Final = {"hashing": 0.15}
 """Scores below this are no match, by encoder name; `_NEAREST` for any that knows meaning."""

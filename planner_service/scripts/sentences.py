@@ -30,6 +30,15 @@ _JOINT: Final = re.compile(
     r")\b,?\s*|\s*,\s*",
     re.IGNORECASE,
 )
+_BY_THEN: Final = re.compile(
+    r"^(before|after|during|until) ((?:the|his|her|their|a|an) (?:\w+ )?\w+) (?=(?:he|she|they)\b)", re.IGNORECASE
+)
+"""A time that is told by a thing, with no comma after it: "before the interview he is nervous"."""
+_GOES_ON: Final = re.compile(r"^(?:it|everything|all) (?:is|was|gets|got|becomes|became)\b", re.IGNORECASE)
+_NO_NAME_WORDS: Final = """thunder lightning rain snow wind music hunger fear sleep love work lunch dinner breakfast
+nothing everything noise guests friends summer winter spring autumn money"""
+_NO_NAMES: Final = frozenset(_NO_NAME_WORDS.split())
+"""What stands before a verb at the beginning of a sentence and is nobody's name."""
 _EARLIER: Final = frozenset(("after", "when", "whenever", "because", "as soon as", "once", "since", "as"))
 """What follows these happened first."""
 _STATE: Final = re.compile(
@@ -64,6 +73,7 @@ def moments_of(sentence: str) -> list[str]:
 
 def _pieces(sentence: str) -> list[_Piece]:
     """The sentence cut at commas and joining words."""
+    sentence = _BY_THEN.sub(r"\1 \2, ", sentence)
     pieces, joint, start = [], "", 0
     for match in _JOINT.finditer(sentence):
         if sentence[start : match.start()].strip():
@@ -88,7 +98,7 @@ def _whole(pieces: list[_Piece]) -> list[_Piece]:
         if waiting is not None:
             piece = _led_by(waiting, piece)
             waiting = None
-        if has_verb(piece.text) and not (piece.joint == "," and _is_adverbial(piece.text)):
+        if has_verb(piece.text) and not (whole and _only_describes(piece)):
             whole.append(piece)
         elif whole:
             last = whole[-1]
@@ -101,15 +111,22 @@ def _whole(pieces: list[_Piece]) -> list[_Piece]:
 
 def _led_by(lead: _Piece, piece: _Piece) -> _Piece:
     """A piece with the verbless one before it: "after dinner, …", or "the character" of "the character then …"."""
+    if lead.joint in ("before", "until"):
+        return _Piece("", f"{piece.text} {lead.joint} {lead.text}")
     if lead.joint in _EARLIER:
         return _Piece("", f"{lead.joint} {lead.text}, {piece.text}")
     return _Piece(lead.joint, f"{lead.text}{', ' if piece.joint == ',' else ' '}{piece.text}")
 
 
-def _is_adverbial(text: str) -> bool:
-    """Whether it only describes how something is done ("laughing loudly"), not what happens next."""
-    words = text.lower().split()
-    return len(words) <= 2 and words[0].endswith("ing")
+def _only_describes(piece: _Piece) -> bool:
+    """Whether it says how or how long something is done ("laughing loudly", "drunk"), not what happens next."""
+    words = piece.text.lower().split()
+    if piece.joint == "until":
+        return _GOES_ON.match(piece.text) is not None
+    if piece.joint != "," or len(words) > 3:
+        return False
+    felt = [word for word in words if word not in _FILLER]
+    return (len(words) <= 2 and words[0].endswith("ing")) or (bool(felt) and all(feelings(word) for word in felt))
 
 
 def _in_time(pieces: list[_Piece]) -> list[_Piece]:
@@ -134,7 +151,8 @@ def without_subject(text: str) -> str:
     """The words without who does it: "the character is happy" is "is happy", "Anna reads" is "reads"."""
     short = _SUBJECT.sub("", text, count=1)
     named = re.match(r"^[A-Z][a-z]+\s+(?=([a-z]+)\b)", short)
-    if short == text and named and is_verb(named[1]) and not is_verb(short.split()[0]):
+    first = short.split()[0].lower() if short else ""
+    if short == text and named and is_verb(named[1]) and not is_verb(first) and first not in _NO_NAMES:
         short = short[named.end() :]
     return short if has_verb(short) else text
 

@@ -9,8 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from planner_service.scripts.library import Scores
-from planner_service.scripts.traits import After, Before, Codes, Traits
+from planner_service.scripts.traits import After, Before, Codes, Scores, Traits
 
 BEAM: Final = 64
 """Beginnings of a story that are followed up at the same time."""
@@ -21,7 +20,7 @@ _STEADY: Final = 0.04
 """What it counts that a mood stays where the events' mood stays."""
 _OUT_OF_ORDER: Final = 0.12
 """What it costs to fall asleep and go on as if nothing were, to wake without having slept, and so on."""
-_REPEATED, _ALIKE = 0.8, 0.55
+_REPEATED, _ALIKE = 0.4, 0.6
 """What likeness of two summaries above that costs."""
 _NOBODY: Final = -5.0
 """A row for which nothing is left."""

@@ -18,6 +18,7 @@ from scene_graphs.furniture import ROOM_TYPES
 
 Mask = NDArray[np.bool_]
 Codes = NDArray[np.intp]
+Scores = NDArray[np.float64]
 
 
 class Before(IntEnum):
