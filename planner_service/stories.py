@@ -15,7 +15,9 @@ from planner_service.llm.served import for_story
 from planner_service.scripts.acting import act
 from planner_service.scripts.composing import MOST, Request, compose, script_of
 from planner_service.scripts.keyframe import Keyframe, LongScript
-from planner_service.scripts.narrating import Told, narrate, narrate_with_model
+from planner_service.scripts.narrating import Told, narrate
+from planner_service.scripts.protagonist import cast_by
+from planner_service.scripts.told_by_model import narrate_with_model
 from planner_service.shelves import Shelves
 from scene_graphs.furniture import ROOM_TYPES, canonical_room
 from scene_graphs.homes import MOST_ROOMS, Home
@@ -56,6 +58,7 @@ class StoryRequest:
     backend: str = "procedural"
     seed: int = 0
     character: Character = field(default_factory=Character)
+    """Who acts; with the name and pronouns of the theme's person where both are left at their defaults."""
 
     def __post_init__(self) -> None:
         for room in self.rooms:
@@ -76,6 +79,7 @@ class StoryRequest:
         if not 0 <= self.seed <= LARGEST_SEED:
             raise RequestError(f"seed: must be a whole number from 0 to {LARGEST_SEED}, got {self.seed}")
         _check_character(self.character)
+        object.__setattr__(self, "character", cast_by(self.theme, self.character))
 
 
 def _check_character(character: Character) -> None:

@@ -22,10 +22,21 @@ def answer_to(prompt: str) -> dict[str, Any]:
     if "You arrange short scripts" in prompt:
         return {"choices": [{"event": event, "script": script} for event, script in chosen_in(prompt).items()]}
     if "You tell a short story" in prompt:
-        return {"title": TITLE, "text": TEXT}
+        return {"title": TITLE, "text": f"{TEXT} {told_in(prompt)}"}
     if "This is a trial" in prompt:
         return {"furniture": "kitchen chair", "legs": 4}
     raise AssertionError(f"nobody taught it to answer {prompt!r:.200}")
+
+
+def told_in(prompt: str) -> str:
+    """A sentence for every piece of furniture in the keyframes that a prompt for a story lists, in their order."""
+    name, keyframes = (
+        re.search(rf'<data name="{key}">\n(.*?)\n</data>', prompt, re.DOTALL) for key in ("name", "keyframes")
+    )
+    assert name is not None
+    assert keyframes is not None
+    pieces = dict.fromkeys(line.rpartition(", ")[2] for line in keyframes[1].splitlines())
+    return " ".join(f"{name[1]} was at the {piece}." for piece in pieces)
 
 
 def chosen_in(prompt: str) -> dict[int, str]:

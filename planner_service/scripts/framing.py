@@ -52,34 +52,15 @@ OPENINGS: Final[dict[str, tuple[str, ...]]] = {
     ),
 }
 
-CONNECTIVES: Final = (
-    "then",
-    "a moment later",
-    "soon",
-    "before long",
-    "after a while",
-    "presently",
-    "a little later",
-    "from there",
-    "next",
-    "after a pause",
-    "the moment after",
-    "some minutes later",
-)
-RISINGS: Final = (
-    "After a while {they} {rose}.",
-    "At length {they} {rose} again.",
-    "Eventually {they} {rose}.",
-    "It was some time before {they} {rose}.",
-    "By and by {they} {rose} again.",
-    "A long moment passed before {they} {rose}.",
-    "In the end {they} {rose}.",
-    "Then {they} {rose} again.",
-)
-"""Leaving a seat or a bed for what comes next."""
-LAST_CONNECTIVES: Final = ("at last", "finally", "in the end")
-TURNS: Final = ("Then", "Later", "After that", "Not long afterwards", "Some time later", "By and by")
-"""Before an event that follows another."""
+TURNS: Final = (
+    "Then", "Later,", "After that,", "Not long afterwards,", "Some time later,", "By and by,", "In time,",
+    "A good while later,", "Next,", "Meanwhile,", "After a time,", "At some point,",
+)  # fmt: skip
+"""Before a sentence about what happens that begins like one before it."""
+NOTES: Final = ("As it happened,", "For once,", "Be that as it may,")
+"""Before such a sentence where it cannot be told when."""
+STANDS_ALONE: Final = re.compile(r"(?:That (?:night|day)|It was|There was|The next|The day|Then|But|So|Later|After)\b")
+"""Sentences that no word for the time goes before."""
 
 CLOSINGS: Final[dict[str, tuple[str, ...]]] = {
     "neutral": ("And so the {time} took its course.", "The house was still again, and that was all right."),
@@ -124,16 +105,35 @@ LYING_CLOSINGS: Final[dict[str, tuple[str, ...]]] = {
     "happy": ("{They} lay there smiling at the ceiling.",),
 }
 
-FIRST_ROOM: Final = ("in the {room},",)
-NEW_ROOMS: Final = ("in the {room},", "then, in the {room},", "now in the {room},")
-ROOMS: Final = ("back in the {room},", "in the {room} again,")
-"""Before the first sentence in another room: the story's first, one it has not been in, one it has."""
+TURNED_CLOSINGS: Final[dict[tuple[str, str], tuple[str, ...]]] = {
+    ("happy", "sad"): ("How light the {time} had been when it began!", "Of the morning's hopes not one was left."),
+    ("happy", "angry"): ("And it had begun so well.",),
+    ("happy", "tired"): ("It had been a good {time}, and it was a good tiredness.",),
+    ("happy", "drunk"): ("The joy had been real; the headache would be, too.",),
+    ("happy", "relaxed"): ("It was the kind of {time} that asks for nothing more.",),
+    ("sad", "happy"): ("Nobody who saw {them} now would have guessed how the {time} had begun.",),
+    ("sad", "relaxed"): ("The grief was not gone, but it had grown quiet.",),
+    ("sad", "drunk"): ("The bottle was empty, and the sorrow was still there.",),
+    ("angry", "relaxed"): ("Of all that anger there was nothing left to see.",),
+    ("angry", "happy"): (
+        "What had there been to be so angry about?",
+        "The anger was forgotten as quickly as it had come.",
+    ),
+    ("angry", "sad"): ("Anger would have been easier to bear.",),
+    ("stressed", "relaxed"): ("Not one of the great worries seemed so very great any more.",),
+    ("stressed", "happy"): ("All that worry had been for nothing, and nothing could have been better.",),
+    ("stressed", "tired"): ("Whatever there was to worry about would have to wait until morning.",),
+    ("hurried", "tired"): ("All that haste, and nothing to show for it but tired feet.",),
+    ("hurried", "relaxed"): ("The clock ticked on, and for once nobody listened.",),
+    ("tired", "happy"): ("Of the tiredness there was nothing left to be seen.",),
+}
+"""Where a story ends in another mood than it began."""
 
 _TIMES: Final = (
-    (r"\bmorning\b|\boversle\w+|\bbreakfast\b|\bwak(?:es?|ing) up\b|\bdawn\b", "morning"),
-    (r"\bafternoon\b|\blunch\b|\bnoon\b", "afternoon"),
+    (r"(?<!until )(?<!for )(?<!early )\bmorning\b|\boversle\w+|\bbreakfast\b|\bwak(?:es?|ing) up\b", "morning"),
+    (r"\bafternoon\b|\blunch\b", "afternoon"),
     (r"\bevening\b|\bdinner\b|\bsunset\b|\bafter work\b|\bfrom work\b", "evening"),
-    (r"\bnight\b|\bmidnight\b|\bsleepless\b|\binsomnia\b", "night"),
+    (r"\bnight\b|\bmidnight\b|\bsleepless\b|\binsomnia\b|\b(?:can't|can’t|cannot) sleep\b", "night"),
     (r"\bsunday\b", "Sunday"),
     (r"\bsaturday\b", "Saturday"),
 )
@@ -147,7 +147,10 @@ _TITLES: Final = (
     (r"lost love|broken heart|heartbr|break-?up|dumped", "After the Goodbye"),
     (r"birthday", "A Birthday at Home"),
     (r"guests?\b|visitors?\b", "Before the Guests Arrive"),
-    (r"\bexams?\b|studying", "The Night Before the Exam"),
+    (r"pass(?:es|ed)? (?:\w+ )?exam", "The Exam Is Passed"),
+    (r"fail(?:s|ed)? (?:\w+ )?exam", "After the Exam"),
+    (r"(?:all|whole) night.*\bexams?\b", "The Night Before the Exam"),
+    (r"\bexams?\b|studying", "The Exam"),
     (r"deadline|working late|\bovertime\b", "Past Midnight"),
     (r"\bkeys\b", "Where Are the Keys?"),
     (r"hangover|hung ?over", "The Morning After"),
@@ -161,7 +164,7 @@ _TITLES: Final = (
     (r"party", "The Party"),
     (r"\bpacks?\b|\bpacking\b|\btrip\b|journey", "Packing"),
     (r"\bsick\b|\bcold\b|fever|\bill\b", "A Day in Bed"),
-    (r"\brain\b|rainy|storm|thunder", "Rain on the Window"),
+    (r"\brain(?:s|ing|y)?\b|\bthunder", "Rain on the Window"),
     (r"\bwine\b|\bwhisky\b|\bdrunk", "One Glass More"),
     (r"\bcomics?\b", "The Comic Book"),
     (r"\bbooks?\b|\bnovel\b|\bread(?:s|ing)?\b", "A Good Book"),
@@ -189,15 +192,16 @@ _MOOD_TITLES: Final[dict[str, str]] = {
 }
 
 
-def time_of(theme: str) -> str:
-    """The time of day a theme speaks of: morning, afternoon, evening, night, Sunday, Saturday, or day."""
-    return next((time for pattern, time in _TIMES if re.search(pattern, theme, re.IGNORECASE)), "day")
+def time_of(*texts: str) -> str:
+    """The time of day that the first text to do so speaks of: morning, afternoon, evening, night, Sunday, or day."""
+    found = (time for text in texts for pattern, time in _TIMES if re.search(pattern, text, re.IGNORECASE))
+    return next(found, "day")
 
 
-def title_of(theme: str, mood: str) -> str:
-    """A short title: after what the theme is about, else after its mood."""
+def title_of(theme: str, mood: str, time: str | None = None) -> str:
+    """A short title: after what the theme is about, else after its mood and the time of day."""
     for pattern, title in _TITLES:
         if re.search(pattern, theme, re.IGNORECASE):
             return title
-    title = _MOOD_TITLES[mood].format(time=time_of(theme).capitalize())
+    title = _MOOD_TITLES[mood].format(time=(time or time_of(theme)).capitalize())
     return re.sub(r"^A (?=[AEIOU])", "An ", title)

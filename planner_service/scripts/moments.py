@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -22,6 +23,7 @@ Piece = tuple[str, tuple[int, ...]]
 Places = Mapping[int, tuple[str, str]]
 """Index of a keyframe to how its furniture and its room are called in the home it is acted out in."""
 _IN = ("armchair", "lounge chair", "lazy sofa", "rocking chair")
+_CONTENT = re.compile(r"(?<!\{)\b(?:\w{4,}|lay|put|run|lie|sit)\b(?!\})")
 _VERB = re.compile(r"(?:^|~)(\w+)")
 _LONGEST = 24
 """Words of a sentence after which no more is added to it."""
@@ -41,13 +43,21 @@ class Phrase:
     rises: bool = False
     arrives: bool = False
     """A walk whose purpose follows in the next phrase: the two stay in one sentence."""
+    skill: Skill = Skill.LOCO
+    at: str = ""
+    """What it is done at, "the sofa"; empty on the floor."""
 
-    @property
+    @cached_property
+    def bare(self) -> str:
+        """ "sit down on the sofa with bowed head"."""
+        return self.base.replace("~", "")
+
+    @cached_property
     def text(self) -> str:
         """In the past: "sat down on the sofa with bowed head"."""
         return _VERB.sub(lambda verb: past(verb[1]), self.base)
 
-    @property
+    @cached_property
     def gerund(self) -> str:
         """ "sitting down on the sofa with bowed head"."""
         return _VERB.sub(lambda verb: gerund(verb[1]), self.base)
@@ -68,6 +78,10 @@ class Variety:
         self._used[chosen] += 1
         return chosen
 
+    def index(self, count: int) -> int:
+        """A number below `count`."""
+        return int(self._rng.integers(count))
+
     def chance(self, share: float) -> bool:
         """True in that share of cases."""
         return bool(self._rng.random() < share)
@@ -83,17 +97,23 @@ class Wording:
         self.variety = variety
         self.places = places
         self.say_room = True
-        """Whether the room may be called by its name; not right after it was."""
+        """Whether the room may be called by its name; not where it was already."""
         self._at: str | None = None
         self._said: str | None = None  # what "it" stands for
         self._wandering = False
+        self._recent: tuple[str, ...] = ()  # the templates of the two phrases before
 
-    def phrases(self, keyframes: Iterable[tuple[int, PlannedKeyframe]]) -> list[Phrase]:
-        """Keyframes of one event as phrases in order; every index is in exactly one of them."""
+    def phrases(
+        self, keyframes: Iterable[tuple[int, PlannedKeyframe]], passed_over: tuple[int, ...] = ()
+    ) -> list[Phrase]:
+        """Keyframes of one event as phrases in order; every index is in exactly one of them.
+
+        Those that were `passed_over` just before go with the first phrase.
+        """
         rows = list(keyframes)
         self._wandering, self._said = False, None
         told: list[Phrase] = []
-        untold: tuple[int, ...] = ()
+        untold = passed_over
         for position, (index, keyframe) in enumerate(rows):
             following = rows[position + 1][1] if position + 1 < len(rows) else None
             arrives = keyframe.skill == Skill.LOCO and _goes_on(keyframe, following)
@@ -102,7 +122,8 @@ class Wording:
                 continue
             text = self._text(index, keyframe)
             rises = keyframe.skill in (Skill.STANDUP, Skill.GETUP)
-            told.append(Phrase(text, (*untold, index), mood_of(keyframe), rises, arrives))
+            at = "" if keyframe.on_floor else self._the(index, keyframe)
+            told.append(Phrase(text, (*untold, index), mood_of(keyframe), rises, arrives, keyframe.skill, at))
             untold = ()
         return told
 
@@ -117,17 +138,18 @@ class Wording:
         mood = mood_of(keyframe)
         match keyframe.skill:
             case Skill.LOCO:
-                template = self.variety.pick(self._walks(keyframe, mood))
+                template = self._fresh(self._walks(keyframe, mood))
             case Skill.SITDOWN:
                 template = self._posture(keyframe, phrases.SITS_IN_MOOD[mood], phrases.SITS)
             case Skill.LIEDOWN:
                 template = self._posture(keyframe, phrases.LIES_IN_MOOD[mood], phrases.LIES)
             case Skill.TOUCH:
-                template = self.variety.pick(touches(keyframe))
+                template = self._fresh(touches(keyframe))
             case _:
                 pace = re.search(r"slow|weari", keyframe.caption) and "slow"
                 pace = pace or (re.search(r"quick|abrupt|jump", keyframe.caption) and "fast") or "neutral"
                 template = self.variety.pick(phrases.RISES[pace])
+        self._recent = (*self._recent[-1:], template)
         filled = self._fill(template, index, keyframe)
         self._wandering = keyframe.skill == Skill.LOCO and keyframe.on_floor
         self._at = self._said = None if keyframe.on_floor else self._the(index, keyframe)
@@ -143,7 +165,15 @@ class Wording:
         known = manners.get(keyframe.caption)
         manner = self.variety.pick(known) if known and not (self.brief and self.variety.chance(0.55)) else ""
         comma = "" if manner.startswith(("with ", "on ", "flat ")) or not manner else ","
-        return f"{self.variety.pick(verbs)}{comma} {manner}"
+        return f"{self._fresh(verbs)}{comma} {manner}"
+
+    def _fresh(self, options: Sequence[str]) -> str:
+        """One of the options, if possible none with a word of the two phrases before it."""
+        heard = {word for template in self._recent for word in _CONTENT.findall(template)}
+        shared = [len(heard.intersection(_CONTENT.findall(option))) for option in options]
+        return self.variety.pick(
+            [option for option, count in zip(options, shared, strict=True) if count == min(shared)]
+        )
 
     def _fill(self, template: str, index: int, keyframe: PlannedKeyframe) -> str:
         the = self._the(index, keyframe)
@@ -181,7 +211,9 @@ class Wording:
 
     def _room(self, index: int, keyframe: PlannedKeyframe) -> str:
         name = self.room_of(index, keyframe)
-        return "the " + (self.variety.pick((name, "room")) if self.say_room else "room")
+        chosen = self.variety.pick((name, "room")) if self.say_room else "room"
+        self.say_room = self.say_room and chosen != name
+        return f"the {chosen}"
 
 
 def mood_of(keyframe: Keyframe) -> str:
@@ -192,7 +224,9 @@ def mood_of(keyframe: Keyframe) -> str:
 
 
 def touches(keyframe: Keyframe) -> tuple[str, ...]:
-    """Ways to word a touch, by its height and what is touched."""
+    """Ways to word a touch: by what its caption says is done, else by its height and what is touched."""
+    if keyframe.caption in phrases.TOUCHES_DOING:
+        return phrases.TOUCHES_DOING[keyframe.caption]
     caption = keyframe.caption.lower()
     height = next((h for h in ("prone", "low", "high") if re.search(rf"\b{h}\b", caption)), "medium")
     return phrases.TOUCHES_AT.get((class_of(keyframe.piece[0]), height)) or phrases.TOUCHES[height]

@@ -4,32 +4,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from pydantic import BaseModel, Field
-
-import prompts
 from motion_backend.motion import Character, Skill
-from planner_service.llm.asking import ask
-from planner_service.llm.protocol import LanguageModel
-from planner_service.scripts import framing, phrases
+from planner_service.scripts import framing, reasons
 from planner_service.scripts.emotions import emotion_of
-from planner_service.scripts.keyframe import Event, LongScript, PlannedKeyframe
-from planner_service.scripts.moments import Phrase, Piece, Places, Variety, Wording, joined, mood_of, sentences_of
-from planner_service.scripts.scenes import Scene, covered, event_retold, scenes_of
+from planner_service.scripts.frames import Ear, Manner, Sentence, framed, said
+from planner_service.scripts.keyframe import Event, LongScript
+from planner_service.scripts.moments import Phrase, Places, Variety, Wording, mood_of, sentences_of
+from planner_service.scripts.paragraphs import Span, balanced, laid_out
+from planner_service.scripts.scenes import Scene, covered, event_retold, link_before, scenes_of, told_of_hero
 from planner_service.scripts.voice import Voice, retell
 
+__all__ = ["Places", "Span", "Told", "narrate"]
 _MANY = 22
 """Keyframes above which a story leaves out what says little."""
-
-
-@dataclass(frozen=True)
-class Span:
-    """A stretch of a told text, end exclusive, and the keyframes it tells."""
-
-    start: int
-    end: int
-    keyframes: tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -46,191 +35,169 @@ def narrate(script: LongScript, character: Character, seed: int = 0, places: Pla
     return _Narrator(script, Voice.of(character), seed, places or {}).tell()
 
 
-def narrate_with_model(
-    script: LongScript, character: Character, model: LanguageModel, places: Places | None = None
-) -> Told:
-    """The story of a script by a language model. Raises ModelAnswerError when it gives none that can be used."""
-    voice = Voice.of(character)
-    moments = [(k.skill, k.emotion, k.caption, _called(i, k, places or {})) for i, k in enumerate(script.keyframes)]
-    prompt = prompts.read("narrate_story").fill(
-        name=voice.name,
-        pronouns=voice.pronouns,
-        theme=script.theme,
-        events="\n".join(f"- {script.events[r.event].text}: {r.script.summary}" for r in script.short_scripts),
-        keyframes="\n".join("- " + ", ".join(moment) for moment in moments),
-    )
-    answer = ask(model, prompt, _ModelStory)
-    return Told(answer.title.strip(), answer.text.strip(), _found_spans(answer.text.strip(), [m[3] for m in moments]))
-
-
-class _ModelStory(BaseModel):
-    title: str = Field(min_length=1, max_length=120)
-    text: str = Field(min_length=80, max_length=8000)
-
-
 class _Narrator:
-    """Writes the paragraphs of one story from its opening to its closing sentence."""
+    """Writes one story from its opening to its closing sentence."""
 
     def __init__(self, script: LongScript, voice: Voice, seed: int, places: Places) -> None:
         self.script = script
         self.voice = voice
         self.variety = Variety(seed)
+        self.ear = Ear(self.variety)
         self.wording = Wording(voice, self.variety, places, brief=len(script.keyframes) > _MANY)
-        self.text = ""
-        self.spans: list[Span] = []
-        self.moods: set[str] = set()
+        events = script.events
+        self.first, self.last = (events[0], events[-1]) if events else (Event(text=script.theme),) * 2
+        self.time = framing.time_of(self.first.text, *(r.script.summary for r in script.short_scripts[:1]))
         self.rooms: list[str] = []
-        self.gerunds = False
         self.arrival = ""
-        """Words for a room that is new, until a sentence has used them."""
-        self.bare = 0
-        """Sentences in a row that begin with their subject."""
+        """The room that the next sentence about the body names."""
+        self.visits = -1
+        """How often the story was in this room before; -1 in its first."""
+        self.mood = ""
+        """The mood of the scene before."""
+        self.passed_over: tuple[int, ...] = ()
+        """Keyframes that go without saying, to be told with what follows."""
+        self.scene: list[Sentence] = []
 
     def tell(self) -> Told:
         """The whole story."""
         events = self.script.events
-        first, last = (events[0], events[-1]) if events else (Event(text=self.script.theme),) * 2
-        self._add(self._framed(framing.OPENINGS[emotion_of(first.emotion) or "neutral"], first.text))
+        scenes = scenes_of(self.script)
+        told: list[list[Sentence]] = []
         next_event = 0
-        for number, scene in enumerate(scenes_of(self.script)):
-            if number:
-                self.text += "\n\n"
+        opening = self._framed(framing.OPENINGS[emotion_of(self.first.emotion) or "neutral"])
+        for number, scene in enumerate(scenes):
+            self.scene = [] if number else [self.ear.choose(opening)]
             reached = next_event if scene.event is None else max(next_event, scene.event + 1)
-            self._tell_scene(scene, number, [event.text for event in events[next_event:reached]])
+            self._tell_scene(scene, range(next_event, reached), final=number == len(scenes) - 1)
             next_event = reached
-        for event in events[next_event:]:
-            if told := event_retold(event.text, self.voice):
-                self._add(self._turned(told))
-        self._add(self._framed(self._closings(), last.text))
-        title = framing.title_of(self.script.theme, emotion_of(last.emotion) or "neutral")
-        return Told(title, self.text, tuple(self.spans))
+            told.append(self.scene)
+        self.scene = [] if scenes else [self.ear.choose(opening)]
+        for event in range(next_event, len(events)):
+            text = told_of_hero(events[event].text, self.script.theme)
+            if sentence := event_retold(text, self.voice, self._named()):
+                self._say(sentence, link_before(self.script.theme, events[event].text))
+        self.scene.append(self.ear.choose(self._framed(self._closings([*told[-1:], self.scene]))))
+        text, spans = laid_out(balanced([*told, self.scene]))
+        title = framing.title_of(self.script.theme, emotion_of(self.last.emotion) or "neutral", self.time)
+        return Told(title, text, spans)
 
-    def _tell_scene(self, scene: Scene, number: int, events: Sequence[str]) -> None:
-        """One paragraph: what happens (the lead) and what the body does, in the order that reads best."""
-        named = not number and self.voice.name in self.text
-        lead = self._lead(scene, events, number > 0, named)
-        self._enter(scene, lead)
-        sentences = sentences_of(self.wording.phrases(scene.keyframes))
-        before = _told_before(scene, lead, sentences, number)
-        if before:
-            lead = self._lead(scene, events, turn=False, named=True)
-        for position, sentence in enumerate(sentences[:before]):
-            self._add_sentence(sentence, name=position == 0 and not named, plain=position == 0)
-        for told in lead:
-            self._add(told)
-        for position, sentence in enumerate(sentences[before:]):
-            name = position == 2 or (position == 0 and not lead and not named)
-            self._add_sentence(sentence, name=name, plain=position == 0, last=position == len(sentences) - before - 1)
+    def _tell_scene(self, scene: Scene, events: Sequence[int], final: bool) -> None:
+        """What happens (the lead) and what the body does; sleep comes after what leads to it."""
+        self._turn_to(scene)
+        happens = self._events(scene, events)
+        summary = self._summary(scene)
+        asleep = scene.ends_asleep(" ".join([*happens, retell(summary, self.voice) or ""]))
+        if not asleep:
+            self._lead(happens, summary, events)
+        self._enter(scene)
+        sentences = self._sentences(scene, asleep, final)
+        left = sentences[-1:] if asleep and len(sentences) > 1 and sentences[-1][0].rises else []
+        for position, sentence in enumerate(sentences[: len(sentences) - len(left)]):
+            self._act(sentence, last=position == len(sentences) - 1 > 0)
+        if asleep:
+            self._lead(happens, summary, events)
+        for sentence in left:
+            self._act(sentence, woken=True)
 
-    def _enter(self, scene: Scene, lead: Sequence[str]) -> None:
-        """Choose words for the room if it is new and the lead does not name it."""
+    def _turn_to(self, scene: Scene) -> None:
+        """A sentence that leads from the mood of the scene before to that of this one."""
+        emotion = self._emotion(scene)
+        turns = reasons.TURNS.get(emotion, {})
+        if self.mood and emotion != self.mood and self.variety.chance(0.75):
+            options = self._framed(turns.get(self.mood, turns.get("", ())))
+            if options and not self.ear.heard(options):
+                self.scene.append(self.ear.choose(options))
+        self.mood = emotion
+
+    def _emotion(self, scene: Scene) -> str:
+        if scene.script is not None:
+            return self.script.short_scripts[scene.script].script.emotion
+        return mood_of(scene.keyframes[-1][1])
+
+    def _events(self, scene: Scene, events: Sequence[int]) -> list[str]:
+        """The theme's own words where no summary that serves them has them."""
+        told: list[str] = []
+        for number in events:
+            served = [r.script.summary for r in self.script.short_scripts if r.event == number]
+            served += [self.script.short_scripts[scene.script].script.summary] if scene.script is not None else []
+            event = self.script.events[number].text
+            if max((covered(event, summary) for summary in served), default=0.0) < 0.5:
+                event = told_of_hero(event, self.script.theme)
+                told.append(event_retold(event, self.voice, bool(told) or self._named()) or "")
+        return [sentence for sentence in told if sentence]
+
+    def _summary(self, scene: Scene) -> str:
+        return "" if scene.script is None else self.script.short_scripts[scene.script].script.summary
+
+    def _lead(self, happens: Sequence[str], summary: str, events: Sequence[int]) -> None:
+        """The theme's own words, then the summary, joined by the theme's own "so" or "but"."""
+        turned = len(self.scene) > 0 and self.scene[-1].family == "turn"
+        event = self.script.events[events[0]].text if events else ""
+        link = "" if turned else link_before(self.script.theme, event)
+        for sentence in happens:
+            self._say(sentence, link)
+            link = ""
+        told = retell(summary, self.voice, self._named()) if summary else None
+        for sentence in re.split(r"(?<=[.!?])\s+", told or ""):
+            if sentence:
+                self._say(sentence, link)
+                link = ""
+
+    def _enter(self, scene: Scene) -> None:
+        """Note a room that is new and not named yet; the first sentence about the body will name it."""
         room = self.wording.room_of(*scene.keyframes[0])
-        said = any(room in told for told in lead)
-        self.arrival, self.gerunds = "", False
-        if room != "room" and room not in self.rooms[-1:] and not said:
-            options = framing.ROOMS if room in self.rooms else framing.NEW_ROOMS if self.rooms else framing.FIRST_ROOM
-            self.arrival = self.variety.pick(options).format(room=room)
-        self.wording.say_room = not said and not self.arrival
+        named = room == "room" or any(room in sentence.text for sentence in self.scene)
+        new = room not in self.rooms[-1:]
+        self.arrival = room if new and not named else ""
+        self.visits = -1 if not self.rooms else self.rooms.count(room)
+        self.wording.say_room = not named and not self.arrival
         self.rooms.append(room)
 
-    def _lead(self, scene: Scene, events: Sequence[str], turn: bool, named: bool) -> list[str]:
-        """The theme's own words where the summary does not cover them, then the summary."""
-        summary = "" if scene.script is None else self.script.short_scripts[scene.script].script.summary
-        lead: list[str] = []
-        for event in events:
-            told = event_retold(event, self.voice, named) if covered(event, summary) < 0.5 else None
-            if told:
-                lead.append(self._turned(told) if turn else told)
-                named = turn = True
-        told = retell(summary, self.voice, named) if summary else None
-        return [*lead, *([told] if told else [])]
+    def _sentences(self, scene: Scene, asleep: bool, final: bool) -> list[tuple[Phrase, ...]]:
+        """The scene's keyframes worded; leaving a seat at its end may go without saying."""
+        phrases = self.wording.phrases(scene.keyframes, self.passed_over)
+        self.passed_over = ()
+        if len(phrases) > 1 and phrases[-1].rises and not final and not asleep and self.variety.chance(0.6):
+            self.passed_over = phrases.pop().keyframes
+        return sentences_of(phrases)
 
-    def _turned(self, told: str) -> str:
-        """A sentence after "then" or "later"."""
-        inner = told if told.startswith(self.voice.name) else told[:1].lower() + told[1:]
-        return f"{self.variety.pick(framing.TURNS)} {inner}"
+    def _act(self, sentence: Sequence[Phrase], last: bool = False, woken: bool = False) -> None:
+        """One sentence about the body, in the frame that sounds freshest."""
+        who = self.voice["they"] if self._named() else self.voice.name
+        manner = Manner(self.time, last=last, woken=woken)
+        if not sentence[0].rises:
+            manner, self.arrival = replace(manner, room=self.arrival, visits=self.visits), ""
+        options = framed(sentence, who, self.voice, manner)
+        self.scene.append(self.ear.choose(options))
 
-    def _add_sentence(self, sentence: Sequence[Phrase], name: bool, plain: bool, last: bool = False) -> None:
-        subject = self.voice.name if name else self.voice["they"]
-        if len(sentence) == 1 and sentence[0].rises and not plain:
-            before, after = self.variety.pick(framing.RISINGS).replace("{they}", subject).split("{rose}")
-            pieces = [(self.voice.fill(before), ()), (sentence[0].text, sentence[0].keyframes), (after, ())]
+    def _named(self) -> bool:
+        """Whether a pronoun would be understood: the name was said a sentence or two ago in this scene."""
+        recent = [sentence.text for sentence in self.scene[-2:]]
+        if not any(self.voice.name in text for text in recent):
+            return False
+        return self.voice.pronouns != "they" or bool(re.search(rf"\b(?:{self.voice.name}|[Tt]hey)\b", recent[-1]))
+
+    def _say(self, sentence: str, link: str = "") -> None:
+        """Add a sentence that is not about the body, after a word for the time where it needs one."""
+        inner = sentence if sentence.startswith(self.voice.name) else sentence[:1].lower() + sentence[1:]
+        if link and not framing.STANDS_ALONE.match(sentence):
+            options = [said(f"{link} {inner}")]
         else:
-            pieces = [*self._begun(sentence, subject, plain, last), (".", ())]
-        if self.text and not self.text.endswith("\n"):
-            self.text += " "
-        for position, (words, keyframes) in enumerate(pieces):
-            words = words[:1].upper() + words[1:] if position == 0 else words
-            if keyframes:
-                self.spans.append(Span(len(self.text), len(self.text) + len(words), keyframes))
-            self.text += words
+            turns = framing.NOTES if framing.STANDS_ALONE.match(sentence) else framing.TURNS
+            options = [said(sentence), *(said(f"{turn} {inner}", turn, "after") for turn in turns)]
+        self.scene.append(self.ear.choose(options, first=not link))
 
-    def _begun(self, sentence: Sequence[Phrase], subject: str, plain: bool, last: bool) -> list[Piece]:
-        """The sentence with what stands before its subject: a room, a mood, an earlier act, a connective or nothing."""
-        mood = next((phrase.mood for phrase in sentence if not phrase.rises), "neutral")
-        if self.arrival and not sentence[0].rises:
-            opening, self.arrival = self.arrival, ""
-        elif mood in phrases.MOODS and mood not in self.moods and not sentence[0].rises and self.variety.chance(0.6):
-            self.moods.add(mood)
-            opening = self.variety.pick(phrases.MOODS[mood]) + ","
-        elif self._may_follow_on(sentence, plain):
-            self.gerunds = True
-            first = (sentence[0].gerund, sentence[0].keyframes)
-            return [("after ", ()), first, (f", {subject} ", ()), *joined(sentence[1:])]
-        elif plain or (not self.bare and self.variety.chance(0.3)):
-            self.bare = 1
-            return [(f"{subject} ", ()), *joined(sentence)]
-        else:
-            options = framing.LAST_CONNECTIVES if last and self.variety.chance(0.4) else framing.CONNECTIVES
-            opening = self.variety.pick([word for word in options if word != "from there" or not sentence[0].rises])
-        self.bare = 0
-        return [(f"{opening} {subject} ", ()), *joined(sentence)]
-
-    def _may_follow_on(self, sentence: Sequence[Phrase], plain: bool) -> bool:
-        """Whether to begin with "after crossing to the shelf": once a paragraph at most."""
-        fits = len(sentence) > 1 and not plain and "," not in sentence[0].text and " and " not in sentence[0].text
-        return fits and not self.gerunds and self.variety.chance(0.3)
-
-    def _closings(self) -> tuple[str, ...]:
+    def _closings(self, told: Sequence[Sequence[Sentence]]) -> tuple[str, ...]:
         if not self.script.keyframes:
             return framing.CLOSINGS["neutral"]
         last = self.script.keyframes[-1]
         mood = mood_of(last)
-        asleep = re.search(r"sleep|awake", self.text.rpartition("\n\n")[2])
+        asleep = re.search(r"sleep|awake", " ".join(sentence.text for part in told for sentence in part))
         lying = framing.LYING_CLOSINGS.get(mood) if last.skill == Skill.LIEDOWN and not asleep else None
-        return lying or framing.CLOSINGS[mood]
+        turned = framing.TURNED_CLOSINGS.get((emotion_of(self.first.emotion) or "neutral", mood))
+        return lying or turned or framing.CLOSINGS[mood]
 
-    def _framed(self, templates: tuple[str, ...], event: str) -> str:
+    def _framed(self, templates: Sequence[str]) -> list[Sentence]:
         they, their = self.voice["they"].capitalize(), self.voice["their"].capitalize()
-        template = self.variety.pick(templates)
-        told = self.voice.fill(template, time=framing.time_of(event), They=they, Their=their)
-        return re.sub(r"\ba (?=[aeiou])", "an ", told)
-
-    def _add(self, sentence: str) -> None:
-        self.text += (" " if self.text and not self.text.endswith("\n") else "") + sentence
-
-
-def _told_before(scene: Scene, lead: Sequence[str], sentences: Sequence[Sequence[Phrase]], number: int) -> int:
-    """How many sentences about the body come before what happens: all when it ends asleep, at times the first walk."""
-    if lead and sentences and scene.ends_asleep(" ".join(lead)):
-        left = sentences[-1][0].rises and len(sentences) > 1  # what comes after the sleep
-        return len(sentences) - left
-    wanders = scene.keyframes[0][1].on_floor and len(sentences) > 1 and not sentences[0][0].rises
-    return int(bool(lead) and number % 2 == 1 and wanders)
-
-
-def _called(index: int, keyframe: PlannedKeyframe, places: Places) -> str:
-    return places[index][0] if index in places else keyframe.furniture
-
-
-def _found_spans(text: str, furniture: Sequence[str]) -> tuple[Span, ...]:
-    """Sentences tied to keyframes in order: each goes to the next sentence that names its furniture, or stays."""
-    bounds = [(m.start(), m.end()) for m in re.finditer(r"\S[^.!?]*[.!?]+[\"”’']*|\S[^.!?]*$", text)]
-    at, owners = 0, []
-    for word in furniture:
-        named = [i for i in range(at, len(bounds)) if word.lower() in text[slice(*bounds[i])].lower()]
-        at = named[0] if named and word.lower() != "floor" else at
-        owners.append(at)
-    return tuple(
-        Span(*bounds[at], tuple(i for i, owner in enumerate(owners) if owner == at)) for at in sorted(set(owners))
-    )
+        told = [self.voice.fill(template, time=self.time, They=they, Their=their) for template in templates]
+        return [said(re.sub(r"\ba (?=[aeiou])", "an ", text), text, "turn") for text in told]

@@ -24,9 +24,9 @@ invite iron itch jog join jot juggle jump kick kiss knock lament land last laugh
 listen live load lock long look loom loosen lounge love lower lug lunge lurch manage march mark marvel massage match
 matter meander measure meditate melt mend mess miss mix moan mop mope mourn move mumble munch murmur muse mutter nap
 need nestle nibble nod note notice nudge nurse observe obsess occur offer open order organise organize overflow
-overturn overwhelm own pace pack paint panic pant park pass pat patrol pause peek peel peep peer perch perform persist
-pet phone photograph pick pile pinch pine place plan play plead plod plop pluck plug plummet plunge point poke polish
-ponder pop pose post pounce pour practice practise praise pray prefer prepare press pretend prevent print process
+overturn overwhelm own pace pack paint panic pant park party pass pat patrol pause peek peel peep peer perch perform
+persist pet phone photograph pick pile pinch pine place plan play plead plod plop pluck plug plummet plunge point poke
+polish ponder pop pose post pounce pour practice practise praise pray prefer prepare press pretend prevent print process
 procrastinate promise prop protest prowl pull punch purr push puzzle quiver rage raise rattle reach realise realize
 reassure recall receive recite recline recognise recognize recover reel reflect refuse regain regard regret rehearse
 reheat rejoice relax release relieve relish relive rely remain remember remind reminisce remove renew repair repeat
@@ -67,8 +67,8 @@ _IRREGULAR: Final = dict(pair.split(":") for pair in _PAIRS.split())
 _DOUBLED: Final = """
 begin bid chat chop cram cut dig dim dip drag drop drum flip flop forget get grab grin grip hit hop hug hum jog jot
 let lug mop nap nod pat pet plan plod plop plug pop prefer prop put quit regret rid rip rub run sag scan scrub set
-shrug shut sip sit skim skip slam slap slip snap sob spin spit split spot squat step stir stop strip strum strut swim
-tap travel trip trot tug unplug upset win wrap zigzag zip
+shrug shut sidestep sip sit skim skip slam slap slip snap sob spin spit split spot squat step stir stop strip strum
+strut swim tap travel trip trot tug unplug upset win wrap zigzag zip
 """
 _DOUBLING: Final = frozenset(_DOUBLED.split())
 _AUXILIARY: Final = {
@@ -96,6 +96,8 @@ def past(base: str) -> str:
         return base[:-1] + "ied"
     if base in _DOUBLING:
         return base + base[-1] + "ed"
+    if base.endswith("ic"):
+        return base + "ked"
     return base + "ed"
 
 
@@ -105,7 +107,7 @@ def gerund(base: str) -> str:
         return base[:-2] + "ying"
     if base.endswith("e") and not base.endswith(("ee", "oe")) and base != "be":
         return base[:-1] + "ing"
-    return base + (base[-1] if base in _DOUBLING else "") + "ing"
+    return base + (base[-1] if base in _DOUBLING else "k" if base.endswith("ic") else "") + "ing"
 
 
 def third_person(base: str) -> str:

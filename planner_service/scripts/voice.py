@@ -99,7 +99,7 @@ class _Telling:
         """Tell one more word; `space` stood in front of it."""
         lower = token.lower()
         if token.startswith("⟦"):
-            told = self._mention(token[1:-1])
+            told = self._mention(token[1:-1], follows)
         elif lower in _SPOKEN_OF and (self.they_is_ours or lower not in ("they", "them", "their", "theirs")):
             told = self._pronoun(lower, follows)
         else:
@@ -107,13 +107,13 @@ class _Telling:
         self.words += [space, told]
         self.before = lower
 
-    def _mention(self, mark: str) -> str:
+    def _mention(self, mark: str, follows: str) -> str:
         kind, _, own = mark.partition("|")
         if own:
             told = self.voice["their"] if self.named else self.voice.owner()
         elif kind:
             told, self.subject = f"the {kind} {self.voice.name}", True
-        elif self.named and self.before in _OPENS_CLAUSE:
+        elif self.named and self.before in _OPENS_CLAUSE and follows != ",":
             told, self.subject = self.voice["they"], True
         else:
             told, self.subject = self.voice.name, True

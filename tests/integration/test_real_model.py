@@ -63,7 +63,8 @@ def test_a_story_is_planned_and_told_by_a_real_model(kind: str, shelves: Shelves
         planned = plan(studio_of(server, shelves, tmp_path, llm_model=kind, llm_base_url=url))
     assert planned.script.planner == f"llm:{kind}"
     assert tuple(event.text for event in planned.script.events) == EVENTS
-    assert (planned.told.title, planned.told.text) == (TITLE, TEXT)
+    assert planned.told.title == TITLE
+    assert planned.told.text.startswith(TEXT)
     assert len(server.asked) == 3
 
 

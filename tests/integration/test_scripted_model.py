@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from good_model import EVENTS, TEXT, THEME, answer_to, chosen_in
+from good_model import EVENTS, TEXT, THEME, answer_to, chosen_in, told_in
 from pydantic import BaseModel
 
 from motion_backend.motion import Character
@@ -40,7 +40,7 @@ def test_a_model_finds_the_events_arranges_the_scripts_and_tells_the_story(cache
     wanted = chosen_in(model.calls[1].prompt)
     assert {r.event: r.script.id for r in script.short_scripts} == wanted
     assert script.planner == "llm:scripted-a"
-    assert (planned.told.title, planned.told.text) == ("A Letter of Glass", TEXT)
+    assert (planned.told.title, planned.told.text) == ("A Letter of Glass", f"{TEXT} {told_in(model.calls[2].prompt)}")
 
 
 def test_a_model_changes_what_is_played(cache: Path) -> None:

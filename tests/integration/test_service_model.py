@@ -12,7 +12,10 @@ from model_server import ModelServer, failing
 from running import RunningService, finished
 
 THEME = "Sam reads a book on the sofa and then lies down on the bed in tears."
-TEXT = "Sam read the whole morning while the light moved over the wall. Then there was nothing left but to lie down."
+TEXT = (
+    "Sam read on the sofa the whole morning while the light moved over the wall. "
+    "Then there was nothing left but to lie down on the bed."
+)
 KEYFRAMES = [
     {"skill": "loco", "emotion": "relaxed", "caption": "casual walk", "furniture": "sofa"},
     {"skill": "sitdown", "emotion": "relaxed", "caption": "sit with legs crossed", "furniture": "sofa"},

@@ -15,8 +15,9 @@ from planner_service.llm.scripted import ScriptedModel
 from planner_service.scripts import framing, phrases
 from planner_service.scripts.keyframe import Event, Keyframe, LongScript, PlannedKeyframe, Retrieved, ShortScript
 from planner_service.scripts.moments import Variety, mood_of, touches
-from planner_service.scripts.narrating import Told, narrate, narrate_with_model
+from planner_service.scripts.narrating import Told, narrate
 from planner_service.scripts.tense import BASES
+from planner_service.scripts.told_by_model import narrate_with_model
 
 LIBRARY = tuple(
     ShortScript.model_validate_json(line)

@@ -1,0 +1,261 @@
+"""Sentence frames: shapes for a sentence about what a body does, and the choice of one not heard lately."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter, deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
+from typing import Final
+
+from motion_backend.motion import Skill
+from planner_service.scripts import reasons
+from planner_service.scripts.moments import Phrase, Piece, Variety, joined
+from planner_service.scripts.voice import Voice
+
+PLAIN: Final = ("{who} {did}.",)
+TIMES: Final = tuple(
+    f"{word} {{who}} {{did}}."
+    for word in (
+        "then", "a moment later", "soon", "before long", "after a while", "presently", "a little later", "next",
+        "after a pause", "some minutes later", "now", "a short time later", "without further ado",
+        "a minute or so later", "in due course", "after a breath or two", "shortly afterwards", "from there",
+        "quite soon", "straight afterwards", "not much later", "a heartbeat later", "when that was done,",
+    )
+)  # fmt: skip
+LAST_TIMES: Final = (
+    "at last {who} {did}.",
+    "finally {who} {did}.",
+    "in the end {who} {did}.",
+    "last of all {who} {did}.",
+)
+AFTER: Final = ("after {doing}, {who} {rest}.",)
+TWO: Final = (
+    "{who} {lead}, and soon {they} {last}.",
+    "{who} {lead}; then {they} {last}.",
+    "first {who} {lead}, then {they} {last}.",
+    "{who} {lead}, and a little later {they} {last}.",
+    "{who} {lead}, and with that {they} {last}.",
+    "{who} {lead}, and before long {they} {last}.",
+)
+"""Two things done at different places."""
+BEFORE: Final = ("{who} {lead} before {lasting}.",)
+WAYS: Final = (
+    "the way led to {there}, where {who} {rest}.",
+    "next came {there}, where {who} {rest}.",
+    "{who} headed for {there} and {rest}.",
+    "{who} made for {there}, where {they} {rest}.",
+    "it was on to {there}, where {who} {rest}.",
+)
+"""A walk without a feeling to what comes after it."""
+NEW_ROOM: Final = (
+    "in the {room}, {who} {did}.",
+    "over in the {room}, {who} {did}.",
+    "the {room} came next, and there {who} {did}.",
+    "now in the {room}, {who} {did}.",
+    "on to the {room} it was, where {who} {did}.",
+    "then it was the turn of the {room}, where {who} {did}.",
+)
+FIRST_ROOM: Final = ("in the {room}, {who} {did}.", "at home in the {room}, {who} {did}.")
+KNOWN_ROOM: Final = (
+    "back in the {room}, {who} {did}.",
+    "in the {room} again, {who} {did}.",
+    "once more in the {room}, {who} {did}.",
+    "it was back to the {room}, where {who} {did}.",
+    "the {room} called once more, and there {who} {did}.",
+    "returning to the {room}, {who} {did}.",
+)
+RISINGS: Final = (
+    "after a while {who} {did}.",
+    "at length {who} {did} again.",
+    "eventually {who} {did}.",
+    "it was some time before {who} {did}.",
+    "by and by {who} {did} again.",
+    "a long moment passed before {who} {did}.",
+    "in the end {who} {did}.",
+    "only much later did {who} {bare}.",
+    "there {who} stayed for a while and then {did}.",
+    "when the moment had passed, {who} {did}.",
+    "time went by until {who} {did}.",
+    "the minutes passed, and {who} {did} again.",
+    "for a long time nothing stirred; then {who} {did}.",
+    "sooner or later it was time to move on, and {who} {did}.",
+)
+"""Leaving a seat or a bed for what comes next."""
+WAKINGS: Final = (
+    "hours later {who} {did} again.",
+    "it was much later when {who} {did}.",
+    "when the sleep was over, {who} {did}.",
+    "only after a long, deep sleep did {who} {bare}.",
+)
+_SLOT: Final = re.compile(r"(\{(?:did|first|rest|lead|last|doing|lasting|there|bare)\})")
+_CALM: Final = ("neutral", "relaxed")
+_LONGEST: Final = 33
+"""Words of a sentence."""
+_WINDOW: Final = 5
+"""Sentences within which no frame comes again."""
+
+
+@dataclass(frozen=True)
+class Sentence:
+    """One sentence of a story, piece by piece with the keyframes that each tells."""
+
+    pieces: tuple[Piece, ...]
+    frame: str = ""
+    """What it shares with other sentences of its shape; empty for words that nothing else is built like."""
+    family: str = ""
+    named: Callable[[], tuple[Piece, ...]] | None = field(default=None, compare=False)
+    """Makes the pieces with the name where the subject is, for the start of a paragraph."""
+
+    @cached_property
+    def text(self) -> str:
+        """The words, with a capital."""
+        words = "".join(words for words, _ in self.pieces)
+        return words[:1].upper() + words[1:]
+
+    def with_name(self) -> Sentence:
+        """The same sentence with the name for its subject."""
+        return replace(self, pieces=self.named()) if self.named else self
+
+    @cached_property
+    def opening(self) -> tuple[str, ...]:
+        """The first three words."""
+        return tuple(re.findall(r"[\w'’-]+", " ".join(self.text.lower().split()[:5]))[:3])
+
+
+def said(text: str, frame: str = "", family: str = "told") -> Sentence:
+    """A sentence that tells no keyframe."""
+    return Sentence(((text, ()),), frame, family)
+
+
+class Ear:
+    """What a listener remembers: every sentence's opening, and the frames of the last few sentences."""
+
+    def __init__(self, variety: Variety) -> None:
+        self._variety = variety
+        self._openings: set[tuple[str, ...]] = set()
+        self._recent: deque[Sentence] = deque(maxlen=_WINDOW - 1)
+        self._used: Counter[str] = Counter()
+
+    def heard(self, options: Sequence[Sentence]) -> bool:
+        """Whether every option was said already, or begins as something did."""
+        return all(option.opening in self._openings for option in options)
+
+    def choose(self, options: Sequence[Sentence], first: bool = False) -> Sentence:
+        """The option that sounds least like what was said before; it counts as said.
+
+        With `first` that is the first option, as long as nothing has begun like it.
+        """
+        costs = [self._cost(option) + 50 * (first and bool(index)) for index, option in enumerate(options)]
+        least = min(costs)
+        best = [option for option, cost in zip(options, costs, strict=True) if cost <= least + 1]
+        chosen = best[self._variety.index(len(best))]
+        self._openings.add(chosen.opening)
+        self._recent.append(chosen)
+        self._used[chosen.frame] += 1
+        return chosen
+
+    def _cost(self, option: Sentence) -> int:
+        recent = list(self._recent)
+        cost = 200 * (option.opening in self._openings) + 2 * min(self._used[option.frame], 10)
+        cost += 200 * (len(option.text.split()) > _LONGEST)
+        if option.frame and option.family != "plain":
+            cost += 100 * any(option.frame == said.frame for said in recent)
+            cost += 8 * any(option.family == said.family for said in recent[-2:])
+        first = option.opening[:1]
+        cost += 6 * any(first == said.opening[:1] for said in recent[-1:])
+        cost += 3 * any(first == said.opening[:1] for said in recent[-2:-1])
+        return cost + 4 * (option.family == "plain" and any(said.family == "plain" for said in recent[-2:]))
+
+
+@dataclass(frozen=True)
+class Manner:
+    """What a sentence has to bring besides what it tells."""
+
+    time: str = "day"
+    room: str = ""
+    """A room that has to be named."""
+    visits: int = -1
+    """How often the story was in that room before; -1 where no room came before it."""
+    last: bool = False
+    """Whether it ends a scene."""
+    woken: bool = False
+    """Whether a sleep comes before it."""
+
+
+def framed(sentence: Sequence[Phrase], who: str, voice: Voice, manner: Manner) -> list[Sentence]:
+    """Every way to say a sentence of `who`, a name or a pronoun."""
+    return [
+        Sentence(
+            _filled(shape, sentence, who, voice), shape, family, partial(_filled, shape, sentence, voice.name, voice)
+        )
+        for family, shapes in _fitting(sentence, manner).items()
+        for shape in (shape.replace("{room}", manner.room).replace("{time}", manner.time) for shape in shapes)
+    ]
+
+
+def _fitting(sentence: Sequence[Phrase], manner: Manner) -> dict[str, tuple[str, ...]]:
+    """The shapes that suit a sentence, by family."""
+    if len(sentence) == 1 and sentence[0].rises:
+        return {"rising": WAKINGS if manner.woken else RISINGS}
+    if manner.room:
+        return {"room": FIRST_ROOM if manner.visits < 0 else KNOWN_ROOM if manner.visits else NEW_ROOM}
+    shapes = {"plain": PLAIN, "time": TIMES, "last": LAST_TIMES if manner.last else ()}
+    first = sentence[0]
+    if not first.rises:
+        shapes["mood"] = tuple(f"{words}, {{who}} {{did}}." for words in reasons.MOODS.get(first.mood, ()))
+        shapes["reason"] = reasons.REASONS.get((first.mood, _kind(sentence)), ())
+    return shapes | (_of_several(sentence) if len(sentence) > 1 else {})
+
+
+def _of_several(sentence: Sequence[Phrase]) -> dict[str, tuple[str, ...]]:
+    """The shapes that need more than one phrase."""
+    first, last, previous = sentence[0], sentence[-1], sentence[-2]
+    resting = sentence[1].skill in (Skill.SITDOWN, Skill.LIEDOWN)
+    simple = "," not in first.text and " and " not in first.text
+    shapes: dict[str, tuple[str, ...]] = {}
+    if simple and not (first.rises and resting):
+        shapes["after"] = AFTER
+    if len(sentence) == 2 and "," not in first.text and not first.arrives and not first.rises:
+        shapes["two"] = TWO
+    if not previous.arrives and not first.rises and "," not in last.text and " and " not in last.text:
+        shapes["before"] = BEFORE
+    if first.arrives and first.mood in _CALM and first.at:
+        shapes["way"] = WAYS
+    return shapes
+
+
+def _kind(sentence: Sequence[Phrase]) -> str:
+    """What a sentence is for: to "rest", to "roam", or to "do" something."""
+    skills = [phrase.skill for phrase in sentence if not phrase.arrives]
+    if skills[0] in (Skill.SITDOWN, Skill.LIEDOWN):
+        return "rest"
+    return "roam" if skills[0] == Skill.LOCO and not sentence[0].at else "do"
+
+
+def _filled(shape: str, sentence: Sequence[Phrase], who: str, voice: Voice) -> tuple[Piece, ...]:
+    pieces: list[Piece] = []
+    for part in _SLOT.split(shape):
+        match part:
+            case "{did}":
+                pieces += joined(sentence)
+            case "{bare}":
+                pieces.append((sentence[0].bare, sentence[0].keyframes))
+            case "{first}":
+                pieces.append((sentence[0].text, sentence[0].keyframes))
+            case "{doing}":
+                pieces.append((sentence[0].gerund, sentence[0].keyframes))
+            case "{rest}":
+                pieces += joined(sentence[1:])
+            case "{lead}":
+                pieces += joined(sentence[:-1])
+            case "{last}":
+                pieces.append((sentence[-1].text, sentence[-1].keyframes))
+            case "{lasting}":
+                pieces.append((sentence[-1].gerund, sentence[-1].keyframes))
+            case "{there}":
+                pieces.append((sentence[0].at, sentence[0].keyframes))
+            case words if words:
+                pieces.append((voice.fill(words, who=who), ()))
+    return tuple(pieces)
