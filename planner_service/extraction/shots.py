@@ -1,0 +1,195 @@
+"""Where a film cuts: differences of small histograms, held against what is usual around them."""
+
+from __future__ import annotations
+
+from array import array
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planner_service.extraction.film import Film, pictures
+
+if TYPE_CHECKING:
+    from av import VideoFrame
+
+Floats = NDArray[np.float32]
+Progress = Callable[[str, float], None]
+"""Told what is done and how much of it, from 0 to 1."""
+
+CUT: Final = 0.22
+"""The least difference of two pictures that is a cut, of 1."""
+STEEP: Final = 2.0
+"""A cut differs so many times more than any change around it."""
+FADE: Final = 0.35
+"""The least difference of what is before and after a fade."""
+SHORTEST: Final = 0.6
+"""Seconds of a shot."""
+SLOW: Final = 1.5
+"""Seconds from a fade to any other cut."""
+STEP: Final = 0.25
+"""Seconds between the samples in which fades are looked for."""
+_AROUND: Final = 6
+"""Pictures before and after, that are usual."""
+_CELLS: Final = 3
+_BINS: Final = 16
+_ACROSS: Final = 64
+"""Dots of a thumbnail, from left to right."""
+_PLANAR: Final = ("yuv420p", "yuvj420p", "yuv422p", "yuvj422p", "yuv444p", "yuvj444p")
+_SPANS: Final = (2, 4, 6, 8)
+"""Samples from before to after a fade."""
+_TOLD: Final = 500
+"""Pictures between two words about progress."""
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A stretch of film without a cut (seconds)."""
+
+    start: float
+    end: float
+    keyframe_times: tuple[float, ...]
+    """Some moments that show what is in it."""
+    look: tuple[int, ...]
+    """Its brightness and colours: three histograms of 16 bins, each of sum 255 but for rounding."""
+
+
+@dataclass(frozen=True)
+class _Samples:
+    """What is kept of a film's pictures: times, differences, and a few looks a second."""
+
+    times: NDArray[np.float64]
+    steps: Floats
+    """(T,) difference to the picture before."""
+    leaps: Floats
+    """(T,) difference to the picture `_AROUND` before."""
+    looked: NDArray[np.float64]
+    """(S,) when the looks were taken."""
+    looks: Floats
+    """(S, B)"""
+
+
+def shots_of(film: Film, progress: Progress | None = None) -> tuple[Shot, ...]:
+    """The shots of a film in order, from its first picture to its last; every cut and fade parts two. FilmError."""
+    samples = _sampled(film, progress)
+    end = float(samples.times[-1]) + 1 / film.rate
+    cuts = _apart(_hard_cuts(samples), [], SHORTEST)
+    cuts = sorted(_apart(_fades(samples, cuts), cuts, SLOW))
+    bounds = [0.0, *(cut for cut in cuts if SHORTEST <= cut <= end - SHORTEST), end]
+    return tuple(_shot(samples, start, stop) for start, stop in pairwise(bounds))
+
+
+def look_of(picture: VideoFrame) -> Floats:
+    """(B,) histograms of brightness in 3 × 3 cells, then of the two colours, each of sum 1, smoothed over bins."""
+    if picture.format.name not in _PLANAR:
+        picture = picture.reformat(2 * _ACROSS, 2 * _ACROSS, "yuv420p", interpolation="FAST_BILINEAR")
+    luma, *chroma = (_dots(picture, index) for index in range(3))
+    rows, columns = (np.arange(side) * _CELLS // side for side in luma.shape)
+    cell = rows[:, None] * _CELLS + columns
+    parts = _CELLS**2
+    counts = np.bincount((cell * _BINS + luma // _BINS).ravel(), minlength=parts * _BINS).reshape(parts, _BINS)
+    hues = [np.bincount((dots // _BINS).ravel(), minlength=_BINS) for dots in chroma]
+    histograms = np.vstack([counts, *hues]).astype(np.float32)
+    histograms /= np.maximum(histograms.sum(axis=1, keepdims=True), 1)
+    padded = np.pad(histograms, ((0, 0), (1, 1)), mode="edge")
+    return np.asarray((padded[:, :-2] + 2 * histograms + padded[:, 2:]) / 4, np.float32).ravel()
+
+
+def difference(one: Floats, other: Floats) -> Floats:
+    """How unlike looks are, from 0 to 1: half for brightness, half for colours. Shapes (…, B) to (…)."""
+    apart = np.abs(one - other).reshape(*np.shape(one)[:-1], -1, _BINS).sum(axis=-1) / 2
+    return np.asarray(apart[..., : _CELLS**2].mean(axis=-1) / 2 + apart[..., _CELLS**2 :].mean(axis=-1) / 2)
+
+
+def _dots(picture: VideoFrame, index: int) -> NDArray[np.uint8]:
+    """A plane of a planar picture, every so many-th dot of it."""
+    plane = picture.planes[index]
+    step = max(1, plane.width // _ACROSS)
+    dots = np.frombuffer(plane, np.uint8).reshape(plane.height, plane.line_size)
+    return dots[::step, : plane.width : step]
+
+
+def _sampled(film: Film, progress: Progress | None) -> _Samples:
+    times, steps, leaps, looked = array("d"), array("f"), array("f"), array("d")
+    looks: list[Floats] = []
+    recent: deque[Floats] = deque(maxlen=_AROUND)
+    for time, picture in pictures(film, rough=True):
+        look = look_of(picture)
+        steps.append(float(difference(look, recent[-1])) if recent else 0.0)
+        leaps.append(float(difference(look, recent[0])) if recent else 0.0)
+        if not looked or time >= looked[-1] + STEP - 1e-6:
+            looked.append(time)
+            looks.append(look.astype(np.float16))
+        times.append(time)
+        recent.append(look)
+        if progress is not None and len(times) % _TOLD == 0:
+            progress("shots", min(0.99, time / film.claimed) if film.claimed else 0.0)
+    if progress is not None:
+        progress("shots", 1.0)
+    return _Samples(
+        np.array(times), np.array(steps, np.float32), np.array(leaps, np.float32), np.array(looked), np.array(looks)
+    )
+
+
+def _hard_cuts(samples: _Samples) -> list[tuple[float, float]]:
+    """(strength, time) of every picture that begins a shot at once; a flash, after which all is as before, does not."""
+    steps, found = samples.steps, []
+    for at in np.flatnonzero(steps >= CUT):
+        around = np.concatenate([steps[max(1, at - _AROUND) : at], steps[at + 1 : at + 1 + _AROUND]])
+        later = samples.leaps[min(at + _AROUND - 1, len(steps) - 1)]
+        if steps[at] >= STEEP * around.max(initial=0.0) and later >= CUT:
+            found.append((round(float(steps[at]), 4), float(samples.times[at])))
+    return found
+
+
+def _fades(samples: _Samples, cuts: list[float]) -> list[tuple[float, float]]:
+    """(strength, time) of slow changes between two stretches that are steadier than the change.
+
+    A change is seen from several places: the middle of those where it is strongest is taken.
+    """
+    looks, looked = samples.looks.astype(np.float32), samples.looked
+    found = []
+    for span in _SPANS:
+        half = span // 2
+        if len(looks) <= span + 2:
+            break
+        over = difference(looks[:-span], looks[span:])  # (S - span,), centred at + half
+        still = np.zeros(len(looks), np.float32)
+        still[1:] = difference(looks[:-1], looks[1:])
+        for at in np.flatnonzero(over >= FADE):
+            before, after = still[max(1, at - 1) : at + 1], still[at + span + 1 : at + span + 3]
+            sides = max(before.max(initial=0.0), after.max(initial=0.0))
+            time = float(looked[at + half])
+            clear = all(not looked[at] - STEP <= cut <= looked[at + span] + STEP for cut in cuts)
+            if clear and over[at] >= STEEP * sides:
+                found.append((round(float(over[at]), 4), time))
+    return [(strength, _middle(found, strength, time)) for strength, time in found]
+
+
+def _middle(found: list[tuple[float, float]], strength: float, time: float) -> float:
+    """The middle of the places near a time from which a change is seen as strongly, or nearly."""
+    near = [other for much, other in found if abs(other - time) < SLOW and much >= 0.9 * strength]
+    return (min(near) + max(near)) / 2
+
+
+def _apart(found: list[tuple[float, float]], taken: list[float], distance: float) -> list[float]:
+    """The strongest first, none nearer to another one than `distance` seconds; `taken` stay."""
+    kept = list(taken)
+    for _, time in sorted(found, key=lambda one: (-one[0], one[1])):
+        if all(abs(time - other) >= distance for other in kept):
+            kept.append(time)
+    return kept
+
+
+def _shot(samples: _Samples, start: float, end: float) -> Shot:
+    inside = (samples.looked >= start) & (samples.looked < end)
+    looks = samples.looks[inside if inside.any() else slice(0, 1)].astype(np.float32)
+    mean = looks.mean(axis=0).reshape(-1, _BINS)
+    three = np.vstack([mean[: _CELLS**2].mean(axis=0), mean[_CELLS**2 :]])
+    count = min(6, max(1, round((end - start) / 4)))
+    moments = tuple(round(start + (end - start) * (2 * index + 1) / (2 * count), 3) for index in range(count))
+    return Shot(round(start, 3), round(end, 3), moments, tuple(int(value) for value in np.rint(255 * three.ravel())))
