@@ -1,4 +1,4 @@
-"""The command line: `sims story`, `sims serve`, `sims scripts …`, `sims layouts …`."""
+"""The command line: `sims story`, `sims extract`, `sims serve`, `sims scripts …`, `sims layouts …`."""
 
 from __future__ import annotations
 
@@ -9,17 +9,19 @@ from typing import Annotated
 
 import typer
 
-from planner_service.commands import layouts, models, scripts, service, story
+from planner_service.commands import evaluating, extracting, layouts, models, scripts, service, story
 from planner_service.commands.errors import USER_ERRORS, explain
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 app.command("story")(story.story)
+app.command("extract")(extracting.extract)
 app.command("serve")(service.serve)
 app.command("worker")(service.worker)
 app.add_typer(service.jobs, name="jobs")
 app.add_typer(scripts.app, name="scripts")
 app.add_typer(layouts.app, name="layouts")
 app.add_typer(models.app, name="models")
+app.add_typer(evaluating.app, name="evaluate")
 
 
 @app.callback()

@@ -6,6 +6,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from motion_backend.language.minilm import WeightsError
+from planner_service.extraction.containers import FilmError
+from planner_service.extraction.plain import ExtractionError
+from planner_service.extraction.subtitles import SubtitleError
 from planner_service.filing import OutputError
 from planner_service.furnish import FurnishError
 from planner_service.llm.protocol import ModelError
@@ -35,6 +38,9 @@ USER_ERRORS = (
     OutputError,
     SettingsError,
     WeightsError,
+    ExtractionError,
+    SubtitleError,
+    FilmError,
 )
 
 

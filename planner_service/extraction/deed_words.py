@@ -74,10 +74,11 @@ ON_THE_PHONE: Final = _either(r"""
     (?:makes?|made) a (?:phone )?call
 """)
 _NOT_TAKEN: Final = "seat|nap|breath|step|walk|look|bath|shower|break|place|care"
-_HANDLED: Final = """grab|snatch|seiz|fetch|retriev|rummag|search|dust|polish|wip|scrub|wash|rins|clean|tid|pour|cook|bak|
-boil|stir|chop|fry|unpack|pack|fold|water|dial|unplug|touch|strok|pat|caress|knock|bang|pound|slam|brush|press|
-iron|
-vacuum|sweep|swept|sort|arrang|unlock|toast|clear|straighten|feed|fed|reheat|uncork|refill""".replace("\n", "")
+_HANDLED: Final = """grab|snatch|seiz|fetch|retriev|rummag|search|dust|polish|wip|scrub|wash|rins|clean|tid|pour|cook|
+bak|boil|stir|chop|fry|unpack|pack|fold|water|dial|unplug|touch|strok|
+pat|caress|knock|bang|pound|slam|brush|press|iron|vacuum|sweep|swept|sort|arrang|unlock|toast|clear|straighten|feed|fed|reheat|uncork|refill""".replace(
+    "\n", ""
+)
 _PUT: Final = r"puts?|putting|plac(?:e|es|ed|ing)|sets?|setting|lays|laid|laying|drops?|dropped|leav(?:es|ing)|left"
 _GIVES_WAY: Final = (
     r"(?:eyes?|mouth|lips|breath|nose|head|face|hair|door|window|gate|gaze|voice|tears?|doors|windows|curtains?)\b"
@@ -109,11 +110,9 @@ TOUCHES: Final = _either(rf"""
 """)
 _WALKED: Final = """walk|pac(?:e|es|ed|ing)\\b|wander|stroll|run|ran\\b|rush|hurr|dash|sprint|storm|stomp|march|strid|
 strode|shuffl|trudg|plod|limp|hobbl|stagger|stumbl|lurch|reel|tiptoe|creep|crept|sneak|hop\\b|hops\\b|
-hopp|danc|twirl|spin|spun|
-whirl|swirl|circl|enter|approach|roam|prowl|drift|bustl|sway|wobbl|ambl|saunter|bounc|skip|stalk|scurr|scuttl|rac(?:e|es|ed|ing)\\b|
-follow|wad(?:e|es|ed|ing)\\b|waltz|barg(?:e|es|ed|ing)\\b|burst|sidestep|jog|steal|stole|weav|wov|flit|glid|jump|leap""".replace(
-    "\n", ""
-)
+hopp|danc|twirl|spin|spun|whirl|swirl|circl|enter|approach|roam|prowl|drift|bustl|sway|wobbl|ambl|saunter|bounc|
+skip|stalk|scurr|scuttl|rac(?:e|es|ed|ing)\\b|follow|wad(?:e|es|ed|ing)\\b|waltz|barg(?:e|es|ed|ing)\\b|burst|sidestep|jog|steal|
+stole|weav|wov|flit|glid|jump|leap""".replace("\n", "")
 _ROOMS: Final = "room|kitchen|bedroom|study|house|table|home|living room|dining room|office"
 GOES: Final = _either(rf"""
     (?:{_WALKED})\w*

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
 
 from motion_backend.language.text import SentenceEncoder
 from planner_service.extraction.writing import slug_of, summarise
+from planner_service.scripts.captions import Vocabulary
 from planner_service.scripts.checking import repair
-from planner_service.scripts.keyframe import MOST_PIECES, Keyframe, Origin, ShortScript, Source
+from planner_service.scripts.keyframe import MOST_PIECES, Keyframe, ShortScript, Source
 from planner_service.scripts.library import ScriptLibrary
+from planner_service.scripts.picking import UNKNOWN
 
 RULES: Final = "rules"
-UNKNOWN: Final = "unknown"
-"""The licence of what nobody has said one for."""
 Span = tuple[float | None, float | None]
 ALIKE: Final = 0.93
 """Cosine of two summaries that tell the same."""
@@ -34,13 +34,20 @@ class Draft:
 
 @dataclass
 class Maker:
-    """Makes short scripts of one text or film, with ids unlike each other and all that are `taken`."""
+    """Makes short scripts of one text or film, with ids unlike each other, the library's and all that are reserved."""
 
     name: str
     library: ScriptLibrary
     source: Source = "text"
     licence: str = UNKNOWN
-    taken: set[str] = field(default_factory=set)
+    _taken: set[str] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        self.reserve(script.id for script in self.library.scripts)
+
+    def reserve(self, ids: Iterable[str]) -> None:
+        """Use none of these ids."""
+        self._taken.update(ids)
 
     @property
     def encoder(self) -> SentenceEncoder:
@@ -61,7 +68,9 @@ class Maker:
 
     def make(self, summary: str, keyframes: Sequence[Keyframe], emotion: str, room: str, span: Span, by: str) -> Draft:
         """A script that a body can act out. ValidationError where a field does not fit."""
-        kept, repairs = repair(keyframes)
+        kept, repairs = repair(keyframes, self._vocabulary)
+        if len(kept) > MOST_PIECES:
+            repairs = (*repairs, f"{len(kept)} keyframes; the first {MOST_PIECES} are kept")
         start, end = span
         script = ShortScript.model_validate(
             {
@@ -69,18 +78,18 @@ class Maker:
                 "summary": summary,
                 "emotion": emotion,
                 "room": room,
-                "keyframes": repair(kept[:MOST_PIECES])[0][:MOST_PIECES],
+                "keyframes": kept[:MOST_PIECES],
                 "source": self.source,
                 "licence": self.licence,
-                "origin": Origin(name=self.name[:200], start=start, end=end, by=by[:200]),
+                "origin": {"name": self.name[:200], "start": start, "end": end, "by": by[:200]},
             }
         )
         self._taken.add(script.id)
         return Draft(script, repairs, self._like(script))
 
     @cached_property
-    def _taken(self) -> set[str]:
-        return self.taken | {script.id for script in self.library.scripts}
+    def _vocabulary(self) -> Vocabulary:
+        return Vocabulary.built_in(self.encoder)
 
     @cached_property
     def _by_skills(self) -> dict[tuple[str, ...], list[ShortScript]]:

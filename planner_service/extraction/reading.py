@@ -204,8 +204,9 @@ def _draft(body: _Body, shown: Sequence[Told], mood: str, hero: str, maker: Make
         body.keyframes[at] = body.keyframes[at].model_copy(update={"caption": caption})
     moods = Counter(keyframe.emotion for keyframe in body.keyframes if keyframe.emotion != "neutral")
     emotion = max(moods, key=lambda name: moods[name]) if moods else mood
-    times = [(one.line.start, one.line.end) for one in shown if one.line.start is not None]
-    span = (min(start for start, _ in times), max(end for _, end in times)) if times else (None, None)
+    starts = [one.line.start for one in shown if one.line.start is not None]
+    ends = [one.line.end for one in shown if one.line.end is not None]
+    span = (min(starts, default=None), max(ends, default=None))
     clauses = [one.clause.text for one in shown]
     return maker.by_rules(clauses, body.keyframes, emotion, body.room, span, (hero,) if hero else ())
 
