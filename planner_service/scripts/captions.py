@@ -14,7 +14,9 @@ import numpy as np
 from motion_backend.language.text import SentenceEncoder, Vectors
 from motion_backend.motion import Skill
 
-NEAR: Final = 0.5
+NEAR: Final = {"hashing": 0.4}
+"""By encoder, where it is not `USUALLY_NEAR`: hashed words score lower."""
+USUALLY_NEAR: Final = 0.5
 """Below this score nothing known means the same: the usual caption of skill and mood is better."""
 PHONE: Final = re.compile(r"phone.*\b(left|right)\b|\b(left|right)\b.*phone", re.IGNORECASE)
 _SIDES: Final = re.compile(r"\b(?:(left|right)|(?:both|two) (?:hands|arms|palms|elbows|fists|legs|knees|feet))\b")
@@ -59,6 +61,8 @@ class Vocabulary:
             for skill, some in self._known.items()
         }
         self._vectors: dict[Skill, Vectors] = {}
+        self.least = NEAR.get(encoder.name, USUALLY_NEAR)
+        """The score from which on the nearest caption may stand for another."""
 
     @classmethod
     def built_in(cls, encoder: SentenceEncoder) -> Self:
@@ -85,7 +89,8 @@ class Vocabulary:
                 return says[place][1], 1.0
         if skill not in self._vectors:
             self._vectors[skill] = self._encoder.encode([text for text, _ in says])
-        scores = np.round(self._vectors[skill][allowed] @ self._encoder.encode([caption])[0], 4)
+        asked = self._encoder.encode([caption])[0].astype(np.float64)
+        scores = np.round(self._vectors[skill][allowed].astype(np.float64) @ asked, 4)
         best = int(np.argmax(scores))
         return says[allowed[best]][1], float(scores[best])
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Final, Generic, TypeVar
 
 from motion_backend.motion import Skill
-from planner_service.scripts.captions import NEAR, PHONE, Vocabulary, sides
+from planner_service.scripts.captions import PHONE, Vocabulary, sides
 from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.keyframe import EMOTIONS, Keyframe
 from planner_service.scripts.usual import usual
@@ -120,7 +120,7 @@ class Fitting(Generic[K]):
         instead, score = words.nearest(skill, caption)
         remedy = f'"{instead}" is nearest ({score:.2f})'
         common = usual(skill, emotion_of(keyframe.emotion) or "neutral", caption)
-        if score < NEAR and words.known(skill, common):
+        if score < words.least and words.known(skill, common):
             instead, remedy = common, f'nothing known is near it ({score:.2f}): "{common}" as usual'
         one_and_both = " names one side and both, and" if "both" in sides(caption) and len(sides(caption)) > 1 else ""
         self._note(index, "caption", f'"{caption}"{one_and_both} is no caption known for {skill}', remedy)

@@ -139,3 +139,45 @@ def test_rising_knows_what_was_rested_on() -> None:
 def test_the_same_seed_grounds_alike() -> None:
     rows = (("loco", "walk", None), ("touch", "touch", "shelf"), ("liedown", "lie", None))
     assert grounded(*rows, seed=5) == grounded(*rows, seed=5)
+
+
+@pytest.mark.parametrize("caption", ["stand still", "wave with the right hand", "standing there, waving"])
+def test_who_stands_still_or_waves_goes_nowhere(caption: str) -> None:
+    _, stay = grounded(("touch", "touch", "shelf"), ("loco", caption, None))
+    assert (stay.goal, stay.facing) == (None, None)
+    (towards,) = grounded(("loco", caption, "shelf"))
+    assert towards.goal is not None
+    (walk,) = grounded(("loco", "walk waving", None))
+    assert walk.goal is not None
+
+
+@pytest.mark.parametrize(("side", "sign"), [("left", 1), ("right", -1)])
+@pytest.mark.parametrize(
+    "before", [("touch", "touch", "shelf"), ("sitdown", "sit", "sofa"), ("liedown", "lie", "sofa")]
+)
+def test_front_left_and_right_are_seen_from_the_body(before: tuple[str, str, str], side: str, sign: int) -> None:
+    start, still, walk = grounded(before, ("loco", "stand still", None), ("loco", f"walk to the front {side}", None))
+    assert start.spot is not None
+    assert still.goal is None
+    assert walk.goal is not None
+    way = np.subtract(walk.goal, start.spot.standing)
+    looks = start.spot.approach if before[0] == "liedown" else start.spot.facing
+    turn = (np.arctan2(way[0], way[1]) - looks + np.pi) % (2 * np.pi) - np.pi
+    if before[0] != "touch":  # before the shelf there is no room ahead: any walk will do
+        assert 0.4 < sign * turn < 1.3
+    assert WALKABLE.is_free(walk.goal)
+
+
+def test_a_second_walk_to_the_front_goes_on_from_where_the_first_came_to() -> None:
+    _, first, second = grounded(
+        ("sitdown", "sit", "sofa"), ("loco", "walk to the front left", None), ("loco", "walk to the front right", None)
+    )
+    assert first.goal is not None
+    assert second.goal is not None
+    assert first.goal != second.goal
+
+
+def test_the_free_hand_touches_while_the_other_holds_the_phone() -> None:
+    phone = "walk while talking on the phone with the right hand"
+    _, touch = grounded(("loco", phone, "shelf"), ("touch", "touch medium height", "shelf"))
+    assert touch.hand == "left"

@@ -10,8 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
+from motion_backend.language.text import HashingEncoder
 from motion_backend.motion import Posture, Skill
-from planner_service.scripts.checking import check, hand_of, last_posture, read_keyframe, repair, skill_of
+from planner_service.scripts.captions import Vocabulary
+from planner_service.scripts.checking import check, free_hand, hand_of, last_posture, read_keyframe, repair, skill_of
 from planner_service.scripts.keyframe import Keyframe, PlannedKeyframe
 from planner_service.scripts.library import built_in
 from planner_service.scripts.usual import WALKS
@@ -99,6 +101,89 @@ def test_whatever_was_repaired_can_be_acted_out_and_is_then_left_alone(keyframes
 @given(st.lists(KEYFRAMES, max_size=12))
 def test_repairing_keeps_the_order_of_what_is_done(keyframes: list[Keyframe]) -> None:
     assert uses(repair(keyframes)[0]) == uses(keyframes)
+
+
+WORDS = Vocabulary.built_in(HashingEncoder())
+OUTSIDE = st.builds(
+    lambda one, caption: one.model_copy(update={"caption": caption}),
+    KEYFRAMES,
+    st.sampled_from(
+        [
+            "yodelling",
+            "walk while talking on the phone with the right hand",
+            "chatting on the phone, left hand",
+            "touch medium height with the right hand",
+            "rotate with the right hand",
+            "grab it with both hands, left hand first",
+            "sitting still",
+        ]
+    )
+    | st.text(min_size=1, max_size=30),
+)
+HOMES = st.none() | st.lists(
+    st.sampled_from(["double_bed", "dining_chair", "nightstand", "multi_seat_sofa", "floor_lamp", "hovercraft"]),
+    max_size=4,
+)
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.lists(OUTSIDE, max_size=10), st.sampled_from([WORDS, None]), HOMES)
+def test_whatever_comes_from_outside_is_repaired_once_and_for_all(
+    keyframes: list[Keyframe], vocabulary: Vocabulary | None, home: list[str] | None
+) -> None:
+    repaired, repairs = repair(keyframes, vocabulary=vocabulary, furniture=home)
+    assert check(repaired, vocabulary=vocabulary, furniture=home) == ()
+    assert repair(repaired, vocabulary=vocabulary, furniture=home) == (repaired, ())
+    assert bool(repairs) == (list(repaired) != keyframes)
+    if vocabulary is not None:
+        assert all(vocabulary.known(keyframe.skill, keyframe.caption) for keyframe in repaired)
+
+
+def test_an_unknown_caption_becomes_the_nearest_known_one_or_the_usual_one() -> None:
+    rows = script("loco chair, sad, tiptoe quietly", "sitdown chair, sad, quantum flux")
+    assert check(rows) == ()
+    (walk, sit), repairs = repair(rows, vocabulary=WORDS)
+    assert (walk.caption, sit.caption) == ("walk on tiptoes", "sitting with head bowed, hands resting on thighs")
+    assert repairs[0] == (
+        'keyframe 0: "tiptoe quietly" is no caption known for loco; "walk on tiptoes" is nearest (0.67)'
+    )
+    assert "nothing known is near it" in repairs[1]
+    assert {problem.field for problem in check(rows, vocabulary=WORDS)} == {"caption"}
+
+
+def test_our_own_short_scripts_pass_with_the_vocabulary() -> None:
+    assert [one.id for one in built_in() if check(one, vocabulary=WORDS)] == []
+
+
+def test_the_hand_with_the_phone_touches_nothing() -> None:
+    walk = "loco table, neutral, walk while talking on the phone with the right hand"
+    rows = script(walk, "touch table, neutral, touch low height with the right hand")
+    repaired, repairs = repair(rows)
+    assert repaired[1].caption == "touch low height with the left hand"
+    assert "while the right hand holds the phone" in repairs[0]
+    switched = script(walk, "touch table, neutral, turn on with the right hand")
+    assert repair(switched, vocabulary=WORDS)[0][1].caption == "touch medium height with the left hand"
+    for free in ("with the left hand", "with no hand named"):
+        assert check(script(walk, f"touch table, neutral, {free}")) == ()
+    assert (free_hand(rows[0]), free_hand(rows[1]), free_hand(None)) == ("left", "right", "right")
+
+
+@pytest.mark.parametrize(
+    ("home", "before", "after"),
+    [
+        (["armchair", "bed"], ["loco sofa", "sitdown sofa"], ["loco armchair", "sitdown armchair"]),
+        (["dining_chair"], ["loco chair", "sitdown chair"], ["loco chair", "sitdown chair"]),
+        (["wardrobe"], ["loco bed", "liedown bed"], ["loco floor", "liedown floor"]),
+        (["wardrobe"], ["loco desk", "touch desk"], ["loco wardrobe", "touch wardrobe"]),
+        (["wardrobe"], ["loco piano"], ["loco floor"]),
+        ([], ["loco table", "touch table", "sitdown chair"], ["loco floor", "sitdown floor"]),
+    ],
+)
+def test_furniture_that_the_home_lacks_is_replaced(home: list[str], before: list[str], after: list[str]) -> None:
+    rows = script(*before)
+    assert told(repair(rows, furniture=home)[0]) == after
+    assert (check(rows, furniture=home) == ()) == (before == after)
+    assert all(problem.field == "furniture" for problem in check(rows, furniture=home))
 
 
 def uses(keyframes: Sequence[Keyframe]) -> list[Skill]:
