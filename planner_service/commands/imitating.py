@@ -13,7 +13,7 @@ from planner_service.filing import check_writable, write_files
 from planner_service.llm.choosing import KINDS, load_model
 from planner_service.llm.protocol import LanguageModel
 from planner_service.llm.served import for_story
-from planner_service.scripts.planning import captions
+from planner_service.scripts.captions import captions
 from planner_service.scripts.wishes import MOST_WANTED, Wish
 from planner_service.settings import Settings, SettingsError, read_settings
 from planner_service.shelves import Shelves, open_shelves
@@ -35,6 +35,7 @@ def imitate(
 ) -> None:
     """Have the language model write new short scripts in the manner of those in the library."""
     from planner_service.scripts.imitating import imitate as imitated
+    from planner_service.scripts.rephrasing import FILE, all_synonyms
 
     settings = read_settings()
     model = _model(settings, seed, "imitating")
@@ -43,7 +44,9 @@ def imitate(
     shelves = open_shelves(settings, writes=add)
     room = canonical_room(room)
     wish = Wish(emotion, room, count, words_of(furniture) or _furniture_of(shelves, room))
-    made = imitated(model, shelves.scripts(), wish, captions(), seed)
+    said = all_synonyms(settings.data_dir / FILE)
+    known = {skill: {one: said.get(skill, {}).get(one, []) for one in some} for skill, some in captions().items()}
+    made = imitated(model, shelves.scripts(), wish, known, seed)
     console = Console(markup=False, highlight=False, soft_wrap=True)
     for script in made.scripts:
         console.print(f"{script.id}: {script.summary}")

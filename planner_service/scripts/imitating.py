@@ -15,17 +15,19 @@ from motion_backend.motion import Skill
 from planner_service.llm.answers import problems_of
 from planner_service.llm.asking import ModelAnswerError, ask
 from planner_service.llm.protocol import LanguageModel, ModelError
+from planner_service.scripts.captions import Vocabulary
 from planner_service.scripts.checking import read_keyframe, repair
 from planner_service.scripts.emotions import emotion_of
+from planner_service.scripts.fitting import is_floor
 from planner_service.scripts.keyframe import EMOTIONS, MOST_PIECES, Keyframe, Origin, ShortScript
 from planner_service.scripts.library import ScriptLibrary
 from planner_service.scripts.likeness import Likeness
-from planner_service.scripts.mending import is_floor
 from planner_service.scripts.picking import UNKNOWN
 from planner_service.scripts.planning import DirectKeyframe
 from planner_service.scripts.wishes import Wish, examples
 from scene_graphs.furniture import categories_of, display_name
 
+Captions = Mapping[str, Mapping[str, Sequence[str]]]
 MOST_QUESTIONS: Final = 4
 """How often a model is asked, its one second try at each question not counted."""
 _LEAST_KEYFRAMES: Final = 2
@@ -85,6 +87,7 @@ class _Desk:
     model: LanguageModel
     wish: Wish
     like: tuple[ShortScript, ...]
+    vocabulary: Vocabulary
     likeness: Likeness
     taken: set[str]
     scripts: list[ShortScript] = field(default_factory=list)
@@ -98,7 +101,7 @@ class _Desk:
     def read(self, written: WrittenScript) -> None:
         """Keep one script, or note why not."""
         try:
-            script, repairs = _script(written, self.wish)
+            script, repairs = _script(written, self.wish, self.vocabulary)
             if (twin := self.likeness.twin(script)) is not None:
                 raise _Unfit(f"it is like {twin.script_id}: {twin.why}")
         except _Unfit as reason:
@@ -118,16 +121,17 @@ class _Desk:
         self.notes += [f"{script.id}: {line}" for line in repairs]
 
 
-def imitate(
-    model: LanguageModel, library: ScriptLibrary, wish: Wish, captions: Mapping[str, Sequence[str]], seed: int = 0
-) -> Imitated:
+def imitate(model: LanguageModel, library: ScriptLibrary, wish: Wish, captions: Captions, seed: int = 0) -> Imitated:
     """Short scripts like stored ones of an emotion and room, valid, repaired and unlike all there are.
 
+    `captions` are those that the body knows, by skill, each with other words for it; a model's own words become the
+    nearest of them.
     What is missing is asked for again, at most MOST_QUESTIONS times; fewer than wished for are better than none.
     ModelError when nothing at all can be used.
     """
     like = examples(library, wish, seed)
-    desk = _Desk(model, wish, like, Likeness(library), {script.id for script in library.scripts})
+    vocabulary = Vocabulary({skill: list(some) for skill, some in captions.items()}, captions, library.encoder)
+    desk = _Desk(model, wish, like, vocabulary, Likeness(library), {script.id for script in library.scripts})
     questions = 0
     while desk.missing and questions < MOST_QUESTIONS:
         questions += 1
@@ -153,7 +157,7 @@ def _some(answer: WrittenScripts) -> list[str]:
     return [] if answer.scripts else ["scripts: there is none"]
 
 
-def _question(desk: _Desk, captions: Mapping[str, Sequence[str]]) -> str:
+def _question(desk: _Desk, captions: Captions) -> str:
     wish = desk.wish
     written = [f"- {script.summary}" for script in desk.scripts]
     refused = [f"- refused ({one.why}): {one.summary}" for one in desk.refused[-_SHOWN:]]
@@ -178,7 +182,7 @@ def _shown(script: ShortScript) -> str:
     return json.dumps({"summary": script.summary, "keyframes": keyframes}, ensure_ascii=False)
 
 
-def _script(written: WrittenScript, wish: Wish) -> tuple[ShortScript, tuple[str, ...]]:
+def _script(written: WrittenScript, wish: Wish, vocabulary: Vocabulary) -> tuple[ShortScript, tuple[str, ...]]:
     """A script as it can be acted out, and what was repaired; _Unfit says why it cannot be used."""
     summary = " ".join(written.summary.split())
     if not _SHORTEST <= len(summary) <= 400:
@@ -188,7 +192,7 @@ def _script(written: WrittenScript, wish: Wish) -> tuple[ShortScript, tuple[str,
     except ValidationError as error:
         raise _Unfit(f"keyframes: {problems_of(error)[0]}") from error
     _refuse_strange(keyframes, wish.categories)
-    kept, repairs = repair(keyframes)
+    kept, repairs = repair(keyframes, vocabulary)
     _refuse_strange(kept, wish.categories)
     if not _LEAST_KEYFRAMES <= len(kept) <= MOST_PIECES:
         raise _Unfit(f"keyframes: {len(kept)} of them, there must be {_LEAST_KEYFRAMES} to {_MOST_KEYFRAMES}")

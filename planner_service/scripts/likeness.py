@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend.motion import Skill
+from planner_service.scripts.fitting import place_of
 from planner_service.scripts.keyframe import ShortScript
 from planner_service.scripts.library import ScriptLibrary
-from planner_service.scripts.mending import place_of
 
 NEAREST: Final = 0.90
 """Cosine of two summaries' vectors from which on they tell the same."""

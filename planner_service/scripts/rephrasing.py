@@ -16,6 +16,7 @@ import prompts
 from motion_backend.motion import Skill
 from planner_service.llm.asking import ask
 from planner_service.llm.protocol import LanguageModel, ModelError
+from planner_service.scripts.captions import sides, synonyms
 from planner_service.scripts.library import LibraryError
 
 Synonyms = dict[str, dict[str, list[str]]]
@@ -27,14 +28,17 @@ MOST_QUESTIONS: Final = 3
 LARGEST: Final = 8_000_000
 """Bytes of a file of synonyms."""
 _BATCH: Final = 12
-_SIDES: Final = re.compile(r"\b(left|right|both)\b")
+_NONE: Final = "no side"
+_LEFT_RIGHT: Final = re.compile(r"\b(left|right)\b")
 _MOTIONS: Final = {
     Skill.LOCO: r"walk|run|ran|strid|stroll|march|pac(?:e|ing)|skip|danc|tiptoe|shuffl",
     Skill.SITDOWN: r"sit|sat|seat",
-    Skill.STANDUP: r"stand up|standing up|stood up|rise|rising",
-    Skill.LIEDOWN: r"lie|lying|lay|reclin",
+    Skill.STANDUP: r"stand(?:s|ing)? up|stood up|rise|rising",
+    Skill.LIEDOWN: r"lies?\b|lying",
     Skill.GETUP: r"get(?:s|ting)? up",
 }
+_RISINGS: Final = (Skill.STANDUP, Skill.GETUP)
+"""Words for these tell what the body rises from."""
 
 
 class Phrases(BaseModel):
@@ -73,7 +77,7 @@ def rephrase(
     What is missing of a batch is asked for again, at most MOST_QUESTIONS times. ModelError when nothing can be used.
     """
     taken = {_plain(caption) for caption in known} | {_plain(one) for some in captions.values() for one in some}
-    synonyms: Synonyms = {}
+    made: Synonyms = {}
     missing: list[str] = []
     notes: list[str] = []
     for skill, batch in _batches(captions):
@@ -85,14 +89,14 @@ def rephrase(
             _fill(model, skill, found, taken, count)
         except ModelError as error:
             notes.append(f"asked no further: {error}")
-            if not synonyms and not any(len(phrases) == count for phrases in found.values()):
+            if not made and not any(len(phrases) == count for phrases in found.values()):
                 raise
         for caption, phrases in found.items():
             if len(phrases) == count:
-                synonyms.setdefault(skill, {})[caption] = phrases
+                made.setdefault(skill, {})[caption] = phrases
             else:
                 missing.append(caption)
-    return Rephrased(synonyms, tuple(missing), tuple(notes))
+    return Rephrased(made, tuple(missing), tuple(notes))
 
 
 def fault_of(phrase: str, caption: str, skill: str) -> str | None:
@@ -101,11 +105,12 @@ def fault_of(phrase: str, caption: str, skill: str) -> str | None:
         return f"{len(phrase)} letters, it must have 1 to {MOST_LETTERS}"
     if not phrase.isprintable() or not re.search(r"[^\W\d_]", phrase):
         return "it is no plain text"
-    if _sides(phrase) != _sides(caption):
-        return f"it names {_told(_sides(phrase))}, the caption {_told(_sides(caption))}"
+    if _told(phrase) != _told(caption) and (_told(phrase), _told(caption)) != ("both", _NONE):
+        return f"it names {_told(phrase)}, the caption {_told(caption)}"
     for other, words in _MOTIONS.items():
         said = re.compile(rf"\b(?:{words})", re.IGNORECASE)
-        if other != skill and said.search(phrase) and not said.search(caption):
+        may = other == skill or (skill in _RISINGS and other is not Skill.LOCO)
+        if not may and said.search(phrase) and not said.search(caption):
             return f"it tells of {other}"
     return None
 
@@ -125,6 +130,16 @@ def read_synonyms(file: Path) -> Synonyms:
     except (OSError, ValueError, AttributeError, TypeError, RecursionError) as error:
         why = f"it is not {{skill: {{caption: [phrases]}}}} ({error}); mend it or move it away"
         raise LibraryError(f"{file.name}: {why}") from error
+
+
+def all_synonyms(file: Path) -> Synonyms:
+    """Those that are shipped and, behind them for each caption, those of a user's file. LibraryError."""
+    merged = {skill: {caption: list(some) for caption, some in said.items()} for skill, said in synonyms().items()}
+    for skill, said in read_synonyms(file).items():
+        for caption, phrases in said.items():
+            there = merged.setdefault(skill, {}).setdefault(caption, [])
+            there += [phrase for phrase in phrases if phrase not in there]
+    return merged
 
 
 def write_synonyms(file: Path, more: Synonyms) -> Synonyms:
@@ -181,13 +196,10 @@ def _take(
             taken.add(_plain(phrase))
 
 
-def _sides(text: str) -> list[str]:
-    """In the order in which they are named, so that two hands do not change places."""
-    return list(dict.fromkeys(_SIDES.findall(text.lower())))
-
-
-def _told(sides: Sequence[str]) -> str:
-    return " before ".join(sides) or "no side"
+def _told(text: str) -> str:
+    """The sides that a text names, in the order of left and right, so that two hands do not change places."""
+    both = ["both"] if "both" in sides(text) else []
+    return " and ".join([*both, *dict.fromkeys(_LEFT_RIGHT.findall(text.lower()))]) or _NONE
 
 
 def _plain(text: str) -> str:

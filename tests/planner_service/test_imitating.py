@@ -15,6 +15,7 @@ from motion_backend.language.text import HashingEncoder
 from planner_service.llm.asking import ModelAnswerError
 from planner_service.llm.protocol import ModelError
 from planner_service.llm.scripted import Answer, ScriptedModel
+from planner_service.scripts.captions import captions
 from planner_service.scripts.checking import check
 from planner_service.scripts.imitating import MOST_QUESTIONS, Imitated, imitate
 from planner_service.scripts.keyframe import ShortScript
@@ -23,7 +24,7 @@ from planner_service.scripts.likeness import Likeness
 from planner_service.scripts.wishes import MOST_WANTED, Wish, examples
 
 LIBRARY = ScriptLibrary(built_in(), Features(HashingEncoder()))
-CAPTIONS = {"loco": ["walk with depression"], "sitdown": ["sitting with head bowed, hands resting on thighs"]}
+CAPTIONS = {skill: dict.fromkeys(some, ()) for skill, some in captions().items()}
 WISH = Wish("sad", "bedroom", 2, ("bed", "wardrobe", "desk", "chair"))
 ANOTHER = LIBRARY.get("insomnia-at-three")
 ALL = ["bed", "desk", "chair", *(one.piece[0] for one in ANOTHER.keyframes if not one.on_floor)]
@@ -31,8 +32,15 @@ RING = "The character has lost the ring of the grandmother and searches the ward
 LETTER = "No letter has come again today, so the character stares at the empty desk and gives up hope."
 
 
-def keyframe(skill: str, furniture: str, caption: str = "with a heavy heart", emotion: str = "sad") -> dict[str, str]:
-    return {"skill": skill, "emotion": emotion, "caption": caption, "furniture": furniture}
+USUAL = {
+    "walk": "walk with depression", "sit": "sitting with head bowed, hands resting on thighs",
+    "standup": "stand up slowly", "touch": "touch medium height",
+}  # fmt: skip
+
+
+def keyframe(skill: str, furniture: str, caption: str = "", emotion: str = "sad") -> dict[str, str]:
+    said = caption or USUAL.get(skill, "somehow")
+    return {"skill": skill, "emotion": emotion, "caption": said, "furniture": furniture}
 
 
 def written(summary: str, *pieces: str) -> dict[str, Any]:
@@ -90,10 +98,21 @@ def test_where_examples_lack_others_of_the_emotion_or_room_are_shown() -> None:
 
 
 def test_what_lacks_a_walk_is_repaired_and_that_is_told() -> None:
-    row = {"summary": RING, "keyframes": [keyframe("touch", "wardrobe"), keyframe("sitdown", "bed")]}
+    row = {"summary": RING, "keyframes": [keyframe("touch", "wardrobe"), keyframe("sit", "bed")]}
     found = made([row], [written(LETTER, "chair")])
     assert [one.skill for one in found.scripts[0].keyframes] == ["loco", "touch", "loco", "sitdown"]
     assert [note for note in found.notes if note.startswith(found.scripts[0].id) and "loco put in" in note]
+
+
+def test_a_models_own_words_for_how_the_body_looks_become_known_captions() -> None:
+    row = {"summary": RING, "keyframes": [keyframe("walk", "bed"), keyframe("sit", "bed", "sits in a very own way")]}
+    found = made([row], [written(LETTER, "chair")])
+    assert all(one.caption in CAPTIONS[one.skill] for one in found.scripts[0].keyframes)
+    assert any('"sits in a very own way"' in note for note in found.notes)
+    wished = {**CAPTIONS, "sitdown": CAPTIONS["sitdown"] | {"sitting still": ("sits in a very own way",)}}
+    model = answering([row, written(LETTER, "chair")])
+    (script, _) = imitate(model, LIBRARY, WISH, wished).scripts
+    assert script.keyframes[-1].caption == "sitting still"
 
 
 BAD = {

@@ -13,9 +13,16 @@ from pydantic import BaseModel
 from motion_backend.motion import Skill
 from planner_service.llm.protocol import ModelError
 from planner_service.llm.scripted import Answer, ScriptedModel
+from planner_service.scripts.captions import captions, synonyms
 from planner_service.scripts.library import LibraryError
-from planner_service.scripts.planning import captions
-from planner_service.scripts.rephrasing import MOST_QUESTIONS, fault_of, read_synonyms, rephrase, write_synonyms
+from planner_service.scripts.rephrasing import (
+    MOST_QUESTIONS,
+    all_synonyms,
+    fault_of,
+    read_synonyms,
+    rephrase,
+    write_synonyms,
+)
 
 WAYS = ("{} at ease", "{} without any haste", "calmly: {}", "{} in a quiet manner", "{} just so")
 
@@ -47,7 +54,7 @@ def test_every_caption_that_the_body_knows_gets_five_other_ways_to_say_it() -> N
         ("touch with the right hand", "touch with the left hand", "touch", "right"),
         ("touch it", "touch with the left hand", "touch", "no side"),
         ("touch with both hands", "touch with the left hand", "touch", "both"),
-        ("the right hand on the left knee", "left hand on the right knee", "sitdown", "right before left"),
+        ("the right hand on the left knee", "left hand on the right knee", "sitdown", "right and left"),
         ("stand up from the chair", "sit upright", "sitdown", "standup"),
         ("lying in the chair", "sit upright", "sitdown", "liedown"),
         ("walk to the chair", "sit upright", "sitdown", "loco"),
@@ -61,11 +68,12 @@ def test_a_phrase_that_means_another_motion_is_refused(phrase: str, caption: str
     assert says in str(fault_of(phrase, caption, skill))
 
 
-def test_a_caption_could_stand_for_itself() -> None:
+def test_captions_and_the_synonyms_that_are_shipped_could_be_a_models() -> None:
     for skill, some in captions().items():
         assert skill in set(Skill)
         for caption in some:
-            assert fault_of(caption, caption, skill) is None
+            for phrase in (caption, *synonyms()[skill][caption]):
+                assert fault_of(phrase, caption, skill) is None, (phrase, caption)
 
 
 def test_what_is_refused_is_told_and_asked_for_again() -> None:
@@ -107,6 +115,16 @@ def test_the_file_holds_what_was_there_and_what_is_new(tmp_path: Path) -> None:
     wanted: dict[str, Any] = {"touch": {"a": ["é"], "c": ["d"]}, "loco": {"e": ["f"]}}
     assert read_synonyms(file) == json.loads(file.read_text(encoding="utf-8")) == wanted
     assert [one.name for one in file.parent.iterdir()] == [file.name]
+
+
+def test_a_users_synonyms_come_behind_those_that_are_shipped(tmp_path: Path) -> None:
+    file = tmp_path / "caption_synonyms.json"
+    assert all_synonyms(file) == synonyms()
+    first = synonyms()["getup"]["get up"]
+    write_synonyms(file, {"getup": {"get up": [first[0], "leave the bed at last"]}, "touch": {"my own": ["mine"]}})
+    merged = all_synonyms(file)
+    assert merged["getup"]["get up"] == [*first, "leave the bed at last"]
+    assert merged["touch"]["my own"] == ["mine"]
 
 
 @pytest.mark.parametrize("content", ["{", "[]", '{"touch": []}', '{"touch": {"a": 3}}', "[" * 100_000, "\ud800"])
