@@ -25,12 +25,14 @@ _WORD: Final = re.compile(r"[^\W_]+")
 
 def captions() -> dict[str, list[str]]:
     """The captions that the body and the narrator know, by skill."""
-    return _read("captions.json")
+    known: dict[str, list[str]] = _read("captions.json")
+    return known
 
 
 def synonyms() -> dict[str, dict[str, list[str]]]:
     """Five other ways to say every known caption, by skill and caption; same meaning, same hands and sides."""
-    return _read("caption_synonyms.json")
+    others: dict[str, dict[str, list[str]]] = _read("caption_synonyms.json")
+    return others
 
 
 def sides(caption: str) -> frozenset[str]:
