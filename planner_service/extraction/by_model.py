@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Final
 
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -109,11 +109,11 @@ def _problems(answer: FoundScripts, scenes: Numbered) -> list[str]:
     if len(answer.scripts) > _MOST_SCRIPTS:
         found.append(f"scripts: {len(answer.scripts)} of them, at most {_MOST_SCRIPTS}")
     for index, script in enumerate(answer.scripts[:_MOST_SCRIPTS]):
-        found += [f"scripts.{index}.{problem}" for problem in _faults(script, scenes)]
+        found += [f"scripts.{index}.{problem}" for problem in faults_of(script, scenes)]
     return found
 
 
-def _faults(script: FoundScript, scenes: Numbered) -> Iterator[str]:
+def faults_of(script: FoundScript, scenes: Collection[int]) -> Iterator[str]:
     """What is wrong with a script that mending does not put right: skills that are missing in between it does."""
     summary = " ".join(script.summary.split())
     if script.scene not in scenes:

@@ -5,18 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO, Final
+from typing import TYPE_CHECKING, BinaryIO, Final
 
 from planner_service.extraction.by_model import ask_for_scripts, pieces_of
 from planner_service.extraction.containers import checked_container, container_of
-from planner_service.extraction.making import Draft, Maker
+from planner_service.extraction.making import Draft, Maker, Span
 from planner_service.extraction.plain import ENGLISH, MOST_BYTES, ExtractionError, language_of, read_text
 from planner_service.extraction.reading import SceneRead, read_scene
-from planner_service.extraction.subtitles import LARGEST, form_of, read_subtitles
+from planner_service.extraction.subtitles import LARGEST, Subtitles, form_of, read_subtitles
 from planner_service.extraction.text import TextScene, scenes_of_cues, scenes_of_text
 from planner_service.llm.protocol import LanguageModel, ModelError
+from planner_service.llm.served import for_story
 from planner_service.scripts.library import ScriptLibrary
 from planner_service.scripts.picking import UNKNOWN
+
+if TYPE_CHECKING:
+    from planner_service.extraction.watching import Watched
 
 RULES: Final = "rules"
 _HEAD: Final = 4096
@@ -124,7 +128,51 @@ def _of_subtitles(source: Source, data: bytes, means: Means) -> Extraction:
 
 
 def _of_film(source: Source, means: Means) -> Extraction:
-    raise NotImplementedError
+    """A film by a model that sees; without one its subtitles by rules."""
+    from planner_service.extraction.embedded import embedded_cues
+    from planner_service.extraction.film import open_film
+    from planner_service.extraction.grouping import scenes_of
+    from planner_service.extraction.watching import watch_film
+
+    film = open_film(source.file, source.name)
+    if source.subtitles is not None:
+        subtitles: Subtitles | None = read_subtitles(_read(source.subtitles, "subtitles", LARGEST + 1))
+    else:
+        subtitles = embedded_cues(film)
+    cues = subtitles.cues if subtitles is not None else ()
+    notes = [f"{source.name}: {note}" for note in (subtitles.notes if subtitles is not None else ())]
+    maker = Maker(source.name, means.library, "video", source.licence)
+    if means.model is None:
+        if not cues:
+            raise ExtractionError(
+                f"{source.name}: is a film without subtitles, and no language model is set that could watch it; "
+                "give its subtitles (SRT, WebVTT or ASS), or set SIMS_LLM_MODEL to one that sees"
+            )
+        _only_english(" ".join(cue.text for cue in cues[:2000]), source.name)
+        notes.append(f"{source.name}: only the subtitles were read; nobody watched the pictures")
+        return _of_scenes(scenes_of_cues(cues), notes, maker, means)
+    maker.reserve(means.taken)
+    scenes = scenes_of(film, cues, means.progress)
+    reports: list[SceneReport] = []
+    drafts: list[Draft] = []
+    for watched in watch_film(means.model, film, scenes, maker, means.strict, means.progress):
+        read, by = _seen(watched, maker, reports[-1].room if reports else "", f"llm:{means.model.name}")
+        notes += watched.notes
+        drafts += read.drafts
+        reports.append(_report(len(reports) + 1, (watched.scene.start, watched.scene.end), read, by))
+    return Extraction(tuple(drafts), tuple(reports), (*notes, *film.notes), _by(reports))
+
+
+def _seen(watched: Watched, maker: Maker, room: str, by: str) -> tuple[SceneRead, str]:
+    """What came of a scene of a film, and who read it: where the model failed, the rules read what is said in it."""
+    if watched.outline is not None:
+        reason = "" if watched.drafts else "the model saw nothing in it that a body can act"
+        return SceneRead(watched.drafts, (), reason, watched.outline.room or room), by
+    read = [_by_rules(scene, maker, room) for scene in scenes_of_cues(watched.scene.cues)]
+    drafts = tuple(draft for one in read for draft in one.drafts)
+    unused = tuple(clause for one in read for clause in one.unused)
+    reason = "" if drafts else "the model failed, and its subtitles tell of nothing that a body can act"
+    return SceneRead(drafts, unused, reason, read[-1].room if read else room), RULES
 
 
 def _of_scenes(scenes: Sequence[TextScene], notes: Sequence[str], maker: Maker, means: Means) -> Extraction:
@@ -133,16 +181,22 @@ def _of_scenes(scenes: Sequence[TextScene], notes: Sequence[str], maker: Maker, 
     reports: list[SceneReport] = []
     drafts: list[Draft] = []
     told = list(notes)
-    for read, by in _read_scenes(scenes, maker, means, told):
-        number = len(reports) + 1
-        scene = scenes[number - 1]
-        ids = tuple(draft.script.id for draft in read.drafts)
-        reports.append(SceneReport(number, scene.start, scene.end, read.room, ids, read.unused, read.reason, by))
+    for scene, (read, by) in zip(scenes, _read_scenes(scenes, maker, means, told), strict=True):
         drafts += read.drafts
+        reports.append(_report(len(reports) + 1, (scene.start, scene.end), read, by))
         if means.progress is not None:
-            means.progress("reading", number / len(scenes))
-    by = ", ".join(dict.fromkeys(report.by for report in reports)) or RULES
-    return Extraction(tuple(drafts), tuple(reports), tuple(told), by)
+            means.progress("reading", len(reports) / len(scenes))
+    return Extraction(tuple(drafts), tuple(reports), tuple(told), _by(reports))
+
+
+def _report(number: int, span: Span, read: SceneRead, by: str) -> SceneReport:
+    ids = tuple(draft.script.id for draft in read.drafts)
+    return SceneReport(number, *span, read.room, ids, read.unused, read.reason, by)
+
+
+def _by(reports: Sequence[SceneReport]) -> str:
+    """Everybody who read a scene, in order."""
+    return ", ".join(dict.fromkeys(report.by for report in reports)) or RULES
 
 
 def _read_scenes(
@@ -152,7 +206,7 @@ def _read_scenes(
     for piece in pieces_of(scenes):
         if model is not None:
             try:
-                found = ask_for_scripts(model, piece, maker)
+                found = ask_for_scripts(for_story(model, min(piece)) or model, piece, maker)
             except ModelError as error:
                 if means.strict:
                     raise

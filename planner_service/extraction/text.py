@@ -84,7 +84,8 @@ def scenes_of_text(text: str) -> tuple[TextScene, ...]:
 def scenes_of_cues(cues: Iterable[Cue]) -> tuple[TextScene, ...]:
     """The scenes of subtitles: what they tell of somebody ("She sits down.") is told, all else is speech."""
     scenes: list[list[Line]] = []
-    for line in _sentences(sorted(cues, key=lambda cue: (cue.start, cue.end))):
+    lines = _sentences(sorted(cues, key=lambda cue: (cue.start, cue.end)))
+    for line in sorted(lines, key=lambda line: line.start or 0.0):
         last = scenes[-1] if scenes else []
         near = last and (line.start or 0.0) - (last[-1].end or 0.0) < PAUSE
         if near and (line.end or 0.0) - (last[0].start or 0.0) <= _LONGEST_SCENE:

@@ -1,0 +1,208 @@
+"""Texts taken apart: bytes to letters, letters to scenes, clauses to deeds, clauses to summaries."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from stories import GERMAN, NARRATIVE, SCREENPLAY
+
+from planner_service.extraction.clauses import clauses_in
+from planner_service.extraction.deeds import deed_of, pieces_in
+from planner_service.extraction.plain import LONGEST, ExtractionError, language_of, read_text
+from planner_service.extraction.subtitles import Cue
+from planner_service.extraction.text import Line, TextScene, scenes_of_cues, scenes_of_text
+from planner_service.extraction.writing import in_present, slug_of
+
+CUES = st.builds(
+    lambda start, text, speaker: Cue(start, start + 2, text, speaker, () if text else ("door slams",)),
+    st.floats(0, 100),
+    st.text(max_size=40),
+    st.none() | st.text(max_size=8),
+)
+
+
+@given(st.binary(max_size=300))
+def test_any_bytes_are_read_or_refused_with_their_name(data: bytes) -> None:
+    try:
+        text, _ = read_text(data, "a file")
+    except ExtractionError as error:
+        assert str(error).startswith("a file: ")  # noqa: PT017
+    else:
+        assert any(letter.isalpha() for letter in text)
+        assert all(letter.isprintable() or letter in "\n\t" or letter.isspace() for letter in text if letter < "\x80")
+
+
+@given(st.text(max_size=400))
+def test_any_text_has_scenes_in_which_every_line_says_something(text: str) -> None:
+    for scene in scenes_of_text(text):
+        assert scene.lines
+        assert all(line.text.strip() for line in scene.lines)
+        clauses_in(scene)
+
+
+@given(st.lists(CUES, max_size=8))
+def test_scenes_of_subtitles_keep_the_order_of_time(cues: list[Cue]) -> None:
+    starts = [scene.start for scene in scenes_of_cues(cues)]
+    assert None not in starts
+    assert starts == sorted(starts, key=lambda start: start or 0.0)
+
+
+def test_a_screenplay_has_a_scene_for_each_slugline() -> None:
+    inside, street, bedroom = scenes_of_text(SCREENPLAY)
+    assert [scene.place for scene in (inside, street, bedroom)] == [
+        "LIVING ROOM - NIGHT",
+        "STREET - NIGHT",
+        "BEDROOM - LATER",
+    ]
+    assert [scene.outside for scene in (inside, street, bedroom)] == [False, True, False]
+    assert "Anna sinks into the armchair." in inside.told
+    assert inside.spoken.startswith("I can't do this anymore. I am so tired. Where are you?")
+    assert "CUT" not in inside.told + inside.spoken
+
+
+def test_what_a_screenplay_shouts_is_told_in_small_letters_but_people_keep_theirs() -> None:
+    told = scenes_of_text(SCREENPLAY)[0].told
+    assert "Anna comes in, drops her keys in a bowl and slumps onto the couch." in told
+    assert "The phone rings." in told
+
+
+def test_a_narrative_has_scenes_by_paragraphs_and_what_is_quoted_is_speech() -> None:
+    scenes = scenes_of_text(NARRATIVE)
+    assert len(scenes) == 8
+    assert scenes[1].spoken == "You will be late,"
+    assert "late" not in scenes[1].told
+
+
+def test_subtitles_are_told_where_they_tell_of_somebody_and_else_spoken() -> None:
+    cues = [Cue(0, 1, "She storms through the room"), Cue(1, 2, "and sits down."), Cue(3, 4, "He is late!", "Anna")]
+    (scene,) = scenes_of_cues([*cues, Cue(5, 6, "You sit down."), Cue(7, 8, "", None, ("she gets up",))])
+    assert [(line.text, line.spoken) for line in scene.lines] == [
+        ("She storms through the room and sits down.", False),
+        ("He is late!", True),
+        ("You sit down.", True),
+        ("She gets up", False),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("clause", "skill", "piece"),
+    [
+        ("slumps onto the couch", "sitdown", "sofa"),
+        ("paces up and down", "loco", ""),
+        ("grabs the phone from the shelf", "touch", "shelf"),
+        ("lies awake", "liedown", ""),
+        ("collapsed on the bed", "liedown", "bed"),
+        ("is sitting at the desk", "sitdown", "chair"),
+        ("sits at the dining table", "sitdown", "dining chair"),
+        ("curls up in the armchair", "sitdown", "armchair"),
+        ("took the suit from the wardrobe", "touch", "wardrobe"),
+        ("puts on a coat", "touch", "wardrobe"),
+        ("turns on the TV", "touch", "tv stand"),
+        ("laid the book on the coffee table", "touch", "coffee table"),
+        ("gets up from the armchair", "standup", "armchair"),
+        ("wakes up", "getup", ""),
+        ("slowly walks over to the bookshelf", "loco", "bookshelf"),
+        ("started to pace", "loco", ""),
+        ("went to bed", "liedown", "bed"),
+        ("cannot sleep", "liedown", ""),
+    ],
+)
+def test_a_clause_is_a_deed_by_its_verb_and_the_furniture_it_names(clause: str, skill: str, piece: str) -> None:
+    deed = deed_of(clause)
+    assert deed is not None
+    assert (deed.skill, deed.piece) == (skill, piece)
+
+
+@pytest.mark.parametrize(
+    "clause",
+    [
+        "falls into a rage", "lies to her mother", "opens the door", "closes her eyes", "took a deep breath",
+        "crosses her arms", "does not sit", "wants to sit down", "dreams of the sea", "hung over the town", "",
+        "had got the job",
+    ],
+)  # fmt: skip
+def test_what_a_body_does_not_show_is_no_deed(clause: str) -> None:
+    assert deed_of(clause) is None
+
+
+@given(st.text(max_size=120))
+def test_any_clause_has_a_deed_or_none_and_pieces_that_are_known(clause: str) -> None:
+    deed_of(clause)
+    in_present(clause)
+    assert pieces_in(clause) == pieces_in(clause.upper())
+
+
+def test_who_does_it_is_the_name_last_said_and_things_are_nobody() -> None:
+    told = clauses_in(TextScene((Line("Anna sat down. She wept. The phone rang. Tom paced while she slept."),)))
+    assert [(one.clause.text, one.who) for one in told] == [
+        ("sat down", "Anna"),
+        ("wept", "Anna"),
+        ("phone rang", "something"),
+        ("paced", "Tom"),
+        ("slept", "Tom"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("clause", "told"),
+    [
+        ("sat by her bed and wept", "sits by their bed and weeps"),
+        ("throws herself onto the sofa", "throws themself onto the sofa"),
+        ("was reading his book", "is reading their book"),
+        ("lay down", "lies down"),
+        ("the rain", ""),
+    ],
+)
+def test_a_clause_is_told_now_of_one_person(clause: str, told: str) -> None:
+    assert in_present(clause) == told
+
+
+@given(st.text(max_size=200), st.sets(st.text(alphabet="abc-1", max_size=4)))
+def test_an_id_is_a_slug_that_is_not_taken(summary: str, taken: set[str]) -> None:
+    first = slug_of(summary, "a text", taken)
+    second = slug_of(summary, "a text", {*taken, first})
+    assert re.fullmatch(r"[a-z0-9][a-z0-9-]{0,79}", first)
+    assert len({first, second} - taken) == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "language"),
+    [
+        (NARRATIVE, "English"),
+        (GERMAN, "German"),
+        ("Elle entre dans le salon et se laisse tomber sur le canapé, car elle est très fatiguée.", "French"),
+        ("Она вошла в комнату и села на диван.", "another language"),
+        ("She sat down.", "English"),
+        ("lorem ipsum dolor sit amet consectetur adipiscing elit sed do eiusmod tempor " * 3, "another language"),
+    ],
+)
+def test_the_language_is_told_by_common_words(text: str, language: str) -> None:
+    assert language_of(text) == language
+
+
+@pytest.mark.parametrize(
+    ("data", "why"),
+    [
+        (b"", "is empty"),
+        (b" \n\t ", "is empty"),
+        (b"1234 --- !!", "no word in it"),
+        (bytes(range(256)) * 8, "is no text"),
+        (b"a" * (LONGEST + 1), "cut it into chapters"),
+        (b"word " * 2_000_000, "cut it into chapters"),
+    ],
+    ids=["empty", "blank", "no word", "binary", "long", "huge"],
+)
+def test_what_cannot_be_read_says_why_in_one_line(data: bytes, why: str) -> None:
+    with pytest.raises(ExtractionError, match=why) as caught:
+        read_text(data, "a file")
+    assert "\n" not in str(caught.value)
+
+
+def test_encodings_are_guessed_and_the_guess_is_told() -> None:
+    assert read_text("Ann sat in the café.".encode("utf-16"), "a")[0] == "Ann sat in the café."
+    text, notes = read_text("Ann sat in the café.".encode("cp1252"), "a")
+    assert text == "Ann sat in the café."
+    assert "guess" in notes[0]
