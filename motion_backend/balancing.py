@@ -104,8 +104,10 @@ def _weights(chain: _Chain, tied: NDArray[np.bool_]) -> Array:
     if count < 2:
         return np.zeros(len(tied))
     bounds = [(-HEAVIEST, HEAVIEST)] * count
-    options = {"gtol": 2e-5, "maxiter": 150}
-    return spread(minimize(dual, np.zeros(count), jac=True, method="L-BFGS-B", bounds=bounds, options=options).x)
+    found = minimize(
+        dual, np.zeros(count), jac=True, method="L-BFGS-B", bounds=bounds, options={"gtol": 2e-5, "maxiter": 150}
+    )
+    return spread(np.asarray(found.x))
 
 
 class _Chain:

@@ -29,11 +29,21 @@ class Thing(NamedTuple):
     """Furniture where it may lie, the likeliest first."""
 
 
-TABLETOPS: Final = ("coffee_table", "dining_table", "desk", "side_table", "round_end_table", "console_table", "nightstand")
+TABLETOPS: Final = (
+    "coffee_table",
+    "dining_table",
+    "desk",
+    "side_table",
+    "round_end_table",
+    "console_table",
+    "nightstand",
+)
 THINGS: Final = (
     Thing("cup", "drink from the cup", "drink", SEATED, False, TABLETOPS),
     Thing("book", "read the book", "read", SEATED, True, ("bookshelf", "shelf", "nightstand", *TABLETOPS)),
-    Thing("phone", "talk on the phone", "talk on", STANDING, False, ("nightstand", "tv_stand", "side_table", *TABLETOPS)),
+    Thing(
+        "phone", "talk on the phone", "talk on", STANDING, False, ("nightstand", "tv_stand", "side_table", *TABLETOPS)
+    ),
 )
 OPERATED: Final = {
     "turn on": ("lamp", "tv", "stove", "tv_stand"),

@@ -52,7 +52,7 @@ class State(NamedTuple):
 
 START: Final = State()
 SELDOM: Final = 0.02
-"""What a move weighs that undoes or repeats the last one, where another weighs 1, and all walks from a place together."""
+"""What a move that undoes or repeats the last one weighs; others weigh 1, and all walks from a place together too."""
 
 
 @dataclass(frozen=True)
@@ -205,7 +205,9 @@ def _explored(candidates: Sequence[Candidate]) -> tuple[list[State], list[Move]]
                 way[following] = candidates[number].name
                 if len(states) > MOST_STATES:
                     raise PlanError(f"candidates: they lead to over {MOST_STATES} states; give fewer places or things")
-            usual = (1 / walks if candidates[number].goes else 1.0) * (SELDOM if candidates[number].undoes(state) else 1.0)
+            usual = (1 / walks if candidates[number].goes else 1.0) * (
+                SELDOM if candidates[number].undoes(state) else 1.0
+            )
             moves.append((index[state], number, index[following], usual))
         met.update(possible)
     never = next((candidate for number, candidate in enumerate(candidates) if number not in met), None)
@@ -216,7 +218,9 @@ def _explored(candidates: Sequence[Candidate]) -> tuple[list[State], list[Move]]
 
 def _free_kinds(candidates: Sequence[Candidate]) -> frozenset[str]:
     """Types that come as often as others need them: a walk is between any two things at different places."""
-    return frozenset(candidate.kind for candidate in candidates if candidate.category == "locomotion" and candidate.goes)
+    return frozenset(
+        candidate.kind for candidate in candidates if candidate.category == "locomotion" and candidate.goes
+    )
 
 
 def _row(edges: Edges, chances: Array, state: int) -> tuple[NDArray[np.int64], NDArray[np.int64], Array]:

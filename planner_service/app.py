@@ -30,11 +30,14 @@ from planner_service.routes import (
     service,
     short_scripts,
     stories,
+    task_plans,
 )
 from planner_service.store.figures import StoreFigures
 from planner_service.telemetry import Figures, Telemetry
 
-ROUTES: Final = (stories, events, motions, short_scripts, long_scripts, layouts, layout_graphs, service, page)
+ROUTES: Final = (
+    stories, events, motions, task_plans, short_scripts, long_scripts, layouts, layout_graphs, service, page,
+)  # fmt: skip
 """In the order in which paths are looked for."""
 
 

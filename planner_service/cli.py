@@ -9,12 +9,14 @@ from typing import Annotated
 
 import typer
 
-from planner_service.commands import evaluating, extracting, layouts, models, scripts, service, story
+from planner_service.commands import evaluating, extracting, layouts, models, scripts, service, story, tasks
 from planner_service.commands.errors import USER_ERRORS, explain
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 app.command("story")(story.story)
 app.command("extract")(extracting.extract)
+app.command("task")(tasks.task)
+app.command("routine")(tasks.routine)
 app.command("serve")(service.serve)
 app.command("worker")(service.worker)
 app.add_typer(service.jobs, name="jobs")

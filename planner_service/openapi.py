@@ -21,6 +21,7 @@ what is ready: the motion as arrays, the home and the film as GLB. Every error i
 TAGS: Final = [
     {"name": "stories", "description": "From a theme to a film."},
     {"name": "motions", "description": "Keyframes of one's own, acted out in a room of one's own."},
+    {"name": "task plans", "description": "An instruction becomes steps, and keyframes that act them."},
     {"name": "short scripts", "description": "The library of short scripts that stories are put together from."},
     {"name": "long scripts", "description": "Planning alone: a theme becomes keyframes."},
     {"name": "layouts", "description": "The library of furnished rooms."},

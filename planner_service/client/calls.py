@@ -183,6 +183,11 @@ def long_script(theme: str, **options: Any) -> Call[Json]:
     return Call("POST", "/v1/long-scripts", _json, body={"theme": theme} | options)
 
 
+def plan_task(action: str, **options: Any) -> Call[Json]:
+    """An instruction as steps, and the keyframes that act them; options: layout_id, home, seed, method."""
+    return Call("POST", "/v1/task-plans", _json, body={"action": action} | options)
+
+
 def layouts(limit: int = 20, cursor: str | None = None, room: str | None = None) -> Call[Page[Json]]:
     """The rooms that homes are joined from."""
     return Call("GET", "/v1/layouts", _page, _given(limit=limit, cursor=cursor, room=room))

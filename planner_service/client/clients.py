@@ -81,6 +81,7 @@ class Methods:
     layout_drawing = Method(calls.layout_drawing)
     layout_scene = Method(calls.layout_scene)
     retrieve_layouts = Method(calls.retrieve_layouts)
+    plan_task = Method(calls.plan_task)
     merge_graphs = Method(calls.merge_graphs)
 
 

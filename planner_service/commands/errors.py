@@ -18,6 +18,7 @@ from planner_service.scripts.library import LibraryError
 from planner_service.settings import SettingsError
 from planner_service.shelves import ShelfError
 from planner_service.stories import RequestError
+from planner_service.tasks.plan import TaskError
 from scene_graphs.homes import HomeError
 from scene_graphs.layouts import LayoutError
 from scene_graphs.navigation import NoPath
@@ -38,6 +39,7 @@ USER_ERRORS = (
     OutputError,
     SettingsError,
     WeightsError,
+    TaskError,
     ExtractionError,
     SubtitleError,
     FilmError,

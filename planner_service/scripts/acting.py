@@ -14,7 +14,7 @@ import numpy as np
 
 from motion_backend.motion import Action, Skill
 from planner_service.scripts.checking import free_hand, hand_of
-from planner_service.scripts.handling import Hands
+from planner_service.scripts.handling import Hands, done_in, look_of
 from planner_service.scripts.keyframe import Keyframe
 from planner_service.scripts.wandering import in_front, stays
 from scene_graphs.homes import Home
@@ -56,7 +56,8 @@ def act(keyframes: Sequence[Keyframe], places: Sequence[Place], home: Home, seed
         before = keyframes[index - 1] if index else None
         drafts.append(stage.contact(index, keyframe, place, free_hand(before)))
     hands = Hands()
-    return tuple(hands.follow(action) for action in stage.walks(drafts, places))
+    return tuple(hands.follow(action, done_in(keyframes[action.keyframe].caption))
+                 for action in stage.walks(drafts, places))  # fmt: skip
 
 
 class _Stage:
@@ -70,6 +71,7 @@ class _Stage:
 
     def contact(self, index: int, keyframe: Keyframe, place: Place, free: str = "right") -> Action:
         """The action of a keyframe; walks get their goal later, when what follows them is known."""
+        keyframe = keyframe.model_copy(update={"caption": look_of(keyframe.caption)})
         action = Action(
             keyframe.skill, keyframe.caption, keyframe.emotion, keyframe.furniture, place.object_id, keyframe=index
         )
@@ -230,7 +232,7 @@ def _scoots(spot: Spot) -> float:
 
 def height_of(caption: str) -> str:
     """The height a touch caption asks for: low, medium or high."""
-    text = caption.rpartition(";")[2].lower()
+    text = caption.lower()
     if "high" in text or "above" in text or "up to" in text:
         return "high"
     if "low" in text or "prone" in text or "bend" in text or "under" in text:

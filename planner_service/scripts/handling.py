@@ -1,7 +1,8 @@
 """What a caption says is done and held, besides how the body looks: LINGO's grasp and interaction steps (appendix C).
 
 Such a caption is "what; how": "pick up the cup with the left hand; pick up with the left hand", or "turn on the TV,
-watch TV; hands behind head, legs straight". The part behind the last semicolon is a caption like any other.
+watch TV; hands behind head, legs straight". The part behind the last semicolon is a caption like any other, and all
+that the body is told.
 """
 
 from __future__ import annotations
@@ -32,8 +33,12 @@ def caption_of(done: Sequence[str], how: str) -> str:
 
 def done_in(caption: str) -> tuple[str, ...]:
     """What is done, thing after thing; empty for a caption that only says how the body looks."""
-    done, _, how = caption.rpartition(";")
-    return tuple(part.strip() for part in done.split(",") if part.strip()) if how.strip() else ()
+    return tuple(part.strip() for part in caption.rpartition(";")[0].split(",") if part.strip())
+
+
+def look_of(caption: str) -> str:
+    """How the body looks, without what is done; the whole caption where that is all it says."""
+    return caption.rpartition(";")[2].strip() or caption
 
 
 @dataclass
@@ -42,18 +47,14 @@ class Hands:
 
     things: list[str] = field(default_factory=list)
 
-    def follow(self, action: Action) -> Action:
+    def follow(self, action: Action, done: Sequence[str]) -> Action:
         """The action with what is held and done in it, and held for longer where that takes time."""
-        done = done_in(action.caption)
         grasps = [text for text in done if self._grasp(text)]
         rest = [text for text in done if text not in grasps]
-        held = ", ".join(self.things) or None
-        if not done and held is None:
-            return action
         hold = action.hold
         if action.skill in (Skill.TOUCH, Skill.SITDOWN, Skill.LIEDOWN):
             hold = min(hold + GRASPING * len(grasps) + DOING * len(rest), max(hold, LONGEST_HOLD))
-        return replace(action, holds=held, interaction=", ".join(rest) or None, hold=hold)
+        return replace(action, holds=", ".join(self.things) or None, interaction=", ".join(rest) or None, hold=hold)
 
     def _grasp(self, text: str) -> bool:
         """Take or lay down what a text speaks of; whether it does."""

@@ -11,24 +11,28 @@ from motion_backend.motion import Posture, Skill
 from planner_service.scripts.handling import LONGEST_CAPTION, caption_of
 from planner_service.scripts.keyframe import Keyframe
 from planner_service.tasks.deeds import LIE, LYING, PHONE, SIT, TOUCH, WALK, WALKS
-from planner_service.tasks.plan import Step, SubTask
+from planner_service.tasks.plan import MOST_KEYFRAMES, Step, SubTask
 from planner_service.tasks.reading import Clause, clause_of, is_furniture
 from planner_service.tasks.surroundings import Surroundings
 from planner_service.tasks.things import FIXED, is_one, kept_at
 
 _RISES: Final = {Posture.SEATED: (Skill.STANDUP, "stand up"), Posture.LYING: (Skill.GETUP, "get up")}
 _RISES_FOR_IT: Final = "it rises for it: a hand reaches things standing"
+_MOST_OF_A_STEP: Final = 4
+"""Keyframes that one step may take: rising, a walk, a touch or a rest."""
 _FROM_THERE: Final = "done from where it rests: the pose is held, and nothing moves"
 _UNDRAWN: Final = "nothing is drawn in the hands"
 
 
-def act_out(tasks: Sequence[SubTask], room: Surroundings, seed: int) -> tuple[list[Step], list[Keyframe]]:
+def act_out(
+    tasks: Sequence[SubTask], room: Surroundings, seed: int, most: int = MOST_KEYFRAMES
+) -> tuple[list[Step], list[Keyframe]]:
     """Every step with what becomes of it, and the keyframes, which a body can act in this order as they are.
 
-    A step that a body cannot act has none and says why. What is done in one rest shares its keyframe; the seed chooses
-    among captions that show the same.
+    A step that a body cannot act, or for which `most` keyframes leave no room, has none and says why. What is done in
+    one rest shares its keyframe; the seed chooses among captions that show the same.
     """
-    actor = _Actor(room, np.random.default_rng([seed, 11]))
+    actor = _Actor(room, np.random.default_rng([seed, 11]), most)
     steps = [actor.step(number, task) for number, task in enumerate(tasks, 1)]
     return steps, actor.keyframes
 
@@ -40,8 +44,8 @@ class _CannotError(Exception):
 class _Actor:
     """The body while steps become keyframes: where it is, what it rests on, where the plan has it seated."""
 
-    def __init__(self, room: Surroundings, rng: np.random.Generator) -> None:
-        self.room, self.rng = room, rng
+    def __init__(self, room: Surroundings, rng: np.random.Generator, most: int) -> None:
+        self.room, self.rng, self.most = room, rng, most
         self.keyframes: list[Keyframe] = []
         self.posture = Posture.STANDING
         self.at = ""
@@ -69,6 +73,8 @@ class _Actor:
 
     def _act(self, task: SubTask) -> tuple[list[int], str]:
         """Add what a step needs; keyframes that it shares, and what its acting leaves out."""
+        if len(self.keyframes) + _MOST_OF_A_STEP > self.most:
+            raise _CannotError(f"a plan has at most {self.most} keyframes; act the rest as a plan of its own")
         clause = clause_of(task.text)
         if clause is None:
             return self._unknown(task)
@@ -205,7 +211,7 @@ class _Actor:
     # Doing something for a while.
 
     def _use(self, task: SubTask, clause: Clause, word: str) -> tuple[list[int], str]:
-        """An interaction that has a pose: at rest where the plan has the body, else where one does it, else standing."""
+        """An interaction with a pose: at rest where the plan has the body, else where one does it, else standing."""
         deed = clause.deed
         on_the_phone = deed.takes == "phone"
         if word and word != self.at and self.seat is None and not on_the_phone:
@@ -248,7 +254,10 @@ class _Actor:
     # Smaller things.
 
     def _add(self, skill: Skill, caption: str, word: str) -> list[int]:
-        self.keyframes.append(Keyframe(skill=skill, emotion="neutral", caption=caption, furniture=word))
+        """One more keyframe; the very same one after another would be acted once, so it is there once."""
+        keyframe = Keyframe(skill=skill, emotion="neutral", caption=caption, furniture=word)
+        if self.keyframes[-1:] != [keyframe]:
+            self.keyframes.append(keyframe)
         return [len(self.keyframes) - 1]
 
     def _found(self, word: str, need: str) -> str:

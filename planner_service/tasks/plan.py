@@ -12,6 +12,8 @@ from planner_service.scripts.keyframe import Keyframe
 Category = Literal["locomotion", "grasp", "interaction"]
 Hand = Literal["left", "right", "both"]
 MOST_STEPS: Final = 24
+MOST_KEYFRAMES: Final = 60
+"""As many as POST /v1/motions takes."""
 LONGEST_STEP: Final = 80
 """Letters of a step."""
 LONGEST_ACTION: Final = 300

@@ -33,7 +33,9 @@ _PLACE: Final = re.compile(
 )
 _DETERMINER: Final = re.compile(r"^(?:the|a|an|my|your|his|her|their|our|some|this|that|these|those|all)\s+", re.I)
 _NOT_AN_OBJECT: Final = re.compile(r"\b(?:quickly|slowly|carefully|again|together|there|here|up|down|away|back)$", re.I)
-_TIME: Final = re.compile(r"\bfor (?:a|an|some|\w+) (?:while|time|moment|bit|minutes?|hours?|seconds?)\b", re.IGNORECASE)
+_TIME: Final = re.compile(
+    r"\bfor (?:a|an|some|\w+) (?:while|time|moment|bit|minutes?|hours?|seconds?)\b", re.IGNORECASE
+)
 _PRONOUNS: Final = frozenset(("it", "them", "one"))
 
 
@@ -231,5 +233,3 @@ def _inflected(verb: str) -> Iterator[str]:
     elif re.search(r"(?:^|[^aeiou])[aeiou][bdgmnpt]$", verb):
         yield verb + verb[-1] + "ing"
     yield verb + "ing"
-
-

@@ -1,29 +1,28 @@
-"""An instruction broken into steps by rules: go there, take what it needs, sit where one sits, do it, put things back."""
+"""An instruction broken into steps by rules: go there, take what it needs, sit where one sits, do it, put it back."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import Final, Literal, cast
+from typing import Final
 
 from motion_backend.motion import Posture
 from planner_service.tasks.deeds import SEATS, TABLES, Deed
-from planner_service.tasks.plan import MOST_STEPS, Hand, SubTask, TaskError
+from planner_service.tasks.plan import MOST_STEPS, Category, Hand, SubTask, TaskError
+from planner_service.tasks.preparing import Preparing, with_hand
 from planner_service.tasks.reading import Clause, clauses, is_furniture
 from planner_service.tasks.surroundings import Surroundings
-from planner_service.tasks.things import ANYWHERE, FIXED, is_one, kept_at, vessel_of, words
+from planner_service.tasks.things import FIXED, is_one, kept_at, vessel_of, words
 from scene_graphs import furniture
 
 BESIDE: Final = {"desk": "office chair, chair, stool, armchair", "coffee table": "sofa, armchair, stool, chair"}
 """Seats at a table; at any other, `CHAIRS`."""
 CHAIRS: Final = "dining chair, chair, stool, bench, office chair, armchair, sofa"
 _GAMES: Final = ("game", "video game", "computer game", "console")
-Side = Literal["left", "right"]
 
 
 def plan_by_rules(action: str, room: Surroundings) -> tuple[SubTask, ...]:
     """The steps of an instruction. TaskError says what of it the rules do not know, or that it takes too many steps."""
-    body = _Body(room)
+    body = _Doing(room)
     asked = clauses(action)
     for index, clause in enumerate(asked):
         body.put_back_before(clause, asked[index:])
@@ -34,17 +33,8 @@ def plan_by_rules(action: str, room: Surroundings) -> tuple[SubTask, ...]:
     return tuple(body.steps)
 
 
-class _Body:
-    """The steps so far, and how they leave the body: where it is, what it rests on, what it holds."""
-
-    def __init__(self, room: Surroundings) -> None:
-        self.room = room
-        self.steps: list[SubTask] = []
-        self.at = ""
-        self.posture = Posture.STANDING
-        self.held: dict[str, Hand] = {}
-        self.fetched: dict[str, str] = {}
-        """What was taken only to be used, and where it was."""
+class _Doing(Preparing):
+    """One method a kind of deed."""
 
     def do(self, clause: Clause) -> None:
         """The steps of one clause."""
@@ -56,57 +46,12 @@ class _Body:
         }  # fmt: skip
         doing[kind](clause)
 
-    # What others need first.
-
-    def walk(self, word: str) -> None:
-        """Be beside a piece of furniture, on one's feet."""
-        if self.posture is not Posture.STANDING:
-            self._stand()
-        if self.at != word:
-            self._add(f"walk to the {word}", "locomotion", None, word, word)
-            self.at = word
-
-    def sit(self, word: str) -> None:
-        """Sit on a piece of furniture."""
-        if self.posture is Posture.SEATED and self.at == word:
-            return
-        self.walk(word)
-        self._add(f"sit down on the {word}", "locomotion", None, word, word)
-        self.posture = Posture.SEATED
-
-    def lie(self, word: str) -> None:
-        """Lie on a piece of furniture."""
-        if self.posture is Posture.LYING and self.at == word:
-            return
-        self.walk(word)
-        self._add(f"lie down on the {word}", "locomotion", None, word, word)
-        self.posture = Posture.LYING
-
-    def take(self, thing: str, hand: Hand | None = None, where: str = "") -> Hand:
-        """Have a thing in hand, and say in which."""
-        if thing in self.held:
-            return self.held[thing]
-        where = where or self._keeper(thing)
-        chosen = hand or self._free_hand()
-        self._make_free(chosen)
-        self.walk(where)
-        self._add(f"pick up the {thing} {_with(chosen)}", "grasp", chosen, thing, where)
-        self.held[thing] = chosen
-        return chosen
-
-    def put(self, thing: str, where: str) -> None:
-        """Lay down what is held."""
-        hand = self.held.pop(thing)
-        self.fetched.pop(thing, None)
-        self.walk(where)
-        self._add(f"put down the {thing} {_with(hand)}", "grasp", hand, thing, where)
-
     def put_back_before(self, clause: Clause, coming: Sequence[Clause]) -> None:
         """What was fetched for what is done, and is not used again, goes back where it was."""
-        needed = {self._needed(one) for one in coming} | {one.thing for one in coming}
+        wanted = {needed(one) for one in coming} | {one.thing for one in coming}
         seated = clause.deed.kind == "use" and not clause.furniture and self.posture is not Posture.STANDING
         for thing, where in list(self.fetched.items()):
-            if thing not in needed and not seated:
+            if thing not in wanted and not seated:
                 self.put(thing, where)
 
     def put_back_at_end(self) -> None:
@@ -115,35 +60,33 @@ class _Body:
             if self.posture is Posture.STANDING:
                 self.put(thing, where)
 
-    # One method a kind of deed.
-
     def _walk_as_told(self, clause: Clause) -> None:
         if clause.furniture:
-            self._leave_rest()
-            word = self._named(clause.furniture, "touch")
-            self._add(f"{_manner(clause)} to the {word}", "locomotion", None, word, word)
+            self.rise()
+            word = self.named(clause.furniture, "touch")
+            self.add(f"{_manner(clause)} to the {word}", "locomotion", None, word, word)
             self.at = word
         else:
-            self._leave_rest()
+            self.rise()
             place = f" {clause.places[0][0]} the {clause.places[0][1]}" if clause.places else ""
-            self._add(f"{clause.verb}{place}", "locomotion", None, None, None)
+            self.add(f"{clause.verb}{place}", "locomotion", None, None, None)
             self.at = ""
 
     def _sit_as_told(self, clause: Clause) -> None:
         self.sit(self._seat(clause, clause.furniture))
         if clause.verb not in ("sit", "sit down", "sit back", "take a seat", "have a seat", "be seated"):
-            self._add(clause.verb, "interaction", None, None, self.at)
+            self.add(clause.verb, "interaction", None, None, self.at)
 
     def _lie_as_told(self, clause: Clause) -> None:
         word = clause.furniture
-        self.lie(self._named(word, "lie") if word else self._first(clause.deed, "lie"))
+        self.lie(self.named(word, "lie") if word else self._first(clause.deed, "lie"))
         if clause.verb not in ("lie", "lie down", "lay down", "go to bed"):
-            self._add(clause.verb, "interaction", None, None, self.at)
+            self.add(clause.verb, "interaction", None, None, self.at)
 
     def _rise_as_told(self, clause: Clause) -> None:
         if self.posture is Posture.STANDING:
-            self._add(clause.verb, "locomotion", None, None, None)
-        self._leave_rest()
+            self.add(clause.verb, "locomotion", None, None, None)
+        self.rise()
 
     def _take_as_told(self, clause: Clause) -> None:
         thing = self._thing(clause)
@@ -151,7 +94,7 @@ class _Body:
             self._touch(clause)
             return
         source = next((noun for word, noun in clause.places if is_furniture(noun)), "")
-        self.take(thing, clause.hand, self._named(source, "touch") if source else "")
+        self.take(thing, clause.hand, self.named(source, "touch") if source else "")
         self.fetched.pop(thing, None)
 
     def _put_as_told(self, clause: Clause) -> None:
@@ -161,42 +104,44 @@ class _Body:
         where = self.fetched.get(thing, "") if back else ""
         target = next((noun for _, noun in clause.places if is_furniture(noun)), "")
         here = "" if back else self.at
-        self.put(thing, self._named(target, "touch") if target else where or here or self._first(clause.deed, "touch"))
+        self.put(thing, self.named(target, "touch") if target else where or here or self._first(clause.deed, "touch"))
 
     def _carry(self, clause: Clause) -> None:
         thing = self._thing(clause)
         source = next((noun for word, noun in clause.places if word in ("from", "out of") and is_furniture(noun)), "")
         target = next((noun for word, noun in clause.places if word not in ("from", "out of", "with")), "")
-        self.take(thing, clause.hand, self._named(source, "touch") if source else "")
+        self.take(thing, clause.hand, self.named(source, "touch") if source else "")
         if is_furniture(target):
-            self.put(thing, self._named(target, "touch"))
+            self.put(thing, self.named(target, "touch"))
 
     def _touch(self, clause: Clause) -> None:
         if not clause.furniture:
-            raise TaskError(f"action: “{clause.phrase}” names no furniture to {clause.verb}; name some, such as a table")
-        word = self._named(clause.furniture, "touch")
-        hand = clause.hand or self._free_hand()
+            raise TaskError(
+                f"action: “{clause.phrase}” names no furniture to {clause.verb}; name some, such as a table"
+            )
+        word = self.named(clause.furniture, "touch")
+        hand = clause.hand or self.free_hand()
         self.walk(word)
-        self._add(f"{clause.verb} the {word} {_with(hand)}", "grasp", hand, word, word)
+        self.add(f"{clause.verb} the {word} {with_hand(hand)}", "grasp", hand, word, word)
 
     def _operate(self, clause: Clause) -> None:
-        tool = self._tool(clause)
+        tool = tool_of(clause)
         hand = clause.hand
         if tool and not hand and tool not in self.held:
-            hand = self._free_hand()
+            hand = self.free_hand()
         if tool:
             fresh = tool not in self.held
             hand = self.take(tool, hand)
             if fresh:
                 self.fetched[tool] = self.at
-        hand = hand or ("both" if clause.deed.hands == "both" and not self.held else self._free_hand())
+        hand = hand or ("both" if clause.deed.hands == "both" and not self.held else self.free_hand())
         if not (is_fixed := is_one(clause.thing, FIXED)):
             self.walk(self._workplace(clause))
         where = None if is_fixed else self.at
-        self._add(f"{clause.phrase} {_with(hand)}", "interaction", hand, clause.thing or tool or None, where)
+        self.add(f"{clause.phrase} {with_hand(hand)}", "interaction", hand, clause.thing or tool or None, where)
 
     def _use(self, clause: Clause) -> None:
-        thing, deed = self._needed(clause), clause.deed
+        thing, deed = needed(clause), clause.deed
         place = clause.furniture if any(noun == clause.furniture for _, noun in clause.places) else ""
         hand = clause.hand
         if thing:
@@ -209,55 +154,36 @@ class _Body:
             return
         lying = place and "in" in [word for word, noun in clause.places if noun == place]
         if lying and "lie" in furniture.affordances(place):
-            self.lie(self._named(place, "lie"))
+            self.lie(self.named(place, "lie"))
         elif place or self.posture is Posture.STANDING:
             self._settle(clause, place)
         if deed.first and is_furniture(clause.thing):
-            self._add(f"{deed.first} the {clause.thing} {_with(hand or 'right')}", "interaction", hand or "right",
+            self.add(f"{deed.first} the {clause.thing} {with_hand(hand or 'right')}", "interaction", hand or "right",
                       clause.thing, self.at)  # fmt: skip
         if not deed.hands:
             hand = None
         elif deed.hands == "both":
             hand = "both"
-        told = f" {_with(hand)}" if hand else ""
-        self._add(f"{clause.phrase}{told}", "interaction", hand, clause.thing or thing or None, self.at)
+        told = f" {with_hand(hand)}" if hand else ""
+        self.add(f"{clause.phrase}{told}", "interaction", hand, clause.thing or thing or None, self.at)
 
     def _on_the_phone(self, clause: Clause, place: str, hand: Hand | None) -> None:
         if place:
             self._settle(clause, place)
-        told = f"{clause.phrase} {_with(hand or 'right')}"
+        told = f"{clause.phrase} {with_hand(hand or 'right')}"
         where = self.at if self.posture is not Posture.STANDING else None
-        self._add(told, "interaction", hand or "right", "phone", where)
+        self.add(told, "interaction", hand or "right", "phone", where)
 
     def _simply(self, clause: Clause) -> None:
         """What is done on the spot, or not at all."""
         hand = clause.hand or ("right" if clause.deed.hands else None)
-        category: Literal["locomotion", "interaction"] = "interaction" if clause.deed.hands else "locomotion"
-        told = f" {_with(hand)}" if hand else ""
+        category: Category = "interaction" if clause.deed.hands else "locomotion"
+        told = f" {with_hand(hand)}" if hand else ""
         if clause.deed.kind == "stand":
-            self._leave_rest()
-        self._add(f"{clause.phrase}{told}", category, hand, clause.thing or None, None)
+            self.rise()
+        self.add(f"{clause.phrase}{told}", category, hand, clause.thing or None, None)
 
-    # Smaller things.
-
-    def _add(
-        self, text: str, category: Literal["locomotion", "grasp", "interaction"], hand: Hand | None,
-        thing: str | None, where: str | None,
-    ) -> None:  # fmt: skip
-        self.steps.append(SubTask(text, category, hand, thing, where))
-
-    def _stand(self) -> None:
-        verb = "stand up from" if self.posture is Posture.SEATED else "get up from"
-        self._add(f"{verb} the {self.at}", "locomotion", None, self.at, self.at)
-        self.posture = Posture.STANDING
-
-    def _leave_rest(self) -> None:
-        if self.posture is not Posture.STANDING:
-            self._stand()
-
-    def _named(self, word: str, need: str) -> str:
-        """What a piece of furniture is called here; as it was called where there is none."""
-        return self.room.find(word, need) or word.lower().replace("tv", "TV")
+    # Where it is done.
 
     def _first(self, deed: Deed, need: str) -> str:
         known = words(deed.where)
@@ -274,53 +200,21 @@ class _Body:
     def _seat(self, clause: Clause, place: str) -> str:
         """Where one sits: on what is named, at the table that is named, or on a usual seat."""
         if place and "sit" in furniture.affordances(place) and furniture.class_of(place) != "table":
-            return self._named(place, "sit")
+            return self.named(place, "sit")
         at_table = place and furniture.group_of(place) == "surface"
         options = words(BESIDE.get(furniture.display_name(place), CHAIRS) if at_table else clause.deed.where or SEATS)
         return self.room.first(options, "sit") or options[0]
 
-    def _keeper(self, thing: str) -> str:
-        """Where a thing is taken from: here if it may be here, else where such things usually are."""
-        options = kept_at(thing)
-        if self.posture is Posture.STANDING and self.at in options and self.room.find(self.at):
-            return self.at
-        return self.room.first(options) or options[0]
-
-    def _thing(self, clause: Clause) -> str:
+    @staticmethod
+    def _thing(clause: Clause) -> str:
         if clause.thing:
             return clause.thing
         raise TaskError(f"action: it does not say what to {clause.verb}; name the thing, such as a cup")
 
-    def _needed(self, clause: Clause) -> str:
-        """What a deed needs in hand: "" for nothing."""
-        deed = clause.deed
-        if deed.kind in ("take", "put", "carry"):
-            return clause.thing
-        if deed.kind == "operate":
-            return self._tool(clause)
-        if deed.kind != "use":
-            return ""
-        if deed.first and furniture.canonical(clause.thing or "x") == "tv":
-            return "remote"
-        match deed.takes:
-            case "=":
-                return clause.thing or "book"
-            case "cup" | "plate":
-                return vessel_of(clause.thing, deed.takes) if clause.thing else deed.takes
-            case "gamepad" if clause.thing and not clause.thing.endswith(_GAMES):
-                return clause.thing
-            case other:
-                return other
-
-    def _tool(self, clause: Clause) -> str:
-        """What an operation is done with: "with the sponge", or the usual thing."""
-        told = next((noun for word, noun in clause.places if word == "with"), "")
-        return told or clause.deed.takes
-
     def _workplace(self, clause: Clause) -> str:
         """Where an operation is done: at what is operated, where it is told, where the thing is, or the usual place."""
         if clause.furniture:
-            return self._named(clause.furniture, "touch")
+            return self.named(clause.furniture, "touch")
         if clause.deed.where:
             return self._first(clause.deed, "touch")
         if self.posture is Posture.STANDING and self.at:
@@ -328,25 +222,34 @@ class _Body:
         options = kept_at(clause.thing) if clause.thing else words(TABLES)
         return self.room.first(options) or options[0]
 
-    def _free_hand(self) -> Side:
-        taken = set(self.held.values())
-        if "both" in taken or {"left", "right"} <= taken:
-            self.put(next(iter(self.held)), self.at or self.room.first(words(ANYWHERE)) or "table")
-            taken = set(self.held.values())
-        return "left" if "right" in taken or "both" in taken else "right"
 
-    def _make_free(self, hand: Hand) -> None:
-        """Lay down what a hand holds that is to take something else."""
-        for thing, holding in list(self.held.items()):
-            if hand == "both" or holding in (hand, "both"):
-                self.put(thing, self.at or self.room.first(words(ANYWHERE)) or "table")
+def needed(clause: Clause) -> str:
+    """What a deed needs in hand: "" for nothing."""
+    deed = clause.deed
+    if deed.kind in ("take", "put", "carry"):
+        return clause.thing
+    if deed.kind == "operate":
+        return tool_of(clause)
+    if deed.kind != "use":
+        return ""
+    if deed.first and furniture.canonical(clause.thing or "x") == "tv":
+        return "remote"
+    match deed.takes:
+        case "=":
+            return clause.thing or "book"
+        case "cup" | "plate":
+            return vessel_of(clause.thing, deed.takes) if clause.thing else deed.takes
+        case "gamepad" if clause.thing and not clause.thing.endswith(_GAMES):
+            return clause.thing
+        case other:
+            return other
 
 
-def _with(hand: str) -> str:
-    return "with both hands" if hand == "both" else f"with the {hand} hand"
+def tool_of(clause: Clause) -> str:
+    """What an operation is done with: "with the sponge", or the usual thing."""
+    told = next((noun for word, noun in clause.places if word == "with"), "")
+    return told or clause.deed.takes
 
 
 def _manner(clause: Clause) -> str:
     return "walk" if clause.verb in ("go", "move", "come", "head", "return", "approach", "step") else clause.verb
-
-

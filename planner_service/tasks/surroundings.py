@@ -55,7 +55,9 @@ class Surroundings:
     def names(self) -> tuple[str, ...]:
         """Everything that can be sat or lain on or touched, as a person would call it."""
         known = self._offers if self.home is not None else furniture_words()
-        return tuple(sorted({furniture.display_name(word) for word in known if self.find(word) or self.find(word, "sit")}))
+        return tuple(
+            sorted({furniture.display_name(word) for word in known if self.find(word) or self.find(word, "sit")})
+        )
 
 
 def furniture_words() -> tuple[str, ...]:

@@ -51,7 +51,7 @@ def kept_at(thing: str) -> tuple[str, ...]:
 
 
 def vessel_of(content: str, usual: str) -> str:
-    """What one holds to drink or eat something: "a glass" for water, the apple itself; `usual` where nothing is known."""
+    """What one holds to drink or eat it: "glass" for water, the apple itself; `usual` where nothing is known."""
     head = content.split(" of ")[0]
     for part in (head, content):
         for names, vessel in VESSELS.items():
