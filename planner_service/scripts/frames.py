@@ -16,12 +16,23 @@ from planner_service.scripts.voice import Voice
 
 PLAIN: Final = ("{who} {did}.",)
 TIMES: Final = tuple(
-    f"{word} {{who}} {{did}}."
-    for word in (
-        "then", "a moment later", "soon", "before long", "after a while", "presently", "a little later", "next",
-        "after a pause", "some minutes later", "now", "a short time later", "without further ado",
-        "a minute or so later", "in due course", "after a breath or two", "shortly afterwards", "from there",
-        "quite soon", "straight afterwards", "not much later", "a heartbeat later", "when that was done,",
+    f"{words} {{who}} {{did}}."
+    for words in (
+        "then", "a moment later", "soon", "before long", "a little later", "next", "now", "when that was done,",
+        "some minutes later", "a short time later", "a minute or so later", "shortly afterwards", "not much later",
+    )
+)  # fmt: skip
+QUICK_TIMES: Final = tuple(
+    f"{words} {{who}} {{did}}."
+    for words in (
+        "without further ado", "straight afterwards", "a heartbeat later", "quite suddenly", "at once", "in no time",
+    )
+)  # fmt: skip
+SLOW_TIMES: Final = tuple(
+    f"{words} {{who}} {{did}}."
+    for words in (
+        "after a while", "after a pause", "presently", "in due course", "after a breath or two", "in good time",
+        "a long moment later",
     )
 )  # fmt: skip
 LAST_TIMES: Final = (
@@ -57,7 +68,7 @@ NEW_ROOM: Final = (
     "on to the {room} it was, where {who} {did}.",
     "then it was the turn of the {room}, where {who} {did}.",
 )
-FIRST_ROOM: Final = ("in the {room}, {who} {did}.", "at home in the {room}, {who} {did}.")
+FIRST_ROOM: Final = ("in the {room}, {who} {did}.", "there, in the {room}, {who} {did}.")
 KNOWN_ROOM: Final = (
     "back in the {room}, {who} {did}.",
     "in the {room} again, {who} {did}.",
@@ -91,6 +102,8 @@ WAKINGS: Final = (
 )
 _SLOT: Final = re.compile(r"(\{(?:did|first|rest|lead|last|doing|lasting|there|bare)\})")
 _CALM: Final = ("neutral", "relaxed")
+_SLOW: Final = ("neutral", "relaxed", "sad", "tired")
+_QUICK: Final = ("happy", "angry", "hurried", "stressed")
 _LONGEST: Final = 33
 """Words of a sentence."""
 _WINDOW: Final = 5
@@ -203,6 +216,7 @@ def _fitting(sentence: Sequence[Phrase], manner: Manner) -> dict[str, tuple[str,
         return {"room": FIRST_ROOM if manner.visits < 0 else KNOWN_ROOM if manner.visits else NEW_ROOM}
     shapes = {"plain": PLAIN, "time": TIMES, "last": LAST_TIMES if manner.last else ()}
     first = sentence[0]
+    shapes["time"] += SLOW_TIMES if first.mood in _SLOW else QUICK_TIMES if first.mood in _QUICK else ()
     if not first.rises:
         shapes["mood"] = tuple(f"{words}, {{who}} {{did}}." for words in reasons.MOODS.get(first.mood, ()))
         shapes["reason"] = reasons.REASONS.get((first.mood, _kind(sentence)), ())

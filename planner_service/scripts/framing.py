@@ -10,11 +10,15 @@ OPENINGS: Final[dict[str, tuple[str, ...]]] = {
         "It was an ordinary {time}, and {name} had the house to {themself}.",
         "The {time} began like any other, with {name} alone at home.",
         "Nothing about the {time} seemed unusual at first.",
+        "The {time} had only just begun, and the house lay still around {name}.",
+        "On a {time} like any other, {name} was at home and glad of it.",
+        "There was nobody in the house that {time} but {name}.",
     ),
     "happy": (
         "It was one of those {time}s on which everything seemed possible.",
         "Light filled the house that {time}, and {name} was in the best of spirits.",
         "That {time} there was a spring in every step {name} took.",
+        "Some {time}s begin with a smile, and this was one of them.",
     ),
     "angry": (
         "The {time} had hardly begun, and already it was going wrong.",
@@ -25,6 +29,7 @@ OPENINGS: Final[dict[str, tuple[str, ...]]] = {
         "That {time} the clock was nobody's friend.",
         "There was never enough time, and that {time} there was less than ever.",
         "Every minute counted that {time}.",
+        "The {time} had started without {name}, and there was much to catch up on.",
     ),
     "tired": (
         "It had been a long {time}, and {name} could feel it in every bone.",
@@ -33,6 +38,7 @@ OPENINGS: Final[dict[str, tuple[str, ...]]] = {
     ),
     "sad": (
         "A grey {time} hung over the house.",
+        "That {time} all colours seemed to have left the house.",
         "It was very quiet in the house that {time}, quieter than {name} could bear.",
         "Some {time}s weigh more than others, and this was a heavy one.",
     ),
@@ -40,6 +46,7 @@ OPENINGS: Final[dict[str, tuple[str, ...]]] = {
         "That {time} {name} could not find a moment's peace.",
         "Something was wrong with the {time} from the start: it would not pass.",
         "All that {time} {name} had been listening to the ticking of the clock.",
+        "There was a tightness in the air that {time}, and {name} felt it with every breath.",
     ),
     "drunk": (
         "The {time} was no longer young, and neither was the first bottle.",
@@ -59,6 +66,7 @@ TURNS: Final = (
 """Before a sentence about what happens that begins like one before it."""
 NOTES: Final = ("As it happened,", "For once,", "Be that as it may,")
 """Before such a sentence where it cannot be told when."""
+CRIES: Final = ("And then", "And at last", "And all at once")
 STANDS_ALONE: Final = re.compile(r"(?:That (?:night|day)|It was|There was|The next|The day|Then|But|So|Later|After)\b")
 """Sentences that no word for the time goes before."""
 
@@ -106,7 +114,10 @@ LYING_CLOSINGS: Final[dict[str, tuple[str, ...]]] = {
 }
 
 TURNED_CLOSINGS: Final[dict[tuple[str, str], tuple[str, ...]]] = {
-    ("happy", "sad"): ("How light the {time} had been when it began!", "Of the morning's hopes not one was left."),
+    ("happy", "sad"): (
+        "How light the {time} had been when it began!",
+        "Of the hopes it had begun with, not one was left.",
+    ),
     ("happy", "angry"): ("And it had begun so well.",),
     ("happy", "tired"): ("It had been a good {time}, and it was a good tiredness.",),
     ("happy", "drunk"): ("The joy had been real; the headache would be, too.",),
@@ -138,6 +149,7 @@ _TIMES: Final = (
     (r"\bsaturday\b", "Saturday"),
 )
 _TITLES: Final = (
+    (r"\bpizza\b", "Dinner by Telephone"),
     (r"lotter", "The Winning Ticket"),
     (r"jewel|jewell|\bring\b|necklace", "The Lost Jewellery"),
     (r"interview", "The Job Interview"),
@@ -175,6 +187,10 @@ _TITLES: Final = (
     (r"good news", "Good News"),
     (r"\bphone\b|\bcall\b", "The Call"),
     (r"\bcook|\bdinner\b", "Dinner at Home"),
+    (r"\bguitar\b|\bpiano\b", "A Song at Home"),
+    (r"\bneighbours?\b|\bnoise\b", "Through the Wall"),
+    (r"\bidea\b", "The Idea"),
+    (r"\blonel", "A Quiet House"),
     (r"\bsearch|looking for|\bloses\b|\blost\b", "Lost and Looked For"),
     (r"danc", "Nobody Is Watching"),
     (r"\bwork\b", "Home from Work"),

@@ -66,8 +66,8 @@ class Phrase:
 class Variety:
     """Chooses among ways to say a thing: the least used so far, ties by the seed."""
 
-    def __init__(self, seed: int) -> None:
-        self._rng = np.random.default_rng(seed)
+    def __init__(self, *seeds: int) -> None:
+        self._rng = np.random.default_rng(seeds)
         self._used: Counter[str] = Counter()
 
     def pick(self, options: Sequence[str]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -13,7 +14,7 @@ from planner_service.scripts.frames import Ear, Manner, Sentence, framed, said
 from planner_service.scripts.keyframe import Event, LongScript
 from planner_service.scripts.moments import Phrase, Places, Variety, Wording, mood_of, sentences_of
 from planner_service.scripts.paragraphs import Span, balanced, laid_out
-from planner_service.scripts.scenes import Scene, covered, event_retold, link_before, scenes_of, told_of_hero
+from planner_service.scripts.scenes import RESTS, Scene, covered, event_retold, link_before, scenes_of, told_of_hero
 from planner_service.scripts.voice import Voice, retell
 
 __all__ = ["Places", "Span", "Told", "narrate"]
@@ -41,7 +42,7 @@ class _Narrator:
     def __init__(self, script: LongScript, voice: Voice, seed: int, places: Places) -> None:
         self.script = script
         self.voice = voice
-        self.variety = Variety(seed)
+        self.variety = Variety(seed, zlib.crc32(script.theme.encode()))
         self.ear = Ear(self.variety)
         self.wording = Wording(voice, self.variety, places, brief=len(script.keyframes) > _MANY)
         events = script.events
@@ -86,24 +87,25 @@ class _Narrator:
         self._turn_to(scene)
         happens = self._events(scene, events)
         summary = self._summary(scene)
-        asleep = scene.ends_asleep(" ".join([*happens, retell(summary, self.voice) or ""]))
+        asleep = scene.sleeps(" ".join([*happens, retell(summary, self.voice) or ""]))
         if not asleep:
             self._lead(happens, summary, events)
         self._enter(scene)
         sentences = self._sentences(scene, asleep, final)
-        left = sentences[-1:] if asleep and len(sentences) > 1 and sentences[-1][0].rises else []
-        for position, sentence in enumerate(sentences[: len(sentences) - len(left)]):
-            self._act(sentence, last=position == len(sentences) - 1 > 0)
-        if asleep:
-            self._lead(happens, summary, events)
-        for sentence in left:
-            self._act(sentence, woken=True)
+        resting = [i for i, sentence in enumerate(sentences) if any(phrase.skill in RESTS for phrase in sentence)]
+        falls_asleep = max(resting, default=len(sentences) - 1) if asleep else None
+        for position, sentence in enumerate(sentences):
+            woken = falls_asleep is not None and position == falls_asleep + 1
+            self._act(sentence, last=position == len(sentences) - 1 > 0, woken=woken)
+            if position == falls_asleep:
+                self._lead(happens, summary, events)
 
     def _turn_to(self, scene: Scene) -> None:
         """A sentence that leads from the mood of the scene before to that of this one."""
         emotion = self._emotion(scene)
         turns = reasons.TURNS.get(emotion, {})
-        if self.mood and emotion != self.mood and self.variety.chance(0.75):
+        fits = scene.event is None or emotion_of(self.script.events[scene.event].emotion) in (emotion, None)
+        if self.mood and emotion != self.mood and fits and self.variety.chance(0.75):
             options = self._framed(turns.get(self.mood, turns.get("", ())))
             if options and not self.ear.heard(options):
                 self.scene.append(self.ear.choose(options))
@@ -184,6 +186,7 @@ class _Narrator:
             options = [said(f"{link} {inner}")]
         else:
             turns = framing.NOTES if framing.STANDS_ALONE.match(sentence) else framing.TURNS
+            turns = framing.CRIES if sentence.endswith("!") else turns
             options = [said(sentence), *(said(f"{turn} {inner}", turn, "after") for turn in turns)]
         self.scene.append(self.ear.choose(options, first=not link))
 

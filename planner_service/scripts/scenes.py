@@ -37,6 +37,7 @@ then thems this very when with
 """
 _PALE = frozenset(_PALE_WORDS.split())
 """Stems that say nothing about what happens."""
+RESTS = (Skill.SITDOWN, Skill.LIEDOWN)
 _RISES = (Skill.STANDUP, Skill.GETUP)
 
 
@@ -50,10 +51,10 @@ class Scene:
     keyframes: tuple[tuple[int, PlannedKeyframe], ...]
     """With their indices in the long script."""
 
-    def ends_asleep(self, told: str) -> bool:
-        """Whether the telling speaks of sleep and the scene ends resting: sleep is then told last."""
-        resting = [k.skill for _, k in self.keyframes if k.short_script is not None or self.script is None][-1:]
-        return bool(_ASLEEP.search(told)) and resting in ([Skill.LIEDOWN], [Skill.SITDOWN])
+    def sleeps(self, told: str) -> bool:
+        """Whether the telling speaks of sleep and the body rests: sleep is then told after the last rest."""
+        own = [k.skill for _, k in self.keyframes if k.short_script is not None or self.script is None]
+        return bool(_ASLEEP.search(told)) and any(skill in RESTS for skill in own)
 
 
 def scenes_of(script: LongScript) -> list[Scene]:
@@ -92,15 +93,15 @@ def told_of_hero(event: str, theme: str) -> str:
 
 def _listed(text: str) -> str:
     """Three things or more, one after the other: "wins, calls his brother and celebrates"."""
-    parts = re.split(r" and (?=\w+)", text)
+    parts = re.split(r",? and (?=\w+)|, (?=\w+)", text)
     verbs = all(is_verb_form(part.split()[0]) for part in parts[1:] if part.split())
-    return ", ".join(parts[:-1]) + " and " + parts[-1] if len(parts) > 2 and verbs else text
+    return ", ".join(parts[:-1]) + " and " + parts[-1] if len(parts) > 1 and verbs else text
 
 
 def event_retold(event: str, voice: Voice, named: bool = False) -> str | None:
     """An event of the theme as a sentence in the past, or None where the rules are not sure of its grammar."""
     text = event.strip().rstrip(".!?")
-    words = text.lower().split()
+    words = re.sub(r"[,;]", "", text.lower()).split()
     if not words or len(words) > _LONGEST:
         return None
     if _WEATHER.match(text):

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from motion_backend.motion import Character
-from planner_service.scripts.scenes import event_retold
+from planner_service.scripts.scenes import event_retold, link_before, told_of_hero
 from planner_service.scripts.tense import BASES, gerund, past, third_person, word_to_past
 from planner_service.scripts.voice import Voice, retell
 
@@ -26,6 +26,8 @@ SHE, HE, THEY = Voice("Ana", "she"), Voice("Tom", "he"), Voice("Sam", "they")
         ("play", "played", "playing", "plays"),
         ("flee", "fled", "fleeing", "flees"),
         ("tiptoe", "tiptoed", "tiptoeing", "tiptoes"),
+        ("panic", "panicked", "panicking", "panics"),
+        ("sidestep", "sidestepped", "sidestepping", "sidesteps"),
     ],
 )
 def test_verbs_are_inflected_as_in_a_grammar(base: str, simple_past: str, ing: str, present: str) -> None:
@@ -52,6 +54,8 @@ def test_a_noun_that_looks_like_a_verb_stays() -> None:
         ("A person is told that he fails.", HE, "Tom was told that he failed."),
         ("A person is told that he fails.", THEY, "Sam was told that they failed."),
         ("The rain wakes the character.", SHE, "The rain woke Ana."),
+        ("The rain falls. The character, cold, sits down.", SHE, "The rain fell. Ana, cold, sat down."),
+        ("The character runs. The character, cold, sits.", THEY, "Sam ran. Sam, cold, sat."),
         ("Character stomped around, holding her head.", HE, "Tom stomped around, holding his head."),
         (
             "The picnic is tomorrow and the character cannot wait.",
@@ -86,6 +90,42 @@ def test_what_might_go_wrong_is_not_told(text: str) -> None:
 )
 def test_an_event_becomes_a_sentence_or_nothing(event: str, told: str | None) -> None:
     assert event_retold(event, SHE) == told
+
+
+@pytest.mark.parametrize(
+    ("theme", "event", "told"),
+    [
+        ("A teenager plays games all night.", "A teenager plays games all night", "Ana played games all night."),
+        ("He's so happy.", "He's so happy", "Ana was so happy."),
+        (
+            "Her ex calls and she becomes angry.",
+            "Her ex calls and becomes angry",
+            "Her ex called and Ana became angry.",
+        ),
+        ("She is told in the phone.", "is told in the phone", "Ana was told on the phone."),
+        (
+            "She wins, calls home, celebrates.",
+            "wins and calls home and celebrates with wine",
+            "Ana won, called home and celebrated with wine.",
+        ),
+        ("He wins, so he run wildly home.", "wins and run wildly home", "Ana won and ran wildly home."),
+    ],
+)
+def test_an_event_is_told_of_the_person_whom_the_theme_is_about(theme: str, event: str, told: str) -> None:
+    assert event_retold(told_of_hero(event, theme), SHE) == told
+
+
+@pytest.mark.parametrize(
+    ("theme", "event", "link"),
+    [
+        ("He wins a lottery, so he runs around the room.", "runs around the room", "So"),
+        ("She is happy, but then she is told the news.", "is told the news", "But then"),
+        ("She is happy and she sings.", "sings", ""),
+        ("Sings.", "dances", ""),
+    ],
+)
+def test_the_word_that_joined_two_events_is_kept(theme: str, event: str, link: str) -> None:
+    assert link_before(theme, event) == link
 
 
 @pytest.mark.parametrize(
