@@ -50,6 +50,13 @@ class Settings(BaseSettings):
     """Dollars a million tokens read, and a million written: "1.25/10"."""
     llm_cache_mb: int = Field(64, ge=0, le=100_000)
     """Answers kept on disk; 0 keeps none."""
+    asr_model: str = ""
+    """The model that turns a film's speech into words, such as "whisper-1"; empty for none."""
+    asr_base_url: str = ""
+    """Where a server of one's own turns speech into words, such as http://127.0.0.1:8001/v1; empty for OpenAI's."""
+    asr_api_key: SecretStr = SecretStr("")
+    asr_folder: Path | None = None
+    """A folder with a faster-whisper model, used instead of a server."""
     host: str = "127.0.0.1"
     port: int = Field(8000, ge=0, le=65535)
     workers: int = Field(1, ge=0, le=64)

@@ -29,6 +29,7 @@ def embedded_cues(film: Film) -> Subtitles | None:
             return None
         track = tracks[0]
         packets = container.demux(track)
+        base = float(track.time_base or 0)
         while len(cues) < MOST_CUES and letters < LARGEST:
             try:
                 packet = next(packets, None)
@@ -41,8 +42,8 @@ def embedded_cues(film: Film) -> Subtitles | None:
             for subtitle in found:
                 row = bytes(getattr(subtitle, "ass", b""))
                 letters += len(row)
-                start = float(packet.pts * packet.time_base) - film.start
-                length = float(packet.duration * packet.time_base) if packet.duration else 2.0
+                start = (packet.pts or 0) * base - film.start
+                length = packet.duration * base if packet.duration else 2.0
                 cues += _cues(row.decode("utf-8", errors="replace"), start, start + min(length, _LONG))
         language = track.language or "no language named"
         notes = (f"{len(tracks)} tracks of subtitles; read: {language}",) if len(tracks) > 1 else ()

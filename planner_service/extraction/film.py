@@ -79,7 +79,7 @@ class Film:
     @property
     def notes(self) -> tuple[str, ...]:
         """What was wrong so far, a line each."""
-        return tuple(f"{self.name}: {many} {what}" for what, many in sorted(self.faults.items()))
+        return tuple(f"{self.name}: {many} {what}" for what, many in sorted(self.faults.items()) if many)
 
 
 @dataclass(frozen=True)
@@ -243,6 +243,7 @@ def _decoded(
             continue
         for picture in found:
             damaged = 0
+            faults["damaged pictures, shown as they are"] += bool(picture.is_corrupt)
             _measure(picture.width, picture.height, limits)
             yield picture
     raise FilmError(f"film: there are more than {4 * limits.pictures} packets in it; give a part of it")
@@ -257,7 +258,7 @@ def _dated(run: Iterator[VideoFrame], film: Film) -> Generator[tuple[float, Vide
         if time > film.limits.seconds or number > film.limits.pictures:
             raise FilmError(
                 f"film: it goes on after {film.limits.seconds / 3600:g} hours or {film.limits.pictures} pictures, "
-                "which is all that is read of one; give a part, or mend its clock: ffmpeg -i FILM -fps_mode cfr MENDED.mp4"
+                "which is all that is read of one; give a part, or mend its clock: ffmpeg -i FILM -fps_mode cfr NEW.mp4"
             )
         if time <= last or time < 0:
             backwards += 1

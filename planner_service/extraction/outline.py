@@ -112,9 +112,8 @@ class SceneOutline(_Kept):
 def problems_in(answer: SceneAnswer, scene: Scene) -> list[str]:
     """What a model has to mend: emotions that are none, times of another scene, too much or nothing at all."""
     found = [] if answer.summary.strip() else ["summary: it is empty; write what happens"]
-    for name in ("characters", "objects", "contacts", "moments"):
-        if len(getattr(answer, name)) > _MOST:
-            found.append(f"{name}: {len(getattr(answer, name))} of them, at most {_MOST}")
+    lists = {name: len(getattr(answer, name)) for name in ("characters", "objects", "contacts", "moments")}
+    found += [f"{name}: {many} of them, at most {_MOST}" for name, many in lists.items() if many > _MOST]
     feeling = [("characters", index, one.emotion) for index, one in enumerate(answer.characters)]
     feeling += [("moments", index, one.emotion) for index, one in enumerate(answer.moments)]
     for name, index, emotion in feeling[: 2 * _MOST]:

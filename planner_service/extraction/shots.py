@@ -77,6 +77,8 @@ def shots_of(film: Film, progress: Progress | None = None) -> tuple[Shot, ...]:
     """The shots of a film in order, from its first picture to its last; every cut and fade parts two. FilmError."""
     samples = _sampled(film, progress)
     end = float(samples.times[-1]) + 1 / film.rate
+    if film.claimed is not None and film.claimed > end + 2:
+        film.faults["seconds less than it says it has"] = round(film.claimed - end)
     cuts = _apart(_hard_cuts(samples), [], SHORTEST)
     cuts = sorted(_apart(_fades(samples, cuts), cuts, SLOW))
     bounds = [0.0, *(cut for cut in cuts if SHORTEST <= cut <= end - SHORTEST), end]
@@ -109,7 +111,7 @@ def _dots(picture: VideoFrame, index: int) -> NDArray[np.uint8]:
     """A plane of a planar picture, every so many-th dot of it."""
     plane = picture.planes[index]
     step = max(1, plane.width // _ACROSS)
-    dots = np.frombuffer(plane, np.uint8).reshape(plane.height, plane.line_size)
+    dots: NDArray[np.uint8] = np.frombuffer(memoryview(plane), np.uint8).reshape(plane.height, plane.line_size)
     return dots[::step, : plane.width : step]
 
 
@@ -138,7 +140,7 @@ def _sampled(film: Film, progress: Progress | None) -> _Samples:
 def _hard_cuts(samples: _Samples) -> list[tuple[float, float]]:
     """(strength, time) of every picture that begins a shot at once; a flash, after which all is as before, does not."""
     steps, found = samples.steps, []
-    for at in np.flatnonzero(steps >= CUT):
+    for at in map(int, np.flatnonzero(steps >= CUT)):
         around = np.concatenate([steps[max(1, at - _AROUND) : at], steps[at + 1 : at + 1 + _AROUND]])
         later = samples.leaps[min(at + _AROUND - 1, len(steps) - 1)]
         if steps[at] >= STEEP * around.max(initial=0.0) and later >= CUT:
@@ -160,7 +162,7 @@ def _fades(samples: _Samples, cuts: list[float]) -> list[tuple[float, float]]:
         over = difference(looks[:-span], looks[span:])  # (S - span,), centred at + half
         still = np.zeros(len(looks), np.float32)
         still[1:] = difference(looks[:-1], looks[1:])
-        for at in np.flatnonzero(over >= FADE):
+        for at in map(int, np.flatnonzero(over >= FADE)):
             before, after = still[max(1, at - 1) : at + 1], still[at + span + 1 : at + span + 3]
             sides = max(before.max(initial=0.0), after.max(initial=0.0))
             time = float(looked[at + half])

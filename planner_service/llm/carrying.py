@@ -7,26 +7,19 @@ tried again, after Retry-After where the server says so, and everything ends by 
 from __future__ import annotations
 
 import asyncio
-import json
-import re
 import time
 from dataclasses import dataclass, field
-from email.utils import parsedate_to_datetime
 from http import HTTPStatus
 from typing import Final
 
 import httpx2
 
 from planner_service.errors import printable
+from planner_service.llm.patience import ATTEMPTS, BUSY, FIRST_WAIT, message_of, retry_after, without_key
 from planner_service.llm.protocol import ModelError
 
 LARGEST_ANSWER: Final = 2_000_000
 """Bytes of a body."""
-ATTEMPTS: Final = 4
-BUSY: Final = frozenset({408, 425, 429, 500, 502, 503, 504, 529})
-"""Statuses that may be better a little later; 529 is Anthropic's "overloaded"."""
-FIRST_WAIT: Final = 0.5
-"""Seconds, doubled each time."""
 _SAID: Final = 200
 _REMEDIES: Final = {
     401: "check SIMS_LLM_API_KEY",
@@ -120,29 +113,4 @@ class Carrier(httpx2.AsyncBaseTransport):
 
     def _shown(self, text: str) -> str:
         """A short line of a server's words, without our key or a part of it."""
-
-        def hidden(found: re.Match[str]) -> str:
-            return "…" if self.key and (found[0] in self.key or self.key in found[0]) else found[0]
-
-        return printable(re.sub(r"[\w.~-]{6,}", hidden, text.replace(self.key, "…") if self.key else text), _SAID)
-
-
-def message_of(body: bytes) -> str:
-    """What a server says went wrong, if it says so in JSON as OpenAI, Ollama, vLLM or Anthropic do."""
-    try:
-        value = json.loads(body)
-    except (ValueError, RecursionError):
-        return ""
-    error = value.get("error", value) if isinstance(value, dict) else None
-    said = error.get("message", "") if isinstance(error, dict) else error
-    return said if isinstance(said, str) else ""
-
-
-def retry_after(header: str, now: float) -> float:
-    """Seconds to wait as Retry-After says, in seconds or as a date; 0 for what cannot be read."""
-    if re.fullmatch(r"\d{1,9}(\.\d{1,6})?", header.strip()):
-        return float(header)
-    try:
-        return max(0.0, parsedate_to_datetime(header).timestamp() - now)
-    except (ValueError, OverflowError, TypeError):
-        return 0.0
+        return printable(without_key(text, self.key), _SAID)

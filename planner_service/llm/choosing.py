@@ -104,8 +104,11 @@ def served(name: str, settings: Settings) -> Late:
     return Late(name, base_url_of(settings.llm_base_url), key)
 
 
-def base_url_of(given: str) -> str:
-    """The address without a slash at its end. SettingsError for one that is none, or that holds a password."""
+def base_url_of(given: str, setting: str = "SIMS_LLM_BASE_URL", key: str = "SIMS_LLM_API_KEY") -> str:
+    """The address that a setting gives, without a slash at its end.
+
+    SettingsError for one that is none, or that holds a password.
+    """
     if not given:
         return ""
     try:
@@ -115,9 +118,9 @@ def base_url_of(given: str) -> str:
     except ValueError:
         good = False
     if not good:
-        raise SettingsError("SIMS_LLM_BASE_URL: it must be an address such as http://127.0.0.1:11434/v1")
+        raise SettingsError(f"{setting}: it must be an address such as http://127.0.0.1:11434/v1")
     if parts.username or parts.password:
-        raise SettingsError("SIMS_LLM_BASE_URL: no password belongs into an address; use SIMS_LLM_API_KEY")
+        raise SettingsError(f"{setting}: no password belongs into an address; use {key}")
     return given.rstrip("/")
 
 

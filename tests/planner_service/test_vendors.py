@@ -19,7 +19,8 @@ import prompts
 from planner_service.llm import carrying
 from planner_service.llm.asking import ModelAnswerError, ask
 from planner_service.llm.budgets import Limits, Spending
-from planner_service.llm.carrying import ServerError, message_of, retry_after
+from planner_service.llm.carrying import ServerError
+from planner_service.llm.patience import message_of, retry_after
 from planner_service.llm.protocol import InvalidAnswerError, ModelError
 from planner_service.llm.served import LONGEST_ANSWER, ServedModel
 from planner_service.llm.vendors import Address, Kind, Vendor

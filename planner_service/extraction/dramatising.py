@@ -1,0 +1,88 @@
+"""A scene's outline to short scripts: a model writes them in known words, and they are checked and mended."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from pydantic import BaseModel, ConfigDict
+
+import prompts
+from motion_backend.motion import Skill
+from planner_service.extraction.by_model import FoundScript, faults_of
+from planner_service.extraction.making import Draft, Maker
+from planner_service.extraction.outline import LEEWAY, SceneOutline
+from planner_service.llm.asking import ask
+from planner_service.llm.protocol import LanguageModel
+from planner_service.scripts.captions import captions
+from planner_service.scripts.checking import read_keyframe
+from planner_service.scripts.emotions import emotion_of
+from planner_service.scripts.keyframe import EMOTIONS, MOST_PIECES
+from scene_graphs.catalogue import CATALOGUE, KINDS
+from scene_graphs.furniture import ROOM_TYPES, canonical_room, display_name
+
+_MOST_SCRIPTS: Final = 4
+"""Of one scene."""
+
+
+class FilmedScript(FoundScript):
+    """A short script as a model writes it, and the seconds of the film that it is taken from."""
+
+    start: float
+    end: float
+
+
+class FilmedScripts(BaseModel):
+    """The answer to `prompts/write_scripts.md`."""
+
+    model_config = ConfigDict(extra="ignore")
+
+    scripts: list[FilmedScript]
+
+
+def scripts_of(model: LanguageModel, outline: SceneOutline, maker: Maker) -> tuple[Draft, ...]:
+    """The short scripts that the model makes of a scene, mended so that a body can act them out. Raises ModelError.
+
+    A scene in which nobody does anything is not asked about.
+    """
+    if not outline.moments and not outline.contacts:
+        return ()
+    prompt = prompts.render(
+        "write_scripts",
+        number=str(outline.number),
+        most=str(_MOST_SCRIPTS),
+        keyframes=str(MOST_PIECES // 2),
+        skills=", ".join(Skill),
+        emotions=", ".join(EMOTIONS),
+        rooms=", ".join(ROOM_TYPES),
+        furniture=", ".join(sorted({display_name(word) for word in (*KINDS, *CATALOGUE)})),
+        captions="\n".join(f"  {skill}: {'; '.join(known)}" for skill, known in captions().items()),
+        outline=outline.model_dump_json(exclude={"notes", "number"}, indent=1),
+    )
+    answer = ask(model, prompt, FilmedScripts, lambda found: list(_problems(found, outline)))
+    return tuple(
+        maker.make(
+            " ".join(script.summary.split()),
+            [read_keyframe(keyframe.model_dump()) for keyframe in script.keyframes],
+            emotion_of(script.emotion) or "neutral",
+            canonical_room(script.room),
+            (_inside(script.start, outline), _inside(script.end, outline)),
+            f"llm:{model.name}",
+        )
+        for script in answer.scripts
+    )
+
+
+def _problems(answer: FilmedScripts, outline: SceneOutline) -> Iterator[str]:
+    if len(answer.scripts) > _MOST_SCRIPTS:
+        yield f"scripts: {len(answer.scripts)} of them, at most {_MOST_SCRIPTS}"
+    for index, script in enumerate(answer.scripts[:_MOST_SCRIPTS]):
+        for fault in faults_of(script, (outline.number,)):
+            yield f"scripts.{index}.{fault}"
+        if not outline.start - LEEWAY <= script.start < script.end <= outline.end + LEEWAY:
+            span = f"{outline.start:g} to {outline.end:g} s"
+            yield f"scripts.{index}: {script.start:g} to {script.end:g} is no span of the scene, {span}"
+
+
+def _inside(time: float, outline: SceneOutline) -> float:
+    return round(min(max(time, outline.start), outline.end), 2)

@@ -1,0 +1,125 @@
+"""A vision model watches a film and says what it saw; every scene can be watched by itself (SIMS 3.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import prompts
+from planner_service.extraction.dramatising import scripts_of
+from planner_service.extraction.film import Film, frames_at
+from planner_service.extraction.grouping import Scene
+from planner_service.extraction.making import Draft, Maker
+from planner_service.extraction.outline import SceneAnswer, SceneOutline, outline_of, problems_in
+from planner_service.extraction.shots import Progress
+from planner_service.extraction.subtitles import Cue
+from planner_service.llm.asking import ask
+from planner_service.llm.protocol import LanguageModel, ModelError
+from planner_service.llm.served import for_story
+from planner_service.scripts.keyframe import EMOTIONS
+from scene_graphs.catalogue import CATALOGUE, KINDS
+from scene_graphs.furniture import ROOM_TYPES, display_name
+
+REPAIRS: Final = 2
+"""How often a model is told what was wrong with an answer."""
+_MOST_SAID: Final = 4000
+"""Letters of a scene's subtitles that a model reads."""
+_MOST_FAILURES: Final = 3
+"""Scenes in a row without an answer, after which a model is not asked again."""
+_TOKENS: Final = 1000
+"""Of an image, about; and of 4000 letters."""
+
+
+@dataclass(frozen=True)
+class Watched:
+    """What came of one scene."""
+
+    scene: Scene
+    outline: SceneOutline | None
+    """None where the model failed."""
+    drafts: tuple[Draft, ...]
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """What watching scenes takes of a model at most, before anything is asked."""
+
+    questions: int
+    images: int
+    tokens: int
+    """Read by the model, about."""
+
+
+def bounds_of(scenes: Sequence[Scene]) -> Bounds:
+    """Two questions a scene, each with its corrections; the frames go with the first."""
+    tries = 1 + REPAIRS
+    images = tries * sum(len(scene.times) for scene in scenes)
+    questions = 2 * tries * len(scenes)
+    return Bounds(questions, images, _TOKENS * images + 6 * _TOKENS * questions)
+
+
+def watch(model: LanguageModel, film: Film, scene: Scene) -> SceneOutline:
+    """What the model sees in a scene, checked. Raises ModelError, FilmError."""
+    frames = tuple(frames_at(film, scene.times))
+    prompt = prompts.render(
+        "watch_scene",
+        number=str(scene.number),
+        start=f"{scene.start:g}",
+        end=f"{scene.end:g}",
+        times=", ".join(f"{frame.time:g}" for frame in frames),
+        emotions=", ".join(EMOTIONS),
+        rooms=", ".join(ROOM_TYPES),
+        furniture=", ".join(sorted({display_name(word) for word in (*KINDS, *CATALOGUE)})),
+        film=film.name,
+        subtitles=_said(scene.cues) or "(nothing)",
+    )
+    images = [frame.jpeg for frame in frames]
+    answer = ask(model, prompt, SceneAnswer, lambda seen: problems_in(seen, scene), REPAIRS, images)
+    return outline_of(answer, scene)
+
+
+def watch_film(
+    model: LanguageModel,
+    film: Film,
+    scenes: Sequence[Scene],
+    maker: Maker,
+    strict: bool = False,
+    progress: Progress | None = None,
+) -> Iterator[Watched]:
+    """Every scene in order, as it is done. A model of one's own has the budget of a story for each scene.
+
+    A scene that the model does not answer gives a note and no script, and after some such scenes it is not asked again;
+    with `strict` the ModelError is raised. Raises FilmError.
+    """
+    wrong, failure = 0, ""
+    for done, scene in enumerate(scenes, 1):
+        outline: SceneOutline | None = None
+        drafts: tuple[Draft, ...] = ()
+        notes: tuple[str, ...] = ()
+        if wrong < _MOST_FAILURES:
+            own = for_story(model, scene.number) or model
+            try:
+                outline = watch(own, film, scene)
+                drafts = scripts_of(own, outline, maker)
+                notes, wrong = outline.notes, 0
+            except ModelError as error:
+                if strict:
+                    raise
+                wrong, failure = wrong + 1, str(error)
+        if wrong:
+            again = "not asked any more: " if wrong >= _MOST_FAILURES and not notes else ""
+            notes = (f"scene {scene.number}: the model gave no answer ({again}{failure})",)
+        yield Watched(scene, outline, drafts, notes)
+        if progress is not None:
+            progress("watching", done / len(scenes))
+
+
+def _said(cues: Sequence[Cue]) -> str:
+    """What is said, a line a cue, with times and names; cut where it is too long."""
+    lines = []
+    for cue in cues:
+        sounds = "".join(f" [{sound}]" for sound in cue.sounds)
+        lines.append(f"{cue.start:.1f}–{cue.end:.1f} {cue.speaker + ': ' if cue.speaker else ''}{cue.text}{sounds}")
+    return "\n".join(lines)[:_MOST_SAID]
