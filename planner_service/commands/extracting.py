@@ -21,7 +21,7 @@ from planner_service.shelves import open_shelves
 from planner_service.stories import RequestError
 
 if TYPE_CHECKING:
-    from planner_service.extraction.extracting import Extraction, Progress, SceneReport
+    from planner_service.extraction.results import Extraction, Progress, SceneReport
 
 _SHOWN: Final = 20
 """Clauses without a keyframe that are listed; `--all` lists every one."""
@@ -40,7 +40,9 @@ def extract(
     every: Annotated[bool, typer.Option("--all", help="List all that no keyframe shows.")] = False,
 ) -> None:
     """Take short scripts out of a film, subtitles or a text: by the language model if one is set, else by rules."""
-    from planner_service.extraction.extracting import Means, Source, extract
+    from planner_service.extraction.extracting import extract
+    from planner_service.extraction.results import Means, Source
+    from planner_service.extraction.speech import load_transcriber
 
     title = " ".join((file.stem if name is None else name).split())
     if not 0 < len(title) <= 200 or not title.isprintable():
@@ -55,7 +57,11 @@ def extract(
     console = Console(markup=False, highlight=False)
     with _progress(Console(stderr=True, markup=False, highlight=False)) as progress:
         means = Means(
-            library=shelves.scripts(), model=model, strict=settings.llm_on_failure == "error", progress=progress
+            library=shelves.scripts(),
+            model=model,
+            transcriber=load_transcriber(settings),
+            strict=settings.llm_on_failure == "error",
+            progress=progress,
         )
         made = extract(Source(title, file, subtitles, licence.strip()), means)
     _show(console, made, every)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from typing import Final
+from pathlib import Path
+from typing import BinaryIO, Final
 
 from planner_service.extraction.decoding import decode
 
@@ -48,6 +49,21 @@ def read_text(data: bytes, name: str) -> tuple[str, tuple[str, ...]]:
         raise ExtractionError(f"{name}: is empty; give a text, subtitles or a film")
     decoded = decode(data)
     return tidy(decoded.text, name), (f"{name}: {decoded.note}",) if decoded.note else ()
+
+
+def first_bytes(file: Path | BinaryIO, name: str, most: int) -> bytes:
+    """The first bytes of a file. ExtractionError for what cannot be read."""
+    if not isinstance(file, Path):
+        file.seek(0)
+        return file.read(most)
+    if file.is_dir():
+        raise ExtractionError(f"{name}: is a folder; give a text, subtitles or a film")
+    try:
+        with file.open("rb") as stream:
+            return stream.read(most)
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or error
+        raise ExtractionError(f"{name}: cannot be read: {why}; give a text, subtitles or a film") from error
 
 
 def tidy(text: str, name: str) -> str:
