@@ -137,6 +137,8 @@ FILES: dict[str, bytes] = {
     "empty.json": b"",
     "list.json": b"[1, 2]",
     "taken.json": text(script(id="mine")),
+    "ours-changed.json": text(script(id="insomnia-at-three")),
+    "film-script.json": text(script(source="video")),
     "same-twice.jsonl": text(script()) + b"\n" + text(script()) + b"\n",
     "good-then-bad.jsonl": text(script()) + b"\n" + text(script(id="b", keyframes=[keyframe(furniture="ufo")])),
 }
@@ -240,6 +242,16 @@ CASES: dict[str, Case] = {
     "an id that is taken": add("taken.json", "taken.json", "'mine'", "another id"),
     "an id twice in a file": add("same-twice.jsonl", "my-own", "another id"),
     "a bad script behind a good one": add("good-then-bad.jsonl", "ufo"),
+    "replacing one of ours": Case(
+        ("scripts", "add", "FILES/ours-changed.json", "--replace"), ("ours-changed.json", "another id")
+    ),
+    "a script of a film without a licence": add("film-script.json", "film-script.json", "licence", "unknown"),
+    "exporting into a folder": Case(("scripts", "export", "--out", "FILES/folder.json"), ("--out", "is a folder")),
+    "exporting unknown furniture": Case(("scripts", "export", "--furniture", "ufo"), ("furniture", "ufo")),
+    "showing a version there is not": Case(("scripts", "show", "mine", "--version", "7"), ("version", "mine")),
+    "imitating without a model": Case(
+        ("scripts", "imitate", "--emotion", "sad", "--room", "study"), ("SIMS_LLM_MODEL", "rules do not imagine")
+    ),
     "a script file that is not there": add("nowhere.json", "FILE", "nowhere.json", "No such file"),
     "a folder of scripts": add("", "cannot be read", "directory"),
     "a data folder that cannot be": Case(

@@ -280,6 +280,15 @@ def test_short_scripts_are_found_added_and_removed(client: Client) -> None:
     with pytest.raises(ApiError, match="409"):
         client.add_short_script(TRUMPET)
     assert client.short_script("polish-the-trumpet")["summary"] == TRUMPET["summary"]
+    changed = client.change_short_script(client.short_script("polish-the-trumpet") | {"summary": "A trumpet shines."})
+    assert (changed["version"], client.export_short_scripts(own=True, furniture=["sofa"])) == (
+        2, [{name: value for name, value in changed.items() if name != "built_in" and value is not None}],
+    )  # fmt: skip
+    with pytest.raises(ApiError, match="409"):
+        client.change_short_script(TRUMPET)
+    client.change_short_script(TRUMPET | {"version": 2})
+    assert [one["version"] for one in client.short_script_versions("polish-the-trumpet")] == [1, 2, 3]
+    assert client.short_script("polish-the-trumpet", version=2) == changed
     plan = client.long_script("He polishes his trumpet.", seed=1)
     assert "polish-the-trumpet" in [one["script"]["id"] for one in plan["short_scripts"]]
     client.delete_short_script("polish-the-trumpet")
