@@ -72,20 +72,20 @@ def recurrent(edges: Edges) -> list[Indices]:
 
 
 def balanced(edges: Edges, free: Collection[str]) -> tuple[Array, Array]:
-    """The probability of every move given its source, (E,), and how often each type occurs in the long run, (K,).
+    """The probability of every move given its source, and how often it is made in the long run. Both (E,).
 
     All types but the `free` ones are made equally frequent, as nearly as the graph allows. Moves of states that the
     chain leaves for good keep their usual weights.
     """
     tied = np.array([name not in free for name in edges.kinds], dtype=bool)
-    weights, share = edges.usual.copy(), np.zeros(len(edges.kinds))
+    weights, flow = edges.usual.copy(), np.zeros(len(edges.source))
     for states in recurrent(edges):
         inner, kept = edges.within(states)
         chain = _Chain(inner)
         chosen = _weights(chain, tied)
-        _, share = chain.radius(chosen)
-        weights[kept] = chain.weighted(chosen) * chain.right[inner.target]
-    return weights / np.bincount(edges.source, weights, edges.states)[edges.source], share
+        chain.radius(chosen)
+        weights[kept], flow[kept] = chain.weighted(chosen) * chain.right[inner.target], chain.flow(chosen)
+    return weights / np.bincount(edges.source, weights, edges.states)[edges.source], flow
 
 
 def _weights(chain: _Chain, tied: NDArray[np.bool_]) -> Array:
@@ -124,13 +124,15 @@ class _Chain:
 
     def radius(self, weights: Array) -> tuple[float, Array]:
         """Logarithm of the spectral radius, and how often each type occurs: its gradient. (K,)."""
-        move = self.weighted(weights)
-        matrix = self.edges.matrix(move)
+        matrix = self.edges.matrix(self.weighted(weights))
         self.right, size = _eigenvector(matrix, self.right)
         self.left, _ = _eigenvector(matrix.T.tocsc(), self.left)
-        flow = self.left[self.edges.source] * move * self.right[self.edges.target]
-        share = np.bincount(self.edges.kind, flow, len(self.edges.kinds))
-        return float(np.log(size)), share / share.sum()
+        return float(np.log(size)), np.bincount(self.edges.kind, self.flow(weights), len(self.edges.kinds))
+
+    def flow(self, weights: Array) -> Array:
+        """How often every move is made, with the eigenvectors of these weights. (E,)."""
+        flow = self.left[self.edges.source] * self.weighted(weights) * self.right[self.edges.target]
+        return np.asarray(flow / flow.sum())
 
 
 def _eigenvector(matrix: csc_matrix, guess: Array) -> tuple[Array, float]:

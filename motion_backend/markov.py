@@ -137,9 +137,14 @@ class Planner:
         self.states, moves = _explored(self.candidates)
         edges = Edges.of(moves, len(self.states), [c.kind for c in self.candidates])
         self._check_returns(edges)
-        chances, shares = balanced(edges, _free_kinds(self.candidates))
-        self.shares = {kind: round(float(share), 4) for kind, share in zip(edges.kinds, shares, strict=True)}
-        """How often each motion type comes in the long run."""
+        chances, flow = balanced(edges, _free_kinds(self.candidates))
+        self.frequencies = {
+            candidate.name: round(float(share), 6)
+            for candidate, share in zip(
+                self.candidates, np.bincount(edges.candidate, flow, len(self.candidates)), strict=True
+            )
+        }
+        """The share of instructions that each candidate has in the long run, by name."""
         self._table = [_row(edges, chances, state) for state in range(len(self.states))]
 
     def __iter__(self) -> Iterator[Candidate]:
@@ -151,6 +156,14 @@ class Planner:
             place = int(np.searchsorted(bounds, rng.random(), side="right"))
             state = int(targets[place])
             yield self.candidates[int(chosen[place])]
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """The share of instructions that each motion type has in the long run."""
+        found = dict[str, float]()
+        for candidate in self.candidates:
+            found[candidate.kind] = found.get(candidate.kind, 0.0) + self.frequencies[candidate.name]
+        return {kind: round(share, 4) for kind, share in found.items()}
 
     def sequence(self, count: int) -> tuple[Candidate, ...]:
         """The first instructions."""

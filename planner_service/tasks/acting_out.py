@@ -95,7 +95,7 @@ class _Actor:
                 return self._operate(task, clause, word)
             case "stand":
                 self._stand()
-                how = clause.deed.how
+                self.at, how = "", clause.deed.how
                 return self._add(Skill.LOCO, caption_of([task.text], how), "floor"), clause.deed.why
             case _:
                 return self._use(task, clause, word)

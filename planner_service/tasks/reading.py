@@ -75,7 +75,7 @@ def clauses(action: str) -> tuple[Clause, ...]:
         if clause is None and carried is not None and carried.thing and not _starts_as_verb(text):
             # "the cup and the plate": the same is done with both.
             hand = _HAND.search(text)
-            carried = replace(carried, hand=cast(Hand, hand[1].lower()) if hand else carried.hand)
+            carried = replace(carried, hand=cast(Hand, hand[1].lower()) if hand else None)
             clause = _with_rest(carried, _HAND.sub("", text))
         if clause is None:
             raise TaskError(f"action: rules know no way to “{text[:60]}”; they know to {', '.join(known_verbs())}")
@@ -137,7 +137,7 @@ def _ordered(text: str) -> Iterator[str]:
 
 def _parts(*texts: str) -> Iterator[str]:
     for text in texts:
-        yield from (part.strip() for part in _BREAK.split(text) if part.strip())
+        yield from (part.strip() for part in _BREAK.split(text) if re.search(r"\w", part))
 
 
 def _starts_as_verb(text: str) -> bool:
