@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Final
 
 from planner_service.extraction.decoding import decode
@@ -137,7 +138,7 @@ def _tidy(cue: Cue, faults: _Faults) -> list[Cue]:
 def _arrow_cues(lines: list[str]) -> Iterator[Cue]:
     """SRT and WebVTT: a line of two times, and the lines below it up to an empty one."""
     arrows = [at for at, line in enumerate(lines) if "-->" in line and _ARROW.match(line)]
-    for at, following in zip(arrows, [*arrows[1:], len(lines)], strict=True):
+    for at, following in pairwise([*arrows, len(lines)]):
         match = _ARROW.match(lines[at])
         assert match is not None
         text = lines[at + 1 : following]
