@@ -34,6 +34,7 @@ _LEAST_KEYFRAMES: Final = 2
 _SHORTEST: Final = 20
 """Letters of a summary by which something can be found."""
 _MOST_KEYFRAMES: Final = 12
+"""Asked for; up to MOST_PIECES are taken."""
 _SHOWN: Final = 12
 """Refused scripts that a model is told of."""
 _FILLING: Final = re.compile(
@@ -125,8 +126,7 @@ def imitate(model: LanguageModel, library: ScriptLibrary, wish: Wish, captions: 
     """Short scripts like stored ones of an emotion and room, valid, repaired and unlike all there are.
 
     `captions` are those that the body knows, by skill, each with other words for it; a model's own words become the
-    nearest of them.
-    What is missing is asked for again, at most MOST_QUESTIONS times; fewer than wished for are better than none.
+    nearest of them. What is missing is asked for again, at most MOST_QUESTIONS times; fewer than wished for are better than none.
     ModelError when nothing at all can be used.
     """
     like = examples(library, wish, seed)
@@ -187,19 +187,24 @@ def _script(written: WrittenScript, wish: Wish, vocabulary: Vocabulary) -> tuple
     summary = " ".join(written.summary.split())
     if not _SHORTEST <= len(summary) <= 400:
         raise _Unfit(f"summary: {len(summary)} letters, it must have {_SHORTEST} to 400")
+    _refuse_count(len(written.keyframes))
     try:
-        keyframes = [read_keyframe(keyframe.model_dump()) for keyframe in written.keyframes[: MOST_PIECES + 1]]
+        keyframes = [read_keyframe(keyframe.model_dump()) for keyframe in written.keyframes]
     except ValidationError as error:
         raise _Unfit(f"keyframes: {problems_of(error)[0]}") from error
     _refuse_strange(keyframes, wish.categories)
     kept, repairs = repair(keyframes, vocabulary)
     _refuse_strange(kept, wish.categories)
-    if not _LEAST_KEYFRAMES <= len(kept) <= MOST_PIECES:
-        raise _Unfit(f"keyframes: {len(kept)} of them, there must be {_LEAST_KEYFRAMES} to {_MOST_KEYFRAMES}")
+    _refuse_count(len(kept))
     if not any(emotion_of(keyframe.emotion) == wish.emotion for keyframe in kept):
         raise _Unfit(f"emotion: no keyframe is {wish.emotion}")
     row = {"id": "unnamed", "summary": summary, "emotion": wish.emotion, "room": wish.room, "keyframes": kept}
     return ShortScript.model_validate({**row, "source": "imitation"}), repairs
+
+
+def _refuse_count(keyframes: int) -> None:
+    if not _LEAST_KEYFRAMES <= keyframes <= MOST_PIECES:
+        raise _Unfit(f"keyframes: {keyframes} of them, there must be {_LEAST_KEYFRAMES} to {MOST_PIECES}")
 
 
 def _refuse_strange(keyframes: Iterable[Keyframe], offered: Collection[str]) -> None:
