@@ -126,8 +126,8 @@ def imitate(model: LanguageModel, library: ScriptLibrary, wish: Wish, captions: 
     """Short scripts like stored ones of an emotion and room, valid, repaired and unlike all there are.
 
     `captions` are those that the body knows, by skill, each with other words for it; a model's own words become the
-    nearest of them. What is missing is asked for again, at most MOST_QUESTIONS times; fewer than wished for are better than none.
-    ModelError when nothing at all can be used.
+    nearest of them. What is missing is asked for again, at most MOST_QUESTIONS times; fewer than wished for are better
+    than none. ModelError when nothing at all can be used.
     """
     like = examples(library, wish, seed)
     vocabulary = Vocabulary({skill: list(some) for skill, some in captions.items()}, captions, library.encoder)
@@ -187,7 +187,7 @@ def _script(written: WrittenScript, wish: Wish, vocabulary: Vocabulary) -> tuple
     summary = " ".join(written.summary.split())
     if not _SHORTEST <= len(summary) <= 400:
         raise _Unfit(f"summary: {len(summary)} letters, it must have {_SHORTEST} to 400")
-    _refuse_count(len(written.keyframes))
+    _refuse_count(len(written.keyframes), least=0)
     try:
         keyframes = [read_keyframe(keyframe.model_dump()) for keyframe in written.keyframes]
     except ValidationError as error:
@@ -202,8 +202,8 @@ def _script(written: WrittenScript, wish: Wish, vocabulary: Vocabulary) -> tuple
     return ShortScript.model_validate({**row, "source": "imitation"}), repairs
 
 
-def _refuse_count(keyframes: int) -> None:
-    if not _LEAST_KEYFRAMES <= keyframes <= MOST_PIECES:
+def _refuse_count(keyframes: int, least: int = _LEAST_KEYFRAMES) -> None:
+    if not least <= keyframes <= MOST_PIECES:
         raise _Unfit(f"keyframes: {keyframes} of them, there must be {_LEAST_KEYFRAMES} to {MOST_PIECES}")
 
 
