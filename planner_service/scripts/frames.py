@@ -18,14 +18,14 @@ PLAIN: Final = ("{who} {did}.",)
 TIMES: Final = tuple(
     f"{words} {{who}} {{did}}."
     for words in (
-        "then", "a moment later", "soon", "before long", "a little later", "next", "now", "when that was done,",
+        "then", "a moment later", "soon", "before long", "a little later", "next", "now",
         "some minutes later", "a short time later", "a minute or so later", "shortly afterwards", "not much later",
     )
 )  # fmt: skip
 QUICK_TIMES: Final = tuple(
     f"{words} {{who}} {{did}}."
     for words in (
-        "without further ado", "straight afterwards", "a heartbeat later", "quite suddenly", "at once", "in no time",
+        "without further ado", "straight afterwards", "a heartbeat later", "at once", "in no time",
     )
 )  # fmt: skip
 SLOW_TIMES: Final = tuple(
@@ -68,7 +68,7 @@ NEW_ROOM: Final = (
     "on to the {room} it was, where {who} {did}.",
     "then it was the turn of the {room}, where {who} {did}.",
 )
-FIRST_ROOM: Final = ("in the {room}, {who} {did}.", "there, in the {room}, {who} {did}.")
+FIRST_ROOM: Final = ("in the {room}, {who} {did}.",)
 KNOWN_ROOM: Final = (
     "back in the {room}, {who} {did}.",
     "in the {room} again, {who} {did}.",

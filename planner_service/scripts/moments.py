@@ -249,10 +249,11 @@ def joined(told: Sequence[Phrase]) -> list[Piece]:
 def sentences_of(told: Sequence[Phrase]) -> list[tuple[Phrase, ...]]:
     """Two or three phrases a sentence: a walk stays with its purpose, rising and a change of mood start a new one."""
     groups: list[list[Phrase]] = []
-    for phrase in told:
+    for phrase, following in zip(told, [*told[1:], None], strict=True):
         current = groups[-1] if groups else []
         tied = bool(current) and current[-1].arrives
-        words = len(phrase.text.split()) + sum(len(p.text.split()) for p in current)
+        purpose = [following] if phrase.arrives and following is not None else []
+        words = sum(len(p.text.split()) for p in [*current, phrase, *purpose])
         room = 0 < len(current) < 3 and words <= _LONGEST and not phrase.rises
         turns = len(current) >= 2 and (phrase.arrives or phrase.mood != current[-1].mood)
         if tied or (room and not turns):

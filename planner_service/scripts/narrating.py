@@ -18,6 +18,8 @@ from planner_service.scripts.scenes import RESTS, Scene, covered, event_retold, 
 from planner_service.scripts.voice import Voice, retell
 
 __all__ = ["Places", "Span", "Told", "narrate"]
+_LINKED = 0.3
+"""Share of an event's words in a summary that may take the event's "so" or "but"."""
 _MANY = 22
 """Keyframes above which a story leaves out what says little."""
 
@@ -78,6 +80,8 @@ class _Narrator:
             if sentence := event_retold(text, self.voice, self._named()):
                 self._say(sentence, link_before(self.script.theme, events[event].text))
         self.scene.append(self.ear.choose(self._framed(self._closings([*told[-1:], self.scene]))))
+        if told and len(self.scene) == 1:
+            self.scene = told.pop() + self.scene
         text, spans = laid_out(balanced([*told, self.scene]))
         title = framing.title_of(self.script.theme, emotion_of(self.last.emotion) or "neutral", self.time)
         return Told(title, text, spans)
@@ -135,7 +139,8 @@ class _Narrator:
         """The theme's own words, then the summary, joined by the theme's own "so" or "but"."""
         turned = len(self.scene) > 0 and self.scene[-1].family == "turn"
         event = self.script.events[events[0]].text if events else ""
-        link = "" if turned else link_before(self.script.theme, event)
+        meant = bool(happens) or covered(event, summary) >= _LINKED
+        link = link_before(self.script.theme, event) if meant and not turned else ""
         for sentence in happens:
             self._say(sentence, link)
             link = ""

@@ -30,6 +30,9 @@ _HERO = re.compile(
     r"|pensioner|traveller|tourist|journalist|lawyer|farmer|pilot|novelist|dancer|gamer|bachelor|loner)\b",
     re.IGNORECASE,
 )
+_SUBJECTS = frozenset(("he", "she", "they"))
+_OBJECTS = frozenset(("him", "them"))
+"""Who is not the subject of a clause that they are the object of."""
 _BASE_VERB = re.compile(r"\band (\w+) (?=\w+ly\b|around\b|about\b|through\b|into\b|home\b)")
 _PALE_WORDS = """
 again about after becom befor begin chara decid feels felt from gets herse himse into over perso some start that their
@@ -108,12 +111,14 @@ def event_retold(event: str, voice: Voice, named: bool = False) -> str | None:
         return (told := retell(f"It {text}", voice, named)) and told + "."
     if _RUN_ON.search(text):
         return None
+    others: frozenset[str] = frozenset()
     verb = next((word for word in words[:2] if not word.endswith("ly")), "")
     if is_verb_form(verb) or is_past(verb) or (base_of(verb) and len(words) > 1 and words[1] not in ("and", "of")):
         text = f"The character {text}"
+        others = frozenset() if _SUBJECTS.intersection(words) else _OBJECTS
     elif words[0] not in ("the", "a", "an", "he", "she", "they", "his", "her", "their", "it", "there"):
         return None
-    told = retell(text, voice, named)
+    told = retell(text, voice, named, others)
     return told and told + "."
 
 

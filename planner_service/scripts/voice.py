@@ -63,7 +63,7 @@ class Voice:
         return self.name + "'s"
 
 
-def retell(text: str, voice: Voice, named: bool = False) -> str | None:
+def retell(text: str, voice: Voice, named: bool = False, others: frozenset[str] = frozenset()) -> str | None:
     """A present-tense text about "the character", told of the voice in the past; None where that is not safe.
 
     The first mention says the name unless `named`; the later ones a pronoun where that cannot be mistaken. Not safe
@@ -73,7 +73,8 @@ def retell(text: str, voice: Voice, named: bool = False) -> str | None:
     if _NOT_OURS.search(text) or ({"he", "his", "him"} & lower and {"she", "her", "hers"} & lower):
         return None
     marked = _MENTION.sub(lambda m: f"⟦{(m['kind'] or '').strip()}{'|own' if m['own'] else ''}⟧", text.strip())
-    told = _Telling(voice, named, they_is_ours=not {"he", "she", "his", "her", "him"} & lower)
+    they_is_ours = not {"he", "she", "his", "her", "him"} & lower
+    told = _Telling(voice, named, others if they_is_ours else others | {"they", "them", "their", "theirs"})
     for match in _TOKEN.finditer(marked):
         follows = _TOKEN.search(marked, match.end())
         told.add(match[0], follows[0].lower() if follows else "", marked[told.end : match.start()])
@@ -84,10 +85,10 @@ def retell(text: str, voice: Voice, named: bool = False) -> str | None:
 class _Telling:
     """One text on its way through `retell`, word by word."""
 
-    def __init__(self, voice: Voice, named: bool, they_is_ours: bool) -> None:
+    def __init__(self, voice: Voice, named: bool, others: frozenset[str]) -> None:
         self.voice = voice
         self.named = named
-        self.they_is_ours = they_is_ours
+        self.others = others  # pronouns that stand for somebody else
         self.words: list[str] = []
         self.before = ""
         self.end = 0
@@ -100,7 +101,7 @@ class _Telling:
         lower = token.lower()
         if token.startswith("⟦"):
             told = self._mention(token[1:-1], follows)
-        elif lower in _SPOKEN_OF and (self.they_is_ours or lower not in ("they", "them", "their", "theirs")):
+        elif lower in _SPOKEN_OF and lower not in self.others:
             told = self._pronoun(lower, follows)
         else:
             told = self._word(token)

@@ -80,6 +80,8 @@ def test_what_might_go_wrong_is_not_told(text: str) -> None:
     [
         ("misses the bus", "Ana missed the bus."),
         ("is raining", "It was raining."),
+        ("welcomes them with her best smile", "Ana welcomed them with her best smile."),
+        ("kisses him", "Ana kissed him."),
         ("decided to drink wine", "Ana decided to drink wine."),
         ("the phone rings", "The phone rang."),
         ("a quarrel with her boss she comes home", None),

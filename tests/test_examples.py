@@ -1,0 +1,39 @@
+"""The stories in docs/examples are what the program tells today."""
+
+from __future__ import annotations
+
+import runpy
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from running import CACHE
+
+from planner_service.shelves import Shelves
+from planner_service.stories import Studio
+
+FOLDER = Path(__file__).resolve().parents[1] / "docs"
+stories = SimpleNamespace(**runpy.run_path(str(FOLDER / "stories.py")))
+names = [example.file for example in stories.EXAMPLES]
+
+
+@pytest.fixture(scope="module")
+def studio() -> Studio:
+    studio = Studio(Shelves(cache=CACHE))
+    if studio.shelves.scripts().encoder.name == "hashing":
+        pytest.skip("all-MiniLM-L6-v2 is not installed")
+    return studio
+
+
+@pytest.mark.parametrize("number", [0, 4])
+def test_an_example_is_told_today_as_its_page_says(studio: Studio, number: int) -> None:
+    example = stories.EXAMPLES[number]
+    page = (FOLDER / "examples" / f"{example.file}.md").read_text(encoding="utf-8")
+    assert stories.page(example, stories.told(example, studio)) == page, "run python docs/stories.py"
+
+
+def test_there_are_ten_examples_and_a_page_for_each() -> None:
+    pages = {path.stem for path in (FOLDER / "examples").glob("*.md")} - {"README"}
+    assert len(names) == 10
+    assert pages == set(names)
+    assert (FOLDER / "examples" / "README.md").read_text(encoding="utf-8") == stories.index()
