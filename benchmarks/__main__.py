@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 from benchmarks.demo import measure_demo
+from benchmarks.film import film_figures
 from benchmarks.geometry import geometry_figures
 from benchmarks.reading import reading_figures
 from benchmarks.retrieval import retrieval_figures
@@ -35,6 +36,7 @@ def main() -> int:
         figures += retrieval_figures()
         figures += geometry_figures()
         figures += reading_figures()
+        figures += film_figures(Path(folder))
         figures += file_figures(made, Path(folder))
         figures += service_figures(Path(folder))
     figures += quality_figures(made)

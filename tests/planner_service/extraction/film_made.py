@@ -39,6 +39,7 @@ class Making:
     texts: str = "mov_text"
     sound: float = 0.0
     """Seconds of a tone."""
+    sounds: str = "aac"
     options: tuple[tuple[str, str], ...] = (("preset", "ultrafast"), ("crf", "26"), ("bf", "2"))
 
 
@@ -86,7 +87,7 @@ def film_of(shots: Sequence[Drawn], making: Making | None = None) -> bytes:
         stream: Any = container.add_stream(making.codec, rate=making.rate, options=dict(making.options))
         stream.width, stream.height, stream.pix_fmt = *making.size, "yuvj420p" if "jpeg" in making.codec else "yuv420p"
         stream.codec_context.thread_count = 1
-        sound: Any = container.add_stream("aac", rate=16000) if making.sound else None
+        sound: Any = container.add_stream(making.sounds, rate=16000) if making.sound else None
         texts: Any = container.add_stream(making.texts) if making.subtitles else None
         if texts is not None:
             texts.codec_context.subtitle_header = _STYLES

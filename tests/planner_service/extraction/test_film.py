@@ -35,14 +35,6 @@ def read_or_refused(data: bytes, limits: FilmLimits | None = None) -> tuple[Shot
         return str(refusal)
 
 
-def read_or_refused(data: bytes, limits: FilmLimits | None = None) -> tuple[Shot, ...] | str:
-    """The shots of a film, or why it was refused."""
-    try:
-        return shots_of(opened(data, limits))
-    except FilmError as refusal:
-        return str(refusal)
-
-
 def colour_of(frame: Frame) -> np.ndarray:
     """The mean colour of a JPEG, as it is decoded by itself."""
     with av.open(io.BytesIO(frame.jpeg), format="jpeg_pipe") as container:
