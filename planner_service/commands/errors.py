@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from motion_backend.language.minilm import WeightsError
 from planner_service.extraction.containers import FilmError
 from planner_service.extraction.plain import ExtractionError
+from planner_service.extraction.speech import SpeechError
 from planner_service.extraction.subtitles import SubtitleError
 from planner_service.filing import OutputError
 from planner_service.furnish import FurnishError
@@ -43,6 +44,7 @@ USER_ERRORS = (
     ExtractionError,
     SubtitleError,
     FilmError,
+    SpeechError,
 )
 
 

@@ -8,12 +8,11 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Final
 
-from motion_backend.language.text import SentenceEncoder
 from motion_backend.motion import Skill
 from planner_service.scripts.captions import captions
 from planner_service.scripts.checking import hand_of
 from planner_service.scripts.emotions import emotion_of
-from planner_service.scripts.library import built_in
+from planner_service.scripts.library import ScriptLibrary, built_in
 from planner_service.scripts.usual import WALKS
 
 _OF_THE_MOOD: Final = 0.5
@@ -80,7 +79,7 @@ def rise(skill: Skill, emotion: str) -> str:
     return f"get up {how}".strip()
 
 
-def captions_for(deeds: Sequence[tuple[Skill, str, str]], encoder: SentenceEncoder) -> list[str]:
+def captions_for(deeds: Sequence[tuple[Skill, str, str]], library: ScriptLibrary) -> list[str]:
     """A known caption for each (skill, words, emotion): of the mood and skill, the hands of the words, and nearest.
 
     Scores are rounded to 1e-4 before they rank.
@@ -89,8 +88,8 @@ def captions_for(deeds: Sequence[tuple[Skill, str, str]], encoder: SentenceEncod
     if not deeds:
         return []
     known = list(dict.fromkeys(caption for offer in offers for caption in offer))
-    vectors = encoder.encode([*known, *(words for _, words, _ in deeds)])
-    near = vectors[len(known) :] @ vectors[: len(known)].T  # (deeds, captions)
+    words = library.encoder.encode([words for _, words, _ in deeds])
+    near = words @ library.vectors_of(tuple(known)).T  # (deeds, captions)
     at = {caption: index for index, caption in enumerate(known)}
     return [
         max(offer, key=lambda caption: (round(float(row[at[caption]]) + offer[caption], 4), caption))

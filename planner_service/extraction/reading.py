@@ -198,7 +198,7 @@ def room_of(scene: TextScene, pieces: Sequence[str], before: str = "") -> str:
 def _draft(body: _Body, shown: Sequence[Told], mood: str, hero: str, maker: Maker) -> Draft:
     wanted = [index for index, words in enumerate(body.words) if words]
     captions = captions_for(
-        [(body.keyframes[at].skill, body.words[at], body.keyframes[at].emotion) for at in wanted], maker.encoder
+        [(body.keyframes[at].skill, body.words[at], body.keyframes[at].emotion) for at in wanted], maker.library
     )
     for at, caption in zip(wanted, captions, strict=True):
         body.keyframes[at] = body.keyframes[at].model_copy(update={"caption": caption})
@@ -218,8 +218,8 @@ def _mood(scene: TextScene, told: Sequence[Told], maker: Maker) -> str:
         return max(named, key=lambda name: named[name])
     if (spoken := mood_of(scene.spoken)) is not None:
         return spoken
-    vectors = maker.encoder.encode([f"{scene.told} {scene.spoken}"[:300], *MEANINGS.values()])
-    near = np.round(vectors[0] @ vectors[1:].T, 4)
+    whole = maker.encoder.encode([f"{scene.told} {scene.spoken}"[:300]])[0]
+    near = np.round(maker.library.vectors_of(tuple(MEANINGS.values())) @ whole, 4)
     first, second = np.argsort(-near, kind="stable")[:2]
     clear = near[first] >= _FELT and near[first] - near[second] >= _AHEAD
     return tuple(MEANINGS)[first] if clear else "neutral"

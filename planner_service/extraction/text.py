@@ -26,6 +26,8 @@ _QUOTED: Final = re.compile(r"“[^“”]{0,2000}”|\"[^\"]{0,2000}\"|«[^«»
 _BREAK: Final = re.compile(
     r"^\s*(?:[*#~=_–—-][\s*#~=_–—-]*|(?:chapter|part|scene)\s+[\divxlc]+\b.{0,60}|#+\s.*)$", re.I
 )
+_UNFINISHED: Final = re.compile(r"[^\W\d_],?\s*$")
+"""A line whose sentence goes on."""
 _ADDRESSED: Final = re.compile(
     r"\b(?:I|you|we|me|us|my|your|our|mine|yours|let's)\b|\b(?:he|she|it|that|there|they|who|what)['’]\w", re.IGNORECASE
 )
@@ -146,9 +148,9 @@ def _narrated(text: str) -> Iterator[TextScene]:
 
 
 def _paragraphs(text: str) -> Iterator[str | None]:
-    """Paragraphs, and None for a break between them; without blank lines every line is a paragraph."""
-    lines = text.splitlines()
-    wrapped = any(not line.strip() for line in text.strip().splitlines())
+    """Paragraphs, and None for a break between them; where nothing shows that lines are wrapped, each is one."""
+    lines = text.strip().splitlines()
+    wrapped = any(not line.strip() or _UNFINISHED.search(line) for line in lines[:-1])
     for kind, group in groupby(lines, key=lambda line: 0 if not line.strip() else 1 if _BREAK.match(line) else 2):
         block = list(group)
         if kind == 1:

@@ -7,6 +7,7 @@ import json
 from pathlib import Path
 
 import pytest
+from film_made import Drawn, Making, film_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import BaseModel
@@ -256,3 +257,39 @@ def test_a_folder_and_a_file_that_is_not_there_are_refused(tmp_path: Path) -> No
         extract(Source("x", tmp_path), Means(LIBRARY))
     with pytest.raises(ExtractionError, match="cannot be read: No such file"):
         extract(Source("x", tmp_path / "none"), Means(LIBRARY))
+
+
+def seen_well(_prompt: str, schema: type[BaseModel]) -> Answer:
+    """As a model answers that sees somebody sit down."""
+    if schema.__name__ == "SceneAnswer":
+        moment = {"time": 1.0, "who": "Anna", "what": "sinks onto the sofa", "emotion": "tired"}
+        place = {"room": "living_room", "place": "a flat", "summary": "Anna comes home and sinks onto the sofa."}
+        return {**place, "characters": [], "objects": ["sofa"], "contacts": [], "moments": [moment]}
+    return {"scripts": [{**FOUND, "start": 0.5, "end": 2.0}]}
+
+
+@pytest.fixture(scope="module")
+def film() -> bytes:
+    """Three seconds with a track of subtitles."""
+    cues = ((0.5, 1.5, "She storms through the room."), (1.6, 2.8, "She sits down on the sofa, furious."))
+    return film_of([Drawn(1.5, 0), Drawn(1.5, 1)], Making(subtitles=cues))
+
+
+def test_a_film_is_watched_by_the_model_and_its_scripts_know_their_seconds(film: bytes) -> None:
+    told: list[tuple[str, float]] = []
+    model = ScriptedModel(seen_well, name="scripted-a")
+    made = taken_out(film, model=model, progress=lambda stage, share: told.append((stage, share)))
+    (script,) = (draft.script for draft in made.scripts)
+    assert (script.source, script.summary, made.by) == ("video", FOUND["summary"], "llm:scripted-a")
+    assert script.origin is not None
+    assert (script.origin.start, script.origin.end) == (0.5, 2.0)
+    assert model.calls[0].images > 0
+    assert told[-1] == ("watching", 1.0)
+
+
+def test_where_the_model_fails_the_words_of_a_film_are_read_by_rules(film: bytes) -> None:
+    made = taken_out(film, model=ScriptedModel([ModelError("nobody answers")]))
+    assert (made.by, made.scripts[0].script.emotion) == ("rules", "angry")
+    assert any("nobody answers" in note for note in made.notes)
+    with pytest.raises(ModelError):
+        taken_out(film, model=ScriptedModel([ModelError("nobody answers")]), strict=True)
