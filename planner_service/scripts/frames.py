@@ -62,7 +62,6 @@ WAYS: Final = (
 """A walk without a feeling to what comes after it."""
 NEW_ROOM: Final = (
     "in the {room}, {who} {did}.",
-    "over in the {room}, {who} {did}.",
     "the {room} came next, and there {who} {did}.",
     "now in the {room}, {who} {did}.",
     "on to the {room} it was, where {who} {did}.",

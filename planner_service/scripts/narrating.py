@@ -187,7 +187,7 @@ class _Narrator:
     def _say(self, sentence: str, link: str = "") -> None:
         """Add a sentence that is not about the body, after a word for the time where it needs one."""
         inner = sentence if sentence.startswith(self.voice.name) else sentence[:1].lower() + sentence[1:]
-        if link and not framing.STANDS_ALONE.match(sentence):
+        if link and sentence.startswith((self.voice.name, "The ", "A ", "An ", "He ", "She ", "They ")):
             options = [said(f"{link} {inner}")]
         else:
             turns = framing.NOTES if framing.STANDS_ALONE.match(sentence) else framing.TURNS
