@@ -127,7 +127,8 @@ class _Chain:
         matrix = self.edges.matrix(self.weighted(weights))
         self.right, size = _eigenvector(matrix, self.right)
         self.left, _ = _eigenvector(matrix.T.tocsc(), self.left)
-        return float(np.log(size)), np.bincount(self.edges.kind, self.flow(weights), len(self.edges.kinds))
+        share = np.bincount(self.edges.kind, self.flow(weights), len(self.edges.kinds)).astype(np.float64)
+        return float(np.log(size)), share
 
     def flow(self, weights: Array) -> Array:
         """How often every move is made, with the eigenvectors of these weights. (E,)."""

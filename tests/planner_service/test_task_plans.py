@@ -67,29 +67,39 @@ def steps_of(plan: TaskPlan) -> list[str]:
     [
         (
             "watch TV on the sofa",
-            "walk to the coffee table|pick up the remote with the right hand|walk to the sofa|sit down on the sofa|"
-            "turn on the TV with the right hand|watch TV",
+            (
+                "walk to the coffee table|pick up the remote with the right hand|walk to the sofa|sit down on the sofa|"
+                "turn on the TV with the right hand|watch TV"
+            ),
         ),
         (
             "Please make a cup of tea and drink it at the table.",
-            "walk to the kitchen counter|make a cup of tea with both hands|pick up the cup with the right hand|"
-            "walk to the dining chair|sit down on the dining chair|drink the cup of tea with the right hand",
+            (
+                "walk to the kitchen counter|make a cup of tea with both hands|pick up the cup with the right hand|"
+                "walk to the dining chair|sit down on the dining chair|drink the cup of tea with the right hand"
+            ),
         ),
         (
             "After reading in bed, turn the lamp off",
-            "walk to the bookshelf|pick up the book with the right hand|walk to the bed|lie down on the bed|"
-            "read with both hands|get up from the bed|walk to the bookshelf|put down the book with the right hand|"
-            "walk to the lamp|turn off the lamp with the right hand",
+            (
+                "walk to the bookshelf|pick up the book with the right hand|walk to the bed|lie down on the bed|"
+                "read with both hands|get up from the bed|walk to the bookshelf|put down the book with the right hand|"
+                "walk to the lamp|turn off the lamp with the right hand"
+            ),
         ),
         (
             "pick up the cup with the left hand, then the plate and the book",
-            "walk to the kitchen cabinet|pick up the cup with the left hand|pick up the plate with the right hand|"
-            "put down the cup with the left hand|walk to the bookshelf|pick up the book with the left hand",
+            (
+                "walk to the kitchen cabinet|pick up the cup with the left hand|pick up the plate with the right hand|"
+                "put down the cup with the left hand|walk to the bookshelf|pick up the book with the left hand"
+            ),
         ),
         (
             "She waters the plants",
-            "walk to the cabinet|pick up the watering can with the right hand|walk to the plant|"
-            "water the plants with the right hand|walk to the cabinet|put down the watering can with the right hand",
+            (
+                "walk to the cabinet|pick up the watering can with the right hand|walk to the plant|"
+                "water the plants with the right hand|walk to the cabinet|put down the watering can with the right hand"
+            ),
         ),
     ],
 )
@@ -107,10 +117,16 @@ def test_rules_go_there_take_what_is_needed_sit_down_and_put_things_back(action:
 )  # fmt: skip
 def test_any_plan_is_whole_and_its_keyframes_can_be_acted(deeds: list[str], joint: str, seed: int, here: bool) -> None:
     try:
-        plan = plan_task(joint.join(deeds), home() if here else None, seed=seed)
+        follow(plan_task(joint.join(deeds), home() if here else None, seed=seed))
     except TaskError as error:
-        assert "at most 24" in str(error)
+        refused = str(error)
+    else:
         return
+    assert "at most 24" in refused
+
+
+def follow(plan: TaskPlan) -> None:
+    """Assert that a plan is whole, that a body can act it, and that hands take and lay down in turn."""
     assert [step.step_id for step in plan.steps] == list(range(1, len(plan.steps) + 1))
     assert 1 <= len(plan.steps) <= MOST_STEPS
     assert len(plan.keyframes) <= MOST_KEYFRAMES
@@ -176,11 +192,12 @@ def test_what_rules_do_not_know_is_refused_with_what_they_do(action: str, fault:
                 max_size=25))  # fmt: skip
 def test_any_words_are_planned_or_refused_and_never_break(words: list[str]) -> None:
     try:
-        plan = plan_task(" ".join(words))
+        follow(plan_task(" ".join(words)))
     except TaskError as error:
-        assert str(error).startswith("action: ")
+        refused = str(error)
     else:
-        assert check(plan.keyframes) == ()
+        return
+    assert refused.startswith("action: ")
 
 
 def test_words_mean_what_they_mean_wherever_their_particle_stands() -> None:
