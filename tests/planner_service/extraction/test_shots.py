@@ -84,6 +84,7 @@ def cut_films(draw: st.DrawFn) -> list[Shot]:
     return found
 
 
+@settings(max_examples=50, deadline=None)
 @given(cut_films(), st.lists(st.tuples(st.floats(0, 3000), st.floats(0.1, 8)), max_size=20))
 def test_scenes_are_the_whole_film_and_each_is_bounded(film: list[Shot], said: list[tuple[float, float]]) -> None:
     cues = [Cue(start, start + length, "words") for start, length in said if start + length < film[-1].end]
