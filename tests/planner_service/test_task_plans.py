@@ -110,7 +110,7 @@ def test_rules_go_there_take_what_is_needed_sit_down_and_put_things_back(action:
     assert all(step.acted for step in plan.steps)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(
     st.lists(st.sampled_from(DEEDS), min_size=1, max_size=4), st.sampled_from([", ", " and ", ", then "]),
     st.integers(0, 2**53 - 1), st.booleans(),
@@ -187,7 +187,7 @@ def test_what_rules_do_not_know_is_refused_with_what_they_do(action: str, fault:
     assert TaskError in USER_ERRORS
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(st.lists(st.sampled_from([*" ".join(DEEDS).split(), "and", "the", ",", "after", "before", "of", "7", "é", "it"]),
                 max_size=25))  # fmt: skip
 def test_any_words_are_planned_or_refused_and_never_break(words: list[str]) -> None:
