@@ -22,8 +22,9 @@ MINUTES: Final = 20
 
 def film_figures(folder: Path) -> list[Figure]:
     """The whole way of a film but for the model: from the file to the frames of every scene, on one thread."""
+    from planner_service.extraction.album import Album
     from planner_service.extraction.embedded import embedded_cues
-    from planner_service.extraction.film import frames_at, open_film
+    from planner_service.extraction.film import open_film
     from planner_service.extraction.grouping import scenes_in
     from planner_service.extraction.shots import shots_of
 
@@ -32,10 +33,11 @@ def film_figures(folder: Path) -> list[Figure]:
     started = time.perf_counter()
     film = open_film(path, "a drawn film")
     found = embedded_cues(film)
-    shots = shots_of(film)
-    looked = time.perf_counter()
-    scenes = scenes_in(shots, found.cues if found else ())
-    frames = sum(len(list(frames_at(film, scene.times))) for scene in scenes)
+    with Album() as album:
+        shots = shots_of(film, album=album)
+        looked = time.perf_counter()
+        scenes = scenes_in(shots, found.cues if found else ())
+        frames = sum(len(list(album.frames(film, scene.times))) for scene in scenes)
     seconds = time.perf_counter() - started
     pictures = MINUTES * 60 * RATE
     rate = pictures / (looked - started)

@@ -70,6 +70,8 @@ class Film:
     """Seconds it says it lasts: good for progress, never trusted."""
     start: float
     """Where the clock of the file is when the pictures begin (seconds)."""
+    aspect: float
+    """How wide a dot of its pictures is, of its height."""
     sound: bool
     texts: int
     """Tracks of subtitles that are letters."""
@@ -105,7 +107,7 @@ def open_film(source: Path | BinaryIO, name: str, limits: FilmLimits | None = No
         first = next(_decoded(container, stream, limits, Counter()), None)
         if first is None:
             raise FilmError(f"film: there is no picture in it that can be decoded; give a whole {READ}")
-        rate = float(stream.average_rate or 0)
+        rate, aspect = float(stream.average_rate or 0), float(stream.codec_context.sample_aspect_ratio or 1)
         return Film(
             name=" ".join(name.split())[:200] or "film",
             source=source,
@@ -116,6 +118,7 @@ def open_film(source: Path | BinaryIO, name: str, limits: FilmLimits | None = No
             rate=rate if 0.01 <= rate <= 1000 else 25.0,
             claimed=container.duration / 1e6 if container.duration and container.duration > 0 else None,
             start=first.time or 0.0,
+            aspect=aspect if 0.2 <= aspect <= 5 else 1.0,
             sound=bool(container.streams.audio),
             texts=len(text_tracks(container)),
         )
@@ -152,15 +155,14 @@ def frames_at(film: Film, times: Iterable[float]) -> Iterator[Frame]:
                 held, ahead = ahead, next(run, None)
             now = held or ahead
             if now is not None and now is not shown:
-                yield Frame(round(time if held else now[0], 3), jpeg_of(now[1], stream))
+                yield Frame(round(time if held else now[0], 3), jpeg_of(now[1], film.aspect))
                 shown = now
 
 
-def jpeg_of(picture: VideoFrame, stream: VideoStream) -> bytes:
+def jpeg_of(picture: VideoFrame, aspect: float) -> bytes:
     """The picture upright and with square pixels as JPEG, its longer side at most `LONGEST_SIDE`."""
     av = load_av()
-    aspect = float(stream.codec_context.sample_aspect_ratio or 1)
-    wide = picture.width * (aspect if 0.2 <= aspect <= 5 else 1.0)
+    wide = picture.width * aspect
     share = min(1.0, LONGEST_SIDE / max(wide, picture.height))
     width, height = (max(2, round(side * share / 2) * 2) for side in (wide, picture.height))
     small = picture.reformat(width, height, "rgb24", interpolation="AREA")

@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from planner_service.extraction.album import FIRST, Album
 from planner_service.extraction.film import Film
 from planner_service.extraction.shots import Progress, Shot, shots_of
 from planner_service.extraction.subtitles import Cue
@@ -42,9 +43,11 @@ class Scene:
     """When the frames are taken that show it."""
 
 
-def scenes_of(film: Film, cues: Sequence[Cue], progress: Progress | None = None) -> list[Scene]:
-    """The scenes of a film in order; together they are all of it. Reads the film once. FilmError."""
-    return scenes_in(shots_of(film, progress), cues)
+def scenes_of(
+    film: Film, cues: Sequence[Cue], progress: Progress | None = None, album: Album | None = None
+) -> list[Scene]:
+    """The scenes of a film in order; together they are all of it. Reads the film once, fills the album. FilmError."""
+    return scenes_in(shots_of(film, progress, album), cues)
 
 
 def scenes_in(shots: Sequence[Shot], cues: Sequence[Cue]) -> list[Scene]:
@@ -94,12 +97,20 @@ def _inside(shot: Shot, begun: float, longest: float) -> float:
 
 
 def _scene(number: int, start: float, end: float, shots: Sequence[Shot], cues: Sequence[Cue]) -> Scene:
-    count = min(MOST_FRAMES, max(1, int(end - start)))
     return Scene(
         number,
         start,
         end,
         tuple(shot for shot in shots if shot.start < end and shot.end > start),
         tuple(cue for cue in cues if start <= (cue.start + cue.end) / 2 < end),
-        tuple(round(start + (end - start) * (index + 0.5) / count, 3) for index in range(count)),
+        _times(start, end),
     )
+
+
+def _times(start: float, end: float) -> tuple[float, ...]:
+    """Moments of a scene as far from each other as can be, of those that an album holds; its middle if it is short."""
+    first, last = ceil(start - FIRST), ceil(end - FIRST)
+    seconds = range(first, last)
+    count = min(MOST_FRAMES, len(seconds))
+    times = tuple(FIRST + seconds[(2 * index + 1) * len(seconds) // (2 * count)] for index in range(count))
+    return times or (round((start + end) / 2, 3),)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from planner_service.extraction.album import Album
 from planner_service.extraction.embedded import embedded_cues
 from planner_service.extraction.film import open_film
 from planner_service.extraction.grouping import scenes_of
@@ -41,14 +42,15 @@ def extract_film(source: Source, means: Means) -> Extraction:
         notes.append(f"{source.name}: only its words were read; nobody watched the pictures")
         return scenes_read(scenes_of_cues(cues), notes, maker, means)
     maker.reserve(means.taken)
-    scenes = scenes_of(film, cues, means.progress)
     reports: list[SceneReport] = []
     drafts: list[Draft] = []
-    for watched in watch_film(means.model, film, scenes, maker, means.strict, means.progress):
-        read, by = _seen(watched, maker, reports[-1].room if reports else "", f"llm:{means.model.name}")
-        notes += watched.notes
-        drafts += read.drafts
-        reports.append(report_of(len(reports) + 1, (watched.scene.start, watched.scene.end), read, by))
+    with Album() as album:
+        scenes = scenes_of(film, cues, means.progress, album)
+        for watched in watch_film(means.model, film, scenes, maker, means.strict, means.progress, album):
+            read, by = _seen(watched, maker, reports[-1].room if reports else "", f"llm:{means.model.name}")
+            notes += watched.notes
+            drafts += read.drafts
+            reports.append(report_of(len(reports) + 1, (watched.scene.start, watched.scene.end), read, by))
     return Extraction(tuple(drafts), tuple(reports), (*notes, *film.notes), readers(reports))
 
 

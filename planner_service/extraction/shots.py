@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from planner_service.extraction.album import Album
 from planner_service.extraction.film import Film, pictures
 
 if TYPE_CHECKING:
@@ -73,9 +74,12 @@ class _Samples:
     """(S, B)"""
 
 
-def shots_of(film: Film, progress: Progress | None = None) -> tuple[Shot, ...]:
-    """The shots of a film in order, from its first picture to its last; every cut and fade parts two. FilmError."""
-    samples = _sampled(film, progress)
+def shots_of(film: Film, progress: Progress | None = None, album: Album | None = None) -> tuple[Shot, ...]:
+    """The shots of a film in order, from its first picture to its last; every cut and fade parts two. FilmError.
+
+    An album is filled on the way.
+    """
+    samples = _sampled(film, progress, album)
     end = float(samples.times[-1]) + 1 / film.rate
     if film.claimed is not None and film.claimed > end + 2:
         film.faults["seconds less than it says it has"] = round(film.claimed - end)
@@ -115,11 +119,13 @@ def _dots(picture: VideoFrame, index: int) -> NDArray[np.uint8]:
     return dots[::step, : plane.width : step]
 
 
-def _sampled(film: Film, progress: Progress | None) -> _Samples:
+def _sampled(film: Film, progress: Progress | None, album: Album | None) -> _Samples:
     times, steps, leaps, looked = array("d"), array("f"), array("f"), array("d")
     looks: list[Floats] = []
     recent: deque[Floats] = deque(maxlen=_AROUND)
-    for time, picture in pictures(film, rough=True):
+    for time, picture in pictures(film, rough=album is None):
+        if album is not None:
+            album.see(film, time, picture)
         look = look_of(picture)
         steps.append(float(difference(look, recent[-1])) if recent else 0.0)
         leaps.append(float(difference(look, recent[0])) if recent else 0.0)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import prompts
+from planner_service.extraction.album import Album
 from planner_service.extraction.dramatising import scripts_of
 from planner_service.extraction.film import Film, frames_at
 from planner_service.extraction.grouping import Scene
@@ -60,9 +61,9 @@ def bounds_of(scenes: Sequence[Scene]) -> Bounds:
     return Bounds(questions, images, _TOKENS * images + 6 * _TOKENS * questions)
 
 
-def watch(model: LanguageModel, film: Film, scene: Scene) -> SceneOutline:
-    """What the model sees in a scene, checked. Raises ModelError, FilmError."""
-    frames = tuple(frames_at(film, scene.times))
+def watch(model: LanguageModel, film: Film, scene: Scene, album: Album | None = None) -> SceneOutline:
+    """What the model sees in a scene, checked; the frames come from the album, or the film. ModelError, FilmError."""
+    frames = tuple(frames_at(film, scene.times) if album is None else album.frames(film, scene.times))
     prompt = prompts.render(
         "watch_scene",
         number=str(scene.number),
@@ -87,6 +88,7 @@ def watch_film(
     maker: Maker,
     strict: bool = False,
     progress: Progress | None = None,
+    album: Album | None = None,
 ) -> Iterator[Watched]:
     """Every scene in order, as it is done. A model of one's own has the budget of a story for each scene.
 
@@ -101,7 +103,7 @@ def watch_film(
         if wrong < _MOST_FAILURES:
             own = for_story(model, scene.number) or model
             try:
-                outline = watch(own, film, scene)
+                outline = watch(own, film, scene, album)
                 drafts = scripts_of(own, outline, maker)
                 notes, wrong = outline.notes, 0
             except ModelError as error:

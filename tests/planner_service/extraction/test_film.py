@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from film_made import Drawn, Making, film_of, four_shots, picture_of, sound_alone
 
+from planner_service.extraction.album import Album
 from planner_service.extraction.containers import container_of
 from planner_service.extraction.embedded import embedded_cues
 from planner_service.extraction.film import Film, FilmError, FilmLimits, Frame, frames_at, open_film, pictures
@@ -304,3 +305,15 @@ def test_pictures_do_not_stay_in_memory() -> None:
     before, film = _resident(), opened(file.getvalue())
     assert len(shots_of(film)) == 1
     assert max(_resident() - before for _ in pictures(film)) < 40_000_000, "60 such pictures are 83 MB"
+
+
+def test_an_album_holds_the_same_frames_as_the_film() -> None:
+    film, wanted = opened(WHOLE), [0.5, 2.5, 4.5, 5.5, 7.5]
+    with Album() as album:
+        shots_of(film, album=album)
+        kept = list(album.frames(film, [*wanted, 3.1]))
+        assert [frame.time for frame in kept] == [*wanted, 3.1]
+        again = [next(album.frames(film, [time])) for time in reversed(wanted)]
+    assert again[::-1] == kept[:-1]
+    for frame, other in zip(kept, [*frames_at(film, wanted), *frames_at(film, [3.1])], strict=True):
+        assert np.abs(colour_of(frame) - colour_of(other)).max() < 4
