@@ -8,8 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-import numpy as np
-
 from motion_backend.motion import Skill
 from planner_service.extraction.captioning import captions_for, rise, walk_to_it
 from planner_service.extraction.clauses import SOMETHING, Told, clauses_in, hero_of, mood_of
@@ -19,7 +17,7 @@ from planner_service.extraction.text import TextScene
 from planner_service.scripts.events import rooms_in
 from planner_service.scripts.fitting import NEEDS, affords
 from planner_service.scripts.keyframe import Keyframe
-from planner_service.scripts.reading import MEANINGS
+from planner_service.scripts.mood_reader import clear_moods
 from planner_service.scripts.sentences import state_words
 
 _MOST_DEEDS: Final = 6
@@ -43,8 +41,6 @@ _HOMES: Final = {
     "study": "desk|office chair|bookshelf",
     "living_room": "sofa|armchair|coffee table|tv stand|lounge chair",
 }
-_FELT, _AHEAD = 0.35, 0.06
-"""How near a scene must be to an emotion's meaning, and how much nearer than to the next, to show it."""
 _CLEAR: Final = 2
 """Words of a clause below which it says nothing."""
 
@@ -219,10 +215,7 @@ def _mood(scene: TextScene, told: Sequence[Told], maker: Maker) -> str:
     if (spoken := mood_of(scene.spoken)) is not None:
         return spoken
     whole = maker.encoder.encode([f"{scene.told} {scene.spoken}"[:300]])[0]
-    near = np.round(maker.library.vectors_of(tuple(MEANINGS.values())) @ whole, 4)
-    first, second = np.argsort(-near, kind="stable")[:2]
-    clear = near[first] >= _FELT and near[first] - near[second] >= _AHEAD
-    return tuple(MEANINGS)[first] if clear else "neutral"
+    return clear_moods(maker.library.moods(whole[None]))[0] or "neutral"
 
 
 def _why(one: Told, hero: str) -> str:

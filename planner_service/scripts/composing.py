@@ -151,7 +151,8 @@ def _matched(reading: Reading, rows: Sequence[int], library: ScriptLibrary, seed
     """Event and script for each row that found one, by the rules."""
     moods = [reading.events[event].emotion for event in rows]
     scripts = cast(reading.suits[list(rows)], moods, library, seed)
-    return [(event, script) for event, script in zip(rows, scripts, strict=True) if script is not None]
+    chosen = [(event, script) for event, script in zip(rows, scripts, strict=True) if script is not None]
+    return sorted(chosen, key=lambda one: (one[0], -reading.suits[one]))  # of one event's, the nearest comes first
 
 
 def _arranged(

@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 
 from motion_backend.language.text import CachedEncoder, SentenceEncoder, Vectors, load_encoder
 from planner_service.scripts.keyframe import EMOTIONS, ShortScript
+from planner_service.scripts.mood_reader import MoodReader, lessons
+from planner_service.scripts.queries import answers
 from planner_service.scripts.traits import Scores, Traits
 from scene_graphs.furniture import ROOM_TYPES, canonical_room, categories_of, is_known
 
@@ -32,7 +34,7 @@ class LibraryError(ValueError):
 
 @dataclass(frozen=True)
 class Found:
-    """A short script and how near it is to what was asked, -1 to 1."""
+    """A short script and how well it answers what was asked, -1 to 1."""
 
     script: ShortScript
     score: float
@@ -112,14 +114,14 @@ class ScriptLibrary:
         room: str | None = None,
         furniture: Sequence[str] = (),
     ) -> tuple[Found, ...]:
-        """The k scripts nearest to the query in meaning, nearest first.
+        """The k scripts that answer the query best: nearest in meaning, with feeling and furniture weighed in.
 
         Only those of one emotion, in one room and with all of this furniture, where these are given.
         """
         if k < 1 or not query.strip():
             raise LibraryError("query: ask for at least one script, with at least one word")
         fitting = np.flatnonzero(self.fitting(emotion, room, furniture))
-        scores = self.scores(self.encoder.encode([query]))[0][fitting]
+        scores = answers(query, self)[fitting]
         order = np.lexsort((self._by_name[fitting], -scores))[:k]
         return tuple(Found(self.scripts[fitting[place]], float(scores[place])) for place in order)
 
@@ -158,6 +160,15 @@ class ScriptLibrary:
         near = (vectors @ rows.T)[:, places] * weights  # (N, texts)
         best: Scores = np.maximum.reduceat(near, owners, axis=1).astype(np.float64)
         return best.round(4)
+
+    def moods(self, vectors: Vectors) -> Scores:
+        """How much each vector of `encoder` feels like each of `EMOTIONS`. (N, 9)."""
+        return self._mood_reader.read(vectors)
+
+    @cached_property
+    def _mood_reader(self) -> MoodReader:
+        texts, emotions = lessons(self.scripts)
+        return MoodReader(self.features.of(texts), emotions)
 
     def summaries(self, indices: Sequence[int]) -> NDArray[np.float32]:
         """Vectors of these scripts' summaries. (N, D)."""

@@ -8,10 +8,10 @@ from typing import Final
 
 import numpy as np
 
-from motion_backend.language.text import Vectors
 from planner_service.scripts.events import Clause, moods_of
 from planner_service.scripts.keyframe import Event
 from planner_service.scripts.library import ScriptLibrary
+from planner_service.scripts.mood_reader import clear_moods
 from planner_service.scripts.sentences import state_words
 from planner_service.scripts.suiting import Limits, Wish, suitability
 from planner_service.scripts.traits import Scores
@@ -22,17 +22,6 @@ _NEAREST: Final = 0.27
 """Measured for MiniLM: "goes to work" has 0.29 with this library, "lorem ipsum dolor sit amet" 0.26."""
 _BARE_NOUN: Final = 0.1
 """What an event without a verb must reach above that."""
-MEANINGS: Final = {
-    "happy": "is happy, excited and full of joy",
-    "angry": "is angry and furious about something unfair",
-    "hurried": "is late and in a hurry, rushing to be in time",
-    "tired": "is tired and sleepy and needs rest",
-    "sad": "is sad, in tears over a loss or bad news",
-    "stressed": "is stressed, worried and afraid",
-    "drunk": "is drunk on alcohol",
-    "relaxed": "is relaxed, calm and comfortable",
-}
-"""What each emotion looks like; an event without a word of feeling is compared with these."""
 _CONTEXT, _MOOD_CONTEXT = 0.25, 0.5
 """How much nearness to the whole theme counts beside nearness to the event; more where it is a bare mood."""
 _NAMED: Final = 0.08
@@ -41,8 +30,8 @@ _READ: Final = 300
 """Letters of the theme read as a whole: a long text takes the encoder as long as all its events."""
 _UNSURE: Final = 0.8
 """How much an emotion counts that no word names."""
-_FELT, _AHEAD = 0.35, 0.06
-"""How near an event must be to an emotion's meaning, and how much nearer than to the next, to show it."""
+_LIKE: Final = 0.15
+"""How much it counts that a script feels like the event."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +55,8 @@ def read(theme: str, clauses: Sequence[Clause], library: ScriptLibrary, limits: 
     vectors = library.encoder.encode([*(clause.query for clause in clauses), theme[:_READ]])
     *scored, context = library.scores(vectors)
     scores = np.array(scored)
-    moods = moods_of(clauses, _judged(vectors[:-1], library))
+    felt = library.moods(vectors[:-1])
+    moods = moods_of(clauses, clear_moods(felt))
     nearest = NEAREST.get(library.encoder.name, _NEAREST)
     wishes = [
         Wish(
@@ -82,15 +72,5 @@ def read(theme: str, clauses: Sequence[Clause], library: ScriptLibrary, limits: 
     suits = suitability(wishes, scores, library.traits, limits)
     weights = np.array([[_MOOD_CONTEXT if state_words(clause.text) else _CONTEXT] for clause in clauses])
     named = np.array([library.naming(clause.text) for clause in clauses])
-    return Reading(events, scores, np.where(suits > 0, suits + weights * context + _NAMED * named, suits))
-
-
-def _judged(vectors: Vectors, library: ScriptLibrary) -> list[str | None]:
-    """The emotion whose meaning each vector is clearly nearest to, or None."""
-    near = np.round(vectors @ library.vectors_of(tuple(MEANINGS.values())).T, 4)  # (events, emotions)
-    order = np.argsort(-near, axis=1, kind="stable")
-    judged: list[str | None] = []
-    for row, (first, second, *_) in zip(near, order, strict=True):
-        clear = row[first] >= _FELT and row[first] - row[second] >= _AHEAD
-        judged.append(tuple(MEANINGS)[first] if clear else None)
-    return judged
+    raised = weights * context + _NAMED * named + _LIKE * felt[:, library.traits.emotions]
+    return Reading(events, scores, np.where(suits > 0, suits + raised, suits))

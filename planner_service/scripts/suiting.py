@@ -33,7 +33,8 @@ class Wish:
     """What an event asks of a short script."""
 
     text: str
-    emotion: str
+    emotion: str | None
+    """None when nothing is known of it."""
     certainty: float
     """How much the emotion counts, 0 to 1."""
     nearest: float
@@ -57,9 +58,7 @@ def suitability(wishes: Sequence[Wish], scores: Scores, traits: Traits, limits: 
 
     What is not near enough or not allowed is at -10.
     """
-    raised = np.stack([_feeling(wish, traits) + _room(wish, traits) + _things(wish, traits) for wish in wishes])
-    if limits.favoured:
-        raised += np.where(traits.in_rooms(limits.favoured), _THEME_ROOM, 0.0)
+    raised = np.stack([raises(wish, traits, limits) for wish in wishes])
     nearest = np.array([[wish.nearest] for wish in wishes])
     total: Scores = np.where(scores >= nearest, scores + raised, NEVER)
     if limits.rooms:
@@ -67,7 +66,15 @@ def suitability(wishes: Sequence[Wish], scores: Scores, traits: Traits, limits: 
     return total
 
 
+def raises(wish: Wish, traits: Traits, limits: Limits) -> Scores:
+    """By how much feeling, rooms and furniture raise or lower each script for an event. (scripts,)."""
+    favoured = np.where(traits.in_rooms(limits.favoured), _THEME_ROOM, 0.0)
+    return _feeling(wish, traits) + _room(wish, traits) + _things(wish, traits) + favoured
+
+
 def _feeling(wish: Wish, traits: Traits) -> Scores:
+    if wish.emotion is None:
+        return np.zeros(len(traits))
     other = np.where(
         traits.of_emotion("neutral"), _NO_FEELING, _OTHER_FEELING if wish.emotion != "neutral" else _NO_FEELING
     )

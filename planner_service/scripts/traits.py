@@ -65,6 +65,9 @@ class Traits:
         self._using = _owners(scripts, lambda script: {name for k in script.keyframes for name in _kinds(k.piece[0])})
         self._doing = _owners(scripts, lambda script: {keyframe.skill for keyframe in script.keyframes})
 
+    def __len__(self) -> int:
+        return self._count
+
     def of_emotion(self, emotion: str) -> Mask:
         """Scripts of an emotion. (N,)."""
         return np.asarray(self.emotions == EMOTIONS.index(emotion))
