@@ -33,7 +33,7 @@ from scene_graphs.packed_library import built_in_index
 from scene_graphs.retrieval import LayoutIndex
 
 if TYPE_CHECKING:
-    from sqlalchemy import Engine
+    from sqlalchemy import Connection, Engine
 
     from planner_service.settings import Settings
 
@@ -131,11 +131,12 @@ class Shelves:
                 self._floor = _Floor(rooms, {name: room.layout for name, room in rooms.items()})
             return self._floor
 
-    def add_scripts(self, *scripts: ShortScript, replace: bool = False) -> Added:
+    def add_scripts(self, *scripts: ShortScript, replace: bool = False, within: Connection | None = None) -> Added:
         """Keep scripts, all or none of them; they are in the database before this returns.
 
         UnfitError when a furniture word or emotion is not known, TakenError when an id is taken, FullError. To
-        `replace` keeps a user's script of that id as the next version; FixedError for one of ours.
+        `replace` keeps a user's script of that id as the next version; FixedError for one of ours. New ones may be
+        written `within` a transaction, and are there when it ends well.
         """
         added = Added()
         _fit(scripts)
@@ -147,7 +148,7 @@ class Shelves:
         for script in scripts:
             if script.id in self._scripts.fixed:
                 raise _taken(script.id)
-        self._scripts.put({one.id: {"body": body_of(one)} for one in scripts}, MOST_SCRIPTS, "short script")
+        self._scripts.put({one.id: {"body": body_of(one)} for one in scripts}, MOST_SCRIPTS, "short script", within)
         added.new.extend(script.id for script in scripts)
         return added
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Final
+from dataclasses import dataclass
+from typing import Final, Literal
 
 from planner_service.extraction.containers import checked_container, container_of
 from planner_service.extraction.making import Maker
@@ -10,7 +11,7 @@ from planner_service.extraction.of_text import refuse_other_languages, scenes_re
 from planner_service.extraction.plain import MOST_BYTES, first_bytes, read_text
 from planner_service.extraction.results import Extraction, Means, Source
 from planner_service.extraction.subtitles import LARGEST, form_of, read_subtitles
-from planner_service.extraction.text import scenes_of_cues, scenes_of_text
+from planner_service.extraction.text import TextScene, scenes_of_cues, scenes_of_text
 
 _HEAD: Final = 4096
 _NAMING_OTHERS: Final = (
@@ -28,33 +29,54 @@ _NAMING_OTHERS: Final = (
 """How files begin that are letters and stand for films elsewhere."""
 
 
+@dataclass(frozen=True)
+class Words:
+    """A text or subtitles, in scenes."""
+
+    scenes: tuple[TextScene, ...]
+    notes: tuple[str, ...]
+    kind: Literal["text", "video"]
+    """Video for subtitles, whose scenes have times."""
+
+
 def extract(source: Source, means: Means) -> Extraction:
     """The short scripts in a source. ExtractionError, SubtitleError or FilmError says why it cannot be read.
 
     Raises ModelError where the model fails and the means are strict.
     """
-    head = first_bytes(source.file, source.name, _HEAD)
-    if container_of(head) is not None:
+    if is_film(source):
         from planner_service.extraction.of_film import extract_film
 
         return extract_film(source, means)
+    words = words_in(source, means)
+    return scenes_read(words.scenes, words.notes, Maker(source.name, means.library, words.kind, source.licence), means)
+
+
+def is_film(source: Source) -> bool:
+    """Whether it begins as a film does. FilmError for what stands for films elsewhere, such as playlists."""
+    head = first_bytes(source.file, source.name, _HEAD)
+    if container_of(head) is not None:
+        return True
     if head.lstrip(b"\xef\xbb\xbf \t\r\n").lower().startswith(_NAMING_OTHERS):
         checked_container(head)
+    return False
+
+
+def words_in(source: Source, means: Means) -> Words:
+    """The scenes of what is no film. ExtractionError, SubtitleError."""
     data = first_bytes(source.file, source.name, LARGEST + 1)
-    if form_of(head.decode("utf-8", "ignore").replace("\0", "")) is not None:
+    if form_of(data[:_HEAD].decode("utf-8", "ignore").replace("\0", "")) is not None:
         return _of_subtitles(source, data, means)
     text, notes = read_text(data[: MOST_BYTES + 1], source.name)
     if form_of(text) is not None:
         return _of_subtitles(source, data, means)
     if means.model is None:
         refuse_other_languages(text, source.name)
-    return scenes_read(scenes_of_text(text), notes, Maker(source.name, means.library, "text", source.licence), means)
+    return Words(scenes_of_text(text), notes, "text")
 
 
-def _of_subtitles(source: Source, data: bytes, means: Means) -> Extraction:
+def _of_subtitles(source: Source, data: bytes, means: Means) -> Words:
     read = read_subtitles(data)
-    scenes = scenes_of_cues(read.cues)
     if means.model is None:
         refuse_other_languages(" ".join(cue.text for cue in read.cues[:2000]), source.name)
-    maker = Maker(source.name, means.library, "video", source.licence)
-    return scenes_read(scenes, tuple(f"{source.name}: {note}" for note in read.notes), maker, means)
+    return Words(scenes_of_cues(read.cues), tuple(f"{source.name}: {note}" for note in read.notes), "video")

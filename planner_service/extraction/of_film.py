@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from planner_service.extraction.album import Album
 from planner_service.extraction.embedded import embedded_cues
-from planner_service.extraction.film import open_film
-from planner_service.extraction.grouping import scenes_of
-from planner_service.extraction.making import RULES, Draft, Maker
+from planner_service.extraction.film import Film, open_film
+from planner_service.extraction.grouping import Scene, scenes_of
+from planner_service.extraction.making import RULES, Maker
 from planner_service.extraction.of_text import read_by_rules, refuse_other_languages, scenes_read
+from planner_service.extraction.pieces import Before, PieceRead, joined
 from planner_service.extraction.plain import ExtractionError, first_bytes
 from planner_service.extraction.reading import SceneRead
-from planner_service.extraction.results import Extraction, Means, SceneReport, Source, readers, report_of
+from planner_service.extraction.results import Extraction, Means, Source, readers, report_of
 from planner_service.extraction.speech import hear
 from planner_service.extraction.subtitles import LARGEST, Subtitles, read_subtitles
 from planner_service.extraction.text import scenes_of_cues
@@ -23,35 +24,72 @@ def extract_film(source: Source, means: Means) -> Extraction:
     ExtractionError where there is neither; FilmError, SubtitleError, SpeechError; ModelError where means are strict.
     """
     film = open_film(source.file, source.name)
+    subtitles = words_of(film, source, means)
+    cues = subtitles.cues if subtitles is not None else ()
+    notes = notes_of(subtitles, source, means)
+    maker = Maker(source.name, means.library, "video", source.licence)
+    if means.model is None:
+        return scenes_read(scenes_of_cues(cues), notes, maker, means)
+    maker.reserve(means.taken)
+    read: list[PieceRead] = []
+    with Album() as album:
+        scenes = scenes_of(film, cues, means.progress, album)
+        for watched in watch_film(means.model, film, scenes, maker, means.strict, means.progress, album):
+            read.append(_told(watched, maker, read[-1].after if read else Before(), f"llm:{means.model.name}"))
+    whole = joined(read)
+    return Extraction(whole.drafts, whole.scenes, (*notes, *whole.notes, *film.notes), readers(whole.scenes))
+
+
+def words_of(film: Film, source: Source, means: Means) -> Subtitles | None:
+    """What is said in a film: its subtitles beside it, else those in it, else what is heard; None where nothing is.
+
+    ExtractionError where the film has no words and nobody could watch it, or where the rules cannot read them.
+    FilmError, SubtitleError, SpeechError.
+    """
     if source.subtitles is not None:
         subtitles: Subtitles | None = read_subtitles(first_bytes(source.subtitles, "subtitles", LARGEST + 1))
     else:
         subtitles = embedded_cues(film)
     if subtitles is None and means.transcriber is not None and film.sound:
         subtitles = hear(means.transcriber, film, means.progress)
-    cues = subtitles.cues if subtitles is not None else ()
-    notes = [f"{source.name}: {note}" for note in (subtitles.notes if subtitles is not None else ())]
-    maker = Maker(source.name, means.library, "video", source.licence)
     if means.model is None:
-        if not cues:
-            raise ExtractionError(
-                f"{source.name}: is a film without subtitles, and no language model is set that could watch it; "
-                "give its subtitles (SRT, WebVTT or ASS), or set SIMS_LLM_MODEL to a model that sees"
-            )
-        refuse_other_languages(" ".join(cue.text for cue in cues[:2000]), source.name)
-        notes.append(f"{source.name}: only its words were read; nobody watched the pictures")
-        return scenes_read(scenes_of_cues(cues), notes, maker, means)
-    maker.reserve(means.taken)
-    reports: list[SceneReport] = []
-    drafts: list[Draft] = []
-    with Album() as album:
-        scenes = scenes_of(film, cues, means.progress, album)
-        for watched in watch_film(means.model, film, scenes, maker, means.strict, means.progress, album):
-            read, by = _seen(watched, maker, reports[-1].room if reports else "", f"llm:{means.model.name}")
-            notes += watched.notes
-            drafts += read.drafts
-            reports.append(report_of(len(reports) + 1, (watched.scene.start, watched.scene.end), read, by))
-    return Extraction(tuple(drafts), tuple(reports), (*notes, *film.notes), readers(reports))
+        if subtitles is None or not subtitles.cues:
+            raise mute(source.name)
+        refuse_other_languages(" ".join(cue.text for cue in subtitles.cues[:2000]), source.name)
+    return subtitles
+
+
+def mute(name: str) -> ExtractionError:
+    """What to say of a film that nobody can watch and in which nothing is said."""
+    return ExtractionError(
+        f"{name}: is a film without subtitles, and no language model is set that could watch it; "
+        "give its subtitles (SRT, WebVTT or ASS), or set SIMS_LLM_MODEL to a model that sees"
+    )
+
+
+def notes_of(subtitles: Subtitles | None, source: Source, means: Means) -> tuple[str, ...]:
+    """What is to be known of the way its words were read."""
+    notes = subtitles.notes if subtitles is not None else ()
+    unseen = () if means.model is not None else ("only its words were read; nobody watched the pictures",)
+    return tuple(f"{source.name}: {note}" for note in (*notes, *unseen))
+
+
+def read_film_scene(
+    film: Film, scene: Scene, maker: Maker, means: Means, before: Before, album: Album | None = None
+) -> PieceRead:
+    """One scene of a film by the model that the means have, as `extract_film` reads it among the others.
+
+    An album that has the frames saves decoding them again. FilmError, ModelError.
+    """
+    assert means.model is not None
+    (watched,) = watch_film(means.model, film, (scene,), maker, means.strict, None, album, before.failures)
+    return _told(watched, maker, before, f"llm:{means.model.name}")
+
+
+def _told(watched: Watched, maker: Maker, before: Before, by: str) -> PieceRead:
+    read, by = _seen(watched, maker, before.room, by)
+    report = report_of(before.scenes + 1, (watched.scene.start, watched.scene.end), read, by)
+    return PieceRead(read.drafts, (report,), watched.notes, Before(before.scenes + 1, report.room, watched.failures))
 
 
 def _seen(watched: Watched, maker: Maker, room: str, by: str) -> tuple[SceneRead, str]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Final
 
-from planner_service.extraction.by_model import ask_for_scripts, pieces_of
+from planner_service.extraction.by_model import Numbered, ask_for_scripts, pieces_of
 from planner_service.extraction.making import RULES, Draft, Maker
+from planner_service.extraction.pieces import Before, PieceRead, joined
 from planner_service.extraction.plain import ENGLISH, ExtractionError, language_of
 from planner_service.extraction.reading import SceneRead, read_scene
 from planner_service.extraction.results import Extraction, Means, SceneReport, readers, report_of
@@ -21,43 +22,45 @@ _MOST_FAILURES: Final = 3
 def scenes_read(scenes: Sequence[TextScene], notes: Sequence[str], maker: Maker, means: Means) -> Extraction:
     """Each scene by the model where there is one and it answers, else by rules."""
     maker.reserve(means.taken)
+    read: list[PieceRead] = []
+    for piece in pieces_of(scenes):
+        read.append(read_piece(piece, maker, means, read[-1].after if read else Before()))
+        if means.progress is not None:
+            means.progress("reading", read[-1].after.scenes / len(scenes))
+    whole = joined(read)
+    return Extraction(whole.drafts, whole.scenes, (*notes, *whole.notes), readers(whole.scenes))
+
+
+def read_piece(piece: Numbered, maker: Maker, means: Means, before: Before) -> PieceRead:
+    """A few scenes by the model where there is one and it answers, else by rules; the last word of `before` counts.
+
+    Raises ModelError where the model fails and the means are strict.
+    """
+    room, failures, notes = before.room, before.failures, list[str]()
+    found: dict[int, tuple[Draft, ...]] | None = None
+    if means.model is not None and failures < _MOST_FAILURES:
+        try:
+            found = ask_for_scripts(for_story(means.model, min(piece)) or means.model, piece, maker)
+        except ModelError as error:
+            if means.strict:
+                raise
+            failures += 1
+            notes.append(f"scenes {min(piece)} to {max(piece)}: read by rules, since the model failed: {error}")
+            if failures == _MOST_FAILURES:
+                notes.append("the model is not asked any more; the rest is read by rules")
     reports: list[SceneReport] = []
     drafts: list[Draft] = []
-    told = list(notes)
-    for scene, (read, by) in zip(scenes, _read_scenes(scenes, maker, means, told), strict=True):
+    for number, scene in piece.items():
+        if found is None or means.model is None:
+            read, by = read_by_rules(scene, maker, room), RULES
+        else:
+            reason = "" if found[number] else "the model found nothing in it that a body can act"
+            told = found[number][-1].script.room if found[number] else room
+            read, by = SceneRead(found[number], (), reason, told), f"llm:{means.model.name}"
+        room = read.room
         drafts += read.drafts
-        reports.append(report_of(len(reports) + 1, (scene.start, scene.end), read, by))
-        if means.progress is not None:
-            means.progress("reading", len(reports) / len(scenes))
-    return Extraction(tuple(drafts), tuple(reports), tuple(told), readers(reports))
-
-
-def _read_scenes(
-    scenes: Sequence[TextScene], maker: Maker, means: Means, notes: list[str]
-) -> Iterator[tuple[SceneRead, str]]:
-    model, room, wrong = means.model, "", 0
-    for piece in pieces_of(scenes):
-        if model is not None:
-            try:
-                found = ask_for_scripts(for_story(model, min(piece)) or model, piece, maker)
-            except ModelError as error:
-                if means.strict:
-                    raise
-                wrong += 1
-                notes.append(f"scenes {min(piece)} to {max(piece)}: read by rules, since the model failed: {error}")
-                if wrong == _MOST_FAILURES:
-                    model = None
-                    notes.append("the model is not asked any more; the rest is read by rules")
-            else:
-                for number in piece:
-                    reason = "" if found[number] else "the model found nothing in it that a body can act"
-                    room = found[number][-1].script.room if found[number] else room
-                    yield SceneRead(found[number], (), reason, room), f"llm:{model.name}"
-                continue
-        for scene in piece.values():
-            read = read_by_rules(scene, maker, room)
-            room = read.room
-            yield read, RULES
+        reports.append(report_of(number, (scene.start, scene.end), read, by))
+    return PieceRead(tuple(drafts), tuple(reports), tuple(notes), Before(max(piece), room, failures))
 
 
 def read_by_rules(scene: TextScene, maker: Maker, room: str) -> SceneRead:

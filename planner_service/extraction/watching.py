@@ -41,6 +41,8 @@ class Watched:
     """None where the model failed."""
     drafts: tuple[Draft, ...]
     notes: tuple[str, ...]
+    failures: int = 0
+    """Scenes in a row up to this one that the model did not answer."""
 
 
 @dataclass(frozen=True)
@@ -89,13 +91,14 @@ def watch_film(
     strict: bool = False,
     progress: Progress | None = None,
     album: Album | None = None,
+    failures: int = 0,
 ) -> Iterator[Watched]:
     """Every scene in order, as it is done. A model of one's own has the budget of a story for each scene.
 
     A scene that the model does not answer gives a note and no script, and after some such scenes it is not asked again;
-    with `strict` the ModelError is raised. Raises FilmError.
+    with `strict` the ModelError is raised. `failures` is how many scenes before these it did not answer. FilmError.
     """
-    wrong, failure = 0, ""
+    wrong, failure = failures, "as it failed before"
     for done, scene in enumerate(scenes, 1):
         outline: SceneOutline | None = None
         drafts: tuple[Draft, ...] = ()
@@ -113,7 +116,7 @@ def watch_film(
         if wrong:
             again = "not asked any more: " if wrong >= _MOST_FAILURES and not notes else ""
             notes = (f"scene {scene.number}: the model gave no answer ({again}{failure})",)
-        yield Watched(scene, outline, drafts, notes)
+        yield Watched(scene, outline, drafts, notes, wrong)
         if progress is not None:
             progress("watching", done / len(scenes))
 

@@ -7,7 +7,7 @@ from threading import RLock
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 if TYPE_CHECKING:
-    from sqlalchemy import Engine
+    from sqlalchemy import Connection, Engine
 
     from planner_service.store.shelving import Shelf
     from planner_service.store.versions import Renewal
@@ -98,8 +98,10 @@ class Kept(Generic[T]):
         self._all = {**self.fixed, **{one: value for one, (_, value) in self._rows.items()}}
         self._revision = stock.revision
 
-    def put(self, rows: Mapping[str, Mapping[str, str]], most: int, name: str) -> None:
-        """Write rows, all or none."""
+    def put(
+        self, rows: Mapping[str, Mapping[str, str]], most: int, name: str, within: Connection | None = None
+    ) -> None:
+        """Write rows, all or none, `within` a transaction or alone."""
         if not rows:
             return
         if self.engine is None:
@@ -107,7 +109,7 @@ class Kept(Generic[T]):
         from planner_service.store.shelving import IdTaken, ShelfFull, put
 
         try:
-            put(self.engine, self.shelf, rows, most)
+            put(self.engine, self.shelf, rows, most, within)
         except IdTaken as error:
             raise TakenError(f"id: there is a {name} {error.row_id!r} already; choose another id") from error
         except ShelfFull as error:

@@ -66,22 +66,31 @@ def bodies_of(engine: Engine, shelf: Shelf, ids: Collection[str]) -> dict[str, s
     return found
 
 
-def put(engine: Engine, shelf: Shelf, rows: Mapping[str, Mapping[str, str]], most: int) -> None:
-    """Add rows, all or none, by id with their other columns.
+def put(
+    engine: Engine,
+    shelf: Shelf,
+    rows: Mapping[str, Mapping[str, str]],
+    most: int,
+    within: Connection | None = None,
+) -> None:
+    """Add rows, all or none, by id with their other columns; `within` a transaction that does more, or alone.
 
     IdTaken names an id that has a row already; ShelfFull if there would be more than `most`.
     """
-    table = TABLES[shelf]
-    with engine.execution_options(writes=True).begin() as connection:
-        revision = raised(connection, shelf)
-        wanted = list(rows)
-        for start in range(0, len(wanted), MANY):
-            asked = select(table.c.id).where(table.c.id.in_(wanted[start : start + MANY])).order_by(table.c.id)
-            if (taken := connection.execute(asked).scalars().first()) is not None:
-                raise IdTaken(taken)
-        refuse_more(connection, table, len(rows), most)
-        values = [{"id": row_id, "created": revision, **columns} for row_id, columns in rows.items()]
-        connection.execute(insert(table), values)
+    if within is None:
+        with engine.execution_options(writes=True).begin() as connection:
+            put(engine, shelf, rows, most, connection)
+        return
+    table, connection = TABLES[shelf], within
+    revision = raised(connection, shelf)
+    wanted = list(rows)
+    for start in range(0, len(wanted), MANY):
+        asked = select(table.c.id).where(table.c.id.in_(wanted[start : start + MANY])).order_by(table.c.id)
+        if (taken := connection.execute(asked).scalars().first()) is not None:
+            raise IdTaken(taken)
+    refuse_more(connection, table, len(rows), most)
+    values = [{"id": row_id, "created": revision, **columns} for row_id, columns in rows.items()]
+    connection.execute(insert(table), values)
 
 
 def take(engine: Engine, shelf: Shelf, row_id: str) -> bool:

@@ -6,7 +6,7 @@ import hashlib
 import json
 import secrets
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -19,6 +19,9 @@ from planner_service.store.tables import artifacts, idempotency_keys, stage_time
 from planner_service.stories import StoryRequest
 
 Json = dict[str, Any]
+STORIES: Final = ("story", "motion")
+EXTRACTION: Final = "extraction"
+"""The other kind of row: short scripts out of a film or text."""
 _LISTED: Final = (
     stories.c.id,
     stories.c.kind,
@@ -55,7 +58,7 @@ class Made:
     """What one stage made, about to be stored."""
 
     kind: str
-    """script, home, told, actions, segment, report or film."""
+    """script, home, told, actions, segment, report or film; of an extraction words, scenes, piece or gathered."""
     position: int
     """In the order of making; a story has one artifact at each."""
     data: bytes
@@ -153,10 +156,12 @@ class Stories:
             raise StoryGone(story_id)
         return request_from_dict(json.loads(text))
 
-    def record(self, story_id: str, made: Made, worker: str) -> None:
+    def record(
+        self, story_id: str, made: Made, worker: str, also: Callable[[Connection], None] = lambda _connection: None
+    ) -> None:
         """Store what a stage made, once: a stage that was made again after a crash changes nothing.
 
-        StoryGone when the story was deleted or cancelled meanwhile: nothing is added to what clients saw as its end.
+        `also` writes what goes with it in the same transaction. StoryGone when the story was deleted or cancelled meanwhile: nothing is added to what clients saw as its end.
         """
         values = {
             "story_id": story_id,
@@ -180,6 +185,7 @@ class Stories:
             here = (artifacts.c.story_id == story_id) & (artifacts.c.position == made.position)
             if connection.execute(select(artifacts.c.position).where(here)).first():
                 return
+            also(connection)
             try:
                 connection.execute(artifacts.insert().values(**values))
             except IntegrityError as error:
@@ -189,6 +195,20 @@ class Stories:
             after |= {"title": made.title} if made.title else {}
             connection.execute(update(stories).where(stories.c.id == story_id).values(**after))
             _count(connection, worker, made.kind, made.seconds)
+
+    def has(self, story_id: str, position: int) -> bool:
+        """Whether something is stored at a position."""
+        here = (artifacts.c.story_id == story_id) & (artifacts.c.position == position)
+        with self.engine.connect() as connection:
+            return connection.execute(select(artifacts.c.position).where(here)).first() is not None
+
+    def go_on(self, story_id: str, progress: float) -> None:
+        """A stage that takes long is so far. StoryGone when the story was deleted or cancelled meanwhile."""
+        with self.writing.begin() as connection:
+            mine = select(workflow_status.c.status).where(workflow_status.c.workflow_uuid == story_id)
+            here = update(stories).where(stories.c.id == story_id).values(progress=progress)
+            if connection.execute(mine).scalar() == CANCELLED or connection.execute(here).rowcount == 0:
+                raise StoryGone(story_id)
 
     def begin(self, story_id: str, stage: str) -> None:
         """A story leaves the queue; nothing changes if it has begun already."""
@@ -240,9 +260,9 @@ class Stories:
         )
         return _record(row, made)
 
-    def page(self, limit: int, before: str | None = None) -> list[Record]:
-        """Stories from newest to oldest, those after the id `before` in that order; artifacts left out."""
-        query = _listed().order_by(stories.c.id.desc()).limit(limit)
+    def page(self, limit: int, before: str | None = None, kinds: Collection[str] = STORIES) -> list[Record]:
+        """Those of some kinds from newest to oldest, after the id `before` in that order; artifacts left out."""
+        query = _listed().where(stories.c.kind.in_(kinds)).order_by(stories.c.id.desc()).limit(limit)
         if before is not None:
             query = query.where(stories.c.id < before)
         with self.engine.connect() as connection:

@@ -15,13 +15,13 @@ stories = Table(
     "stories",
     metadata,
     Column("id", Text, primary_key=True),  # UUIDv7, so that ids sort by time
-    Column("kind", Text, nullable=False),  # story or motion
+    Column("kind", Text, nullable=False),  # story, motion or extraction
     Column("caller", Text, nullable=False),
     Column("created", BigInteger, nullable=False),  # milliseconds since 1970
-    Column("theme", Text, nullable=False),
+    Column("theme", Text, nullable=False),  # of an extraction the title of what is read
     Column("seed", BigInteger, nullable=False),
     Column("backend", Text, nullable=False),
-    Column("method", Text, nullable=False),
+    Column("method", Text, nullable=False),  # of an extraction what is read: film or text
     Column("character", Text, nullable=False),  # JSON
     Column("request", Text, nullable=False),  # JSON: all that was asked for, own rooms included
     Column("stage", Text),  # what is being made
@@ -36,7 +36,7 @@ artifacts = Table(
     metadata,
     Column("story_id", Text, ForeignKey("stories.id", ondelete="CASCADE"), primary_key=True),
     Column("position", Integer, primary_key=True),  # in the order of making
-    Column("kind", Text, nullable=False),  # script, home, told, actions, segment, report, film
+    Column("kind", Text, nullable=False),  # see Made.kind
     Column("summary", Text, nullable=False),  # small JSON: what lists and events show of it
     Column("state", Text),  # JSON of the BodyState a segment left
     Column("etag", Text, nullable=False),  # SHA-256 of data, shortened
