@@ -22,10 +22,10 @@ Floats = NDArray[np.float32]
 Progress = Callable[[str, float], None]
 """Told what is done and how much of it, from 0 to 1."""
 
-CUT: Final = 0.22
-"""The least difference of two pictures that is a cut, of 1."""
+CUT: Final = 0.1
+"""What a cut differs more than `STEEP` times the largest change around it, of 1."""
 STEEP: Final = 2.0
-"""A cut differs so many times more than any change around it."""
+"""A cut, or a fade, differs so many times more than any change around it."""
 FADE: Final = 0.35
 """The least difference of what is before and after a fade."""
 SHORTEST: Final = 0.6
@@ -149,7 +149,7 @@ def _hard_cuts(samples: _Samples) -> list[tuple[float, float]]:
     for at in map(int, np.flatnonzero(steps >= CUT)):
         around = np.concatenate([steps[max(1, at - _AROUND) : at], steps[at + 1 : at + 1 + _AROUND]])
         later = samples.leaps[min(at + _AROUND - 1, len(steps) - 1)]
-        if steps[at] >= STEEP * around.max(initial=0.0) and later >= CUT:
+        if steps[at] >= STEEP * around.max(initial=0.0) + CUT and later >= CUT:
             found.append((round(float(steps[at]), 4), float(samples.times[at])))
     return found
 
