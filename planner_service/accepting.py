@@ -1,21 +1,29 @@
-"""A request becomes a story in the queue: what is answered 202 is made, and one idempotency key makes one story."""
+"""A request becomes a story or an extraction in a queue: what is answered 202 is made, and one key makes one."""
 
 from __future__ import annotations
 
 import hashlib
-from typing import Final
+from collections.abc import Callable
+from typing import Final, Literal
 
 from sqlalchemy import Connection, func, select
 from sqlalchemy.exc import IntegrityError
 
 from planner_service.errors import TooMany, Unprocessable
+from planner_service.extraction.results import Extraction
+from planner_service.gathering import Gathered, keep_all
+from planner_service.jobs import EXTRACT, EXTRACTIONS
 from planner_service.parts import Parts
-from planner_service.schemas.stories import Kind
+from planner_service.store.extractions import ExtractionRequest, add_extraction, put_made
 from planner_service.store.jobs import WAITING, workflow_status
 from planner_service.store.stories import Record, Stories, now
 from planner_service.store.tables import idempotency_keys, stories
 from planner_service.stories import StoryRequest
+from planner_service.underway import STAGES, made_at_once
+from planner_service.uploads import Coming
 
+Kind = Literal["story", "motion", "extraction"]
+"""One key means another thing for each."""
 FULL_QUEUE: Final = 10
 """Seconds after which a caller with too many stories may try again."""
 
@@ -34,30 +42,94 @@ def repeated(parts: Parts, caller: str, kind: Kind, body: str, key: str | None) 
 
 def accept(parts: Parts, caller: str, wanted: StoryRequest, body: str, key: str | None) -> Record:
     """Store and queue in one transaction. Unprocessable where the key came with another body, TooMany at the limit."""
-    body_hash = _hash("motion" if wanted.keyframes else "story", body)
     table = Stories(parts.engine)
+
+    def make(connection: Connection) -> str:
+        return table.add(connection, caller, wanted)
+
+    return accepted(parts, caller, "motion" if wanted.keyframes else "story", body, key, make, parts.jobs.enqueue)
+
+
+def accept_extraction(parts: Parts, caller: str, wanted: ExtractionRequest, coming: Coming, key: str | None) -> Record:
+    """Store and queue what came in, its files kept for the worker. Unprocessable and TooMany as for stories."""
+    begun: list[str] = []
+
+    def make(connection: Connection) -> str:
+        begun.append(add_extraction(connection, caller, wanted))
+        return begun[-1]
+
+    def queue(connection: Connection, extraction_id: str) -> None:
+        coming.keep(extraction_id)
+        parts.jobs.enqueue(connection, extraction_id, EXTRACT, EXTRACTIONS)
+
     try:
-        story_id = _accepted(parts, table, caller, wanted, key, body_hash)
+        return accepted(parts, caller, "extraction", wanted.to_json(), key, make, queue)
+    except BaseException:
+        for extraction_id in begun:
+            parts.uploads.forget(extraction_id)
+        raise
+
+
+def keep_extraction(parts: Parts, caller: str, wanted: ExtractionRequest, made: Extraction, key: str | None) -> Record:
+    """Store what was extracted at once, its scripts in the library if that was asked for. ShelfError, LibraryError."""
+    kept: list[Record] = []
+
+    def store(gathered: Gathered, add: Callable[[Connection], None]) -> None:
+        def make(connection: Connection) -> str:
+            add(connection)
+            extraction_id = add_extraction(connection, caller, wanted, STAGES[-1])
+            put_made(connection, extraction_id, made_at_once(made, gathered))
+            return extraction_id
+
+        kept.append(accepted(parts, caller, "extraction", wanted.to_json(), key, make, None))
+
+    keep_all(parts.shelves, [draft.script for draft in made.scripts] if wanted.add else [], wanted.name, store)
+    return kept[-1]
+
+
+def accepted(
+    parts: Parts,
+    caller: str,
+    kind: Kind,
+    body: str,
+    key: str | None,
+    make: Callable[[Connection], str],
+    queue: Callable[[Connection, str], None] | None,
+) -> Record:
+    """In one transaction `make` stores and gives an id, the key is bound to it, and it is queued where that is needed.
+
+    Unprocessable where the key came with another body, TooMany at the limit.
+    """
+    mine = (caller, key, _hash(kind, body))
+    try:
+        story_id = _accepted(parts, mine, make, queue)
     except IntegrityError:
         # The same key at the same moment: the other one was first, and is there now.
-        story_id = _accepted(parts, table, caller, wanted, key, body_hash)
-    return table.get(story_id)
+        story_id = _accepted(parts, mine, make, queue)
+    return Stories(parts.engine).get(story_id)
 
 
-def _accepted(parts: Parts, table: Stories, caller: str, wanted: StoryRequest, key: str | None, body_hash: str) -> str:
-    with table.writing.begin() as connection:
+def _accepted(
+    parts: Parts,
+    mine: tuple[str, str | None, str],
+    make: Callable[[Connection], str],
+    queue: Callable[[Connection, str], None] | None,
+) -> str:
+    caller, key, body_hash = mine
+    with parts.engine.execution_options(writes=True).begin() as connection:
         known = _known(connection, caller, key, body_hash) if key else None
         if known is not None:
             return known
         most = parts.settings.most_stories
-        if _waiting(connection, caller) >= most:
+        if queue is not None and _waiting(connection, caller) >= most:
             detail = f"{most} of your stories are waiting or being made; wait until one has ended, or cancel one"
             raise TooMany(detail, FULL_QUEUE)
-        story_id = table.add(connection, caller, wanted)
+        story_id = make(connection)
         if key:
             row = {"caller": caller, "key": key, "story_id": story_id, "body_hash": body_hash, "created": now()}
             connection.execute(idempotency_keys.insert().values(**row))
-        parts.jobs.enqueue(connection, story_id)
+        if queue is not None:
+            queue(connection, story_id)
         return story_id
 
 

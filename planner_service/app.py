@@ -16,12 +16,14 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from planner_service.access import Access, Cors, Gate
 from planner_service.answering import Unforeseen, register_handlers
-from planner_service.limiting import BodyLimit, Limiting, Rate
+from planner_service.limiting import LARGER, BodyLimit, Limiting, Rate
 from planner_service.openapi import document
 from planner_service.parameters import only_known_parameters
 from planner_service.parts import Parts
 from planner_service.routes import (
     events,
+    extracting,
+    extractions,
     layout_graphs,
     layouts,
     long_scripts,
@@ -32,11 +34,13 @@ from planner_service.routes import (
     stories,
     task_plans,
 )
+from planner_service.routes.multipart import most_sent
 from planner_service.store.figures import StoreFigures
 from planner_service.telemetry import Figures, Telemetry
 
 ROUTES: Final = (
-    stories, events, motions, task_plans, short_scripts, long_scripts, layouts, layout_graphs, service, page,
+    stories, events, motions, task_plans, extracting, extractions, short_scripts, long_scripts, layouts,
+    layout_graphs, service, page,
 )  # fmt: skip
 """In the order in which paths are looked for."""
 
@@ -91,7 +95,7 @@ def _middleware(gate: Gate, figures: Figures, parts: Parts) -> list[Middleware]:
         Middleware(Unforeseen),
         Middleware(Access, gate=gate),
         Middleware(Limiting, rate=Rate(parts.settings.rate)),
-        Middleware(BodyLimit),
+        Middleware(BodyLimit, larger=LARGER | {("POST", extracting.EXTRACT): most_sent(parts.settings)}),
         Middleware(Head),
     ]
 

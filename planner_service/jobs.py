@@ -1,4 +1,4 @@
-"""The door to the workers: stories are queued, cancelled, taken up again here; workflows.py makes them."""
+"""The door to the workers: stories and extractions are queued, cancelled, taken up again; workflows.py makes them."""
 
 from __future__ import annotations
 
@@ -13,6 +13,9 @@ from planner_service.store.tables import stories
 
 QUEUE: Final = "stories"
 WORKFLOW: Final = "act-out"
+EXTRACTIONS: Final = "extractions"
+"""A queue of their own: a film of two hours holds up no story."""
+EXTRACT: Final = "extract"
 APPLICATION: Final = "sims-stories"
 VERSION: Final = "1"
 """Raised only when the order of a story's steps changes: stories that an older version began would be left alone."""
@@ -32,11 +35,11 @@ class Jobs:
             retry_connection_errors=False,
         )
 
-    def enqueue(self, connection: Connection, story_id: str) -> None:
+    def enqueue(self, connection: Connection, story_id: str, workflow: str = WORKFLOW, queue: str = QUEUE) -> None:
         """Put a story into the queue within the transaction that makes it: both happen, or neither."""
         options: EnqueueOptions = {
-            "workflow_name": WORKFLOW,
-            "queue_name": QUEUE,
+            "workflow_name": workflow,
+            "queue_name": queue,
             "workflow_id": story_id,
             "app_version": VERSION,
         }
@@ -50,7 +53,10 @@ class Jobs:
     def resume(self, story_id: str) -> None:
         """Let a living worker go on with a story at the step it was in."""
         self._wait_for_turn()
-        self._client.resume_workflow(story_id, queue_name=QUEUE)
+        mine = workflow_status.c.workflow_uuid == story_id
+        with self.engine.connect() as connection:
+            workflow = connection.execute(select(workflow_status.c.name).where(mine)).scalar()
+        self._client.resume_workflow(story_id, queue_name=EXTRACTIONS if workflow == EXTRACT else QUEUE)
 
     def forget(self, story_id: str) -> None:
         """Remove what the job engine knows of a story."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections import OrderedDict, deque
+from collections.abc import Mapping
 from typing import Final
 
 from starlette.datastructures import Headers
@@ -94,19 +95,20 @@ def address_of(scope: Scope) -> str:
 class BodyLimit:
     """ASGI: no body of more than `MOST_BYTES` is read, whether its length was declared or it comes in chunks.
 
-    Calls that are `LARGER` may send more.
+    Calls that are `larger` may send more.
     """
 
-    def __init__(self, app: ASGIApp, most: int = MOST_BYTES) -> None:
+    def __init__(self, app: ASGIApp, most: int = MOST_BYTES, larger: Mapping[tuple[str, str], int] = LARGER) -> None:
         self.app = app
         self.most = most
+        self.larger = larger
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass on, or answer 413; a body in chunks is broken off where it grows too long."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        most = LARGER.get((scope["method"], scope["path"]), self.most)
+        most = self.larger.get((scope["method"], scope["path"]), self.most)
         detail = f"a body has at most {most} bytes"
         declared = Headers(scope=scope).get("content-length", "")
         if declared.isdecimal() and int(declared) > most:

@@ -9,6 +9,7 @@ from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 
 from planner_service.access import COOKIE, is_open
+from planner_service.schemas.extractions import ExtractAsk
 from planner_service.schemas.layouts import LayoutAsk
 from planner_service.schemas.problems import PROBLEM_MEDIA, ProblemDetails
 
@@ -23,6 +24,7 @@ TAGS: Final = [
     {"name": "motions", "description": "Keyframes of one's own, acted out in a room of one's own."},
     {"name": "task plans", "description": "An instruction becomes steps, and keyframes that act them."},
     {"name": "short scripts", "description": "The library of short scripts that stories are put together from."},
+    {"name": "extractions", "description": "Short scripts out of films, subtitles and texts."},
     {"name": "long scripts", "description": "Planning alone: a theme becomes keyframes."},
     {"name": "layouts", "description": "The library of furnished rooms."},
     {"name": "layout graphs", "description": "Which furniture stands by which, merged over several scripts."},
@@ -38,9 +40,9 @@ REFUSED: Final = {
     403: "Refused whatever the key: a Host or an Origin that is not let in.",
 }
 WITH_BODY: Final = {
-    400: "The body is not JSON in UTF-8.",
-    413: "The body has more than 4 MiB, or 32 MiB where it is a scene file of another format.",
-    415: "The body is not sent as application/json.",
+    400: "The body is not JSON in UTF-8, or a form that breaks off.",
+    413: "The body has more than 4 MiB, or 32 MiB where it is a scene file of another format; a film may be larger.",
+    415: "The body is not sent as application/json, or as what else the call takes.",
     507: "No room is left on the disk.",
 }
 UNREADABLE: Final = "Read, but it does not make sense; `errors` names the fields."
@@ -60,9 +62,10 @@ def document(app: FastAPI, locked: bool) -> dict[str, Any]:
         schemas.pop(name, None)
     problem = ProblemDetails.model_json_schema(ref_template="#/components/schemas/{model}")
     schemas.update(problem.pop("$defs"), ProblemDetails=problem)
-    # The one body that FastAPI does not know of: its call takes other files as well.
-    room = LayoutAsk.model_json_schema(ref_template="#/components/schemas/{model}")
-    schemas.update(room.pop("$defs"), LayoutAsk=room)
+    # The bodies that FastAPI does not know of: their calls take files as well.
+    for body in (LayoutAsk, ExtractAsk):
+        schema = body.model_json_schema(ref_template="#/components/schemas/{model}")
+        schemas.update(schema.pop("$defs", {}), **{body.__name__: schema})
     found["components"]["securitySchemes"] = {
         "bearer": {"type": "http", "scheme": "bearer", "description": "One of the service's keys."},
         "cookie": {"type": "apiKey", "in": "cookie", "name": COOKIE, "description": "Set by POST /session."},

@@ -13,6 +13,7 @@ from sqlalchemy import Engine
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.requests import HTTPConnection
 
+from planner_service.extraction.speech import Transcriber, load_transcriber
 from planner_service.jobs import Jobs
 from planner_service.llm.choosing import load_model
 from planner_service.llm.protocol import LanguageModel
@@ -20,9 +21,12 @@ from planner_service.llm.served import ServedModel
 from planner_service.settings import Settings
 from planner_service.shelves import Shelves
 from planner_service.store.engine import database_url, open_engine, unopened
+from planner_service.uploads import Uploads
 
 MOST_PLANNED: Final = 8
 """Requests that may wait for a language model at once: each holds a thread, and the others need some too."""
+MOST_UPLOADS: Final = 8
+"""Films that may come in at once: each may fill some gigabytes of the disk."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +43,17 @@ class Parts:
     """Scene files that are read at once: each may take a second and some hundred megabytes."""
     planning: threading.BoundedSemaphore = field(default_factory=lambda: threading.BoundedSemaphore(MOST_PLANNED))
     """Taken by every request that waits for the model."""
+    transcriber: Transcriber | None = None
+    """What hears the speech of films; here only because a film that nobody can hear or watch is refused at once."""
+    uploading: threading.BoundedSemaphore = field(default_factory=lambda: threading.BoundedSemaphore(MOST_UPLOADS))
+    """Taken by every film that is coming in."""
     stopping: threading.Event = field(default_factory=threading.Event)
     """Set when the service is about to end, so that streams end too."""
+
+    @property
+    def uploads(self) -> Uploads:
+        """Where films lie until they have been read."""
+        return Uploads(self.settings.uploads_dir)
 
     def hang_up(self) -> None:
         """Let no request wait for the model any longer: what it has not said is left to the rules, or fails."""
@@ -55,7 +68,7 @@ class Parts:
 
 def open_parts(settings: Settings) -> Parts:
     """Open the database and everything on it. SettingsError says what cannot be used."""
-    model = load_model(settings)
+    model, transcriber = load_model(settings), load_transcriber(settings)
     url = database_url(settings)
     engine = open_engine(url)
     try:
@@ -63,7 +76,8 @@ def open_parts(settings: Settings) -> Parts:
     except SQLAlchemyError as error:
         engine.dispose()
         raise unopened(url, error) from error
-    return Parts(settings, engine, Shelves(engine, settings.cache_dir, settings.layouts), jobs, model)
+    shelves = Shelves(engine, settings.cache_dir, settings.layouts)
+    return Parts(settings, engine, shelves, jobs, model, transcriber=transcriber)
 
 
 async def parts_of(connection: HTTPConnection) -> Parts:

@@ -15,7 +15,7 @@ from planner_service.store.stories import Artifact, Record
 Json = dict[str, Any]
 STOPPED: Final = {"succeeded": "done", "failed": "failed", "cancelled": "cancelled"}
 """The last event of a story in each state it can end in."""
-_SLOTS: Final = 4
+SLOTS: Final = 4
 """Event numbers of an artifact: a segment, a stage that begins, progress, and the end behind it."""
 
 
@@ -114,11 +114,11 @@ def events_of(record: Record) -> Iterator[StoryEvent]:
         data: Json = {"state": state}
         if state == "failed":
             data["error"] = failure_of(record)
-        yield StoryEvent(_SLOTS * (last + 1) + 3, STOPPED[state], data)
+        yield StoryEvent(SLOTS * (last + 1) + 3, STOPPED[state], data)
 
 
 def _events_of(artifact: Artifact) -> Iterator[StoryEvent]:
-    number, summary, progress = _SLOTS * (artifact.position + 1), artifact.summary, artifact.progress
+    number, summary, progress = SLOTS * (artifact.position + 1), artifact.summary, artifact.progress
     if artifact.kind == "segment":
         names = ("index", "keyframe", "start", "end", "reached")
         yield StoryEvent(number, "segment", {name: summary[name] for name in names} | {"progress": progress})

@@ -25,7 +25,7 @@ class Settings(BaseSettings):
     model_config = SettingsConfigDict(env_prefix="SIMS_", env_file=".env", env_ignore_empty=True, extra="ignore")
 
     data_dir: Path = Field(default_factory=lambda: user_data_path("sims"))
-    """Holds the SQLite database and the cache of sentence features."""
+    """Holds the SQLite database, the cache of sentence features, and films until they have been read."""
     database_url: str = ""
     """PostgreSQL, as postgresql://user:password@host/name; empty for the SQLite file in `data_dir`."""
     backend: str = "procedural"
@@ -70,6 +70,8 @@ class Settings(BaseSettings):
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     most_stories: int = Field(100, ge=1)
     """Stories of one caller that may wait or be in the making at the same time."""
+    upload_mb: int = Field(2048, ge=1, le=1_000_000)
+    """Megabytes of a film that short scripts are extracted from."""
     rate: str = Field("6000/minute", pattern=r"^[1-9]\d{0,6}/(second|minute|hour)$")
     """Requests of one caller."""
 
@@ -96,6 +98,11 @@ class Settings(BaseSettings):
     def database_file(self) -> Path:
         """The SQLite database, where no other is named."""
         return self.data_dir.absolute() / "sims.db"
+
+    @property
+    def uploads_dir(self) -> Path:
+        """Films and texts that are waiting to be read; shared by all machines that have workers."""
+        return self.data_dir.absolute() / "uploads"
 
     @property
     def cache_dir(self) -> Path:

@@ -1,4 +1,4 @@
-"""One worker process: takes stories from the queue, one at a time, and makes them."""
+"""One worker process: takes stories and extractions from their queues, one of each at a time, and makes them."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ import structlog
 from sqlalchemy import Engine, text
 from sqlalchemy.exc import InterfaceError, OperationalError
 
+from planner_service.extraction.speech import load_transcriber
+from planner_service.extractions import Reader
 from planner_service.holding import hold_name
-from planner_service.jobs import APPLICATION, QUEUE, VERSION
+from planner_service.jobs import APPLICATION, EXTRACTIONS, QUEUE, VERSION
 from planner_service.llm.choosing import load_model
 from planner_service.making import Maker
 from planner_service.settings import Settings
@@ -21,6 +23,7 @@ from planner_service.shelves import Shelves
 from planner_service.store.engine import database_url, open_engine
 from planner_service.store.stories import Stories
 from planner_service.stories import Studio
+from planner_service.uploads import Uploads
 from scene_graphs.packed_library import compile_search
 
 POLL: Final = 0.15
@@ -51,7 +54,10 @@ def run_worker(settings: Settings, supervised: bool = False) -> None:
     studio = Studio(shelves, load_model(settings), settings.llm_on_failure == "error")
     hold = hold_name(engine, settings)
     warm_up(studio)
-    register(Maker(Stories(engine), studio, settings.worker_id))
+    store, strict = Stories(engine), settings.llm_on_failure == "error"
+    uploads, transcriber = Uploads(settings.uploads_dir), load_transcriber(settings)
+    reader = Reader(store, shelves, uploads, settings.worker_id, studio.model, transcriber, strict)
+    register(Maker(store, studio, settings.worker_id), reader)
     DBOS(
         config={
             "name": APPLICATION,
@@ -65,7 +71,8 @@ def run_worker(settings: Settings, supervised: bool = False) -> None:
     if not _wait_for(engine, stop):
         os._exit(0)
     DBOS.launch()
-    DBOS.register_queue(QUEUE, worker_concurrency=1, polling_interval_sec=POLL)
+    for queue in (QUEUE, EXTRACTIONS):
+        DBOS.register_queue(queue, worker_concurrency=1, polling_interval_sec=POLL)
     log.info("worker ready", worker=settings.worker_id, pid=os.getpid())
     while not stop.wait(KEEP):
         if not hold.keep():

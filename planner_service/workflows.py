@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Final, TypeVar
 
 import structlog
@@ -16,9 +17,10 @@ from dbos import DBOS
 from sqlalchemy.exc import InterfaceError, OperationalError
 
 from planner_service.commands.errors import USER_ERRORS, explain
-from planner_service.jobs import WORKFLOW
+from planner_service.extractions import Reader
+from planner_service.jobs import EXTRACT, WORKFLOW
 from planner_service.making import Maker
-from planner_service.store.stories import StoryGone
+from planner_service.store.stories import Stories, StoryGone
 
 MOST_ATTEMPTS: Final = 10
 """How often a story may take its worker down with it before it is given up."""
@@ -30,20 +32,25 @@ R = TypeVar("R")
 log = structlog.get_logger("sims.worker")
 
 
-def register(maker: Maker) -> None:
-    """Tell the job engine how a story is made; call before DBOS.launch()."""
+def register(maker: Maker, reader: Reader) -> None:
+    """Tell the job engine how stories and extractions are made; call before DBOS.launch()."""
 
     @DBOS.workflow(name=WORKFLOW, max_recovery_attempts=MOST_ATTEMPTS)
     def act_out(story_id: str) -> None:
         with structlog.contextvars.bound_contextvars(story_id=story_id):
             make(maker, story_id)
 
-    del act_out
+    @DBOS.workflow(name=EXTRACT, max_recovery_attempts=MOST_ATTEMPTS)
+    def extract(extraction_id: str) -> None:
+        with structlog.contextvars.bound_contextvars(story_id=extraction_id):
+            read(reader, extraction_id)
+
+    del act_out, extract
 
 
 def make(maker: Maker, story_id: str) -> None:
     """All steps of a story in order; what cannot be made is said in the story before the workflow fails."""
-    try:
+    with told(maker.store, story_id, "This story cannot be made"):
         step("plan", maker.plan, story_id)
         step("furnish", maker.furnish, story_id)
         if step("tells", _tells, maker, story_id):
@@ -52,14 +59,34 @@ def make(maker: Maker, story_id: str) -> None:
             step(f"move {index}", maker.move, story_id, index)
         step("judge", maker.judge, story_id)
         step("film", maker.film, story_id)
+
+
+def read(reader: Reader, extraction_id: str) -> None:
+    """All steps of an extraction in order; what was sent is thrown away when it has ended, however."""
+    try:
+        with told(reader.store, extraction_id, "This cannot be extracted from"):
+            if step("begin", reader.begin, extraction_id):
+                step("listen", reader.listen, extraction_id)
+            for index in range(step("cut", reader.cut, extraction_id)):
+                step(f"read {index}", reader.read, extraction_id, index)
+            step("gather", reader.gather, extraction_id)
+    finally:
+        reader.close(extraction_id)
+
+
+@contextmanager
+def told(store: Stories, story_id: str, title: str) -> Iterator[None]:
+    """Why it failed is stored before the workflow fails; one that nobody wants any more just ends."""
+    try:
+        yield
     except StoryGone:
         log.info("story deleted or cancelled while it was made")
     except USER_ERRORS as error:
-        step("fail", maker.store.fail, story_id, "This story cannot be made", explain(error))
+        step("fail", store.fail, story_id, title, explain(error))
         raise
     except Exception as error:
         log.exception("story failed")
-        step("fail", maker.store.fail, story_id, "Something went wrong on our side", type(error).__name__)
+        step("fail", store.fail, story_id, "Something went wrong on our side", type(error).__name__)
         raise
 
 

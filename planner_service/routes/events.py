@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Annotated, Final
 
@@ -17,9 +17,12 @@ from starlette.exceptions import HTTPException
 from planner_service.parts import Parts, PartsDep
 from planner_service.presenting import StoryEvent, events_of
 from planner_service.routes.stories import RecordDep
-from planner_service.store.jobs import state_of
+from planner_service.store.jobs import State, state_of
 from planner_service.store.stories import Record, Stories, StoryGone
 
+LastEvent = Annotated[
+    int | None, Header(alias="Last-Event-ID", ge=0, le=10**9, description="The last event that was received.")
+]
 router = APIRouter(prefix="/v1/stories", tags=["stories"])
 POLL: Final = 0.1
 """Seconds between two looks at a story in the making."""
@@ -36,17 +39,25 @@ class Watch:
     parts: Parts
     record: Record
     last: int
+    events_of: Callable[[Record], Iterator[StoryEvent]] = events_of
+    state_of: Callable[[Record], State] = lambda record: state_of(record.status)
 
     def news(self) -> list[StoryEvent]:
         """Events they do not have yet."""
-        found = [event for event in events_of(self.record) if event.id > self.last]
+        found = [event for event in self.events_of(self.record) if event.id > self.last]
         self.last = found[-1].id if found else self.last
         return found
 
     @property
     def ended(self) -> bool:
         """Whether there will be no more."""
-        return state_of(self.record.status) not in ("queued", "running")
+        return self.state_of(self.record) not in ("queued", "running")
+
+    def opened(self) -> Watch:
+        """This watch; HTTPException 204 where there will be nothing to see any more."""
+        if self.ended and all(event.id <= self.last for event in self.events_of(self.record)):
+            raise HTTPException(204)
+        return self
 
     def look(self) -> None:
         """See what was made since. StoryGone."""
@@ -59,15 +70,10 @@ class Watch:
 def watching(
     record: RecordDep,
     parts: PartsDep,
-    last_event_id: Annotated[
-        int | None, Header(alias="Last-Event-ID", ge=0, le=10**9, description="The last event that was received.")
-    ] = None,
+    last_event_id: LastEvent = None,
 ) -> Watch:
     """Who follows; one who has the last event of a story that ended gets 204, which tells a browser to stop asking."""
-    watch = Watch(parts, record, last_event_id or 0)
-    if watch.ended and all(event.id <= watch.last for event in events_of(record)):
-        raise HTTPException(204)
-    return watch
+    return Watch(parts, record, last_event_id or 0).opened()
 
 
 @router.get(
@@ -77,6 +83,12 @@ def watching(
 )
 async def events(watch: Annotated[Watch, Depends(watching)]) -> AsyncIterator[ServerSentEvent]:
     """`stage`, `progress` and `segment` as they happen; at the end `done`, `failed` or `cancelled`, once."""
+    async for event in followed(watch):
+        yield event
+
+
+async def followed(watch: Watch) -> AsyncIterator[ServerSentEvent]:
+    """What happens, until there will be no more or the service stops."""
     took = 0.0
     while True:
         for event in watch.news():

@@ -22,7 +22,7 @@ from planner_service.routes.caching import unchanging
 from planner_service.schemas.stories import CharacterAsk, Json, StoryAsk, StoryPage, StoryShown
 from planner_service.scripts.events import clean
 from planner_service.store.jobs import state_of
-from planner_service.store.stories import Record, Stories, StoryGone
+from planner_service.store.stories import EXTRACTION, Record, Stories, StoryGone
 from planner_service.stories import StoryRequest
 from scene_graphs.home_rows import home_from_dict
 from scene_graphs.homes import Home
@@ -50,10 +50,14 @@ StoriesDep = Annotated[Stories, Depends(stories_of)]
 
 def record_of(story_id: StoryId, stories: StoriesDep) -> Record:
     """The story that a path names."""
+    absent = "there is no such story; GET /v1/stories lists them"
     try:
-        return stories.get(story_id)
+        record = stories.get(story_id)
     except StoryGone as error:
-        raise NotFound("there is no such story; GET /v1/stories lists them") from error
+        raise NotFound(absent) from error
+    if record.kind == EXTRACTION:
+        raise NotFound(absent)
+    return record
 
 
 RecordDep = Annotated[Record, Depends(record_of)]
@@ -107,8 +111,7 @@ def list_stories(
     cursor: Annotated[str | None, Query(max_length=64, description="`next` of the page before.")] = None,
 ) -> Json:
     """Stories, newest first."""
-    if cursor is not None and not _is_id(cursor):
-        raise Unprocessable("?cursor", "not a cursor that this service gave; leave it out for the first page")
+    check_cursor(cursor)
     found = stories.page(limit + 1, cursor)
     shown = found[:limit]
     frames = stories.durations(record.id for record in shown)
@@ -116,11 +119,14 @@ def list_stories(
     return {"items": items, "next": shown[-1].id if len(found) > limit else None}
 
 
-def _is_id(text: str) -> bool:
+def check_cursor(cursor: str | None) -> None:
+    """Unprocessable for what is no id of a story."""
     try:
-        return str(uuid.UUID(text)) == text
+        ours = cursor is None or str(uuid.UUID(cursor)) == cursor
     except ValueError:
-        return False
+        ours = False
+    if not ours:
+        raise Unprocessable("?cursor", "not a cursor that this service gave; leave it out for the first page")
 
 
 @router.get("/{story_id}", response_model=StoryShown)

@@ -26,6 +26,7 @@ workflow_status = Table(
     "workflow_status",
     MetaData(schema=SCHEMA),
     Column("workflow_uuid", Text, primary_key=True),
+    Column("name", Text),
     Column("status", Text),
     Column("executor_id", Text),
     Column("recovery_attempts", BigInteger),

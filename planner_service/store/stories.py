@@ -120,6 +120,23 @@ def now() -> int:
     return time.time_ns() // 1_000_000
 
 
+def artifact_row(story_id: str, made: Made) -> Json:
+    """What a stage made as a row of its table."""
+    return {
+        "story_id": story_id,
+        "position": made.position,
+        "kind": made.kind,
+        "summary": json.dumps(made.summary, separators=(",", ":"), allow_nan=False),
+        "data": made.data,
+        "state": None if made.state is None else json.dumps(made.state, separators=(",", ":")),
+        "etag": hashlib.sha256(made.data).hexdigest()[:32],
+        "following": made.following,
+        "progress": made.progress,
+        "seconds": made.seconds,
+        "made": now(),
+    }
+
+
 class Stories:
     """The table of stories with what hangs on it."""
 
@@ -161,21 +178,9 @@ class Stories:
     ) -> None:
         """Store what a stage made, once: a stage that was made again after a crash changes nothing.
 
-        `also` writes what goes with it in the same transaction. StoryGone when the story was deleted or cancelled meanwhile: nothing is added to what clients saw as its end.
+        `also` writes what goes with it in the same transaction. StoryGone when the story was deleted or cancelled
+        meanwhile: nothing is added to what clients saw as its end.
         """
-        values = {
-            "story_id": story_id,
-            "position": made.position,
-            "kind": made.kind,
-            "summary": json.dumps(made.summary, separators=(",", ":"), allow_nan=False),
-            "data": made.data,
-            "state": None if made.state is None else json.dumps(made.state, separators=(",", ":")),
-            "etag": hashlib.sha256(made.data).hexdigest()[:32],
-            "following": made.following,
-            "progress": made.progress,
-            "seconds": made.seconds,
-            "made": now(),
-        }
         with self.writing.begin() as connection:
             # Shared, so that no cancelling slips in between: what is stored was made before it.
             mine = workflow_status.c.workflow_uuid == story_id
@@ -187,7 +192,7 @@ class Stories:
                 return
             also(connection)
             try:
-                connection.execute(artifacts.insert().values(**values))
+                connection.execute(artifacts.insert().values(**artifact_row(story_id, made)))
             except IntegrityError as error:
                 raise StoryGone(story_id) from error
             after: Json = {"progress": made.progress}
