@@ -1,4 +1,4 @@
-"""How alike stories are, and whether each is nearest to its own theme, by the vectors of their sentences."""
+"""How alike stories are, and whether each is nearest to its own theme: every sentence with the one most like it."""
 
 from __future__ import annotations
 
@@ -35,25 +35,24 @@ class RememberingEncoder:
         return np.stack([self._rows[text] for text in texts])
 
 
-def text_vectors(texts: Sequence[str], encoder: SentenceEncoder) -> Vectors:
-    """One unit row a text: the mean of its sentences' vectors, since encoders read only so much at once. (N, D)."""
-    parts = [[part for part in _SENTENCE.split(text.strip()) if part] or [text] for text in texts]
-    rows = encoder.encode(list(itertools.chain.from_iterable(parts)))
-    starts = np.cumsum([0, *map(len, parts[:-1])])
-    means = np.add.reduceat(rows, starts, axis=0)  # (N, D); a sum has the direction of the mean
-    unit: Vectors = (means / np.linalg.norm(means, axis=1, keepdims=True)).astype(np.float32)
-    return unit
+def sentence_vectors(text: str, encoder: SentenceEncoder) -> Vectors:
+    """One unit row a sentence: an encoder reads only so much at once, and a mean would favour long texts. (N, D)."""
+    return encoder.encode([part for part in _SENTENCE.split(text.strip()) if part] or [text])
 
 
-def alike(vectors: Vectors) -> float:
-    """Mean cosine of every two of the unit rows, rounded to 1e-4. ValueError when there are fewer than two."""
-    if len(vectors) < 2:
-        raise ValueError(f"vectors: {len(vectors)} of them; likeness needs two")
-    first, second = np.triu_indices(len(vectors), k=1)
-    return round(float((vectors @ vectors.T)[first, second].mean()), 4)
+def told_in(text: Vectors, other: Vectors) -> float:
+    """How well each sentence of a text is told by some sentence of another, on average, -1 to 1. (N, D), (M, D)."""
+    return float((text @ other.T).max(axis=1).mean())
 
 
-def nearness(story: Vectors, themes: Vectors, own: int) -> float:
-    """Share of the other themes that a story (D,) is farther from than from its own among `themes` (N, D)."""
-    near = (themes @ story).round(4)
+def alike(texts: Sequence[Vectors]) -> float:
+    """Mean of how well every text is told in every other, to 1e-4. ValueError when there are fewer than two."""
+    if len(texts) < 2:
+        raise ValueError(f"texts: {len(texts)} of them; likeness needs two")
+    return round(float(np.mean([told_in(one, other) for one, other in itertools.permutations(texts, 2)])), 4)
+
+
+def nearness(story: Vectors, themes: Sequence[Vectors], own: int) -> float:
+    """Share of the other themes that are told in a story less well than its own is."""
+    near = np.array([told_in(theme, story) for theme in themes]).round(4)
     return float((np.delete(near, own) < near[own]).mean())

@@ -11,7 +11,7 @@ from motion_backend.motion import Character
 from planner_service.evaluating.covering import Coverage, coverage
 from planner_service.evaluating.improvising import improviser
 from planner_service.evaluating.labels import LabelledTheme
-from planner_service.evaluating.likeness import alike, nearness, text_vectors
+from planner_service.evaluating.likeness import alike, nearness, sentence_vectors
 from planner_service.furnish import FurnishError, furnish
 from planner_service.scripts.acting import UnreachableError, act
 from planner_service.scripts.checking import check
@@ -51,7 +51,7 @@ class Theme:
     fault: str
     """Why its first script cannot be acted out in any home; empty when it can."""
     alike: float
-    """Mean cosine of its stories."""
+    """How well its stories are told in each other."""
     direct_alike: float
     """The same of the stories improvised for it."""
     nearness: tuple[float, ...]
@@ -61,10 +61,10 @@ class Theme:
 def tell_themes(labels: Sequence[LabelledTheme], library: ScriptLibrary, rooms: LayoutIndex) -> tuple[Theme, ...]:
     """All themes, planned with every seed of `SEEDS`, told, and compared with each other."""
     woven = [_woven(label, library) for label in labels]
-    themes = text_vectors([label.text for label in labels], library.encoder)
+    themes = [sentence_vectors(label.text, library.encoder) for label in labels]
     told = []
     for own, (label, each) in enumerate(zip(labels, woven, strict=True)):
-        stories = text_vectors([one.story for one in each], library.encoder) if each else themes[:0]
+        stories = [sentence_vectors(one.story, library.encoder) for one in each]
         told.append(
             Theme(
                 label,
@@ -89,17 +89,17 @@ def _woven(label: LabelledTheme, library: ScriptLibrary) -> tuple[Woven, ...]:
     )
 
 
-def _improvised(theme: str, library: ScriptLibrary) -> Vectors:
+def _improvised(theme: str, library: ScriptLibrary) -> list[Vectors]:
     """The stories that `direct` makes with the improvising model, told by the same narrator."""
     stories = []
     for seed in SEEDS:
         asked = Request(seed=seed, method="direct")
         script = compose(theme, library, asked, improviser(theme, seed), insist=True)
-        stories.append(narrate(script, Character(), seed).text)
-    return text_vectors(stories, library.encoder)
+        stories.append(sentence_vectors(narrate(script, Character(), seed).text, library.encoder))
+    return stories
 
 
-def _alike(stories: Vectors) -> float:
+def _alike(stories: Sequence[Vectors]) -> float:
     """1 where there are no stories: what was not told is no variety."""
     return alike(stories) if len(stories) else 1.0
 

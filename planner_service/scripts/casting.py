@@ -11,18 +11,18 @@ from planner_service.scripts.library import ScriptLibrary
 from planner_service.scripts.succession import WIDTH, Row, succession
 from planner_service.scripts.traits import Codes, Scores
 
-NEAR_TIE: Final = 0.08
-"""Scripts this close together are as good as each other: the seed chooses."""
+NEAR_TIE: Final = 0.15
+"""Scripts this close together may change places: the seed chooses."""
 
 
 def cast(suits: Scores, moods: Sequence[str], library: ScriptLibrary, seed: int) -> list[int | None]:
     """The script for each row, None where nothing suits: what suits best and follows well, near ties by the seed."""
     rows = []
     for number, mood in enumerate(moods):
-        noise = np.random.default_rng([seed, number]).uniform(0, NEAR_TIE, suits.shape[1])
-        noisy: Scores = (suits[number] + noise).round(6)
-        best = _best(noisy, max(WIDTH, len(moods)))
-        rows.append(Row(best, noisy[best], mood))
+        luck = np.random.default_rng([seed, number]).uniform(0, NEAR_TIE, suits.shape[1])
+        drawn: Scores = (suits[number] + luck).round(6)
+        best = _best(drawn, max(WIDTH, len(moods)))
+        rows.append(Row(best, drawn[best], mood))
     vectors = library.summaries([int(index) for row in rows for index in row.scripts])
     return succession(rows, library.traits, vectors)
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import resources
+from math import log
 from pathlib import Path
 from threading import RLock
 from typing import Final
@@ -23,9 +24,12 @@ from scene_graphs.furniture import ROOM_TYPES, canonical_room, categories_of, is
 
 BUILT_IN: Final = "short_scripts.jsonl"
 CAPTION_WEIGHT: Final = 0.7
-_TELLING: Final = 0.03
-"""Share of the summaries that may have a word which still tells them apart."""
 _SENTENCE: Final = re.compile(r"(?<=[.!?])\s+")
+_WORD: Final = re.compile(r"[^\W\d_]{3,}")
+_ENDING: Final = re.compile(r"(?:ing|ed|es|s|ly)$")
+_COMMON_WORDS: Final = """about all and are but character for from had has have her him his into its not out over she
+than that the their them then they this too very was were what when who with"""
+_COMMON: Final = frozenset(_COMMON_WORDS.split())
 
 
 class LibraryError(ValueError):
@@ -174,23 +178,25 @@ class ScriptLibrary:
         """Vectors of these scripts' summaries. (N, D)."""
         return self.features.of([self.scripts[index].summary for index in indices])
 
-    def naming(self, text: str) -> NDArray[np.bool_]:
-        """Which scripts' summaries have a word of the text that few summaries have ("lottery"). (scripts,)."""
-        found = np.zeros(len(self), dtype=np.bool_)
-        for word in _words(text):
-            owners = self._words.get(word, [])
-            if 0 < len(owners) <= max(3, _TELLING * len(self)):
-                found[owners] = True
-        return found
+    def sharing(self, text: str) -> Scores:
+        """How much of a text's words each summary has, rare words for much more: 0 none, 1 all. (scripts,)."""
+        shared = np.zeros(len(self))
+        whole = 0.0
+        for word in sorted(_words(text)):
+            owners = self._owners.get(word, np.zeros(0, np.intp))
+            rarity = log(1 + len(self) / max(1, len(owners))) ** 2
+            whole += rarity
+            shared[owners] += rarity
+        return (shared / whole).round(4) if whole else shared
 
     @cached_property
-    def _words(self) -> dict[str, list[int]]:
+    def _owners(self) -> dict[str, NDArray[np.intp]]:
         """The scripts whose summary has a word."""
         places: dict[str, list[int]] = {}
         for index, script in enumerate(self.scripts):
             for word in _words(script.summary):
                 places.setdefault(word, []).append(index)
-        return places
+        return {word: np.array(owners, np.intp) for word, owners in places.items()}
 
     def vectors_of(self, texts: tuple[str, ...]) -> NDArray[np.float32]:
         """Vectors of texts that are asked for again and again, remembered as the library's own are."""
@@ -223,8 +229,9 @@ def texts_of(script: ShortScript) -> dict[str, float]:
 
 
 def _words(text: str) -> set[str]:
-    """Words of four letters and more, plural or not."""
-    return {word.removesuffix("s") for word in re.findall(r"[^\W\d_]{4,}", text.lower())}
+    """The words of three letters and more that tell something, without their endings."""
+    found = set(_WORD.findall(text.lower())) - _COMMON
+    return {_ENDING.sub("", word) if len(word) > 4 else word for word in found}
 
 
 def built_in() -> tuple[ShortScript, ...]:

@@ -17,8 +17,8 @@ _EVENTS: Final = 0.5
 """How much the single events of a query count beside the whole of it."""
 _RAISED: Final = 0.5
 """How much feeling, room and furniture count: less than for a story, since they are not what was asked."""
-_NAMED: Final = 0.05
-"""What it counts that a summary has a rare word of the query."""
+_SHARED: Final = 0.1
+"""What it counts that a summary has the query's words, rare ones for most."""
 _MOOD: Final = 0.3
 """How much it counts that a script feels like the query: sentence features hardly tell "passed" from "failed"."""
 
@@ -38,7 +38,7 @@ def answers(query: str, library: ScriptLibrary) -> Scores:
     total = total + _MOOD * library.moods(vectors[:1])[0][library.traits.emotions]
     for clause in clauses:
         wish = Wish(clause.text, clause.emotion, 1.0 if clause.sure else 0.8, -1.0, clause.room)
-        raised = _RAISED * raises(wish, library.traits, Limits()) + _NAMED * library.naming(clause.text)
+        raised = _RAISED * raises(wish, library.traits, Limits()) + _SHARED * library.sharing(clause.text)
         total = total + raised / len(clauses)
     answered: Scores = np.clip(total, -1.0, 1.0).round(4)
     return answered

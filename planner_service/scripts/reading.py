@@ -24,8 +24,8 @@ _BARE_NOUN: Final = 0.1
 """What an event without a verb must reach above that."""
 _CONTEXT, _MOOD_CONTEXT = 0.25, 0.5
 """How much nearness to the whole theme counts beside nearness to the event; more where it is a bare mood."""
-_NAMED: Final = 0.08
-"""What it counts that a summary has a rare word of the event."""
+_SHARED: Final = 0.5
+"""What it counts that a summary has the event's words, rare ones for most."""
 _READ: Final = 300
 """Letters of the theme read as a whole: a long text takes the encoder as long as all its events."""
 _UNSURE: Final = 0.8
@@ -71,6 +71,6 @@ def read(theme: str, clauses: Sequence[Clause], library: ScriptLibrary, limits: 
     events = tuple(Event(text=clause.text, emotion=mood) for clause, mood in zip(clauses, moods, strict=True))
     suits = suitability(wishes, scores, library.traits, limits)
     weights = np.array([[_MOOD_CONTEXT if state_words(clause.text) else _CONTEXT] for clause in clauses])
-    named = np.array([library.naming(clause.text) for clause in clauses])
-    raised = weights * context + _NAMED * named + _LIKE * felt[:, library.traits.emotions]
+    shared = np.array([library.sharing(clause.text) for clause in clauses])
+    raised = weights * context + _SHARED * shared + _LIKE * felt[:, library.traits.emotions]
     return Reading(events, scores, np.where(suits > 0, suits + raised, suits))

@@ -20,6 +20,8 @@ Mask = NDArray[np.bool_]
 Codes = NDArray[np.intp]
 Scores = NDArray[np.float64]
 
+_NOBODY: Final = np.zeros(0, dtype=np.intp)
+
 
 class Before(IntEnum):
     """What must have been, for a script to begin as it does."""
@@ -87,7 +89,7 @@ class Traits:
     def _any(self, owners: dict[Any, Codes], names: Iterable[Any]) -> Mask:
         mask = np.zeros(self._count, dtype=np.bool_)
         for name in names:
-            mask[owners.get(name, ())] = True
+            mask[owners.get(name, _NOBODY)] = True
         return mask
 
 

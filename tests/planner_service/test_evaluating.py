@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from motion_backend.language.text import HashingEncoder
+from motion_backend.language.text import HashingEncoder, Vectors
 from motion_backend.motion import Skill
 from planner_service.cli import app
 from planner_service.evaluating import planning
@@ -29,7 +29,7 @@ from planner_service.evaluating.labels import (
     labelled_queries,
     labelled_themes,
 )
-from planner_service.evaluating.likeness import RememberingEncoder, alike, nearness, text_vectors
+from planner_service.evaluating.likeness import RememberingEncoder, alike, nearness, sentence_vectors, told_in
 from planner_service.evaluating.ranking import hits, ranked, reciprocal_rank
 from planner_service.evaluating.stories import SEEDS, tell_themes
 from planner_service.scripts import planning as planned
@@ -178,24 +178,30 @@ def test_a_stem_begins_a_word_and_an_id_is_whole() -> None:
     assert not event("x", "mea").played_by(MEAL)
 
 
+def vectors_of(*texts: str) -> list[Vectors]:
+    return [sentence_vectors(text, HashingEncoder()) for text in texts]
+
+
 def test_equal_stories_are_wholly_alike_and_others_less() -> None:
-    encoder = HashingEncoder()
-    same = text_vectors(["He eats. He naps."] * 3, encoder)
+    same = vectors_of(*["He eats. He naps."] * 3)
     assert alike(same) == 1
-    assert alike(text_vectors(["He eats. He naps.", "Snow fell upon Peru."], encoder)) < 0.6
-    with pytest.raises(ValueError, match=r"^vectors: 1 of them"):
+    assert alike(vectors_of("He eats. He naps.", "Snow fell upon Peru.")) < 0.6
+    with pytest.raises(ValueError, match=r"^texts: 1 of them"):
         alike(same[:1])
 
 
-def test_the_order_of_sentences_does_not_change_a_texts_vector() -> None:
-    one, other = text_vectors(["He eats. She naps! Why?", "Why? She naps! He eats."], HashingEncoder())
-    assert np.allclose(one, other)
-    assert np.linalg.norm(one) == pytest.approx(1)
+def test_the_order_of_sentences_does_not_change_how_alike_texts_are() -> None:
+    assert alike(vectors_of("He eats. She naps! Why?", "Why? She naps! He eats.")) == 1
+
+
+def test_what_else_a_story_tells_does_not_take_it_from_its_theme() -> None:
+    theme, story = vectors_of("He eats soup.", "She walked about. He eats soup. The room was quiet.")
+    assert told_in(theme, story) == pytest.approx(1)
+    assert told_in(story, theme) < 1
 
 
 def test_a_story_is_nearer_to_its_own_theme_than_to_those_about_other_things() -> None:
-    texts = ["He eats soup.", "She naps on the sofa.", "They write a letter."]
-    themes = text_vectors(texts, HashingEncoder())
+    themes = vectors_of("He eats soup.", "She naps on the sofa.", "They write a letter.")
     assert [nearness(themes[own], themes, own) for own in range(3)] == [1, 1, 1]
     assert nearness(themes[0], themes, 1) < 1
 
