@@ -13,13 +13,20 @@ from planner_service.scripts.traits import Codes, Scores
 
 NEAR_TIE: Final = 0.15
 """Scripts this close together may change places: the seed chooses."""
+_FREER: Final = 3
 
 
-def cast(suits: Scores, moods: Sequence[str], library: ScriptLibrary, seed: int) -> list[int | None]:
-    """The script for each row, None where nothing suits: what suits best and follows well, near ties by the seed."""
+def cast(
+    suits: Scores, events: Sequence[int], moods: Sequence[str], library: ScriptLibrary, seed: int
+) -> list[int | None]:
+    """The script for each row, None where nothing suits: what suits best and follows well, near ties by the seed.
+
+    `suits` (rows, scripts) is how well each suits the row's event. A second row of an event is freer than the first.
+    """
     rows = []
     for number, mood in enumerate(moods):
-        luck = np.random.default_rng([seed, number]).uniform(0, NEAR_TIE, suits.shape[1])
+        freedom = NEAR_TIE if number == events.index(events[number]) else _FREER * NEAR_TIE
+        luck = np.random.default_rng([seed, number]).uniform(0, freedom, suits.shape[1])
         drawn: Scores = (suits[number] + luck).round(6)
         best = _best(drawn, max(WIDTH, len(moods)))
         rows.append(Row(best, drawn[best], mood))

@@ -154,7 +154,7 @@ def _spare(ranked: Scores, taken: int) -> float:
 def _matched(reading: Reading, rows: Sequence[int], library: ScriptLibrary, seed: int) -> list[tuple[int, int]]:
     """Event and script for each row that found one, by the rules."""
     moods = [reading.events[event].emotion for event in rows]
-    scripts = cast(reading.suits[list(rows)], moods, library, seed)
+    scripts = cast(reading.suits[list(rows)], rows, moods, library, seed)
     chosen = [(event, script) for event, script in zip(rows, scripts, strict=True) if script is not None]
     return sorted(chosen, key=lambda one: (one[0], -reading.suits[one]))  # of one event's, the nearest comes first
 
