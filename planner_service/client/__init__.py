@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from planner_service.client.clients import AsyncClient, Client
 from planner_service.client.errors import ApiError, ClientError, StoryCancelled, StoryFailed, Unreachable, WaitTimeout
-from planner_service.client.resources import Page, Story, StoryEvent
+from planner_service.client.resources import Extraction, Page, Story, StoryEvent
 
 __all__ = [
     "ApiError",
     "AsyncClient",
     "Client",
     "ClientError",
+    "Extraction",
     "Page",
     "Story",
     "StoryCancelled",

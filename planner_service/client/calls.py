@@ -7,17 +7,18 @@ import json
 import uuid
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Generic, Literal, TypedDict, TypeVar, Unpack
+from typing import TYPE_CHECKING, Any, BinaryIO, Final, Generic, Literal, TypedDict, TypeVar, Unpack
 from urllib.parse import quote
 
 import httpx
 
-from planner_service.client.resources import Json, Page, Story, page_of
+from planner_service.client.resources import Extraction, Json, Page, Story, page_of
 
 if TYPE_CHECKING:
     from motion_backend.motion import Motion
 
 T = TypeVar("T", covariant=True)
+_EXTRACT: Final = "/v1/short-scripts/extract"
 Format = Literal["npz", "bvh", "glb", "json", "f32"]
 
 
@@ -32,6 +33,8 @@ class Call(Generic[T]):
     body: Json | None = None
     content: bytes | None = None
     """A body that is a file, instead of JSON."""
+    files: Mapping[str, tuple[str | None, bytes | BinaryIO]] = field(default_factory=dict)
+    """Files of a form by their parts, each with its name; the fields of the form are `body`."""
     headers: Mapping[str, str] = field(default_factory=dict)
     repeatable: bool = True
     """Whether sending it twice does what sending it once does."""
@@ -63,6 +66,19 @@ class MotionOptions(Options, total=False):
 
     layout_id: str
     home: Json
+
+
+class ExtractOptions(TypedDict, total=False):
+    """What may be said of what is extracted from."""
+
+    name: str
+    """Its title."""
+    licence: str
+    """Under which the scripts may be passed on."""
+    add: bool
+    """Whether the scripts are kept in the library, all or none."""
+    idempotency_key: str
+    """As for stories."""
 
 
 class Choice(TypedDict, total=False):
@@ -135,6 +151,56 @@ def scene(story_id: str) -> Call[bytes]:
 def home(story_id: str) -> Call[Json]:
     """The home whole; `tell` and `act` take it again as `home`."""
     return Call("GET", _at("stories", story_id, "home"), _json)
+
+
+def extract(
+    text: str | None = None,
+    *,
+    video: bytes | BinaryIO | None = None,
+    subtitles: bytes | BinaryIO | None = None,
+    **options: Unpack[ExtractOptions],
+) -> Call[Extraction]:
+    """Short scripts out of a text, or of a film, its subtitles, or both; files are opened in binary mode.
+
+    What is quickly read has succeeded when this returns; wait for the rest with `wait_extraction`.
+    """
+    fields = dict(options)
+    headers = {"Idempotency-Key": str(fields.pop("idempotency_key", None) or uuid.uuid4())}
+    given = {"video": video, "subtitles": subtitles}
+    files = {part: (_name_of(file), file) for part, file in given.items() if file is not None}
+    if (text is None) == (not files):
+        raise ValueError("give a text, or a video, subtitles or both")
+    if text is not None:
+        return Call("POST", _EXTRACT, _extraction, body={"text": text} | fields, headers=headers)
+    sent = fields | ({"add": str(fields["add"]).lower()} if "add" in fields else {})
+    return Call("POST", _EXTRACT, _extraction, body=sent, files=files, headers=headers)
+
+
+def _name_of(file: bytes | BinaryIO) -> str | None:
+    """The last part of the name of an open file, after which the service calls it."""
+    name = getattr(file, "name", None)
+    return name.replace("\\", "/").rsplit("/", 1)[-1] if isinstance(name, str) else None
+
+
+def extractions(limit: int = 20, cursor: str | None = None) -> Call[Page[Extraction]]:
+    """Extractions, newest first, without their scripts and scenes."""
+    query = _given(limit=limit, cursor=cursor)
+    return Call("GET", "/v1/extractions", lambda answer: page_of(Extraction, answer.json()), query)
+
+
+def extraction(extraction_id: str) -> Call[Extraction]:
+    """An extraction, as far as it is made."""
+    return Call("GET", _at("extractions", extraction_id), _extraction)
+
+
+def cancel_extraction(extraction_id: str) -> Call[Extraction]:
+    """Stop an extraction; scripts that were made can still be fetched. ApiError 409 if it has ended otherwise."""
+    return Call("POST", _at("extractions", extraction_id, "cancel"), _extraction)
+
+
+def delete_extraction(extraction_id: str) -> Call[None]:
+    """Delete an extraction; scripts that it put into the library stay."""
+    return Call("DELETE", _at("extractions", extraction_id), _nothing)
 
 
 def short_scripts(limit: int = 20, cursor: str | None = None, **choice: Unpack[Choice]) -> Call[Page[Json]]:
@@ -248,6 +314,10 @@ def _given(**query: object) -> dict[str, object]:
 
 def _story(answer: httpx.Response) -> Story:
     return Story(answer.json())
+
+
+def _extraction(answer: httpx.Response) -> Extraction:
+    return Extraction(answer.json())
 
 
 def _json(answer: httpx.Response) -> Json:

@@ -13,7 +13,7 @@ import httpx
 from planner_service.client import calls
 from planner_service.client.calls import Call
 from planner_service.client.following import Following, finished
-from planner_service.client.resources import Story, StoryEvent
+from planner_service.client.resources import Extraction, Story, StoryEvent
 from planner_service.client.sending import Sending, http_options
 
 P = ParamSpec("P")
@@ -72,6 +72,11 @@ class Methods:
     add_short_script = Method(calls.add_short_script)
     change_short_script = Method(calls.change_short_script)
     delete_short_script = Method(calls.delete_short_script)
+    extract = Method(calls.extract)
+    extractions = Method(calls.extractions)
+    extraction = Method(calls.extraction)
+    cancel_extraction = Method(calls.cancel_extraction)
+    delete_extraction = Method(calls.delete_extraction)
     long_script = Method(calls.long_script)
     layouts = Method(calls.layouts)
     layout = Method(calls.layout)
@@ -118,6 +123,16 @@ class Client(Methods):
         for _ in self._follow(Following(story_id, timeout=timeout)):
             pass
         return finished(self.story(story_id))
+
+    def extraction_events(self, extraction_id: str, after: int = 0) -> Iterator[StoryEvent]:
+        """The same of an extraction."""
+        return self._follow(Following(extraction_id, after, kind="extractions"))
+
+    def wait_extraction(self, extraction_id: str, timeout: float | None = None) -> Extraction:
+        """The extraction once it has succeeded. StoryFailed, StoryCancelled, WaitTimeout (up to 5 s late)."""
+        for _ in self._follow(Following(extraction_id, timeout=timeout, kind="extractions")):
+            pass
+        return finished(self.extraction(extraction_id))
 
     def _follow(self, following: Following) -> Iterator[StoryEvent]:
         while not following.ended:
@@ -173,6 +188,16 @@ class AsyncClient(Methods):
         async for _ in self._follow(Following(story_id, timeout=timeout)):
             pass
         return finished(await self.story(story_id))
+
+    def extraction_events(self, extraction_id: str, after: int = 0) -> AsyncIterator[StoryEvent]:
+        """The same of an extraction."""
+        return self._follow(Following(extraction_id, after, kind="extractions"))
+
+    async def wait_extraction(self, extraction_id: str, timeout: float | None = None) -> Extraction:
+        """The extraction once it has succeeded. StoryFailed, StoryCancelled, WaitTimeout (up to 5 s late)."""
+        async for _ in self._follow(Following(extraction_id, timeout=timeout, kind="extractions")):
+            pass
+        return finished(await self.extraction(extraction_id))
 
     async def _follow(self, following: Following) -> AsyncIterator[StoryEvent]:
         while not following.ended:

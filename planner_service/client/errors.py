@@ -3,9 +3,9 @@
 ClientError
 ├── ApiError        the service answered with a problem: status, title, detail, errors
 ├── Unreachable     nobody answered at the address
-├── StoryFailed     a story that was waited for could not be made; `story.error` says why
-├── StoryCancelled  a story that was waited for was cancelled
-└── WaitTimeout     a story was not ready in time; it is still being made
+├── StoryFailed     a story or extraction that was waited for could not be made; `story.error` says why
+├── StoryCancelled  a story or extraction that was waited for was cancelled
+└── WaitTimeout     a story or extraction was not ready in time; it is still being made
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import httpx
 
-from planner_service.client.resources import Story
+from planner_service.client.resources import Job
 
 PROBLEM: Final = "application/problem+json"
 
@@ -46,10 +46,10 @@ class Unreachable(ClientError):  # noqa: N818
 
 
 class StoryEnded(ClientError):  # noqa: N818
-    """A story ended otherwise than hoped."""
+    """A story, or an extraction, ended otherwise than hoped."""
 
-    def __init__(self, story: Story) -> None:
-        super().__init__(f"story {story.id}: {story.error or story.state}")
+    def __init__(self, story: Job) -> None:
+        super().__init__(f"{type(story).__name__.lower()} {story.id}: {story.error or story.state}")
         self.story = story
 
 

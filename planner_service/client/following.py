@@ -7,14 +7,15 @@ import json
 import math
 import time
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, Literal, TypeVar
 from urllib.parse import quote
 
 import httpx
 
 from planner_service.client.errors import StoryCancelled, StoryFailed, WaitTimeout, error_of, not_ours, unreachable
-from planner_service.client.resources import Story, StoryEvent
+from planner_service.client.resources import Job, StoryEvent
 
+J = TypeVar("J", bound=Job)
 SILENCE: Final = 45.0
 """Seconds without a byte after which a connection counts as broken; the service sends something every 15."""
 LOOK, LEAST_LOOK = 5.0, 0.1
@@ -23,6 +24,7 @@ BREAKS: Final = 30
 """Tries in a row to connect that may fail."""
 LATER: Final = (429, 502, 503, 504)
 """Answers of a service that is busy or on its way up."""
+KINDS: Final = {"stories": "story", "extractions": "extraction"}
 PAUSE, LONGEST_PAUSE = 0.5, 2.0
 """Seconds before one connects again, doubled with every break; in all a minute, for a service that starts again."""
 
@@ -81,12 +83,13 @@ class EventParser:
 
 @dataclass
 class Following:
-    """One who follows a story: the last event they have, and what to do when a connection ends."""
+    """One who follows a story or extraction: the last event they have, and what to do when a connection ends."""
 
     story_id: str
     last: int = 0
     timeout: float | None = None
     """Seconds they have."""
+    kind: Literal["stories", "extractions"] = "stories"
     ended: bool = False
     pause: float = 0.0
     """Seconds to wait before connecting again."""
@@ -100,7 +103,7 @@ class Following:
         silence = SILENCE if self.timeout is None else max(LEAST_LOOK, min(LOOK, self._left()))
         return {
             "method": "GET",
-            "url": f"/v1/stories/{quote(self.story_id, safe='')}/events",
+            "url": f"/v1/{self.kind}/{quote(self.story_id, safe='')}/events",
             "headers": {"Last-Event-ID": str(self.last)} if self.last else {},
             "timeout": httpx.Timeout(connecting, read=silence),
         }
@@ -111,7 +114,7 @@ class Following:
     def _look(self) -> None:
         """At the clock. WaitTimeout."""
         if self._left() <= 0:
-            raise WaitTimeout(f"story {self.story_id} did not end within {self.timeout:g} s")
+            raise WaitTimeout(f"{KINDS[self.kind]} {self.story_id} did not end within {self.timeout:g} s")
 
     def opened(self, response: httpx.Response) -> bool:
         """Whether events will come. ApiError when they never will."""
@@ -160,8 +163,8 @@ class Following:
         return self._breaks > BREAKS
 
 
-def finished(story: Story) -> Story:
-    """A story that has ended well. StoryFailed, StoryCancelled."""
+def finished(story: J) -> J:
+    """A story or extraction that has ended well. StoryFailed, StoryCancelled."""
     if story.state == "failed":
         raise StoryFailed(story)
     if story.state == "cancelled":

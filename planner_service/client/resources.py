@@ -1,4 +1,4 @@
-"""What the service answers, as a client holds it: a story, a page of something, an event of a story."""
+"""What the service answers, as a client holds it: a story, an extraction, a page of something, an event."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ LAST_STATES = frozenset({"succeeded", "failed", "cancelled"})
 
 
 @dataclass(frozen=True)
-class Story:
-    """A story or motion as the service showed it; `data` is the whole resource, `story["report"]` a part of it."""
+class Job:
+    """Something that is made, as the service showed it; `data` is the whole resource, `job["notes"]` a part of it."""
 
     data: Json
 
@@ -47,6 +47,17 @@ class Story:
         return self.state in LAST_STATES
 
     @property
+    def error(self) -> str:
+        """Why it failed; empty if it did not."""
+        told = self.data["error"]
+        return f"{told['title']}: {told['detail']}" if told else ""
+
+
+@dataclass(frozen=True)
+class Story(Job):
+    """A story or motion as the service showed it; `data` is the whole resource, `story["report"]` a part of it."""
+
+    @property
     def title(self) -> str | None:
         """Of the told story, once it is told."""
         title: str | None = self.data["title"]
@@ -77,16 +88,25 @@ class Story:
         """Figures, once they are made."""
         return self.data.get("report")
 
+
+@dataclass(frozen=True)
+class Extraction(Job):
+    """Short scripts out of a film, subtitles or a text, as far as they are made."""
+
     @property
-    def error(self) -> str:
-        """Why it failed; empty if it did not."""
-        told = self.data["error"]
-        return f"{told['title']}: {told['detail']}" if told else ""
+    def scripts(self) -> list[Json]:
+        """The short scripts, as `add_short_script` takes them; empty in a list."""
+        return [one["short_script"] for one in self.data.get("scripts", ())]
+
+    @property
+    def scenes(self) -> list[Json]:
+        """What came of each scene that was read; empty in a list."""
+        return list(self.data.get("scenes", ()))
 
 
 @dataclass(frozen=True)
 class StoryEvent:
-    """stage, progress, segment, and at the end done, failed or cancelled; `id` is where to go on from."""
+    """stage, progress, segment or scenes, and at the end done, failed or cancelled; `id` is where to go on from."""
 
     id: int
     name: str

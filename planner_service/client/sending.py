@@ -44,6 +44,8 @@ class Sending(Generic[T]):
         """What httpx is to send."""
         call = self.call
         sent = {"method": call.method, "url": call.path, "params": call.query, "headers": call.headers}
+        if call.files:
+            return sent | {"files": call.files, "data": call.body or {}}
         if call.content is not None:
             return sent | {"content": call.content}
         return sent | ({} if call.body is None else {"json": call.body})
