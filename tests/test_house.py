@@ -6,6 +6,7 @@ import ast
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -53,8 +54,13 @@ def modules() -> list[Path]:
     return [path for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py"))]
 
 
+@cache
+def tree_of(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
 def imported(path: Path) -> Iterator[str]:
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in ast.walk(tree_of(path)):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
@@ -80,7 +86,7 @@ def test_each_third_party_library_lives_where_it_belongs() -> None:
 
 def test_every_module_says_what_it_is() -> None:
     for path in modules():
-        assert ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))), f"{path} has no docstring"
+        assert ast.get_docstring(tree_of(path)), f"{path} has no docstring"
 
 
 def test_there_is_no_drawer_for_odds_and_ends() -> None:
@@ -88,19 +94,18 @@ def test_there_is_no_drawer_for_odds_and_ends() -> None:
         assert path.stem not in {"common", "utils", "util", "helpers", "types", "misc"}, path
 
 
-@pytest.mark.parametrize(
-    "module", ["planner_service.cli", "planner_service.stories", "motion_backend.procedural.backend"]
-)
-def test_importing_the_planner_loads_nothing_heavy(module: str) -> None:
-    heavy = ["torch", "matplotlib", "trimesh", "openai", "anthropic", "pydantic_ai"]
-    code = f"import sys, {module}; print([name for name in {heavy!r} if name in sys.modules])"
+def test_importing_the_planner_loads_nothing_heavy() -> None:
+    """Neither command line nor service."""
+    modules = "planner_service.cli, planner_service.app, planner_service.stories, motion_backend.procedural.backend"
+    heavy = ["torch", "matplotlib", "trimesh", "openai", "anthropic", "pydantic_ai", "av"]
+    code = f"import sys, {modules}; print([name for name in {heavy!r} if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
 
 
 def test_nothing_of_ours_is_pickled_or_evaluated() -> None:
     for path in modules():
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(tree_of(path)):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
                 assert node.func.id not in {"eval", "exec"}, path
             if isinstance(node, ast.keyword) and node.arg == "allow_pickle":

@@ -39,6 +39,7 @@ def lines() -> Iterator[Lines]:
     """Logging as in the service, into memory; as it was before, afterwards."""
     loggers = [logging.getLogger(name) for name in ("", *LIBRARIES)]
     before = [(logger.handlers[:], logger.level, logger.propagate) for logger in loggers]
+    as_it_was = structlog.get_config()
     stream = io.StringIO()
     with warnings.catch_warnings():
         configure_logging("info", stream)
@@ -48,7 +49,7 @@ def lines() -> Iterator[Lines]:
         logger.handlers, logger.propagate = handlers, propagate
         logger.setLevel(level)
     logging.getLogger("uvicorn.access").disabled = False
-    structlog.reset_defaults()
+    structlog.configure(**as_it_was)
 
 
 class Lines:

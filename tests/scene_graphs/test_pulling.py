@@ -90,7 +90,7 @@ def test_an_unknown_object_is_refused_by_name() -> None:
         pulled_out(room(TABLE, CHAIR), "sofa")
 
 
-@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(
     st.lists(st.tuples(st.floats(-2.2, 2.2), st.floats(-2.2, 2.2), st.floats(-pi, pi)), min_size=1, max_size=4),
     st.floats(-0.4, 0.4),
