@@ -240,10 +240,10 @@ def _of_several(sentence: Sequence[Phrase]) -> dict[str, tuple[str, ...]]:
 
 
 def _kind(sentence: Sequence[Phrase]) -> str:
-    """What a sentence is for: to "rest", to "roam", or to "do" something."""
+    """What a sentence is for: to "rest", to go and "settle" somewhere, to "roam", or to "do" something."""
     skills = [phrase.skill for phrase in sentence if not phrase.arrives]
     if skills[0] in (Skill.SITDOWN, Skill.LIEDOWN):
-        return "rest"
+        return "settle" if sentence[0].arrives else "rest"
     return "roam" if skills[0] == Skill.LOCO and not sentence[0].at else "do"
 
 

@@ -59,9 +59,32 @@ OPENINGS: Final[dict[str, tuple[str, ...]]] = {
     ),
 }
 
+BEGINNINGS: Final = (
+    "That {time} {event}",
+    "This is how the {time} began: {event}",
+    "Once, on a {time} like any other, {event}",
+    "Picture a quiet {time}: {event}",
+)
+"""A story's first sentence with what happens first in it."""
+SUDDEN_BEGINNINGS: Final = (
+    "It all began when {event}",
+    "It was the {time} when {event}",
+    "Later it would be remembered as the {time} when {event}",
+)
+"""The same where it is no state."""
+JOINTS: Final = (
+    "{event}, and {who} ",
+    "{event}; then {who} ",
+    "{event}, and soon {who} ",
+    "{event}, and with that {who} ",
+    "{event}; a little later {who} ",
+    "{event}, and before long {who} ",
+)
+"""What happens and what the body does, in one sentence."""
+
 TURNS: Final = (
     "Then", "Later,", "After that,", "Not long afterwards,", "Some time later,", "By and by,", "In time,",
-    "A good while later,", "Next,", "Meanwhile,", "After a time,", "At some point,",
+    "A good while later,", "Next,", "After a time,", "At some point,", "A little later,", "In due time,",
 )  # fmt: skip
 """Before a sentence about what happens that begins like one before it."""
 NOTES: Final = ("As it happened,", "For once,", "Be that as it may,")
@@ -133,7 +156,7 @@ TURNED_CLOSINGS: Final[dict[tuple[str, str], tuple[str, ...]]] = {
     ("angry", "sad"): ("Anger would have been easier to bear.",),
     ("stressed", "relaxed"): ("Not one of the great worries seemed so very great any more.",),
     ("stressed", "happy"): ("All that worry had been for nothing, and nothing could have been better.",),
-    ("stressed", "tired"): ("Whatever there was to worry about would have to wait until morning.",),
+    ("stressed", "tired"): ("Whatever there was to worry about would have to wait.",),
     ("hurried", "tired"): ("All that haste, and nothing to show for it but tired feet.",),
     ("hurried", "relaxed"): ("The clock ticked on, and for once nobody listened.",),
     ("tired", "happy"): ("Of the tiredness there was nothing left to be seen.",),
@@ -212,6 +235,11 @@ def time_of(*texts: str) -> str:
     """The time of day that the first text to do so speaks of: morning, afternoon, evening, night, Sunday, or day."""
     found = (time for text in texts for pattern, time in _TIMES if re.search(pattern, text, re.IGNORECASE))
     return next(found, "day")
+
+
+def tells_time(text: str) -> bool:
+    """Whether a text says when it happens."""
+    return time_of(text) != "day" or bool(re.search(r"\b(?:day|noon|hours?|weeks?)\b", text))
 
 
 def title_of(theme: str, mood: str, time: str | None = None) -> str:

@@ -29,6 +29,10 @@ _LONGEST = 24
 """Words of a sentence after which no more is added to it."""
 _FURTHER = ("to and fro", "from wall to wall", "this way and that", "from one end to the other")
 """Where a walk with no goal goes after another one."""
+_IDLE_WALKS = (
+    "smoothly forward walk", "steadily walking forward", "walking slowly, hands behind back", "walking quickly",
+    "strolling with hands in pockets", "walk with the body leaning back", "head bowed and body bent while walking",
+)  # fmt: skip
 _NEUTRAL_WALKS = ("smoothly forward walk", "steadily walking forward")
 
 
@@ -120,6 +124,11 @@ class Wording:
             if arrives and (self._is_here(index, keyframe) or self._is_plain(keyframe)):
                 untold = (*untold, index)
                 continue
+            if following is not None and self._goes_without_saying(
+                rows[position - 1][1] if position else None, keyframe
+            ):
+                untold = (*untold, index)
+                continue
             text = self._text(index, keyframe)
             rises = keyframe.skill in (Skill.STANDUP, Skill.GETUP)
             at = "" if keyframe.on_floor else self._the(index, keyframe)
@@ -129,7 +138,14 @@ class Wording:
 
     def _is_plain(self, keyframe: Keyframe) -> bool:
         """Whether walking there goes without saying."""
-        return keyframe.caption in _NEUTRAL_WALKS and (self.brief or self.variety.chance(0.5))
+        return self.variety.chance(0.5 + 0.5 * self.brief if keyframe.caption in _NEUTRAL_WALKS else 0.3)
+
+    def _goes_without_saying(self, before: Keyframe | None, keyframe: Keyframe) -> bool:
+        """Whether a keyframe says little: strolling about between two things done, or leaving a seat for the next."""
+        if keyframe.skill == Skill.STANDUP:
+            return before is not None and self.variety.chance(0.5)
+        idle = keyframe.skill == Skill.LOCO and keyframe.on_floor and keyframe.caption in _IDLE_WALKS
+        return idle and before is not None and self.variety.chance(0.6)
 
     def _is_here(self, index: int, keyframe: Keyframe) -> bool:
         return not keyframe.on_floor and self._at == self._the(index, keyframe)
@@ -163,7 +179,7 @@ class Wording:
 
     def _posture(self, keyframe: Keyframe, verbs: tuple[str, ...], manners: Mapping[str, tuple[str, ...]]) -> str:
         known = manners.get(keyframe.caption)
-        manner = self.variety.pick(known) if known and not (self.brief and self.variety.chance(0.55)) else ""
+        manner = self.variety.pick(known) if known and self.variety.chance(0.45 if self.brief else 0.65) else ""
         comma = "" if manner.startswith(("with ", "on ", "flat ")) or not manner else ","
         return f"{self._fresh(verbs)}{comma} {manner}"
 
@@ -246,20 +262,22 @@ def joined(told: Sequence[Phrase]) -> list[Piece]:
     return pieces
 
 
-def sentences_of(told: Sequence[Phrase]) -> list[tuple[Phrase, ...]]:
-    """Two or three phrases a sentence: a walk stays with its purpose, rising and a change of mood start a new one."""
+def sentences_of(told: Sequence[Phrase], variety: Variety) -> list[tuple[Phrase, ...]]:
+    """Two to four phrases a sentence: a walk stays with its purpose, rising and a change of mood start a new one."""
     groups: list[list[Phrase]] = []
+    most = 3
     for phrase, following in zip(told, [*told[1:], None], strict=True):
         current = groups[-1] if groups else []
         tied = bool(current) and current[-1].arrives
         purpose = [following] if phrase.arrives and following is not None else []
         words = sum(len(p.text.split()) for p in [*current, phrase, *purpose])
-        room = 0 < len(current) < 3 and words <= _LONGEST and not phrase.rises
+        room = 0 < len(current) < most and words <= _LONGEST and not phrase.rises
         turns = len(current) >= 2 and (phrase.arrives or phrase.mood != current[-1].mood)
         if tied or (room and not turns):
             current.append(phrase)
         else:
             groups.append([phrase])
+            most = 2 + variety.index(3)
     return [tuple(group) for group in groups]
 
 

@@ -11,15 +11,21 @@ from motion_backend.motion import Character, Skill
 from planner_service.scripts import framing, reasons
 from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.frames import Ear, Manner, Sentence, framed, said
+from planner_service.scripts.happenings import fragment, happening, link_before, told_together
 from planner_service.scripts.keyframe import Event, LongScript
-from planner_service.scripts.moments import Phrase, Places, Variety, Wording, mood_of, sentences_of
+from planner_service.scripts.leading import SENTENCES, Lead, leads_of
+from planner_service.scripts.moments import Phrase, Places, Variety, Wording, joined, mood_of, sentences_of
 from planner_service.scripts.paragraphs import Span, balanced, laid_out
-from planner_service.scripts.scenes import RESTS, Scene, covered, event_retold, link_before, scenes_of, told_of_hero
+from planner_service.scripts.scenes import RESTS, Scene, scenes_of
 from planner_service.scripts.voice import Voice, retell
 
 __all__ = ["Places", "Span", "Told", "narrate"]
-_LINKED = 0.3
-"""Share of an event's words in a summary that may take the event's "so" or "but"."""
+_UNFIT = r"[,;:]|\b(?:when|that|this|first)\b"
+"""What an event does not have that begins a story."""
+_BEGINS = 14
+"""Words of what happens first, in a story's first sentence."""
+_JOINED = 22
+"""Words of a sentence that tells what happens and what the body does."""
 _MANY = 22
 """Keyframes above which a story leaves out what says little."""
 
@@ -36,6 +42,10 @@ class Told:
 def narrate(script: LongScript, character: Character, seed: int = 0, places: Places | None = None) -> Told:
     """The story of a script by rules; the same seed tells it in the same words."""
     return _Narrator(script, Voice.of(character), seed, places or {}).tell()
+
+
+Remark = tuple[str, str | None]
+"""A sentence about what happens, and the theme's own "so" or "but" before it; None of what a summary adds."""
 
 
 class _Narrator:
@@ -59,26 +69,28 @@ class _Narrator:
         """The mood of the scene before."""
         self.passed_over: tuple[int, ...] = ()
         """Keyframes that go without saying, to be told with what follows."""
+        self.setting = ""
+        """What the theme says of when or how the next event is."""
+        self.turned = False
+        """Whether the mood turned since something happened."""
+        self.later = False
+        """Whether something was told already."""
         self.scene: list[Sentence] = []
 
     def tell(self) -> Told:
         """The whole story."""
-        events = self.script.events
         scenes = scenes_of(self.script)
+        theme, events = self.script.theme, self.script.events
+        tellable = {number for number, event in enumerate(events) if happening(event.text, theme, self.voice)}
         told: list[list[Sentence]] = []
-        next_event = 0
-        opening = self._framed(framing.OPENINGS[emotion_of(self.first.emotion) or "neutral"])
-        for number, scene in enumerate(scenes):
-            self.scene = [] if number else [self.ear.choose(opening)]
-            reached = next_event if scene.event is None else max(next_event, scene.event + 1)
-            self._tell_scene(scene, range(next_event, reached), final=number == len(scenes) - 1)
-            next_event = reached
+        leads = leads_of(self.script, scenes, tellable, self.variety)
+        for number, (scene, lead) in enumerate(zip(scenes, leads, strict=True)):
+            self.scene, self.later = [], number > 0
+            self._tell_scene(scene, lead, final=number == len(scenes) - 1)
             told.append(self.scene)
-        self.scene = [] if scenes else [self.ear.choose(opening)]
-        for event in range(next_event, len(events)):
-            text = told_of_hero(events[event].text, self.script.theme)
-            if sentence := event_retold(text, self.voice, self._named()):
-                self._say(sentence, link_before(self.script.theme, events[event].text))
+        self.scene = [] if scenes else [self.ear.choose(self._opening())]
+        reached = max((scene.event + 1 for scene in scenes if scene.event is not None), default=0)
+        self._say_all(self._happens(range(reached, len(events))))
         self.scene.append(self.ear.choose(self._framed(self._closings([*told[-1:], self.scene]))))
         if told and len(self.scene) == 1:
             self.scene = told.pop() + self.scene
@@ -86,23 +98,54 @@ class _Narrator:
         title = framing.title_of(self.script.theme, emotion_of(self.last.emotion) or "neutral", self.time)
         return Told(title, text, spans)
 
-    def _tell_scene(self, scene: Scene, events: Sequence[int], final: bool) -> None:
+    def _tell_scene(self, scene: Scene, head: Lead, final: bool) -> None:
         """What happens (the lead) and what the body does; sleep comes after what leads to it."""
-        self._turn_to(scene)
-        happens = self._events(scene, events)
-        summary = self._summary(scene)
-        asleep = scene.sleeps(" ".join([*happens, retell(summary, self.voice) or ""]))
+        lead = self._headed(scene, head)
+        asleep = scene.sleeps(" ".join(sentence for sentence, _ in lead))
+        late = [] if asleep or len(lead) < 2 or self.variety.chance(0.6) else [lead.pop()]
         if not asleep:
-            self._lead(happens, summary, events)
-        self._enter(scene)
+            self._say_all(lead[:-1])
+        self._enter(scene, "" if asleep else lead[-1][0] if lead else "")
         sentences = self._sentences(scene, asleep, final)
+        joined = not asleep and bool(lead) and self.variety.chance(0.35) and self._joined(lead[-1], sentences[0])
+        if not asleep and not joined:
+            self._say_all(lead[-1:])
         resting = [i for i, sentence in enumerate(sentences) if any(phrase.skill in RESTS for phrase in sentence)]
         falls_asleep = max(resting, default=len(sentences) - 1) if asleep else None
         for position, sentence in enumerate(sentences):
             woken = falls_asleep is not None and position == falls_asleep + 1
-            self._act(sentence, last=position == len(sentences) - 1 > 0, woken=woken)
+            if position or not joined:
+                self._act(sentence, last=position == len(sentences) - 1 > 0, woken=woken)
             if position == falls_asleep:
-                self._lead(happens, summary, events)
+                self._say_all(lead)
+            if position == 0:
+                self._say_all(late)
+
+    def _headed(self, scene: Scene, head: Lead) -> list[Remark]:
+        """What is still to be told of a scene's lead after the story's first sentence, or one between two moods."""
+        if self.rooms:
+            self._turn_to(scene)
+            return self._told(scene, head)
+        self.mood = self._emotion(scene)
+        setting = self.setting
+        lead = self._told(scene, head)
+        if head.events and lead and self.variety.chance(0.5) and (options := self._beginnings(lead[0][0])):
+            self.scene.append(self.ear.choose(options))
+            return lead[1:]
+        self.scene.append(self.ear.choose(self._opening()))
+        self.setting = setting
+        return self._told(scene, head)
+
+    def _beginnings(self, event: str) -> list[Sentence]:
+        """Ways to begin with an event, none where it is not short and plain."""
+        if not event.endswith(".") or re.search(_UNFIT, event[:-1]) or len(event.split()) > _BEGINS:
+            return []
+        shapes = framing.BEGINNINGS + (() if re.search(r"\b(?:was|were|had)\b", event) else framing.SUDDEN_BEGINNINGS)
+        fitting = [shape for shape in shapes if "{time}" not in shape or not framing.tells_time(event)]
+        return [said(self.voice.fill(shape, time=self.time, event=self._inner(event))) for shape in fitting]
+
+    def _opening(self) -> list[Sentence]:
+        return self._framed(framing.OPENINGS[emotion_of(self.first.emotion) or "neutral"])
 
     def _turn_to(self, scene: Scene) -> None:
         """A sentence that leads from the mood of the scene before to that of this one."""
@@ -113,6 +156,7 @@ class _Narrator:
             options = self._framed(turns.get(self.mood, turns.get("", ())))
             if options and not self.ear.heard(options):
                 self.scene.append(self.ear.choose(options))
+                self.turned = True
         self.mood = emotion
 
     def _emotion(self, scene: Scene) -> str:
@@ -120,40 +164,61 @@ class _Narrator:
             return self.script.short_scripts[scene.script].script.emotion
         return mood_of(scene.keyframes[-1][1])
 
-    def _events(self, scene: Scene, events: Sequence[int]) -> list[str]:
-        """The theme's own words where no summary that serves them has them."""
-        told: list[str] = []
-        for number in events:
-            served = [r.script.summary for r in self.script.short_scripts if r.event == number]
-            served += [self.script.short_scripts[scene.script].script.summary] if scene.script is not None else []
-            event = self.script.events[number].text
-            if max((covered(event, summary) for summary in served), default=0.0) < 0.5:
-                event = told_of_hero(event, self.script.theme)
-                told.append(event_retold(event, self.voice, bool(told) or self._named()) or "")
-        return [sentence for sentence in told if sentence]
+    def _happens(self, events: Sequence[int]) -> list[Remark]:
+        """Events in the theme's own words, each sentence with the theme's "so" or "but" before it."""
+        texts = [self.script.events[event].text for event in events]
+        theme = self.script.theme
+        sentences = told_together([text for text in texts if not fragment(text)], theme, self.voice, self._named())
+        links: list[str | None] = [link_before(theme, texts[0]) if texts else "", *([""] * len(sentences))]
+        settings = [setting for text in texts if (setting := fragment(text))]
+        if sentences and (settings or self.setting):
+            sentences[0] = f"{[self.setting, *settings][-1]}, {self._inner(sentences[0])}"
+            self.setting, links[0] = "", ""
+        elif settings:
+            self.setting = settings[-1]
+        return list(zip(sentences, links, strict=False))
 
-    def _summary(self, scene: Scene) -> str:
-        return "" if scene.script is None else self.script.short_scripts[scene.script].script.summary
+    def _told(self, scene: Scene, lead: Lead) -> list[Remark]:
+        """The sentences of a lead."""
+        told = self._happens(lead.events)
+        if scene.script is None or not lead.details:
+            return told
+        summary = self.script.short_scripts[scene.script].script.summary
+        chosen = [sentence for place, sentence in enumerate(SENTENCES.split(summary)) if place in lead.details]
+        more = retell(" ".join(chosen), self.voice, bool(told) or self._named())
+        return told + [(text, None) for text in SENTENCES.split(more or "") if text]
 
-    def _lead(self, happens: Sequence[str], summary: str, events: Sequence[int]) -> None:
-        """The theme's own words, then the summary, joined by the theme's own "so" or "but"."""
-        turned = len(self.scene) > 0 and self.scene[-1].family == "turn"
-        event = self.script.events[events[0]].text if events else ""
-        meant = bool(happens) or covered(event, summary) >= _LINKED
-        link = link_before(self.script.theme, event) if meant and not turned else ""
-        for sentence in happens:
-            self._say(sentence, link)
-            link = ""
-        told = retell(summary, self.voice, self._named()) if summary else None
-        for sentence in re.split(r"(?<=[.!?])\s+", told or ""):
-            if sentence:
-                self._say(sentence, link)
-                link = ""
+    def _say_all(self, lead: Sequence[Remark]) -> None:
+        """Sentences of a lead; some of those that tell of a deed say that time has passed."""
+        for sentence, link in lead:
+            deed = re.match(rf"(?:{re.escape(self.voice.name)}|He|She|They) (?!was|were|had|could)", sentence)
+            timed = bool(deed) and link is not None and self.later and not self.turned and self.variety.chance(0.35)
+            self._say(sentence, "" if self.turned else link or "", timed)
+            self.turned = False
 
-    def _enter(self, scene: Scene) -> None:
+    def _joined(self, lead: Remark, sentence: Sequence[Phrase]) -> bool:
+        """Tell an event and what the body does first as one sentence, where both are short; whether that was done."""
+        event, link = lead
+        words = len(event.split()) + sum(len(phrase.text.split()) for phrase in sentence)
+        if self.arrival or link or words > _JOINED or re.search(r"[,;:!?]", event) or sentence[0].rises:
+            return False
+        name = self.voice.name in event or (self._named() and self.voice.pronouns != "they")
+        who = self.voice["they"] if name else self.voice.name
+        options = [
+            Sentence(((shape.format(event=event[:-1], who=who), ()), *joined(sentence), (".", ())), shape, "joint")
+            for shape in framing.JOINTS
+        ]
+        self.scene.append(self.ear.choose(options))
+        return True
+
+    def _inner(self, sentence: str) -> str:
+        """A sentence as it goes on after other words."""
+        return sentence if sentence.startswith(self.voice.name) else sentence[:1].lower() + sentence[1:]
+
+    def _enter(self, scene: Scene, next_told: str) -> None:
         """Note a room that is new and not named yet; the first sentence about the body will name it."""
         room = self.wording.room_of(*scene.keyframes[0])
-        named = room == "room" or any(room in sentence.text for sentence in self.scene)
+        named = room == "room" or any(room in text for text in (next_told, *(sentence.text for sentence in self.scene)))
         new = room not in self.rooms[-1:]
         self.arrival = room if new and not named else ""
         self.visits = -1 if not self.rooms else self.rooms.count(room)
@@ -164,9 +229,13 @@ class _Narrator:
         """The scene's keyframes worded; leaving a seat at its end may go without saying."""
         phrases = self.wording.phrases(scene.keyframes, self.passed_over)
         self.passed_over = ()
-        if len(phrases) > 1 and phrases[-1].rises and not final and not asleep and self.variety.chance(0.6):
-            self.passed_over = phrases.pop().keyframes
-        return sentences_of(phrases)
+        if len(phrases) > 1 and phrases[-1].rises and not asleep:
+            rising = phrases.pop().keyframes
+            if final:
+                phrases[-1] = replace(phrases[-1], keyframes=phrases[-1].keyframes + rising)
+            else:
+                self.passed_over = rising
+        return sentences_of(phrases, self.variety)
 
     def _act(self, sentence: Sequence[Phrase], last: bool = False, woken: bool = False) -> None:
         """One sentence about the body, in the frame that sounds freshest."""
@@ -184,16 +253,16 @@ class _Narrator:
             return False
         return self.voice.pronouns != "they" or bool(re.search(rf"\b(?:{self.voice.name}|[Tt]hey)\b", recent[-1]))
 
-    def _say(self, sentence: str, link: str = "") -> None:
-        """Add a sentence that is not about the body, after a word for the time where it needs one."""
-        inner = sentence if sentence.startswith(self.voice.name) else sentence[:1].lower() + sentence[1:]
+    def _say(self, sentence: str, link: str = "", timed: bool = False) -> None:
+        """Add a sentence that is not about the body, after a word for the time where it needs one or is `timed`."""
+        inner = self._inner(sentence)
         if link and sentence.startswith((self.voice.name, "The ", "A ", "An ", "He ", "She ", "They ")):
             options = [said(f"{link} {inner}")]
         else:
             turns = framing.NOTES if framing.STANDS_ALONE.match(sentence) else framing.TURNS
             turns = framing.CRIES if sentence.endswith("!") else turns
             options = [said(sentence), *(said(f"{turn} {inner}", turn, "after") for turn in turns)]
-        self.scene.append(self.ear.choose(options, first=not link))
+        self.scene.append(self.ear.choose(options, first=not (link or timed)))
 
     def _closings(self, told: Sequence[Sequence[Sentence]]) -> tuple[str, ...]:
         if not self.script.keyframes:

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Final
 
 from motion_backend.motion import Character
+from planner_service.scripts.tense import is_verb_form
 from planner_service.scripts.verbs import is_verb
 
 _NAMES: Final = {
@@ -50,21 +51,53 @@ def cast_by(theme: str, character: Character) -> Character:
     default = Character()
     if (character.name, character.pronouns) != (default.name, default.pronouns):
         return character
-    name = _name_in(theme)
+    name = name_in(theme)
     pronouns = _PRONOUNS_OF.get(name.lower()) or _pronouns_in(theme, bool(name)) or default.pronouns
     return replace(character, name=name or default.name, pronouns=pronouns)
 
 
-def _name_in(theme: str) -> str:
-    """The first name that does something; a word that opens a sentence must be known as a name."""
+def name_in(theme: str) -> str:
+    """The first name that does something, or "".
+
+    A word that opens a sentence must be known as a name, or go with its verb as only a name can: "Zora waters".
+    """
     for found in _CAPITALISED.finditer(theme):
-        inside = found["before"].strip() not in ("", ".", "!", "?")
-        known = found["name"].lower() in _PRONOUNS_OF
-        if is_verb(found["verb"]) and (known or (inside and found["before"].strip()[-1] not in ".!?\"'")):
-            return found["name"] if known or not _NOT_NAMES.fullmatch(found["name"]) else ""
+        name, verb = found["name"], found["verb"]
+        inside = found["before"].strip() not in ("", ".", "!", "?") and found["before"].strip()[-1] not in ".!?\"'"
+        if not (is_verb(verb) or is_verb_form(verb) or verb in _MODALS):
+            continue
+        if name.lower() in _PRONOUNS_OF or (inside and not _NOT_NAMES.fullmatch(name)):
+            return name
+        if inside:
+            return ""
+        if _agrees(name.lower(), verb):
+            return name
     return ""
 
 
+def _agrees(word: str, verb: str) -> bool:
+    """Whether a word that opens a sentence and is no known name can be nothing else beside this verb."""
+    singular = verb in _MODALS or (is_verb_form(verb) and verb.endswith("s"))
+    other = word in _NOUNS or is_verb(word) or _NOUN_ENDING.search(word) or _NOT_NAMES.fullmatch(word.title())
+    return singular and not other
+
+
+_MODALS: Final = frozenset(("can", "cannot", "could", "must", "will", "would", "may", "might", "was"))
+_NOUN_ENDING: Final = re.compile(
+    r"(?:ness|ment|tion|sion|ing|ity|ism|ance|ship|hood|dom|ly|ed|body|one|thing|day|light)$"
+)
+_NOUN_WORDS: Final = """
+after all anger another anxiety as at autumn beer before bread breakfast business cake cash champagne cheese chocolate
+christmas coffee cold darkness dawn dessert dinner dust each either electricity even every excitement fate father fear
+fever fire fog food frost fury grandma grandpa gravity grief hail happiness heat hope how hunger if in insomnia it
+jazz joy laundry laziness life lightning love luck lunch mail midnight milk mom money mother mum music nature neither
+news night no noise noon nostalgia not now once one only pain paint panic paper peace pizza post rage rain rock
+sadness silence sleep smoke snow so somehow soup spring stress summer sun sunrise sunset supper tea that then there
+thirst this though thunder time today tomorrow tonight traffic train trouble until war water weather what when where
+while who whoever wind wine winter work worry yesterday yoga
+"""
+_NOUNS: Final = frozenset(_NOUN_WORDS.split())
+"""Words that open a sentence without an article and are nobody's name."""
 _NOT_NAMES: Final = re.compile(
     r"(?:Mon|Tues|Wednes|Thurs|Fri|Satur|Sun)day|January|February|March|April|May|June|July|August|September|October"
     r"|November|December|Christmas|Easter|Halloween|English|God|He|She|They|It|We|You|Then|And|But|So|Later|Finally"

@@ -22,6 +22,10 @@ REASONS: Final[dict[tuple[str, str], tuple[str, ...]]] = {
         "so much joy needed room, and {who} {did}.",
         "because happiness will not keep still, {who} {did}.",
     ),
+    ("happy", "settle"): (
+        "it was time to catch a breath, so {who} {did}.",
+        "out of breath with so much gladness, {who} {did}.",
+    ),
     ("happy", "rest"): (
         "it was time to catch a breath, so {who} {did}.",
         "out of breath with so much gladness, {who} {did}.",
@@ -31,6 +35,10 @@ REASONS: Final[dict[tuple[str, str], tuple[str, ...]]] = {
         "the anger had to go somewhere, so {who} {did}.",
         "because keeping still was impossible, {who} {did}.",
     ),
+    ("angry", "settle"): (
+        "there was nothing to be done about it, so {who} {did}.",
+        "with clenched teeth, {who} {did}.",
+    ),
     ("angry", "rest"): ("there was nothing to be done about it, so {who} {did}.",),
     ("angry", "do"): ("anger made every movement rough as {who} {did}.",),
     ("hurried", "roam"): ("there was not a second to spare, so {who} {did}.",),
@@ -39,7 +47,14 @@ REASONS: Final[dict[tuple[str, str], tuple[str, ...]]] = {
         "every second counted, so {who} {did}.",
         "haste makes clumsy hands, but {who} {did}.",
     ),
-    ("tired", "roam"): ("every step cost an effort, but {who} {did}.", "just to stay awake, {who} {did}."),
+    ("tired", "roam"): (
+        "every step cost an effort, but {who} {did}.",
+        "with eyes that would hardly stay open, {who} {did}.",
+    ),
+    ("tired", "settle"): (
+        "it was high time to rest, so {who} {did}.",
+        "longing for nothing but rest, {who} {did}.",
+    ),
     ("tired", "rest"): (
         "as {their} legs would carry {them} no further, {who} {did}.",
         "the day had taken all {their} strength, so {who} {did}.",
@@ -51,6 +66,10 @@ REASONS: Final[dict[tuple[str, str], tuple[str, ...]]] = {
         "because there was nothing else to do, {who} {did}.",
         "with thoughts that were far away, {who} {did}.",
     ),
+    ("sad", "settle"): (
+        "wanting only to be left alone, {who} {did}.",
+        "with heavy limbs, {who} {did}.",
+    ),
     ("sad", "rest"): (
         "there was no strength left to stand, so {who} {did}.",
         "the weight of it all was too much, and {who} {did}.",
@@ -61,15 +80,27 @@ REASONS: Final[dict[tuple[str, str], tuple[str, ...]]] = {
         "because standing still would only have made it worse, {who} {did}.",
         "{their} thoughts would not rest, and so {who} {did}.",
     ),
+    ("stressed", "settle"): (
+        "to steady {their} nerves, {who} {did}.",
+        "in the hope of a little calm, {who} {did}.",
+    ),
     ("stressed", "rest"): ("to steady {their} nerves, {who} {did}.", "in the hope of a little calm, {who} {did}."),
     ("stressed", "do"): ("just to have something to do, {who} {did}.",),
     ("drunk", "roam"): ("the floor seemed to tilt as {who} {did}.", "in something like a straight line, {who} {did}."),
+    ("drunk", "settle"): (
+        "because the world was spinning, {who} {did}.",
+        "with the room going round, {who} {did}.",
+    ),
     ("drunk", "rest"): (
         "because the world was spinning, {who} {did}.",
         "before {their} legs could give way, {who} {did}.",
     ),
     ("drunk", "do"): ("with great care and little success, {who} {did}.",),
     ("relaxed", "roam"): ("because there was no hurry, {who} {did}.", "just because it was pleasant, {who} {did}."),
+    ("relaxed", "settle"): (
+        "there was all the time in the world, so {who} {did}.",
+        "as nobody was waiting, {who} {did}.",
+    ),
     ("relaxed", "rest"): (
         "there was all the time in the world, so {who} {did}.",
         "to enjoy it properly, {who} {did}.",
@@ -77,10 +108,12 @@ REASONS: Final[dict[tuple[str, str], tuple[str, ...]]] = {
     ),
     ("relaxed", "do"): ("taking plenty of time, {who} {did}.",),
     ("neutral", "roam"): ("to stretch {their} legs a little, {who} {did}.", "deep in thought, {who} {did}."),
+    ("neutral", "settle"): ("as there was a little time, {who} {did}.",),
     ("neutral", "rest"): ("as there was time to sit for a while, {who} {did}.",),
     ("neutral", "do"): ("without much thought, {who} {did}.", "as on any other day, {who} {did}."),
 }
-"""Frames that give a reason, by mood and by what the sentence is for: to roam, to rest, or to do something."""
+"""Frames that give a reason, by mood and by what the sentence is for: to roam, to rest there and then, to go and settle
+somewhere, or to do something."""
 
 TURNS: Final[dict[str, dict[str, tuple[str, ...]]]] = {
     "happy": {

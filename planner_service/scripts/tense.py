@@ -6,45 +6,49 @@ import re
 from typing import Final
 
 _REGULAR: Final = """
-accept ache act admire allow amble answer appear argue arrange arrive ask attack attempt attend avoid await bake bask
-bathe battle beam beckon belong blame blast blink blush boil borrow bother bounce bound bow breathe brush bump burn
-bustle buzz call calm care carry celebrate change chase chat check cheer cherish chew chill chop chuckle circle clean
-clear climb close collapse collect comb comfort complain compose conclude confess confide confirm connect consider
-consume contemplate continue convince cook cool correct cough count cover crack cram crash crave crawl create cross
-crouch crumble crumple crush cry curl curse dance dart dash daydream decide decline decorate defeat demand depart
-describe deserve desire destroy detect devour dial die dim dine dip disappear discard discover discuss dismiss
-distract donate doodle dose doze drag drain dread dress drift drool drop drown drum dry dust edge edit email embark
-embrace employ empty enable encounter end enjoy enter envy erupt escape evaporate examine exclaim exercise exhale exit
-expect explain explode explore express face fade fail faint fear feast fetch fidget fill finish fix flatter flick flip
-float flood flop flow fluff fold follow forward free frolic frown fry fulfil fumble fume fuss gallop gape gasp gather
-gaze gesture giggle glance glare glide gobble gossip grab greet grieve grimace grin grip groan groom grumble guard
-guess guide gulp guzzle hammer happen hasten hate head heat help hesitate hobble hoist hop hope host hover huddle hug
-hum hunt hurl hurry ignore imagine improve inch indulge inform inhale insist inspect intend interrupt investigate
-invite iron itch jog join jot juggle jump kick kiss knock lament land last laugh laze lean learn lift like limp linger
-listen live load lock long look loom loosen lounge love lower lug lunge lurch manage march mark marvel massage match
-matter meander measure meditate melt mend mess miss mix moan mop mope mourn move mumble munch murmur muse mutter nap
-need nestle nibble nod note notice nudge nurse observe obsess occur offer open order organise organize overflow
-overturn overwhelm own pace pack paint panic pant park party pass pat patrol pause peek peel peep peer perch perform
-persist pet phone photograph pick pile pinch pine place plan play plead plod plop pluck plug plummet plunge point poke
-polish ponder pop pose post pounce pour practice practise praise pray prefer prepare press pretend prevent print process
-procrastinate promise prop protest prowl pull punch purr push puzzle quiver rage raise rattle reach realise realize
-reassure recall receive recite recline recognise recognize recover reel reflect refuse regain regard regret rehearse
-reheat rejoice relax release relieve relish relive rely remain remember remind reminisce remove renew repair repeat
-replace reply report request rescue resolve rest restore resume retire retreat retrieve return reunite reveal revel
-review rinse rip roam roast roll rouse row rub ruin rummage rush sag sail salute saunter savor savour scan scare
-scatter scold scoop score scowl scramble scratch scream scroll scrub scurry scuttle seal search seat seem seethe
-select sense serve settle shape share shatter shelter shift shiver shout shove shower shrug shuffle sidestep sigh sip
-sizzle sketch skim skip slam slap slip slouch slow slump slurp smash smell smile smoke smooth snack snap snatch sneak
-sneeze sniff snooze snore snuggle soak sob soften solve soothe sort spill splash splurge spoon spot sprawl spray
-sprint squash squat squeal squeeze squint squirm stack stagger stalk stamp stare start startle stash stay steady step
-stiffen stir stomp stoop stop storm straighten strain stretch strip stroll struggle strum strut study stuff stumble
-style subside succumb suffer sulk surf surprise surrender survey suspect swallow sway sweat swipe swirl switch swoon
-sympathise tackle talk tap taste tease tend tense test text thank thrash throb thump tidy tie tighten tilt tiptoe tire
-toast toddle toil tolerate topple toss touch trace trail train travel treasure treat tremble trickle trip trot trudge
-trust try tuck tug tumble turn twiddle twirl twist twitch type unbutton uncork uncover unfold unload unlock unpack
-unplug unroll unwrap update urge use vacuum vanish vent view visit vow wail wait walk wallow waltz wander wane want
-warm wash watch water wave weigh welcome wheel whirl whisper whistle wince wipe wish wither witness wobble wonder work
-worry worsen wrap wrestle yank yawn yearn yell zigzag zip
+accept ache act add admire adore agree aim allow amble amuse announce annoy answer apologise apologize appear applaud
+apply approach argue arrange arrive ask attack attempt attend avoid await bake bang bark bask bathe battle beam beckon
+beg behave believe belong blame blast blink blush boil borrow bother bounce bound bow breathe brush bump burn bustle
+buzz call calm care carry celebrate change chase chat check cheer cherish chew chill choke chop chuckle circle clap
+clean clear climb close collapse collect comb comfort compare complain complete compose conclude confess confide
+confirm confuse connect consider console consume contemplate continue convince cook cool correct cough count cover
+crack cram crash crave crawl create cross crouch crumble crumple crush cry cuddle curl curse dance dart dash daydream
+decide decline decorate defeat delay deliver demand depart describe deserve desire despair destroy detect devour dial
+die dim dine dip disagree disappear discard discover discuss dislike dismiss distract divorce donate doodle dose doze
+drag drain dread dress drift drill drool drop drown drum dry dust earn edge edit email embark embrace employ empty
+enable encounter end enjoy enter envy erupt escape evaporate examine exclaim exercise exhale exhaust exit expect
+explain explode explore express face fade fail faint fear feast fetch fidget fill finish fix flatter flick flip float
+flood flop flow fluff focus fold follow forward free fret frolic frown fry fulfil fumble fume fuss gallop gape gasp
+gather gaze gesture giggle glance glare glide gobble gossip grab greet grieve grimace grin grip groan groom grope
+grumble guard guess guide gulp guzzle hammer happen hasten hate head heat help hesitate hobble hoist hop hope host
+hover huddle hug hum hunt hurl hurry ignore imagine improve improvise inch indulge inform inhale insist inspect insult
+intend interrupt investigate invite iron itch jog join jot juggle jump kick kiss knit knock lament land last laugh
+laze lean learn lift like limp linger listen live load loathe lock long look loom loosen lounge love lower lug lunge
+lurch manage march mark marry marvel massage match matter meander measure meditate melt mend mess miss mix moan mop
+mope mourn move mull mumble munch murmur muse mutter nap need nestle nibble nod note notice nudge nurse observe obsess
+occur offer open order organise organize overflow overturn overwhelm own pace pack paint panic pant park party pass
+pat patrol pause peek peel peep peer perch perform persist pet phone photograph pick pile pinch pine place plan play
+plead plod plop pluck plug plummet plunge point poke polish ponder pop pose post pounce pour practice practise praise
+pray prefer prepare press pretend prevent print process procrastinate promise promote prop propose protest prowl pull
+punch purr push puzzle quarrel quiver rage raise rant rattle reach realise realize reassure recall receive recite
+recline recognise recognize record recover reel reflect refuse regain regard regret rehearse reheat reject rejoice
+relax release relieve relish relive rely remain remember remind reminisce remove renew repair repeat replace reply
+report request rescue resolve rest restore resume retire retreat retrieve return reunite reveal revel review rinse rip
+roam roar roast roll rouse row rub ruin rummage rush sag sail salute saunter savor savour scan scare scatter scold
+scoop score scowl scramble scratch scream scroll scrub scurry scuttle seal search seat seem seethe select sense serve
+settle shape share shatter shelter shift shiver shout shove shower shriek shrug shuffle sidestep sigh sip sizzle
+sketch skim skip slam slap slip slouch slow slump slurp smash smell smile smoke smooth snack snap snatch sneak sneeze
+sniff snooze snore snuggle soak sob soften solve soothe sort spill splash splurge spoon spot sprawl spray sprint
+squash squat squeal squeeze squint squirm stack stagger stalk stamp stare start startle stash stay steady step stiffen
+stir stomp stoop stop storm straighten strain stretch strip stroll struggle strum strut study stuff stumble style
+subside succeed succumb suffer sulk surf surprise surrender survey survive suspect swallow sway sweat swipe swirl
+switch swoon sympathise tackle talk tap taste tease telephone tempt tend tense test text thank thrash throb thump
+tickle tidy tie tighten tilt tiptoe tire toast toddle toil tolerate topple toss touch trace trail train travel
+treasure treat tremble trickle trip trot trudge trust try tuck tug tumble turn twiddle twirl twist twitch type
+unbutton uncork uncover undress unfold unload unlock unpack unplug unroll unwrap update urge use vacuum vanish vent
+view visit vomit vow wail wait walk wallow waltz wander wane want warm wash waste watch water wave weigh welcome wheel
+whirl whisper whistle wince wipe wish wither witness wobble wonder work worry worsen wrap wrestle yank yawn yearn yell
+zigzag zip
 """
 _PAIRS: Final = """
 am:was arise:arose awake:awoke be:was bear:bore beat:beat become:became begin:began bend:bent bet:bet bid:bid bite:bit
@@ -65,10 +69,10 @@ wring:wrung write:wrote
 """
 _IRREGULAR: Final = dict(pair.split(":") for pair in _PAIRS.split())
 _DOUBLED: Final = """
-begin bid chat chop cram cut dig dim dip drag drop drum flip flop forget get grab grin grip hit hop hug hum jog jot
-let lug mop nap nod pat pet plan plod plop plug pop prefer prop put quit regret rid rip rub run sag scan scrub set
-shrug shut sidestep sip sit skim skip slam slap slip snap sob spin spit split spot squat step stir stop strip strum
-strut swim tap travel trip trot tug unplug upset win wrap zigzag zip
+beg begin bid chat chop clap cram cut dig dim dip drag drop drum flip flop forget fret get grab grin grip hit hop hug
+hum jog jot knit let lug mop nap nod pat pet plan plod plop plug pop prefer prop put quarrel quit regret rid rip rub
+run sag scan scrub set shrug shut sidestep sip sit skim skip slam slap slip snap sob spin spit split spot squat step
+stir stop strip strum strut swim tap travel trip trot tug unplug upset win wrap zigzag zip
 """
 _DOUBLING: Final = frozenset(_DOUBLED.split())
 _AUXILIARY: Final = {
@@ -150,6 +154,23 @@ def base_of(present: str) -> str | None:
     if present.endswith("ies"):
         return present[:-3] + "y"
     return present[:-2] if present.endswith(("sses", "shes", "ches", "xes", "zzes")) else present[:-1]
+
+
+_GERUNDS: Final = {gerund(base): base for base in BASES}
+
+
+def base_of_gerund(word: str) -> str | None:
+    """The base of an -ing form we know: losing → lose, having → have; None for anything else."""
+    return _GERUNDS.get(word)
+
+
+_BASE_OF_PAST: Final = {past(base): base for base in BASES}
+
+
+def stem(word: str) -> str:
+    """What the forms of a verb have in common, and a word with its plural: cries, cried, crying → cry; keys → key."""
+    known = _PRESENT.get(word) or _BASE_OF_PAST.get(word) or _GERUNDS.get(word)
+    return known or (word[:-1] if word.endswith("s") and not word.endswith("ss") and len(word) > 3 else word)
 
 
 def word_to_past(word: str, before: str, after_subject: bool = False) -> str:

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from motion_backend.motion import Character
-from planner_service.scripts.scenes import event_retold, link_before, told_of_hero
+from planner_service.scripts.happenings import event_retold, link_before, told_of_hero
 from planner_service.scripts.tense import BASES, gerund, past, third_person, word_to_past
 from planner_service.scripts.voice import Voice, retell
 
