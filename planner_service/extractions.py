@@ -116,10 +116,10 @@ class Reader:
         following = "gather" if last else None
         summary = READ.dump_python(read, mode="json")
         self._record(one, "piece", position, b"{}", summary, following, round(share, 4), started)
-        one.done.append(read)
+        one.read.append(read)
 
     def _read(self, one: OpenExtraction, index: int) -> PieceRead:
-        before = one.done[-1].after if one.done else Before()
+        before = one.done(index)[-1].after if index else Before()
         if one.pieces.words:
             return read_piece(one.pieces.words[index], one.maker, one.means, before)
         if self.model is None:
@@ -133,7 +133,7 @@ class Reader:
         """All scripts together, kept in the library if that was asked for, all or none. ShelfError, LibraryError."""
         started, one = time.perf_counter(), self._opened(extraction_id)
         position = FIRST_PIECE + len(one.pieces)
-        whole = joined(one.done)
+        whole = joined(one.done(len(one.pieces)))
         scripts = [draft.script for draft in whole.drafts]
 
         def store(gathered: Gathered, add: Callable[[Connection], None]) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final
 
@@ -63,6 +63,8 @@ class OpenExtraction:
     store: Stories
     album: Album | None = None
     """Its frames, where this very worker cut it."""
+    read: list[PieceRead] = field(default_factory=list)
+    """The pieces that are known to be stored, in order."""
     fresh: tuple[int, PieceRead] | None = None
     """A piece that was read and is not stored yet: a database that is away costs no question."""
 
@@ -88,13 +90,13 @@ class OpenExtraction:
         """What is to be read."""
         return PIECES.validate_json(self.store.data(self.id, SCENES))
 
-    @cached_property
-    def done(self) -> list[PieceRead]:
-        """The pieces that were read, in order."""
-        made = [one for one in self.store.get(self.id).artifacts if one.kind == "piece"]
-        read = [READ.validate_python(one.summary) for one in made]
-        self.maker.reserve(draft.script.id for piece in read for draft in piece.drafts)
-        return read
+    def done(self, count: int) -> list[PieceRead]:
+        """The first so many pieces, which were read; from the store where this worker did not read them all."""
+        if len(self.read) < count:
+            made = [one for one in self.store.get(self.id).artifacts if one.kind == "piece"]
+            self.read = [READ.validate_python(one.summary) for one in made]
+            self.maker.reserve(draft.script.id for piece in self.read for draft in piece.drafts)
+        return self.read[:count]
 
     def close(self) -> None:
         """Let go of the frames."""

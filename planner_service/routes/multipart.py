@@ -153,7 +153,7 @@ class FormReader:
         if part.receiving is None:
             part.text += piece
             if len(part.text) > LONGEST_FIELD:
-                raise TooLarge(f"/{part.name}: it has more than {LONGEST_FIELD} bytes")
+                raise _too_large(part.name, f"it has more than {LONGEST_FIELD} bytes; send fewer")
             return
         if len(part.head) < HEAD:
             part.head += piece
@@ -187,7 +187,7 @@ class FormReader:
             try:
                 part.receiving.write(piece)
             except OverlongError as error:
-                raise TooLarge(f"/{part.name}: {error}; send a smaller copy, or a part of it") from error
+                raise _too_large(part.name, f"{error}; send a smaller copy, or a part of it") from error
 
 
 def title_of(name: str) -> str:
@@ -204,3 +204,7 @@ def most_sent(settings: Settings) -> int:
 
 def _malformed(detail: str, pointer: str = "") -> Problem:
     return Malformed(detail, (Fault(pointer=pointer, detail=detail),))
+
+
+def _too_large(name: str, detail: str) -> Problem:
+    return TooLarge(f"/{name}: {detail}", (Fault(pointer=f"/{name}", detail=detail),))
