@@ -21,7 +21,8 @@ from planner_service.shelves import open_shelves
 from planner_service.stories import RequestError
 
 if TYPE_CHECKING:
-    from planner_service.extraction.results import Extraction, Progress, SceneReport
+    from planner_service.extraction.results import Extraction, SceneReport
+    from planner_service.extraction.shots import Progress
 
 _SHOWN: Final = 20
 """Clauses without a keyframe that are listed; `--all` lists every one."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeVar
 
-from planner_service.evaluating.labels import LabelledTheme, Query, Split
+from planner_service.evaluating.labels import SPLITS, LabelledTheme, Query, Split
 
 Part = Literal["all", "tune", "held_out"]
 T = TypeVar("T")
@@ -55,8 +55,7 @@ def figure(
 ) -> Figure:
     """A figure `summed` up of one value a label, over all and over each half. Rounded to 1e-4."""
     halves = {
-        split: [value for label, value in zip(labels, values, strict=True) if label.split == split]
-        for split in ("tune", "held_out")
+        split: [value for label, value in zip(labels, values, strict=True) if label.split == split] for split in SPLITS
     }
-    tune, held_out = (round(summed(halves[split]), 4) for split in ("tune", "held_out"))
+    tune, held_out = (round(summed(halves[split]), 4) for split in SPLITS)
     return Figure(name, round(summed(list(values)), 4), tune, held_out, limit, judged=judged)

@@ -9,19 +9,18 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 import prompts
 from motion_backend.motion import Skill
-from planner_service.extraction.making import Draft, Maker
+from planner_service.extraction.making import Draft, Maker, Span
 from planner_service.extraction.text import TextScene
 from planner_service.llm.answers import problems_of
 from planner_service.llm.asking import ask
 from planner_service.llm.protocol import LanguageModel
-from planner_service.scripts.captions import captions
 from planner_service.scripts.checking import check, read_keyframe
 from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.keyframe import EMOTIONS, MOST_PIECES
+from planner_service.scripts.offering import captions_offered, furniture_offered
 from planner_service.scripts.planning import DirectKeyframe
 from planner_service.scripts.voice import Voice, retell
-from scene_graphs.catalogue import CATALOGUE, KINDS
-from scene_graphs.furniture import ROOM_TYPES, canonical_room, display_name
+from scene_graphs.furniture import ROOM_TYPES, canonical_room
 
 LONGEST_PIECE: Final = 6000
 """Letters of a text that one question shows."""
@@ -76,8 +75,8 @@ def ask_for_scripts(model: LanguageModel, scenes: Numbered, maker: Maker) -> dic
         skills=", ".join(Skill),
         emotions=", ".join(EMOTIONS),
         rooms=", ".join(ROOM_TYPES),
-        furniture=", ".join(sorted({display_name(word) for word in (*KINDS, *CATALOGUE)})),
-        captions="\n".join(f"  {skill}: {'; '.join(known)}" for skill, known in captions().items()),
+        furniture=furniture_offered(),
+        captions=captions_offered(),
         most=str(_MOST_SCRIPTS),
         most_keyframes=str(MOST_PIECES // 2),
     )
@@ -85,17 +84,20 @@ def ask_for_scripts(model: LanguageModel, scenes: Numbered, maker: Maker) -> dic
     made: dict[int, list[Draft]] = {number: [] for number in scenes}
     for found in answer.scripts:
         scene = scenes[found.scene]
-        made[found.scene].append(
-            maker.make(
-                " ".join(found.summary.split()),
-                [read_keyframe(keyframe.model_dump()) for keyframe in found.keyframes],
-                emotion_of(found.emotion) or "neutral",
-                canonical_room(found.room),
-                (scene.start, scene.end),
-                f"llm:{model.name}",
-            )
-        )
+        made[found.scene].append(draft_of(found, (scene.start, scene.end), maker, model.name))
     return {number: tuple(drafts) for number, drafts in made.items()}
+
+
+def draft_of(found: FoundScript, span: Span, maker: Maker, model: str) -> Draft:
+    """A script in which `faults_of` finds nothing, mended so that a body can act it out."""
+    return maker.make(
+        " ".join(found.summary.split()),
+        [read_keyframe(keyframe.model_dump()) for keyframe in found.keyframes],
+        emotion_of(found.emotion) or "neutral",
+        canonical_room(found.room),
+        span,
+        f"llm:{model}",
+    )
 
 
 def _shown(scene: TextScene) -> str:

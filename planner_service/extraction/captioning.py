@@ -13,7 +13,6 @@ from planner_service.scripts.captions import captions
 from planner_service.scripts.checking import hand_of
 from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.library import ScriptLibrary, built_in
-from planner_service.scripts.usual import WALKS
 
 _OF_THE_MOOD: Final = 0.5
 """What it counts that all authored keyframes of a caption have the mood, beside the nearness of the words (-1 to 1)."""
@@ -64,11 +63,6 @@ _PLAIN: Final = {
 _RISES: Final = {
     "hurried": "quickly", "angry": "quickly", "happy": "", "tired": "slowly", "sad": "slowly", "drunk": "slowly"
 }  # fmt: skip
-
-
-def walk_to_it(emotion: str) -> str:
-    """The caption of a walk that the words do not tell of."""
-    return WALKS[emotion]
 
 
 def rise(skill: Skill, emotion: str) -> str:

@@ -9,17 +9,14 @@ from pydantic import BaseModel, ConfigDict
 
 import prompts
 from motion_backend.motion import Skill
-from planner_service.extraction.by_model import FoundScript, faults_of
+from planner_service.extraction.by_model import FoundScript, draft_of, faults_of
 from planner_service.extraction.making import Draft, Maker
-from planner_service.extraction.outline import LEEWAY, SceneOutline
+from planner_service.extraction.outline import LEEWAY, SceneOutline, inside
 from planner_service.llm.asking import ask
 from planner_service.llm.protocol import LanguageModel
-from planner_service.scripts.captions import captions
-from planner_service.scripts.checking import read_keyframe
-from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.keyframe import EMOTIONS, MOST_PIECES
-from scene_graphs.catalogue import CATALOGUE, KINDS
-from scene_graphs.furniture import ROOM_TYPES, canonical_room, display_name
+from planner_service.scripts.offering import captions_offered, furniture_offered
+from scene_graphs.furniture import ROOM_TYPES
 
 _MOST_SCRIPTS: Final = 4
 """Of one scene."""
@@ -55,20 +52,13 @@ def scripts_of(model: LanguageModel, outline: SceneOutline, maker: Maker) -> tup
         skills=", ".join(Skill),
         emotions=", ".join(EMOTIONS),
         rooms=", ".join(ROOM_TYPES),
-        furniture=", ".join(sorted({display_name(word) for word in (*KINDS, *CATALOGUE)})),
-        captions="\n".join(f"  {skill}: {'; '.join(known)}" for skill, known in captions().items()),
+        furniture=furniture_offered(),
+        captions=captions_offered(),
         outline=outline.model_dump_json(exclude={"notes", "number"}, indent=1),
     )
     answer = ask(model, prompt, FilmedScripts, lambda found: list(_problems(found, outline)))
     return tuple(
-        maker.make(
-            " ".join(script.summary.split()),
-            [read_keyframe(keyframe.model_dump()) for keyframe in script.keyframes],
-            emotion_of(script.emotion) or "neutral",
-            canonical_room(script.room),
-            (_inside(script.start, outline), _inside(script.end, outline)),
-            f"llm:{model.name}",
-        )
+        draft_of(script, (inside(script.start, outline), inside(script.end, outline)), maker, model.name)
         for script in answer.scripts
     )
 
@@ -82,7 +72,3 @@ def _problems(answer: FilmedScripts, outline: SceneOutline) -> Iterator[str]:
         if not outline.start - LEEWAY <= script.start < script.end <= outline.end + LEEWAY:
             span = f"{outline.start:g} to {outline.end:g} s"
             yield f"scripts.{index}: {script.start:g} to {script.end:g} is no span of the scene, {span}"
-
-
-def _inside(time: float, outline: SceneOutline) -> float:
-    return round(min(max(time, outline.start), outline.end), 2)

@@ -139,7 +139,7 @@ def outline_of(answer: SceneAnswer, scene: Scene) -> SceneOutline:
                     character=_tidy(contact.character),
                     object=known,
                     how=_tidy(contact.how),
-                    time=_inside(contact.time, scene),
+                    time=inside(contact.time, scene),
                 )
             )
     named = [_furniture(word, dropped) for word in answer.objects]
@@ -158,7 +158,7 @@ def outline_of(answer: SceneAnswer, scene: Scene) -> SceneOutline:
         contacts=tuple(contacts),
         moments=tuple(
             Moment(
-                time=_inside(one.time, scene),
+                time=inside(one.time, scene),
                 who=_tidy(one.who),
                 what=_tidy(one.what),
                 emotion=emotion_of(one.emotion) or "neutral",
@@ -170,6 +170,11 @@ def outline_of(answer: SceneAnswer, scene: Scene) -> SceneOutline:
     )
 
 
+def inside(time: float, scene: Scene | SceneOutline) -> float:
+    """A time of a scene that may lie a little outside of it (seconds)."""
+    return round(min(max(time, scene.start), scene.end), 2)
+
+
 def _furniture(word: str, dropped: dict[str, str]) -> str | None:
     """The furniture a word means; None, with a note, for what is no furniture."""
     plain = _tidy(word)
@@ -179,10 +184,6 @@ def _furniture(word: str, dropped: dict[str, str]) -> str | None:
         return display_name(canonical(plain))
     dropped.setdefault(plain.lower(), f'"{plain[:60]}" is no furniture that is known; left out')
     return None
-
-
-def _inside(time: float, scene: Scene) -> float:
-    return round(min(max(time, scene.start), scene.end), 2)
 
 
 def _tidy(text: str) -> str:

@@ -67,7 +67,7 @@ def first_bytes(file: Path | BinaryIO, name: str, most: int) -> bytes:
 
 
 def tidy(text: str, name: str) -> str:
-    """A text without control characters and with one kind of line end. ExtractionError as for `decode`."""
+    """A text without control characters and with one kind of line end. ExtractionError as for `read_text`."""
     text = text.replace("\r\n", "\n").translate(_BREAKS)
     if len(text) > LONGEST:
         raise too_long(name, f"{len(text):,} letters")

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from motion_backend.motion import Skill
-from planner_service.extraction.captioning import captions_for, rise, walk_to_it
+from planner_service.extraction.captioning import captions_for, rise
 from planner_service.extraction.clauses import SOMETHING, Told, clauses_in, hero_of, mood_of
 from planner_service.extraction.deeds import Deed, deed_of, pieces_in
 from planner_service.extraction.making import Draft, Maker
@@ -19,6 +19,7 @@ from planner_service.scripts.fitting import NEEDS, affords
 from planner_service.scripts.keyframe import Keyframe
 from planner_service.scripts.mood_reader import clear_moods
 from planner_service.scripts.sentences import state_words
+from planner_service.scripts.usual import WALKS
 
 _MOST_DEEDS: Final = 6
 """Deeds of one short script; a scene with more is told in several."""
@@ -139,7 +140,7 @@ class _Body:
 
     def _walk(self, piece: str, mood: str) -> None:
         if self.at != piece:
-            self._add(Skill.LOCO, piece, mood, "", walk_to_it(mood))
+            self._add(Skill.LOCO, piece, mood, "", WALKS[mood])
             self.at = piece
 
     def _add(self, skill: Skill, piece: str, mood: str, words: str, caption: str = "?") -> None:

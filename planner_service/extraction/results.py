@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from planner_service.extraction.making import RULES, Draft, Span
 from planner_service.extraction.reading import SceneRead
+from planner_service.extraction.shots import Progress
 from planner_service.llm.protocol import LanguageModel
 from planner_service.scripts.library import ScriptLibrary
 from planner_service.scripts.picking import UNKNOWN
 
 if TYPE_CHECKING:
     from planner_service.extraction.speech import Transcriber
-
-Progress = Callable[[str, float], None]
-"""Told the stage and the share of it that is done, 0 to 1."""
 
 
 @dataclass(frozen=True)

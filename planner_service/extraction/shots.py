@@ -53,8 +53,6 @@ class Shot:
 
     start: float
     end: float
-    keyframe_times: tuple[float, ...]
-    """Some moments that show what is in it."""
     look: tuple[int, ...]
     """Its brightness and colours: three histograms of 16 bins, each of sum 255 but for rounding."""
 
@@ -198,6 +196,4 @@ def _shot(samples: _Samples, start: float, end: float) -> Shot:
     looks = samples.looks[inside if inside.any() else slice(0, 1)].astype(np.float32)
     mean = looks.mean(axis=0).reshape(-1, _BINS)
     three = np.vstack([mean[: _CELLS**2].mean(axis=0), mean[_CELLS**2 :]])
-    count = min(6, max(1, round((end - start) / 4)))
-    moments = tuple(round(start + (end - start) * (2 * index + 1) / (2 * count), 3) for index in range(count))
-    return Shot(round(start, 3), round(end, 3), moments, tuple(int(value) for value in np.rint(255 * three.ravel())))
+    return Shot(round(start, 3), round(end, 3), tuple(int(value) for value in np.rint(255 * three.ravel())))

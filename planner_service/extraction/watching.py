@@ -19,17 +19,13 @@ from planner_service.llm.asking import ask
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.llm.served import for_story
 from planner_service.scripts.keyframe import EMOTIONS
-from scene_graphs.catalogue import CATALOGUE, KINDS
-from scene_graphs.furniture import ROOM_TYPES, display_name
+from planner_service.scripts.offering import furniture_offered
+from scene_graphs.furniture import ROOM_TYPES
 
-REPAIRS: Final = 2
-"""How often a model is told what was wrong with an answer."""
 _MOST_SAID: Final = 4000
 """Letters of a scene's subtitles that a model reads."""
 _MOST_FAILURES: Final = 3
 """Scenes in a row without an answer, after which a model is not asked again."""
-_TOKENS: Final = 1000
-"""Of an image, about; and of 4000 letters."""
 
 
 @dataclass(frozen=True)
@@ -45,24 +41,6 @@ class Watched:
     """Scenes in a row up to this one that the model did not answer."""
 
 
-@dataclass(frozen=True)
-class Bounds:
-    """What watching scenes takes of a model at most, before anything is asked."""
-
-    questions: int
-    images: int
-    tokens: int
-    """Read by the model, about."""
-
-
-def bounds_of(scenes: Sequence[Scene]) -> Bounds:
-    """Two questions a scene, each with its corrections; the frames go with the first."""
-    tries = 1 + REPAIRS
-    images = tries * sum(len(scene.times) for scene in scenes)
-    questions = 2 * tries * len(scenes)
-    return Bounds(questions, images, _TOKENS * images + 6 * _TOKENS * questions)
-
-
 def watch(model: LanguageModel, film: Film, scene: Scene, album: Album | None = None) -> SceneOutline:
     """What the model sees in a scene, checked; the frames come from the album, or the film. ModelError, FilmError."""
     frames = tuple(frames_at(film, scene.times) if album is None else album.frames(film, scene.times))
@@ -74,12 +52,12 @@ def watch(model: LanguageModel, film: Film, scene: Scene, album: Album | None = 
         times=", ".join(f"{frame.time:g}" for frame in frames),
         emotions=", ".join(EMOTIONS),
         rooms=", ".join(ROOM_TYPES),
-        furniture=", ".join(sorted({display_name(word) for word in (*KINDS, *CATALOGUE)})),
+        furniture=furniture_offered(),
         film=film.name,
         subtitles=_said(scene.cues) or "(nothing)",
     )
     images = [frame.jpeg for frame in frames]
-    answer = ask(model, prompt, SceneAnswer, lambda seen: problems_in(seen, scene), REPAIRS, images)
+    answer = ask(model, prompt, SceneAnswer, lambda seen: problems_in(seen, scene), images=images)
     return outline_of(answer, scene)
 
 

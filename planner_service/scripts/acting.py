@@ -67,7 +67,6 @@ class _Stage:
         self.home, self.walkable, self.rng = home, walkable, rng
         self.at: Point | None = None
         self.resting: Spot | None = None
-        self.by_object: dict[tuple[str, str], Spot] = {}
 
     def contact(self, index: int, keyframe: Keyframe, place: Place, free: str = "right") -> Action:
         """The action of a keyframe; walks get their goal later, when what follows them is known."""

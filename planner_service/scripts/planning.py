@@ -12,13 +12,11 @@ from motion_backend.motion import Skill
 from planner_service.llm.answers import problems_of
 from planner_service.llm.asking import ask
 from planner_service.llm.protocol import LanguageModel
-from planner_service.scripts.captions import captions
 from planner_service.scripts.checking import check, read_keyframe
 from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.keyframe import EMOTIONS, Event, Keyframe
 from planner_service.scripts.library import Found
-from scene_graphs.catalogue import CATALOGUE, KINDS
-from scene_graphs.furniture import display_name
+from planner_service.scripts.offering import captions_offered, furniture_offered
 
 MOST_KEYFRAMES: Final = 40
 _MOST_CAPTIONS: Final = 40
@@ -151,8 +149,8 @@ def direct(model: LanguageModel, theme: str) -> tuple[Keyframe, ...]:
         theme=theme,
         skills=", ".join(Skill),
         emotions=", ".join(EMOTIONS),
-        furniture=", ".join(sorted({display_name(word) for word in (*KINDS, *CATALOGUE)})),
-        captions="\n".join(f"  {skill}: {'; '.join(known[:_MOST_CAPTIONS])}" for skill, known in captions().items()),
+        furniture=furniture_offered(),
+        captions=captions_offered(_MOST_CAPTIONS),
         most=str(MOST_KEYFRAMES),
     )
     return tuple(_keyframes(ask(model, prompt, DirectScript, problems)))

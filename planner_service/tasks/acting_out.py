@@ -10,13 +10,13 @@ import numpy as np
 from motion_backend.motion import Posture, Skill
 from planner_service.scripts.handling import LONGEST_CAPTION, caption_of
 from planner_service.scripts.keyframe import Keyframe
+from planner_service.scripts.mending import RISES
 from planner_service.tasks.deeds import LIE, LYING, PHONE, SIT, TOUCH, WALK, WALKS
 from planner_service.tasks.plan import MOST_KEYFRAMES, Step, SubTask
 from planner_service.tasks.reading import Clause, clause_of, is_furniture
 from planner_service.tasks.surroundings import Surroundings
 from planner_service.tasks.things import FIXED, is_one, kept_at
 
-_RISES: Final = {Posture.SEATED: (Skill.STANDUP, "stand up"), Posture.LYING: (Skill.GETUP, "get up")}
 _RISES_FOR_IT: Final = "it rises for it: a hand reaches things standing"
 _MOST_OF_A_STEP: Final = 4
 """Keyframes that one step may take: rising, a walk, a touch or a rest."""
@@ -158,7 +158,7 @@ class _Actor:
         """Leave what the body rests on."""
         if self.posture is Posture.STANDING:
             return []
-        skill, caption = _RISES[self.posture]
+        skill, caption = RISES[self.posture]
         self.posture = Posture.STANDING
         return self._add(skill, caption, self.at)
 

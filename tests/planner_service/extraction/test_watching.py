@@ -14,11 +14,9 @@ from planner_service.extraction.embedded import embedded_cues
 from planner_service.extraction.film import Film, open_film
 from planner_service.extraction.grouping import MOST_FRAMES, Scene, scenes_of
 from planner_service.extraction.making import Maker
-from planner_service.extraction.outline import SceneAnswer
-from planner_service.extraction.watching import bounds_of, watch, watch_film
+from planner_service.extraction.watching import watch, watch_film
 from planner_service.llm.asking import ModelAnswerError
 from planner_service.llm.protocol import ModelError
-from planner_service.llm.questions import question_of
 from planner_service.llm.scripted import ScriptedModel
 from planner_service.scripts.checking import check
 from planner_service.scripts.library import Features, ScriptLibrary, built_in
@@ -200,14 +198,9 @@ def test_words_of_a_film_stay_data(library: ScriptLibrary) -> None:
     assert prompt.count("</data>") == prompt.count("<data name=")
 
 
-def test_what_a_film_takes_of_a_model_is_bounded_before_anything_is_asked() -> None:
-    film_scenes = scenes()
-    bounds = bounds_of(film_scenes)
-    assert (bounds.questions, bounds.images) == (12, 3 * sum(len(scene.times) for scene in film_scenes))
+def test_a_scene_is_one_question_with_so_many_frames_at_most() -> None:
     model = ScriptedModel(answering)
-    for scene in film_scenes:
+    for scene in (film_scenes := scenes()):
         watch(model, film(), scene)
-    assert sum(call.images for call in model.calls) <= bounds.images
-    assert all(call.images <= MOST_FRAMES for call in model.calls)
-    asked = sum(question_of(call.prompt, SceneAnswer).guess for call in model.calls)
-    assert asked + 1000 * sum(call.images for call in model.calls) <= bounds.tokens
+    assert [call.images for call in model.calls] == [len(scene.times) for scene in film_scenes]
+    assert all(0 < call.images <= MOST_FRAMES for call in model.calls)
