@@ -63,7 +63,6 @@ BEGINNINGS: Final = (
     "That {time} {event}",
     "This is how the {time} began: {event}",
     "Once, on a {time} like any other, {event}",
-    "Picture a quiet {time}: {event}",
 )
 """A story's first sentence with what happens first in it."""
 SUDDEN_BEGINNINGS: Final = (

@@ -113,12 +113,17 @@ def _with(told: str, joint: str, sentence: str, voice: Voice) -> str:
         return f"{told[:-1]} before {inner}"
     if joint == "so" or not same or _SUBORDINATE.search(told):
         return f"{told[:-1]}, {joint} {inner}"
+    if joint == "and" and " and " in sentence and not re.search(r" and |,", told):
+        return f"{told[:-1]}, {sentence[len(they) + 1 :]}"
     if joint == "and" and re.search(r" and |,", told):
         return f"{told[:-1]}, {'and' if ', then' in told else 'then'} {sentence[len(they) + 1 :]}"
     return f"{told[:-1]} {joint} {sentence[len(they) + 1 :]}"
 
 
-_SUBORDINATE: Final = re.compile(r"\b(?:because|when|that|while|as|if|who|until|before|after)\b")
+_SUBORDINATE: Final = re.compile(
+    r"\b(?:because|when|that|while|if|who)\b|\b(?:as|until|before|after) (?:it|he|she|they|somebody|someone|[A-Z]\w+)\b"
+)
+"""A clause that a verb after it would be taken for a part of."""
 
 
 def joint_between(theme: str, before: str, after: str) -> str:

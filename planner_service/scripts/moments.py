@@ -25,6 +25,7 @@ Places = Mapping[int, tuple[str, str]]
 _IN = ("armchair", "lounge chair", "lazy sofa", "rocking chair")
 _CONTENT = re.compile(r"(?<!\{)\b(?:\w{4,}|lay|put|run|lie|sit)\b(?!\})")
 _VERB = re.compile(r"(?:^|~)(\w+)")
+_RISES = (Skill.STANDUP, Skill.GETUP)
 _LONGEST = 24
 """Words of a sentence after which no more is added to it."""
 _FURTHER = ("to and fro", "from wall to wall", "this way and that", "from one end to the other")
@@ -45,6 +46,8 @@ class Phrase:
     keyframes: tuple[int, ...]
     mood: str = "neutral"
     rises: bool = False
+    anew: bool = False
+    """Begins a sentence: a rising that is not told comes before it."""
     arrives: bool = False
     """A walk whose purpose follows in the next phrase: the two stay in one sentence."""
     skill: Skill = Skill.LOCO
@@ -130,9 +133,10 @@ class Wording:
                 untold = (*untold, index)
                 continue
             text = self._text(index, keyframe)
-            rises = keyframe.skill in (Skill.STANDUP, Skill.GETUP)
+            rises = keyframe.skill in _RISES
             at = "" if keyframe.on_floor else self._the(index, keyframe)
-            told.append(Phrase(text, (*untold, index), mood_of(keyframe), rises, arrives, keyframe.skill, at))
+            anew = any(rows[i][1].skill in _RISES for i in range(position) if rows[i][0] in untold)
+            told.append(Phrase(text, (*untold, index), mood_of(keyframe), rises, anew, arrives, keyframe.skill, at))
             untold = ()
         return told
 
@@ -271,7 +275,7 @@ def sentences_of(told: Sequence[Phrase], variety: Variety) -> list[tuple[Phrase,
         tied = bool(current) and current[-1].arrives
         purpose = [following] if phrase.arrives and following is not None else []
         words = sum(len(p.text.split()) for p in [*current, phrase, *purpose])
-        room = 0 < len(current) < most and words <= _LONGEST and not phrase.rises
+        room = 0 < len(current) < most and words <= _LONGEST and not (phrase.rises or phrase.anew)
         turns = len(current) >= 2 and (phrase.arrives or phrase.mood != current[-1].mood)
         if tied or (room and not turns):
             current.append(phrase)

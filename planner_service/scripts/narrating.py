@@ -22,6 +22,7 @@ from planner_service.scripts.voice import Voice, retell
 __all__ = ["Places", "Span", "Told", "narrate"]
 _UNFIT = r"[,;:]|\b(?:when|that|this|first)\b"
 """What an event does not have that begins a story."""
+_AN = re.compile(r"\ba (?=[aeiou])")
 _BEGINS = 14
 """Words of what happens first, in a story's first sentence."""
 _JOINED = 22
@@ -142,7 +143,8 @@ class _Narrator:
             return []
         shapes = framing.BEGINNINGS + (() if re.search(r"\b(?:was|were|had)\b", event) else framing.SUDDEN_BEGINNINGS)
         fitting = [shape for shape in shapes if "{time}" not in shape or not framing.tells_time(event)]
-        return [said(self.voice.fill(shape, time=self.time, event=self._inner(event))) for shape in fitting]
+        told = [self.voice.fill(shape, time=self.time, event=self._inner(event)) for shape in fitting]
+        return [said(_AN.sub("an ", text)) for text in told]
 
     def _opening(self) -> list[Sentence]:
         return self._framed(framing.OPENINGS[emotion_of(self.first.emotion) or "neutral"])
@@ -191,7 +193,7 @@ class _Narrator:
     def _say_all(self, lead: Sequence[Remark]) -> None:
         """Sentences of a lead; some of those that tell of a deed say that time has passed."""
         for sentence, link in lead:
-            deed = re.match(rf"(?:{re.escape(self.voice.name)}|He|She|They) (?!was|were|had|could)", sentence)
+            deed = re.match(rf"(?:{re.escape(self.voice.name)}|He|She|They) (?!was|were|had|could|did not)", sentence)
             timed = bool(deed) and link is not None and self.later and not self.turned and self.variety.chance(0.35)
             self._say(sentence, "" if self.turned else link or "", timed)
             self.turned = False
@@ -208,6 +210,8 @@ class _Narrator:
             Sentence(((shape.format(event=event[:-1], who=who), ()), *joined(sentence), (".", ())), shape, "joint")
             for shape in framing.JOINTS
         ]
+        if self.ear.heard(options):
+            return False
         self.scene.append(self.ear.choose(options))
         return True
 
@@ -277,4 +281,4 @@ class _Narrator:
     def _framed(self, templates: Sequence[str]) -> list[Sentence]:
         they, their = self.voice["they"].capitalize(), self.voice["their"].capitalize()
         told = [self.voice.fill(template, time=self.time, They=they, Their=their) for template in templates]
-        return [said(re.sub(r"\ba (?=[aeiou])", "an ", text), text, "turn") for text in told]
+        return [said(_AN.sub("an ", text), text, "turn") for text in told]

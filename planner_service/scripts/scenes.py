@@ -14,8 +14,8 @@ _ASLEEP = re.compile(r"\b(?:fell (?:fast )?asleep|went to sleep|(?:took|into) a 
 _PALE_WORDS = """
 come comes came goes going went gone make makes made take takes took
 all and are but can did for get gets had has her him his its not off out said say says she tell tells the told too was
-who again about after becom befor begin chara decid feels felt from gets herse himse into over perso some start that their
-then thems this very when with
+who again about after becom befor begin chara decid feels felt from gets herse himse into over perso some start that
+their then thems this very when with
 """
 _PALE = frozenset(_PALE_WORDS.split())
 """Words, or their first five letters, that say nothing about what happens."""

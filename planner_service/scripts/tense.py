@@ -30,7 +30,7 @@ occur offer open order organise organize overflow overturn overwhelm own pace pa
 pat patrol pause peek peel peep peer perch perform persist pet phone photograph pick pile pinch pine place plan play
 plead plod plop pluck plug plummet plunge point poke polish ponder pop pose post pounce pour practice practise praise
 pray prefer prepare press pretend prevent print process procrastinate promise promote prop propose protest prowl pull
-punch purr push puzzle quarrel quiver rage raise rant rattle reach realise realize reassure recall receive recite
+punch purr push puzzle quarrel quiver rage rain raise rant rattle reach realise realize reassure recall receive recite
 recline recognise recognize record recover reel reflect refuse regain regard regret rehearse reheat reject rejoice
 relax release relieve relish relive rely remain remember remind reminisce remove renew repair repeat replace reply
 report request rescue resolve rest restore resume retire retreat retrieve return reunite reveal revel review rinse rip

@@ -130,6 +130,9 @@ class _Telling:
             told = self.voice["they"] if self.named else self.voice.name
             self.subject, self.plural, self.named = True, told == "they", True
             return told
+        if blank == "them" and not self.named:
+            self.named = True
+            return self.voice.name
         return self.voice[blank]
 
     def _word(self, token: str) -> str:

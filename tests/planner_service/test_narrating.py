@@ -207,6 +207,32 @@ def test_the_themes_own_words_open_an_event_that_the_summary_does_not_cover() ->
     assert "James was told on the phone that he failed the job interview." in text
 
 
+@settings(max_examples=20, deadline=None)
+@given(st.lists(st.sampled_from(LIBRARY), min_size=3, max_size=3, unique=True), st.integers(0, 99))
+def test_every_event_is_told_once_in_the_themes_own_words(chosen: list[ShortScript], seed: int) -> None:
+    theme = "He irons a purple shirt, misses the tram to Ghent and juggles six lemons."
+    events = ["irons a purple shirt", "misses the tram to Ghent", "juggles six lemons"]
+    text = narrate(long_script(chosen, events, theme), PEOPLE[2], seed).text
+    told = [text.count(words) for words in ("ironed a purple shirt", "missed the tram to Ghent", "juggled six lemons")]
+    assert told == [1, 1, 1], text
+
+
+def test_what_a_far_summary_says_is_left_out_and_its_deeds_are_told() -> None:
+    script = long_script([BY_ID["insulting-email"]], ["juggles six lemons"], "He juggles six lemons.")
+    far = script.model_copy(update={"short_scripts": (script.short_scripts[0].model_copy(update={"score": 0.1}),)})
+    for seed in range(5):
+        told = narrate(far, PEOPLE[2], seed)
+        assert "insulting" not in told.text
+        assert spoken(told) == list(range(len(script.keyframes)))
+
+
+def test_two_seeds_share_few_sentences() -> None:
+    script = long_script(list(LIBRARY[:4]), ["irons a shirt", "misses the bus", "reads mail", "sleeps"])
+    tellings = [set(sentences_of(narrate(script, PEOPLE[1], seed).text)) for seed in range(5)]
+    shared = [len(one & two) / len(one | two) for one in tellings for two in tellings if one is not two]
+    assert max(shared) < 0.4
+
+
 def test_an_event_without_a_short_script_is_told_in_its_place() -> None:
     chosen = [BY_ID["folding-the-laundry"], BY_ID["insulting-email"]]
     script = long_script(chosen, ["irons a shirt", "misses the bus", "reads mail"])

@@ -27,6 +27,13 @@ from planner_service.stories import StoryRequest
         ("Thunder rolls over the house.", "Sam", "they"),
         ("Later Christmas comes.", "Sam", "they"),
         ("Dinner burns.", "Sam", "they"),
+        ("Zora waters the plants.", "Zora", "they"),
+        ("Yara cannot sleep.", "Yara", "they"),
+        ("Maria cannot find her glasses.", "Maria", "she"),
+        ("Late for work, Ben gulps down his coffee.", "Ben", "he"),
+        ("Nobody calls.", "Sam", "they"),
+        ("Guests arrive.", "Sam", "they"),
+        ("Happiness is a warm bed.", "Sam", "they"),
     ],
 )
 def test_the_theme_names_its_person(theme: str, name: str, pronouns: str) -> None:

@@ -7,7 +7,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from motion_backend.motion import Character
-from planner_service.scripts.happenings import event_retold, link_before, told_of_hero
+from planner_service.scripts.happenings import (
+    event_retold,
+    fragment,
+    happening,
+    joint_between,
+    link_before,
+    told_of_hero,
+    told_together,
+)
 from planner_service.scripts.tense import BASES, gerund, past, third_person, word_to_past
 from planner_service.scripts.voice import Voice, retell
 
@@ -135,3 +143,70 @@ def test_the_word_that_joined_two_events_is_kept(theme: str, event: str, link: s
 )
 def test_pronouns_are_read_kindly(written: str, kind: str) -> None:
     assert Voice.of(Character("Kim", written)).pronouns == kind
+
+
+@pytest.mark.parametrize(
+    ("theme", "event", "told"),
+    [
+        ("Maria cannot find her glasses.", "Maria cannot find her glasses", "Ana could not find her glasses."),
+        ("The bills keep piling up. She gives up.", "The bills keep piling up", "The bills kept piling up."),
+        (
+            "The neighbour drills holes, and she loses her temper.",
+            "The neighbour drills holes she loses her temper",
+            "The neighbour drilled holes, and Ana lost her temper.",
+        ),
+        ("He kneels down. She says yes.", "says yes", "She said yes."),
+        ("She quarrels with her sister, and they make up.", "make up", "They made up."),
+        ("A child hides until his mother comforts him.", "comforts him", "Her mother comforted Ana."),
+        ("After losing her job, Marta drinks.", "losing her job", "Ana lost her job."),
+        ("Thunder wakes them. They hide.", "Thunder wakes them", "Thunder woke Ana."),
+        ("They hide and go back to sleep.", "go back to sleep", "Ana went back to sleep."),
+        ("My daughter got engaged today.", "My daughter got engaged today", "Ana's daughter got engaged that day."),
+        ("I am so bored.", "I am so bored", "Ana was so bored."),
+        ("Guests are coming.", "guests are coming", "Guests were coming."),
+        (
+            "Late for work, Ben grabs his coat, runs.",
+            "Late for work, Ben grabs his coat, runs",
+            "Late for work, Ana grabbed her coat and ran.",
+        ),
+        ("Insomnia", "Insomnia", None),
+    ],
+)
+def test_an_event_is_told_in_the_words_that_the_theme_has_for_it(theme: str, event: str, told: str | None) -> None:
+    assert happening(event, theme, SHE) == told
+
+
+@pytest.mark.parametrize(
+    ("theme", "events", "told"),
+    [
+        ("He studied but failed and cried.", ["studied", "failed", "cried"], ["Tom studied but failed and cried."]),
+        ("He lost, so he drank.", ["lost", "drank"], ["Tom lost, so he drank."]),
+        ("He eats. He sleeps.", ["eats", "sleeps"], ["Tom ate.", "He slept."]),
+        ("Before he goes to bed, he writes.", ["writes", "goes to bed"], ["Tom wrote before he went to bed."]),
+        (
+            "He cannot read because the power goes out.",
+            ["the power goes out", "cannot read"],
+            ["The power went out, so he could not read."],
+        ),
+        (
+            "He is cross because it rains, and he burns the roast.",
+            ["is cross because it rains", "burns the roast"],
+            ["Tom was cross because it rained, and he burned the roast."],
+        ),
+        (
+            "He works until noon, eats and has a nap.",
+            ["works until noon", "eats and has a nap"],
+            ["Tom worked until noon, ate and had a nap."],
+        ),
+    ],
+)
+def test_events_are_told_together_as_the_theme_joins_them(theme: str, events: list[str], told: list[str]) -> None:
+    assert told_together(events, theme, HE) == told
+
+
+@given(st.text(max_size=60), st.text(max_size=60), st.text(max_size=60))
+def test_any_theme_may_be_asked_for_its_joints_and_words(theme: str, before: str, after: str) -> None:
+    assert joint_between(theme, before, after) in ("", "and", "but", "so", "before")
+    assert fragment(before) in ("", before.strip().rstrip(".!?,;"))
+    for sentence in told_together([before, after], theme, THEY):
+        assert sentence.endswith(".")

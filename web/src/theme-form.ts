@@ -102,7 +102,7 @@ export class ThemeForm {
       h(
         "div",
         { class: "fields" },
-        this.#field("Name", name, "/character/name"),
+        this.#field("Name", name, "/character/name", "Left at Sam, they: named as your theme names its person."),
         this.#group("Pronouns", pronouns, "/character/pronouns"),
         this.#field("Height in metres", height, "/character/height"),
         this.#group("Rooms", rooms, "/rooms", "None chosen: whatever suits the story.", this.#layouts.length > 0),
