@@ -66,10 +66,11 @@ demo: $(READY)
 	@$(BIN)/sims story "$(THEME)" --out $(OUT) --seed 7
 
 # Two files at a time; but the running service and the page have the machine to themselves.
+ALONE = $(shell grep -lw RunningService tests/integration/*.py) tests/web
 test: $(READY_DEV) page $(NODE_TESTS)
 	@if $(NODE_20); then npm test --silent --prefix web; fi
-	@$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --ignore tests/integration --ignore tests/web
-	@$(BIN)/python -m pytest tests/integration tests/web
+	@$(BIN)/python -m pytest --numprocesses 2 --dist loadfile $(addprefix --ignore=,$(ALONE))
+	@$(BIN)/python -m pytest $(ALONE)
 
 lint: $(READY_DEV) web/node_modules/.ready
 	@$(BIN)/ruff check .

