@@ -113,11 +113,16 @@ def _with(told: str, joint: str, sentence: str, voice: Voice) -> str:
         return f"{told[:-1]} before {inner}"
     if joint == "so" or not same or _SUBORDINATE.search(told):
         return f"{told[:-1]}, {joint} {inner}"
-    if joint == "and" and " and " in sentence and not re.search(r" and |,", told):
+    if joint == "and" and _coordinated(sentence) and not _coordinated(told):
         return f"{told[:-1]}, {sentence[len(they) + 1 :]}"
-    if joint == "and" and re.search(r" and |,", told):
+    if joint == "and" and _coordinated(told):
         return f"{told[:-1]}, {'and' if ', then' in told else 'then'} {sentence[len(they) + 1 :]}"
     return f"{told[:-1]} {joint} {sentence[len(they) + 1 :]}"
+
+
+def _coordinated(text: str) -> bool:
+    """Whether a sentence tells of several deeds, "ate and slept", not only of "up and down"."""
+    return "," in text or any(is_past(word) for word in re.findall(r" and (\w+)", text))
 
 
 _SUBORDINATE: Final = re.compile(

@@ -94,7 +94,7 @@ def _together(script: LongScript, leads: list[Lead], variety: Variety) -> list[L
         if not joint:
             continue
         lasting = joint == "before" or emotion_of(before.emotion) == emotion_of(after.emotion)
-        if one.details and len(one.events) == 1 and place not in moved:
+        if lasting and one.details and len(one.events) == 1 and place not in moved:
             leads[place], leads[place + 1] = replace(one, events=()), replace(two, events=one.events + two.events)
             moved.add(place + 1)
         elif lasting and not _RESTING.search(after.text):

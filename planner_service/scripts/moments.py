@@ -122,14 +122,13 @@ class Wording:
         told: list[Phrase] = []
         untold = passed_over
         for position, (index, keyframe) in enumerate(rows):
+            before = rows[position - 1][1] if position else None
             following = rows[position + 1][1] if position + 1 < len(rows) else None
             arrives = keyframe.skill == Skill.LOCO and _goes_on(keyframe, following)
             if arrives and (self._is_here(index, keyframe) or self._is_plain(keyframe)):
                 untold = (*untold, index)
                 continue
-            if following is not None and self._goes_without_saying(
-                rows[position - 1][1] if position else None, keyframe
-            ):
+            if following is not None and self._goes_without_saying(before, keyframe, following):
                 untold = (*untold, index)
                 continue
             text = self._text(index, keyframe)
@@ -144,10 +143,11 @@ class Wording:
         """Whether walking there goes without saying."""
         return self.variety.chance(0.5 + 0.5 * self.brief if keyframe.caption in _NEUTRAL_WALKS else 0.3)
 
-    def _goes_without_saying(self, before: Keyframe | None, keyframe: Keyframe) -> bool:
+    def _goes_without_saying(self, before: Keyframe | None, keyframe: Keyframe, following: Keyframe) -> bool:
         """Whether a keyframe says little: strolling about between two things done, or leaving a seat for the next."""
         if keyframe.skill == Skill.STANDUP:
-            return before is not None and self.variety.chance(0.5)
+            moves = following.skill in (Skill.LOCO, Skill.TOUCH)
+            return moves and before is not None and self.variety.chance(0.5)
         idle = keyframe.skill == Skill.LOCO and keyframe.on_floor and keyframe.caption in _IDLE_WALKS
         return idle and before is not None and self.variety.chance(0.6)
 

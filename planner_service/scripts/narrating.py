@@ -45,6 +45,11 @@ def narrate(script: LongScript, character: Character, seed: int = 0, places: Pla
     return _Narrator(script, Voice.of(character), seed, places or {}).tell()
 
 
+def _names_it(sentence: Sequence[Phrase]) -> bool:
+    """Whether a sentence begins with what the one before it named."""
+    return bool(re.search(r"\bits?\b", sentence[0].text))
+
+
 Remark = tuple[str, str | None]
 """A sentence about what happens, and the theme's own "so" or "but" before it; None of what a summary adds."""
 
@@ -108,6 +113,7 @@ class _Narrator:
             self._say_all(lead[:-1])
         self._enter(scene, "" if asleep else lead[-1][0] if lead else "")
         sentences = self._sentences(scene, asleep, final)
+        at = next((i for i, told in enumerate(sentences[1:]) if not _names_it(told)), len(sentences) - 1)
         joined = not asleep and bool(lead) and self.variety.chance(0.35) and self._joined(lead[-1], sentences[0])
         if not asleep and not joined:
             self._say_all(lead[-1:])
@@ -119,7 +125,7 @@ class _Narrator:
                 self._act(sentence, last=position == len(sentences) - 1 > 0, woken=woken)
             if position == falls_asleep:
                 self._say_all(lead)
-            if position == 0:
+            if position == at:
                 self._say_all(late)
 
     def _headed(self, scene: Scene, head: Lead) -> list[Remark]:
