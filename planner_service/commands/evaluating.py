@@ -35,14 +35,14 @@ def planning(
 
     Your own scripts have no part in it, since nobody has labelled them. Exit code 1 when a limit is missed.
     """
-    from motion_backend.language.text import load_encoder
     from planner_service.evaluating.likeness import RememberingEncoder
     from planner_service.evaluating.planning import evaluate_planning
+    from planner_service.scripts.by_heart import load_by_heart
     from planner_service.scripts.library import Features, ScriptLibrary, built_in
     from scene_graphs.packed_library import built_in_index
 
     cache = read_settings().cache_dir
-    library = ScriptLibrary(built_in(), Features(RememberingEncoder(load_encoder(cache=cache)), cache))
+    library = ScriptLibrary(built_in(), Features(RememberingEncoder(load_by_heart(cache)), cache))
     found = evaluate_planning(library, built_in_index())
     misses = [miss for miss in found.misses if held_out or miss.split == "tune"]
     console = Console(markup=False, highlight=False)

@@ -15,7 +15,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from motion_backend.language.text import CachedEncoder, SentenceEncoder, Vectors, load_encoder
+from motion_backend.language.text import CachedEncoder, SentenceEncoder, Vectors
+from planner_service.scripts.by_heart import load_by_heart
 from planner_service.scripts.keyframe import EMOTIONS, ShortScript
 from planner_service.scripts.mood_reader import MoodReader, lessons
 from planner_service.scripts.queries import answers
@@ -60,7 +61,7 @@ class Features:
         """What turns texts into vectors here."""
         with self._lock:
             if self._encoder is None:
-                self._encoder = load_encoder(cache=self._cache)
+                self._encoder = load_by_heart(self._cache)
             return self._encoder
 
     @cached_property
@@ -197,10 +198,6 @@ class ScriptLibrary:
             for word in _words(script.summary):
                 places.setdefault(word, []).append(index)
         return {word: np.array(owners, np.intp) for word, owners in places.items()}
-
-    def vectors_of(self, texts: tuple[str, ...]) -> NDArray[np.float32]:
-        """Vectors of texts that are asked for again and again, remembered as the library's own are."""
-        return self.features.of(texts)
 
     @cached_property
     def _features(self) -> tuple[Vectors, NDArray[np.intp], NDArray[np.float32], NDArray[np.intp]]:

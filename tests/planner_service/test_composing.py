@@ -10,9 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from themes import THEMES, Theme
 
-from motion_backend.language.text import HashingEncoder, SentenceEncoder, load_encoder
+from motion_backend.language.text import HashingEncoder, SentenceEncoder
 from planner_service.llm.protocol import ModelError
 from planner_service.llm.scripted import ScriptedModel
+from planner_service.scripts.by_heart import load_by_heart
 from planner_service.scripts.checking import check
 from planner_service.scripts.composing import Request, compose
 from planner_service.scripts.events import ThemeError
@@ -26,7 +27,7 @@ THEME = THEMES[5].text
 @pytest.fixture(scope="module")
 def meaning() -> ScriptLibrary:
     """The library with the real encoder, where its weights are installed."""
-    encoder: SentenceEncoder = load_encoder(cache=encoded())
+    encoder: SentenceEncoder = load_by_heart(encoded())
     if encoder.name == "hashing":
         pytest.skip("the MiniLM weights are not installed")
     return ScriptLibrary(built_in(), Features(encoder, encoded()))
