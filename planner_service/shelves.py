@@ -47,7 +47,7 @@ _TAKEN_ENDINGS: Final = ("/scene.glb", "/drawing.svg", "/drawing.png")
 """What follows the id of a room in an address."""
 _ROOM_ID: Final = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.:-]*(?:/[A-Za-z0-9_][A-Za-z0-9_.:-]*)*")
 """What is the end of an address as it stands."""
-MOST_SCRIPTS: Final = 20_000
+MOST_SCRIPTS: Final = 100_000
 """Short scripts of the users': all are compared with every query."""
 RESERVED: Final = frozenset({"search", "export", "extract"})
 """Paths of their own beside /v1/short-scripts/{id}, so no script can be called that."""
