@@ -8,8 +8,8 @@ from typing import Final
 
 from sqlalchemy import Connection
 
-from planner_service.extraction.writing import slug_of
 from planner_service.scripts.keyframe import ShortScript
+from planner_service.scripts.naming import slug_of
 from planner_service.shelves import RESERVED, Shelves, TakenError
 
 _TRIES: Final = 5

@@ -17,7 +17,7 @@ from planner_service.llm.choosing import load_model
 from planner_service.llm.served import for_story
 from planner_service.scripts.picking import UNKNOWN
 from planner_service.settings import read_settings
-from planner_service.shelves import open_shelves
+from planner_service.shelves import RESERVED, open_shelves
 from planner_service.stories import RequestError
 
 if TYPE_CHECKING:
@@ -62,6 +62,7 @@ def extract(
             model=model,
             transcriber=load_transcriber(settings),
             strict=settings.llm_on_failure == "error",
+            taken=RESERVED,
             progress=progress,
         )
         made = extract(Source(title, file, subtitles, licence.strip()), means)

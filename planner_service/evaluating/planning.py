@@ -11,7 +11,7 @@ from planner_service.evaluating.covering import Coverage
 from planner_service.evaluating.figures import Figure, Miss, figure
 from planner_service.evaluating.keywords import KeywordSearch
 from planner_service.evaluating.labels import Query, labelled_queries, labelled_themes
-from planner_service.evaluating.ranking import Ranked, Search, hits, ranked, reciprocal_rank
+from planner_service.evaluating.ranking import Ranked, Search, hits, mean, ranked, reciprocal_rank
 from planner_service.evaluating.stories import SEEDS, Theme, tell_themes
 from planner_service.scripts.library import Features, ScriptLibrary
 from scene_graphs.retrieval import LayoutIndex
@@ -80,8 +80,8 @@ def coverage_figures(themes: Sequence[Theme]) -> list[Figure]:
 def variety_figures(themes: Sequence[Theme]) -> list[Figure]:
     """How alike the stories of several seeds are, woven and improvised, and how near to their own themes."""
     labels = [theme.label for theme in themes]
-    woven = figure(f"stories of {len(SEEDS)} seeds: alike", labels, [theme.alike for theme in themes], _mean)
-    direct = figure("improvised by direct: alike", labels, [theme.direct_alike for theme in themes], _mean)
+    woven = figure(f"stories of {len(SEEDS)} seeds: alike", labels, [theme.alike for theme in themes], mean)
+    direct = figure("improvised by direct: alike", labels, [theme.direct_alike for theme in themes], mean)
     least = [min(theme.nearness, default=0.0) for theme in themes]
     near = [(sum(share >= OWN_THEME for share in theme.nearness), len(SEEDS)) for theme in themes]
     return [
@@ -130,7 +130,3 @@ def _unfelt(event: Coverage) -> str:
 def _share(counts: Sequence[tuple[int, int]]) -> float:
     whole = sum(of for _, of in counts)
     return sum(count for count, _ in counts) / whole if whole else 0.0
-
-
-def _mean(values: Sequence[float]) -> float:
-    return sum(values) / len(values) if values else 0.0

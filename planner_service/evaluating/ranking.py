@@ -35,13 +35,14 @@ def ranked(queries: Sequence[Query], search: Search) -> tuple[Ranked, ...]:
 
 def hits(results: Sequence[Ranked], k: int) -> float:
     """Share of the queries with a right script among the first k."""
-    return _mean([result.rank is not None and result.rank <= k for result in results])
+    return mean([result.rank is not None and result.rank <= k for result in results])
 
 
 def reciprocal_rank(results: Sequence[Ranked]) -> float:
     """Mean of one over the rank of the first right script, 0 where none was found."""
-    return _mean([1 / result.rank if result.rank else 0.0 for result in results])
+    return mean([1 / result.rank if result.rank else 0.0 for result in results])
 
 
-def _mean(values: Sequence[float]) -> float:
+def mean(values: Sequence[float]) -> float:
+    """Their mean, 0 for none."""
     return sum(values) / len(values) if values else 0.0

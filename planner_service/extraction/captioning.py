@@ -83,7 +83,7 @@ def captions_for(deeds: Sequence[tuple[Skill, str, str]], library: ScriptLibrary
         return []
     known = list(dict.fromkeys(caption for offer in offers for caption in offer))
     words = library.encoder.encode([words for _, words, _ in deeds])
-    near = words @ library.vectors_of(tuple(known)).T  # (deeds, captions)
+    near = words @ library.features.of(known).T  # (deeds, captions)
     at = {caption: index for index, caption in enumerate(known)}
     return [
         max(offer, key=lambda caption: (round(float(row[at[caption]]) + offer[caption], 4), caption))

@@ -8,17 +8,17 @@ from functools import cached_property
 from typing import Final
 
 from motion_backend.language.text import SentenceEncoder
-from planner_service.extraction.writing import slug_of, summarise
+from planner_service.extraction.writing import summarise
 from planner_service.scripts.captions import Vocabulary
 from planner_service.scripts.checking import repair
 from planner_service.scripts.keyframe import MOST_PIECES, Keyframe, ShortScript, Source
 from planner_service.scripts.library import ScriptLibrary
+from planner_service.scripts.likeness import Likeness
+from planner_service.scripts.naming import slug_of
 from planner_service.scripts.picking import UNKNOWN
 
 RULES: Final = "rules"
 Span = tuple[float | None, float | None]
-ALIKE: Final = 0.93
-"""Cosine of two summaries that tell the same."""
 
 
 @dataclass(frozen=True)
@@ -85,29 +85,13 @@ class Maker:
             }
         )
         self._taken.add(script.id)
-        return Draft(script, repairs, self._like(script))
+        twin = self._likeness.twin(script)
+        return Draft(script, repairs, twin.script_id if twin is not None else "")
 
     @cached_property
     def _vocabulary(self) -> Vocabulary:
         return Vocabulary.built_in(self.encoder)
 
     @cached_property
-    def _by_skills(self) -> dict[tuple[str, ...], list[ShortScript]]:
-        found: dict[tuple[str, ...], list[ShortScript]] = {}
-        for script in self.library.scripts:
-            found.setdefault(_skills(script), []).append(script)
-        return found
-
-    def _like(self, script: ShortScript) -> str:
-        """The script of the library with the same skills whose summary means the same."""
-        others = self._by_skills.get(_skills(script), [])
-        if not others:
-            return ""
-        known = self.library.vectors_of(tuple(other.summary for other in others))
-        near = (known @ self.encoder.encode([script.summary])[0]).round(4)
-        best = max(range(len(others)), key=lambda index: (near[index], others[index].id))
-        return others[best].id if near[best] >= ALIKE else ""
-
-
-def _skills(script: ShortScript) -> tuple[str, ...]:
-    return tuple(keyframe.skill.value for keyframe in script.keyframes)
+    def _likeness(self) -> Likeness:
+        return Likeness(self.library)

@@ -1,10 +1,8 @@
-"""What a short script says of itself: a summary in the text's own words, told of "the character" now, and an id."""
+"""What a short script says of itself: a summary in the text's own words, told of "the character" now."""
 
 from __future__ import annotations
 
-import hashlib
 import re
-import unicodedata
 from collections.abc import Collection, Sequence
 from functools import cache
 from typing import Final
@@ -38,8 +36,6 @@ _PLAINLY: Final = {
     Skill.LOCO: "walks about", Skill.SITDOWN: "sits on the {}", Skill.LIEDOWN: "lies on the {}",
     Skill.TOUCH: "reaches for the {}", Skill.STANDUP: "stands up", Skill.GETUP: "gets up",
 }  # fmt: skip
-_PALE_WORDS: Final = "the character a an and their is are of to in on at for with from it they then them has"
-_PALE: Final = frozenset(_PALE_WORDS.split())
 _SMALL_WORDS: Final = "then just still also finally again now soon even once always often"
 _SMALL: Final = frozenset(_SMALL_WORDS.split())
 
@@ -91,16 +87,6 @@ def in_present(clause: str, names: Collection[str] = ()) -> str:
                 return " ".join(words[: index - 1]).rstrip(",")
             words[index] = _pasts().get(word, words[index])
     return " ".join([words[0].lower() if words[0].lower() in _SMALL else words[0], *words[1:]])
-
-
-def slug_of(summary: str, name: str, taken: Collection[str]) -> str:
-    """An id of the summary's telling words, unlike all that are `taken`."""
-    plain = unicodedata.normalize("NFKD", summary).encode("ascii", "ignore").decode().lower()
-    words = [word for word in re.findall(r"[a-z0-9]+", plain) if word not in _PALE][:6]
-    slug = "-".join(words)[:60].strip("-") or f"scene-{hashlib.sha256(f'{name}{summary}'.encode()).hexdigest()[:8]}"
-    return next(
-        one for number in range(1, len(taken) + 2) if (one := f"{slug}-{number}" if number > 1 else slug) not in taken
-    )
 
 
 def _tells(told: str) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
@@ -22,6 +21,7 @@ from planner_service.scripts.fitting import is_floor
 from planner_service.scripts.keyframe import EMOTIONS, MOST_PIECES, Keyframe, Origin, ShortScript
 from planner_service.scripts.library import ScriptLibrary
 from planner_service.scripts.likeness import Likeness
+from planner_service.scripts.naming import slug_of
 from planner_service.scripts.picking import UNKNOWN
 from planner_service.scripts.planning import DirectKeyframe
 from planner_service.scripts.wishes import Wish, examples
@@ -37,9 +37,6 @@ _MOST_KEYFRAMES: Final = 12
 """Asked for; up to MOST_PIECES are taken."""
 _SHOWN: Final = 12
 """Refused scripts that a model is told of."""
-_FILLING: Final = re.compile(
-    r"a|an|and|at|by|for|from|his|her|in|into|is|it|its|of|on|or|the|their|then|to|with|character"
-)
 
 
 class WrittenScript(BaseModel):
@@ -111,7 +108,7 @@ class _Desk:
         name, like = self.model.name, [one.id for one in self.like]
         script = script.model_copy(
             update={
-                "id": _free_id(self.wish, script.summary, self.taken),
+                "id": slug_of(script.summary, name, self.taken, self.wish.emotion),
                 "licence": _licence(self.like),
                 "origin": Origin.model_validate({"name": name[:200], "by": f"llm:{name}"[:200], "like": like}),
             }
@@ -218,13 +215,3 @@ def _licence(like: Iterable[ShortScript]) -> str:
     """Of what imitates these: theirs where all have the same."""
     licences = {script.licence for script in like}
     return licences.pop() if len(licences) == 1 else UNKNOWN
-
-
-def _free_id(wish: Wish, summary: str, taken: Collection[str]) -> str:
-    """A slug of the first words that tell something, with a number where it is taken."""
-    words = [
-        word for word in re.findall(r"[a-z0-9]+", summary.lower().replace("'", "")) if not _FILLING.fullmatch(word)
-    ]
-    slug = "-".join([wish.emotion, *(words[:5] or [wish.room.replace("_", "-")])])[:70].rstrip("-")
-    names = (slug if number == 1 else f"{slug}-{number}" for number in range(1, len(taken) + 2))
-    return next(name for name in names if name not in taken)

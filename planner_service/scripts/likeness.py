@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from motion_backend.language.text import Vectors
 from motion_backend.motion import Skill
 from planner_service.scripts.fitting import place_of
 from planner_service.scripts.keyframe import ShortScript
@@ -33,7 +32,7 @@ class Likeness:
     def __init__(self, library: ScriptLibrary) -> None:
         self._library = library
         self._ids = [script.id for script in library.scripts]
-        self._blocks = [self._vectors(library.scripts)] if library.scripts else []
+        self._blocks = [library.summaries(range(len(library)))] if len(library) else []
         self._doings = {doings_of(script): script.id for script in reversed(library.scripts)}
 
     def twin(self, script: ShortScript) -> Twin | None:
@@ -42,7 +41,7 @@ class Likeness:
             return Twin(same, "the same keyframes")
         if not self._ids:
             return None
-        vector = self._vectors((script,))[0]
+        vector = self._vectors(script)[0]
         near = np.concatenate([block @ vector for block in self._blocks]).round(4)
         best = int(near.argmax())
         return Twin(self._ids[best], f"summaries alike ({near[best]:.2f})") if near[best] >= NEAREST else None
@@ -50,11 +49,12 @@ class Likeness:
     def add(self, script: ShortScript) -> None:
         """From now on new ones are held against this one, too."""
         self._ids.append(script.id)
-        self._blocks.append(self._vectors((script,)))
+        self._blocks.append(self._vectors(script))
         self._doings.setdefault(doings_of(script), script.id)
 
-    def _vectors(self, scripts: Sequence[ShortScript]) -> NDArray[np.float32]:
-        return self._library.vectors_of(tuple(script.summary for script in scripts))
+    def _vectors(self, script: ShortScript) -> Vectors:
+        """Of one that may never come back, so nothing remembers it. (1, D)."""
+        return self._library.encoder.encode([script.summary])
 
 
 def doings_of(script: ShortScript) -> Doings:

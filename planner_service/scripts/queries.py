@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from planner_service.scripts.events import Clause, ThemeError, clauses_of
-from planner_service.scripts.suiting import Limits, Wish, raises
+from planner_service.scripts.suiting import Demand, Limits, raises
 from planner_service.scripts.traits import Scores
 
 if TYPE_CHECKING:
@@ -37,8 +37,8 @@ def answers(query: str, library: ScriptLibrary) -> Scores:
         total = whole
     total = total + _MOOD * library.moods(vectors[:1])[0][library.traits.emotions]
     for clause in clauses:
-        wish = Wish(clause.text, clause.emotion, 1.0 if clause.sure else 0.8, -1.0, clause.room)
-        raised = _RAISED * raises(wish, library.traits, Limits()) + _SHARED * library.sharing(clause.text)
+        demand = Demand(clause.text, clause.emotion, 1.0 if clause.sure else 0.8, -1.0, clause.room)
+        raised = _RAISED * raises(demand, library.traits, Limits()) + _SHARED * library.sharing(clause.text)
         total = total + raised / len(clauses)
     answered: Scores = np.clip(total, -1.0, 1.0).round(4)
     return answered

@@ -13,7 +13,7 @@ from planner_service.scripts.keyframe import Event
 from planner_service.scripts.library import ScriptLibrary
 from planner_service.scripts.mood_reader import clear_moods
 from planner_service.scripts.sentences import state_words
-from planner_service.scripts.suiting import Limits, Wish, suitability
+from planner_service.scripts.suiting import Demand, Limits, suitability
 from planner_service.scripts.traits import Scores
 
 NEAREST: Final = {"hashing": 0.15}
@@ -58,8 +58,8 @@ def read(theme: str, clauses: Sequence[Clause], library: ScriptLibrary, limits: 
     felt = library.moods(vectors[:-1])
     moods = moods_of(clauses, clear_moods(felt))
     nearest = NEAREST.get(library.encoder.name, _NEAREST)
-    wishes = [
-        Wish(
+    demands = [
+        Demand(
             clause.text,
             mood,
             1.0 if clause.sure else _UNSURE,
@@ -69,7 +69,7 @@ def read(theme: str, clauses: Sequence[Clause], library: ScriptLibrary, limits: 
         for clause, mood in zip(clauses, moods, strict=True)
     ]
     events = tuple(Event(text=clause.text, emotion=mood) for clause, mood in zip(clauses, moods, strict=True))
-    suits = suitability(wishes, scores, library.traits, limits)
+    suits = suitability(demands, scores, library.traits, limits)
     weights = np.array([[_MOOD_CONTEXT if state_words(clause.text) else _CONTEXT] for clause in clauses])
     shared = np.array([library.sharing(clause.text) for clause in clauses])
     raised = weights * context + _SHARED * shared + _LIKE * felt[:, library.traits.emotions]

@@ -29,7 +29,7 @@ _DEEDS: Final = {
 
 
 @dataclass(frozen=True)
-class Wish:
+class Demand:
     """What an event asks of a short script."""
 
     text: str
@@ -53,46 +53,46 @@ class Limits:
     """Room types the theme names."""
 
 
-def suitability(wishes: Sequence[Wish], scores: Scores, traits: Traits, limits: Limits) -> Scores:
-    """Nearness in meaning, raised or lowered by feeling, rooms and furniture. (wishes, scripts).
+def suitability(demands: Sequence[Demand], scores: Scores, traits: Traits, limits: Limits) -> Scores:
+    """Nearness in meaning, raised or lowered by feeling, rooms and furniture. (demands, scripts).
 
     What is not near enough or not allowed is at -10.
     """
-    raised = np.stack([raises(wish, traits, limits) for wish in wishes])
-    nearest = np.array([[wish.nearest] for wish in wishes])
+    raised = np.stack([raises(demand, traits, limits) for demand in demands])
+    nearest = np.array([[demand.nearest] for demand in demands])
     total: Scores = np.where(scores >= nearest, scores + raised, NEVER)
     if limits.rooms:
         total[:, ~traits.in_rooms(limits.rooms)] = NEVER
     return total
 
 
-def raises(wish: Wish, traits: Traits, limits: Limits) -> Scores:
+def raises(demand: Demand, traits: Traits, limits: Limits) -> Scores:
     """By how much feeling, rooms and furniture raise or lower each script for an event. (scripts,)."""
     favoured = np.where(traits.in_rooms(limits.favoured), _THEME_ROOM, 0.0)
-    return _feeling(wish, traits) + _room(wish, traits) + _things(wish, traits) + favoured
+    return _feeling(demand, traits) + _room(demand, traits) + _things(demand, traits) + favoured
 
 
-def _feeling(wish: Wish, traits: Traits) -> Scores:
-    if wish.emotion is None:
+def _feeling(demand: Demand, traits: Traits) -> Scores:
+    if demand.emotion is None:
         return np.zeros(len(traits))
     other = np.where(
-        traits.of_emotion("neutral"), _NO_FEELING, _OTHER_FEELING if wish.emotion != "neutral" else _NO_FEELING
+        traits.of_emotion("neutral"), _NO_FEELING, _OTHER_FEELING if demand.emotion != "neutral" else _NO_FEELING
     )
-    return np.where(traits.of_emotion(wish.emotion), _SAME_FEELING, other) * wish.certainty
+    return np.where(traits.of_emotion(demand.emotion), _SAME_FEELING, other) * demand.certainty
 
 
-def _room(wish: Wish, traits: Traits) -> Scores:
-    return np.where(traits.in_rooms((wish.room,) if wish.room else ()), _OWN_ROOM, 0.0)
+def _room(demand: Demand, traits: Traits) -> Scores:
+    return np.where(traits.in_rooms((demand.room,) if demand.room else ()), _OWN_ROOM, 0.0)
 
 
-def _things(wish: Wish, traits: Traits) -> Scores:
+def _things(demand: Demand, traits: Traits) -> Scores:
     """Whether a script uses a piece of furniture that the event names, and sits or lies where the event does.
 
     A drunk is only met where the event is about drinking: reeling about is too much of a surprise elsewhere.
     """
-    total = np.where(traits.using(furniture_in(wish.text)), _FURNITURE, 0.0)
-    total += np.where(traits.doing(deeds_in(wish.text)), _DEED, 0.0)
-    if wish.emotion != "drunk" and not _DRINK.search(wish.text):
+    total = np.where(traits.using(furniture_in(demand.text)), _FURNITURE, 0.0)
+    total += np.where(traits.doing(deeds_in(demand.text)), _DEED, 0.0)
+    if demand.emotion != "drunk" and not _DRINK.search(demand.text):
         total += np.where(traits.of_emotion("drunk"), _REELING, 0.0)
     return total
 

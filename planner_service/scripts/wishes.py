@@ -62,7 +62,7 @@ def examples(library: ScriptLibrary, wish: Wish, seed: int) -> tuple[ShortScript
     draw = Random(seed)
     ids = sorted(found)
     pool = [found[one] for one in (draw.sample(ids, _FROM) if len(ids) > _FROM else ids)]
-    vectors = library.vectors_of(tuple(script.summary for script in pool))
+    vectors = library.features.of([script.summary for script in pool])
     near = np.round(vectors @ vectors.T, 4)
     chosen = [draw.randrange(len(pool))]
     while len(chosen) < min(_EXAMPLES, len(pool)):

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from motion_backend.markov import Category, Hand
 from planner_service.scripts.keyframe import Keyframe
 
-Category = Literal["locomotion", "grasp", "interaction"]
-Hand = Literal["left", "right", "both"]
 MOST_STEPS: Final = 24
 MOST_KEYFRAMES: Final = 60
 """As many as POST /v1/motions takes."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
+from motion_backend.markov import Category, Hand
 from motion_backend.motion import Posture
-from planner_service.tasks.plan import Category, Hand, SubTask
+from planner_service.tasks.plan import SubTask
 from planner_service.tasks.surroundings import Surroundings
 from planner_service.tasks.things import ANYWHERE, kept_at, words
 

@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import Final, cast
 
+from motion_backend.markov import Hand
 from planner_service.tasks.deeds import DEEDS, Deed
-from planner_service.tasks.plan import LONGEST_ACTION, Hand, TaskError
+from planner_service.tasks.plan import LONGEST_ACTION, TaskError
 from scene_graphs import furniture
 
 MOST_CLAUSES: Final = 12

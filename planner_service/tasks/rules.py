@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
+from motion_backend.markov import Category, Hand
 from motion_backend.motion import Posture
 from planner_service.tasks.deeds import SEATS, TABLES, Deed
-from planner_service.tasks.plan import MOST_STEPS, Category, Hand, SubTask, TaskError
+from planner_service.tasks.plan import MOST_STEPS, SubTask, TaskError
 from planner_service.tasks.preparing import Preparing, with_hand
 from planner_service.tasks.reading import Clause, clauses, is_furniture
 from planner_service.tasks.surroundings import Surroundings

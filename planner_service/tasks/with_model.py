@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from typing import Final
+from typing import Final, get_args
 
 from pydantic import BaseModel, ConfigDict
 
 import prompts
+from motion_backend.markov import Category, Hand
 from planner_service.llm.asking import ask
 from planner_service.llm.protocol import LanguageModel
 from planner_service.tasks.deeds import Kind
@@ -15,8 +16,8 @@ from planner_service.tasks.plan import LONGEST_STEP, MOST_STEPS, SubTask
 from planner_service.tasks.reading import clause_of
 from planner_service.tasks.surroundings import Surroundings
 
-CATEGORIES: Final = ("locomotion", "grasp", "interaction")
-HANDS: Final = ("left", "right", "both")
+CATEGORIES: Final = get_args(Category)
+HANDS: Final = get_args(Hand)
 _BY_HAND: Final[tuple[Kind, ...]] = ("take", "put", "carry", "touch", "operate")
 _SHOWN: Final = 80
 """Kinds of furniture that the model is told of."""

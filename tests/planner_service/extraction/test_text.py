@@ -14,7 +14,8 @@ from planner_service.extraction.deeds import deed_of, pieces_in
 from planner_service.extraction.plain import LONGEST, ExtractionError, language_of, read_text
 from planner_service.extraction.subtitles import Cue
 from planner_service.extraction.text import Line, TextScene, scenes_of_cues, scenes_of_text
-from planner_service.extraction.writing import in_present, slug_of
+from planner_service.extraction.writing import in_present
+from planner_service.scripts.naming import slug_of
 
 CUES = st.builds(
     lambda start, text, speaker: Cue(start, start + 2, text, speaker, () if text else ("door slams",)),
