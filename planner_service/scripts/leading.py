@@ -28,7 +28,7 @@ _FOREIGN: Final = 0.45
 """Nearness of a script to its event at which its summary would be another story."""
 _OFTEN: Final = 0.75
 """Share of the stories that tell what the nearest summaries say besides the event."""
-_TOGETHER: Final = 0.7
+_TOGETHER: Final = 0.8
 """Share of the events told in one sentence with the next, where that can be."""
 _MOST: Final = 3
 """Events in one sentence."""

@@ -114,7 +114,7 @@ class _Narrator:
         self._enter(scene, "" if asleep else lead[-1][0] if lead else "")
         sentences = self._sentences(scene, asleep, final)
         at = next((i for i, told in enumerate(sentences[1:]) if not _names_it(told)), len(sentences) - 1)
-        joined = not asleep and bool(lead) and self.variety.chance(0.35) and self._joined(lead[-1], sentences[0])
+        joined = not asleep and bool(lead) and self.variety.chance(0.25) and self._joined(lead[-1], sentences[0])
         if not asleep and not joined:
             self._say_all(lead[-1:])
         resting = [i for i, sentence in enumerate(sentences) if any(phrase.skill in RESTS for phrase in sentence)]
@@ -197,11 +197,15 @@ class _Narrator:
         return told + [(text, None) for text in SENTENCES.split(more or "") if text]
 
     def _say_all(self, lead: Sequence[Remark]) -> None:
-        """Sentences of a lead; some of those that tell of a deed say that time has passed."""
+        """Sentences of a lead; some of those that tell of a deed say that time has passed.
+
+        What a summary adds is left out where something began with the same words.
+        """
         for sentence, link in lead:
             deed = re.match(rf"(?:{re.escape(self.voice.name)}|He|She|They) (?!was|were|had|could|did not)", sentence)
             timed = bool(deed) and link is not None and self.later and not self.turned and self.variety.chance(0.35)
-            self._say(sentence, "" if self.turned else link or "", timed)
+            if link is not None or not self.ear.heard([said(sentence)]):
+                self._say(sentence, "" if self.turned else link or "", timed)
             self.turned = False
 
     def _joined(self, lead: Remark, sentence: Sequence[Phrase]) -> bool:
