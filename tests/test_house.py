@@ -43,7 +43,6 @@ HOMES = {
     "anthropic": {"planner_service/llm"},
     "httpx2": {"planner_service/llm"},
     "av": {"planner_service/extraction"},
-    "pysubs2": {"planner_service/extraction"},
     "faster_whisper": {"planner_service/extraction"},
 }
 """Where a third-party library may be imported; libraries not named here may be used anywhere they are needed."""

@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.table import Table
 
 from planner_service.commands.rooms import chosen_layouts
+from planner_service.commands.tables import plain_table
 from planner_service.settings import read_settings
 from planner_service.shelves import open_shelves
 from scene_graphs.usability import count_uses
@@ -21,11 +21,8 @@ MOST_CHECKED = 10_000
 def check(names: Annotated[list[str], typer.Argument(help="Layout files or ids.")]) -> None:
     """Count which furniture can be sat and lain on, as placed or pulled out, and what keeps a body from the rest."""
     layouts = chosen_layouts(names, open_shelves(read_settings()), "NAMES", most=MOST_CHECKED)
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    table.add_column("furniture")
-    for column in ("to", "pieces", "surface", "as placed", "pulled out"):
-        table.add_column(column, justify="right" if column != "to" else "left")
-    table.add_column("the rest")
+    counted = ("pieces", "surface", "as placed", "pulled out")
+    table = plain_table("furniture", "to", *counted, "the rest", right=counted)
     for (category, affordance), counts in sorted(count_uses(layouts).items()):
         table.add_row(category, affordance, *_figures(counts))
     console = Console(markup=False, highlight=False)

@@ -11,6 +11,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from planner_service.commands.tables import plain_table
 from planner_service.settings import read_settings
 
 if TYPE_CHECKING:
@@ -62,11 +63,8 @@ def planning(
 
 
 def _table(figures: Sequence[Figure]) -> Table:
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    table.add_column("figure")
-    for column in ("all", "tune", "held out", "limit"):
-        table.add_column(column, justify="right")
-    table.add_column("")
+    numbers = ("all", "tune", "held out", "limit")
+    table = plain_table("figure", *numbers, "", right=numbers)
     for figure in figures:
         parts = {"all": figure.all, "tune": figure.tune, "held_out": figure.held_out}
         judged = figure.judged if figure.limit is not None else ""

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 from rich.console import Console
-from rich.table import Table
 
-from planner_service.commands.errors import writing_database
-from planner_service.filing import check_writable, write_files
+from planner_service.commands.script_files import keep_scripts
+from planner_service.commands.tables import plain_table
+from planner_service.filing import check_writable
 from planner_service.llm.choosing import load_model
 from planner_service.llm.served import for_story
 from planner_service.scripts.picking import UNKNOWN
@@ -68,25 +68,13 @@ def extract(
         made = extract(Source(title, file, subtitles, licence.strip()), means)
     _show(console, made, every)
     scripts = [draft.script for draft in made.scripts]
-    if out is not None:
-        lines = "".join(f"{script.model_dump_json(exclude_none=True)}\n" for script in scripts)
-        write_files(out.parent, {out.name: lambda path: path.write_text(lines, encoding="utf-8")})
-        console.print(f"wrote {len(scripts)} to {out}", soft_wrap=True)
-    if add:
-        if scripts:
-            with writing_database():
-                shelves.add_scripts(*scripts)
-        console.print(f"added {len(scripts)}; the library has {len(shelves.scripts())} scripts")
-    if scripts and out is None and not add:
-        console.print("none is kept; --add keeps them in your library, --out writes them to a file")
+    keep_scripts(scripts, out, shelves if add else None, console)
 
 
 def _show(console: Console, made: Extraction, every: bool) -> None:
     """A table of the scripts, then what is to be known about them."""
     if made.scripts:
-        table = Table(box=None, header_style="bold", pad_edge=False)
-        for column in ("id", "time", "emotion", "room", "summary", "repairs"):
-            table.add_column(column, justify="right" if column == "repairs" else "left", overflow="fold")
+        table = plain_table("id", "time", "emotion", "room", "summary", "repairs", right=("repairs",), fold=True)
         for draft in made.scripts:
             script = draft.script
             start = script.origin.start if script.origin is not None else None

@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from planner_service.commands.errors import writing_database
-from planner_service.filing import check_writable, write_files
+from planner_service.commands.script_files import keep_scripts
+from planner_service.filing import check_writable
 from planner_service.llm.choosing import KINDS, load_model
 from planner_service.llm.protocol import LanguageModel
 from planner_service.llm.served import for_story
@@ -54,16 +54,7 @@ def imitate(
         console.print(f"refused: {refused.why}: {refused.summary}")
     for note in made.notes:
         console.print(note)
-    if out is not None:
-        lines = "".join(f"{script.model_dump_json(exclude_none=True)}\n" for script in made.scripts)
-        write_files(out.parent, {out.name: lambda path: path.write_text(lines, encoding="utf-8")})
-        console.print(f"wrote {len(made.scripts)} to {out}")
-    if add:
-        with writing_database():
-            shelves.add_scripts(*made.scripts)
-        console.print(f"added {len(made.scripts)}; the library has {len(shelves.scripts())} scripts")
-    if out is None and not add:
-        console.print("none is kept; --add keeps them in your library, --out writes them to a file")
+    keep_scripts(made.scripts, out, shelves if add else None, console)
 
 
 def rephrase_captions(

@@ -10,13 +10,13 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.table import Table
 
 from planner_service.commands.checking import check
 from planner_service.commands.errors import writing_database
 from planner_service.commands.finding import find
 from planner_service.commands.picturing import draw
 from planner_service.commands.rooms import LARGEST_FILE
+from planner_service.commands.tables import plain_table
 from planner_service.settings import read_settings
 from planner_service.shelves import open_shelves
 from planner_service.stories import RequestError
@@ -37,9 +37,7 @@ def list_layouts(room: Annotated[str | None, typer.Option(help="Only rooms of th
     """Show the rooms a story can play in."""
     if room is not None and room not in ROOM_TYPES:
         raise RequestError(f"--room: {room!r} is none of {', '.join(ROOM_TYPES)}")
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    for column in ("id", "room type", "objects"):
-        table.add_column(column)
+    table = plain_table("id", "room type", "objects")
     rooms = open_shelves(read_settings()).rooms()
     chosen = [layout for layout in rooms.values() if room is None or layout.room_type == room]
     for layout in chosen:

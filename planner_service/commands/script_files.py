@@ -1,16 +1,21 @@
-"""Short scripts of a file: JSON with one or a list of them, or JSON lines."""
+"""Short scripts in files: JSON with one or a list of them, or JSON lines; and kept where a command is told to."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
 from pydantic import ValidationError
+from rich.console import Console
 
+from planner_service.commands.errors import writing_database
+from planner_service.filing import write_files
 from planner_service.llm.answers import problems_of
 from planner_service.scripts.keyframe import ShortScript
 from planner_service.scripts.library import LibraryError
+from planner_service.shelves import Shelves
 
 LARGEST: Final = 64_000_000
 """Bytes of a script file."""
@@ -35,6 +40,31 @@ def read_scripts(file: Path) -> list[ShortScript]:
     if not rows:
         raise LibraryError(f"{file.name}: no short script in it; one is an object with id, summary and keyframes")
     return [_script(row, f"{file.name} [{number}]") for number, row in enumerate(rows)]
+
+
+def lines_of(scripts: Iterable[ShortScript]) -> str:
+    """Short scripts as JSON lines; `read_scripts` reads them again."""
+    return "".join(f"{script.model_dump_json(exclude_none=True)}\n" for script in scripts)
+
+
+def write_scripts(scripts: Sequence[ShortScript], out: Path) -> None:
+    """Write them to a file, whole or not at all. OutputError."""
+    lines = lines_of(scripts)
+    write_files(out.parent, {out.name: lambda path: path.write_text(lines, encoding="utf-8")})
+
+
+def keep_scripts(scripts: Sequence[ShortScript], out: Path | None, shelves: Shelves | None, console: Console) -> None:
+    """Write what was made to a file, put it on shelves, or both, where these are given; and say so."""
+    if out is not None:
+        write_scripts(scripts, out)
+        console.print(f"wrote {len(scripts)} to {out}", soft_wrap=True)
+    if shelves is not None:
+        if scripts:
+            with writing_database():
+                shelves.add_scripts(*scripts)
+        console.print(f"added {len(scripts)}; the library has {len(shelves.scripts())} scripts")
+    if scripts and out is None and shelves is None:
+        console.print("none is kept; --add keeps them in your library, --out writes them to a file")
 
 
 def _script(row: Any, where: str) -> ShortScript:

@@ -7,12 +7,12 @@ from typing import Annotated, get_args
 
 import typer
 from rich.console import Console
-from rich.table import Table
 
 from planner_service.commands.errors import writing_database
 from planner_service.commands.imitating import imitate, rephrase_captions, words_of
-from planner_service.commands.script_files import read_scripts
-from planner_service.filing import check_writable, write_files
+from planner_service.commands.script_files import lines_of, read_scripts, write_scripts
+from planner_service.commands.tables import plain_table
+from planner_service.filing import check_writable
 from planner_service.scripts.checking import check as find_problems
 from planner_service.scripts.keyframe import ShortScript, Source
 from planner_service.scripts.library import LibraryError
@@ -45,7 +45,7 @@ def search(
 ) -> None:
     """Show the short scripts whose summary is nearest in meaning."""
     library = open_shelves(read_settings()).scripts()
-    table = _table("score", "id", "emotion", "room", "summary")
+    table = plain_table("score", "id", "emotion", "room", "summary")
     for found in _choice(emotion, room, furniture, source, licence).search(library, query, k):
         script = found.script
         table.add_row(f"{found.score:.3f}", script.id, script.emotion, script.room, script.summary)
@@ -65,7 +65,7 @@ def list_scripts(
 ) -> None:
     """Show the short scripts there are."""
     chosen = _chosen(_choice(emotion, room, furniture, source, licence), own)
-    table = _table("id", "emotion", "room", "source", "licence", "summary")
+    table = plain_table("id", "emotion", "room", "source", "licence", "summary")
     for script in sorted(chosen, key=lambda script: script.id):
         table.add_row(script.id, script.emotion, script.room, script.source, script.licence, script.summary)
     console = Console(markup=False)
@@ -128,11 +128,10 @@ def export(
     if out is not None:
         check_writable(out.parent, [out.name])
     scripts = _chosen(_choice(emotion, room, furniture, source, licence), own)
-    lines = "".join(f"{script.model_dump_json(exclude_none=True)}\n" for script in scripts)
     if out is None:
-        typer.echo(lines, nl=False)
+        typer.echo(lines_of(scripts), nl=False)
     else:
-        write_files(out.parent, {out.name: lambda path: path.write_text(lines, encoding="utf-8")})
+        write_scripts(scripts, out)
         Console(markup=False).print(f"wrote {len(scripts)} scripts to {out}", highlight=False, soft_wrap=True)
     _warn_of_licences(scripts)
 
@@ -173,13 +172,6 @@ def _choice(emotion: str | None, room: str | None, furniture: str, source: str |
 def _chosen(choice: Choice, own: bool) -> list[ShortScript]:
     shelves = open_shelves(read_settings())
     return [one for one in choice.of(shelves.scripts()) if not (own and shelves.is_fixed_script(one))]
-
-
-def _table(*columns: str) -> Table:
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    for column in columns:
-        table.add_column(column)
-    return table
 
 
 def _warn_of_licences(scripts: list[ShortScript]) -> None:

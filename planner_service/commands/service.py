@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.table import Table
 
+from planner_service.commands.tables import plain_table
 from planner_service.settings import read_settings
 
 jobs = typer.Typer(no_args_is_help=True, help="Stories that wait or are in the making, and taking them up again.")
@@ -52,9 +52,7 @@ def list_jobs() -> None:
     from planner_service.parts import open_parts
 
     parts = open_parts(read_settings())
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    for column in ("story", "state", "worker"):
-        table.add_column(column)
+    table = plain_table("story", "state", "worker")
     found = parts.jobs.unfinished()
     for story_id, state, worker_id in found:
         table.add_row(story_id, state, worker_id or "")

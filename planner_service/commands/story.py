@@ -8,10 +8,10 @@ from typing import Annotated
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-from rich.table import Table
 from rich.text import Text
 
 from motion_backend.motion import Character
+from planner_service.commands.tables import plain_table
 from planner_service.llm.choosing import load_model
 from planner_service.scripts.events import clean
 from planner_service.settings import read_settings
@@ -119,9 +119,8 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
     """The closing table: what was reached, and how well."""
     console.print(f"\n{made.planned.told.title}\n", style="bold", highlight=False)
     console.print(made.planned.told.text + "\n", highlight=False)
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    for column in ("#", "skill", "caption", "furniture", "seconds", "reached", "contact", "inside"):
-        table.add_column(column, justify="left" if column in ("skill", "caption", "furniture") else "right")
+    figures = ("seconds", "reached", "contact", "inside")
+    table = plain_table("#", "skill", "caption", "furniture", *figures, right=("#", *figures))
     # What the other columns leave of the line.
     longest = max(console.width - 68, 12)
     for action, figure in zip(made.actions, made.figures, strict=True):

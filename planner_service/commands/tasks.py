@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
+from planner_service.commands.tables import plain_table
 from planner_service.llm.choosing import load_model
 from planner_service.settings import read_settings
 from planner_service.shelves import Shelves, open_shelves
@@ -89,9 +89,7 @@ def _finish(plan: TaskPlan, room: Layout | None, out: Path | None, shelves: Shel
 
 
 def _show(plan: TaskPlan, console: Console) -> None:
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    for column in ("#", "step", "category", "hand", "at", "acted", ""):
-        table.add_column(column, justify="right" if column == "#" else "left")
+    table = plain_table("#", "step", "category", "hand", "at", "acted", "", right="#")
     for step in plan.steps:
         acted = "yes" if step.acted else Text("no", style="red")
         table.add_row(

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from typing import Final
 
 from sqlalchemy import Connection, Engine, delete, insert, select, update
 
-from planner_service.store.shelving import MANY, raised, refuse_more
+from planner_service.store.shelving import bodies_in, raised, refuse_more
 from planner_service.store.tables import script_versions, short_scripts
 
 MOST_KEPT: Final = 100
@@ -24,7 +24,7 @@ def renew(engine: Engine, renewals: Mapping[str, Renewal], most: int) -> None:
     """
     with engine.execution_options(writes=True).begin() as connection:
         revision = raised(connection, "short_scripts")
-        kept = _kept(connection, renewals.keys())
+        kept = bodies_in(connection, "short_scripts", renewals.keys())
         made = {one: body for one, renewal in renewals.items() if (body := renewal(kept.get(one))) is not None}
         rows = [{"id": one, "body": body, "created": revision} for one, body in made.items()]
         new = [row for row in rows if row["id"] not in kept]
@@ -50,13 +50,3 @@ def _set_aside(connection: Connection, script_id: str, body: str) -> None:
     old = script_versions.c
     connection.execute(insert(script_versions).values(script_id=script_id, version=version, body=body))
     connection.execute(delete(script_versions).where(old.script_id == script_id, old.version <= version - MOST_KEPT))
-
-
-def _kept(connection: Connection, ids: Collection[str]) -> dict[str, str]:
-    wanted = list(ids)
-    found: dict[str, str] = {}
-    table = short_scripts.c
-    for start in range(0, len(wanted), MANY):
-        asked = select(table.id, table.body).where(table.id.in_(wanted[start : start + MANY]))
-        found |= {str(row.id): str(row.body) for row in connection.execute(asked)}
-    return found

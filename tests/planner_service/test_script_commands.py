@@ -104,7 +104,7 @@ def test_an_imitation_is_kept_where_it_is_asked_for(
     sims: Terminal, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # As where the large encoder is not installed: it would read the whole library here.
-    monkeypatch.setattr("planner_service.scripts.library.load_encoder", lambda **_: HashingEncoder())
+    monkeypatch.setattr("planner_service.scripts.by_heart.load_encoder", lambda **_: HashingEncoder())
     sims.model(**{"You write short scripts": {"scripts": [WRITTEN]}})
     wish = ("imitate", "--emotion", "sad", "--room", "bedroom", "--count", "1")
     assert "none is kept" in sims(*wish)
