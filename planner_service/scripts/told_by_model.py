@@ -43,6 +43,8 @@ class _Moment:
     emotion: str
     caption: str
     furniture: str
+    asked: str
+    """What the script calls the furniture: "the bed" is said of a children's bed, too."""
 
     def __str__(self) -> str:
         return ", ".join((self.skill, self.emotion, self.caption, self.furniture))
@@ -58,7 +60,8 @@ def narrate_with_model(
     """
     voice = Voice.of(character)
     moments = [
-        _Moment(k.skill, k.emotion, k.caption, _called(i, k, places or {})) for i, k in enumerate(script.keyframes)
+        _Moment(k.skill, k.emotion, k.caption, _called(i, k, places or {}), k.furniture)
+        for i, k in enumerate(script.keyframes)
     ]
     prompt = prompts.read("narrate_story").fill(
         name=voice.name,
@@ -78,27 +81,28 @@ def _problems(text: str, voice: Voice, moments: Sequence[_Moment], said: str) ->
     found: list[str] = []
     if not re.search(rf"\b{re.escape(voice.name)}\b", text):
         found.append(f"text: the name {voice.name} is nowhere in it; tell of {voice.name}")
-    used = [m.furniture for m in moments if m.skill in _USED and m.furniture.lower() != "floor"]
-    used = list(dict.fromkeys(used))
-    missing = [name for name in used if not _mentions(text, name)]
+    used = {m.furniture: m.asked for m in moments if m.skill in _USED and m.furniture.lower() != "floor"}
+    plain = list(used.values())  # what several pieces are called tells none of them apart
+    used = {name: asked if plain.count(asked) == 1 else name for name, asked in used.items()}
+    missing = [name for name, asked in used.items() if not _mentions(text, name, asked)]
     if len(missing) > (1 - _LEAST_SHARE) * len(used):
         found.append(f"text: nothing is told of the {', the '.join(missing)}; say what {voice.name} does there")
-    found += _disorder(text, [name for name in used if name not in missing])
-    known = " ".join([*(moment.furniture for moment in moments), said]).lower()
+    found += _disorder(text, [names for names in used.items() if names[0] not in missing])
+    known = " ".join([*(f"{moment.furniture} {moment.asked}" for moment in moments), said]).lower()
     lacking = [word for word in _furniture_in(text) if word not in known]
     return found + [f"text: there is a {word}, but no keyframe is at one; leave it out" for word in lacking]
 
 
-def _mentions(text: str, name: str) -> list[int]:
-    """Where a piece is named."""
-    return [match.start() for match in re.finditer(rf"\b{re.escape(name)}", text, re.IGNORECASE)]
+def _mentions(text: str, *names: str) -> list[int]:
+    """Where a piece is named, by any of its names."""
+    return [match.start() for match in re.finditer(rf"\b(?:{'|'.join(map(re.escape, names))})", text, re.IGNORECASE)]
 
 
-def _disorder(text: str, names: Sequence[str]) -> list[str]:
+def _disorder(text: str, pieces: Sequence[tuple[str, str]]) -> list[str]:
     """The first piece that is told only before one that is used before it."""
     at, before = -1, ""
-    for name in names:
-        later = [place for place in _mentions(text, name) if place > at]
+    for name, asked in pieces:
+        later = [place for place in _mentions(text, name, asked) if place > at]
         if not later:
             return [f"text: the {name} comes before the {before}, which is used first; keep the order of the keyframes"]
         at, before = later[0], name
