@@ -252,7 +252,7 @@ class StoryShown(StorySummary):
     text: str | None
     spans: list[Span] = []
     events: list[Event] = []
-    uncovered: list[str] = Field([], description="Events that no short script was near enough to.")
+    uncovered: list[str] = Field([], description="Events no short script is about: left out, or played by the nearest.")
     repairs: list[str] = Field([], description="What checking changed, and why.")
     keyframes: list[KeyframeShown] = []
     short_scripts: list[ShortScriptChosen] = []

@@ -209,7 +209,7 @@ def _long_script(
             for keyframe in script.keyframes
         ]
     acted, repairs = repair(keyframes)
-    served = {event for event, _ in chosen}
+    told = reading.told(chosen)
     return LongScript(
         theme=theme,
         events=reading.events,
@@ -219,7 +219,7 @@ def _long_script(
         ),
         keyframes=acted,
         repairs=(*record.notes, *repairs),
-        uncovered=tuple(event.text for index, event in enumerate(reading.events) if index not in served),
+        uncovered=tuple(event.text for index, event in enumerate(reading.events) if index not in told),
         planner=record.planner,
         encoder=library.encoder.name,
         seed=request.seed,

@@ -155,7 +155,7 @@ class LongScript(BaseModel):
     repairs: tuple[str, ...] = ()
     """What checking changed, and why."""
     uncovered: tuple[str, ...] = ()
-    """Events no short script was near enough to."""
+    """Events that no short script is really about: left out, or played by what is nearest."""
     method: Literal["matching", "direct"] = "matching"
     planner: str = "rules"
     """What planned it: "rules" or "llm:<model>"."""

@@ -26,6 +26,11 @@ _CONTEXT, _MOOD_CONTEXT = 0.25, 0.5
 """How much nearness to the whole theme counts beside nearness to the event; more where it is a bare mood."""
 _SHARED: Final = 0.5
 """What it counts that a summary has the event's words, rare ones for most."""
+_ABOUT: Final = 0.23
+"""How much nearer than the nearest that may be chosen a script is that is about an event.
+
+On our labelled themes a third of the events that were played wrongly stay below, and 4 % of those played rightly.
+"""
 _READ: Final = 300
 """Letters of the theme read as a whole: a long text takes the encoder as long as all its events."""
 _UNSURE: Final = 0.8
@@ -43,6 +48,14 @@ class Reading:
     """How near in meaning, (events, scripts)."""
     suits: Scores
     """The same with feeling, rooms, furniture and theme weighed in; negative where nothing may be chosen."""
+    tells: Scores
+    """How near each script is to what the event says, in meaning and words; feeling and all else left out."""
+    enough: float
+    """What `tells` must reach for a script to be about the event, and not only the nearest there is."""
+
+    def told(self, chosen: Sequence[tuple[int, int]]) -> frozenset[int]:
+        """The events that one of these scripts is about; `chosen` is (event, script)."""
+        return frozenset(event for event, script in chosen if self.tells[event, script] >= self.enough)
 
     @property
     def covered(self) -> tuple[int, ...]:
@@ -72,5 +85,6 @@ def read(theme: str, clauses: Sequence[Clause], library: ScriptLibrary, limits: 
     suits = suitability(demands, scores, library.traits, limits)
     weights = np.array([[_MOOD_CONTEXT if state_words(clause.text) else _CONTEXT] for clause in clauses])
     shared = np.array([library.sharing(clause.text) for clause in clauses])
+    tells: Scores = scores + _SHARED * shared
     raised = weights * context + _SHARED * shared + _LIKE * felt[:, library.traits.emotions]
-    return Reading(events, scores, np.where(suits > 0, suits + raised, suits))
+    return Reading(events, scores, np.where(suits > 0, suits + raised, suits), tells, nearest + _ABOUT)
