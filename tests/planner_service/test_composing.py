@@ -83,7 +83,7 @@ def test_as_many_short_scripts_as_asked_for_are_used_and_none_twice(count: int) 
     script = compose(THEME, HASHING, request=Request(short_scripts=count))
     ids = [chosen.script.id for chosen in script.short_scripts]
     assert len(ids) == len(set(ids)) == count
-    assert not script.uncovered
+    assert {chosen.event for chosen in script.short_scripts} == set(range(len(script.events)))
     assert not check(script)
 
 
