@@ -10,9 +10,11 @@ from rich.console import Console
 
 from planner_service.commands.errors import writing_database
 from planner_service.commands.imitating import imitate, rephrase_captions, words_of
+from planner_service.commands.rooms import chosen_layouts
 from planner_service.commands.script_files import lines_of, read_scripts, write_scripts
 from planner_service.commands.tables import plain_table
 from planner_service.filing import check_writable
+from planner_service.scripts.captions import Vocabulary
 from planner_service.scripts.checking import check as find_problems
 from planner_service.scripts.keyframe import ShortScript, Source
 from planner_service.scripts.library import LibraryError
@@ -149,12 +151,22 @@ def remove(script_id: Annotated[str, typer.Argument(help="The id of a script you
 @app.command()
 def check(
     file: Annotated[Path, typer.Argument(help="JSON with one short script, or JSON lines with several.")],
+    words: Annotated[
+        bool, typer.Option("--captions", help="Also name captions that the body does not know, and the nearest known.")
+    ] = False,
+    layout: Annotated[
+        str | None, typer.Option(help="A layout file, or the id of a room: also name furniture that it lacks.")
+    ] = None,
 ) -> None:
     """Say whether short scripts can be acted out, and what would be repaired."""
     console = Console(markup=False)
+    scripts, shelves = read_scripts(file), open_shelves(read_settings())
+    vocabulary = Vocabulary.built_in(shelves.scripts().encoder) if words else None
+    room = chosen_layouts([layout], shelves, most=1)[0] if layout is not None else None
+    furniture = None if room is None else {placed.category for placed in room.objects}
     problems = 0
-    for script in read_scripts(file):
-        found = find_problems(script)
+    for script in scripts:
+        found = find_problems(script, vocabulary, furniture)
         problems += len(found)
         console.print(f"{script.id}: {'executable' if not found else f'{len(found)} problems'}", highlight=False)
         for problem in found:

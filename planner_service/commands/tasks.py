@@ -89,7 +89,7 @@ def _finish(plan: TaskPlan, room: Layout | None, out: Path | None, shelves: Shel
 
 
 def _show(plan: TaskPlan, console: Console) -> None:
-    table = plain_table("#", "step", "category", "hand", "at", "acted", "", right="#")
+    table = plain_table("#", "step", "category", "hand", "at", "acted", "", right=("#",))
     for step in plan.steps:
         acted = "yes" if step.acted else Text("no", style="red")
         table.add_row(

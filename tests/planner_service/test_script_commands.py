@@ -129,3 +129,16 @@ def test_synonyms_are_kept_beside_the_library_and_not_asked_for_twice(sims: Term
 def test_without_a_model_nothing_is_imagined(sims: Terminal, command: tuple[str, ...]) -> None:
     with pytest.raises(SettingsError, match=r"^SIMS_LLM_MODEL: .* needs a language model, rules do not imagine"):
         sims(*command)
+
+
+def test_checking_names_captions_and_furniture_that_are_not_there_where_that_is_asked(sims: Terminal) -> None:
+    sits = {"skill": "sitdown", "emotion": "happy", "caption": "sits like a king", "furniture": "dining chair"}
+    walks = {"skill": "loco", "emotion": "happy", "caption": "excited walk", "furniture": "dining chair"}
+    file = sims.file("new.jsonl", NAP | {"keyframes": [walks, sits]})
+    assert "executable" in sims("check", file)
+    wanting = ["check", file, "--captions", "--layout", "bedroom-0000"]
+    done = CliRunner().invoke(app, wanting, env=sims.settings)
+    told = " ".join(done.output.split())
+    assert done.exit_code == 1
+    assert 'keyframe 1: "sits like a king" is no caption known for sitdown' in told
+    assert "keyframe 1: the home has no dining chair" in told
