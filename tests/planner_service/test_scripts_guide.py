@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from encoded import lend
 from typer.testing import CliRunner
 
 from motion_backend.language.text import load_encoder
@@ -59,7 +58,6 @@ def test_the_guide_to_scripts_is_true(tmp_path: Path, monkeypatch: pytest.Monkey
         monkeypatch.delenv(name)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("SIMS_DATA_DIR", str(tmp_path / "data"))
-    lend(tmp_path / "data")
     names: dict[str, object] = {}
     printed, met = "", []
     for kind, file, block in BLOCK.findall(GUIDE.read_text(encoding="utf-8")):
