@@ -13,6 +13,7 @@ from motion_backend import rotations
 from motion_backend.motion import Motion, Skill
 from motion_backend.raster import Camera, orbit
 from motion_backend.skeleton import INDEX
+from motion_backend.walls import Side
 from scene_graphs.furnishing import parts_of
 from scene_graphs.layouts import Placed
 
@@ -25,6 +26,8 @@ FOV = 0.62
 PITCH = 0.36
 """About 20 degrees from above."""
 YAWS = np.linspace(-np.pi, np.pi, 16, endpoint=False)
+CURTAIN = 0.20
+"""How far into a room what hangs before a window may reach (metres)."""
 STRIDE = 0.62
 """Metres the root goes between two poses of a walk in one picture."""
 _SEEN = [INDEX[n] for n in ("pelvis", "head", "spine3", "left_knee", "right_knee", "left_foot", "right_foot")]
@@ -93,10 +96,17 @@ def choose_camera(home: Home | None, motion: Motion, joints: NDArray[np.floating
     if home is not None:
         near = [o for o in home.objects if np.hypot(o.position[0] - x, o.position[2] - z) < distance + 1.0]
         room = home.room_at((x, z))
+        sides = [side for wall in home.walls if (side := Side.of(wall, home)) is not None]
         for index, camera in enumerate(cameras):
             wanted[index] += 2.0 * visible_share(near, camera.eye, poses[0, _SEEN + _HANDS])
             wanted[index] += 0.3 * (room is not None and home.room_at((camera.eye[0], camera.eye[2])) == room)
+            wanted[index] -= 2.0 * _at_a_window(sides, np.asarray(camera.eye))
     return cameras[int(np.argmax(np.round(wanted, 4)))]
+
+
+def _at_a_window(sides: Sequence[Side], eye: Array) -> bool:
+    """Whether a camera is so near to a wall, on its room's side, that curtains may hang before it."""
+    return any(side.faces(eye[[0, 2]]) and side.distance(eye[[0, 2]]) < CURTAIN for side in sides)
 
 
 def _liking(motion: Motion, shot: Shot) -> Array:

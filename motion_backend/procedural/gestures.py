@@ -9,13 +9,20 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from motion_backend import rotations
 from motion_backend.motion import FPS
+from motion_backend.procedural.footsteps import yaw_of
 from motion_backend.procedural.pose import Pose, smooth
 from motion_backend.procedural.styles import arm_arrays
 
 Array = NDArray[np.float64]
 BITE: Final = 2.6
 """About how long a sip or a bite takes, from the table to the mouth and back (seconds)."""
+LAP: Final = (-0.08, 0.10, -0.06)
+"""What is written on, typed on or eaten from lies on the lap, so far from hands on the thighs (arm lengths, of a left
+hand): a table is seldom within a sitter's reach, since bodies walk between it and its chairs."""
+ARM: Final = 0.54
+"""Shoulder to wrist (metres at 1.70 m)."""
 EASE: Final = 0.3
 """A gesture grows out of the held pose and back into it over this long (seconds)."""
 
@@ -30,8 +37,16 @@ def gesture(held: Pose, doing: str) -> Pose:
 
 
 def _moved(held: Pose, left: Array, right: Array, ease: Array) -> Pose:
-    """Wrists moved by offsets (T, 3) in arm lengths."""
-    return replace(held, arms=held.arms + ease[:, None, None] * np.stack([left, right], axis=1))
+    """Wrists moved by offsets (T, 3) in arm lengths, those of hands that lie somewhere as the body faces."""
+    offsets = ease[:, None, None] * np.stack([left, right], axis=1)
+    heading = rotations.yaw_to_quat(yaw_of(held.hips))[:, None]
+    return replace(held, arms=held.arms + offsets, reach=held.reach + ARM * rotations.rotate(heading, offsets))
+
+
+def _over_the_lap(held: Pose, time: Array, ease: Array) -> Pose:
+    """Hands on the thighs brought together over what lies on the lap."""
+    left, right = _along(time, *LAP), _along(time, *(np.array(LAP) * [-1.0, 1.0, 1.0]))
+    return _moved(held, left, right, ease)
 
 
 def _wave_of(rate: float, time: Array, phase: float = 0.0) -> Array:
@@ -52,14 +67,14 @@ def _write(held: Pose, time: Array, ease: Array) -> Pose:
     """The right hand goes along a line in small strokes, and back to the next; the left keeps the paper."""
     line = (time / 1.6) % 1.0
     across = np.where(line < 0.85, line / 0.85, (1.0 - line) / 0.15)
-    strokes = _along(time, -0.18 * smooth(across) + 0.015 * _wave_of(2.7, time), 0.0, 0.022 * _wave_of(3.1, time))
-    return _moved(held, _along(time), strokes, ease)
+    strokes = _along(time, 0.18 * smooth(across) - 0.12 + 0.015 * _wave_of(2.7, time), 0.0, 0.022 * _wave_of(3.1, time))
+    return _moved(_over_the_lap(held, time, ease), _along(time), strokes, ease)
 
 
 def _type(held: Pose, time: Array, ease: Array) -> Pose:
     left = _along(time, 0.03 * _wave_of(0.7, time), 0.030 * _taps(3.1, time))
     right = _along(time, 0.04 * _wave_of(0.5, time, 0.3), 0.030 * _taps(2.9, time, 0.45))
-    return _moved(held, left, right, ease)
+    return _moved(_over_the_lap(held, time, ease), left, right, ease)
 
 
 def _piano(held: Pose, time: Array, ease: Array) -> Pose:
@@ -99,6 +114,11 @@ def _to_the_mouth(held: Pose, time: Array, ease: Array) -> Pose:
     )
 
 
+def _eat(held: Pose, time: Array, ease: Array) -> Pose:
+    """The left hand keeps the plate on the lap, the right goes from it to the mouth."""
+    return _to_the_mouth(_over_the_lap(held, time, ease), time, ease)
+
+
 def _music(held: Pose, time: Array, ease: Array) -> Pose:
     """The head nods and the trunk sways with the beat; the hands stay at the ears."""
     nod = ease * 0.09 * _wave_of(1.5, time)
@@ -119,7 +139,7 @@ GESTURES: Final[dict[str, Callable[[Pose, Array, Array], Pose]]] = {
     "piano": _piano,
     "game": _game,
     "drink": _to_the_mouth,
-    "eat": _to_the_mouth,
+    "eat": _eat,
     "music": _music,
     "wave": _wave,
 }

@@ -30,6 +30,10 @@ KEPT: Final = 15
 """Frames for which what was picked up is held before the body."""
 LONGER: Final = {"wash": 2.4, "rotate": 2.0}
 """What takes longer than a touch (seconds)."""
+CARRIES: Final = 0.08
+"""A wrist so near to where it would carry something carries it (arm lengths)."""
+FREE: Final = ("hang", "bent")
+"""Arms that swing as one walks."""
 _CIRCLE, _PRESS, _TURN = 0.035, 0.03, np.radians(32)
 
 
@@ -67,7 +71,24 @@ def with_both_hands(caption: str) -> bool:
 
 def carrying(pose: Pose, hands: Iterable[int]) -> Pose:
     """A standing pose with something held in these hands (0 left, 1 right) before the body."""
-    wrists, poles = arm_arrays("carry", "carry")
+    return _with_arms(pose, hands, "carry")
+
+
+def empty(pose: Pose, hands: Iterable[int]) -> Pose:
+    """A standing pose with these hands (0 left, 1 right) hanging, since they have put down what they held."""
+    return _with_arms(pose, hands, "hang")
+
+
+def arms_on_the_way(pose: Pose, arms: tuple[str, str]) -> tuple[str, str]:
+    """How arms are held in walking: a hand that carries something keeps it before the body, if it would only hang."""
+    wrists, _ = arm_arrays("carry", "carry")
+    carries = np.linalg.norm(pose.arms - wrists, axis=-1) < CARRIES
+    left, right = ("carry" if holds and arm in FREE else arm for holds, arm in zip(carries, arms, strict=True))
+    return left, right
+
+
+def _with_arms(pose: Pose, hands: Iterable[int], name: str) -> Pose:
+    wrists, poles = arm_arrays(name, name)
     arms, elbows = pose.arms.copy(), pose.elbows.copy()
     for index in hands:
         arms[index], elbows[index] = wrists[index], poles[index]

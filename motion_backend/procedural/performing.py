@@ -18,7 +18,7 @@ from motion_backend.procedural.footsteps import yaw_of
 from motion_backend.procedural.gait import walk
 from motion_backend.procedural.gestures import gesture
 from motion_backend.procedural.guarding import arms_in
-from motion_backend.procedural.handling import LONGER, Laid, handling_of, with_both_hands
+from motion_backend.procedural.handling import LONGER, Laid, arms_on_the_way, handling_of, with_both_hands
 from motion_backend.procedural.interactions import edge_seat, lie_down, rise_to_edge, sit_down, stand_up
 from motion_backend.procedural.lying import Bed
 from motion_backend.procedural.moods import bearing_of, lie_style, sit_style, walk_style
@@ -121,6 +121,8 @@ def _go(body: Body, goal: Point, facing: float | None, action: Action) -> None:
     if near and turned:
         return
     style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
+    arms = arms_on_the_way(body.pose, style.bearing.arms)
+    style = replace(style, bearing=replace(style.bearing, arms=arms))
     path = body.scene.walkable.path(body.place, goal) if not near else np.array([body.place, goal])
     turning = _turning_place(body, path, goal, facing)
     if style.spin and not near:

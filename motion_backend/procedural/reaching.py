@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.footsteps import yaw_of
-from motion_backend.procedural.handling import CARRY, KEPT, Laid, carrying, handled
+from motion_backend.procedural.handling import CARRY, KEPT, Laid, carrying, empty, handled
 from motion_backend.procedural.interactions import knees_over_feet
 from motion_backend.procedural.pose import Pose, concatenate, interpolate, settle_from, smooth
 from motion_backend.procedural.solving import chest_frame, released
@@ -57,7 +57,9 @@ def touch(
     frames = max(round(hold * FPS), 1)
     held = _feeling_about(reached.repeat(frames), laid, frames, sliding=not doing)
     held = handled(held, laid, doing)
-    carried = carrying(away, [index for index, *_ in laid.hands])
+    hands = [index for index, *_ in laid.hands]
+    carried = carrying(away, hands)
+    after = {"pick": carried, "put": empty(away, hands)}.get(doing, away)
     if doing == "put":
         lead = replace(lead, arms=carried.arms, elbows=carried.elbows)
         go = interpolate(
@@ -67,7 +69,7 @@ def touch(
         )
     else:
         go = interpolate([0.0, 0.3 * pace, 0.85 * pace, 1.2 * pace], [away, lead, over, reached], FPS)
-    back = interpolate([0.0, 0.3 * pace, 1.05 * pace], [reached, over, carried if doing == "pick" else away], FPS)
+    back = interpolate([0.0, 0.3 * pace, 1.05 * pace], [reached, over, after], FPS)
     whole = concatenate([go, held, back, *([carried.repeat(KEPT)] if doing == "pick" else [])])
     return settle_from(start, replace(whole, knees=knees_over_feet(whole)), FPS, seconds=0.3)
 
