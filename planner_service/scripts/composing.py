@@ -235,7 +235,7 @@ def _direct(
     request: Request,
     record: _Record,
 ) -> LongScript:
-    """Keyframes without the library's scripts: the model's, in captions that the body knows, else those of the rules."""
+    """Keyframes without the library's scripts: a model's, in captions that the body knows, else those of the rules."""
     moods = moods_of(by_rules, [None] * len(by_rules))
     events = tuple(Event(text=clause.text, emotion=mood) for clause, mood in zip(by_rules, moods, strict=True))
     keyframes, planner, vocabulary = direct_by_rules(events), _RULES, None
