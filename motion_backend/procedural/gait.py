@@ -158,11 +158,13 @@ def _height(pose: Pose, steps: Steps, style: Walk, skeleton: Skeleton) -> Array:
 
 
 def _spread(frames: int, arms: str, release: bool) -> Array:
-    """Share of an arm pose: open arms wait until the body is under way, and all come down where something is begun."""
+    """Share of an arm pose: open arms wait until the body is under way, and all but those that carry something
+    come down where something is begun."""
     at = np.arange(frames) / FPS
     takes_room = arms in ("open", "balance")
     begun = smooth((at - 0.25) / 0.8) if takes_room else np.ones(frames)
-    return begun * smooth((at[-1] - at) / 0.7) if takes_room or release else begun
+    comes_down = takes_room or (release and arms != "carry")
+    return begun * smooth((at[-1] - at) / 0.7) if comes_down else begun
 
 
 def _swinging(style: Walk, steps: Steps) -> tuple[Array, Array]:

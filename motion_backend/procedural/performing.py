@@ -41,6 +41,8 @@ FACING_IT = 0.12
 """And this near to the wanted yaw (radians) need not turn."""
 
 
+SHORT_WAY = 0.20
+"""A body that faces where it will face steps straight to a place nearer than this (metres)."""
 TURNING_ROUND = 1.2
 """A body that arrives turned away from where it will face by more (radians) turns before the last step."""
 NARROW_ARMS = {
@@ -124,7 +126,11 @@ def _go(body: Body, goal: Point, facing: float | None, action: Action) -> None:
     arms = arms_on_the_way(body.pose, style.bearing.arms)
     style = replace(style, bearing=replace(style.bearing, arms=arms))
     path = body.scene.walkable.path(body.place, goal) if not near else np.array([body.place, goal])
-    turning = _turning_place(body, path, goal, facing)
+    turning = None
+    if turned and float(np.hypot(goal[0] - body.place[0], goal[1] - body.place[1])) < SHORT_WAY:
+        path = np.array([body.place, goal])
+    else:
+        turning = _turning_place(body, path, goal, facing)
     if style.spin and not near:
         path = _spin_on_the_way(body, path, style)
         style = replace(style, spin=0.0)

@@ -51,7 +51,7 @@ ARMS: dict[str, ArmPose] = {
     "mouth": ArmPose((-0.21, 0.03, 0.38), (0.75, -0.85, 0.2)),
     "ears": ArmPose((-0.01, 0.23, 0.10), (0.9, -0.8, 0.35)),
     "wave": ArmPose((0.30, 0.42, 0.30), (0.5, -1.0, -0.1)),
-    "carry": ArmPose((-0.12, -0.56, 0.48), (0.5, -0.6, -0.6)),
+    "carry": ArmPose((-0.10, -0.47, 0.38), (0.5, -0.6, -0.6)),
 }
 THIGHS = "thighs"
 """Hands laid on the thighs: their place follows the legs, so it is not in the table."""

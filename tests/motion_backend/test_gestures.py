@@ -154,6 +154,39 @@ def test_what_is_picked_up_is_held_before_the_body() -> None:
     assert picked[-1, LEFT, 1] == pytest.approx(touched[-1, LEFT, 1], abs=0.05)
 
 
+def test_what_is_picked_up_is_carried_on_the_way_until_it_is_put_down() -> None:
+    backend, pick = ProceduralBackend(), contact(HOME, Skill.TOUCH, "table", "pick up with the right hand")
+    put = contact(HOME, Skill.TOUCH, "shelf", "put down with the right hand")
+    state = backend.begin(HOME, Character(), 3)
+    least = []
+    for action in (to(pick), pick, to(put), put, to(pick)):
+        motion, state = backend.advance(HOME, action, state)
+        joints = motion.joint_positions().astype(np.float64)
+        least.append(float((joints[:, RIGHT, 1] - joints[:, INDEX["spine1"], 1]).min()))
+    assert max(least[0], least[4]) < -0.1
+    assert least[2] > 0.05
+    assert joints[-1, RIGHT, 1] < joints[-1, INDEX["spine1"], 1]
+
+
+@pytest.mark.parametrize("caption", ["writing at the table", "typing", "eating at the table"])
+def test_who_writes_types_or_eats_has_it_on_the_lap(caption: str) -> None:
+    _, joints = seated(caption)
+    held = joints[-60]
+    for name, hand in (("left", LEFT), ("right", RIGHT))[: 1 if "eating" in caption else 2]:
+        thigh = held[[INDEX[f"{name}_hip"], INDEX[f"{name}_knee"]]]
+        assert thigh[:, 1].max() < held[hand, 1] < thigh[:, 1].max() + 0.20
+        assert np.linalg.norm(held[hand] - thigh[1]) < 0.30
+
+
+@pytest.mark.parametrize("height", [1.5, 1.9])
+def test_a_body_of_other_height_steps_straight_to_where_it_sits_down(height: float) -> None:
+    backend, action = ProceduralBackend(), contact(HOME, Skill.SITDOWN, "chair", "sitting still")
+    _, state = backend.advance(HOME, to(action), backend.begin(HOME, Character(height=height), 3))
+    motion, _ = backend.advance(HOME, action, state)
+    steps = np.linalg.norm(np.diff(motion.root_positions[:, [0, 2]], axis=0), axis=1)
+    assert steps.sum() < 0.42 * height / 1.7 + 0.12
+
+
 @pytest.mark.parametrize("doing", [*GESTURES, "", "juggle"])
 def test_a_gesture_begins_and_ends_in_the_held_pose(doing: str) -> None:
     pose = standing((0.0, 0.0), 0.0, replace(Bearing(), arms=("desk", "desk")), build_skeleton(1.7)).repeat(80)

@@ -81,6 +81,17 @@ def test_the_camera_stands_where_the_body_is_seen():
     assert visible_share(HOME.objects, camera.eye, joints[5].astype(float)) > 0.9
 
 
+@pytest.mark.parametrize("turn", [0.0, 0.7, 1.9, 3.5])
+def test_no_camera_stands_where_curtains_hang(turn):
+    turns = np.tile(rotations.IDENTITY, (10, 22, 1))
+    turns[:, 0] = rotations.yaw_to_quat(turn)
+    for place in ([0.6, 0.9, 2.6], [3.0, 0.9, 2.0], [3.1, 0.9, 3.0], [1.0, 0.9, 1.8]):
+        motion = moving(np.tile(place, (10, 1)), turns)
+        eye = np.array(choose_camera(HOME, motion, motion.joint_positions(), Shot(5), 4 / 3).eye)[[0, 2]]
+        within = np.minimum(eye, 4.0 - eye).min()
+        assert not 0.0 <= within < 0.2
+
+
 def test_every_joint_of_every_pose_is_in_the_picture():
     motion = moving(np.linspace([0, 0.9, 0], [2, 0.9, 1], 61))
     joints = motion.joint_positions()
