@@ -131,7 +131,7 @@ def read_outline(row: Row, where: str) -> tuple[Point2, ...]:
     if not isinstance(corners, list) or not 3 <= len(corners) <= MOST_CORNERS:
         raise LayoutError(f"{place} must be a list of 3 to {MOST_CORNERS} [x, z] corners in metres")
     points = [read_point2(corner, f"{place}[{index}]") for index, corner in enumerate(corners)]
-    if points[0] == points[-1]:
+    while len(points) > 1 and points[0] == points[-1]:
         points.pop()
     polygon = shapely.Polygon(points) if len(points) >= 3 else None
     if polygon is None or not polygon.is_valid or polygon.area < 0.5:

@@ -101,6 +101,12 @@ def test_a_shape_that_is_none_is_refused_with_its_place(shape: Any, message: str
         layout_from_dict(shaped(shape))
 
 
+def test_an_outline_may_come_closed_and_closed_again() -> None:
+    corners = ROW["floor_polygon"]
+    closed = layout_from_dict(changed(floor_polygon=[*corners, corners[0], corners[0]]))
+    assert closed == layout_from_dict(changed(floor_polygon=corners))
+
+
 def test_an_outline_is_counter_clockwise_seen_from_above_whatever_its_order() -> None:
     backwards = layout_from_dict(changed(floor_polygon=ROW["floor_polygon"][::-1]))
     points = np.array(backwards.floor_polygon)
