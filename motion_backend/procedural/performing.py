@@ -190,13 +190,13 @@ def _loco(body: Body, action: Action) -> None:
 def _stay(body: Body, action: Action) -> None:
     """Stand where the body is, arms as the caption has them, and let them hang again."""
     style = walk_style(action.emotion, action.caption)
-    bearing = style.bearing
-    at_ease = replace(body.pose, **_carriage(replace(bearing, arms=("hang", "hang"))))
+    bearing = replace(style.bearing, arms=arms_on_the_way(body.pose, style.bearing.arms))
+    at_ease = replace(body.pose, **_carriage(replace(bearing, arms=arms_on_the_way(body.pose, ("hang", "hang")))))
     held = replace(body.pose, **_carriage(bearing))
     body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, held], FPS))
     restless = bearing_of(action.emotion, action.caption).restless
     body.add(gesture(idle(body.pose, action.hold, restless, body.rng, FPS), style.doing))
-    if bearing.arms != ("hang", "hang"):
+    if style.bearing.arms != ("hang", "hang"):
         body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, at_ease], FPS))
 
 

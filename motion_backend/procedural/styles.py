@@ -26,7 +26,7 @@ ARMS: dict[str, ArmPose] = {
     "behind_back": ArmPose((-0.22, -0.74, -0.33), (0.8, 0.0, -0.6)),
     "crossed": ArmPose((-0.42, -0.27, 0.32), (0.6, -0.8, 0.1)),
     "behind_head": ArmPose((-0.14, 0.42, -0.16), (1.0, 0.25, 0.2)),
-    "ear": ArmPose((-0.04, 0.30, 0.15), (0.5, -0.8, 0.35)),
+    "ear": ArmPose((-0.05, 0.29, 0.18), (0.4, -1.0, 0.2)),
     "hips": ArmPose((0.06, -0.70, 0.08), (1.0, 0.0, -0.4)),
     "open": ArmPose((0.93, -0.02, 0.22), (0.0, -0.4, -1.0)),
     "face": ArmPose((-0.20, 0.26, 0.37), (0.35, -1.0, 0.35)),
@@ -51,7 +51,7 @@ ARMS: dict[str, ArmPose] = {
     "mouth": ArmPose((-0.21, 0.03, 0.38), (0.75, -0.85, 0.2)),
     "ears": ArmPose((-0.01, 0.23, 0.10), (0.9, -0.8, 0.35)),
     "wave": ArmPose((0.30, 0.42, 0.30), (0.5, -1.0, -0.1)),
-    "carry": ArmPose((-0.10, -0.47, 0.38), (0.5, -0.6, -0.6)),
+    "carry": ArmPose((-0.20, -0.48, 0.36), (0.7, -0.6, -0.5)),
 }
 THIGHS = "thighs"
 """Hands laid on the thighs: their place follows the legs, so it is not in the table."""
