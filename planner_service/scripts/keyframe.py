@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from typing import Annotated, Literal
 
-from pydantic import AliasChoices, BaseModel, ConfigDict, Field, ValidationInfo, field_validator
+from pydantic import AliasChoices, BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, field_validator
 
 from motion_backend.motion import Skill
 
@@ -23,21 +24,27 @@ Place = Annotated[int, Field(ge=0, lt=MOST_PIECES, strict=True)]
 _INSTANCE = re.compile(r"^(?P<name>.*?)[\s_#]+(?P<number>[1-9]\d?)$")
 
 
+def legible(text: object) -> object:
+    """A text in one line, without what a terminal or page would obey instead of showing; other values unchanged."""
+    if not isinstance(text, str):
+        return text
+    shown = "".join(" " if unicodedata.category(one) in ("Cc", "Zl", "Zp") else one for one in text)
+    return " ".join("".join(one for one in shown if unicodedata.category(one) not in ("Cf", "Cs", "Co")).split())
+
+
+Line = Annotated[str, BeforeValidator(legible)]
+
+
 class Keyframe(BaseModel):
     """One moment of a script: a skill in an emotion, told by a caption, at a piece of furniture or the floor."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
 
     skill: Skill
-    emotion: str = Field("neutral", validation_alias=AliasChoices("emotion", "emotion/style"), max_length=80)
-    caption: str = Field(min_length=1, max_length=200)
-    furniture: str = Field("floor", validation_alias=AliasChoices("furniture", "furnitures"), max_length=60)
+    emotion: Line = Field("neutral", validation_alias=AliasChoices("emotion", "emotion/style"), max_length=80)
+    caption: Line = Field(min_length=1, max_length=200)
+    furniture: Line = Field("floor", validation_alias=AliasChoices("furniture", "furnitures"), max_length=60)
     """A furniture word, with an instance number when a script uses two of a kind ("wardrobe 2"), or "floor"."""
-
-    @field_validator("furniture", "emotion", "caption")
-    @classmethod
-    def _tidy(cls, text: str) -> str:
-        return " ".join(text.split())
 
     @property
     def piece(self) -> tuple[str, int]:
@@ -73,12 +80,12 @@ class Origin(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    name: str = Field(min_length=1, max_length=200)
+    name: Line = Field(min_length=1, max_length=200)
     """What the film, text or model is called; a name, never a path."""
     start: float | None = Field(None, ge=0, allow_inf_nan=False)
     """Where in a film it begins (seconds)."""
     end: float | None = Field(None, ge=0, allow_inf_nan=False)
-    by: str = Field("", max_length=200)
+    by: Line = Field("", max_length=200)
     """Who wrote it down: "rules" or "llm:<model>"."""
     like: tuple[str, ...] = Field((), max_length=20)
     """Ids of the scripts it imitates."""
@@ -98,16 +105,16 @@ class ShortScript(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     id: str = Field(pattern=r"^[a-z0-9][a-z0-9-]{0,79}$")
-    summary: str = Field(min_length=1, max_length=400)
+    summary: Line = Field(min_length=1, max_length=400)
     emotion: Literal["neutral", "happy", "angry", "hurried", "tired", "sad", "stressed", "drunk", "relaxed"]
     room: Room
     keyframes: tuple[Keyframe, ...] = Field(min_length=1, max_length=MOST_PIECES)
-    cues: tuple[Annotated[str, Field(min_length=1, max_length=200)], ...] = Field((), max_length=12)
+    cues: tuple[Annotated[Line, Field(min_length=1, max_length=200)], ...] = Field((), max_length=12)
     """Other words for what happens, by which it is found too; they are never told."""
     graph: ScriptGraph | None = None
     """Given, or derived from the keyframes: an edge between two pieces used one after the other."""
     source: Source = "authored"
-    licence: str = Field("MIT", min_length=1, max_length=200)
+    licence: Line = Field("MIT", min_length=1, max_length=200)
     origin: Origin | None = None
     """Where it was found; None for what somebody wrote."""
     version: int = Field(1, ge=1, le=MOST_VERSIONS, strict=True)
@@ -139,7 +146,7 @@ class Event(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    text: str
+    text: Line
     emotion: str = "neutral"
 
 

@@ -140,3 +140,13 @@ def test_words_of_a_text_tell_which_summaries_share_them_and_rare_ones_tell_most
     assert "lottery" in library.scripts[int(shared.argmax())].summary
     assert library.sharing("the character").max() == 0
     assert library.sharing(library.scripts[3].summary)[3] == 1
+
+
+@pytest.mark.parametrize(
+    "odd", ["\x1b[31mred\x1b[0m", "a\x00b", "a\x9b31mb", "a\u202eb", "# a\n![x](http://evil/)", "a\u2028b"]
+)
+def test_what_a_terminal_or_page_would_obey_is_not_kept(odd: str) -> None:
+    kept = nap(summary=f"The character naps {odd}", cues=[f"naps {odd}"], licence=f"MIT {odd}")
+    for text in (kept.summary, *kept.cues, kept.licence):
+        assert text.isprintable()
+        assert "  " not in text
