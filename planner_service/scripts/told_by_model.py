@@ -13,7 +13,7 @@ import prompts
 from motion_backend.motion import Character, Skill
 from planner_service.llm.asking import ask
 from planner_service.llm.protocol import LanguageModel
-from planner_service.scripts.keyframe import LongScript, PlannedKeyframe
+from planner_service.scripts.keyframe import LongScript, PlannedKeyframe, legible
 from planner_service.scripts.moments import Places
 from planner_service.scripts.narrating import Told
 from planner_service.scripts.paragraphs import Span
@@ -72,8 +72,8 @@ def narrate_with_model(
     )
     said = " ".join([script.theme, *(r.script.summary for r in script.short_scripts)])
     answer = ask(model, prompt, _ModelStory, lambda story: _problems(story.text, voice, moments, said)[:_SHOWN])
-    text = answer.text.strip()
-    return Told(answer.title.strip(), text, _found_spans(text, [moment.furniture for moment in moments]))
+    text = "\n\n".join(str(legible(part)) for part in re.split(r"\n\s*\n", answer.text.strip()))
+    return Told(str(legible(answer.title)), text, _found_spans(text, [moment.furniture for moment in moments]))
 
 
 def _problems(text: str, voice: Voice, moments: Sequence[_Moment], said: str) -> list[str]:
