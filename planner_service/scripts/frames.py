@@ -39,7 +39,6 @@ LAST_TIMES: Final = (
     "at last {who} {did}.",
     "finally {who} {did}.",
     "in the end {who} {did}.",
-    "last of all {who} {did}.",
 )
 AFTER: Final = ("after {doing}, {who} {rest}.",)
 TWO: Final = (
@@ -53,29 +52,40 @@ TWO: Final = (
 """Two things done at different places."""
 BEFORE: Final = ("{who} {lead} before {lasting}.",)
 WAYS: Final = (
-    "the way led to {there}, where {who} {rest}.",
-    "next came {there}, where {who} {rest}.",
     "{who} headed for {there} and {rest}.",
-    "{who} made for {there}, where {they} {rest}.",
-    "it was on to {there}, where {who} {rest}.",
+    "{who} made for {there} and {rest}.",
+    "{who} went up to {there} and {rest}.",
 )
 """A walk without a feeling to what comes after it."""
 NEW_ROOM: Final = (
     "in the {room}, {who} {did}.",
-    "the {room} came next, and there {who} {did}.",
+    "then {who} went on to the {room}, where {they} {did}.",
     "now in the {room}, {who} {did}.",
-    "on to the {room} it was, where {who} {did}.",
-    "then it was the turn of the {room}, where {who} {did}.",
+    "from there {who} went to the {room}, where {they} {did}.",
+    "next {who} went into the {room}, where {they} {did}.",
 )
 FIRST_ROOM: Final = ("in the {room}, {who} {did}.",)
 KNOWN_ROOM: Final = (
     "back in the {room}, {who} {did}.",
     "in the {room} again, {who} {did}.",
     "once more in the {room}, {who} {did}.",
-    "it was back to the {room}, where {who} {did}.",
-    "the {room} called once more, and there {who} {did}.",
+    "then {who} went back to the {room}, where {they} {did}.",
+    "soon {who} returned to the {room}, where {they} {did}.",
     "returning to the {room}, {who} {did}.",
 )
+RISEN_FIRST: Final = ("in the {room}, {who} {first} and {rest}.",)
+RISEN_TO_NEW: Final = (
+    "then {who} {first} and went on to the {room}, where {they} {rest}.",
+    "{who} {first} and went to the {room}, where {they} {rest}.",
+    "a moment later {who} {first}, and in the {room} {they} {rest}.",
+    "after a while {who} {first} and went into the {room}, where {they} {rest}.",
+)
+RISEN_TO_KNOWN: Final = (
+    "then {who} {first} and went back to the {room}, where {they} {rest}.",
+    "{who} {first} and returned to the {room}, where {they} {rest}.",
+    "some time later {who} {first}, and back in the {room} {they} {rest}.",
+)
+"""Leaving a seat in one room for another."""
 RISINGS: Final = (
     "after a while {who} {did}.",
     "at length {who} {did} again.",
@@ -83,7 +93,6 @@ RISINGS: Final = (
     "it was some time before {who} {did}.",
     "by and by {who} {did} again.",
     "a long moment passed before {who} {did}.",
-    "in the end {who} {did}.",
     "only much later did {who} {bare}.",
     "there {who} stayed for a while and then {did}.",
     "when the moment had passed, {who} {did}.",
@@ -96,10 +105,12 @@ RISINGS: Final = (
 WAKINGS: Final = (
     "hours later {who} {did} again.",
     "it was much later when {who} {did}.",
-    "when the sleep was over, {who} {did}.",
+    "when {who} woke, {they} {did}.",
     "only after a long, deep sleep did {who} {bare}.",
 )
 _SLOT: Final = re.compile(r"(\{(?:did|first|rest|lead|last|doing|lasting|there|bare)\})")
+_HEAVY: Final = re.compile(r"\bheav", re.IGNORECASE)
+"""What a story says once."""
 _CALM: Final = ("neutral", "relaxed")
 _SLOW: Final = ("neutral", "relaxed", "sad", "tired")
 _QUICK: Final = ("happy", "angry", "hurried", "stressed")
@@ -131,6 +142,11 @@ class Sentence:
         return replace(self, pieces=self.named()) if self.named else self
 
     @cached_property
+    def head(self) -> str:
+        """What the frame has before its subject, the whole frame where that is nothing."""
+        return self.frame.split("{who}")[0] or self.frame
+
+    @cached_property
     def opening(self) -> tuple[str, ...]:
         """The first three words."""
         return tuple(re.findall(r"[\w'’-]+", " ".join(self.text.lower().split()[:5]))[:3])
@@ -149,6 +165,7 @@ class Ear:
         self._openings: set[tuple[str, ...]] = set()
         self._recent: deque[Sentence] = deque(maxlen=_WINDOW - 1)
         self._used: Counter[str] = Counter()
+        self._heavy = False
 
     def heard(self, options: Sequence[Sentence]) -> bool:
         """Whether every option was said already, or begins as something did."""
@@ -166,6 +183,7 @@ class Ear:
         self._openings.add(chosen.opening)
         self._recent.append(chosen)
         self._used[chosen.frame] += 1
+        self._heavy = self._heavy or bool(_HEAVY.search(chosen.text))
         return chosen
 
     def _cost(self, option: Sentence) -> int:
@@ -173,8 +191,9 @@ class Ear:
         cost = 200 * (option.opening in self._openings) + 2 * min(self._used[option.frame], 10)
         cost += 200 * (len(option.text.split()) > _LONGEST)
         if option.frame and option.family != "plain":
-            cost += 100 * any(option.frame == said.frame for said in recent)
+            cost += 100 * any(option.head == said.head for said in recent)
             cost += 8 * any(option.family == said.family for said in recent[-2:])
+        cost += 40 * (self._heavy and bool(_HEAVY.search(option.text)))
         first = option.opening[:1]
         cost += 6 * any(first == said.opening[:1] for said in recent[-1:])
         cost += 3 * any(first == said.opening[:1] for said in recent[-2:-1])
@@ -209,8 +228,12 @@ def framed(sentence: Sequence[Phrase], who: str, voice: Voice, manner: Manner) -
 
 def _fitting(sentence: Sequence[Phrase], manner: Manner) -> dict[str, tuple[str, ...]]:
     """The shapes that suit a sentence, by family."""
+    if manner.woken and sentence[0].rises:
+        return {"rising": WAKINGS[: len(WAKINGS) - (len(sentence) > 1)]}
     if len(sentence) == 1 and sentence[0].rises:
-        return {"rising": WAKINGS if manner.woken else RISINGS}
+        return {"rising": RISINGS}
+    if manner.room and sentence[0].rises:
+        return {"room": RISEN_FIRST if manner.visits < 0 else RISEN_TO_KNOWN if manner.visits else RISEN_TO_NEW}
     if manner.room:
         return {"room": FIRST_ROOM if manner.visits < 0 else KNOWN_ROOM if manner.visits else NEW_ROOM}
     shapes = {"plain": PLAIN, "time": TIMES, "last": LAST_TIMES if manner.last else ()}
@@ -234,7 +257,7 @@ def _of_several(sentence: Sequence[Phrase]) -> dict[str, tuple[str, ...]]:
         shapes["two"] = TWO
     if not previous.arrives and not first.rises and "," not in last.text and " and " not in last.text:
         shapes["before"] = BEFORE
-    if first.arrives and first.mood in _CALM and first.at:
+    if len(sentence) == 2 and first.arrives and first.mood in _CALM and first.at:
         shapes["way"] = WAYS
     return shapes
 

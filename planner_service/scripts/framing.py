@@ -10,6 +10,7 @@ OPENINGS: Final[dict[str, tuple[str, ...]]] = {
         "It was an ordinary {time}, and {name} had the house to {themself}.",
         "The {time} began like any other, with {name} alone at home.",
         "Nothing about the {time} seemed unusual at first.",
+        "Nobody could have said beforehand what the {time} would bring.",
         "The {time} had only just begun, and the house lay still around {name}.",
         "On a {time} like any other, {name} was at home and glad of it.",
         "There was nobody in the house that {time} but {name}.",
@@ -40,12 +41,11 @@ OPENINGS: Final[dict[str, tuple[str, ...]]] = {
         "A grey {time} hung over the house.",
         "That {time} all colours seemed to have left the house.",
         "It was very quiet in the house that {time}, quieter than {name} could bear.",
-        "Some {time}s weigh more than others, and this was a heavy one.",
+        "Some {time}s weigh more than others, and this was one of them.",
     ),
     "stressed": (
         "That {time} {name} could not find a moment's peace.",
         "Something was wrong with the {time} from the start: it would not pass.",
-        "All that {time} {name} had been listening to the ticking of the clock.",
         "There was a tightness in the air that {time}, and {name} felt it with every breath.",
     ),
     "drunk": (
@@ -81,6 +81,10 @@ JOINTS: Final = (
 )
 """What happens and what the body does, in one sentence."""
 
+THERE: Final = ("there", "and there", "once there,", "it was there that")
+"""Before what is done at rest, once the body rests."""
+SO: Final = ("and so", "so", "that was how")
+"""Before what the body has just done."""
 TURNS: Final = (
     "Then", "Later,", "After that,", "Not long afterwards,", "Some time later,", "By and by,", "In time,",
     "A good while later,", "Next,", "After a time,", "At some point,", "A little later,", "In due time,",
@@ -101,11 +105,11 @@ CLOSINGS: Final[dict[str, tuple[str, ...]]] = {
     ),
     "angry": (
         "It would be a good while before the anger burned down.",
-        "Somewhere a clock went on ticking, quite unimpressed.",
+        "That {time} would not be forgiven quickly.",
     ),
     "hurried": (
-        "The clock ticked on, as merciless as before.",
-        "Whether it would be enough, only the clock could tell.",
+        "And there was still no time to lose.",
+        "It was a {time} without a quiet minute.",
     ),
     "tired": (
         "The house grew quiet around {them}, and the long {time} was over.",
@@ -129,10 +133,10 @@ CLOSINGS: Final[dict[str, tuple[str, ...]]] = {
 }
 LYING_CLOSINGS: Final[dict[str, tuple[str, ...]]] = {
     "tired": ("Sleep was not long in coming.", "Within minutes {they} {were} fast asleep."),
-    "drunk": ("Sleep came like a curtain falling.", "Within moments {name} was snoring."),
+    "drunk": ("Sleep came like a curtain falling.", "Sleep came at once."),
     "sad": ("Sleep, when it came, was a mercy.",),
     "relaxed": ("{Their} breath grew slow, and the {time} drifted away.",),
-    "happy": ("{They} lay there smiling at the ceiling.",),
+    "happy": ("{They} lay there and smiled.",),
 }
 
 TURNED_CLOSINGS: Final[dict[tuple[str, str], tuple[str, ...]]] = {
@@ -146,7 +150,7 @@ TURNED_CLOSINGS: Final[dict[tuple[str, str], tuple[str, ...]]] = {
     ("happy", "relaxed"): ("It was the kind of {time} that asks for nothing more.",),
     ("sad", "happy"): ("Nobody who saw {them} now would have guessed how the {time} had begun.",),
     ("sad", "relaxed"): ("The grief was not gone, but it had grown quiet.",),
-    ("sad", "drunk"): ("The bottle was empty, and the sorrow was still there.",),
+    ("sad", "drunk"): ("The sorrow was still there.",),
     ("angry", "relaxed"): ("Of all that anger there was nothing left to see.",),
     ("angry", "happy"): (
         "What had there been to be so angry about?",
@@ -154,10 +158,10 @@ TURNED_CLOSINGS: Final[dict[tuple[str, str], tuple[str, ...]]] = {
     ),
     ("angry", "sad"): ("Anger would have been easier to bear.",),
     ("stressed", "relaxed"): ("Not one of the great worries seemed so very great any more.",),
-    ("stressed", "happy"): ("All that worry had been for nothing, and nothing could have been better.",),
+    ("stressed", "happy"): ("Of all that worry there was nothing left.",),
     ("stressed", "tired"): ("Whatever there was to worry about would have to wait.",),
-    ("hurried", "tired"): ("All that haste, and nothing to show for it but tired feet.",),
-    ("hurried", "relaxed"): ("The clock ticked on, and for once nobody listened.",),
+    ("hurried", "tired"): ("All that haste had left nothing but tired feet.",),
+    ("hurried", "relaxed"): ("There was no hurry any more.",),
     ("tired", "happy"): ("Of the tiredness there was nothing left to be seen.",),
 }
 """Where a story ends in another mood than it began."""
@@ -239,6 +243,16 @@ def time_of(*texts: str) -> str:
 def tells_time(text: str) -> bool:
     """Whether a text says when it happens."""
     return time_of(text) != "day" or bool(re.search(r"\b(?:day|noon|hours?|weeks?)\b", text))
+
+
+def gainsaid(opening: str, event: str) -> bool:
+    """Whether a story's opening sentence claims a place or a time that its first event speaks of itself."""
+    away = re.search(r"\bhome\b|\breturn|\barriv|\bback from\b|\bguests?\b|\bfriends?\b|\bvisit", event, re.IGNORECASE)
+    all_of_it = re.search(r"\b(?:all|whole|until|till)\b", event)
+    return bool(
+        (away and re.search(r"at home|the house|alone", opening))
+        or (all_of_it and re.search(r"^All that|long \{time\}|only just begun|lay ahead", opening))
+    )
 
 
 def title_of(theme: str, mood: str, time: str | None = None) -> str:

@@ -83,7 +83,21 @@ def happening(event: str, theme: str, voice: Voice, named: bool = False) -> str 
             text = _agreeing(first) + text[len(first) :]
     elif first in BASES and re.search(r"\b(?:they|we|I)\b", theme, re.IGNORECASE):
         text = _agreeing(first) + text[len(first) :]
+    text = _with_noun(text, theme[: max(start, 0)], hero.pronouns)
     return event_retold(told_of_hero(text, theme), voice, named, others)
+
+
+def _with_noun(text: str, before: str, hero: str) -> str:
+    """Those whom the event does something to, "them", called by the noun that the theme has before."""
+    if hero not in _OTHERS or not re.search(r"\bthem\b", text) or re.search(r"\bthey\b", text, re.IGNORECASE):
+        return text
+    nouns = [word for word in re.findall(r"\b[A-Za-z]\w+s\b", before) if _is_plural(word.lower())]
+    return re.sub(r"\bthem\b", f"the {nouns[-1].lower()}", text, count=1) if nouns else text
+
+
+def _is_plural(word: str) -> bool:
+    """Whether a word in -s is a noun, as far as that can be told."""
+    return not (is_verb_form(word) or word.endswith(("ss", "us", "is", "ous")) or word in ("always", "towards", "his"))
 
 
 def told_together(events: Sequence[str], theme: str, voice: Voice, named: bool = False) -> list[str]:
@@ -225,7 +239,13 @@ def event_retold(event: str, voice: Voice, named: bool = False, others: frozense
     verb = next((word for word in words[:2] if not word.endswith("ly")), "")
     if base := base_of_gerund(verb):
         text, verb = re.sub(rf"\b{verb}\b", third_person(base), text, count=1, flags=re.IGNORECASE), third_person(base)
-    guessed = base_of(verb) and len(words) > 1 and words[1] not in ("and", "of") and not is_verb_form(words[1])
+    guessed = (
+        base_of(verb)
+        and len(words) > 1
+        and words[1] not in ("and", "of")
+        and words[1] not in BASES
+        and not is_verb_form(words[1])
+    )
     if is_verb_form(verb) or is_past(verb) or guessed:
         text = f"The character {text}"
         others |= frozenset() if _SUBJECTS.intersection(words) else _OBJECTS

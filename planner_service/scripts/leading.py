@@ -56,7 +56,7 @@ def leads_of(script: LongScript, scenes: Sequence[Scene], tellable: Container[in
         upto = reached if scene.event is None else max(reached, scene.event + 1)
         leads.append(_own(script, scene, range(reached, upto), tellable, variety))
         reached = upto
-    return _together(script, leads, variety)
+    return _together(script, scenes, leads, variety)
 
 
 def _own(script: LongScript, scene: Scene, events: Sequence[int], tellable: Container[int], variety: Variety) -> Lead:
@@ -80,7 +80,7 @@ def _own(script: LongScript, scene: Scene, events: Sequence[int], tellable: Cont
     return Lead(tuple(events), tuple(place for place in everything if shares[place] < least))
 
 
-def _together(script: LongScript, leads: list[Lead], variety: Variety) -> list[Lead]:
+def _together(script: LongScript, scenes: Sequence[Scene], leads: list[Lead], variety: Variety) -> list[Lead]:
     """Events told in one sentence with those of the next scene: after the scene where its summary tells enough of it,
     before both where one feeling lasts."""
     moved: set[int] = set()
@@ -91,7 +91,7 @@ def _together(script: LongScript, leads: list[Lead], variety: Variety) -> list[L
             continue
         before, after = (script.events[events[end]] for events, end in ((one.events, -1), (two.events, 0)))
         joint = joint_between(script.theme, before.text, after.text)
-        if not joint:
+        if not joint or scenes[place].tells(before.text) or scenes[place + 1].tells(after.text):
             continue
         lasting = joint == "before" or emotion_of(before.emotion) == emotion_of(after.emotion)
         if lasting and one.details and len(one.events) == 1 and place not in moved:

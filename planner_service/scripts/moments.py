@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -23,8 +23,12 @@ Piece = tuple[str, tuple[int, ...]]
 Places = Mapping[int, tuple[str, str]]
 """Index of a keyframe to how its furniture and its room are called in the home it is acted out in."""
 _IN = ("armchair", "lounge chair", "lazy sofa", "rocking chair")
+_DEEP = (*_IN, "chair")
+"""What one sits on but drops into."""
 _CONTENT = re.compile(r"(?<!\{)\b(?:\w{4,}|lay|put|run|lie|sit)\b(?!\})")
 _VERB = re.compile(r"(?:^|~)(\w+)")
+_MANNER = re.compile(r"\{\w+\}|\b(?:both|their|with|over|about|from|into|then|without)\b|^\w+")
+"""What is left out of a template to find the words for the manner in which something is done."""
 _RISES = (Skill.STANDUP, Skill.GETUP)
 _LONGEST = 24
 """Words of a sentence after which no more is added to it."""
@@ -108,27 +112,30 @@ class Wording:
         self._at: str | None = None
         self._said: str | None = None  # what "it" stands for
         self._wandering = False
+        self.doing: frozenset[str] = frozenset()
+        """Verbs that the scene's events tell, so that no posture need to."""
+        self._manners: list[frozenset[str]] = []
         self._recent: tuple[str, ...] = ()  # the templates of the two phrases before
 
-    def phrases(
-        self, keyframes: Iterable[tuple[int, PlannedKeyframe]], passed_over: tuple[int, ...] = ()
-    ) -> list[Phrase]:
+    def phrases(self, keyframes: Iterable[tuple[int, PlannedKeyframe]], risen: bool = False) -> list[Phrase]:
         """Keyframes of one event as phrases in order; every index is in exactly one of them.
 
-        Those that were `passed_over` just before go with the first phrase.
+        Where the body has just `risen`, the way to what it does next is told.
         """
         rows = list(keyframes)
         self._wandering, self._said = False, None
         told: list[Phrase] = []
-        untold = passed_over
+        untold: tuple[int, ...] = ()
         for position, (index, keyframe) in enumerate(rows):
             before = rows[position - 1][1] if position else None
             following = rows[position + 1][1] if position + 1 < len(rows) else None
             arrives = keyframe.skill == Skill.LOCO and _goes_on(keyframe, following)
-            if arrives and (self._is_here(index, keyframe) or self._is_plain(keyframe)):
+            if arrives and (self._is_here(index, keyframe) or (not risen and self._is_plain(keyframe))):
                 untold = (*untold, index)
                 continue
-            if following is not None and self._goes_without_saying(before, keyframe, following):
+            if following is not None and self._goes_without_saying(
+                before, keyframe, [row[1] for row in rows[position + 1 :]]
+            ):
                 untold = (*untold, index)
                 continue
             text = self._text(index, keyframe)
@@ -136,18 +143,19 @@ class Wording:
             at = "" if keyframe.on_floor else self._the(index, keyframe)
             anew = any(rows[i][1].skill in _RISES for i in range(position) if rows[i][0] in untold)
             told.append(Phrase(text, (*untold, index), mood_of(keyframe), rises, anew, arrives, keyframe.skill, at))
-            untold = ()
+            untold, risen = (), rises
         return told
 
     def _is_plain(self, keyframe: Keyframe) -> bool:
         """Whether walking there goes without saying."""
         return self.variety.chance(0.5 + 0.5 * self.brief if keyframe.caption in _NEUTRAL_WALKS else 0.3)
 
-    def _goes_without_saying(self, before: Keyframe | None, keyframe: Keyframe, following: Keyframe) -> bool:
-        """Whether a keyframe says little: strolling about between two things done, or leaving a seat for the next."""
-        if keyframe.skill == Skill.STANDUP:
-            moves = following.skill in (Skill.LOCO, Skill.TOUCH)
-            return moves and before is not None and self.variety.chance(0.5)
+    def _goes_without_saying(self, before: Keyframe | None, keyframe: Keyframe, following: Sequence[Keyframe]) -> bool:
+        """Whether a keyframe says little: strolling about between two things done, or rising to rest there again."""
+        if keyframe.skill in _RISES:
+            after = following[1] if len(following) > 1 and _goes_on(following[0], following[1]) else following[0]
+            rests = after.skill in (Skill.SITDOWN, Skill.LIEDOWN)
+            return rests and before is not None and keyframe.piece == after.piece
         idle = keyframe.skill == Skill.LOCO and keyframe.on_floor and keyframe.caption in _IDLE_WALKS
         return idle and before is not None and self.variety.chance(0.6)
 
@@ -159,6 +167,7 @@ class Wording:
         match keyframe.skill:
             case Skill.LOCO:
                 template = self._fresh(self._walks(keyframe, mood))
+                self._note(template)
             case Skill.SITDOWN:
                 template = self._posture(keyframe, phrases.SITS_IN_MOOD[mood], phrases.SITS)
             case Skill.LIEDOWN:
@@ -177,15 +186,31 @@ class Wording:
 
     def _walks(self, keyframe: Keyframe, mood: str) -> tuple[str, ...]:
         walk = phrases.WALKS.get(keyframe.caption, phrases.WALKS_IN_MOOD[mood])
-        ways = walk.about if keyframe.on_floor else walk.to
+        plain = phrases.WALKS_IN_MOOD[mood]
+        ways, others = (walk.about, plain.about) if keyframe.on_floor else (walk.to, plain.to)
+        ways = self._unheard(ways) or self._unheard(others) or others
         short = tuple(way for way in ways if "," not in way)
         return short if self.brief and short else ways
 
+    def _unheard(self, templates: Sequence[str]) -> tuple[str, ...]:
+        """Those whose manner no phrase of the story had."""
+        return tuple(template for template in templates if not self._repeats(_manner_of(template)))
+
+    def _repeats(self, manner: frozenset[str]) -> bool:
+        return bool(manner) and any(len(manner & had) >= min(2, len(manner), len(had)) for had in self._manners)
+
     def _posture(self, keyframe: Keyframe, verbs: tuple[str, ...], manners: Mapping[str, tuple[str, ...]]) -> str:
-        known = manners.get(keyframe.caption)
+        known = [
+            way for way in self._unheard(manners.get(keyframe.caption, ())) if not self.doing & set(_VERB.findall(way))
+        ]
         manner = self.variety.pick(known) if known and self.variety.chance(0.45 if self.brief else 0.65) else ""
-        comma = "" if manner.startswith(("with ", "on ", "flat ")) or not manner else ","
+        comma = "" if manner.startswith(("with ", "on ", "flat ", ",")) or not manner else ","
+        self._note(manner)
         return f"{self._fresh(verbs)}{comma} {manner}"
+
+    def _note(self, template: str) -> None:
+        if manner := _manner_of(template):
+            self._manners.append(manner)
 
     def _fresh(self, options: Sequence[str]) -> str:
         """One of the options, if possible none with a word of the two phrases before it."""
@@ -204,17 +229,20 @@ class Wording:
             template = template.replace(" {on}", "")
         if here:
             template = re.sub(r"the (\w+(?: \w+)?) of \{the\}", r"its \1", template)
+        hand = _hand(keyframe.caption, self.voice)
+        if hand == "a hand":
+            template = template.replace(" with {hand}", "")
         room = self._room(index, keyframe)
         ways = _FURTHER if self._wandering else (f"around {room}", f"about {room}", f"through {room}")
         return self.voice.fill(
             template,
             the=name,
             on=f"{'in' if inside else 'on'} {name}",
-            onto=f"{'into' if inside else 'onto'} {name}",
+            onto=f"{'into' if the.endswith(_DEEP) else 'onto'} {name}",
             to=f"{self.variety.pick(('to', 'over to', 'across to'))} {the}" if "{to}" in template else "",
             about=self.variety.pick(ways) if "{about}" in template else "",
             back=self.variety.pick(("up and down", "back and forth")) + f" in {room}" if "{back}" in template else "",
-            hand=_hand(keyframe.caption, self.voice),
+            hand=hand,
         )
 
     def _the(self, index: int, keyframe: Keyframe) -> str:
@@ -272,7 +300,7 @@ def sentences_of(told: Sequence[Phrase], variety: Variety) -> list[tuple[Phrase,
     most = 3
     for phrase, following in zip(told, [*told[1:], None], strict=True):
         current = groups[-1] if groups else []
-        tied = bool(current) and current[-1].arrives
+        tied = bool(current) and (current[-1].arrives or current[-1].rises)
         purpose = [following] if phrase.arrives and following is not None else []
         words = sum(len(p.text.split()) for p in [*current, phrase, *purpose])
         room = 0 < len(current) < most and words <= _LONGEST and not (phrase.rises or phrase.anew)
@@ -293,6 +321,27 @@ def _goes_on(walk: Keyframe, following: Keyframe | None) -> bool:
         and not walk.on_floor
         and walk.piece == following.piece
     )
+
+
+def _manner_of(template: str) -> frozenset[str]:
+    """The words of a template that say in which manner, none where it tells of two deeds."""
+    told = "" if "~" in template else _MANNER.sub(" ", template)
+    return frozenset(re.findall(r"[a-z]{4,}", told))
+
+
+def without_room(told: Sequence[Phrase], room: str, named: bool) -> tuple[Phrase, ...]:
+    """The phrases of one sentence with the room said once, or not at all where it is `named` besides."""
+    phrases_: list[Phrase] = []
+    here = re.compile(rf" (around|about|through|in) the (?:room|{re.escape(room)})\b")
+    for phrase in told:
+        base = phrase.base
+        if named:
+            base = here.sub(
+                lambda way: "" if way[1] == "in" else " about" if way[1] == "through" else f" {way[1]}", base
+            )
+        named = named or bool(here.search(base))
+        phrases_.append(replace(phrase, base=base))
+    return tuple(phrases_)
 
 
 def _hand(caption: str, voice: Voice) -> str:

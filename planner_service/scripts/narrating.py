@@ -14,15 +14,26 @@ from planner_service.scripts.frames import Ear, Manner, Sentence, framed, said
 from planner_service.scripts.happenings import fragment, happening, link_before, told_together
 from planner_service.scripts.keyframe import Event, LongScript
 from planner_service.scripts.leading import SENTENCES, Lead, leads_of
-from planner_service.scripts.moments import Phrase, Places, Variety, Wording, joined, mood_of, sentences_of
+from planner_service.scripts.moments import (
+    Phrase,
+    Places,
+    Variety,
+    Wording,
+    joined,
+    mood_of,
+    sentences_of,
+    without_room,
+)
 from planner_service.scripts.paragraphs import Span, balanced, laid_out
-from planner_service.scripts.scenes import RESTS, Scene, scenes_of
+from planner_service.scripts.scenes import RESTS, Scene, deeds_in, finds, scenes_of
 from planner_service.scripts.voice import Voice, retell
 
 __all__ = ["Places", "Span", "Told", "narrate"]
 _UNFIT = r"[,;:]|\b(?:when|that|this|first)\b"
 """What an event does not have that begins a story."""
 _AN = re.compile(r"\ba (?=[aeiou])")
+_DEED = re.compile(r"(?:He|She|They) (?!was|were|had|could|did not|felt|stayed|kept|became|got|grew)")
+"""How a sentence begins that time can have passed before."""
 _BEGINS = 14
 """Words of what happens first, in a story's first sentence."""
 _JOINED = 22
@@ -50,8 +61,20 @@ def _names_it(sentence: Sequence[Phrase]) -> bool:
     return bool(re.search(r"\bits?\b", sentence[0].text))
 
 
+def _last_of(skills: Sequence[Skill], sentences: Sequence[Sequence[Phrase]]) -> int:
+    """Which is the last of the sentences to tell one of the skills; the first that tells of a touch."""
+    places = [i for i, sentence in enumerate(sentences) if any(phrase.skill in skills for phrase in sentence)]
+    return (min if Skill.TOUCH in skills else max)(places, default=len(sentences) - 1)
+
+
 Remark = tuple[str, str | None]
 """A sentence about what happens, and the theme's own "so" or "but" before it; None of what a summary adds."""
+
+
+def _skills(scene: Scene, remark: Remark) -> tuple[Skill, ...]:
+    """What the body does first of what a remark tells; nothing where that goes before."""
+    sentence, link = remark
+    return scene.tells(sentence) or ((Skill.TOUCH,) if link is None and finds(sentence) else ())
 
 
 class _Narrator:
@@ -73,8 +96,8 @@ class _Narrator:
         """How often the story was in this room before; -1 in its first."""
         self.mood = ""
         """The mood of the scene before."""
-        self.passed_over: tuple[int, ...] = ()
-        """Keyframes that go without saying, to be told with what follows."""
+        self.risen: tuple[Phrase, ...] = ()
+        """The rising that leads from the scene before to this one."""
         self.setting = ""
         """What the theme says of when or how the next event is."""
         self.turned = False
@@ -108,6 +131,9 @@ class _Narrator:
         """What happens (the lead) and what the body does; sleep comes after what leads to it."""
         lead = self._headed(scene, head)
         asleep = scene.sleeps(" ".join(sentence for sentence, _ in lead))
+        rest = [] if asleep else [remark for remark in lead if _skills(scene, remark)]
+        lead = [remark for remark in lead if remark not in rest]
+        self.wording.doing = deeds_in(" ".join(sentence for sentence, _ in rest))
         late = [] if asleep or len(lead) < 2 or self.variety.chance(0.6) else [lead.pop()]
         if not asleep:
             self._say_all(lead[:-1])
@@ -117,12 +143,13 @@ class _Narrator:
         joined = not asleep and bool(lead) and self.variety.chance(0.25) and self._joined(lead[-1], sentences[0])
         if not asleep and not joined:
             self._say_all(lead[-1:])
-        resting = [i for i, sentence in enumerate(sentences) if any(phrase.skill in RESTS for phrase in sentence)]
-        falls_asleep = max(resting, default=len(sentences) - 1) if asleep else None
+        shown = {remark: _last_of(_skills(scene, remark), sentences) for remark in rest}
+        falls_asleep = _last_of(RESTS, sentences) if asleep else None
         for position, sentence in enumerate(sentences):
             woken = falls_asleep is not None and position == falls_asleep + 1
             if position or not joined:
-                self._act(sentence, last=position == len(sentences) - 1 > 0, woken=woken)
+                self._act(sentence, last=position == len(sentences) - 1 > 0 and not (rest or late), woken=woken)
+            self._say_there(scene, [remark for remark in rest if shown[remark] == position])
             if position == falls_asleep:
                 self._say_all(lead)
             if position == at:
@@ -136,7 +163,13 @@ class _Narrator:
         self.mood = self._emotion(scene)
         setting = self.setting
         lead = self._told(scene, head)
-        if head.events and lead and self.variety.chance(0.5) and (options := self._beginnings(lead[0][0])):
+        if (
+            head.events
+            and lead
+            and not scene.tells(lead[0][0])
+            and self.variety.chance(0.5)
+            and (options := self._beginnings(lead[0][0]))
+        ):
             self.scene.append(self.ear.choose(options))
             return lead[1:]
         self.scene.append(self.ear.choose(self._opening()))
@@ -153,7 +186,10 @@ class _Narrator:
         return [said(_AN.sub("an ", text)) for text in told]
 
     def _opening(self) -> list[Sentence]:
-        return self._framed(framing.OPENINGS[emotion_of(self.first.emotion) or "neutral"])
+        """First sentences that the first event does not gainsay."""
+        openings = framing.OPENINGS[emotion_of(self.first.emotion) or "neutral"]
+        fitting = [text for text in openings if not framing.gainsaid(text, self.first.text)]
+        return self._framed(fitting or framing.OPENINGS["neutral"][3:4])
 
     def _turn_to(self, scene: Scene) -> None:
         """A sentence that leads from the mood of the scene before to that of this one."""
@@ -202,11 +238,24 @@ class _Narrator:
         What a summary adds is left out where something began with the same words.
         """
         for sentence, link in lead:
-            deed = re.match(rf"(?:{re.escape(self.voice.name)}|He|She|They) (?!was|were|had|could|did not)", sentence)
+            deed = _DEED.match(re.sub(rf"^{re.escape(self.voice.name)}\b", "They", sentence))
             timed = bool(deed) and link is not None and self.later and not self.turned and self.variety.chance(0.35)
             if link is not None or not self.ear.heard([said(sentence)]):
                 self._say(sentence, "" if self.turned else link or "", timed)
             self.turned = False
+
+    def _say_there(self, scene: Scene, rest: Sequence[Remark]) -> None:
+        """What keyframes tell too, once the body has come to it."""
+        for remark in rest:
+            skills, sentence = _skills(scene, remark), remark[0]
+            if Skill.TOUCH in skills:
+                self._say_all([remark])
+                continue
+            who = self.voice["they"] if self._named() and self.voice.pronouns != "they" else self.voice.name
+            inner = self._inner(re.sub(rf"^{re.escape(self.voice.name)} ", f"{who} ", sentence))
+            words = framing.THERE if skills == RESTS and not re.search(r" to bed\b", inner) else framing.SO
+            options = [said(f"{word} {inner}", f"{word} {{who}}", "there") for word in words]
+            self.scene.append(self.ear.choose(options, first=True))
 
     def _joined(self, lead: Remark, sentence: Sequence[Phrase]) -> bool:
         """Tell an event and what the body does first as one sentence, where both are short; whether that was done."""
@@ -240,22 +289,23 @@ class _Narrator:
         self.rooms.append(room)
 
     def _sentences(self, scene: Scene, asleep: bool, final: bool) -> list[tuple[Phrase, ...]]:
-        """The scene's keyframes worded; leaving a seat at its end may go without saying."""
-        phrases = self.wording.phrases(scene.keyframes, self.passed_over)
-        self.passed_over = ()
+        """The scene's keyframes worded; leaving a seat at its end is told with the next."""
+        phrases = [*self.risen, *self.wording.phrases(scene.keyframes, risen=bool(self.risen))]
+        self.risen = ()
         if len(phrases) > 1 and phrases[-1].rises and not asleep:
-            rising = phrases.pop().keyframes
+            rising = phrases.pop()
             if final:
-                phrases[-1] = replace(phrases[-1], keyframes=phrases[-1].keyframes + rising)
+                phrases[-1] = replace(phrases[-1], keyframes=phrases[-1].keyframes + rising.keyframes)
             else:
-                self.passed_over = rising
+                self.risen = (rising,)
         return sentences_of(phrases, self.variety)
 
     def _act(self, sentence: Sequence[Phrase], last: bool = False, woken: bool = False) -> None:
         """One sentence about the body, in the frame that sounds freshest."""
         who = self.voice["they"] if self._named() else self.voice.name
         manner = Manner(self.time, last=last, woken=woken)
-        if not sentence[0].rises:
+        if len(sentence) > 1 or not sentence[0].rises:
+            sentence = without_room(sentence, self.rooms[-1], named=bool(self.arrival))
             manner, self.arrival = replace(manner, room=self.arrival, visits=self.visits), ""
         options = framed(sentence, who, self.voice, manner)
         self.scene.append(self.ear.choose(options))

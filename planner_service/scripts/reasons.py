@@ -68,7 +68,7 @@ REASONS: Final[dict[tuple[str, str], tuple[str, ...]]] = {
     ),
     ("sad", "settle"): (
         "wanting only to be left alone, {who} {did}.",
-        "with heavy limbs, {who} {did}.",
+        "with no strength left, {who} {did}.",
     ),
     ("sad", "rest"): (
         "there was no strength left to stand, so {who} {did}.",
@@ -115,31 +115,40 @@ REASONS: Final[dict[tuple[str, str], tuple[str, ...]]] = {
 """Frames that give a reason, by mood and by what the sentence is for: to roam, to rest there and then, to go and settle
 somewhere, or to do something."""
 
+_BRIGHTER: Final = ("Then all at once everything looked brighter.", "And then {name} could not help but smile.")
+"""To a good mood where there was no bad one."""
+
 TURNS: Final[dict[str, dict[str, tuple[str, ...]]]] = {
     "happy": {
-        "neutral": ("Then the {time} took a turn for the better.",),
+        "neutral": _BRIGHTER,
+        "relaxed": _BRIGHTER,
+        "hurried": _BRIGHTER,
         "drunk": ("For all that, there was still room for joy.",),
-        "": ("And then, quite unexpectedly, things looked up.", "Then, against all expectation, the clouds parted."),
+        "": (
+            "Then the {time} took a turn for the better.",
+            "And then, quite unexpectedly, things looked up.",
+            "Then, against all expectation, the clouds parted.",
+        ),
     },
     "sad": {
         "happy": ("But the good mood did not last.", "Joy is a guest that leaves early."),
         "relaxed": ("But the peace did not last.",),
         "angry": ("Little by little the anger gave way to something heavier.",),
         "drunk": ("The wine did not help for long.",),
-        "": ("Then a shadow fell over the {time}.", "Something in {name} grew heavy then."),
+        "": ("Then a shadow fell over the {time}.", "Something in {name} grew very quiet then."),
     },
     "angry": {
         "": ("That was where {their} patience ended.", "It did not take much more, and {their} temper was gone."),
     },
-    "hurried": {"": ("Suddenly there was no time to lose.", "All at once the clock was ahead of {them}.")},
+    "hurried": {"": ("Suddenly there was no time to lose.", "All at once every minute counted.")},
     "tired": {
         "": (
             "By then {their} strength was running low.",
-            "All of that had taken its toll, and {their} limbs grew heavy.",
+            "All of that had taken its toll, and {name} felt every step.",
         ),
     },
     "stressed": {
-        "": ("But something would not leave {them} in peace.", "Only the worries would not keep quiet."),
+        "": ("But something would not leave {them} in peace.", "But the calm did not hold."),
     },
     "drunk": {"": ("It did not stay at one glass.", "From then on nothing in the house stood quite still.")},
     "relaxed": {

@@ -19,6 +19,15 @@ their then thems this very when with
 """
 _PALE = frozenset(_PALE_WORDS.split())
 """Words, or their first five letters, that say nothing about what happens."""
+_ON_SEAT = re.compile(
+    r"\b(?:(?:on|in|into|onto) (?:an?|the|his|her|their)(?: \w+)? (?:\w*chair|sofa|couch|loveseat|bench|stool)"
+    r"|(?:on|in|into|onto|to) (?:(?:an?|the|his|her|their) )?bed)\b"
+)
+_FINDS = re.compile(r"\b(?:finds?|found) (?!that\b|out\b|no\b|it\b|he\b|she\b|they\b|\w*self\b)")
+_DOES = frozenset(("eat", "drink", "write", "type", "read", "play", "listen", "talk"))
+"""Deeds that a posture's caption tells."""
+_ON_FOOT = frozenset(("run", "dance", "pace", "stroll", "skip", "march", "stomp"))
+"""Deeds that a walk's caption tells."""
 RESTS = (Skill.SITDOWN, Skill.LIEDOWN)
 _RISES = (Skill.STANDUP, Skill.GETUP)
 
@@ -37,6 +46,25 @@ class Scene:
         """Whether the telling speaks of sleep and the body rests: sleep is then told after the last rest."""
         own = [k.skill for _, k in self.keyframes if k.short_script is not None or self.script is None]
         return bool(_ASLEEP.search(told)) and any(skill in RESTS for skill in own)
+
+    def tells(self, told: str) -> tuple[Skill, ...]:
+        """The skills of the scene's keyframes that tell what the telling speaks of too: a rest, what is done at it, or
+        a way to walk; none where they tell something else."""
+        seats = [keyframe.caption for _, keyframe in self.keyframes if keyframe.skill in RESTS]
+        if seats and (_ON_SEAT.search(told) or deeds_in(told) & deeds_in(" ".join(seats))):
+            return RESTS
+        walks = " ".join(k.caption for _, k in self.keyframes if k.skill == Skill.LOCO and k.on_floor)
+        return (Skill.LOCO,) if deeds_in(" ".join(told.split()[:2])) & deeds_in(walks) & _ON_FOOT else ()
+
+
+def finds(summary: str) -> bool:
+    """Whether a summary tells of something found, which the body has to reach for first."""
+    return bool(_FINDS.search(summary))
+
+
+def deeds_in(text: str) -> frozenset[str]:
+    """What a text says is done that captions tell as well, in base form."""
+    return (_DOES | _ON_FOOT) & {stem(word) for word in re.findall(r"[a-z]+", text.lower())}
 
 
 def scenes_of(script: LongScript) -> list[Scene]:

@@ -173,6 +173,31 @@ def stem(word: str) -> str:
     return known or (word[:-1] if word.endswith("s") and not word.endswith("ss") and len(word) > 3 else word)
 
 
+_LASTING: Final = """
+be have do love like want need know feel live seem belong mean hate own hope believe understand think lie stand sit wait
+sleep look work
+"""
+_STATES: Final = frozenset(_LASTING.split())
+"""Verbs for what lasts until then."""
+_OTHER_PARTICIPLES: Final = """
+arise:arisen awake:awoken bear:borne become:become begin:begun bite:bitten blow:blown break:broken choose:chosen
+come:come draw:drawn drink:drunk drive:driven eat:eaten fall:fallen fly:flown forget:forgotten forgive:forgiven
+freeze:frozen give:given go:gone grow:grown hide:hidden misread:misread mistake:mistaken outgrow:outgrown
+overcome:overcome oversee:overseen overtake:overtaken ride:ridden ring:rung rise:risen run:run see:seen shake:shaken
+show:shown shrink:shrunk sing:sung sink:sunk speak:spoken spring:sprung steal:stolen stride:stridden swear:sworn
+swell:swollen swim:swum take:taken tear:torn throw:thrown tread:trodden undergo:undergone undo:undone wake:woken
+wear:worn weave:woven withdraw:withdrawn write:written
+"""
+_PARTICIPLES: Final = dict(pair.split(":") for pair in _OTHER_PARTICIPLES.split())
+"""Participles that are not the simple past."""
+
+
+def before_past(told: str) -> str:
+    """The past perfect of a simple past of a deed: won → had won; any other word as it is."""
+    base = _BASE_OF_PAST.get(told)
+    return told if base is None or base in _STATES else f"had {_PARTICIPLES.get(base, told)}"
+
+
 def word_to_past(word: str, before: str, after_subject: bool = False) -> str:
     """One word of a present-tense sentence in the past; `before` is the word in front of it, lower case.
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from motion_backend.motion import Character
-from planner_service.scripts.tense import days_to_past, is_past, word_to_past
+from planner_service.scripts.tense import before_past, days_to_past, is_past, stem, word_to_past
 
 _BLANKS: Final = ("they", "them", "their", "theirs", "themself", "were")
 _FORMS: Final = {
@@ -36,6 +36,12 @@ _OBJECT_FOLLOWS: Final = frozenset(
     | {"because", "when", "while", "into", "off", "up", "down", "home", "out", "so", "by", "a", "the", "feel", "about"}
 )
 _NOT_OURS: Final = re.compile(r"\b(?:I|you|we|me|us|my|your|our)\b", re.IGNORECASE)
+
+
+_REPORTS: Final = frozenset(
+    ("find", "tell", "hear", "learn", "see", "realise", "realize", "discover", "notice", "read")
+)
+"""What is heard or found lies before it: "found that he had won"."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +100,8 @@ class _Telling:
         self.end = 0
         self.finite = 0
         self.subject = False  # whether the word before, adverbs aside, is our person as a subject
+        self.reporting = ""  # the verb of "is told that he fails" whose clause is still to come
+        self.reported = False  # whether the clause is such a verb's
         self.plural = False  # whether the verb in reach agrees with "they"
 
     def add(self, token: str, follows: str, space: str) -> None:
@@ -105,8 +113,18 @@ class _Telling:
             told = self._pronoun(lower, follows)
         else:
             told = self._word(token)
+        self._report(lower, follows)
         self.words += [space, told]
         self.before = lower
+
+    def _report(self, lower: str, follows: str) -> None:
+        """Note where a clause begins that is told by "finds that" or "is told on the phone that", and where it ends."""
+        if stem(lower) in _REPORTS:
+            self.reporting, self.reported = stem(lower), follows in ("he", "she", "they")
+        elif lower == "that" and self.reporting and (self.reporting == "tell" or stem(self.before) == self.reporting):
+            self.reported, self.reporting = True, ""
+        elif lower in _OPENS_CLAUSE - {""}:
+            self.reporting, self.reported = "", False
 
     def _mention(self, mark: str, follows: str) -> str:
         kind, _, own = mark.partition("|")
@@ -140,6 +158,8 @@ class _Telling:
         told = word_to_past(token, "they" if after_subject and self.before == "they" else self.before, after_subject)
         if told.lower() in ("was", "were") and (after_subject or self.before in ("and", "then", "but", "or")):
             told = "were" if self.plural else "was" if after_subject else told
+        if self.reported and (told != token or after_subject):
+            told = before_past(told)
         self.finite += told != token or is_past(told.lower())
         if not (
             token.lower().endswith("ly") or token.lower() in ("then", "now", "also", "soon", "still", "just", "never")
