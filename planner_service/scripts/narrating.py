@@ -212,7 +212,8 @@ class _Narrator:
         """Events in the theme's own words, each sentence with the theme's "so" or "but" before it."""
         texts = [self.script.events[event].text for event in events]
         theme = self.script.theme
-        sentences = told_together([text for text in texts if not fragment(text)], theme, self.voice, self._named())
+        together = told_together([text for text in texts if not fragment(text)], theme, self.voice, self._named())
+        sentences = [sentence for text in together for sentence in SENTENCES.split(text)]
         links: list[str | None] = [link_before(theme, texts[0]) if texts else "", *([""] * len(sentences))]
         settings = [setting for text in texts if (setting := fragment(text))]
         if sentences and (settings or self.setting):
