@@ -6,6 +6,7 @@ Problem                     500  the root; any of these may be raised anywhere b
 ├── Forbidden               403  a key would not help: wrong Host, wrong Origin
 ├── NotFound                404  no such thing
 │   └── NotReady            404  it is still being made
+├── TooSlow                 408  the rest of it did not come; the connection ends
 ├── Conflict                409  it is not in a state for that
 ├── TooLarge                413  more bytes than are read
 ├── WrongMedia              415  not application/json
@@ -109,6 +110,15 @@ class NotReady(NotFound):
 
     def __init__(self, detail: str, retry_after: int = 1) -> None:
         super().__init__(detail, headers={"Retry-After": str(retry_after)})
+
+
+class TooSlow(Problem):
+    """Who sends it has stopped before its end; the connection ends, since what may still come belongs to nothing."""
+
+    status = 408
+
+    def __init__(self, detail: str) -> None:
+        super().__init__(detail, headers={"Connection": "close"})
 
 
 class Conflict(Problem):

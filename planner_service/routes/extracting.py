@@ -31,7 +31,7 @@ from planner_service.parts import Parts, PartsDep
 from planner_service.reporting import extraction_shown
 from planner_service.routes.bodies import parsed
 from planner_service.routes.long_scripts import waiting_for_model
-from planner_service.routes.multipart import FORM, Form, FormReader, Sent
+from planner_service.routes.multipart import FORM, SILENCE, Form, FormReader, Sent
 from planner_service.routes.stories import Key
 from planner_service.schemas.extractions import ExtractAsk, ExtractFields, ExtractionShown
 from planner_service.schemas.stories import Json
@@ -54,7 +54,10 @@ _FIELDS: Final = ("name", "licence", "add")
 @router.post(
     "/extract",
     response_model=ExtractionShown,
-    responses={202: {"model": ExtractionShown, "description": "It is queued; follow it at `links.events`."}},
+    responses={
+        202: {"model": ExtractionShown, "description": "It is queued; follow it at `links.events`."},
+        408: {"description": f"A form of which nothing came for {SILENCE:g} seconds."},
+    },
     openapi_extra={
         "requestBody": {
             "required": True,

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
+import anyio
 from python_multipart import MultipartParser
 from python_multipart.exceptions import FormParserError
 from python_multipart.multipart import parse_options_header
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import ClientDisconnect, Request
 
-from planner_service.errors import Malformed, Problem, TooLarge, Unprocessable
+from planner_service.errors import Malformed, Problem, TooLarge, TooSlow, Unprocessable
 from planner_service.extraction.subtitles import LARGEST
 from planner_service.schemas.problems import Fault
 from planner_service.uploads import Coming, OverlongError, Receiving
@@ -27,6 +28,8 @@ LONGEST_FIELD: Final = 2000
 """Bytes of a part that is no file."""
 HEAD: Final = 4096
 """Bytes of a file that tell what it is."""
+SILENCE: Final = 20.0
+"""Seconds without a byte after which a form is given up: what it holds is wanted by others."""
 _HELD: Final = 1 << 20
 """Bytes that are held before they are written."""
 _AS_IT_IS: Final = (b"", b"7bit", b"8bit", b"binary")
@@ -86,14 +89,14 @@ class FormReader:
     _complete: bool = False
 
     async def read(self, request: Request) -> Form:
-        """The form. Malformed for what is no whole form, Unprocessable for parts that are not wanted, TooLarge."""
+        """The form. Malformed if it is not whole, Unprocessable for parts that are not wanted, TooLarge, TooSlow."""
         options = parse_options_header(request.headers.get("content-type", ""))[1]
         boundary = options.get(b"boundary", b"")
         if not boundary:
             raise _malformed("the header names no boundary; let your HTTP library write it", "header:Content-Type")
         try:
             parser = MultipartParser(boundary, self._callbacks())
-            async for chunk in request.stream():
+            async for chunk in _coming_in(request):
                 parser.write(chunk)
                 if self._size > _HELD:
                     await run_in_threadpool(self._write)
@@ -188,6 +191,20 @@ class FormReader:
                 part.receiving.write(piece)
             except OverlongError as error:
                 raise _too_large(part.name, f"{error}; send a smaller copy, or a part of it") from error
+
+
+async def _coming_in(request: Request) -> AsyncIterator[bytes]:
+    """The body as it comes. TooSlow where nothing comes for `SILENCE`; time that is spent on a piece does not count."""
+    stream = request.stream()
+    while True:
+        try:
+            with anyio.fail_after(SILENCE):
+                chunk = await anext(stream, None)
+        except TimeoutError as error:
+            raise TooSlow(f"nothing was sent for {SILENCE:g} seconds; send the form again, without a pause") from error
+        if chunk is None:
+            return
+        yield chunk
 
 
 def title_of(name: str) -> str:

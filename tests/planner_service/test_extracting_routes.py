@@ -5,9 +5,11 @@ from __future__ import annotations
 import errno
 import io
 import os
+import socket
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +20,7 @@ from fastapi import FastAPI
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import BaseModel
-from service_app import app_on, calling, check_problem
+from service_app import app_on, calling, check_problem, running
 from starlette.requests import Request
 
 from planner_service.errors import Problem
@@ -26,8 +28,9 @@ from planner_service.extraction.plain import ExtractionError
 from planner_service.extractions import Reader
 from planner_service.llm.protocol import LanguageModel
 from planner_service.llm.scripted import ScriptedModel
-from planner_service.parts import Parts
+from planner_service.parts import MOST_UPLOADS, Parts
 from planner_service.reporting import extraction_events
+from planner_service.routes import multipart
 from planner_service.routes.multipart import FormReader, title_of
 from planner_service.scripts.checking import check
 from planner_service.scripts.keyframe import ShortScript
@@ -342,6 +345,31 @@ def test_a_film_that_is_too_large_is_broken_off(refusing: FastAPI, film: bytes) 
     problem = check_problem(post(refusing, files={"video": film + bytes(1 << 20)}), 413)
     assert problem["errors"][0]["pointer"] == "/video"
     assert list(parts(refusing).uploads.folder.iterdir()) == []
+
+
+def test_uploads_that_fall_silent_end_and_their_places_are_free_again(
+    refusing: FastAPI, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(multipart, "SILENCE", 0.1)
+    beginning = b'--x\r\nContent-Disposition: form-data; name="video"; filename="a.mp4"\r\n\r\n' + bytes(100)
+    headers = {"Content-Type": "multipart/form-data; boundary=x", "Content-Length": "9000"}
+    with running(refusing) as url, ExitStack() as all_closed:
+        sent = httpx.Request("POST", url + EXTRACT, headers=headers)
+        head = "".join(f"{name}: {value}\r\n" for name, value in sent.headers.items())
+        silent = [
+            all_closed.enter_context(socket.create_connection((sent.url.host, sent.url.port), timeout=30))
+            for _ in range(MOST_UPLOADS)
+        ]
+        for one in silent:
+            one.sendall(f"POST {EXTRACT} HTTP/1.1\r\n{head}\r\n".encode() + beginning)
+        for one in silent:
+            with one.makefile("rb") as answer:
+                told = answer.read()  # to its end: the connection is closed
+            assert told.startswith(b"HTTP/1.1 408 ")
+            assert b"application/problem+json" in told
+            assert b"nothing was sent for 0.1 seconds" in told
+        assert list(parts(refusing).uploads.folder.iterdir()) == []
+        check_problem(httpx.post(url + EXTRACT, files={"subtitles": b""}), 422)
 
 
 def test_a_disk_that_is_full_is_507_and_leaves_no_half_file(

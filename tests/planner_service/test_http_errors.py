@@ -247,6 +247,7 @@ def test_over_a_real_connection_too_long_a_body_gets_its_answer(app: FastAPI, ch
         errors.Forbidden("a"),
         errors.NotFound("a"),
         errors.NotReady("a"),
+        errors.TooSlow("a"),
         errors.Conflict("a"),
         errors.TooLarge("a"),
         errors.WrongMedia("a"),
