@@ -9,6 +9,7 @@ import shutil
 import time
 import uuid
 from collections.abc import Collection
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO, Final, Self
@@ -77,9 +78,13 @@ class Coming:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for one in self._open:
-            one.file.close()
-        shutil.rmtree(self.folder, ignore_errors=True)
+        try:
+            for one in self._open:
+                # What is closed here goes away: that a full disk cannot take the last of it does not matter.
+                with suppress(OSError):
+                    one.file.close()
+        finally:
+            shutil.rmtree(self.folder, ignore_errors=True)
 
 
 @dataclass

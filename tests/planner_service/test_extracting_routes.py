@@ -383,6 +383,28 @@ def test_a_disk_that_is_full_is_507_and_leaves_no_half_file(
     assert list(parts(refusing).uploads.folder.iterdir()) == []
 
 
+class FullDisk(io.RawIOBase):
+    """A file to which nothing can be written."""
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, _: object) -> int:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+
+def test_files_that_a_full_disk_does_not_let_close_are_thrown_away(tmp_path: Path) -> None:
+    with pytest.raises(OSError, match="No space left"), Uploads(tmp_path).begin() as coming:
+        first, second = (coming.receive(1000) for _ in range(2))
+        first.file.close()
+        first.file = io.BufferedWriter(FullDisk())
+        for one in (first, second):
+            one.write(b"held until it is flushed")
+        first.finish()
+    assert (first.file.closed, second.file.closed) == (True, True)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_what_belongs_to_no_job_is_swept_away_when_it_is_old(tmp_path: Path) -> None:
     uploads = Uploads(tmp_path)
     with uploads.begin():
