@@ -11,7 +11,6 @@ import numpy as np
 
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts import planning
-from planner_service.scripts.captions import Vocabulary
 from planner_service.scripts.casting import cast
 from planner_service.scripts.checking import repair
 from planner_service.scripts.directing import direct_by_rules
@@ -100,7 +99,7 @@ def compose(
     by_rules = clauses_of(theme)
     record = _Record(insist=insist)
     if request.method == "direct":
-        return _direct(theme, by_rules, library, model, request, record)
+        return _direct(theme, by_rules, model, request, record)
     clauses = grouped(_events(theme, by_rules, model, record), request.short_scripts or MOST)
     if not any(_ENGLISH.search(clause.text) for clause in clauses):
         raise ThemeError(f"no word of {theme[:60]!r} is in Latin letters. {LANGUAGE}")
@@ -228,17 +227,12 @@ def _long_script(
 
 
 def _direct(
-    theme: str,
-    by_rules: Sequence[Clause],
-    library: ScriptLibrary,
-    model: LanguageModel | None,
-    request: Request,
-    record: _Record,
+    theme: str, by_rules: Sequence[Clause], model: LanguageModel | None, request: Request, record: _Record
 ) -> LongScript:
-    """Keyframes without the library's scripts: a model's, in captions that the body knows, else those of the rules."""
+    """Keyframes without the library: a model's, whose captions the body reads word by word, else those of the rules."""
     moods = moods_of(by_rules, [None] * len(by_rules))
     events = tuple(Event(text=clause.text, emotion=mood) for clause, mood in zip(by_rules, moods, strict=True))
-    keyframes, planner, vocabulary = direct_by_rules(events), _RULES, None
+    keyframes, planner = direct_by_rules(events), _RULES
     if model is not None:
         try:
             written = planning.direct(model, theme)
@@ -246,8 +240,8 @@ def _direct(
             record.failed("keyframes written", error)
         else:
             keyframes = tuple(PlannedKeyframe.model_validate(keyframe.model_dump()) for keyframe in written)
-            planner, vocabulary = f"llm:{model.name}", Vocabulary.built_in(library.encoder)
-    acted, repairs = repair(keyframes, vocabulary=vocabulary)
+            planner = f"llm:{model.name}"
+    acted, repairs = repair(keyframes)
     return LongScript(
         theme=theme,
         events=events,
