@@ -41,7 +41,7 @@ def test_a_film_with_subtitles_becomes_short_scripts_that_stories_can_use(
         assert not begun.scripts
         done = client.wait_extraction(begun.id, timeout=60)
         assert client.extract(
-            video=film, name="An evening", licence="CC0-1.0", add=True, idempotency_key="an-evening"
+            video=film, name="An evening", licence="CC0-1.0", add=True, idempotency_key="evening"
         ).id == (begun.id)
         seen = [event.name for event in client.extraction_events(begun.id)]
         scripts = [ShortScript.model_validate(row) for row in done.scripts]
@@ -73,8 +73,9 @@ def answer_to(asked: Asked) -> Json:
             "room": "living room", "place": "a flat", "summary": "The character sits down.", "characters": [],
             "objects": ["sofa"], "contacts": [], "moments": [moment],
         }  # fmt: skip
-    step = {"skill": "sitdown", "emotion": "tired", "caption": "sitting still", "furniture": "sofa"}
-    words = {"summary": "The character sits down on the sofa.", "emotion": "tired", "room": "living_room"}
+    seat = ("sofa", "armchair")[number - 1]
+    step = {"skill": "sitdown", "emotion": "tired", "caption": "sitting still", "furniture": seat}
+    words = {"summary": f"The character sits down on the {seat}.", "emotion": "tired", "room": "living_room"}
     return {"scripts": [{"scene": number, "start": start, "end": start + 3, "keyframes": [step], **words}]}
 
 
