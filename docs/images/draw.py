@@ -22,7 +22,7 @@ THEME = (
 )
 """The demo's, with the demo's seed."""
 SEED = 7
-SHOWN = (1, 7, 10, 17)
+SHOWN = (1, 7, 10, 16)
 """Keyframes cut out of the storyboard, two in a row."""
 PLAN_OF = "living-room-0016"
 ASKED = ("sofa:lie", "coffee-table", "tv-stand,", "bench:sit", "bookshelf", "wardrobe,", "piano")
