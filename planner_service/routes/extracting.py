@@ -44,6 +44,8 @@ router = APIRouter(prefix="/v1/short-scripts", tags=["extractions"])
 EXTRACT: Final = "/v1/short-scripts/extract"
 AT_ONCE: Final = 24
 """Pieces of a text or of subtitles that the rules read while the caller waits: some seconds."""
+LETTERS_AT_ONCE: Final = 20_000
+"""Letters of them all, whoever reads: a paragraph is one piece however long it is, and a model may fail to read it."""
 ASKED_AT_ONCE: Final = 4
 """The same for a language model: a question each."""
 _YES_NO: Final = {"true": True, "false": False}
@@ -204,11 +206,18 @@ def _of_words(
         if is_film(source):
             raise ExtractionError("it begins as a film does; send a film as `video` of a form")
         words = words_in(source, means)
-    if len(list(pieces_of(words.scenes))) > (AT_ONCE if parts.model is None else ASKED_AT_ONCE):
+    if _is_long(words, by_rules=parts.model is None):
         return accept_extraction(parts, caller, wanted, coming, key)
     with waiting_for_model(parts):
         made = scenes_read(words.scenes, words.notes, _maker(words, source, means), means)
     return keep_extraction(parts, caller, wanted, made, key)
+
+
+def _is_long(words: Words, *, by_rules: bool) -> bool:
+    """Whether reading it would keep the caller waiting."""
+    if sum(len(scene.told) + len(scene.spoken) for scene in words.scenes) > LETTERS_AT_ONCE:
+        return True
+    return len(list(pieces_of(words.scenes))) > (AT_ONCE if by_rules else ASKED_AT_ONCE)
 
 
 def _maker(words: Words, source: Source, means: Means) -> Maker:

@@ -11,6 +11,7 @@ import time
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
+from dataclasses import replace
 from typing import Any
 
 import anyio
@@ -32,6 +33,7 @@ from planner_service.parts import MOST_UPLOADS, Parts
 from planner_service.reporting import extraction_events
 from planner_service.routes import multipart
 from planner_service.routes.multipart import FormReader, title_of
+from planner_service.routes.extracting import LETTERS_AT_ONCE
 from planner_service.scripts.checking import check
 from planner_service.scripts.keyframe import ShortScript
 from planner_service.store.extractions import extraction_request
@@ -200,6 +202,20 @@ def test_a_long_text_waits_for_a_worker_and_cancelling_throws_it_away(app: FastA
 
 
 def test_a_film_is_kept_by_its_content_read_scene_by_scene_and_thrown_away(app: FastAPI, film: bytes) -> None:
+@pytest.mark.parametrize(
+    "model", [None, ScriptedModel(lambda _prompt, _schema: {"scripts": []})], ids=["rules", "model"]
+)
+@pytest.mark.parametrize(("size", "status"), [(LETTERS_AT_ONCE * 4 // 5, 200), (LETTERS_AT_ONCE * 6 // 5, 202)])
+def test_one_giant_paragraph_waits_for_a_worker_though_it_is_one_piece(
+    app: FastAPI, model: LanguageModel | None, size: int, status: int
+) -> None:
+    app.state.parts = replace(parts(app), model=model)
+    said = '"I am so very tired of all this, and of the two of you." '
+    text = f"She sits down on the sofa. {said * (size // len(said))}"
+    answer = post(app, json={"text": text})
+    assert answer.status_code == status, answer.text
+
+
     answer = post(app, files={"video": ("..\\..\\A quiet evening.mp4", film)}, data={"licence": "CC-BY-4.0"})
     assert answer.status_code == 202
     shown = answer.json()
@@ -394,13 +410,14 @@ class FullDisk(io.RawIOBase):
 
 
 def test_files_that_a_full_disk_does_not_let_close_are_thrown_away(tmp_path: Path) -> None:
-    with pytest.raises(OSError, match="No space left"), Uploads(tmp_path).begin() as coming:
+    with Uploads(tmp_path).begin() as coming:
         first, second = (coming.receive(1000) for _ in range(2))
         first.file.close()
         first.file = io.BufferedWriter(FullDisk())
         for one in (first, second):
             one.write(b"held until it is flushed")
-        first.finish()
+        with pytest.raises(OSError, match="No space left"):
+            first.finish()
     assert (first.file.closed, second.file.closed) == (True, True)
     assert list(tmp_path.iterdir()) == []
 
