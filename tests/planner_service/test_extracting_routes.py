@@ -10,8 +10,8 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack
-from pathlib import Path
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import anyio
@@ -32,8 +32,8 @@ from planner_service.llm.scripted import ScriptedModel
 from planner_service.parts import MOST_UPLOADS, Parts
 from planner_service.reporting import extraction_events
 from planner_service.routes import multipart
-from planner_service.routes.multipart import FormReader, title_of
 from planner_service.routes.extracting import LETTERS_AT_ONCE
+from planner_service.routes.multipart import FormReader, title_of
 from planner_service.scripts.checking import check
 from planner_service.scripts.keyframe import ShortScript
 from planner_service.store.extractions import extraction_request
@@ -201,7 +201,6 @@ def test_a_long_text_waits_for_a_worker_and_cancelling_throws_it_away(app: FastA
     assert [event.name for event in extraction_events(Stories(parts(app).engine).get(shown["id"]))] == ["cancelled"]
 
 
-def test_a_film_is_kept_by_its_content_read_scene_by_scene_and_thrown_away(app: FastAPI, film: bytes) -> None:
 @pytest.mark.parametrize(
     "model", [None, ScriptedModel(lambda _prompt, _schema: {"scripts": []})], ids=["rules", "model"]
 )
@@ -216,6 +215,7 @@ def test_one_giant_paragraph_waits_for_a_worker_though_it_is_one_piece(
     assert answer.status_code == status, answer.text
 
 
+def test_a_film_is_kept_by_its_content_read_scene_by_scene_and_thrown_away(app: FastAPI, film: bytes) -> None:
     answer = post(app, files={"video": ("..\\..\\A quiet evening.mp4", film)}, data={"licence": "CC-BY-4.0"})
     assert answer.status_code == 202
     shown = answer.json()
