@@ -17,17 +17,29 @@ _LONG: Final = 60.0
 def embedded_cues(film: Film) -> Subtitles | None:
     """The cues of the film's track of letters, on the clock of its pictures; None where there is none.
 
-    Of several tracks the English one is read, else the one that is shown by default. Subtitles that are pictures are
-    not read. FilmError.
+    Of several tracks with words the English one is read, else the one that is shown by default. Subtitles that are
+    pictures are not read. FilmError.
     """
+    with opened(film.source, film.form) as container:
+        count = len(text_tracks(container))
+    empty: list[str] = []
+    for place in range(count):
+        cues, language = _read(film, place)
+        if cues:
+            without = f"; nothing in: {', '.join(empty)}" if empty else ""
+            notes = (f"{count} tracks of subtitles; read: {language}{without}",) if count > 1 else ()
+            return Subtitles(ordered(cues), "embedded", "utf-8", notes)
+        empty.append(language)
+    return None
+
+
+def _read(film: Film, place: int) -> tuple[list[Cue], str]:
+    """The cues of one of the tracks, counted in the order of `text_tracks`, and its language."""
     error_type = load_av().FFmpegError
     cues: list[Cue] = []
     letters = 0
     with opened(film.source, film.form) as container:
-        tracks = text_tracks(container)
-        if not tracks:
-            return None
-        track = tracks[0]
+        track = text_tracks(container)[place]
         packets = container.demux(track)
         base = float(track.time_base or 0)
         while len(cues) < MOST_CUES and letters < LARGEST:
@@ -45,9 +57,7 @@ def embedded_cues(film: Film) -> Subtitles | None:
                 start = (packet.pts or 0) * base - film.start
                 length = packet.duration * base if packet.duration else 2.0
                 cues += _cues(row.decode("utf-8", errors="replace"), start, start + min(length, _LONG))
-        language = track.language or "no language named"
-        notes = (f"{len(tracks)} tracks of subtitles; read: {language}",) if len(tracks) > 1 else ()
-        return Subtitles(ordered(cues), "embedded", "utf-8", notes)
+        return cues, track.language or "no language named"
 
 
 def _cues(row: str, start: float, end: float) -> list[Cue]:

@@ -37,6 +37,8 @@ class Making:
     size: tuple[int, int] = (WIDTH, HEIGHT)
     subtitles: tuple[tuple[float, float, str], ...] = ()
     texts: str = "mov_text"
+    languages: tuple[str, ...] = ("",)
+    """Of the tracks of subtitles; the last one has the words, the others are empty."""
     sound: float = 0.0
     """Seconds of a tone."""
     sounds: str = "aac"
@@ -88,10 +90,12 @@ def film_of(shots: Sequence[Drawn], making: Making | None = None) -> bytes:
         stream.width, stream.height, stream.pix_fmt = *making.size, "yuvj420p" if "jpeg" in making.codec else "yuv420p"
         stream.codec_context.thread_count = 1
         sound: Any = container.add_stream(making.sounds, rate=16000) if making.sound else None
-        texts: Any = container.add_stream(making.texts) if making.subtitles else None
-        if texts is not None:
+        texts: Any = None
+        for language in making.languages if making.subtitles else ():
+            texts = container.add_stream(making.texts)
             texts.codec_context.subtitle_header = _STYLES
             texts.time_base = texts.codec_context.time_base = Fraction(1, 1000)
+            texts.metadata["language"] = language or "und"
         for number, picture in enumerate(pictures_of(shots, making)):
             frame = av.VideoFrame.from_ndarray(picture, "rgb24")
             frame.pts, frame.time_base = number, Fraction(1, making.rate)

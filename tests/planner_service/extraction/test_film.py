@@ -111,6 +111,16 @@ def test_subtitles_within_a_film_are_read(texts: str) -> None:
     ]
 
 
+@pytest.mark.parametrize("form", ["mp4", "matroska"])
+def test_an_empty_track_does_not_hide_one_with_words(form: str) -> None:
+    texts = "mov_text" if form == "mp4" else "subrip"
+    making = Making(form, subtitles=((0.5, 0.9, "She sits down."),), texts=texts, languages=("eng", "ger", "fre"))
+    found = embedded_cues(opened(film_of([Drawn(1)], making)))
+    assert found is not None
+    assert [cue.text for cue in found.cues] == ["She sits down."]
+    assert found.notes == ("3 tracks of subtitles; read: fre; nothing in: eng, ger",)
+
+
 def test_a_film_without_subtitles_has_none() -> None:
     assert embedded_cues(opened(WHOLE)) is None
 
