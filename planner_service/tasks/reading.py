@@ -22,7 +22,19 @@ _POLITE: Final = re.compile(
     re.IGNORECASE,
 )
 _HAND: Final = re.compile(
-    r"\s*\b(?:with|in|using|by)?\s*(?:the|your|his|her|their|my)?\s*\b(left|right|both)[\s-]hands?\b", re.IGNORECASE
+    r"\s*\b(?:with|in|using|by)?\s*(?:the|your|his|her|their|my)?\s*"
+    r"\b(left|right|both)(?:\s+of)?(?:\s+(?:the|your|his|her|their|my))?[\s-]hands?\b",
+    re.IGNORECASE,
+)
+_OTHER_HAND: Final = re.compile(
+    r"\b(?:with|using|by|in)\s+(?:(?:the|an?|your|his|her|their|my)\s+)?"
+    r"((?!(?:the|an?|your|his|her|their|my|own|bare)\b)\w+[\s-]hands?)\b",
+    re.IGNORECASE,
+)
+_NEGATED: Final = re.compile(
+    r"\b(?:not|never|cannot|nothing|avoid(?:ing)?|no\s+longer|refrain|instead\s+of|rather\s+than|(?:without|no)\s+\w+ing|"
+    r"(?:do|does|did|is|are|was|were|wo|ca|should|must|need|would|could)n['’`]?t)\b",
+    re.IGNORECASE,
 )
 _BREAK: Final = re.compile(r"\s*(?:[,;.!]+\s*|\b(?:and\s+then|then|and|while|after\s+that|afterwards)\b\s*)+", re.I)
 _ORDER: Final = re.compile(r"^(?P<one>.+?),?\s+(?P<word>after|before)\s+(?P<other>.+)$", re.IGNORECASE)
@@ -69,8 +81,11 @@ class Clause:
 
 def clauses(action: str) -> tuple[Clause, ...]:
     """What an instruction asks for, in the order of time. TaskError names what the rules do not know."""
+    action = tidy(action)
+    if fault := misleading(action):
+        raise TaskError(f"action: {fault}")
     found: list[Clause] = []
-    for text in _ordered(tidy(action)):
+    for text in _ordered(action):
         carried = found[-1] if found else None
         clause = clause_of(text)
         if clause is None and carried is not None and carried.thing and not _starts_as_verb(text):
@@ -98,6 +113,15 @@ def tidy(action: str) -> str:
     if not text.isprintable():
         raise TaskError("action: there are control characters in it; write plain text")
     return text
+
+
+def misleading(text: str) -> str | None:
+    """What would be acted wrongly: that something is not to be done, or a hand that is neither left, right nor both."""
+    if found := _NEGATED.search(text):
+        return f"“{found[0]}” says what is not done; say what to do, not what not to do"
+    if other := _OTHER_HAND.search(_HAND.sub("", text)):
+        return f"“{other[1][:40]}” is neither left nor right; say the left hand, the right hand or both hands"
+    return None
 
 
 def clause_of(text: str) -> Clause | None:

@@ -13,7 +13,7 @@ from planner_service.llm.asking import ask
 from planner_service.llm.protocol import LanguageModel
 from planner_service.tasks.deeds import Kind
 from planner_service.tasks.plan import LONGEST_STEP, MOST_STEPS, SubTask
-from planner_service.tasks.reading import clause_of
+from planner_service.tasks.reading import clause_of, misleading
 from planner_service.tasks.surroundings import Surroundings
 
 CATEGORIES: Final = get_args(Category)
@@ -78,6 +78,8 @@ def _faults_of_text(step: TaskStep) -> list[str]:
             found.append(f"{name}: must have {least} to {LONGEST_STEP} letters")
         elif not tidy.isprintable() or re.search(r"[,;<>{}]", tidy):
             found.append(f"{name}: plain words without commas, semicolons or brackets, one thing a step")
+        elif name == "step" and (fault := misleading(tidy)):
+            found.append(f"step: {fault}")
     return found
 
 

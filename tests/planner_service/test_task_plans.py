@@ -175,6 +175,13 @@ def test_steps_are_about_the_furniture_that_is_there_and_those_without_say_so() 
         ("watch\x07TV", "action: there are control characters"),
         ("yodel loudly", "action: rules know no way to “yodel loudly”; they know to walk, .*watch, drink"),
         ("!?", "action: there is nothing to do in it"),
+        ("do not sit on the sofa", "action: “not” says what is not done; say what to do"),
+        ("Don't touch the lamp", "action: “Don't” .* say what to do, not what not to do"),
+        ("walk to the bed and don’t lie down", "action: “don’t”"),
+        ("never watch TV", "action: “never”"),
+        ("watch TV without sitting down", "action: “without sitting”"),
+        ("pick up the cup with the third hand", "action: “third hand”.*say the left hand, the right hand or both"),
+        ("wave with three hands", "action: “three hands”"),
         ("pick up", "action: it does not say what to pick up"),
         ("touch it", "action: “touch” names no furniture"),
         (" then ".join(["sit", "stand up"] * 7), "action: 14 things to do, at most 12"),
@@ -185,6 +192,18 @@ def test_what_rules_do_not_know_is_refused_with_what_they_do(action: str, fault:
     with pytest.raises(TaskError, match=fault):
         plan_task(action)
     assert TaskError in USER_ERRORS
+
+
+@pytest.mark.parametrize(
+    ("action", "hand"),
+    [
+        ("pick up the cup with both of your hands", "both"),
+        ("pick up the cup with her left hand", "left"),
+        ("pick up the cup in your hand", "right"),
+    ],
+)
+def test_hands_that_a_body_has_are_read(action: str, hand: str) -> None:
+    assert plan_task(action).steps[-1].hand == hand
 
 
 @settings(max_examples=30, deadline=None)
