@@ -22,6 +22,7 @@ from planner_service.extraction.of_film import notes_of, read_film_scene, words_
 from planner_service.extraction.of_text import read_piece
 from planner_service.extraction.pieces import Before, PieceRead, joined
 from planner_service.extraction.plain import ExtractionError
+from planner_service.extraction.repeats import told_once
 from planner_service.extraction.results import Means, Source, readers
 from planner_service.extraction.speech import Transcriber
 from planner_service.extraction.text import scenes_of_cues
@@ -130,14 +131,15 @@ class Reader:
         return read_film_scene(one.film, one.pieces.scenes[index], one.maker, one.means, before, one.album)
 
     def gather(self, extraction_id: str) -> None:
-        """All scripts together, kept in the library if that was asked for, all or none. ShelfError, LibraryError."""
+        """All scripts together, each once, kept in the library if asked for, all or none. ShelfError, LibraryError."""
         started, one = time.perf_counter(), self._opened(extraction_id)
         position = FIRST_PIECE + len(one.pieces)
-        whole = joined(one.done(len(one.pieces)))
-        scripts = [draft.script for draft in whole.drafts]
+        once = told_once(joined(one.done(len(one.pieces))), one.maker.encoder)
+        scripts = [draft.script for draft in once.read.drafts]
 
         def store(gathered: Gathered, add: Callable[[Connection], None]) -> None:
-            summary = gathered_to_dict(gathered, readers(whole.scenes))
+            summary = gathered_to_dict(gathered, readers(once.read.scenes))
+            summary |= {"repeats": dict(once.repeats), "notes": once.notes}
             self._record(one, "gathered", position, b"{}", summary, None, DONE["gather"], started, add)
 
         keep_all(self.shelves, scripts if one.request.add else [], one.request.name, store)

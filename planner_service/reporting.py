@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from datetime import UTC, datetime
 from typing import Any
 
+from planner_service.extraction.repeats import stood_for
 from planner_service.presenting import SLOTS, STOPPED, StoryEvent, failure_of
 from planner_service.store.jobs import State, state_of
 from planner_service.store.stories import Record
@@ -36,8 +37,11 @@ def extraction_summary(record: Record) -> Json:
 
 
 def extraction_shown(record: Record) -> Json:
-    """An extraction as far as it is made: scripts and scenes of all pieces that were read."""
-    made: Json = {"scene_count": None, "by": None, "added": [], "renamed": {}}
+    """An extraction as far as it is made: scripts and scenes of all pieces that were read.
+
+    Scripts that say the same again are left out when all are gathered.
+    """
+    made: Json = {"scene_count": None, "by": None, "added": [], "renamed": {}, "repeats": {}}
     notes: list[str] = []
     drafts: list[Json] = []
     scenes: list[Json] = []
@@ -48,10 +52,13 @@ def extraction_shown(record: Record) -> Json:
             scenes += artifact.summary["scenes"]
         else:
             made |= {name: artifact.summary[name] for name in made if name in artifact.summary}
-    renamed = made.pop("renamed")
+    renamed, repeats = made.pop("renamed"), made.pop("repeats")
     made["by"] = made["by"] or ", ".join(dict.fromkeys(scene["by"] for scene in scenes)) or None
     return extraction_summary(record) | made | {
-        "scenes": [scene | {"scripts": [renamed.get(one, one) for one in scene["scripts"]]} for scene in scenes],
+        "scenes": [
+            scene | {"scripts": [renamed.get(one, one) for one in stood_for(scene["scripts"], repeats)]}
+            for scene in scenes
+        ],
         "scripts": [
             {
                 "short_script": draft["script"] | {"id": renamed.get(draft["script"]["id"], draft["script"]["id"])},
@@ -59,6 +66,7 @@ def extraction_shown(record: Record) -> Json:
                 "like": draft["like"] or None,
             }
             for draft in drafts
+            if draft["script"]["id"] not in repeats
         ],
         "notes": notes,
     }  # fmt: skip

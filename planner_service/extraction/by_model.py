@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 import prompts
 from motion_backend.motion import Skill
 from planner_service.extraction.making import Draft, Maker, Span
+from planner_service.extraction.portions import LONGEST_PIECE, shown
 from planner_service.extraction.text import TextScene
 from planner_service.llm.answers import problems_of
 from planner_service.llm.asking import ask
@@ -22,8 +23,6 @@ from planner_service.scripts.planning import DirectKeyframe
 from planner_service.scripts.voice import Voice, retell
 from scene_graphs.furniture import ROOM_TYPES, canonical_room
 
-LONGEST_PIECE: Final = 6000
-"""Letters of a text that one question shows."""
 _MOST_SCENES: Final = 8
 """Scenes of one question."""
 _MOST_SCRIPTS: Final = 12
@@ -52,11 +51,11 @@ class FoundScripts(BaseModel):
 
 
 def pieces_of(scenes: Sequence[TextScene]) -> Iterator[Numbered]:
-    """Scenes by number, as many as one question holds. A longer scene is a question of its own, cut at its end."""
+    """Scenes by number, as many as one question holds. A longer scene is a piece of its own."""
     piece: dict[int, TextScene] = {}
     letters = 0
     for number, scene in enumerate(scenes, start=1):
-        size = len(scene.told) + len(scene.spoken)
+        size = len(shown(scene))
         if piece and (letters + size > LONGEST_PIECE or len(piece) == _MOST_SCENES):
             yield piece
             piece, letters = {}, 0
@@ -71,7 +70,7 @@ def ask_for_scripts(model: LanguageModel, scenes: Numbered, maker: Maker) -> dic
     prompt = prompts.render(
         "extract_scripts",
         name=maker.name,
-        scenes="\n\n".join(f"[{number}] {_shown(scene)}" for number, scene in scenes.items()),
+        scenes="\n\n".join(f"[{number}] {shown(scene)[:LONGEST_PIECE]}" for number, scene in scenes.items()),
         skills=", ".join(Skill),
         emotions=", ".join(EMOTIONS),
         rooms=", ".join(ROOM_TYPES),
@@ -100,10 +99,11 @@ def draft_of(found: FoundScript, span: Span, maker: Maker, model: str) -> Draft:
     )
 
 
-def _shown(scene: TextScene) -> str:
-    """A scene as the model sees it: where, what is told, and what is said in quotation marks, in its order."""
-    words = " ".join(f'"{line.text}"' if line.spoken else line.text for line in scene.lines)
-    return f"{scene.place + ': ' if scene.place else ''}{words}"[:LONGEST_PIECE]
+def unread(scenes: Numbered) -> Iterator[str]:
+    """What a question leaves out of scenes that nobody cut into portions."""
+    for number, scene in scenes.items():
+        if (letters := len(shown(scene))) > LONGEST_PIECE:
+            yield f"scene {number}: only its first {LONGEST_PIECE} of {letters} letters were read"
 
 
 def _problems(answer: FoundScripts, scenes: Numbered) -> list[str]:

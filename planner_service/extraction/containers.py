@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
@@ -29,6 +30,7 @@ _MOST_TRACKS: Final = 32
 _PROBED: Final = 5_000_000
 """Bytes that are looked at to find out what the tracks are."""
 _ATOMS: Final = (b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip", b"pnot")
+_PICTURES: Final = re.compile(rb"\A[^\n]*%\d{0,2}d[^\s]*\.[a-z]{3,4}[ \t\r]*(?:\n|\Z)", re.IGNORECASE)
 _OTHERS: Final = (
     (b"#EXTM3U", "a playlist (HLS), which names other files"),
     (b"ffconcat", "a list of files for FFmpeg"),
@@ -73,10 +75,15 @@ def checked_container(head: bytes) -> str:
         raise FilmError(f"film: the file is empty; give {READ}")
     text = head.lstrip(b"\xef\xbb\xbf \t\r\n")
     told = next((what for sign, what in _OTHERS if text.startswith(sign)), None)
-    if told is None and b"%0" in head[:200] and head[:64].isascii():
+    if told is None and names_pictures(head):
         told = "a pattern of picture files"
     seems = f"it is {told}" if told else "its first bytes are those of no container that is read"
     raise FilmError(f"film: {seems}; give the film itself as {READ}")
+
+
+def names_pictures(head: bytes) -> bool:
+    """Whether a file begins with a name that counts pictures, as "frames/img%03d.png" does."""
+    return _PICTURES.match(head.lstrip(b"\xef\xbb\xbf \t\r\n")[:400]) is not None
 
 
 @contextmanager

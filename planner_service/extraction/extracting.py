@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from planner_service.extraction.containers import checked_container, container_of
+from planner_service.extraction.containers import checked_container, container_of, names_pictures
 from planner_service.extraction.making import Maker
 from planner_service.extraction.of_text import refuse_other_languages, scenes_read
 from planner_service.extraction.plain import MOST_BYTES, first_bytes, read_text
+from planner_service.extraction.portions import portions_of
 from planner_service.extraction.results import Extraction, Means, Source
 from planner_service.extraction.subtitles import LARGEST, form_of, read_subtitles
 from planner_service.extraction.text import TextScene, scenes_of_cues, scenes_of_text
@@ -57,13 +58,21 @@ def is_film(source: Source) -> bool:
     head = first_bytes(source.file, source.name, _HEAD)
     if container_of(head) is not None:
         return True
-    if head.lstrip(b"\xef\xbb\xbf \t\r\n").lower().startswith(_NAMING_OTHERS):
+    if names_pictures(head) or head.lstrip(b"\xef\xbb\xbf \t\r\n").lower().startswith(_NAMING_OTHERS):
         checked_container(head)
     return False
 
 
 def words_in(source: Source, means: Means) -> Words:
-    """The scenes of what is no film. ExtractionError, SubtitleError."""
+    """The scenes of what is no film, for a model in portions that a question holds. ExtractionError, SubtitleError."""
+    words = _words_in(source, means)
+    if means.model is None:
+        return words
+    scenes, notes = portions_of(words.scenes)
+    return Words(scenes, (*words.notes, *notes), words.kind)
+
+
+def _words_in(source: Source, means: Means) -> Words:
     data = first_bytes(source.file, source.name, LARGEST + 1)
     if form_of(data[:_HEAD].decode("utf-8", "ignore").replace("\0", "")) is not None:
         return _of_subtitles(source, data, means)

@@ -11,6 +11,7 @@ from planner_service.extraction.of_text import read_by_rules, refuse_other_langu
 from planner_service.extraction.pieces import Before, PieceRead, joined
 from planner_service.extraction.plain import ExtractionError, first_bytes
 from planner_service.extraction.reading import SceneRead
+from planner_service.extraction.repeats import told_once
 from planner_service.extraction.results import Extraction, Means, Source, readers, report_of
 from planner_service.extraction.speech import hear
 from planner_service.extraction.subtitles import LARGEST, Subtitles, read_subtitles
@@ -36,7 +37,7 @@ def extract_film(source: Source, means: Means) -> Extraction:
         scenes = scenes_of(film, cues, means.progress, album)
         for watched in watch_film(means.model, film, scenes, maker, means.strict, means.progress, album):
             read.append(_told(watched, maker, read[-1].after if read else Before(), f"llm:{means.model.name}"))
-    whole = joined(read)
+    whole = told_once(joined(read), maker.encoder).read
     return Extraction(whole.drafts, whole.scenes, (*notes, *whole.notes, *film.notes), readers(whole.scenes))
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from planner_service.extraction.by_model import Numbered, ask_for_scripts, pieces_of
+from planner_service.extraction.by_model import Numbered, ask_for_scripts, pieces_of, unread
 from planner_service.extraction.making import RULES, Draft, Maker
 from planner_service.extraction.pieces import Before, PieceRead, joined
 from planner_service.extraction.plain import ENGLISH, ExtractionError, language_of
 from planner_service.extraction.reading import SceneRead, read_scene
+from planner_service.extraction.repeats import told_once
 from planner_service.extraction.results import Extraction, Means, SceneReport, readers, report_of
 from planner_service.extraction.text import TextScene
 from planner_service.llm.protocol import ModelError
@@ -27,7 +28,7 @@ def scenes_read(scenes: Sequence[TextScene], notes: Sequence[str], maker: Maker,
         read.append(read_piece(piece, maker, means, read[-1].after if read else Before()))
         if means.progress is not None:
             means.progress("reading", read[-1].after.scenes / len(scenes))
-    whole = joined(read)
+    whole = told_once(joined(read), maker.encoder).read
     return Extraction(whole.drafts, whole.scenes, (*notes, *whole.notes), readers(whole.scenes))
 
 
@@ -41,6 +42,7 @@ def read_piece(piece: Numbered, maker: Maker, means: Means, before: Before) -> P
     if means.model is not None and failures < _MOST_FAILURES:
         try:
             found = ask_for_scripts(for_story(means.model, min(piece)) or means.model, piece, maker)
+            notes += unread(piece)
         except ModelError as error:
             if means.strict:
                 raise

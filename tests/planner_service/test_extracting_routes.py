@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import io
+import json
 import os
 import socket
 import sys
@@ -257,8 +258,9 @@ def watching(prompt: str, schema: type[BaseModel]) -> Json:
             "room": "living room", "place": "a flat", "summary": "The character sits down.", "characters": [],
             "objects": ["sofa"], "contacts": [], "moments": [moment],
         }  # fmt: skip
-    step = {"skill": "sitdown", "emotion": "tired", "caption": "sitting still", "furniture": "sofa"}
-    words = {"summary": "The character sits down on the sofa.", "emotion": "tired", "room": "living_room"}
+    seat = ("sofa", "armchair")[number - 1]
+    step = {"skill": "sitdown", "emotion": "tired", "caption": "sitting still", "furniture": seat}
+    words = {"summary": f"The character sits down on the {seat}.", "emotion": "tired", "room": "living_room"}
     return {"scripts": [{"scene": number, "start": start, "end": start + 3, "keyframes": [step], **words}]}
 
 
@@ -283,6 +285,21 @@ def test_an_extraction_that_was_interrupted_goes_on_without_asking_again(app: Fa
     spans = [(script.origin.start, script.origin.end) for script in scripts_in(one) if script.origin]
     assert spans == [(0.0, 3.0), (7.0, 10.0)]
     assert kept(app) == []
+
+
+def test_what_two_scenes_tell_is_kept_once_and_stands_for_both(app: FastAPI, film: bytes) -> None:
+    shown = post(app, files={"video": film}, data={"add": "true"}).json()
+
+    def the_same(prompt: str, schema: type[BaseModel]) -> Json:
+        answer: Json = json.loads(json.dumps(watching(prompt, schema)).replace("armchair", "sofa"))
+        return answer
+
+    work(reader(app, ScriptedModel(the_same)), shown["id"])
+    done = ask(app, "GET", shown["links"]["self"]).json()
+    (script,) = scripts_in(done)
+    assert [scene["scripts"] for scene in done["scenes"]] == [[script.id], [script.id]]
+    assert done["added"] == [script.id]
+    assert done["notes"][-1] == "1 script said the same again"
 
 
 def test_a_worker_that_does_not_have_the_film_says_what_must_be_shared(

@@ -16,8 +16,13 @@ from stories import GERMAN, NARRATIVE, SCREENPLAY, SUBTITLES
 from motion_backend.language.text import HashingEncoder
 from planner_service.extraction.containers import FilmError
 from planner_service.extraction.extracting import extract
+from planner_service.extraction.making import Maker
+from planner_service.extraction.of_text import read_piece
+from planner_service.extraction.pieces import Before
 from planner_service.extraction.plain import ExtractionError
+from planner_service.extraction.portions import LONGEST_PIECE, portions_of, shown
 from planner_service.extraction.results import Extraction, Means, Source
+from planner_service.extraction.text import Line, TextScene
 from planner_service.llm.asking import ModelAnswerError
 from planner_service.llm.protocol import ModelError
 from planner_service.llm.scripted import Answer, ScriptedModel
@@ -174,8 +179,10 @@ def test_another_language_is_answered_clearly_and_passed_on_to_a_model() -> None
         (b"<?xml version='1.0'?><MPD></MPD>", "perhaps a playlist"),
         (b"ffconcat version 1.0\nfile /etc/passwd\n", "a list of files"),
         (b"42 :-)", "no word in it"),
+        (b"frame%05d.png", "a pattern of picture files"),
+        (b"\n/my films/img%d.JPEG\n", "a pattern of picture files"),
     ],
-    ids=["empty", "binary", "playlist", "dash", "concat", "no word"],
+    ids=["empty", "binary", "playlist", "dash", "concat", "no word", "pictures", "pictures-in-a-folder"],
 )
 def test_what_is_neither_text_nor_subtitles_nor_film_is_refused_in_one_line(data: bytes, why: str) -> None:
     with pytest.raises((ExtractionError, FilmError), match=why) as caught:
@@ -234,7 +241,69 @@ def test_a_model_that_is_down_is_asked_no_more_than_a_few_times() -> None:
     made = taken_out("\n\n".join([NARRATIVE] * 12), model=model)
     assert len(model.calls) == 3
     assert made.by == "rules"
-    assert made.notes[-1] == "the model is not asked any more; the rest is read by rules"
+    assert "the model is not asked any more; the rest is read by rules" in made.notes
+
+
+def test_what_a_model_says_twelve_times_is_kept_once_and_another_mood_is_another_script() -> None:
+    calm = {**FOUND, "emotion": "calm", "summary": "The character comes home calm and sinks onto the sofa."}
+    calm["keyframes"] = [{**SIT, "emotion": "calm"}]
+    made = taken_out(NARRATIVE, model=answering(*[FOUND] * 11, calm))
+    assert summaries(made) == [FOUND["summary"], calm["summary"]]
+    assert made.scenes[0].scripts == tuple(draft.script.id for draft in made.scripts)
+    assert made.notes == ("10 scripts said the same again",)
+
+
+def test_a_text_that_repeats_itself_gives_each_script_once() -> None:
+    made = taken_out("Anna comes home, tired, and slumps onto the sofa in the living room.\n\n" * 40)
+    (only,) = made.scripts
+    assert len(made.scenes) == 40
+    assert {scene.scripts for scene in made.scenes} == {(only.script.id,)}
+    assert made.notes == ("39 scripts said the same again",)
+
+
+def test_a_text_may_speak_of_percent_and_pictures() -> None:
+    assert taken_out("She is 100% done. She sits down on the sofa. It is frame%05d.png, she reads.").scripts
+
+
+LONG = st.lists(
+    st.builds(
+        Line,
+        st.lists(
+            st.sampled_from(["She sits down. ", "“No!” ", "and ", "x" * 700, "她坐下。"]), min_size=1, max_size=900
+        )
+        .map("".join)
+        .map(str.strip),
+        st.booleans(),
+    ),
+    min_size=1,
+    max_size=5,
+)
+
+
+@settings(max_examples=30, deadline=None)
+@given(LONG, st.sampled_from(["", "INT. KITCHEN"]))
+def test_long_scenes_are_cut_without_losing_a_letter(lines: list[Line], place: str) -> None:
+    scene = TextScene(tuple(lines), place)
+    portions, notes = portions_of((scene,))
+    assert all(len(shown(portion)) <= LONGEST_PIECE and portion.place == place for portion in portions)
+    kept = "".join(line.text for portion in portions for line in portion.lines)
+    assert "".join(kept.split()) == "".join("".join(line.text for line in lines).split())
+    assert bool(notes) == (len(portions) > 1) == (len(shown(scene)) > LONGEST_PIECE)
+
+
+def test_a_model_is_shown_all_of_a_long_paragraph() -> None:
+    model = answering()
+    made = taken_out(" ".join(f"She sits down on sofa {number}." for number in range(1000)), model=model)
+    shown_to_it = " ".join(call.prompt for call in model.calls)
+    assert all(f"sofa {number}." in shown_to_it for number in range(1000))
+    assert made.notes == ("scenes 1 to 5: are one of 26,889 letters, cut where sentences end",)
+
+
+def test_what_a_question_cannot_hold_is_told() -> None:
+    scene = TextScene((Line("She sits down. " * 1000),))
+    means = Means(LIBRARY, answering())
+    read = read_piece({3: scene}, Maker("a text", LIBRARY), means, Before())
+    assert read.notes == ("scene 3: only its first 6000 of 15000 letters were read",)
 
 
 def test_orders_in_a_text_stay_material() -> None:
