@@ -47,9 +47,7 @@ def story(
         typer.Option(help="A layout file, or the id of a built-in layout; may be given up to 4 times."),
     ] = None,
     backend: Annotated[str | None, typer.Option(help="What moves the body: procedural.")] = None,
-    name: Annotated[
-        str, typer.Option(help="The character's name; left out: the theme's own, else Sam.")
-    ] = "Sam",
+    name: Annotated[str, typer.Option(help="The character's name; left out: the theme's own, else Sam.")] = "Sam",
     pronouns: Annotated[str, typer.Option(help="he, she or they; left out: as in the theme.")] = "they",
     height: Annotated[float, typer.Option(help="The character's height in metres, 1.2 to 2.2.")] = 1.70,
 ) -> None:
