@@ -65,12 +65,12 @@ serve: $(READY) page
 demo: $(READY)
 	@$(BIN)/sims story "$(THEME)" --out $(OUT) --seed 7
 
-# Two files at a time; but the running service and the page have the machine to themselves.
-ALONE = $(shell grep -lw RunningService tests/integration/*.py) tests/web
+# Two files at a time; those that run a whole service after the others, so that each has a core of its own.
+SERVICES = $(shell grep -lw RunningService tests/integration/*.py) tests/web
 test: $(READY_DEV) page $(NODE_TESTS)
 	@if $(NODE_20); then npm test --silent --prefix web; fi
-	@$(BIN)/python -m pytest --numprocesses 2 --dist loadfile $(addprefix --ignore=,$(ALONE))
-	@$(BIN)/python -m pytest $(ALONE)
+	@$(BIN)/python -m pytest --numprocesses 2 --dist loadfile $(addprefix --ignore=,$(SERVICES))
+	@$(BIN)/python -m pytest --numprocesses 2 --dist loadfile $(SERVICES)
 
 lint: $(READY_DEV) web/node_modules/.ready
 	@$(BIN)/ruff check .

@@ -148,7 +148,9 @@ def test_a_worker_keeps_its_name_when_its_connections_are_cut(fragile_postgres: 
         finished(client, post(client).json()["id"])
         name = postgres_url.rpartition("/")[2].partition("?")[0]
         with psycopg.connect(postgres_url, autocommit=True) as connection:
-            before = holders(connection, name)
+            deadline = time.monotonic() + 15
+            while not (before := holders(connection, name)) and time.monotonic() < deadline:
+                time.sleep(0.1)  # the database may have come back just now
             others = "FROM pg_stat_activity WHERE datname = %s AND pid <> pg_backend_pid()"
             connection.execute(f"SELECT pg_terminate_backend(pid) {others}", [name])
             deadline = time.monotonic() + 15
