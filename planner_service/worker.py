@@ -28,6 +28,8 @@ from scene_graphs.packed_library import compile_search
 
 POLL: Final = 0.15
 """Seconds between two looks into the queue: an idle worker costs little, and a story starts at once."""
+RARELY: Final = 1.0
+"""The same for films, which take longer than that to read: two queues looked into so often slowed the service."""
 KEEP: Final = 3.0
 """Seconds between two looks at whether this worker's name is still its own."""
 log = structlog.get_logger("sims.worker")
@@ -71,8 +73,8 @@ def run_worker(settings: Settings, supervised: bool = False) -> None:
     if not _wait_for(engine, stop):
         os._exit(0)
     DBOS.launch()
-    for queue in (QUEUE, EXTRACTIONS):
-        DBOS.register_queue(queue, worker_concurrency=1, polling_interval_sec=POLL)
+    for queue, poll in ((QUEUE, POLL), (EXTRACTIONS, RARELY)):
+        DBOS.register_queue(queue, worker_concurrency=1, polling_interval_sec=poll)
     log.info("worker ready", worker=settings.worker_id, pid=os.getpid())
     while not stop.wait(KEEP):
         if not hold.keep():

@@ -69,7 +69,7 @@ def _table(figures: Sequence[Figure]) -> Table:
         parts = {"all": figure.all, "tune": figure.tune, "held_out": figure.held_out}
         judged = figure.judged if figure.limit is not None else ""
         cells = [f"{'*' if part == judged else ''}{value:.1%}" for part, value in parts.items()]
-        sense = {"least": "≥", "below": "<"}[figure.sense]
+        sense = {"least": "≥", "below": "<", "most": "≤"}[figure.sense]
         limit = "" if figure.limit is None else f"{sense} {figure.limit:.1%}"
         table.add_row(figure.name, *cells, limit, "missed" if figure.missed else "")
     return table

@@ -22,7 +22,7 @@ class Figure:
     held_out: float
     limit: float | None = None
     """None where it is only told."""
-    sense: Literal["least", "below"] = "least"
+    sense: Literal["least", "below", "most"] = "least"
     judged: Part = "all"
     """Which of the three the limit is for."""
 
@@ -32,7 +32,7 @@ class Figure:
         value: float = getattr(self, self.judged)
         if self.limit is None:
             return False
-        return value < self.limit if self.sense == "least" else value >= self.limit
+        return {"least": value < self.limit, "below": value >= self.limit, "most": value > self.limit}[self.sense]
 
 
 @dataclass(frozen=True)

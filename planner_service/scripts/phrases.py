@@ -293,15 +293,3 @@ TOUCHES_DOING: Final[dict[str, tuple[str, ...]]] = {
     "rotate with the right hand": ("turn something round on {the} with {hand}",),
 }
 """By caption, where it says what is done."""
-
-MOODS: Final[dict[str, tuple[str, ...]]] = {
-    "happy": ("beaming", "full of joy", "light at heart", "glowing"),
-    "angry": ("still fuming", "white with anger", "jaw set"),
-    "hurried": ("with no time to lose", "short of breath", "in a great hurry"),
-    "tired": ("heavy-limbed", "half asleep", "yawning"),
-    "sad": ("heavy at heart", "close to tears", "lost in sorrow"),
-    "stressed": ("tense", "on edge", "with a knot in the stomach"),
-    "drunk": ("none too steady", "with swimming eyes", "far from sober"),
-    "relaxed": ("at ease", "in no hurry at all", "quite content"),
-}
-"""Words about the body's mood that may open a sentence before its subject."""
