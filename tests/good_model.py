@@ -46,3 +46,19 @@ def chosen_in(prompt: str) -> dict[int, str]:
         offered = re.findall(r"^  ([a-z0-9-]+) \[", block, flags=re.MULTILINE)
         chosen[int(block.split(":")[0])] = [script for script in offered if script not in chosen.values()][-1]
     return chosen
+
+
+def seen_in(prompt: str) -> dict[str, Any]:
+    """What a good model says of the two scenes of a film, one before and one after the seventh second."""
+    number = 1 if "watch scene 1 of" in prompt or '{"scene": 1,' in prompt else 2
+    start = 7.0 * (number - 1)
+    if "You watch scene" in prompt:
+        moment = {"time": start + 1, "who": "Ann", "what": "sits down on the sofa", "emotion": "tired"}
+        return {
+            "room": "living room", "place": "a flat", "summary": "The character sits down.", "characters": [],
+            "objects": ["sofa"], "contacts": [], "moments": [moment],
+        }  # fmt: skip
+    seat = ("sofa", "armchair")[number - 1]
+    step = {"skill": "sitdown", "emotion": "tired", "caption": "sitting still", "furniture": seat}
+    words = {"summary": f"The character sits down on the {seat}.", "emotion": "tired", "room": "living_room"}
+    return {"scripts": [{"scene": number, "start": start, "end": start + 3, "keyframes": [step], **words}]}

@@ -54,7 +54,7 @@ def watch(model: LanguageModel, film: Film, scene: Scene, album: Album | None = 
         rooms=", ".join(ROOM_TYPES),
         furniture=furniture_offered(),
         film=film.name,
-        subtitles=_said(scene.cues) or "(nothing)",
+        subtitles=_said(scene.cues)[:_MOST_SAID] or "(nothing)",
     )
     images = [frame.jpeg for frame in frames]
     answer = ask(model, prompt, SceneAnswer, lambda seen: problems_in(seen, scene), images=images)
@@ -86,7 +86,7 @@ def watch_film(
             try:
                 outline = watch(own, film, scene, album)
                 drafts = scripts_of(own, outline, maker)
-                notes, wrong = outline.notes, 0
+                notes, wrong = (*outline.notes, *_unshown(scene)), 0
             except ModelError as error:
                 if strict:
                     raise
@@ -99,10 +99,18 @@ def watch_film(
             progress("watching", done / len(scenes))
 
 
+def _unshown(scene: Scene) -> tuple[str, ...]:
+    """A note where more is said in a scene than the model was shown."""
+    letters = len(_said(scene.cues))
+    if letters <= _MOST_SAID:
+        return ()
+    return (f"scene {scene.number}: only the first {_MOST_SAID} of {letters} letters of what is said were shown",)
+
+
 def _said(cues: Sequence[Cue]) -> str:
-    """What is said, a line a cue, with times and names; cut where it is too long."""
+    """What is said, a line a cue, with times and names."""
     lines = []
     for cue in cues:
         sounds = "".join(f" [{sound}]" for sound in cue.sounds)
         lines.append(f"{cue.start:.1f}–{cue.end:.1f} {cue.speaker + ': ' if cue.speaker else ''}{cue.text}{sounds}")
-    return "\n".join(lines)[:_MOST_SAID]
+    return "\n".join(lines)

@@ -8,9 +8,9 @@ import os
 import signal
 import sys
 from pathlib import Path
-from typing import Any
 
 import pytest
+from good_model import seen_in
 from model_server import Asked, ModelServer, Sent, chat
 from running import RunningService
 
@@ -21,7 +21,6 @@ from planner_service.scripts.keyframe import ShortScript
 sys.path.append(str(Path(__file__).parents[1] / "planner_service" / "extraction"))
 from film_made import Drawn, Making, film_of
 
-Json = dict[str, Any]
 CUES = ((0.5, 1.5, "She storms through the room."), (8.0, 9.5, "He lies down on the bed."))
 KEY = "sk-test-0123456789abcdef"
 
@@ -63,22 +62,6 @@ def test_a_film_with_subtitles_becomes_short_scripts_that_stories_can_use(
     assert list((service.folder / "uploads").iterdir()) == []
 
 
-def answer_to(asked: Asked) -> Json:
-    """What a good vision model says of either scene."""
-    number = 1 if "watch scene 1 of" in asked.prompt or '{"scene": 1,' in asked.prompt else 2
-    start = 7.0 * (number - 1)
-    if "You watch scene" in asked.prompt:
-        moment = {"time": start + 1, "who": "Ann", "what": "sits down on the sofa", "emotion": "tired"}
-        return {
-            "room": "living room", "place": "a flat", "summary": "The character sits down.", "characters": [],
-            "objects": ["sofa"], "contacts": [], "moments": [moment],
-        }  # fmt: skip
-    seat = ("sofa", "armchair")[number - 1]
-    step = {"skill": "sitdown", "emotion": "tired", "caption": "sitting still", "furniture": seat}
-    words = {"summary": f"The character sits down on the {seat}.", "emotion": "tired", "room": "living_room"}
-    return {"scripts": [{"scene": number, "start": start, "end": start + 3, "keyframes": [step], **words}]}
-
-
 def test_a_worker_that_is_killed_goes_on_and_asks_about_no_scene_twice(film: bytes, tmp_path: Path) -> None:
     """It is killed while the model looks at the second scene."""
     killed: list[int] = []
@@ -87,7 +70,7 @@ def test_a_worker_that_is_killed_goes_on_and_asks_about_no_scene_twice(film: byt
         if "watch scene 2 of" in asked.prompt and not killed:
             killed.extend(service.worker_pids())
             os.kill(killed[0], signal.SIGKILL)
-        return chat(json.dumps(answer_to(asked)), asked.path)
+        return chat(json.dumps(seen_in(asked.prompt)), asked.path)
 
     with ModelServer(behave) as server:
         given = {"LLM_MODEL": "openai:gpt-x", "LLM_BASE_URL": server.url, "LLM_API_KEY": KEY, "LLM_CACHE_MB": "0"}

@@ -43,6 +43,7 @@ from planner_service.uploads import KEPT, Receiving, Uploads
 
 sys.path.append(str(Path(__file__).parent / "extraction"))
 from film_made import Drawn, Making, film_of, sound_alone
+from good_model import seen_in
 from stories import GERMAN, NARRATIVE, SUBTITLES
 
 Json = dict[str, Any]
@@ -248,33 +249,17 @@ def test_subtitles_beside_a_film_come_before_those_in_it(app: FastAPI, film: byt
     assert script.keyframes[-1].skill == "sitdown"
 
 
-def watching(prompt: str, schema: type[BaseModel]) -> Json:
-    """What a good model says of the two scenes of the film, one before and one after the seventh second."""
-    number = 1 if "watch scene 1 of" in prompt or '{"scene": 1,' in prompt else 2
-    start = 7.0 * (number - 1)
-    if schema.__name__ == "SceneAnswer":
-        moment = {"time": start + 1, "who": "Ann", "what": "sits down on the sofa", "emotion": "tired"}
-        return {
-            "room": "living room", "place": "a flat", "summary": "The character sits down.", "characters": [],
-            "objects": ["sofa"], "contacts": [], "moments": [moment],
-        }  # fmt: skip
-    seat = ("sofa", "armchair")[number - 1]
-    step = {"skill": "sitdown", "emotion": "tired", "caption": "sitting still", "furniture": seat}
-    words = {"summary": f"The character sits down on the {seat}.", "emotion": "tired", "room": "living_room"}
-    return {"scripts": [{"scene": number, "start": start, "end": start + 3, "keyframes": [step], **words}]}
-
-
 def test_an_extraction_that_was_interrupted_goes_on_without_asking_again(app: FastAPI, film: bytes) -> None:
     whole, halved = (post(app, files={"video": film}).json() for _ in range(2))
-    work(reader(app, ScriptedModel(watching)), whole["id"])
-    before = ScriptedModel(watching)
+    work(reader(app, ScriptedModel(lambda prompt, _: seen_in(prompt))), whole["id"])
+    before = ScriptedModel(lambda prompt, _: seen_in(prompt))
     desk = reader(app, before)
     desk.begin(halved["id"])
     desk.listen(halved["id"])
     assert desk.cut(halved["id"]) == 2
     desk.read(halved["id"], 0)
     desk.open[halved["id"]].close()
-    after = ScriptedModel(watching)
+    after = ScriptedModel(lambda prompt, _: seen_in(prompt))
     work(reader(app, after), halved["id"])
     assert ([call.schema for call in before.calls], [call.schema for call in after.calls]) == (
         ["SceneAnswer", "FilmedScripts"], ["SceneAnswer", "FilmedScripts"],
@@ -290,8 +275,8 @@ def test_an_extraction_that_was_interrupted_goes_on_without_asking_again(app: Fa
 def test_what_two_scenes_tell_is_kept_once_and_stands_for_both(app: FastAPI, film: bytes) -> None:
     shown = post(app, files={"video": film}, data={"add": "true"}).json()
 
-    def the_same(prompt: str, schema: type[BaseModel]) -> Json:
-        answer: Json = json.loads(json.dumps(watching(prompt, schema)).replace("armchair", "sofa"))
+    def the_same(prompt: str, _schema: type[BaseModel]) -> Json:
+        answer: Json = json.loads(json.dumps(seen_in(prompt)).replace("armchair", "sofa"))
         return answer
 
     work(reader(app, ScriptedModel(the_same)), shown["id"])

@@ -5,36 +5,13 @@ from __future__ import annotations
 import contextlib
 import io
 import os
-import re
-import shlex
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from forking import Forked
+from guides import BLOCK, said_as, typed
 
 GUIDE = Path(__file__).resolve().parents[2] / "docs" / "rooms.md"
-BLOCK = re.compile(r"^```(\w+) ?([\w.]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-
-
-def as_pattern(shown: list[str]) -> str:
-    """A line of … stands for any lines, … within a line for anything on it."""
-    return "".join(
-        "(?:.*\n)*?" if line.strip() == "…" else ".*".join(map(re.escape, line.rstrip().split("…"))) + "\n"
-        for line in shown
-    )
-
-
-def said_as(shown: list[str], printed: str) -> None:
-    bare = "".join(f"{line.rstrip()}\n" for line in printed.splitlines())
-    assert re.fullmatch(as_pattern(shown), bare), "shown:\n" + "\n".join(shown) + f"\nprinted:\n{bare}"
-
-
-def commands(block: str) -> Iterator[tuple[list[str], list[str]]]:
-    """The words of each command of a block after `sims`, and the lines shown for it."""
-    for one in re.split(r"^\$ sims ", block, flags=re.MULTILINE)[1:]:
-        command, *shown = one.splitlines()
-        yield shlex.split(command), shown
 
 
 def test_the_guide_to_rooms_is_true(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -54,8 +31,9 @@ def test_the_guide_to_rooms_is_true(tmp_path: Path, monkeypatch: pytest.MonkeyPa
                 printed = stream.getvalue()
             elif kind == "text":
                 said_as(block.splitlines(), printed)
-            for words, shown in commands(block) if kind == "console" else ():
-                code, out, error = forked.run(words, tmp_path, environment)
+            for words, shown in typed(block) if kind == "console" else ():
+                assert words[0] == "sims"
+                code, out, error = forked.run(words[1:], tmp_path, environment)
                 assert code == 0, error.decode()
                 said_as(shown, out.decode())
     assert {*met} == {"python", "text", "json", "console"}

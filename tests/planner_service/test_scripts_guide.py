@@ -5,39 +5,16 @@ from __future__ import annotations
 import contextlib
 import io
 import os
-import re
-import shlex
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from guides import BLOCK, said_as, typed
 from typer.testing import CliRunner
 
 from motion_backend.language.text import load_encoder
 from planner_service.cli import app
 
 GUIDE = Path(__file__).resolve().parents[2] / "docs" / "scripts.md"
-BLOCK = re.compile(r"^```(\w+) ?([\w.]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-
-
-def as_pattern(shown: list[str]) -> str:
-    """A line of … stands for any lines, … within a line for anything on it."""
-    return "".join(
-        "(?:.*\n)*?" if line.strip() == "…" else ".*".join(map(re.escape, line.rstrip().split("…"))) + "\n"
-        for line in shown
-    )
-
-
-def said_as(shown: list[str], printed: str) -> None:
-    bare = "".join(f"{line.rstrip()}\n" for line in printed.splitlines())
-    assert re.fullmatch(as_pattern(shown), bare), "shown:\n" + "\n".join(shown) + f"\nprinted:\n{bare}"
-
-
-def typed(block: str) -> Iterator[tuple[list[str], list[str]]]:
-    """The words of each command of a block, and the lines shown for it."""
-    for one in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]:
-        command, *shown = one.splitlines()
-        yield shlex.split(command), shown
 
 
 def carry_out(words: list[str], shown: list[str], patch: pytest.MonkeyPatch) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -14,6 +15,7 @@ from planner_service.extraction.embedded import embedded_cues
 from planner_service.extraction.film import Film, open_film
 from planner_service.extraction.grouping import MOST_FRAMES, Scene, scenes_of
 from planner_service.extraction.making import Maker
+from planner_service.extraction.subtitles import Cue
 from planner_service.extraction.watching import watch, watch_film
 from planner_service.llm.asking import ModelAnswerError
 from planner_service.llm.protocol import ModelError
@@ -135,6 +137,17 @@ def test_every_scene_becomes_scripts_that_can_be_acted_with_their_spans(library:
         assert (script.origin.start, script.origin.end) == (watched.scene.start, watched.scene.end)
         assert check(script) == ()
     assert told == [0.5, 1.0]
+
+
+def test_it_is_told_where_more_is_said_than_the_model_was_shown(library: ScriptLibrary) -> None:
+    scene = scenes()[0]
+    talk = tuple(Cue(scene.start, scene.end, "and so on and on " * 20) for _ in range(20))
+    model = ScriptedModel(answering)
+    (watched,) = watch_film(model, film(), [replace(scene, cues=talk)], Maker("a film", library, "video"))
+    assert any("only the first 4000 of" in note for note in watched.notes)
+    assert len(model.calls[0].prompt) < 12_000
+    (short,) = watch_film(model, film(), [scene], Maker("a film", library, "video"))
+    assert not any("only the first" in note for note in short.notes)
 
 
 def test_a_script_that_cannot_be_acted_is_mended_and_the_repairs_are_told(library: ScriptLibrary) -> None:
