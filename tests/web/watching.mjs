@@ -96,6 +96,8 @@ await scene(async (page) => {
   const follow = await moment(page, Math.floor(count * 0.5));
   const bounds = await page.locator(".picture").boundingBox();
   const { colours } = await compare(page, await shoot(page, bounds));
+  // When each row of the script begins to show, which pictures that come seldom on a busy machine do not catch.
+  grown.delays = await page.locator(".cues .cue").evaluateAll((rows) => rows.map((row) => parseFloat(getComputedStyle(row).animationDelay)));
   const told = [];
   for (const keyframe of [0, early, late, count - 1]) {
     await page.locator(".blocks button").nth(keyframe).click();
