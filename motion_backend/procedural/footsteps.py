@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.procedural.pose import Pose, smooth
 from motion_backend.procedural.route import Route
-from motion_backend.procedural.styles import Walk
+from motion_backend.procedural.walk_styles import Walk
 from motion_backend.skeleton import INDEX, Skeleton
 
 Array = NDArray[np.float64]

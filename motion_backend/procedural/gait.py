@@ -16,7 +16,8 @@ from motion_backend.motion import FPS
 from motion_backend.procedural.footsteps import LEAD, Steps, plan_phase, plan_steps, yaw_of
 from motion_backend.procedural.pose import Pose, settle_from, smooth
 from motion_backend.procedural.route import Route, plan_route
-from motion_backend.procedural.styles import ARMS, Walk, arm_arrays
+from motion_backend.procedural.styles import ARMS, arm_arrays
+from motion_backend.procedural.walk_styles import Walk
 from motion_backend.skeleton import INDEX, Skeleton
 
 Array = NDArray[np.float64]

@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.footsteps import home_ankle, yaw_of
+from motion_backend.procedural.lie_styles import Lying
 from motion_backend.procedural.lying import Bed, lying
 from motion_backend.procedural.pose import Pose, concatenate, interpolate, smooth
+from motion_backend.procedural.sit_styles import Seated
 from motion_backend.procedural.stances import (
     FOOT_SPLAY,
     SHIN_REACH,
@@ -23,7 +25,7 @@ from motion_backend.procedural.stances import (
     standing,
     upright,
 )
-from motion_backend.procedural.styles import Bearing, Lying, Seated, arm_arrays
+from motion_backend.procedural.styles import Bearing, arm_arrays
 from motion_backend.skeleton import Skeleton
 
 Array = NDArray[np.float64]

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
+from motion_backend.procedural.lie_styles import Lying
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.stances import UP, bend
-from motion_backend.procedural.styles import Lying, arm_arrays
+from motion_backend.procedural.styles import arm_arrays
 from motion_backend.skeleton import LYING_REST, Skeleton
 from scene_graphs.surfaces import Spot
 

@@ -20,14 +20,17 @@ from motion_backend.procedural.gestures import gesture
 from motion_backend.procedural.guarding import arms_in
 from motion_backend.procedural.handling import LONGER, Laid, arms_on_the_way, handling_of, with_both_hands
 from motion_backend.procedural.interactions import edge_seat, lie_down, rise_to_edge, sit_down, stand_up
+from motion_backend.procedural.lie_styles import lie_style
 from motion_backend.procedural.lying import Bed
-from motion_backend.procedural.moods import bearing_of, lie_style, sit_style, walk_style
+from motion_backend.procedural.moods import bearing_of
 from motion_backend.procedural.palms import free_palm, other_hand
 from motion_backend.procedural.pose import Pose, interpolate, settle_from
 from motion_backend.procedural.reaching import touch
 from motion_backend.procedural.route import resample
+from motion_backend.procedural.sit_styles import sit_style
 from motion_backend.procedural.stances import SHIN_REACH, Seat, bend, idle
-from motion_backend.procedural.styles import Bearing, Walk, arm_arrays
+from motion_backend.procedural.styles import Bearing, arm_arrays
+from motion_backend.procedural.walk_styles import Walk, walk_style
 from motion_backend.skeleton import HAND_REST, Skeleton
 from scene_graphs.homes import Home
 from scene_graphs.navigation import NoPath, Walkable

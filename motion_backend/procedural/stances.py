@@ -12,8 +12,9 @@ from motion_backend.kinematics import two_bone
 from motion_backend.procedural.footsteps import home_ankle
 from motion_backend.procedural.gait import drift
 from motion_backend.procedural.pose import Pose
+from motion_backend.procedural.sit_styles import Seated
 from motion_backend.procedural.solving import chest_frame
-from motion_backend.procedural.styles import THIGHS, Bearing, Seated, arm_arrays
+from motion_backend.procedural.styles import THIGHS, Bearing, arm_arrays
 from motion_backend.skeleton import INDEX, SEATED_REST, Skeleton
 from scene_graphs.surfaces import Spot
 

@@ -15,9 +15,12 @@ from motion_backend.obstacles import Obstacles
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.procedural.gestures import GESTURES, gesture
 from motion_backend.procedural.handling import handling_of, with_both_hands
-from motion_backend.procedural.moods import feeling, lie_style, sit_style, walk_style
+from motion_backend.procedural.lie_styles import lie_style
+from motion_backend.procedural.moods import feeling
+from motion_backend.procedural.sit_styles import sit_style
 from motion_backend.procedural.stances import standing
 from motion_backend.procedural.styles import ARMS, THIGHS, Bearing
+from motion_backend.procedural.walk_styles import walk_style
 from motion_backend.skeleton import INDEX, build_skeleton
 
 HOME = small_home()

@@ -14,7 +14,10 @@ from motion_backend.metrics import Kinematics
 from motion_backend.motion import Action, BodyState, Character, Motion, Posture, Skill, join
 from motion_backend.obstacles import Obstacles
 from motion_backend.procedural.backend import ProceduralBackend
-from motion_backend.procedural.moods import feeling, lie_style, sit_style, walk_style
+from motion_backend.procedural.lie_styles import lie_style
+from motion_backend.procedural.moods import feeling
+from motion_backend.procedural.sit_styles import sit_style
+from motion_backend.procedural.walk_styles import walk_style
 from motion_backend.skeleton import INDEX
 from scene_graphs.homes import Home
 
