@@ -4,24 +4,27 @@ import { around, compare, scene, settle, shoot, state, until } from "./browser.m
 
 const [, , , theme] = process.argv;
 
-/** Note, picture by picture, how the story grows and how it stood when the film began. */
+/** Note how the story grows, change by change, and how it stood when the film began. */
 function note() {
   const seen = { steps: [], cues: [], made: [], stages: [], playing: null, posted: null, lit: [] };
   const add = (list, value) => list.at(-1) === value || list.push(value);
+  const read = () => {
+    if (!window.sims.state().storyId) return;
+    add(seen.steps, document.querySelector(".steps:not([hidden]) .steps-words")?.textContent ?? "");
+    add(seen.stages, document.querySelector(".steps-line .now")?.dataset.stage ?? "");
+    add(seen.made, document.querySelectorAll(".blocks .made").length);
+    add(seen.lit, document.querySelector(".told [aria-current]")?.textContent ?? "");
+  };
   const look = () => {
     const sims = window.sims.state();
-    if (sims.storyId) {
-      add(seen.steps, document.querySelector(".steps:not([hidden]) .steps-words")?.textContent ?? "");
-      add(seen.stages, document.querySelector(".steps-line .now")?.dataset.stage ?? "");
-      add(seen.cues, [...document.querySelectorAll(".cues .cue")].filter((cue) => Number(getComputedStyle(cue).opacity) > 0.5).length);
-      add(seen.made, document.querySelectorAll(".blocks .made").length);
-      add(seen.lit, document.querySelector(".told [aria-current]")?.textContent ?? "");
-    }
+    if (sims.storyId) add(seen.cues, [...document.querySelectorAll(".cues .cue")].filter((cue) => Number(getComputedStyle(cue).opacity) > 0.5).length);
     if (sims.playing && !seen.playing) {
       seen.playing = { at: performance.now(), state: sims.state, readyFrames: sims.readyFrames, framesTotal: sims.framesTotal, open: !document.querySelector(".arch.closed") };
     }
     requestAnimationFrame(look);
   };
+  // A busy machine draws seldom: what changes is noted as it changes.
+  new MutationObserver(read).observe(document.body, { childList: true, subtree: true, attributes: true, characterData: true });
   document.addEventListener("keydown", (event) => event.key === "Enter" && (seen.posted ??= performance.now()), true);
   window.seen = seen;
   look();
