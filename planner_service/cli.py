@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from planner_service.commands import evaluating, extracting, layouts, models, scripts, service, story, tasks
+from planner_service.commands import clips, evaluating, extracting, layouts, models, scripts, service, story, tasks
 from planner_service.commands.errors import USER_ERRORS, explain
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
@@ -24,6 +24,7 @@ app.add_typer(scripts.app, name="scripts")
 app.add_typer(layouts.app, name="layouts")
 app.add_typer(models.app, name="models")
 app.add_typer(evaluating.app, name="evaluate")
+app.add_typer(clips.app, name="clips")
 
 
 @app.callback()

@@ -6,14 +6,13 @@ keeps the heading of a standing body clear of gimbal lock.
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
+from motion_backend.clips.bvh import bvh_bones, bvh_channels, parse_bvh
 from motion_backend.motion import Motion
 from motion_backend.skeleton import JOINTS, Skeleton
 
@@ -87,94 +86,29 @@ def quats_to_zxy(q: Array) -> Array:
     return np.stack([z, x, y], axis=-1)
 
 
-@dataclass
-class _Reader:
-    """What the hierarchy says, joint by joint, as it is read."""
-
-    names: list[str] = field(default_factory=list)
-    parents: list[int] = field(default_factory=list)
-    offsets: list[tuple[float, float, float]] = field(default_factory=list)
-    channels: list[list[str]] = field(default_factory=list)
-
-    def read(self, lines: list[str]) -> None:
-        """Take in the lines of the hierarchy."""
-        stack: list[int] = []
-        joint = -1
-        for line in lines:
-            match line.split():
-                case ["ROOT" | "JOINT", *words]:
-                    joint = len(self.names)
-                    self.names.append(" ".join(words))
-                    self.parents.append(stack[-1] if stack else -1)
-                    self.offsets.append((0.0, 0.0, 0.0))
-                    self.channels.append([])
-                case ["End", *_]:
-                    joint = -1
-                case ["{"]:
-                    stack.append(joint)
-                case ["}"] if stack:
-                    stack.pop()
-                case ["OFFSET", x, y, z]:
-                    if joint >= 0:
-                        self.offsets[joint] = (float(x), float(y), float(z))
-                case ["CHANNELS", _, *channels] if joint >= 0:
-                    self.channels[joint] = channels
-                case []:
-                    pass
-                case _:
-                    raise ValueError(f"not a line of a BVH hierarchy: {line.strip()!r}")
-
-
 def read_bvh(text: str, unit: float = CENTIMETRE) -> Motion:
-    """A motion from BVH text in any channel order; `unit` is its length unit in metres.
+    """A motion from BVH text in any channel order; `unit` is its length unit in metres, its axes are ours.
 
     Joints with our names come back in our order, others as the file has them. Contacts and keyframes, which BVH does
     not hold, are zero. ValueError tells what is wrong with the text.
     """
-    head, found, tail = text.partition("MOTION")
-    if not found or not head.lstrip().startswith("HIERARCHY"):
-        raise ValueError("a BVH text has a HIERARCHY and then a MOTION section")
-    reader = _Reader()
-    reader.read(head.lstrip().removeprefix("HIERARCHY").replace("{", "\n{\n").replace("}", "\n}\n").splitlines())
-    counts = re.match(r"\s*Frames:\s*(\d+)\s*Frame Time:\s*([\d.eE+-]+)", tail)
-    if counts is None or not reader.names:
-        raise ValueError("a BVH text names its joints, then says Frames: and Frame Time:")
-    frames, step = int(counts[1]), float(counts[2])
-    width = sum(len(c) for c in reader.channels)
-    values = np.array(tail[counts.end() :].split(), dtype=np.float64)
-    if len(values) != frames * width:
-        raise ValueError(f"{frames} frames of {width} channels need {frames * width} numbers, there are {len(values)}")
-    return _to_motion(reader, values.reshape(frames, width), unit, round(1.0 / step))
-
-
-def _to_motion(reader: _Reader, table: Array, unit: float, fps: int) -> Motion:
-    frames = len(table)
-    turns = np.tile(rotations.IDENTITY, (frames, len(reader.names), 1))
-    root = np.tile(np.asarray(reader.offsets[0]), (frames, 1))
-    column = 0
-    for joint, channels in enumerate(reader.channels):
-        for channel in channels:
-            axis = "XYZ".index(channel[0])
-            if channel.endswith("rotation"):
-                turn = rotations.rotvec_to_quat(np.radians(table[:, column, None]) * np.eye(3)[axis])
-                turns[:, joint] = rotations.compose(turns[:, joint], turn)
-            elif joint == 0:
-                root[:, axis] = table[:, column]
-            column += 1
-    order = _our_order(reader.names)
+    read = parse_bvh(text)
+    bones, places = bvh_bones(read.hierarchy)
+    roots, turns, _ = bvh_channels(read, bones, places)
+    order = _our_order(list(bones.names))
     place = {old: new for new, old in enumerate(order)}
     skeleton = Skeleton(
-        tuple(reader.names[j] for j in order),
-        tuple(place[reader.parents[j]] if reader.parents[j] >= 0 else -1 for j in order),
-        np.asarray([reader.offsets[j] for j in order]) * unit,
+        tuple(bones.names[joint] for joint in order),
+        tuple(place[bones.parents[joint]] if bones.parents[joint] >= 0 else -1 for joint in order),
+        bones.offsets[order] * unit,
     )
     return Motion(
-        root_positions=(root * unit).astype(np.float32),
+        root_positions=(roots * unit).astype(np.float32),
         local_rotations=rotations.continuous(turns[:, order]).astype(np.float32),
-        contacts=np.zeros((frames, 4), dtype=np.float32),
+        contacts=np.zeros((len(roots), 4), dtype=np.float32),
         skeleton=skeleton,
-        actions=np.zeros(frames, dtype=np.int32),
-        fps=fps,
+        actions=np.zeros(len(roots), dtype=np.int32),
+        fps=round(1.0 / read.step),
     )
 
 

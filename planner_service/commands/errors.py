@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from motion_backend.clips.clip import ClipError
 from motion_backend.language.minilm import WeightsError
 from planner_service.extraction.containers import FilmError
 from planner_service.extraction.plain import ExtractionError
@@ -45,6 +46,7 @@ USER_ERRORS = (
     SubtitleError,
     FilmError,
     SpeechError,
+    ClipError,
 )
 
 

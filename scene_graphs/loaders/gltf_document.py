@@ -27,7 +27,7 @@ MOST_VALUES: Final = 3 * MOST_TRIANGLES
 """Points, and corners of triangles, that are read from one file."""
 _MAGIC, _JSON, _BIN = b"glTF", 0x4E4F534A, 0x004E4942
 _TYPES: Final = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
-_WIDTHS: Final = {"SCALAR": 1, "VEC3": 3}
+_WIDTHS: Final = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
 _COMPRESSED: Final = frozenset({"KHR_draco_mesh_compression", "EXT_meshopt_compression"})
 
 

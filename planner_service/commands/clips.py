@@ -1,0 +1,210 @@
+"""`sims clips build|list|sheet`: other people's motion on our body, as a collection in one file."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from planner_service.commands.tables import plain_table, shown
+from planner_service.filing import OutputError, check_writable, write_files
+
+if TYPE_CHECKING:
+    from motion_backend.clips.building import Kept, Unread
+    from motion_backend.clips.dataset import Dataset
+
+MOST_SHOWN = 40
+"""Clips on one sheet."""
+LONGEST_LINE = 300
+
+app = typer.Typer(no_args_is_help=True, help="Recorded and keyed motion, retargeted to our body.")
+
+
+@app.callback()
+def clips() -> None:
+    """Recorded and keyed motion, retargeted to our body."""
+
+
+@app.command()
+def build(
+    folder: Annotated[
+        Path, typer.Argument(help="Folder of motion files: BVH, AMC, GLB, NPZ … and what lies below it.")
+    ],
+    out: Annotated[Path, typer.Option(help="Write the collection here; beside it FILE.report.json.")],
+    mirror: Annotated[bool, typer.Option("--mirror", help="Add every clip as seen in a mirror.")] = False,
+    reverse: Annotated[
+        bool, typer.Option("--reverse", help="Add getting and standing up played backwards, labelled so.")
+    ] = False,
+    speeds: Annotated[str, typer.Option(help="Add every clip at these speeds too, such as 0.85,1.15.")] = "",
+    joint_map: Annotated[
+        Path | None, typer.Option("--map", help="JSON: our joint names to those of your files.")
+    ] = None,
+    labels: Annotated[
+        Path | None, typer.Option(help="CSV with file, skill, style, caption, subject …; left out: manifest.csv there.")
+    ] = None,
+    kinds: Annotated[
+        str, typer.Option(help='Only clips of these kinds of the table, such as "real mocap,hand-keyed".')
+    ] = "",
+) -> None:
+    """Read a folder of motion, retarget it and keep what is true to its source. Exit code 1 if a file was not read."""
+    from motion_backend.clips.building import Kept, collect, folder_labels, read_folder
+    from motion_backend.clips.dataset import dataset_bytes
+    from motion_backend.clips.mapping import read_map
+
+    wanted = {kind.strip() for kind in kinds.split(",") if kind.strip()}
+    rates = _speeds(speeds)
+    joints = None if joint_map is None else read_map(joint_map)
+    report = out.parent / f"{out.name}.report.json"
+    check_writable(out.parent, [out.name, report.name])
+    _check_no_source(folder, out)
+    table = folder_labels(folder, labels)
+    found = [one for one in read_folder(folder, table, joints, but=(out, report)) if _wanted(one, wanted)]
+    kept = [one for one in found if isinstance(one, Kept)]
+    console = Console(markup=False, highlight=False)
+    console.print(_report(kept))
+    lost = [one for one in found if not isinstance(one, Kept)]
+    for unread in lost:
+        why = unread.why if unread.why.startswith(unread.name) else f"{unread.name}: {unread.why}"
+        console.print(f"not read: {shown(why, LONGEST_LINE)}", soft_wrap=True)
+    for clip in kept:
+        if not clip.report.accepted:
+            why = f"{clip.entry.name}: {'; '.join(clip.report.refused)}"
+            console.print(f"refused: {shown(why, LONGEST_LINE)}", soft_wrap=True)
+    dataset = collect([one.entry for one in kept if one.report.accepted], mirror, reverse, rates)
+    told = {
+        "clips": [one.report.to_dict() for one in kept],
+        "not_read": [asdict(unread) for unread in lost],
+    }
+    content = dataset_bytes(dataset)
+    write_files(
+        out.parent,
+        {
+            out.name: lambda path: path.write_bytes(content),
+            report.name: lambda path: path.write_text(
+                json.dumps(told, indent=1, ensure_ascii=False, allow_nan=False) + "\n",
+                encoding="utf-8",
+                errors="backslashreplace",
+            ),
+        },
+    )
+    accepted = sum(one.report.accepted for one in kept)
+    console.print(
+        f"{accepted} of {len(kept)} clips accepted; {len(dataset.entries)} clips, {dataset.frames} frames, "
+        f"{len(content) / 1e6:.1f} MB in {out}",
+        soft_wrap=True,
+    )
+    if lost:
+        raise typer.Exit(1)
+
+
+@app.command("list")
+def list_clips(
+    file: Annotated[Path, typer.Argument(help="A collection that `sims clips build` wrote.")],
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of a table.")] = False,
+) -> None:
+    """Say what is in a collection."""
+    from motion_backend.clips.dataset import read_dataset
+
+    dataset = read_dataset(file)
+    console = Console(markup=False, highlight=False)
+    if as_json:
+        rows = [
+            {name: value for name, value in vars(entry).items() if name not in ("motion", "hands")}
+            | {"frames": len(entry.motion), "seconds": round(entry.motion.duration, 3)}
+            for entry in dataset.entries
+        ]
+        console.print_json(json.dumps({"frames": dataset.frames, "clips": rows}))
+        return
+    console.print(_contents(dataset))
+    console.print(f"{len(dataset.entries)} clips, {dataset.frames} frames, {dataset.frames / 30:.0f} s")
+
+
+@app.command()
+def sheet(
+    file: Annotated[Path, typer.Argument(help="A collection that `sims clips build` wrote.")],
+    out: Annotated[Path, typer.Option(help="Write the picture here, as PNG.")],
+    clip: Annotated[
+        list[str] | None, typer.Option(help="A clip's name, as often as wanted; left out: one clip of every skill.")
+    ] = None,
+) -> None:
+    """Draw clips of a collection: poses over time from two sides, where feet stood, and the way from above."""
+    from motion_backend.clips.clip import ClipError
+    from motion_backend.clips.dataset import read_dataset
+    from motion_backend.pictures import save_png
+    from motion_backend.sheets import sheet as drawn
+
+    dataset = read_dataset(file)
+    chosen = [dataset.named(name) for name in clip] if clip else dataset.of_every_skill()
+    if len(chosen) > MOST_SHOWN:
+        raise ClipError(f"--clip: a sheet shows at most {MOST_SHOWN} clips, these are {len(chosen)}; name fewer")
+    check_writable(out.parent, [out.name])
+    picture = drawn([(shown(f"{entry.name}: {entry.captions[0]}"), entry.motion) for entry in chosen])
+    write_files(out.parent, {out.name: lambda path: save_png(picture, path)})
+    Console(markup=False, highlight=False).print(f"{len(chosen)} clips in {out}", soft_wrap=True)
+
+
+def _speeds(listed: str) -> tuple[float, ...]:
+    """Speeds, each once, seen to be possible before any work is done."""
+    from motion_backend.clips.augmenting import SPEEDS
+    from motion_backend.clips.clip import ClipError
+
+    try:
+        found = {f"{float(word):g}": float(word) for word in listed.split(",") if word.strip()}
+    except ValueError as error:
+        raise ClipError(f"--speeds: {listed!r:.40} is no list of numbers such as 0.85,1.15") from error
+    wrong = next((speed for speed in found.values() if not SPEEDS[0] <= speed <= SPEEDS[1]), None)
+    if wrong is not None:
+        raise ClipError(f"--speeds: a motion is played {SPEEDS[0]} to {SPEEDS[1]} times as fast, not {wrong:g}")
+    return tuple(found.values())
+
+
+def _check_no_source(folder: Path, out: Path) -> None:
+    """An earlier collection may be replaced where it lies, recorded motion must not."""
+    from motion_backend.clips.dataset import is_dataset
+
+    inside = out.is_file() and folder.resolve() in out.resolve().parents
+    if inside and not is_dataset(out):
+        raise OutputError(f"--out: {out} lies among the files to be read and is no collection; choose another name")
+
+
+def _wanted(one: Kept | Unread, kinds: set[str]) -> bool:
+    from motion_backend.clips.building import Kept
+
+    return not (kinds and isinstance(one, Kept)) or one.entry.kind in kinds
+
+
+def _report(kept: list[Kept]) -> Table:
+    numbers = ("frames", "skate cm/s", "source's", "in floor mm", "source's ", "limbs °", "most °", "limits %")
+    table = plain_table("clip", "skill", *numbers, "used", right=numbers)
+    for one in kept:
+        figures = one.report
+        table.add_row(
+            shown(one.entry.name),
+            shown(one.entry.skill),
+            str(figures.frames),
+            f"{figures.skate:.1f}",
+            f"{figures.source_skate:.1f}",
+            f"{1000 * figures.depth:.1f}",
+            f"{1000 * figures.source_depth:.1f}",
+            f"{figures.limb_mean:.1f}",
+            f"{figures.limb_max:.0f}",
+            f"{100 * figures.beyond_limits:.0f}",
+            "yes" if figures.accepted else "no",
+        )
+    return table
+
+
+def _contents(dataset: Dataset) -> Table:
+    table = plain_table(
+        "clip", "skill", "emotion", "style", "subject", "split", "seconds", "caption", right=("seconds",)
+    )
+    for entry in dataset.entries:
+        seconds = f"{entry.motion.duration:.1f}"
+        words = (entry.name, entry.skill, entry.emotion, entry.style, entry.subject, entry.split)
+        table.add_row(*map(shown, words), seconds, shown(entry.captions[0]))
+    return table
