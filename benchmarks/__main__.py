@@ -9,9 +9,11 @@ import tempfile
 import time
 from pathlib import Path
 
+from benchmarks.clips import clip_figures
 from benchmarks.demo import measure_demo
 from benchmarks.film import film_figures
 from benchmarks.geometry import geometry_figures
+from benchmarks.moving import skill_figures
 from benchmarks.reading import reading_figures
 from benchmarks.retrieval import retrieval_figures
 from benchmarks.service import service_figures
@@ -32,6 +34,8 @@ def main() -> int:
         studio = Studio(Shelves(cache=Path(folder)))
         made = make_stories(studio)
         figures += speed_figures(made)
+        figures += skill_figures(made)
+        figures += clip_figures(Path(folder))
         figures += weaving_figures()
         figures += retrieval_figures()
         figures += geometry_figures()

@@ -80,8 +80,8 @@ def skin_points(start: Array, end: Array, radius: Array) -> Array:
     share, across, along = _unit()
     axis = rotations.normalize(end - start)
     helper = np.where(np.abs(axis[:, :1]) < 0.8, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
-    first = rotations.normalize(np.cross(axis, helper))
-    second = np.cross(axis, first)
+    first = rotations.normalize(rotations.cross(axis, helper))
+    second = rotations.cross(axis, first)
     outward = (
         across[:, 0, None] * first[:, None] + across[:, 1, None] * second[:, None] + along[:, None] * axis[:, None]
     )

@@ -1,4 +1,4 @@
-"""The shapes of the mannequin, one field a garment or limb: trousers, shirt, head, hair, eyes, arm, shoe and sole.
+"""The shapes of the mannequin, one field a garment, limb or feature.
 
 Frame: the reference skeleton's T-pose, pelvis at the origin, facing +Z, left is +X, metres. Limbs are the left ones.
 """
@@ -37,7 +37,7 @@ def trousers() -> Field:
     leg = tube(
         1,
         [
-            (-0.830, 0.088, -0.004, 0.049, 0.053),
+            (-0.840, 0.088, -0.004, 0.051, 0.056),
             (-0.70, 0.088, -0.010, 0.047, 0.052),
             (-0.58, 0.089, -0.017, 0.054, 0.060),
             (-0.50, 0.088, -0.012, 0.055, 0.060),
@@ -86,16 +86,17 @@ def shirt() -> Field:
 
 def _skull() -> Field:
     cranium = ellipsoid((0, 0.705, -0.010), (0.075, 0.093, 0.092))
-    face = ellipsoid((0, 0.655, 0.026), (0.058, 0.077, 0.066))
-    return union(0.045, cranium, face)
+    face = ellipsoid((0, 0.658, 0.024), (0.059, 0.074, 0.066))
+    jaw = ellipsoid((0, 0.612, 0.040), (0.041, 0.032, 0.046))
+    return union(0.03, union(0.045, cranium, face), jaw)
 
 
 def head() -> Field:
     """Neck, skull, face with its nose, ears."""
-    neck = capsule((0, 0.47, -0.016), (0, 0.62, -0.004), (0.056, 0.049))
+    neck = capsule((0, 0.47, -0.018), (0, 0.62, -0.012), (0.054, 0.046))
     nose = capsule((0, 0.692, 0.084), (0, 0.663, 0.099), (0.007, 0.0115))
     ear = ellipsoid((0.075, 0.680, -0.006), (0.012, 0.030, 0.018))
-    return union(0.012, union(0.03, _skull(), neck), nose, mirrored(ear))
+    return union(0.012, union(0.022, _skull(), neck), nose, mirrored(ear))
 
 
 def hair() -> Field:
@@ -106,12 +107,17 @@ def hair() -> Field:
 
 def eyes() -> Field:
     """The left eye."""
-    return ellipsoid((0.029, 0.690, 0.0845), (0.008, 0.011, 0.006))
+    return ellipsoid((0.028, 0.689, 0.0825), (0.0085, 0.0120, 0.0080))
+
+
+def brows() -> Field:
+    """The left eyebrow."""
+    return capsule((0.018, 0.7170, 0.0868), (0.043, 0.7155, 0.0765), (0.0055, 0.0042))
 
 
 def arm() -> Field:
-    """The bare arm from inside the sleeve to a mitten hand, palm down, thumb forward."""
-    arm = tube(
+    """The bare arm from inside the sleeve to inside the hand."""
+    return tube(
         0,
         [
             (0.30, 0.485, 0.000, 0.042, 0.043),
@@ -120,20 +126,45 @@ def arm() -> Field:
             (0.53, 0.485, 0.001, 0.039, 0.040),
             (0.62, 0.485, 0.001, 0.033, 0.035),
             (0.70, 0.485, 0.000, 0.025, 0.030),
-            (0.74, 0.484, 0.000, 0.022, 0.034),
-            (0.79, 0.481, 0.000, 0.019, 0.042),
-            (0.83, 0.476, -0.001, 0.016, 0.041),
-            (0.865, 0.468, -0.002, 0.014, 0.036),
-            (0.896, 0.458, -0.003, 0.011, 0.028),
+            (0.755, 0.484, 0.000, 0.019, 0.029),
         ],
         rounding=0.015,
     )
+
+
+def hand() -> Field:
+    """Palm down, thumb forward, fingers a little apart and curled."""
+    palm = tube(
+        0,
+        [
+            (0.705, 0.485, 0.000, 0.021, 0.026),
+            (0.745, 0.484, 0.000, 0.021, 0.034),
+            (0.785, 0.481, 0.001, 0.018, 0.042),
+            (0.815, 0.478, 0.001, 0.015, 0.042),
+            (0.828, 0.476, 0.001, 0.012, 0.040),
+        ],
+        power=2.4,
+        rounding=0.012,
+    )
+    fingers = [
+        union(
+            0.002,
+            capsule((0.805, 0.479, z), (x - 0.036, 0.472, z + 0.4 * fan), (0.0100, 0.0092)),
+            capsule((x - 0.036, 0.472, z + 0.4 * fan), (x, 0.459, z + fan), (0.0092, 0.0075)),
+        )
+        for z, fan, x in (
+            (0.033, 0.010, 0.876),
+            (0.012, 0.003, 0.885),
+            (-0.010, -0.004, 0.879),
+            (-0.031, -0.010, 0.860),
+        )
+    ]
     thumb = union(
         0.005,
         capsule((0.735, 0.480, 0.018), (0.778, 0.470, 0.054), (0.018, 0.015)),
         capsule((0.778, 0.470, 0.054), (0.815, 0.464, 0.064), (0.015, 0.011)),
     )
-    return union(0.014, arm, thumb)
+    return union(0.012, union(0.006, palm, *fingers), thumb)
 
 
 def shoe() -> Field:

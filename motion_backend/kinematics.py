@@ -39,7 +39,7 @@ def two_bone(root: Array, target: Array, pole: Array, lengths: tuple[float, floa
     sine = np.sqrt(np.maximum(1 - cosine**2, 0.0))
     upper = cosine * along + sine * aside
     lower = rotations.normalize(distance * along - upper_length * upper)
-    return Limb(upper, lower, np.cross(aside, along))
+    return Limb(upper, lower, rotations.cross(aside, along))
 
 
 def _aside(pole: Array, along: Array) -> Array:
@@ -53,18 +53,15 @@ def _aside(pole: Array, along: Array) -> Array:
 
 def leg_rotations(leg: Limb) -> tuple[Array, Array]:
     """World rotations of hip and knee; at rest both bones point down (-Y) and the hinge is +X. (..., 4) each."""
-    return _hinged(leg.hinge, -leg.upper), _hinged(leg.hinge, -leg.lower)
+    bones = -np.stack([leg.upper, leg.lower])
+    hinge = np.broadcast_to(leg.hinge, bones.shape)
+    hip, knee = rotations.basis_to_quat(hinge, bones, rotations.cross(hinge, bones))
+    return hip, knee
 
 
 def arm_rotations(arm: Limb, side: int) -> tuple[Array, Array]:
     """World rotations of shoulder and elbow; at rest bones point to ±X (side +1 left, -1 right). (..., 4) each."""
     y = -side * arm.hinge
-    return _aligned(side * arm.upper, y), _aligned(side * arm.lower, y)
-
-
-def _hinged(x: Array, y: Array) -> Array:
-    return rotations.basis_to_quat(x, y, np.cross(x, y))
-
-
-def _aligned(x: Array, y: Array) -> Array:
-    return rotations.basis_to_quat(x, y, np.cross(x, y))
+    bones = side * np.stack([arm.upper, arm.lower])
+    shoulder, elbow = rotations.basis_to_quat(bones, np.broadcast_to(y, bones.shape), rotations.cross(bones, y))
+    return shoulder, elbow

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import clothing
+from motion_backend.builds import AVERAGE, Proportions, shaped
 from motion_backend.implicit import Field, gradient, to_triangles
 from motion_backend.skeleton import INDEX, JOINTS, Skeleton
 from motion_backend.skinning import Material, SkinnedMesh, strongest_four
@@ -82,9 +83,11 @@ def _reference_mesh() -> SkinnedMesh:
     )
 
 
-def build_mannequin(skeleton: Skeleton) -> SkinnedMesh:
+def build_mannequin(skeleton: Skeleton, proportions: Proportions = AVERAGE) -> SkinnedMesh:
     """The mannequin for a skeleton of our proportions, scaled to its height."""
     mesh = _reference_mesh()
+    if proportions != AVERAGE:
+        mesh = shaped(mesh, proportions)
     return replace(mesh, vertices=(mesh.vertices * skeleton.scale).astype(np.float32))
 
 
@@ -112,16 +115,19 @@ def _dense(weights: Weights, count: int) -> Array:
 def _pieces() -> tuple[_Piece, ...]:
     torso, leg = ((-0.42, -0.02, -0.2), (0.42, 0.6, 0.2)), ((-0.25, -0.85, -0.2), (0.25, 0.15, 0.2))
     head, eye = ((-0.12, 0.44, -0.14), (0.12, 0.84, 0.15)), ((0.0, 0.65, 0.04), (0.07, 0.73, 0.12))
-    arm, foot = ((0.27, 0.40, -0.09), (0.95, 0.56, 0.12)), ((0.0, -0.93, -0.12), (0.18, -0.75, 0.24))
+    brow, hand = ((0.0, 0.69, 0.05), (0.06, 0.74, 0.11)), ((0.69, 0.42, -0.07), (0.91, 0.52, 0.09))
+    arm, foot = ((0.27, 0.40, -0.09), (0.80, 0.56, 0.12)), ((0.0, -0.93, -0.12), (0.18, -0.75, 0.24))
     return (
         _Piece(TROUSERS, clothing.trousers(), leg, (0.025, 0.034, 0.025), _weigh_trousers),
         _Piece(SHIRT, clothing.shirt(), torso, (0.022, 0.026, 0.024), _weigh_shirt),
         _Piece(SKIN, clothing.head(), head, (0.015, 0.015, 0.014), _weigh_spine),
         _Piece(HAIR, clothing.hair(), head, (0.017, 0.017, 0.017), _weigh_head),
-        _Piece(EYES, clothing.eyes(), eye, (0.006, 0.007, 0.006), _weigh_head, True),
-        _Piece(SKIN, clothing.arm(), arm, (0.022, 0.013, 0.013), _weigh_arm, True),
+        _Piece(EYES, clothing.eyes(), eye, (0.0042, 0.0045, 0.0042), _weigh_head, True),
+        _Piece(HAIR, clothing.brows(), brow, (0.0055, 0.0045, 0.0055), _weigh_head, True),
+        _Piece(SKIN, clothing.arm(), arm, (0.022, 0.014, 0.014), _weigh_arm, True),
+        _Piece(SKIN, clothing.hand(), hand, (0.0095, 0.0075, 0.0062), _weigh_arm, True),
         _Piece(SHOES, clothing.shoe(), foot, (0.017, 0.016, 0.022), _weigh_shoe, True),
-        _Piece(SOLES, clothing.sole(), foot, (0.022, 0.010, 0.022), _weigh_shoe, True),
+        _Piece(SOLES, clothing.sole(), foot, (0.016, 0.0085, 0.019), _weigh_shoe, True),
     )
 
 

@@ -39,6 +39,32 @@ class Posture(StrEnum):
     LYING = "lying"
 
 
+class Part(StrEnum):
+    """What a segment is made of: the skill itself, and what had to be done for it first (transitions.py)."""
+
+    STAND = "stand"
+    GETUP = "getup"
+    """From lying to the edge of the bed."""
+    STANDUP = "standup"
+    WALK = "walk"
+    BACK_UP = "back up"
+    """From the place it turned round at to the seat."""
+    EDGE = "edge"
+    """Onto the edge of a bed."""
+    SITDOWN = "sitdown"
+    LIEDOWN = "liedown"
+    TOUCH = "touch"
+
+
+@dataclass(frozen=True)
+class Phase:
+    """One part of a segment and its frames, `start` to `stop` (exclusive)."""
+
+    part: Part
+    start: int
+    stop: int
+
+
 @dataclass(frozen=True)
 class Character:
     """Who acts: the name and pronouns the story uses, and the height the body has (metres)."""
@@ -104,6 +130,8 @@ class Motion:
     completed: bool = True
     reason: str = ""
     """Why not, when it was not completed."""
+    phases: tuple[Phase, ...] = ()
+    """What it is made of, in order; empty where nobody knows."""
 
     def __len__(self) -> int:
         return int(self.root_positions.shape[0])
@@ -120,18 +148,25 @@ class Motion:
     def part(self, start: int, stop: int) -> Motion:
         """Frames start to stop (exclusive)."""
         window = slice(start, stop)
+        cut = [
+            Phase(phase.part, max(phase.start, start) - start, min(phase.stop, stop) - start)
+            for phase in self.phases
+            if phase.start < stop and phase.stop > start
+        ]
         return replace(
             self,
             root_positions=self.root_positions[window],
             local_rotations=self.local_rotations[window],
             contacts=self.contacts[window],
             actions=self.actions[window],
+            phases=tuple(cut),
         )
 
 
 def join(motions: list[Motion]) -> Motion:
     """One motion after the other; they must share skeleton and fps."""
     first = motions[0]
+    starts = np.cumsum([0, *(len(motion) for motion in motions)]).tolist()
     return replace(
         first,
         root_positions=np.concatenate([m.root_positions for m in motions]),
@@ -141,6 +176,11 @@ def join(motions: list[Motion]) -> Motion:
         goals=(),
         completed=all(m.completed for m in motions),
         reason="; ".join(m.reason for m in motions if m.reason),
+        phases=tuple(
+            Phase(phase.part, start + phase.start, start + phase.stop)
+            for start, motion in zip(starts, motions, strict=False)
+            for phase in motion.phases
+        ),
     )
 
 

@@ -1,4 +1,4 @@
-"""Pictures of motions: the mannequin in its poses, the home around it, and rows of them over time."""
+"""Pictures of motions: the mannequin in its poses and the home around it."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend.mannequin import build_mannequin
-from motion_backend.raster import Camera, orbit
-from motion_backend.rendering import Image, Solid, render
+from motion_backend.raster import Camera
+from motion_backend.rendering import Solid
 from motion_backend.skinning import skin
 from motion_backend.walls import Side
 
@@ -90,38 +90,6 @@ def around(
         if np.hypot(gap[0], gap[2]) <= reach and not prop.stands_before(camera, points, room):
             shown.append(prop.solid)
     return shown
-
-
-def contact_sheet(
-    motion: Motion,
-    home: Home | None = None,
-    frames: int = 12,
-    path: Path | str = "contact-sheet.png",
-    yaw: float = 0.8,
-    size: tuple[int, int] = (240, 320),
-) -> Path:
-    """Draw evenly spaced frames of a motion, left to right and top to bottom, and save them as a PNG.
-
-    `yaw` is where the camera stands around the body, in the world: 0 looks at the face of a body that faces +Z.
-    """
-    chosen = np.linspace(0, len(motion) - 1, frames).round().astype(int)
-    props = [] if home is None else home_props(home)
-    joints = motion.joint_positions()
-    pictures = []
-    for frame in chosen:
-        x, y, z = (float(v) for v in motion.root_positions[frame])
-        camera = orbit((x, max(0.35, 0.9 * y), z), 4.2, yaw, 0.25, fov=0.58)
-        room = None if home is None else home.room_at((x, z))
-        solids = around(props, camera, joints[frame], room)
-        pictures.append(render([*body_solids(motion, [frame]), *solids], camera, size))
-    return save_png(tile(pictures, columns=min(frames, 6)), path)
-
-
-def tile(pictures: Sequence[Image], columns: int) -> Image:
-    """Pictures of one size side by side, white where the last row ends early."""
-    missing = [np.full_like(pictures[0], 255)] * (-len(pictures) % columns)
-    cells = [*pictures, *missing]
-    return np.concatenate([np.concatenate(cells[i : i + columns], axis=1) for i in range(0, len(cells), columns)])
 
 
 def save_png(picture: NDArray[np.uint8], path: Path | str) -> Path:

@@ -7,33 +7,43 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 IDENTITY: Array = np.array([0.0, 0.0, 0.0, 1.0])
+_CONJUGATE: Array = np.array([-1.0, -1.0, -1.0, 1.0])
 
 
 def compose(a: Array, b: Array) -> Array:
     """The rotation that applies b, then a. (..., 4)."""
-    ax, ay, az, aw = np.moveaxis(a, -1, 0)
-    bx, by, bz, bw = np.moveaxis(b, -1, 0)
-    return np.stack(
-        [
-            aw * bx + ax * bw + ay * bz - az * by,
-            aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw,
-            aw * bw - ax * bx - ay * by - az * bz,
-        ],
-        axis=-1,
+    ax, ay, az, aw = a[..., 0], a[..., 1], a[..., 2], a[..., 3]
+    bx, by, bz, bw = b[..., 0], b[..., 1], b[..., 2], b[..., 3]
+    return _joined(
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
     )
 
 
 def inverse(q: Array) -> Array:
     """The rotation that undoes q. (..., 4)."""
-    return np.asarray(q * np.array([-1.0, -1.0, -1.0, 1.0]))
+    return np.asarray(q * _CONJUGATE)
 
 
 def rotate(q: Array, v: Array) -> Array:
     """Vectors v turned by q, broadcasting. (..., 3)."""
-    u, w = q[..., :3], q[..., 3:]
-    t = 2.0 * np.cross(u, v)
-    return np.asarray(v + w * t + np.cross(u, t))
+    x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+    vx, vy, vz = v[..., 0], v[..., 1], v[..., 2]
+    tx, ty, tz = 2.0 * (y * vz - z * vy), 2.0 * (z * vx - x * vz), 2.0 * (x * vy - y * vx)
+    return _joined(
+        vx + w * tx + (y * tz - z * ty),
+        vy + w * ty + (z * tx - x * tz),
+        vz + w * tz + (x * ty - y * tx),
+    )
+
+
+def cross(a: Array, b: Array) -> Array:
+    """The cross product, broadcasting, to the bit that of numpy, whose own takes four times as long. (..., 3)."""
+    ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
+    bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
+    return _joined(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
 
 
 def normalize(v: Array) -> Array:
@@ -75,13 +85,14 @@ def matrix_to_quat(m: Array) -> Array:
 
 def quat_to_matrix(q: Array) -> Array:
     """Quaternions to rotation matrices. (..., 4) to (..., 3, 3)."""
-    x, y, z, w = np.moveaxis(np.asarray(q, dtype=np.float64), -1, 0)
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    q = np.asarray(q, dtype=np.float64)
+    x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+    entries = _joined(
+        1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w),
+        2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
+        2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y),
+    )  # fmt: skip
+    return entries.reshape((*q.shape[:-1], 3, 3))
 
 
 def basis_to_quat(x: Array, y: Array, z: Array) -> Array:
@@ -108,3 +119,12 @@ def continuous(q: Array) -> Array:
 def wrap(angle: Array | float) -> Array:
     """Angles brought into (-pi, pi]."""
     return np.asarray(np.pi - np.mod(np.pi - np.asarray(angle, dtype=np.float64), 2 * np.pi))
+
+
+def _joined(*components: Array) -> Array:
+    """Components of one shape side by side along a new last axis; np.stack takes longer for the few of a vector."""
+    first = components[0]
+    found = np.empty((*first.shape, len(components)), first.dtype)
+    for place, component in enumerate(components):
+        found[..., place] = component
+    return found

@@ -13,6 +13,7 @@ from motion_backend.formats.bvh import write_bvh
 from motion_backend.formats.glb import film_glb
 from motion_backend.formats.npz import write_npz
 from planner_service.scripts.acting import action_to_dict
+from planner_service.scripts.handling import look_of
 from planner_service.stories import Planned, Story
 from planner_service.storyboard import storyboard
 from scene_graphs.home_rows import home_to_dict
@@ -194,5 +195,16 @@ def report_to_dict(story: Story) -> dict[str, Any]:
         "repairs": list(planned.script.repairs),
         "rooms": planned.stage.rooms_to_dicts(),
         "motion": story.report,
-        "keyframes": [figure.to_dict() for figure in story.figures],
+        "keyframes": list(_performances(story)),
     }
+
+
+def _performances(story: Story) -> Iterator[dict[str, Any]]:
+    """The figures of every keyframe, the parts it is made of and, where its own words are not known, what stood in."""
+    told = story.planned.script.keyframes
+    for figure, action, span in zip(story.figures, story.actions, story.segments, strict=True):
+        own = look_of(told[action.keyframe].caption)
+        row = figure.to_dict() | {"performed_as": action.caption if action.caption != own else None}
+        phases = [phase for phase in story.motion.phases if span[0] <= phase.start < span[1]]
+        row["phases"] = [{"part": phase.part.value, "start": phase.start, "stop": phase.stop} for phase in phases]
+        yield row

@@ -22,7 +22,6 @@ from motion_backend.obstacles import Obstacles
 from planner_service import documents
 from planner_service.filing import report_to_dict
 from planner_service.furnish import Furnished
-from planner_service.scripts.acting import act
 from planner_service.scripts.keyframe import LongScript
 from planner_service.scripts.narrating import Told
 from planner_service.store.stories import Made, Stories
@@ -197,7 +196,7 @@ class Maker:
 
     def _actions(self, story: OpenStory) -> tuple[bytes, Json]:
         stage = story.stage
-        actions = act(stage.script.keyframes, stage.places, stage.home, story.request.seed)
+        actions = story.studio.act(story.request, stage)
         rows = [documents.action_to_dict(action) for action in actions]
         return _to_bytes({"actions": rows}), {"count": len(actions), "objects": [a.object_id for a in actions]}
 

@@ -7,12 +7,14 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from motion_backend import metrics
+from motion_backend.measures.smoothness import seam_jump, seam_speed_jump
 from motion_backend.motion import Action, BodyState, Character, Motion, MotionBackend, join
 from motion_backend.obstacles import Obstacles
 from planner_service.furnish import Furnished, furnish
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.llm.served import for_story
 from planner_service.scripts.acting import act
+from planner_service.scripts.captions import Vocabulary
 from planner_service.scripts.composing import MOST, Request, compose, script_of
 from planner_service.scripts.keyframe import Keyframe, LongScript
 from planner_service.scripts.narrating import Told, narrate
@@ -172,11 +174,19 @@ class Studio:
                 stage = replace(stage, script=stage.script.model_copy(update={"repairs": repairs}))
         return stage, narrate(stage.script, request.character, request.seed, stage.names)
 
+    def act(self, request: StoryRequest, stage: Furnished) -> tuple[Action, ...]:
+        """The keyframes of a script, grounded in its home."""
+
+        def words() -> Vocabulary:
+            return Vocabulary.built_in(self.shelves.scripts().encoder)
+
+        return act(stage.script.keyframes, stage.places, stage.home, request.seed, words)
+
     def make(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Story:
         """Theme to acted story."""
         planned = self.plan(request, progress)
         progress("act", 0.0)
-        actions = act(planned.script.keyframes, planned.stage.places, planned.home, request.seed)
+        actions = self.act(request, planned.stage)
         motions = move(planned.home, actions, request, progress)
         return judge(planned, actions, motions, progress)
 
@@ -232,5 +242,6 @@ def judge(planned: Planned, actions: Sequence[Action], motions: Sequence[Motion]
         segments.append((frame, frame + len(motion)))
         frame += len(motion)
     whole = join(list(motions))
-    report = metrics.summarise(figures) | {"seam_jump": round(metrics.seam_jump(whole), 5)}
+    seams = {"seam_jump": round(seam_jump(whole), 5), "seam_speed_jump": round(seam_speed_jump(whole), 5)}
+    report = metrics.summarise(figures) | seams
     return Story(planned, tuple(actions), whole, tuple(segments), tuple(figures), report)

@@ -13,6 +13,7 @@ from planner_service.cli import app
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 TOPS = ("prompts", "scene_graphs", "motion_backend", "planner_service", "benchmarks", "docs", "tests")
+GROUPS = "scripts|layouts|clips|evaluate"
 PATH = re.compile(rf"(?<![\w/.-])(?:{'|'.join(TOPS)})/[\w./-]*\w(?:\.\w+)?/?")
 LINK = re.compile(r"\]\((?!https?:|#)([^)#\s]+)|src=\"(?!https?:)([^\"]+)\"")
 ids = [str(page.relative_to(ROOT)) for page in PAGES]
@@ -72,7 +73,7 @@ def test_every_make_target_that_is_named_exists(page: Path) -> None:
 @pytest.mark.parametrize("page", PAGES, ids=ids)
 def test_every_sims_command_that_is_named_exists_with_its_options(page: Path) -> None:
     known = commands()
-    for line in re.findall(r"\bsims ((?:story|scripts [a-z|]+|layouts [a-z|]+)\b[^\n`]*)", code_of(page)):
+    for line in re.findall(rf"\bsims ((?:story|(?:{GROUPS}) [a-z|]+)\b[^\n`]*)", code_of(page)):
         words = line.split()
         name = words[0] if words[0] == "story" else " ".join(words[:2])
         for one in expanded(name):
@@ -102,5 +103,10 @@ def test_the_python_of_the_readme_uses_names_that_exist() -> None:
 
 
 def test_the_pictures_are_small() -> None:
-    for name, most in (("storyboard.png", 400_000), ("plan.png", 150_000), ("match.png", 150_000)):
+    for name, most in (
+        ("storyboard.png", 400_000),
+        ("sheet.png", 250_000),
+        ("plan.png", 150_000),
+        ("match.png", 150_000),
+    ):
         assert (ROOT / "docs" / "images" / name).stat().st_size <= most

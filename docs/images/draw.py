@@ -8,7 +8,10 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from motion_backend.motion import Skill
+from motion_backend.sheets import sheet
 from planner_service.commands.finding import graph_of_words
+from planner_service.evaluating.trials import Trial, perform
 from planner_service.picturing import Shown, picture
 from planner_service.stories import Story, StoryRequest, Studio
 from planner_service.storyboard import COLUMNS, GAP, HEAD, PLAN, SIDE, TEXT, storyboard
@@ -28,6 +31,14 @@ PLAN_OF = "living-room-0016"
 ASKED = ("sofa:lie", "coffee-table", "tv-stand,", "bench:sit", "bookshelf", "wardrobe,", "piano")
 """The query of the match view, as `sims layouts find` takes it."""
 ASKED_OF = "living_room"
+ACTED = (
+    (Skill.LOCO, "walk on tiptoes"),
+    (Skill.SITDOWN, "right hand on chin, thinking"),
+    (Skill.LIEDOWN, "lying with hands under head, legs crossed"),
+)
+"""The captions of the contact sheet."""
+ACTED_IN = ("bedroom-0027", 1)
+"""Where, and with which seed."""
 COLORS = 200
 
 
@@ -40,6 +51,7 @@ def main() -> None:
         picture(index.layout(PLAN_OF), Shown(), Path(folder, "plan.png"))
         draw_found(index, Path(folder, "match.png"))
         save(cut(board, SHOWN), HERE / "storyboard.png")
+        save(draw_acted(), HERE / "sheet.png")
         for name in ("plan.png", "match.png"):
             # Lines of few pixels keep their colours, which mean something.
             save(np.asarray(Image.open(Path(folder, name)).convert("RGB")), HERE / name, Image.Quantize.MAXCOVERAGE)
@@ -50,6 +62,12 @@ def draw_board(story: Story, path: Path) -> np.ndarray:
     planned, targets = story.planned, [action.object_id for action in story.actions]
     storyboard(planned.home, story.motion, planned.script.keyframes, path, planned.told.title, targets)
     return np.asarray(Image.open(path).convert("RGB"))
+
+
+def draw_acted() -> np.ndarray:
+    """A contact sheet of our body, as `sims clips sheet` draws it. (H, W, 3)."""
+    done = [perform(Trial(skill, caption, *ACTED_IN)) for skill, caption in ACTED]
+    return sheet([(f"{one.trial.skill}: {one.trial.caption}", one.motion) for one in done], done[0].home)
 
 
 def draw_found(index: LayoutIndex, path: Path) -> None:

@@ -16,12 +16,13 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.clips.bvh import euler_to_quat
 from motion_backend.clips.clip import MOST_JOINTS, MOST_TURNS, Array, Clip, ClipError, make_bones, make_clip
+from motion_backend.clips.mapping import JointMap
 from motion_backend.clips.tposes import t_posed
 
 INCH: Final = 0.0254
 RATE: Final = 120.0
 """Frames a second of CMU's captures; the format does not say."""
-_LONGEST: Final = 64 << 20
+_LONGEST: Final = 20 << 20
 """Characters of a motion: some twenty times that in words."""
 _ROOT: Final = "root"
 _TURNS: Final = {"rx": 0, "ry": 1, "rz": 2}
@@ -53,7 +54,7 @@ class Acclaim:
     """Radians a unit of angle."""
 
 
-def read_acclaim_clip(motion: str, skeleton: str, name: str) -> Clip:
+def read_acclaim_clip(motion: str, skeleton: str, name: str, joints: JointMap | None = None) -> Clip:
     """The clip of a motion text on the body of a skeleton text. ClipError says what is wrong with either."""
     asf = parse_asf(skeleton)
     offsets = [np.zeros(3) if above < 0 else asf.bones[above].vector for above in asf.parents]
@@ -79,7 +80,7 @@ def read_acclaim_clip(motion: str, skeleton: str, name: str) -> Clip:
         f"lengths taken as inches / {INCH / asf.unit:.4g} (x {asf.unit:.6g})",
         f"{RATE:g} frames a second, as CMU captures: the format does not say",
     )
-    tpose = t_posed(bones, np.tile(rotations.IDENTITY, (len(order), 1)))
+    tpose = t_posed(bones, np.tile(rotations.IDENTITY, (len(order), 1)), joints)
     return make_clip(name, bones, roots, turns, tpose, RATE, "acclaim", notes)
 
 

@@ -12,12 +12,13 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.clips.arrays import npy_header
 from motion_backend.clips.clip import Array, Clip, ClipError, make_bones, make_clip
+from motion_backend.clips.mapping import JointMap
 from motion_backend.clips.orienting import Z_UP_FACING_X
 from motion_backend.clips.tposes import t_posed
 from motion_backend.clips.unpickled import read_pickled
 
 
-def read_amp_clip(data: bytes, name: str) -> Clip:
+def read_amp_clip(data: bytes, name: str, joints: JointMap | None = None) -> Clip:
     """The clip in the bytes of such a file. ClipError says what is wrong with them."""
     read = read_pickled(_pickle_in(data))
     tree = read.get("skeleton_tree") if isinstance(read, dict) else None
@@ -47,7 +48,7 @@ def read_amp_clip(data: bytes, name: str) -> Clip:
     rate = read.get("fps")
     if not isinstance(rate, int | float | np.ndarray | np.number) or np.size(rate) != 1:
         raise ClipError("fps must be one number, the frames a second")
-    tpose = t_posed(bones, np.tile(rotations.IDENTITY, (len(names), 1)))
+    tpose = t_posed(bones, np.tile(rotations.IDENTITY, (len(names), 1)), joints)
     fps = float(np.reshape(rate, ()))
     return make_clip(name, bones, Z_UP_FACING_X.turn(roots), turns, tpose, fps, "amp", notes)
 

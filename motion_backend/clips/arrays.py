@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from motion_backend.clips.clip import ClipError
 
-LARGEST_UNPACKED: Final = 1 << 30
+LARGEST_UNPACKED: Final = 256 << 20
 """Bytes of all arrays of an archive."""
 _MAGIC: Final = b"\x93NUMPY"
 _LONGEST_HEADER: Final = 10_000

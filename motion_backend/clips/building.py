@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 
 from motion_backend.clips.augmenting import BACKWARDS, change_speed, mirror, mirror_words, reverse, sped_times
-from motion_backend.clips.clip import ClipError
+from motion_backend.clips.clip import Clip, ClipError
+from motion_backend.clips.copies import Copy, joined_subjects
 from motion_backend.clips.dataset import Dataset, Entry, splits
 from motion_backend.clips.fidelity import Fidelity
-from motion_backend.clips.labels import NO_MOTION, TABLE, Labels, label_of, read_labels
+from motion_backend.clips.labels import NO_MOTION, TABLE, Label, Labels, labels_of, read_labels
 from motion_backend.clips.mapping import JointMap
 from motion_backend.clips.reading import read_clips
 from motion_backend.clips.retargeting import retarget
@@ -53,7 +54,7 @@ def motion_files(folder: Path, labels: Labels, but: Collection[Path] = ()) -> li
     """
     if not folder.is_dir():
         raise ClipError(f"{folder} is no folder")
-    barren = {file for (file, _), row in labels.items() if row.kind in NO_MOTION}
+    barren = {file for (file, _), rows in labels.items() if any(row.kind in NO_MOTION for row in rows)}
     listed = {file for file, _ in labels}
     left_out = {path.resolve() for path in but}
     there = sorted(
@@ -91,12 +92,12 @@ def read_folder(
 ) -> Iterator[Kept | Unread]:
     """Every clip of a folder but some files on our body, one at a time, or why not; names are given once."""
     files, given = motion_files(folder, labels, but), Counter[str]()
-    for file in sorted({file for (file, _), row in labels.items() if row.kind not in NO_MOTION}):
+    for file in sorted({file for (file, _), rows in labels.items() if rows[0].kind not in NO_MOTION}):
         if not _is_file(folder / file):
             yield Unread(file, "the table of clips names it, but there is no such file")
     for file in files:
         try:
-            clips = read_clips(folder / file)
+            clips = read_clips(folder / file, joints=joints)
         except ClipError as error:
             yield Unread(file, str(error))
             continue
@@ -104,38 +105,61 @@ def read_folder(
             name = file if len(clips) == 1 else f"{file}#{clip.name}"
             given[name] += 1
             name += f" ({given[name]})" if given[name] > 1 else ""
-            try:
-                found = retarget(clip, skeleton, joints)
-            except ClipError as error:
-                yield Unread(name, str(error))
-                continue
-            label = label_of(labels, file, clip.name)
-            entry = Entry(
-                name=name,
-                skill=label.skill,
-                style=label.style,
-                emotion=emotion_of(label.style, f"{label.caption} {clip.name}"),
-                captions=ways_to_say(label.skill, label.style, label.caption),
-                subject=label.subject,
-                kind=label.kind,
-                licence=label.licence,
-                source=label.source or file,
-                changed=(),
-                split="train",
-                motion=found.motion,
-                hands=found.hands,
-            )
-            yield Kept(entry, replace(found.report, name=name))
+            for label in labels_of(labels, file, clip.name):
+                part = f"{name}@{label.start:g}-{label.stop or clip.duration:.6g}" if label.segment else name
+                try:
+                    yield _kept(_cut(clip, label), label, part, file, joints, skeleton)
+                except ClipError as error:
+                    yield Unread(part, str(error))
+
+
+def _cut(clip: Clip, label: Label) -> Clip:
+    """The segment that a row names; one that stops later than its clip ends with it."""
+    if not label.segment:
+        return clip
+    start = round(label.start * clip.fps)
+    stop = len(clip) if label.stop is None else min(round(label.stop * clip.fps), len(clip))
+    if stop - start < 2:
+        raise ClipError(f"{clip.name} lasts {clip.duration:.1f} s: nothing of it lies from {label.start:g} s on")
+    return clip.part(start, stop)
+
+
+def _kept(clip: Clip, label: Label, name: str, file: str, joints: JointMap | None, skeleton: Skeleton | None) -> Kept:
+    found = retarget(clip, skeleton, joints)
+    entry = Entry(
+        name=name,
+        skill=label.skill,
+        style=label.style,
+        emotion=emotion_of(label.style, f"{label.caption} {clip.name}"),
+        captions=ways_to_say(label.skill, label.style, label.caption),
+        subject=label.subject,
+        kind=label.kind,
+        licence=label.licence,
+        source=label.source or file,
+        changed=(),
+        split="train",
+        motion=found.motion,
+        hands=found.hands,
+    )
+    return Kept(entry, replace(found.report, name=name))
 
 
 def collect(
-    entries: Sequence[Entry], mirrored: bool = False, reversed_too: bool = False, speeds: Sequence[float] = ()
+    entries: Sequence[Entry],
+    mirrored: bool = False,
+    reversed_too: bool = False,
+    speeds: Sequence[float] = (),
+    copies: Sequence[Copy] = (),
 ) -> Dataset:
-    """The collection: subjects are dealt to train and test first, then clips are multiplied. ClipError if empty."""
+    """The collection: subjects are dealt to train and test first, then clips are multiplied. ClipError if empty.
+
+    Subjects with `copies` of each other's clips are dealt as one.
+    """
     if not entries:
         raise ClipError("no clip was accepted; the report says why")
-    sides = splits([(entry.subject, len(entry.motion)) for entry in entries])
-    kept = [replace(entry, split=sides[entry.subject]) for entry in entries]
+    group = joined_subjects([entry.subject for entry in entries], copies)
+    sides = splits([(group[entry.subject], len(entry.motion)) for entry in entries])
+    kept = [replace(entry, split=sides[group[entry.subject]]) for entry in entries]
     if reversed_too:
         kept += [_reversed(entry) for entry in kept if entry.skill in BACKWARDS]
     kept += [_at_speed(entry, speed) for speed in speeds for entry in list(kept) if not _sped(entry)]

@@ -25,12 +25,15 @@ from motion_backend.clips.clip import (
     make_bones,
     make_clip,
 )
+from motion_backend.clips.mapping import JointMap
 from motion_backend.clips.orienting import to_our_axes, unit_of
 from motion_backend.clips.stray_frames import without_stray_frames
 from motion_backend.clips.tposes import t_posed
 
 SLIGHT = 0.005
 """Metres by which a bone may seem to stretch without a word."""
+_AT_ONCE: Final = 4096
+"""Frames turned at once: on the way there angles take several times the room of the rotations."""
 _CHANNELS: Final = {
     f"{axis}{kind}": (kind, index) for index, axis in enumerate("XYZ") for kind in ("position", "rotation")
 }
@@ -67,19 +70,22 @@ class BvhText:
         return slice(start, start + len(self.hierarchy.channels[joint]))
 
 
-def read_bvh_clip(text: str, name: str) -> Clip:
-    """The clip in a BVH text. ClipError says what is wrong with it."""
+def read_bvh_clip(text: str, name: str, joints: JointMap | None = None) -> Clip:
+    """The clip in a BVH text; joints that are named by no family tell unit and axes by the map given.
+
+    ClipError says what is wrong with it.
+    """
     read = parse_bvh(text)
     bones, order = bvh_bones(read.hierarchy)
     roots, turns, notes = bvh_channels(read, bones, order)
-    unit, why = unit_of(bones)
+    unit, why = unit_of(bones, joints)
     notes.append(why)
     bones = replace(bones, offsets=bones.offsets * unit)
-    pose = to_our_axes(bones, roots * unit, turns)
-    tpose = t_posed(pose.bones, pose.tpose)
+    pose = to_our_axes(bones, roots * unit, turns, joints)
+    tpose = t_posed(pose.bones, pose.tpose, joints)
     notes += pose.notes
     clip = make_clip(name, pose.bones, pose.root_positions, pose.local_rotations, tpose, 1.0 / read.step, "bvh", notes)
-    return without_stray_frames(clip)
+    return without_stray_frames(clip, joints)
 
 
 def bvh_bones(hierarchy: Hierarchy) -> tuple[Bones, list[int]]:
@@ -192,7 +198,10 @@ def bvh_channels(read: BvhText, bones: Bones, order: list[int]) -> tuple[Array, 
     for axes, joints in alike.items():
         if axes:
             columns = np.array([column for _, column in joints])  # (joints, angles)
-            turns[:, [place for place, _ in joints]] = euler_to_quat(np.radians(read.table[:, columns]), axes)
+            places = [place for place, _ in joints]
+            for start in range(0, frames, _AT_ONCE):
+                part = slice(start, start + _AT_ONCE)
+                turns[part, places] = euler_to_quat(np.radians(read.table[part, columns]), axes)
     notes = [f"translations of {len(set(stretched))} joints dropped: bones keep their length"] if stretched else []
     return roots, turns, notes
 

@@ -20,8 +20,8 @@ Array = NDArray[np.float64]
 
 MOST_FRAMES = 200_000
 MOST_JOINTS = 512
-MOST_TURNS = 20_000_000
-"""Joints times frames of all clips of one file: 640 MB of quaternions."""
+MOST_TURNS = 6_000_000
+"""Joints times frames of all clips of one file: 192 MB of quaternions."""
 SLOWEST, FASTEST = 1.0, 1000.0
 """Frames a second."""
 LARGEST = 1e4

@@ -44,11 +44,11 @@ class Fidelity:
     """Our leg's length over the source's."""
     skate: float
     """cm/s: mean horizontal speed of sole corners lower than 1 cm."""
-    source_skate: float
-    """The same of the source's ankles, at our size, carrying our soles."""
+    source_skate: float | None
+    """The same of the source's ankles, at our size, carrying our soles; None for a toy, whose path says nothing."""
     depth: float
     """Mean depth of the lowest sole corner under the floor, metres."""
-    source_depth: float
+    source_depth: float | None
     lowest: float
     """Height of the lowest point of the skin over the whole clip, metres."""
     limbs: Mapping[str, tuple[float, float]]

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.clips.clip import MOST_JOINTS, MOST_TURNS, Array, Bones, Clip, ClipError, make_bones, make_clip
 from motion_backend.clips.keys import resampled_positions, resampled_rotations, uniform_times
+from motion_backend.clips.mapping import JointMap
 from motion_backend.clips.tposes import t_posed
 from scene_graphs.loaders.gltf_document import Document, list_of, numbers_of
 
@@ -67,14 +68,14 @@ class Rig:
     notes: tuple[str, ...]
 
 
-def read_glb_clips(data: bytes, name: str) -> tuple[Clip, ...]:
+def read_glb_clips(data: bytes, name: str, joints: JointMap | None = None) -> tuple[Clip, ...]:
     """One clip an animation, in the file's order. ClipError or LayoutError says what is wrong with the file."""
     document = Document.of(data, name)
     animations = list_of(document.json, "animations", name)
     if not 0 < len(animations) <= MOST_ANIMATIONS:
         raise ClipError(f"{name} has {len(animations)} animations; 1 to {MOST_ANIMATIONS} can be read")
     rig = _rig(document)
-    rest = t_posed(rig.bones, _pose(rig, {}, np.zeros(1))[1][0])
+    rest = t_posed(rig.bones, _pose(rig, {}, np.zeros(1))[1][0], joints)
     clips, left = [], MOST_TURNS
     for number in range(len(animations)):
         clip, read = _clip(rig, number, rest, left)

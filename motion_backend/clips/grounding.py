@@ -25,7 +25,7 @@ SOFT, RISE = 0.01, 0.5
 STEADY = 0.52
 """Share of what standing feet do that is in one direction, for a walk."""
 _NOT_FEET = [index for index, body in enumerate(capsules.BODIES) if not body.name.endswith("foot")]
-ON_THE_SPOT = (0.35, 0.1)
+ON_THE_SPOT = (0.25, 0.1)
 """Metres a second: a standing foot faster than the first under a pelvis slower than the second walks on the spot."""
 
 

@@ -1,15 +1,17 @@
 """What is known of clips beside their motion: a table in the folder, or one that a user gives.
 
 A CSV with a heading; `file` names a file from the folder, and optionally: `clip` (one animation of it), `skill`,
-`style`, `caption`, `subject`, `licence`, `kind`, `source`. What it does not say is told from names.
+`style`, `caption`, `subject`, `licence`, `kind`, `source`, and `start` and `stop`, the seconds of a segment that is
+a clip of its own: several rows may name one file. What it does not say is told from names.
 """
 
 from __future__ import annotations
 
 import csv
 import io
+import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from motion_backend.clips.clip import ClipError
@@ -19,7 +21,8 @@ TABLE = "manifest.csv"
 NO_MOTION = frozenset({"labels", "skeleton", "licence"})
 """Kinds of rows whose file holds no motion."""
 _LARGEST = 16 << 20
-_COLUMNS = ("file", "clip", "skill", "style", "caption", "subject", "licence", "kind", "source")
+_PLACE = ("file", "clip", "start", "stop")
+_WORDS = ("skill", "style", "caption", "subject", "licence", "kind", "source")
 
 
 @dataclass(frozen=True)
@@ -35,10 +38,19 @@ class Label:
     kind: str = ""
     """real mocap, hand-keyed, model-generated, or what the table says."""
     source: str = ""
+    start: float = 0.0
+    """Seconds where it begins, as the file counts them."""
+    stop: float | None = None
+    """Seconds where it ends; None for the end of the file."""
+
+    @property
+    def segment(self) -> bool:
+        """Whether it is of a part of a clip."""
+        return self.start > 0 or self.stop is not None
 
 
-Labels = dict[tuple[str, str], Label]
-"""By file, from the folder, and clip ("" for all clips of a file)."""
+Labels = dict[tuple[str, str], tuple[Label, ...]]
+"""By file, from the folder, and clip ("" for all clips of a file): one row, or one a segment."""
 
 
 def read_labels(path: Path) -> Labels:
@@ -50,45 +62,61 @@ def read_labels(path: Path) -> Labels:
         rows = csv.DictReader(io.StringIO(text), strict=True)
         if "file" not in (rows.fieldnames or ()):
             raise ClipError(
-                f"{path.name}: its first line must name the columns, among them file: {', '.join(_COLUMNS)}"
+                f"{path.name}: its first line must name the columns, among them file: {', '.join((*_PLACE, *_WORDS))}"
             )
         if len(set(rows.fieldnames or ())) < len(rows.fieldnames or ()):
             raise ClipError(f"{path.name}: its first line names a column twice")
-        found: Labels = {}
+        found: dict[tuple[str, str], dict[tuple[float, float | None], Label]] = {}
         for row in rows:
             if None in row.values() or None in row:
                 raise ClipError(f"{path.name}, line {rows.line_num}: as many cells as columns are needed")
-            told = {name: row.get(name, "").strip() for name in _COLUMNS}
-            file, clip = told.pop("file"), told.pop("clip")
-            if (Path(file).as_posix(), clip) in found:
+            told = {name: row.get(name, "").strip() for name in (*_WORDS, *_PLACE)}
+            file, clip, start, stop = (told.pop(name) for name in _PLACE)
+            rows_so_far = found.setdefault((Path(file).as_posix(), clip), {})
+            span = _span(start, stop, f"{path.name}, line {rows.line_num}")
+            if span in rows_so_far:
                 raise ClipError(f"{path.name}, line {rows.line_num}: {file!r:.80} has a row already")
-            found[Path(file).as_posix(), clip] = Label(**told)
+            rows_so_far[span] = Label(**told, start=span[0], stop=span[1])
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise ClipError(f"{path.name}: not a table of clips: {error}") from error
-    return found
+    return {key: tuple(rows.values()) for key, rows in found.items()}
 
 
-def label_of(labels: Labels, file: str, clip: str) -> Label:
-    """What is known of a clip; skill and subject are told from names where no row says them.
+def _span(start: str, stop: str, where: str) -> tuple[float, float | None]:
+    try:
+        begins, ends = float(start or 0.0), float(stop) if stop else None
+    except ValueError as error:
+        raise ClipError(f"{where}: start and stop are seconds: {error}") from error
+    if not (0.0 <= begins < math.inf and (ends is None or begins < ends < math.inf)):
+        raise ClipError(f"{where}: a segment starts at 0 s or later and stops after that, not {start!r} to {stop!r}")
+    return begins, ends
+
+
+def labels_of(labels: Labels, file: str, clip: str) -> tuple[Label, ...]:
+    """What is known of a clip, once a segment; skill and subject are told from names where no row says them.
 
     A row for a whole file that lists several skills leaves each clip's to its own name.
     """
-    row = labels.get((file, clip)) or labels.get((file, "")) or Label()
+    rows = labels.get((file, clip)) or labels.get((file, "")) or (Label(),)
+    return tuple(_completed(row, file, clip, (file, clip) in labels) for row in rows)
+
+
+def _completed(row: Label, file: str, clip: str, own: bool) -> Label:
+    """A row with what names tell. own: whether it names the clip itself, not its file."""
     skills = [one.strip() for one in row.skill.split(";") if one.strip()]
     kept = [one for one in skills if not one.endswith("-reversed")]
     named = skill_of(clip.rsplit("/", 1)[-1])
     many = clip not in ("", Path(file).stem)
     skill = kept[0] if kept and not many else named
-    caption = "" if many and (file, clip) not in labels else row.caption
-    style = clip.rsplit("/", 1)[-1].replace("_", " ").lower() if many and (file, clip) not in labels else row.style
-    return Label(
+    caption = "" if many and not own else row.caption
+    style = clip.rsplit("/", 1)[-1].replace("_", " ").lower() if many and not own else row.style
+    return replace(
+        row,
         skill=skill if skill != "other" or not kept else kept[0] if not many else "other",
         style=style,
         caption=caption,
         subject=row.subject or subject_of(file),
-        licence=row.licence,
         kind=row.kind or "unknown",
-        source=row.source,
     )
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -194,6 +194,18 @@ def find_map(names: Iterable[str]) -> tuple[str, JointMap]:
         f"no table of joint names fits; nearest is {nearest}, which also has {_listed(lost)}; "
         'give your own with --map: a JSON object such as {"pelvis": "Hips", "left_hip": "LeftUpLeg", …}'
     )
+
+
+def joint_places(names: Sequence[str], given: JointMap | None = None) -> dict[str, int] | None:
+    """Our joints to their places among a skeleton's, by the map given, else that of a family; None if neither fits."""
+    try:
+        known = checked_map(given or {}, names)
+    except ClipError:
+        try:
+            known = find_map(names)[1]
+        except ClipError:
+            return None
+    return {ours: names.index(theirs) for ours, theirs in known.items()}
 
 
 def read_map(path: Path) -> JointMap:

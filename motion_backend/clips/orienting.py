@@ -11,7 +11,7 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.clips.clip import Array, Bones, ClipError
-from motion_backend.clips.mapping import find_map
+from motion_backend.clips.mapping import JointMap, joint_places
 
 UNITS = (
     ("metres", 1.0, 0.45, 1.3),
@@ -66,9 +66,9 @@ Y_UP_FACING_X = Axes(np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0
 """(x, y, z) to (-z, y, x)."""
 
 
-def unit_of(bones: Bones) -> tuple[float, str]:
+def unit_of(bones: Bones, given: JointMap | None = None) -> tuple[float, str]:
     """Metres a unit of the file, and why."""
-    joints = _known(bones)
+    joints = joint_places(bones.names, given)
     rest = _rest(bones)
     if joints is None:
         leg = _LEG_SHARE * float(np.ptp(rest, axis=0).max())
@@ -85,9 +85,9 @@ def unit_of(bones: Bones) -> tuple[float, str]:
     return USUAL_LEG / leg, f"lengths x {USUAL_LEG / leg:.6g}, as {what} fit no unit: legs made {USUAL_LEG} m long"
 
 
-def to_our_axes(bones: Bones, root_positions: Array, local_rotations: Array) -> Pose:
+def to_our_axes(bones: Bones, root_positions: Array, local_rotations: Array, given: JointMap | None = None) -> Pose:
     """Y up, resting upright and facing +Z, from whatever axes the file has."""
-    joints = _known(bones)
+    joints = joint_places(bones.names, given)
     if joints is None:
         note = "joint names of no family known: taken as Y up, facing +Z"
         return Pose(bones, root_positions, local_rotations, _at_rest(bones), (note,))
@@ -113,23 +113,17 @@ def to_our_axes(bones: Bones, root_positions: Array, local_rotations: Array) -> 
     return Pose(bones, root_positions, local_rotations, tpose, tuple(notes))
 
 
-def _known(bones: Bones) -> dict[str, int] | None:
-    """Our joint names to places, where the names are of a family."""
-    try:
-        _, joints = find_map(bones.names)
-    except ClipError:
-        return None
-    return {ours: bones.index(theirs) for ours, theirs in joints.items()}
-
-
 def _at_rest(bones: Bones) -> Array:
     return np.tile(rotations.IDENTITY, (len(bones.names), 1))
 
 
 def _rest(bones: Bones) -> Array:
     """Joint positions of the pose without rotations. (J, 3)."""
-    positions, _ = bones.forward_kinematics(np.zeros((1, 3)), _at_rest(bones)[None])
-    return np.asarray(positions[0])
+    positions = bones.offsets.copy()
+    positions[0] = 0.0
+    for joint, parent in enumerate(bones.parents[1:], start=1):
+        positions[joint] += positions[parent]
+    return positions
 
 
 def _upwards(positions: Array, joints: dict[str, int]) -> Array:

@@ -105,12 +105,16 @@ class Feet:
 
     def contacts(self) -> Array:
         """1 where planted: left ankle, left toe, right ankle, right toe. (T, 4)."""
-        rest = (self.skeleton.ankle_height, self.skeleton.ankle_height + self.skeleton.offsets[BALLS[0], 1])
-        flags = [
-            _standing(points[:, side], height, self.fps)
-            for side in range(2)
-            for points, height in zip((self.ankles, self.balls), rest, strict=True)
-        ]
+        ankle = self.skeleton.ankle_height
+        rest = np.array([ankle, ankle + self.skeleton.offsets[BALLS[0], 1]])
+        points = np.stack([self.ankles, self.balls], axis=2)  # (T, side, joint, 3)
+        if len(points) < 2:
+            return np.ones((len(points), 4))
+        speed = np.linalg.norm(np.gradient(points, axis=0), axis=-1) * self.fps
+        height = points[..., 1] - rest
+        sure = (height < LOW) & (speed < SLOW)
+        near = (height < LOW * LINGER) & (speed < SLOW * LINGER)
+        flags = [_patient(sure[:, side, joint], near[:, side, joint]) for side in range(2) for joint in range(2)]
         return np.stack(flags, axis=1).astype(np.float64)
 
     def skate(self) -> float:
@@ -123,17 +127,6 @@ class Feet:
     def depth(self) -> float:
         """Mean depth of the lowest sole corner under the floor, metres."""
         return float(np.maximum(-self.soles[..., 1].min(axis=(1, 2)), 0.0).mean())
-
-
-def _standing(points: Array, rest: float, fps: float) -> Flags:
-    """Low and slow, with some patience at both ends. (T, 3) to (T,)."""
-    if len(points) < 2:
-        return np.ones(len(points), dtype=np.bool_)
-    speed = np.linalg.norm(np.gradient(points, axis=0), axis=-1) * fps
-    height = points[:, 1] - rest
-    sure = (height < LOW) & (speed < SLOW)
-    near = (height < LOW * LINGER) & (speed < SLOW * LINGER)
-    return _patient(sure, near)
 
 
 def _patient(sure: Flags, near: Flags) -> Flags:

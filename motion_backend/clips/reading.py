@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -19,6 +20,7 @@ from motion_backend.clips.deepmimic import read_deepmimic_clip
 from motion_backend.clips.expmap import read_expmap_clip
 from motion_backend.clips.glb import read_glb_clips
 from motion_backend.clips.kimodo import is_kimodo, read_kimodo_clip
+from motion_backend.clips.mapping import JointMap
 from motion_backend.clips.smplx import is_smplx, read_smplx_clip
 from motion_backend.formats.npz import read_npz
 from motion_backend.motion import Motion
@@ -26,6 +28,8 @@ from scene_graphs.fields import LayoutError
 
 LARGEST_FILE: Final = 256 << 20
 """Bytes."""
+LARGEST_TEXT: Final = 40 << 20
+"""Bytes of a file of text, such as seven minutes of BVH at 120 Hz: it takes eight times that to read."""
 FORMATS: Final = {
     "bvh": "BVH: .bvh, any channel order, axes and unit",
     "acclaim": "Acclaim: .amc, with its skeleton .asf beside it",
@@ -47,6 +51,7 @@ class MotionFile(NamedTuple):
     path: Path
     data: bytes
     skeleton_file: Path | None
+    joints: JointMap | None
 
     @property
     def name(self) -> str:
@@ -54,7 +59,9 @@ class MotionFile(NamedTuple):
         return self.path.stem
 
     def text(self) -> str:
-        """The content as text. ClipError if it is none."""
+        """The content as text. ClipError if it is none, or too long."""
+        if len(self.data) > LARGEST_TEXT:
+            raise ClipError(f"it has more than {LARGEST_TEXT >> 20} MB of text; cut it into shorter files")
         return _text(self.data, "the file")
 
 
@@ -63,17 +70,19 @@ def read_clips(
     *,
     format: str | None = None,  # noqa: A002
     skeleton_file: Path | str | None = None,
+    joints: JointMap | None = None,
 ) -> tuple[Clip, ...]:
     """The clips in a file, one as a rule, one an animation of a glTF.
 
     The format is told by suffix and content unless it is given (a key of `FORMATS`). Acclaim needs a skeleton (.asf),
-    exponential maps take one (.bvh): the one given, else an .asf in the same folder. ClipError names the file and
+    exponential maps take one (.bvh): the one given, else an .asf in the same folder. `joints`, our names to
+    the file's, tells a skeleton whose names are of no family its unit, axes and T-pose. ClipError names the file and
     says what is wrong.
     """
     path = Path(path)
     if format is not None and format not in FORMATS:
         raise ClipError(f"format must be one of {', '.join(FORMATS)}, got {format!r}")
-    file = MotionFile(path, _content(path), None if skeleton_file is None else Path(skeleton_file))
+    file = MotionFile(path, _content(path), None if skeleton_file is None else Path(skeleton_file), joints)
     try:
         # Numbers beyond all bounds are refused when a clip is made, whatever they came to on the way there.
         with np.errstate(all="ignore"):
@@ -129,27 +138,27 @@ def _format_of(file: MotionFile) -> str:
     raise ClipError(f"no motion we know looks like this; there are {', '.join(FORMATS)} (give one as the format)")
 
 
-def _skeleton(file: MotionFile, suffix: str) -> str | None:
-    """The text of the skeleton that was given, or that of the same subject or the only one in the folder."""
-    path = file.skeleton_file
-    if path is None:
-        beside = sorted(file.path.parent.glob(f"*{suffix}")) if suffix == ".asf" else []
-        own = [other for other in beside if file.name.startswith(other.stem)]
-        path = max(own, key=lambda other: len(other.stem)) if own else beside[0] if len(beside) == 1 else None
-    if path is None:
-        return None
-    return _text(_content(path), path.name)
+def _asf_of(file: MotionFile) -> Path:
+    """The skeleton that was given, or that of the same subject, or the only one in the folder."""
+    if file.skeleton_file is not None:
+        return file.skeleton_file
+    beside = sorted(file.path.parent.glob("*.asf"))
+    own = [other for other in beside if file.name.startswith(other.stem)]
+    if not own and len(beside) != 1:
+        raise ClipError("an .amc motion needs its skeleton: put the .asf beside it or name it")
+    return max(own or beside, key=lambda other: len(other.stem))
 
 
 def _bvh(file: MotionFile) -> tuple[Clip, ...]:
-    return (read_bvh_clip(file.text(), file.name),)
+    return (read_bvh_clip(file.text(), file.name, file.joints),)
 
 
 def _acclaim(file: MotionFile) -> tuple[Clip, ...]:
-    skeleton = _skeleton(file, ".asf")
-    if skeleton is None:
-        raise ClipError("an .amc motion needs its skeleton: put the .asf beside it or name it")
-    return (read_acclaim_clip(file.text(), skeleton, file.name),)
+    path = _asf_of(file)
+    clip = read_acclaim_clip(file.text(), _text(_content(path), path.name), file.name, file.joints)
+    if file.name.startswith(path.stem):
+        return (clip,)
+    return (replace(clip, notes=(*clip.notes, f"on the skeleton {path.name}, whose name is of another subject")),)
 
 
 def _deepmimic(file: MotionFile) -> tuple[Clip, ...]:
@@ -157,11 +166,11 @@ def _deepmimic(file: MotionFile) -> tuple[Clip, ...]:
 
 
 def _amp(file: MotionFile) -> tuple[Clip, ...]:
-    return (read_amp_clip(file.data, file.name),)
+    return (read_amp_clip(file.data, file.name, file.joints),)
 
 
 def _glb(file: MotionFile) -> tuple[Clip, ...]:
-    return read_glb_clips(file.data, file.path.name)
+    return read_glb_clips(file.data, file.path.name, file.joints)
 
 
 def _smplx(file: MotionFile) -> tuple[Clip, ...]:
@@ -173,7 +182,9 @@ def _kimodo(file: MotionFile) -> tuple[Clip, ...]:
 
 
 def _expmap(file: MotionFile) -> tuple[Clip, ...]:
-    return (read_expmap_clip(file.text(), _skeleton(file, ".bvh"), file.name),)
+    path = file.skeleton_file
+    skeleton = None if path is None else _text(_content(path), path.name)
+    return (read_expmap_clip(file.text(), skeleton, file.name),)
 
 
 def _sims(file: MotionFile) -> tuple[Clip, ...]:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.clips import grounding
-from motion_backend.clips.clip import Clip, ClipError
+from motion_backend.clips.clip import MOST_TURNS, Clip, ClipError
 from motion_backend.clips.fidelity import Fidelity, fastest_turn, faults, limb_differences
 from motion_backend.clips.mapping import JointMap, checked_map, find_map
 from motion_backend.clips.planting import ANKLES, BALLS, Feet, above_floor, bend_legs, held_still, resting_hands
@@ -44,6 +44,8 @@ from motion_backend.skeleton import INDEX, Skeleton, build_skeleton
 Array = NDArray[np.float64]
 KEYED = frozenset({"glb", "kimodo"})
 """Formats whose clips nobody's camera shook: they are not smoothed."""
+MOST_FRAMES = 60_000
+"""At our rate: 33 minutes, for which some 700 MB are needed."""
 SHORTEST_LEG = 0.05
 TOY = 0.47
 """Leg over leg and trunk under which a body has a toy's proportions: its path then says nothing of ours."""
@@ -138,9 +140,9 @@ def retarget(clip: Clip, skeleton: Skeleton | None = None, joints: JointMap | No
         source_fps=clip.fps,
         ratio=ratio,
         skate=pose.feet.skate(),
-        source_skate=theirs.skate(),
+        source_skate=None if toy else theirs.skate(),
         depth=pose.feet.depth(),
-        source_depth=theirs.depth(),
+        source_depth=None if toy else theirs.depth(),
         lowest=lowest,
         limbs=limbs,
         fastest=fastest,
@@ -171,7 +173,13 @@ def _is_toy(positions: Array, places: Mapping[str, int]) -> bool:
 
 def _timelines(clip: Clip, places: dict[str, int], ratio: float, notes: list[str]) -> tuple[Source, Source]:
     """The source at our size and rate, its pelvis starting above the origin: as it is, and smoothed."""
+    if clip.duration * FPS > MOST_FRAMES or clip.duration * FPS * len(clip.bones.names) > MOST_TURNS:
+        raise ClipError(
+            f"it lasts {clip.duration / 60:.0f} minutes, too long for {len(clip.bones.names)} joints; cut it"
+        )
     times = sample_times(len(clip), clip.fps, FPS)
+    if len(times) < 2:
+        raise ClipError(f"it lasts {clip.duration:.3g} s, less than two frames at {FPS} a second")
     if clip.fps != FPS:
         notes.append(f"resampled from {clip.fps:g} to {FPS} frames a second")
     roots, turns = clip.root_positions, clip.local_rotations

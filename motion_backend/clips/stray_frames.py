@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from motion_backend.clips.clip import Clip
+from motion_backend.clips.mapping import JointMap
 from motion_backend.clips.tposes import is_t_pose
 
 FASTEST = 15.0
@@ -16,7 +17,7 @@ _LEAD = 0.25
 _FEWEST = 4
 
 
-def without_stray_frames(clip: Clip) -> Clip:
+def without_stray_frames(clip: Clip, given: JointMap | None = None) -> Clip:
     """The clip from where no joint moves faster than 15 m/s, with a note of what was dropped.
 
     A T-pose that stands in front is the source's own, better than one made of its rest pose.
@@ -32,4 +33,4 @@ def without_stray_frames(clip: Clip) -> Clip:
     note = f"{first} leading frame{'s' * (first > 1)} dropped: a T-pose or stray (a joint moved {fastest:.0f} m/s)"
     kept = replace(clip.part(first, len(clip)), notes=(*clip.notes, note))
     lead = np.concatenate([clip.tpose[:1], clip.local_rotations[0, 1:]])
-    return replace(kept, tpose=lead) if is_t_pose(clip.bones, lead) else kept
+    return replace(kept, tpose=lead) if is_t_pose(clip.bones, lead, given) else kept

@@ -12,19 +12,19 @@ from typing import Final
 import numpy as np
 
 from motion_backend import rotations
-from motion_backend.clips.clip import Array, Bones, ClipError
-from motion_backend.clips.mapping import find_map
+from motion_backend.clips.clip import Array, Bones
+from motion_backend.clips.mapping import JointMap, joint_places
 
 CLOSE: Final = np.cos(np.radians(10.0))
 _DOWN: Final = np.array([0.0, -1.0, 0.0])
 _SEGMENTS: Final = (("hip", "knee"), ("knee", "ankle"), ("shoulder", "elbow"), ("elbow", "wrist"))
 
 
-def t_posed(bones: Bones, rest: Array) -> Array:
-    """Local rotations (J, 4) of the T-pose; the rest pose itself where the joints' names are of no family."""
+def t_posed(bones: Bones, rest: Array, given: JointMap | None = None) -> Array:
+    """Local rotations (J, 4) of the T-pose; the rest pose where neither the map given nor a family names its joints."""
     pose = rest.copy()
     positions, world = _at_origin(bones, pose)
-    for upper, lower, wanted in _limbs(bones):
+    for upper, lower, wanted in _limbs(bones, given):
         along = rotations.normalize(positions[lower] - positions[upper])
         if along.any() and along @ wanted < CLOSE:
             turned = rotations.compose(_shortest_turn(along, wanted), world[upper])
@@ -35,26 +35,25 @@ def t_posed(bones: Bones, rest: Array) -> Array:
     return pose
 
 
-def is_t_pose(bones: Bones, pose: Array) -> bool:
-    """Whether every limb is within ten degrees of a T-pose's; False where the joints' names are of no family."""
+def is_t_pose(bones: Bones, pose: Array, given: JointMap | None = None) -> bool:
+    """Whether every limb is near a T-pose's; False where neither the map given nor a family names its joints."""
     positions, _ = _at_origin(bones, pose)
     close = [
         bool(rotations.normalize(positions[lower] - positions[upper]) @ wanted >= CLOSE)
-        for upper, lower, wanted in _limbs(bones)
+        for upper, lower, wanted in _limbs(bones, given)
     ]
     return bool(close) and all(close)
 
 
-def _limbs(bones: Bones) -> Iterator[tuple[int, int, Array]]:
+def _limbs(bones: Bones, given: JointMap | None) -> Iterator[tuple[int, int, Array]]:
     """Upper and lower joint of each limb's bones, from the trunk outwards, and where it points in a T-pose."""
-    try:
-        _, joints = find_map(bones.names)
-    except ClipError:
+    joints = joint_places(bones.names, given)
+    if joints is None:
         return
     for side, sign in (("left", 1.0), ("right", -1.0)):
         for upper, lower in _SEGMENTS:
             wanted = _DOWN if upper in ("hip", "knee") else np.array([sign, 0.0, 0.0])
-            yield bones.index(joints[f"{side}_{upper}"]), bones.index(joints[f"{side}_{lower}"]), wanted
+            yield joints[f"{side}_{upper}"], joints[f"{side}_{lower}"], wanted
 
 
 def _at_origin(bones: Bones, pose: Array) -> tuple[Array, Array]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import pickletools
 import struct
+import warnings
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -152,7 +153,10 @@ class _Machine:
 def read_pickled(data: bytes) -> Any:
     """Dictionaries, lists, texts, numbers and arrays of a pickle. ClipError if it holds, or does, anything else."""
     try:
-        return _Finish()(_Machine().run(data))
+        with warnings.catch_warnings():
+            # Of letters that are no escapes in the text of an opcode that is then refused.
+            warnings.simplefilter("ignore", DeprecationWarning)
+            return _Finish()(_Machine().run(data))
     except (ValueError, KeyError, IndexError, TypeError, OverflowError, struct.error) as error:
         if isinstance(error, ClipError):
             raise

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 Json = dict[str, Any]
 
-_COMPONENTS = {"uint8": 5121, "uint16": 5123, "uint32": 5125, "float32": 5126}
+_COMPONENTS = {"uint8": 5121, "int16": 5122, "uint16": 5123, "uint32": 5125, "float32": 5126}
 _WIDTHS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 _MAGIC, _JSON_CHUNK, _BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
@@ -38,8 +38,14 @@ class Document:
         """Set further properties of a part that is already there."""
         self._parts[collection][index].update(part)
 
-    def accessor(self, array: NDArray[Any], target: int | None = None, bounds: bool = False) -> int:
-        """Store an array (N,) or (N, 1..4) or (N, 16); `bounds` writes the smallest and largest value a component."""
+    def accessor(
+        self, array: NDArray[Any], target: int | None = None, bounds: bool = False, normalized: bool = False
+    ) -> int:
+        """Store an array (N,) or (N, 1..4) or (N, 16).
+
+        `bounds` writes the smallest and largest value a component; `normalized` says that whole numbers stand for
+        shares of their type's largest.
+        """
         array = np.ascontiguousarray(array)
         self._binary.extend(b"\0" * (-len(self._binary) % 4))
         view: Json = {"buffer": 0, "byteOffset": len(self._binary), "byteLength": array.nbytes}
@@ -53,6 +59,8 @@ class Document:
             "count": len(rows),
             "type": _WIDTHS[rows.shape[1]],
         }
+        if normalized:
+            part["normalized"] = True
         if bounds:
             part |= {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
         return self.add("accessors", part)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motion_backend.motion import ContactGoal, Motion
+from motion_backend.motion import ContactGoal, Motion, Part, Phase
 from motion_backend.skeleton import Skeleton
 
 DIGITS = 6
@@ -32,6 +32,7 @@ def motion_to_dict(motion: Motion) -> dict[str, Any]:
         "goals": [{"joint": goal.joint, "position": list(goal.position)} for goal in motion.goals],
         "completed": motion.completed,
         "reason": motion.reason,
+        "phases": [{"part": phase.part.value, "start": phase.start, "stop": phase.stop} for phase in motion.phases],
     }
 
 
@@ -52,6 +53,7 @@ def dict_to_motion(data: dict[str, Any]) -> Motion:
         goals=tuple(ContactGoal(joint, (x, y, z)) for joint, (x, y, z) in goals),
         completed=bool(data.get("completed", True)),
         reason=str(data.get("reason", "")),
+        phases=tuple(Phase(Part(phase["part"]), phase["start"], phase["stop"]) for phase in data.get("phases", [])),
     )
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import io
 import zipfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motion_backend.motion import ContactGoal, Motion
+from motion_backend.motion import ContactGoal, Motion, Part, Phase
 from motion_backend.skeleton import Skeleton
 
 VERSION = 1
@@ -18,8 +19,13 @@ _LONG_AGO = (1980, 1, 1, 0, 0, 0)
 """The zip format's zero: a real date would make equal motions differ."""
 
 
-def write_npz(motion: Motion, file: Path | str | BinaryIO) -> None:
-    """Save a motion; `numpy.load` opens it, without pickle. Arrays as in `Motion`, and the skeleton's beside them."""
+def write_npz(motion: Motion, path: Path | str) -> None:
+    """Save a motion."""
+    Path(path).write_bytes(npz_bytes(motion))
+
+
+def npz_bytes(motion: Motion) -> bytes:
+    """A motion for `numpy.load`, without pickle: arrays as in `Motion`, and the skeleton's beside them."""
     arrays: dict[str, NDArray[Any]] = {
         "version": np.array(VERSION),
         "fps": np.array(motion.fps),
@@ -34,20 +40,22 @@ def write_npz(motion: Motion, file: Path | str | BinaryIO) -> None:
         "goal_positions": np.array([goal.position for goal in motion.goals], dtype=np.float64).reshape(-1, 3),
         "completed": np.array(motion.completed),
         "reason": np.array(motion.reason),
+        "phase_parts": np.array([phase.part.value for phase in motion.phases], dtype=np.str_),
+        "phase_frames": np.array([(phase.start, phase.stop) for phase in motion.phases], dtype=np.int32).reshape(-1, 2),
     }
-    with zipfile.ZipFile(file, "w") as archive:
+    return archive(arrays)
+
+
+def archive(arrays: Mapping[str, NDArray[Any]]) -> bytes:
+    """An npz of arrays by name: the same bytes for the same arrays."""
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w") as entries:
         for name, array in arrays.items():
             entry = zipfile.ZipInfo(name + ".npy", _LONG_AGO)
             entry.compress_type = zipfile.ZIP_DEFLATED
             content = io.BytesIO()
             np.lib.format.write_array(content, np.ascontiguousarray(array).reshape(array.shape), allow_pickle=False)
-            archive.writestr(entry, content.getvalue(), compresslevel=1)
-
-
-def npz_bytes(motion: Motion) -> bytes:
-    """What `write_npz` writes."""
-    file = io.BytesIO()
-    write_npz(motion, file)
+            entries.writestr(entry, content.getvalue(), compresslevel=1)
     return file.getvalue()
 
 
@@ -61,6 +69,7 @@ def read_npz(file: Path | str | BinaryIO) -> Motion:
             tuple(int(parent) for parent in data["joint_parents"]),
             data["joint_offsets"],
         )
+        phases = zip(data["phase_parts"], data["phase_frames"].tolist(), strict=True) if "phase_parts" in data else ()
         goals = zip(data["goal_joints"], data["goal_positions"].tolist(), strict=True)
         return Motion(
             root_positions=data["root_positions"],
@@ -72,4 +81,5 @@ def read_npz(file: Path | str | BinaryIO) -> Motion:
             goals=tuple(ContactGoal(str(joint), (x, y, z)) for joint, (x, y, z) in goals),
             completed=bool(data["completed"]),
             reason=str(data["reason"]),
+            phases=tuple(Phase(Part(part), start, stop) for part, (start, stop) in phases),
         )

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from motion_backend.formats.amass import amass_bytes
 from motion_backend.formats.bvh import bvh_bytes
 from motion_backend.formats.glb import body_glb
 from motion_backend.formats.jsonfmt import json_bytes
@@ -28,6 +29,7 @@ FORMATS = {
     "bvh": Format(bvh_bytes, "text/plain; charset=utf-8", ".bvh"),
     "glb": Format(body_glb, "model/gltf-binary", ".glb"),
     "json": Format(json_bytes, "application/json", ".json"),
+    "amass": Format(amass_bytes, "application/x-npz", ".amass.npz"),
     "f32": Format(raw_bytes, "application/octet-stream", ".f32"),
 }
 
@@ -40,7 +42,10 @@ def encode(motion: Motion, name: str) -> bytes:
 
 
 def write_motion(motion: Motion, path: Path | str) -> Path:
-    """Save a motion in the format its file name ends with."""
+    """Save a motion in the format its file name ends with; ValueError lists the endings there are."""
     path = Path(path)
-    path.write_bytes(encode(motion, path.suffix.removeprefix(".")))
+    endings = [one for one in FORMATS.values() if path.name.endswith(one.suffix)]
+    if not endings:
+        raise ValueError(f"a motion's file ends in {', '.join(one.suffix for one in FORMATS.values())}: {path.name!r}")
+    path.write_bytes(max(endings, key=lambda one: len(one.suffix)).encode(motion))
     return path

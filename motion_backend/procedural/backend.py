@@ -1,26 +1,30 @@
 """The procedural backend: rules, styles and inverse kinematics behind `begin` and `advance`.
 
-It learns nothing and says so. What may follow what is decided in performing.py; here a state wakes up, one action is
+It learns nothing and says so. What comes before what is decided in transitions.py; here a state wakes up, one action is
 performed, and the state that is left is put into plain lists again.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motion_backend.motion import FPS, Action, BodyState, Character, ContactGoal, Motion, Posture, Skill
+from motion_backend.measures.kinematics import Kinematics
+from motion_backend.motion import FPS, Action, BodyState, Character, ContactGoal, Motion, Part, Posture, Skill
 from motion_backend.obstacles import Obstacles
+from motion_backend.procedural.body import Body, Scene
 from motion_backend.procedural.guarding import hands_clear
 from motion_backend.procedural.handling import with_both_hands
-from motion_backend.procedural.performing import SKILLS, Body, Scene
+from motion_backend.procedural.performing import perform
 from motion_backend.procedural.pose import Pose, concatenate
 from motion_backend.procedural.solving import released, solve
 from motion_backend.procedural.stances import idle, standing
 from motion_backend.procedural.styles import Bearing
 from motion_backend.skeleton import HAND_REST, LYING_REST, SEATED_REST, build_skeleton
+from motion_backend.transitions import shortfall, time_limit
 from scene_graphs.homes import Home
 from scene_graphs.navigation import NoPath, Walkable
 from scene_graphs.surfaces import Spot
@@ -52,11 +56,15 @@ class ProceduralBackend:
         body = self._wake(home, state)
         reason = ""
         try:
-            SKILLS[action.skill](body, action)
+            perform(body, action)
         except NoPath as error:
             reason = str(error)
+            body.enter(Part.STAND)
             body.add(idle(body.pose, 1.0, 1.0, body.rng, FPS))
-        motion = _to_motion(body, action, reason)
+        motion = _to_motion(body, action)
+        limit = time_limit(state.posture, action, body.way)
+        reason = reason or shortfall(action, Kinematics.of(motion), limit)
+        motion = replace(motion, completed=not reason, reason=reason)
         rest = body.rest if body.posture is not Posture.STANDING else None
         memory: dict[str, Any] = {"pose": body.pose.to_lists(), "spot": _spot_to_lists(rest)}
         following = BodyState(
@@ -104,10 +112,14 @@ def _spot_from_lists(values: dict[str, Any] | None) -> Spot | None:
     return Spot(**restored)
 
 
-def _to_motion(body: Body, action: Action, reason: str) -> Motion:
+def _to_motion(body: Body, action: Action) -> Motion:
     touching = None
     if action.skill is Skill.TOUCH:
         touching = "both" if with_both_hands(action.caption) else action.hand
+    elif action.skill in (Skill.SITDOWN, Skill.STANDUP):
+        touching = "both"
+    if action.skill is Skill.LIEDOWN:
+        touching = "both"
     pose = hands_clear(concatenate(body.frames), body.skeleton, body.scene.obstacles.solid(), touching)
     body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)
@@ -119,8 +131,7 @@ def _to_motion(body: Body, action: Action, reason: str) -> Motion:
         actions=np.full(len(pose), action.keyframe, dtype=np.int32),
         fps=FPS,
         goals=contact_goals(action),
-        completed=not reason,
-        reason=reason,
+        phases=body.phases,
     )
 
 

@@ -1,7 +1,7 @@
 """Walking: footsteps planned along a route, stance feet that do not move, and a body carried over them.
 
-The route comes first (route.py), then the feet (footsteps.py); here is what rides on them: pelvis over its support,
-hips and chest turning against each other, arms and gaze.
+The route comes first (route.py), then the feet (footsteps.py, swinging.py); here is what rides on them: pelvis over its
+support, hips and chest turning against each other, gaze; arms are in arm_swing.py.
 """
 
 from __future__ import annotations
@@ -13,16 +13,26 @@ from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.motion import FPS
-from motion_backend.procedural.footsteps import LEAD, Steps, plan_phase, plan_steps, yaw_of
+from motion_backend.procedural.arm_swing import swing_arms
+from motion_backend.procedural.footsteps import LEAD, Steps, drift, plan_phase, plan_steps, yaw_of
 from motion_backend.procedural.pose import Pose, settle_from, smooth
 from motion_backend.procedural.route import Route, plan_route
-from motion_backend.procedural.styles import ARMS, arm_arrays
 from motion_backend.procedural.walk_styles import Walk
 from motion_backend.skeleton import INDEX, Skeleton
 
 Array = NDArray[np.float64]
 SPIN_RATE = 2.8
 """How fast a body spins about itself (radians a second)."""
+PACE_SPREAD = 0.03
+"""Two walks of one style differ in speed by about this share."""
+SURGE = 0.013
+"""How far the pelvis runs ahead of its mean way after each heel strike, and behind before it (metres)."""
+LEANING = 0.045
+"""How much further forward the trunk is carried in walking than in standing (radians)."""
+LATE = 0.2
+"""How much later than half-way through a stance the body is farthest over the foot (share of a step)."""
+HOP = 0.07
+"""How far the pelvis goes up and down in a skip (metres)."""
 
 
 def walk(
@@ -30,14 +40,16 @@ def walk(
 ) -> Pose:
     """Walk from a standing pose along a path (N, 2), ending on both feet at its end, facing `end_yaw` if given."""
     fps = FPS
-    style = replace(style, release=end_yaw is not None)
-    route = plan_route(path, float(yaw_of(start.hips)), end_yaw, style.speed * skeleton.scale, fps)
+    pace = 1 + PACE_SPREAD * float(np.clip(rng.standard_normal(), -2, 2))
+    style = replace(style, release=end_yaw is not None, speed=style.speed * pace)
+    speed, aside = style.speed * skeleton.scale, float(np.radians(style.aside))
+    route = plan_route(path, float(yaw_of(start.hips)), end_yaw, speed, fps, aside)
     if style.spin:
         route = _with_spin(route, style.spin, fps)
     if style.wobble:
         route = _staggering(route, style.wobble, rng, fps)
-    route, phase = plan_phase(route, style, skeleton, fps)
-    steps = plan_steps(start, route, phase, style, skeleton)
+    route, phase = plan_phase(route, style, skeleton, fps, rng)
+    steps = plan_steps(start, route, phase, style, skeleton, rng)
     pose = _carry(start, route, steps, style, skeleton, rng)
     return settle_from(start, pose, fps)
 
@@ -58,14 +70,6 @@ def _with_spin(route: Route, turns: float, fps: int) -> Route:
     )
 
 
-def drift(frames: int, hertz: float, fps: int, rng: np.random.Generator) -> Array:
-    """Smooth wandering about zero with unit size: a few slow sines of random phase. (frames,)."""
-    time = np.arange(frames) / fps
-    rates = hertz * np.array([0.61, 1.0, 1.43])
-    phases = rng.uniform(0, 2 * np.pi, 3)
-    return np.asarray(np.sin(2 * np.pi * np.outer(time, rates) + phases).sum(axis=1) / 2.1)
-
-
 def _staggering(route: Route, size: float, rng: np.random.Generator, fps: int) -> Route:
     frames = len(route.heading)
     ease = smooth(np.arange(frames) / 20) * smooth((frames - 1 - np.arange(frames)) / 20)
@@ -78,36 +82,41 @@ def _staggering(route: Route, size: float, rng: np.random.Generator, fps: int) -
 def _carry(start: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skeleton, rng: np.random.Generator) -> Pose:
     """Everything above the feet: pelvis over its support, hips and chest turning against each other, arms, gaze."""
     frames = len(steps.phase)
-    bearing, moving, first = style.bearing, steps.moving, steps.first
-    cycle, wave = np.cos(np.pi * steps.phase), np.sin(np.pi * steps.phase)
+    bearing, first = style.bearing, steps.first
+    moving = steps.moving * smooth((steps.phase[-1] - steps.phase) / 0.8)
+    cycle, wave = np.cos(np.pi * steps.phase), np.sin(np.pi * (steps.phase - LATE))
     left = np.stack([np.cos(route.heading), -np.sin(route.heading)], axis=1)
+    ahead = np.stack([np.sin(route.heading), np.cos(route.heading)], axis=1)
     unsteady = style.wobble * drift(frames, 0.5, FPS, rng)
-    aside = -first * style.sway * wave * moving + 0.03 * unsteady
-    ground = route.position + aside[:, None] * left
+    # The slower the steps, the further the body goes over to each foot.
+    aside = -first * style.sway * np.clip(1.35 - 0.45 * route.speed, 0.5, 1.2) * wave * moving + 0.03 * unsteady
+    brisk = np.clip(route.speed, 0.0, 1.2) * moving * np.cos(np.radians(style.aside))
+    surge = SURGE * brisk * np.cos(2 * np.pi * (steps.phase - 0.24))
+    ground = route.position + aside[:, None] * left + surge[:, None] * ahead
     hip_turn = np.radians(style.twist) * first * cycle * moving
-    roll = -np.radians(2.5) * first * wave * moving
+    roll = -np.radians(style.hips) * first * wave * moving
     # A bowed body straightens up a little where it arrives, so as not to bump its head.
     arriving = smooth((np.arange(frames) - frames + 30) / 30)
     lean = np.radians(bearing.lean) * (1 - 0.55 * arriving * (bearing.lean > 8))
-    lean = lean + 0.03 * np.clip(route.speed - 1.0, 0, 1)
+    lean = lean + LEANING * brisk + 0.03 * np.clip(route.speed - 1.0, 0, 1)
+    tilt = 0.3 * lean - 0.015 * brisk * np.cos(2 * np.pi * (steps.phase - 0.1))
     hips = rotations.compose(
         rotations.yaw_to_quat(route.heading + hip_turn),
-        rotations.rotvec_to_quat(np.stack([np.full(frames, 0.3) * lean, np.zeros(frames), roll], axis=1)),
+        rotations.rotvec_to_quat(np.stack([tilt, np.zeros(frames), roll], axis=1)),
     )
-    spine = np.stack([0.7 * lean + 0.10 * unsteady, -1.7 * hip_turn, -1.4 * roll + 0.12 * unsteady], axis=1)
-    ahead = np.concatenate([route.heading[12:], np.full(min(12, frames), route.heading[-1])])[:frames]
-    gaze = np.clip(ahead - route.heading, -0.6, 0.6) + 0.7 * hip_turn
-    nod = np.radians(bearing.head) - 0.1 * np.clip(route.speed - 1.2, 0, 1) + 0.12 * unsteady
-    arms, elbows = _swinging(style, steps)
+    jolt = 0.02 * brisk * np.cos(2 * np.pi * (steps.phase - 0.02)) + 3 * style.stamp * _landing(steps)
+    looking = 0.25 * np.radians(style.veer) * moving
+    spine = np.stack([0.7 * lean + 0.10 * unsteady + jolt, looking - 1.7 * hip_turn, -roll + 0.12 * unsteady], axis=1)
+    arms, elbows = swing_arms(style, steps, route.speed)
     pose = Pose(
         pelvis=np.stack([ground[:, 0], np.zeros(frames), ground[:, 1]], axis=1),
         hips=hips,
         spine=spine,
-        head=np.stack([nod, gaze, 0.08 * unsteady], axis=1),
+        head=_gaze(route, style, hip_turn, (unsteady, jolt), rng),
         ankles=steps.ankles,
         feet=steps.feet,
         toes=steps.toes,
-        knees=_knees(hips, steps.feet),
+        knees=_knees(hips, steps.yaw),
         arms=arms,
         elbows=elbows,
         reach=np.repeat(start.reach[None], frames, axis=0),
@@ -116,34 +125,54 @@ def _carry(start: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skele
         pressing=np.zeros((frames, 2)),
         planted=steps.planted,
     )
-    return replace(pose, pelvis=_height(pose, steps, style, skeleton))
+    return replace(pose, pelvis=_height(pose, route, steps, style, skeleton))
+
+
+def _gaze(route: Route, style: Walk, hip_turn: Array, moved: tuple[Array, Array], rng: np.random.Generator) -> Array:
+    """The head: it looks where the way goes, keeps level over the steps, and does what the mood does. (T, 3)."""
+    frames = len(route.heading)
+    unsteady, jolt = moved
+    coming = np.concatenate([route.heading[12:], np.full(min(12, frames), route.heading[-1])])[:frames]
+    ease = smooth(np.arange(frames) / 20) * smooth((frames - 1 - np.arange(frames)) / 15)
+    turn = np.clip(coming - route.heading, -0.6, 0.6) + 0.7 * hip_turn
+    turn = turn + np.radians(style.glance) * ease * drift(frames, 0.4, FPS, rng)
+    seconds = np.arange(frames) / FPS
+    turn = turn + np.radians(style.veer) * smooth(seconds / 0.5) * smooth((seconds[-1] - seconds) / 0.9)
+    nod = np.radians(style.bearing.head) - 0.1 * np.clip(route.speed - 1.2, 0, 1) + 0.12 * unsteady - 0.7 * jolt
+    nod = nod + np.radians(style.nod) * ease * drift(frames, 0.35, FPS, rng)
+    return np.stack([nod, turn, np.radians(style.tilt) * ease + 0.08 * unsteady], axis=1)
+
+
+def _landing(steps: Steps) -> Array:
+    """1 just after each foot comes down, 0 otherwise. (T,)."""
+    since = (steps.phase + 0.02) % 1.0
+    return np.asarray(np.exp(-(((since - 0.12) / 0.10) ** 2)) * steps.moving)
 
 
 def _knees(hips: Array, feet: Array) -> Array:
-    """Knees point between where the pelvis and the foot point. (T, 2, 3)."""
+    """Knees point between where the pelvis (T, 4) and the foot (T, 2) yaw point. (T, 2, 3)."""
     forward = np.array([0.0, 0.0, 1.0])
     pelvis = rotations.rotate(rotations.yaw_to_quat(yaw_of(hips)), forward)
-    foot = rotations.rotate(rotations.yaw_to_quat(yaw_of(feet)), forward)
-    return rotations.normalize(pelvis[:, None] + 1.2 * foot)
+    foot = rotations.rotate(rotations.yaw_to_quat(feet), forward)
+    return rotations.normalize(pelvis[:, None] + 2.0 * foot)
 
 
-def _height(pose: Pose, steps: Steps, style: Walk, skeleton: Skeleton) -> Array:
+def _height(pose: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skeleton) -> Array:
     """Pelvis positions with the height that the bounce asks for and the legs allow. (T, 3)."""
     from scipy.ndimage import gaussian_filter1d, minimum_filter1d
 
     pelvis = pose.pelvis.copy()
-    beat = -np.cos(2 * np.pi * steps.phase) * (1 if style.double > 0 else -1)
     at_rest = skeleton.standing_height * 0.998 - (0.004 + 0.3 * style.crouch) * skeleton.scale
-    walking = skeleton.standing_height * 0.993 - (style.crouch + 0.012) * skeleton.scale
+    # Long steps need bent knees, or the body would fall into each of them.
+    lower = 0.009 + (0.009 + 0.025 * np.clip(route.speed - 1.1, 0.0, 0.7)) * (style.double > 0)
+    walking = skeleton.standing_height * 0.996 - (style.crouch + lower) * skeleton.scale
     # The last step ends upright: legs straighten as the feet come together.
     ending = smooth((steps.phase[-1] - steps.phase) / 0.8)
-    under_way = np.clip(1.6 * steps.moving, 0.0, 1.0) * ending
+    under_way = np.clip(1.6 * steps.moving, 0.0, 1.0) * ending * smooth((steps.phase - steps.phase[0]) / 0.7)
     carried = at_rest + under_way * (walking - at_rest)
     lifted = 0.05 * skeleton.scale * np.sin(np.radians(style.tiptoe)) + 0.01 * (style.tiptoe > 0)
     carried = carried + lifted * smooth(steps.phase + LEAD) * smooth((steps.phase[-1] - steps.phase) / 1.5)
-    quick = np.clip(np.hypot(*np.gradient(pelvis[:, [0, 2]], axis=0).T) * FPS / 0.8, 0.35, 1.0)
-    bounce = style.bounce * skeleton.scale * steps.moving * quick * ending
-    wanted = carried + bounce * (beat - (0.9 if style.double > 0 else 0.0))
+    wanted = carried + skeleton.scale * ending * _bounce(route, steps, style)
     leg = -float(skeleton.offsets[INDEX["left_knee"], 1] + skeleton.offsets[INDEX["left_ankle"], 1]) * 0.998
     limits = []
     for index, name in enumerate(("left", "right")):
@@ -151,49 +180,20 @@ def _height(pose: Pose, steps: Steps, style: Walk, skeleton: Skeleton) -> Array:
         gap = np.hypot(*(pelvis + hip - pose.ankles[:, index])[:, [0, 2]].T)
         top = pose.ankles[:, index, 1] + np.sqrt(np.maximum(leg**2 - gap**2, 0.04)) - hip[:, 1]
         # Feet in the air do not hold the body down.
-        limits.append(np.where(pose.planted[:, index] > 0, top, np.maximum(top, carried - 0.09)))
+        limits.append(np.where(pose.planted[:, index] > 0, top, np.maximum(top, carried - 0.04)))
     # The least of a few frames, then smoothed over no more than these: never above what the legs allow, and no corner.
     low = minimum_filter1d(np.minimum(wanted, np.minimum(*limits)), 5, mode="nearest")
     pelvis[:, 1] = gaussian_filter1d(low, 1.0, radius=2, mode="nearest")
     return pelvis
 
 
-def _spread(frames: int, arms: str, release: bool) -> Array:
-    """Share of an arm pose: open arms wait until the body is under way, and all but those that carry something
-    come down where something is begun."""
-    at = np.arange(frames) / FPS
-    takes_room = arms in ("open", "balance")
-    begun = smooth((at - 0.25) / 0.8) if takes_room else np.ones(frames)
-    comes_down = takes_room or (release and arms != "carry")
-    return begun * smooth((at[-1] - at) / 0.7) if comes_down else begun
-
-
-def _swinging(style: Walk, steps: Steps) -> tuple[Array, Array]:
-    """Wrists and elbow directions: arms that hang swing against the legs, others keep their pose. (T, 2, 3) each."""
-    frames = len(steps.phase)
-    fixed, poles = arm_arrays(*style.bearing.arms)
-    wrists, elbows = np.repeat(fixed[None], frames, axis=0), np.repeat(poles[None], frames, axis=0)
-    upper, lower = 0.541, 0.459
-    for index, side in ((0, 1), (1, -1)):
-        beat = side * steps.first * np.cos(np.pi * steps.phase) * steps.moving
-        if style.bearing.arms[index] in ("hang", "bent"):
-            bent = style.elbow + (25 if style.bearing.arms[index] == "bent" else 0)
-            swing = np.radians(style.swing) * beat + np.radians(3)
-            bend = np.radians(8 + (bent - 8) * (0.35 + 0.65 * steps.moving)) + 0.35 * np.maximum(swing, 0)
-            shoulder, fore = swing - 0.25 * bend, swing + 0.75 * bend
-            wrists[:, index, 1] = -upper * np.cos(shoulder) - lower * np.cos(fore)
-            wrists[:, index, 2] = upper * np.sin(shoulder) + lower * np.sin(fore)
-            wrists[:, index, 0] = side * (0.17 - 0.10 * np.maximum(np.sin(swing), 0))
-            wrists[:, index] *= np.minimum(1, 0.985 / np.linalg.norm(wrists[:, index], axis=1))[:, None]
-        else:
-            wrists[:, index, 2] += 0.02 * beat
-            spread = _spread(frames, style.bearing.arms[index], style.release)
-            hang = np.asarray(ARMS["hang"].wrist) * [side, 1, 1]
-            between = hang + spread[:, None] * (wrists[:, index] - hang)
-            length = np.linalg.norm(hang) + spread * (np.linalg.norm(wrists[:, index], axis=1) - np.linalg.norm(hang))
-            wrists[:, index] = rotations.normalize(between) * length[:, None]
-        if style.tap:
-            beating = np.maximum(np.sin(2 * np.pi * 1.6 * np.arange(frames) / FPS + (0 if side > 0 else np.pi)), 0)
-            wrists[:, index] += [0.14 * side, 0.06 * side, 0.02]
-            wrists[:, index, 2] += 0.16 * beating
-    return wrists, elbows
+def _bounce(route: Route, steps: Steps, style: Walk) -> Array:
+    """Up and down with the steps: highest over the standing leg, in running and skipping in the air. (T,)."""
+    quick = np.clip(route.speed / 1.1, 0.25, 1.4)
+    if style.double > 0:
+        beat = -np.cos(2 * np.pi * (steps.phase + 0.05))
+        walked = style.bounce * quick * beat - style.stamp * _landing(steps)
+    else:
+        walked = style.bounce * np.minimum(quick, 1.0) * (np.cos(2 * np.pi * steps.phase) - 0.9)
+    skipped = HOP * (np.cos(2 * np.pi * (steps.phase - 0.56)) - 0.75) * 0.5
+    return np.asarray(steps.moving * (walked + steps.hopping * (skipped - walked)))

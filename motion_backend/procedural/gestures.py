@@ -1,4 +1,4 @@
-"""What hands do while a pose is held: write, type, play, drink, eat, keep time, wave (LINGO Table A1)."""
+"""What hands do while a pose is held: write, type, play, drink, eat, read, keep time, wave (LINGO Table A1)."""
 
 from __future__ import annotations
 
@@ -18,9 +18,8 @@ from motion_backend.procedural.styles import arm_arrays
 Array = NDArray[np.float64]
 BITE: Final = 2.6
 """About how long a sip or a bite takes, from the table to the mouth and back (seconds)."""
-LAP: Final = (-0.08, 0.10, -0.06)
-"""What is written on, typed on or eaten from lies on the lap, so far from hands on the thighs (arm lengths, of a left
-hand): a table is seldom within a sitter's reach, since bodies walk between it and its chairs."""
+PAGE: Final = 2.8
+"""About how long a page takes (seconds)."""
 ARM: Final = 0.54
 """Shoulder to wrist (metres at 1.70 m)."""
 EASE: Final = 0.3
@@ -43,12 +42,6 @@ def _moved(held: Pose, left: Array, right: Array, ease: Array) -> Pose:
     return replace(held, arms=held.arms + offsets, reach=held.reach + ARM * rotations.rotate(heading, offsets))
 
 
-def _over_the_lap(held: Pose, time: Array, ease: Array) -> Pose:
-    """Hands on the thighs brought together over what lies on the lap."""
-    left, right = _along(time, *LAP), _along(time, *(np.array(LAP) * [-1.0, 1.0, 1.0]))
-    return _moved(held, left, right, ease)
-
-
 def _wave_of(rate: float, time: Array, phase: float = 0.0) -> Array:
     return np.sin(2 * np.pi * (rate * time + phase))
 
@@ -68,13 +61,13 @@ def _write(held: Pose, time: Array, ease: Array) -> Pose:
     line = (time / 1.6) % 1.0
     across = np.where(line < 0.85, line / 0.85, (1.0 - line) / 0.15)
     strokes = _along(time, 0.18 * smooth(across) - 0.12 + 0.015 * _wave_of(2.7, time), 0.0, 0.022 * _wave_of(3.1, time))
-    return _moved(_over_the_lap(held, time, ease), _along(time), strokes, ease)
+    return _moved(held, _along(time), strokes, ease)
 
 
 def _type(held: Pose, time: Array, ease: Array) -> Pose:
     left = _along(time, 0.03 * _wave_of(0.7, time), 0.030 * _taps(3.1, time))
     right = _along(time, 0.04 * _wave_of(0.5, time, 0.3), 0.030 * _taps(2.9, time, 0.45))
-    return _moved(_over_the_lap(held, time, ease), left, right, ease)
+    return _moved(held, left, right, ease)
 
 
 def _piano(held: Pose, time: Array, ease: Array) -> Pose:
@@ -91,18 +84,19 @@ def _game(held: Pose, time: Array, ease: Array) -> Pose:
     return _moved(held, _along(time, shared, tilt), _along(time, shared, -tilt), ease)
 
 
-def _to_the_mouth(held: Pose, time: Array, ease: Array) -> Pose:
-    """The right hand rises to the mouth, stays a moment, and goes down again, as often as there is time for."""
+def _to_the_mouth(held: Pose, time: Array, index: int) -> Pose:
+    """A hand rises to the mouth, stays a moment, and goes down again, as often as there is time for."""
     times = max(round(float(time[-1]) / BITE), 1)
     share = (time / time[-1] * times) % 1.0
     share[-1] = 0.0
     lifted = (smooth(share / 0.4) * smooth((1.0 - share) / 0.35))[:, None]
     wrists, elbows = arm_arrays("mouth", "mouth")
     arms, poles, head = held.arms.copy(), held.elbows.copy(), held.head.copy()
-    arms[:, 1] += lifted * (wrists[1] - arms[:, 1])
-    poles[:, 1] += lifted * (elbows[1] - poles[:, 1])
-    # A hand that rises leaves the thigh it may have been laid on.
-    free = np.stack([np.zeros_like(ease), lifted[:, 0]], axis=1)
+    arms[:, index] += lifted * (wrists[index] - arms[:, index])
+    poles[:, index] += lifted * (elbows[index] - poles[:, index])
+    # A hand that rises leaves what it may have been laid on.
+    free = np.zeros_like(held.reaching)
+    free[:, index] = lifted[:, 0]
     head[:, 0] += 0.06 * lifted[:, 0]
     return replace(
         held,
@@ -114,9 +108,24 @@ def _to_the_mouth(held: Pose, time: Array, ease: Array) -> Pose:
     )
 
 
-def _eat(held: Pose, time: Array, ease: Array) -> Pose:
-    """The left hand keeps the plate on the lap, the right goes from it to the mouth."""
-    return _to_the_mouth(_over_the_lap(held, time, ease), time, ease)
+def _drink(held: Pose, time: Array, ease: Array) -> Pose:
+    return _to_the_mouth(held, time, 1)
+
+
+def _drink_left(held: Pose, time: Array, ease: Array) -> Pose:
+    return _to_the_mouth(held, time, 0)
+
+
+def _read(held: Pose, time: Array, ease: Array) -> Pose:
+    """The eyes go along the lines and down the page; now and then the right hand turns a leaf over."""
+    turns = max(round(float(time[-1]) / PAGE), 1)
+    page = time / time[-1] * turns % 1.0
+    leaf = np.clip((page - 0.62) / 0.30, 0.0, 1.0)
+    over = np.sin(np.pi * smooth(leaf))
+    sweep = _along(time, 0.26 * over, 0.10 * over, 0.04 * over)
+    scan = ease * 0.035 * _wave_of(0.9, time)
+    eyes = replace(held, head=held.head + _along(time, ease * 0.08 * (page - 0.5), scan))
+    return _moved(eyes, _along(time), sweep, ease)
 
 
 def _music(held: Pose, time: Array, ease: Array) -> Pose:
@@ -138,8 +147,10 @@ GESTURES: Final[dict[str, Callable[[Pose, Array, Array], Pose]]] = {
     "type": _type,
     "piano": _piano,
     "game": _game,
-    "drink": _to_the_mouth,
-    "eat": _eat,
+    "drink": _drink,
+    "drink_left": _drink_left,
+    "eat": _drink,
+    "read": _read,
     "music": _music,
     "wave": _wave,
 }

@@ -48,6 +48,8 @@ class Laid:
     normal: Array
     """(3,) out of the surface."""
     hand: str
+    down: bool = False
+    """Whether fingers point down a front."""
     other: tuple[Array, Array] | None = None
     """The other hand's wrist (3,) and palm (4,)."""
 

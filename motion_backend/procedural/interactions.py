@@ -1,4 +1,4 @@
-"""Sitting down, standing up, lying down and getting up, as key poses with planted feet between them."""
+"""Sitting down and standing up, as key poses with planted feet between them."""
 
 from __future__ import annotations
 
@@ -9,73 +9,143 @@ from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.motion import FPS
-from motion_backend.procedural.footsteps import home_ankle, yaw_of
-from motion_backend.procedural.lie_styles import Lying
-from motion_backend.procedural.lying import Bed, lying
+from motion_backend.procedural.footsteps import yaw_of
 from motion_backend.procedural.pose import Pose, concatenate, interpolate, smooth
-from motion_backend.procedural.sit_styles import Seated
-from motion_backend.procedural.stances import (
-    FOOT_SPLAY,
-    SHIN_REACH,
-    UP,
-    Seat,
-    bend,
-    hands_on_thighs,
-    seated,
-    standing,
-    upright,
-)
+from motion_backend.procedural.resting_hands import Holds, at_rest, follow
+from motion_backend.procedural.seated import Place, seated
+from motion_backend.procedural.sit_styles import Manner, Seated
+from motion_backend.procedural.stances import UP, Seat, bend, standing, upright
+from motion_backend.procedural.solving import released
 from motion_backend.procedural.styles import Bearing, arm_arrays
 from motion_backend.skeleton import Skeleton
 
 Array = NDArray[np.float64]
 ARM = 0.54
 """Shoulder to wrist at the reference height (metres)."""
+NOTHING: Holds = (None, None)
+AROUND, ROUND = 0.4, 0.16
+"""How far hands come out on their way down to the seat, and up from it (arm lengths)."""
+STEP = 1.8
+"""Seconds a foot takes for a metre, where that is longer than a small step."""
+SINK = 0.014
+"""How deep one who plumps down sinks into the seat before it gives back (metres)."""
 
 
-def sit_down(start: Pose, seat: Seat, style: Seated, skeleton: Skeleton, reach: tuple[float, float]) -> Pose:
-    """From standing with the back to a seat: hips back, lower, touch down, lean into the way of sitting."""
+def sit_down(start: Pose, place: Place, style: Seated, felt: Holds, skeleton: Skeleton) -> tuple[Pose, Holds]:
+    """From standing with the back to a seat: look, hips back, lower, touch down, settle; then the way of sitting.
+
+    `felt` is what the hands feel for on the way down. Returned with it is what they lie on in the end.
+    """
     pace = 1 / style.bearing.tempo
-    down = _lower(start, seat, style.bearing, skeleton)
+    ready = _looking_back(start, style.manner, pace)
+    before = start if ready is None else ready.at(len(ready) - 1)
+    down = lower_onto(before, place.seat, style.bearing, skeleton, style.manner, felt)
     landed = down.at(len(down) - 1)
-    settled = seated(landed, seat, style, skeleton, reach)
+    settle = _settling(landed, place.seat, style, pace)
+    touched = settle.at(len(settle) - 1)
+    landed = released(touched, skeleton)
+    settled, holds = seated(landed, place, style, skeleton)
     travel = float(np.linalg.norm(settled.arms - landed.arms, axis=1).max()) * ARM * skeleton.scale
-    moved = interpolate(
-        [0.0, max(0.75, 1.1 * travel) * pace], [landed, replace(settled, ankles=landed.ankles, feet=landed.feet)], FPS
+    keys = [landed, replace(settled, ankles=landed.ankles, feet=landed.feet)]
+    moved = interpolate([0.0, max(0.75, 1.1 * travel) * pace], keys, FPS)
+    moved = follow(_place_feet(moved, landed, settled, first=0.15, each=0.42), settled, holds, skeleton)
+    moved = _taken(moved, landed, holds)
+    # Hands that were on the seat come up round the thighs.
+    round_them = np.sin(np.pi * smooth(np.linspace(0.0, 1.0, len(moved))))[:, None, None] * touched.reaching[:, None]
+    moved = replace(moved, arms=moved.arms + ROUND * round_them * np.array([[1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]))
+    return concatenate([part for part in (ready, down, settle, moved) if part is not None]), holds
+
+
+def _taken(moved: Pose, start: Pose, holds: Holds) -> Pose:
+    """Hands that leave what they held and turn to what they go to; late on the way they hold on to it."""
+    share = np.linspace(0.0, 1.0, len(moved))
+    turned, late = smooth(share)[:, None], smooth((share - 0.35) / 0.65)[:, None]
+    wanted = np.array([0.0 if hold is None else 1.0 for hold in holds])
+    return replace(
+        moved,
+        palms=rotations.slerp(start.palms[None], moved.palms, turned),
+        reaching=late * wanted,
+        pressing=(1 - turned) * start.pressing + turned * wanted,
     )
-    moved = _place_feet(moved, landed, settled, first=0.25, each=0.42)
-    return hands_on_thighs(concatenate([down, moved]), skeleton)
 
 
-def _lower(start: Pose, seat: Seat, bearing: Bearing, skeleton: Skeleton) -> Pose:
-    """Standing to first contact with the seat."""
-    pace = 1 / bearing.tempo
-    depth = float(np.clip((start.pelvis[1] - seat.pelvis[1]) / (0.4 * skeleton.scale), 0.6, 2.0))
+def _looking_back(start: Pose, manner: Manner, pace: float) -> Pose | None:
+    """A look over the shoulder at the seat; None for who does not look."""
+    if manner.glance < 0.2:
+        return None
+    turned = replace(
+        start,
+        head=start.head + bend(0.18 * manner.glance, -0.75 * manner.glance),
+        spine=start.spine + bend(0.06, -0.20 * manner.glance),
+    )
+    return interpolate([0.0, 0.55 * pace], [start, turned], FPS)
+
+
+def lower_onto(
+    start: Pose,
+    seat: Seat,
+    bearing: Bearing,
+    skeleton: Skeleton,
+    manner: Manner | None = None,
+    felt: Holds = NOTHING,
+) -> Pose:
+    """Standing to first contact with the seat, a hand or two feeling for it."""
+    pace, scale = 1 / bearing.tempo, skeleton.scale
+    depth = float(np.clip((start.pelvis[1] - seat.pelvis[1]) / (0.4 * scale), 0.6, 2.0))
     drop, back = seat.pelvis[1] - start.pelvis[1], seat.pelvis - start.pelvis
+    aside = (manner.sway if manner else 0.0) * rotations.rotate(rotations.yaw_to_quat(seat.yaw), np.array([1.0, 0, 0]))
     # Whatever the arms were doing, they come forward for balance.
     arms, elbows = arm_arrays("hang", "hang")
     arms = arms * [1.0, 0.86, 1.0] + [0.0, 0.0, 0.35]
     forward = 0.30 + 0.16 * depth
+    # Hips that fold no further let the back do it, and arms go round the knees.
+    tucked = 0.45 if seat.is_low(scale) else 0.0
+    arms = arms + (tucked > 0) * np.array([[0.35, 0.1, 0.0], [-0.35, 0.1, 0.0]])
     hinge = replace(
         start,
-        pelvis=start.pelvis + back * [0.42, 0.0, 0.42] + [0, 0.22 * drop, 0],
+        pelvis=start.pelvis + back * [0.42, 0.0, 0.42] + [0, 0.22 * drop, 0] + aside,
         hips=upright(seat.yaw, 0.55 * forward),
         spine=bend(0.5 * forward),
         head=bend(0.1),
         arms=0.5 * (start.arms + arms),
         elbows=elbows,
+        reaching=np.zeros(2),
+        pressing=np.zeros(2),
     )
     low = replace(
         hinge,
-        pelvis=start.pelvis + back * [0.86, 0.0, 0.86] + [0, 0.74 * drop, 0],
-        hips=upright(seat.yaw, 0.75 * forward),
-        spine=bend(0.75 * forward),
+        pelvis=start.pelvis + back * [0.86, 0.0, 0.86] + [0, 0.74 * drop, 0] - 0.5 * aside,
+        hips=upright(seat.yaw, (0.75 - tucked) * forward),
+        spine=bend((0.75 + 0.6 * tucked) * forward),
         arms=arms,
     )
-    contact = replace(low, pelvis=seat.pelvis, hips=upright(seat.yaw, 0.45 * forward), spine=bend(0.55 * forward))
+    contact = replace(
+        low,
+        pelvis=seat.pelvis,
+        hips=upright(seat.yaw, (0.45 - 1.6 * tucked) * forward),
+        spine=bend((0.55 + 0.9 * tucked) * forward),
+    )
+    contact = at_rest(contact, felt, skeleton)
+    hinge, low = _feeling(hinge, contact), _feeling(low, contact)
+    low = replace(low, arms=at_rest(low, felt, skeleton).arms, reaching=0.7 * contact.reaching)
     seconds = 1.35 * pace * (0.7 + 0.3 * depth)
     down = interpolate([0.0, 0.42 * seconds, 0.8 * seconds, seconds], [start, hinge, low, contact], FPS)
     return replace(down, knees=knees_over_feet(down))
+
+
+def _feeling(pose: Pose, contact: Pose) -> Pose:
+    """Hands that will hold on come out to the side on their way round the thighs."""
+    outwards = AROUND * contact.reaching[:, None] * np.array([[1.0, 0.0, -0.5], [-1.0, 0.0, -0.5]])
+    return replace(pose, arms=pose.arms + outwards, reach=contact.reach, palms=contact.palms)
+
+
+def _settling(landed: Pose, seat: Seat, style: Seated, pace: float) -> Pose:
+    """The weight comes down: the seat gives and gives back, the trunk comes up over it."""
+    sink = SINK * style.manner.plump
+    deep = replace(landed, pelvis=seat.pelvis - sink * UP, head=landed.head + bend(0.12 * style.manner.plump))
+    up = replace(deep, pelvis=seat.pelvis + 0.3 * sink * UP, spine=0.75 * landed.spine)
+    still = replace(up, pelvis=seat.pelvis, spine=0.6 * landed.spine, head=landed.head)
+    return interpolate([0.0, 0.14, 0.30, 0.30 + 0.18 * pace], [landed, deep, up, still], FPS)
 
 
 def knees_over_feet(pose: Pose) -> Array:
@@ -88,17 +158,19 @@ def _place_feet(pose: Pose, before: Pose, after: Pose, first: float, each: float
     """Move the feet one after the other in small lifted steps from where they were to where they go."""
     ankles, feet, planted, knees = pose.ankles.copy(), pose.feet.copy(), pose.planted.copy(), pose.knees.copy()
     time = np.arange(1, len(pose) + 1) / FPS
-    for order, index in enumerate((1, 0)):
-        share = np.clip((time - first - order * 0.5 * each) / each, 0.0, 1.0)
-        way = smooth(share)[:, None]
+    for order, index in enumerate((0, 1) if after.planted[0] > after.planted[1] else (1, 0)):
         gap = float(np.linalg.norm(after.ankles[index] - before.ankles[index]))
+        share = np.clip((time - first - order * 0.5 * each) / max(each, STEP * gap), 0.0, 1.0)
+        way = smooth(share)[:, None]
         ankles[:, index] = before.ankles[index] + way * (after.ankles[index] - before.ankles[index])
-        ankles[:, index, 1] += min(0.05, 0.25 * gap) * np.sin(np.pi * share)
+        ankles[:, index, 1] += min(0.08, 0.28 * gap) * np.sin(np.pi * share)
         feet[:, index] = rotations.slerp(before.feet[index], after.feet[index], way[:, 0])
         knees[:, index] = before.knees[index] + way * (after.knees[index] - before.knees[index])
-        planted[:, index] = (share <= 0) | (share >= 1)
+        stands = np.where(share <= 0, before.planted[index], np.where(share >= 1, after.planted[index], 0.0))
+        planted[:, index] = stands
     last = {"ankles": ankles, "feet": feet, "planted": planted, "knees": knees}
-    short = max(round((first + 1.5 * each) * FPS) - len(pose), 0)
+    far = float(np.linalg.norm(after.ankles - before.ankles, axis=1).max())
+    short = max(round((first + 0.5 * each + max(each, STEP * far)) * FPS) - len(pose), 0)
     if short:
         # The feet take longer than the trunk: hold the trunk until both are placed.
         held = pose.at(slice(len(pose) - 1, len(pose)))
@@ -107,150 +179,68 @@ def _place_feet(pose: Pose, before: Pose, after: Pose, first: float, each: float
     return replace(pose, **last)
 
 
-def stand_up(start: Pose, seat: Seat, where: tuple[float, float], bearing: Bearing, skeleton: Skeleton) -> Pose:
-    """From a seat to standing at [x, z]: feet under, lean forward, rise over them."""
+def stand_up(
+    start: Pose,
+    seat: Seat,
+    where: tuple[float, float],
+    bearing: Bearing,
+    skeleton: Skeleton,
+    push: Holds = NOTHING,
+) -> Pose:
+    """From a seat to standing at [x, z]: feet under, lean forward, push off with the hands, rise over the feet."""
     end = standing(where, seat.yaw, bearing, skeleton)
-    under = replace(start, ankles=end.ankles, feet=end.feet, knees=end.knees + 0.25 * UP)
+    under = replace(start, ankles=end.ankles, feet=end.feet, knees=end.knees + 0.25 * UP, planted=np.ones(2))
     pace = 1 / bearing.tempo
     depth = float(np.clip((end.pelvis[1] - seat.pelvis[1]) / (0.4 * skeleton.scale), 0.6, 2.0))
     forward = 0.34 + 0.20 * depth
+    folded = 0.55 if seat.is_low(skeleton.scale) else 0.0
     ready = replace(
         under,
-        hips=upright(seat.yaw, 0.5 * forward),
-        spine=bend(0.75 * forward),
+        hips=upright(seat.yaw, (0.5 - folded) * forward),
+        spine=bend((0.75 + folded) * forward),
         head=bend(0.0),
         pelvis=seat.pelvis,
         toes=np.zeros(2),
         arms=end.arms + np.array([0.0, 0.16, 0.34]),
         elbows=end.elbows,
+        reaching=np.zeros(2),
         pressing=np.zeros(2),
     )
+    ready = at_rest(ready, push, skeleton)
     # Hands that come down from the head need longer than hands on the lap.
     travel = float(np.linalg.norm(ready.arms - start.arms, axis=1).max()) * ARM * skeleton.scale
-    gather = interpolate(
-        [0.0, max(0.62, 1.1 * travel) * pace], [start, replace(ready, ankles=start.ankles, feet=start.feet)], FPS
-    )
-    gather = hands_on_thighs(_place_feet(gather, start, ready, first=0.0, each=0.36), skeleton)
+    seconds = max(0.62, 1.1 * travel) * pace
+    gather = interpolate([0.0, seconds], [start, replace(ready, ankles=start.ankles, feet=start.feet)], FPS)
+    gather = follow(_place_feet(gather, start, ready, first=0.0, each=0.36), ready, push, skeleton)
+    gather = _taken(gather, start, push)
     ready = gather.at(len(gather) - 1)
+    up = _rising(ready, end, seat, (forward, 1.25 * pace * (0.7 + 0.3 * depth)))
+    return concatenate([gather, follow(replace(up, knees=knees_over_feet(up)), ready, push, skeleton)])
+
+
+def _rising(ready: Pose, end: Pose, seat: Seat, way: tuple[float, float]) -> Pose:
+    """From leaning over the feet to standing: how far the trunk leans, and the seconds it takes."""
+    forward, seconds = way
     rise, ahead = end.pelvis[1] - seat.pelvis[1], end.pelvis - seat.pelvis
+    # Hands that pushed off let go and come forward as the weight goes over the feet.
+    forwards = 0.5 * (ready.arms + end.arms + [0.0, 0.12, 0.34])
     lift = replace(
         ready,
         pelvis=seat.pelvis + ahead * [0.45, 0.0, 0.45] + [0, 0.24 * rise, 0],
         hips=upright(seat.yaw, 0.7 * forward),
         spine=bend(0.8 * forward),
+        arms=forwards,
+        reaching=0.35 * ready.reaching,
+        pressing=0.35 * ready.pressing,
     )
     straighten = replace(
         lift,
         pelvis=seat.pelvis + ahead * [0.88, 0.0, 0.88] + [0, 0.78 * rise, 0],
         hips=upright(seat.yaw, 0.3 * forward),
         spine=bend(0.35 * forward),
-        reaching=0.3 * ready.reaching,
-        pressing=0.0 * ready.pressing,
-        arms=0.5 * (ready.arms + end.arms),
+        reaching=np.zeros(2),
+        pressing=np.zeros(2),
+        arms=end.arms + 0.5 * (forwards - end.arms),
     )
-    seconds = 1.25 * pace * (0.7 + 0.3 * depth)
     end = replace(end, reach=ready.reach, palms=ready.palms)
-    up = interpolate([0.0, 0.34 * seconds, 0.72 * seconds, seconds], [ready, lift, straighten, end], FPS)
-    return concatenate([gather, replace(up, knees=knees_over_feet(up))])
-
-
-def edge_seat(bed: Bed, standing_point: tuple[float, float], outward: float, edge: float, scale: float) -> Seat:
-    """Where one sits on the edge of a bed before lying down, facing `outward` (yaw)."""
-    out = np.array([np.sin(outward), 0.0, np.cos(outward)])
-    stand = np.array([standing_point[0], 0.0, standing_point[1]])
-    from_bed = float((stand - bed.pelvis) @ out)
-    inside = float(np.clip(from_bed - SHIN_REACH * scale, -np.inf, edge - 0.12))
-    along = stand - bed.pelvis - from_bed * out
-    along[1] = 0.0
-    pelvis = bed.pelvis + inside * out + along
-    pelvis[1] = bed.pelvis[1] - 0.01
-    return Seat(pelvis, outward, np.inf)
-
-
-def lie_down(start: Pose, seat: Seat, bed: Bed, style: Lying, skeleton: Skeleton, pillow: float) -> Pose:
-    """Sit on the edge, lean towards the head end on an arm, swing the legs up and settle."""
-    down = _lower(start, seat, style.bearing, skeleton)
-    landed = down.at(len(down) - 1)
-    return concatenate([down, _recline(landed, seat, bed, style, skeleton, pillow)])
-
-
-def _recline(landed: Pose, seat: Seat, bed: Bed, style: Lying, skeleton: Skeleton, pillow: float) -> Pose:
-    """From sitting on the edge to lying."""
-    pace = 1 / style.bearing.tempo
-    end = lying(landed, bed, style, skeleton, pillow)
-    middle = _half_way(landed, seat, bed, skeleton)
-    over = _legs_over(middle, end, bed, skeleton)
-    sat = replace(landed, hips=upright(seat.yaw, 0.05), spine=bend(0.2))
-    times = [0.0, 0.45 * pace, 1.25 * pace, 1.9 * pace, 2.9 * pace]
-    return interpolate(times, [landed, sat, middle, over, end], FPS)
-
-
-def _half_way(landed: Pose, seat: Seat, bed: Bed, skeleton: Skeleton) -> Pose:
-    """Leaning on one arm with the legs just off the floor."""
-    scale = skeleton.scale
-    hips = rotations.slerp(upright(seat.yaw, 0.0), bed.hips("back"), 0.42)
-    pelvis = seat.pelvis + 0.35 * (bed.pelvis - seat.pelvis) + 0.02 * UP
-    local = np.array([[0.10, -0.50, 0.47], [-0.10, -0.50, 0.47]]) * scale
-    side = 0 if np.sin(bed.head_yaw - seat.yaw) > 0 else 1
-    arms, elbows = landed.arms.copy(), landed.elbows.copy()
-    mirror = np.array([1.0 if side == 0 else -1.0, 1.0, 1.0])
-    arms[side], elbows[side] = np.array([0.45, -0.75, -0.2]) * mirror, np.array([0.6, 0.0, -1.0]) * mirror
-    # The other arm is held out before the body, clear of the thighs that come up.
-    arms[1 - side] = np.array([-0.20, -0.42, 0.52]) * mirror
-    elbows[1 - side] = np.array([-0.15, -1.0, 0.1]) * mirror
-    return replace(
-        landed,
-        pelvis=pelvis,
-        hips=hips,
-        spine=bend(0.45),
-        head=bend(0.25),
-        ankles=pelvis + rotations.rotate(hips, local),
-        feet=np.repeat(rotations.compose(hips, rotations.rotvec_to_quat(np.array([0.35, 0, 0])))[None], 2, axis=0),
-        knees=np.stack([rotations.rotate(hips, np.array([0.1 * s, 0.1, 1.0])) for s in (1, -1)]),
-        arms=arms,
-        elbows=elbows,
-        planted=np.zeros(2),
-    )
-
-
-def _legs_over(middle: Pose, end: Pose, bed: Bed, skeleton: Skeleton) -> Pose:
-    """Legs over the edge and above the bed, trunk nearly down."""
-    hips = rotations.slerp(middle.hips, bed.hips("back"), 0.72)
-    pelvis = middle.pelvis + 0.8 * (bed.pelvis - middle.pelvis) + 0.015 * UP
-    local = np.array([[0.10, -0.52, 0.24], [-0.10, -0.52, 0.24]]) * skeleton.scale
-    return replace(
-        middle,
-        pelvis=pelvis,
-        hips=hips,
-        spine=bend(0.35),
-        head=bend(0.3),
-        ankles=pelvis + rotations.rotate(hips, local),
-        feet=np.repeat(rotations.compose(hips, rotations.rotvec_to_quat(np.array([0.4, 0, 0])))[None], 2, axis=0),
-        knees=np.stack([rotations.rotate(hips, np.array([0.1 * s, 0.1, 1.0])) for s in (1, -1)]),
-        arms=0.7 * middle.arms + 0.3 * end.arms,
-    )
-
-
-def rise_to_edge(start: Pose, seat: Seat, bed: Bed, bearing: Bearing, skeleton: Skeleton) -> Pose:
-    """From lying to sitting on the edge: the way of lying down, backwards."""
-    pace = 1 / bearing.tempo
-    out = np.array([np.sin(seat.yaw), np.cos(seat.yaw)])
-    feet_at = seat.pelvis[[0, 2]] + SHIN_REACH * skeleton.scale * out
-    ankles = np.stack([home_ankle(feet_at, seat.yaw, index, 0.085, skeleton) for index in (0, 1)])
-    sat = replace(
-        start,
-        pelvis=seat.pelvis,
-        hips=upright(seat.yaw, 0.1),
-        spine=bend(0.25),
-        head=bend(0.1),
-        ankles=ankles,
-        feet=np.stack([rotations.yaw_to_quat(seat.yaw + side * FOOT_SPLAY) for side in (1, -1)]),
-        knees=np.stack([np.array([out[0], 0.25, out[1]])] * 2),
-        arms=np.array([[0.25, -0.9, -0.05], [-0.25, -0.9, -0.05]]),
-        elbows=np.array([[0.5, 0.0, -1.0], [-0.5, 0.0, -1.0]]),
-        planted=np.ones(2),
-    )
-    middle = _half_way(sat, seat, bed, skeleton)
-    over = _legs_over(middle, start, bed, skeleton)
-    times = [0.0, 0.95 * pace, 1.55 * pace, 2.35 * pace]
-    return interpolate(times, [start, over, middle, sat], FPS)
+    return interpolate([0.0, 0.34 * seconds, 0.72 * seconds, seconds], [ready, lift, straighten, end], FPS)

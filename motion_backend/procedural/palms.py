@@ -19,8 +19,14 @@ APART: Final = 0.24
 """Between two hands laid side by side (metres at 1.70 m)."""
 
 
-def other_hand(obstacles: Obstacles, spot: Spot, wrist: Array, hand: str, scale: float) -> tuple[Array, Array] | None:
-    """Wrist and palm of the other hand, beside the first on the same surface; None where that is too narrow."""
+def other_hand(
+    obstacles: Obstacles, spot: Spot, laid: tuple[Array, str, bool], scale: float
+) -> tuple[Array, Array] | None:
+    """Wrist and palm of the other hand, beside the first on the same surface; None where that is too narrow.
+
+    `laid` is the first hand's wrist, its side, and whether its fingers point down.
+    """
+    wrist, hand, down = laid
     normal = np.asarray(spot.normal, dtype=np.float64)
     side, other = (-1.0, "right") if hand == "left" else (1.0, "left")
     ahead = np.array([np.sin(spot.facing), 0.0, np.cos(spot.facing)])
@@ -29,11 +35,11 @@ def other_hand(obstacles: Obstacles, spot: Spot, wrist: Array, hand: str, scale:
         beside = wrist + apart * along
         inside = float(obstacles.depth((beside - (HAND_REST + FINGER) * normal)[None])[0])
         if inside > 0:
-            return beside, free_palm(obstacles, spot, beside, other)
+            return beside, free_palm(obstacles, spot, beside, other, down)
     return None
 
 
-def free_palm(obstacles: Obstacles, spot: Spot, wrist: Array, hand: str) -> Array:
+def free_palm(obstacles: Obstacles, spot: Spot, wrist: Array, hand: str, down: bool = False) -> Array:
     """The hand laid straight ahead, or turned aside where its fingers would be in something else."""
     others = obstacles.solid()
     others = others.only(np.array([owner != spot.object_id for owner in others.owners], dtype=bool))
@@ -41,20 +47,20 @@ def free_palm(obstacles: Obstacles, spot: Spot, wrist: Array, hand: str) -> Arra
     inward = -1.0 if hand == "left" else 1.0
     best: tuple[float, Array] | None = None
     for turn in (0.0, 0.5 * inward, -0.5 * inward, 1.0 * inward, -1.0 * inward):
-        palm = palm_on(np.asarray(spot.normal), spot.facing + turn, hand)
+        palm = palm_on(np.asarray(spot.normal), spot.facing + turn, hand, down)
         depth = float(np.max(others.depth(wrist + rotations.rotate(palm, fingers)), initial=-1.0))
         if depth < -FINGER:
             return palm
         if best is None or depth < best[0]:
             best = (depth, palm)
-    return best[1] if best else palm_on(np.asarray(spot.normal), spot.facing, hand)
+    return best[1] if best else palm_on(np.asarray(spot.normal), spot.facing, hand, down)
 
 
-def palm_on(normal: Array, facing: float, hand: str) -> Array:
-    """World rotation of a hand laid flat on a surface: palm against it, fingers forwards or up it. (4,)."""
+def palm_on(normal: Array, facing: float, hand: str, down: bool = False) -> Array:
+    """World rotation of a hand laid flat on a surface: palm against it, fingers forwards, or up or down it. (4,)."""
     side = 1.0 if hand == "left" else -1.0
     ahead = np.array([np.sin(facing), 0.0, np.cos(facing)])
-    fingers = ahead if normal[1] > 0.7 else 0.8 * np.array([0.0, 1.0, 0.0]) + 0.2 * ahead
+    fingers = ahead if normal[1] > 0.7 else np.array([0.0, -0.8 if down else 0.8, 0.0]) + 0.2 * ahead
     fingers = rotations.normalize(fingers - (fingers @ normal) * normal)
     x, y = side * fingers, normal
-    return rotations.basis_to_quat(x, y, np.cross(x, y))
+    return rotations.basis_to_quat(x, y, rotations.cross(x, y))

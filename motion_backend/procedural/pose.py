@@ -131,11 +131,11 @@ def _carried_along(knots: Array, keys: list[Pose], at: Array, arms: Array) -> Ar
             out[frame] = pole
         end = rotations.normalize(following.arms)
         wanted, got = _square(following.elbows, end), _square(_turned_with(pole, last, end), end)
-        turn = np.arctan2(np.sum(np.cross(got, wanted) * end, axis=-1), np.sum(got * wanted, axis=-1))  # (2,)
+        turn = np.arctan2(np.sum(rotations.cross(got, wanted) * end, axis=-1), np.sum(got * wanted, axis=-1))  # (2,)
         share = smooth((at[frames] - knots[index]) / (knots[index + 1] - knots[index]))
         angle = (share[:, None] * turn)[..., None]
         poles = out[frames]
-        out[frames] = poles * np.cos(angle) + np.cross(way[frames], poles) * np.sin(angle)
+        out[frames] = poles * np.cos(angle) + rotations.cross(way[frames], poles) * np.sin(angle)
     return out
 
 
@@ -146,11 +146,11 @@ def _square(vectors: Array, axes: Array) -> Array:
 
 def _turned_with(vectors: Array, start: Array, end: Array) -> Array:
     """Vectors turned by the shortest rotation that takes unit vectors `start` to `end`."""
-    axis = np.cross(start, end)
+    axis = rotations.cross(start, end)
     cosine = np.sum(start * end, axis=-1, keepdims=True)
     scale = 1.0 / np.maximum(1.0 + cosine, 1e-3)
-    crossed = np.cross(axis, vectors)
-    return np.asarray(vectors + crossed + scale * np.cross(axis, crossed))
+    crossed = rotations.cross(axis, vectors)
+    return np.asarray(vectors + crossed + scale * rotations.cross(axis, crossed))
 
 
 def _around_the_shoulder(knots: Array, keys: Array, at: Array, straight: Array) -> Array:

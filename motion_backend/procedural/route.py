@@ -31,14 +31,20 @@ class Route:
     """(T,) metres a second."""
 
 
-def plan_route(path: Array, start_yaw: float, end_yaw: float | None, speed: float, fps: int) -> Route:
-    """Sample a path (N, 2) in time: ease in and out, slow down in bends, turn first and last where needed."""
+def plan_route(
+    path: Array, start_yaw: float, end_yaw: float | None, speed: float, fps: int, aside: float = 0.0
+) -> Route:
+    """Sample a path (N, 2) in time: ease in and out, slow down in bends, turn first and last where needed.
+
+    The body faces along the path, or `aside` of it (radians) to the side that takes less turning.
+    """
     points = resample(path)
     length = SPACING * (len(points) - 1)
     end = start_yaw if end_yaw is None else end_yaw
     if length < SHORTEST_WALK:
         return _shuffle(points, start_yaw, end, fps)
     tangent = _tangents(points)
+    tangent = tangent + _less_turning(tangent, aside, start_yaw, end_yaw)
     pieces: list[Route] = []
     first_turn = float(rotations.wrap(tangent[0] - start_yaw))
     yaw = start_yaw
@@ -56,6 +62,14 @@ def plan_route(path: Array, start_yaw: float, end_yaw: float | None, speed: floa
         np.concatenate([p.heading for p in pieces]),
         np.concatenate([p.speed for p in pieces]),
     )
+
+
+def _less_turning(tangent: Array, aside: float, start_yaw: float, end_yaw: float | None) -> float:
+    def turning(offset: float) -> float:
+        last = 0.0 if end_yaw is None else abs(float(rotations.wrap(end_yaw - tangent[-1] - offset)))
+        return abs(float(rotations.wrap(tangent[0] + offset - start_yaw))) + last
+
+    return min((aside, -aside), key=turning)
 
 
 def resample(path: Array) -> Array:

@@ -20,8 +20,8 @@ SIDES = (("left", 1), ("right", -1))
 SPINE = ("spine1", "spine2", "spine3")
 
 
-WRIST_BEND, FOREARM_ROLL = 1.5, 1.55
-"""How far a hand can bend against the forearm and roll about it (radians)."""
+WRIST_ASIDE, WRIST_BEND, FOREARM_ROLL = (-0.25, 0.25), (-1.30, 1.15), 1.32
+"""How far a left hand turns and bends against the forearm, and either rolls about it (radians)."""
 
 
 def solve(pose: Pose, skeleton: Skeleton) -> tuple[Array, Array]:
@@ -76,22 +76,22 @@ def _solve_arm(
     clavicle = rotations.compose(chest, collar)
     local[:, INDEX[f"{name}_shoulder"]] = rotations.compose(rotations.inverse(clavicle), upper)
     local[:, INDEX[f"{name}_elbow"]] = rotations.compose(rotations.inverse(upper), lower)
-    bend = _within_reach(rotations.compose(rotations.inverse(lower), pose.palms[:, index]))
-    press = rotations.quat_to_rotvec(bend) * pose.pressing[:, index, None]
-    local[:, INDEX[f"{name}_wrist"]] = rotations.rotvec_to_quat(press)
+    bend = _within_reach(rotations.compose(rotations.inverse(lower), pose.palms[:, index]), side)
+    press = rotations.rotvec_to_quat(rotations.quat_to_rotvec(bend) * pose.pressing[:, index, None])
+    local[:, INDEX[f"{name}_wrist"]] = _within_reach(press, side)
 
 
-def _within_reach(wrist: Array) -> Array:
-    """A wrist's rotation limited to what wrist and forearm can do: bend first, then roll about the hand. (T, 4)."""
+def _within_reach(wrist: Array, side: int) -> Array:
+    """A wrist's rotation limited to what wrist and forearm can do: the forearm rolls, then the hand bends. (T, 4)."""
     roll = 2 * np.arctan2(wrist[:, 0], wrist[:, 3])
     roll = rotations.wrap(roll)
     twist = np.zeros((len(wrist), 3))
     twist[:, 0] = roll
-    swing = rotations.quat_to_rotvec(rotations.compose(wrist, rotations.inverse(rotations.rotvec_to_quat(twist))))
-    angle = np.linalg.norm(swing, axis=-1, keepdims=True)
-    swing = swing * np.minimum(1.0, WRIST_BEND / np.maximum(angle, 1e-9))
+    swing = rotations.quat_to_rotvec(rotations.compose(rotations.inverse(rotations.rotvec_to_quat(twist)), wrist))
+    low, high = np.sort(side * np.array([WRIST_ASIDE, WRIST_BEND]), axis=1).T
+    swing[:, 1:] = np.clip(swing[:, 1:], low, high)
     twist[:, 0] = np.clip(roll, -FOREARM_ROLL, FOREARM_ROLL)
-    return rotations.compose(rotations.rotvec_to_quat(swing), rotations.rotvec_to_quat(twist))
+    return rotations.compose(rotations.rotvec_to_quat(twist), rotations.rotvec_to_quat(swing))
 
 
 def released(pose: Pose, skeleton: Skeleton) -> Pose:

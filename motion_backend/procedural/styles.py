@@ -23,11 +23,12 @@ class ArmPose:
 ARMS: dict[str, ArmPose] = {
     "hang": ArmPose((0.15, -0.955, 0.07), (0.25, 0.0, -1.0)),
     "bent": ArmPose((0.12, -0.74, 0.42), (0.45, -0.2, -1.0)),
-    "behind_back": ArmPose((-0.22, -0.74, -0.33), (0.8, 0.0, -0.6)),
+    "fists": ArmPose((0.24, -0.93, 0.10), (0.8, 0.0, -0.7)),
+    "behind_back": ArmPose((-0.19, -0.74, -0.33), (0.8, 0.0, -0.6)),
     "crossed": ArmPose((-0.42, -0.27, 0.32), (0.6, -0.8, 0.1)),
     "behind_head": ArmPose((-0.14, 0.42, -0.16), (1.0, 0.25, 0.2)),
-    "ear": ArmPose((-0.05, 0.29, 0.18), (0.4, -1.0, 0.2)),
-    "hips": ArmPose((0.06, -0.70, 0.08), (1.0, 0.0, -0.4)),
+    "ear": ArmPose((0.06, 0.15, 0.15), (0.6, -1.0, 0.3)),
+    "hips": ArmPose((0.09, -0.70, 0.08), (1.0, 0.0, -0.4)),
     "open": ArmPose((0.93, -0.02, 0.22), (0.0, -0.4, -1.0)),
     "face": ArmPose((-0.20, 0.26, 0.37), (0.35, -1.0, 0.35)),
     "belly": ArmPose((-0.16, -0.60, 0.33), (1.0, -0.2, -0.2)),
@@ -39,7 +40,7 @@ ARMS: dict[str, ArmPose] = {
     "elbows": ArmPose((0.10, -0.62, 0.36), (0.35, -0.7, -0.8)),
     "balance": ArmPose((0.62, -0.62, 0.16), (0.2, -0.2, -1.0)),
     "pockets": ArmPose((0.04, -0.76, 0.10), (0.9, -0.1, -0.7)),
-    "wrapped": ArmPose((-0.44, -0.44, 0.26), (0.7, -0.7, 0.0)),
+    "wrapped": ArmPose((-0.44, -0.44, 0.32), (0.7, -0.7, 0.0)),
     "on_knees": ArmPose((-0.06, -0.52, 0.66), (0.5, -0.9, -0.2)),
     "raised": ArmPose((0.40, 0.86, 0.14), (0.5, -0.4, -0.6)),
     "wide": ArmPose((0.95, 0.05, -0.06), (0.0, -0.6, -0.2)),
@@ -51,10 +52,16 @@ ARMS: dict[str, ArmPose] = {
     "mouth": ArmPose((-0.21, 0.03, 0.38), (0.75, -0.85, 0.2)),
     "ears": ArmPose((-0.01, 0.23, 0.10), (0.9, -0.8, 0.35)),
     "wave": ArmPose((0.30, 0.42, 0.30), (0.5, -1.0, -0.1)),
+    "counter": ArmPose((0.40, -0.84, -0.10), (0.5, 0.0, -1.0)),
+    "beside": ArmPose((0.24, -0.90, 0.16), (0.5, 0.0, -1.0)),
     "carry": ArmPose((-0.20, -0.48, 0.36), (0.7, -0.6, -0.5)),
 }
 THIGHS = "thighs"
 """Hands laid on the thighs: their place follows the legs, so it is not in the table."""
+
+
+_OVER = {"crossed": (0.02, -0.115, 0.11), "wrapped": (0.0, -0.145, 0.105), "behind_back": (0.0, 0.0, -0.07)}
+"""How the right wrist goes past the left one where arms cross (arm lengths)."""
 
 
 def arm_arrays(left: str, right: str) -> tuple[Array, Array]:
@@ -65,8 +72,8 @@ def arm_arrays(left: str, right: str) -> tuple[Array, Array]:
     elbows = np.array([chosen[0].elbow, chosen[1].elbow])
     wrists[1] *= mirror
     elbows[1] *= mirror
-    if left == right == "crossed":
-        wrists[1] += (0.02, -0.08, 0.07)
+    if left == right:
+        wrists[1] += _OVER.get(left, (0.0, 0.0, 0.0))
     return wrists, elbows
 
 

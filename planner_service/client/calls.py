@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T", covariant=True)
 _EXTRACT: Final = "/v1/short-scripts/extract"
-Format = Literal["npz", "bvh", "glb", "json", "f32"]
+Format = Literal["npz", "bvh", "glb", "json", "amass", "f32"]
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from planner_service.commands.sheets import sheet
 from planner_service.commands.tables import plain_table, shown
 from planner_service.filing import OutputError, check_writable, write_files
 
@@ -18,11 +19,10 @@ if TYPE_CHECKING:
     from motion_backend.clips.building import Kept, Unread
     from motion_backend.clips.dataset import Dataset
 
-MOST_SHOWN = 40
-"""Clips on one sheet."""
 LONGEST_LINE = 300
 
 app = typer.Typer(no_args_is_help=True, help="Recorded and keyed motion, retargeted to our body.")
+app.command()(sheet)
 
 
 @app.callback()
@@ -53,6 +53,7 @@ def build(
 ) -> None:
     """Read a folder of motion, retarget it and keep what is true to its source. Exit code 1 if a file was not read."""
     from motion_backend.clips.building import Kept, collect, folder_labels, read_folder
+    from motion_backend.clips.copies import near_copies
     from motion_backend.clips.dataset import dataset_bytes
     from motion_backend.clips.mapping import read_map
 
@@ -75,9 +76,15 @@ def build(
         if not clip.report.accepted:
             why = f"{clip.entry.name}: {'; '.join(clip.report.refused)}"
             console.print(f"refused: {shown(why, LONGEST_LINE)}", soft_wrap=True)
-    dataset = collect([one.entry for one in kept if one.report.accepted], mirror, reverse, rates)
+    accepted = [one.entry for one in kept if one.report.accepted]
+    copies = near_copies(accepted)
+    for copy in copies:
+        alike = f"{copy.clip} is nearly in {copy.of} ({copy.degrees:.1f}°)"
+        console.print(f"kept on one side of the split: {shown(alike, LONGEST_LINE)}", soft_wrap=True)
+    dataset = collect(accepted, mirror, reverse, rates, copies)
     told = {
         "clips": [one.report.to_dict() for one in kept],
+        "near_copies": [asdict(copy) for copy in copies],
         "not_read": [asdict(unread) for unread in lost],
     }
     content = dataset_bytes(dataset)
@@ -92,9 +99,8 @@ def build(
             ),
         },
     )
-    accepted = sum(one.report.accepted for one in kept)
     console.print(
-        f"{accepted} of {len(kept)} clips accepted; {len(dataset.entries)} clips, {dataset.frames} frames, "
+        f"{len(accepted)} of {len(kept)} clips accepted; {len(dataset.entries)} clips, {dataset.frames} frames, "
         f"{len(content) / 1e6:.1f} MB in {out}",
         soft_wrap=True,
     )
@@ -118,34 +124,10 @@ def list_clips(
             | {"frames": len(entry.motion), "seconds": round(entry.motion.duration, 3)}
             for entry in dataset.entries
         ]
-        console.print_json(json.dumps({"frames": dataset.frames, "clips": rows}))
+        console.print_json(json.dumps({"frames": dataset.frames, "clips": rows}), ensure_ascii=True)
         return
     console.print(_contents(dataset))
     console.print(f"{len(dataset.entries)} clips, {dataset.frames} frames, {dataset.frames / 30:.0f} s")
-
-
-@app.command()
-def sheet(
-    file: Annotated[Path, typer.Argument(help="A collection that `sims clips build` wrote.")],
-    out: Annotated[Path, typer.Option(help="Write the picture here, as PNG.")],
-    clip: Annotated[
-        list[str] | None, typer.Option(help="A clip's name, as often as wanted; left out: one clip of every skill.")
-    ] = None,
-) -> None:
-    """Draw clips of a collection: poses over time from two sides, where feet stood, and the way from above."""
-    from motion_backend.clips.clip import ClipError
-    from motion_backend.clips.dataset import read_dataset
-    from motion_backend.pictures import save_png
-    from motion_backend.sheets import sheet as drawn
-
-    dataset = read_dataset(file)
-    chosen = [dataset.named(name) for name in clip] if clip else dataset.of_every_skill()
-    if len(chosen) > MOST_SHOWN:
-        raise ClipError(f"--clip: a sheet shows at most {MOST_SHOWN} clips, these are {len(chosen)}; name fewer")
-    check_writable(out.parent, [out.name])
-    picture = drawn([(shown(f"{entry.name}: {entry.captions[0]}"), entry.motion) for entry in chosen])
-    write_files(out.parent, {out.name: lambda path: save_png(picture, path)})
-    Console(markup=False, highlight=False).print(f"{len(chosen)} clips in {out}", soft_wrap=True)
 
 
 def _speeds(listed: str) -> tuple[float, ...]:
@@ -188,15 +170,20 @@ def _report(kept: list[Kept]) -> Table:
             shown(one.entry.skill),
             str(figures.frames),
             f"{figures.skate:.1f}",
-            f"{figures.source_skate:.1f}",
+            _figure(figures.source_skate),
             f"{1000 * figures.depth:.1f}",
-            f"{1000 * figures.source_depth:.1f}",
+            _figure(figures.source_depth, 1000),
             f"{figures.limb_mean:.1f}",
             f"{figures.limb_max:.0f}",
             f"{100 * figures.beyond_limits:.0f}",
             "yes" if figures.accepted else "no",
         )
     return table
+
+
+def _figure(value: float | None, times: float = 1) -> str:
+    """A figure, or a dash where there is none: a toy's feet say nothing of ours."""
+    return "–" if value is None else f"{times * value:.1f}"
 
 
 def _contents(dataset: Dataset) -> Table:

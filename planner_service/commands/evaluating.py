@@ -1,4 +1,4 @@
-"""`sims evaluate planning`: how well our short scripts are found and woven, beside the limits."""
+"""`sims evaluate`: how well our short scripts are found and woven, and how well the body acts, beside the limits."""
 
 from __future__ import annotations
 
@@ -11,18 +11,24 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from planner_service.commands.evaluating_body import body
+from planner_service.commands.evaluating_scripts import scripts
+from planner_service.commands.evaluating_walks import walks
 from planner_service.commands.tables import plain_table
 from planner_service.settings import read_settings
 
 if TYPE_CHECKING:
     from planner_service.evaluating.figures import Figure
 
-app = typer.Typer(no_args_is_help=True, help="Measure the planner against labels that were written by hand.")
+app = typer.Typer(no_args_is_help=True, help="Measure the planner against written labels, and the body in many rooms.")
+app.command()(body)
+app.command()(walks)
+app.command()(scripts)
 
 
 @app.callback()
 def evaluate() -> None:
-    """Measure the planner against labels that were written by hand."""
+    """Measure the planner against written labels, and the body in many rooms."""
 
 
 @app.command()

@@ -1,10 +1,17 @@
-"""Tables as commands print them: no lines, bold headings, figures on the right."""
+"""Tables as commands print them: no lines, bold headings, figures on the right; and cells from files of others."""
 
 from __future__ import annotations
 
 from collections.abc import Collection
 
 from rich.table import Table
+
+
+def shown(text: str, most: int = 100) -> str:
+    """What a file says, as a terminal may show it: one line of printable letters, cut after `most`."""
+    line = " ".join(text[: 4 * most].split())
+    safe = "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in line)
+    return safe if len(safe) <= most else safe[: most - 1] + "…"
 
 
 def plain_table(*columns: str, right: Collection[str] = (), fold: bool = False) -> Table:

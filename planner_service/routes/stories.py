@@ -203,7 +203,7 @@ def motion(
     record: RecordDep,
     request: Request,
     stories: StoriesDep,
-    format_: Annotated[Literal["npz", "bvh", "glb", "json", "f32"], Query(alias="format")] = "npz",
+    format_: Annotated[Literal["npz", "bvh", "glb", "json", "amass", "f32"], Query(alias="format")] = "npz",
     first: Annotated[int, Query(alias="from", ge=0, le=10**9, description="First frame.")] = 0,
     last: Annotated[int | None, Query(alias="to", ge=1, le=10**9, description="Behind the last frame.")] = None,
 ) -> Response:

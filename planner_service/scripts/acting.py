@@ -13,9 +13,12 @@ from typing import Any
 import numpy as np
 
 from motion_backend.motion import Action, Skill
+from motion_backend.procedural.lie_styles import wanted_edge
+from motion_backend.procedural.lying import Bed
 from planner_service.scripts.checking import free_hand, hand_of
 from planner_service.scripts.handling import Hands, done_in, look_of
 from planner_service.scripts.keyframe import Keyframe
+from planner_service.scripts.standing_in import Words, hashed_words, performed_as
 from planner_service.scripts.wandering import in_front, stays
 from scene_graphs.homes import Home
 from scene_graphs.layouts import Placed
@@ -48,9 +51,18 @@ class Place:
     object_id: str | None = None
 
 
-def act(keyframes: Sequence[Keyframe], places: Sequence[Place], home: Home, seed: int) -> tuple[Action, ...]:
-    """Ground every keyframe in the home. Raises UnreachableError naming the keyframe that cannot be done."""
-    stage = _Stage(home, Walkable(home), np.random.default_rng([seed, 7]))
+def act(
+    keyframes: Sequence[Keyframe],
+    places: Sequence[Place],
+    home: Home,
+    seed: int,
+    words: Words = hashed_words,
+) -> tuple[Action, ...]:
+    """Ground every keyframe in the home. Raises UnreachableError naming the keyframe that cannot be done.
+
+    An action's caption is what is performed: where the body knows no word of the keyframe's, the nearest of `words`.
+    """
+    stage = _Stage(home, Walkable(home), np.random.default_rng([seed, 7]), words)
     drafts: list[Action] = []
     for index, (keyframe, place) in enumerate(zip(keyframes, places, strict=True)):
         before = keyframes[index - 1] if index else None
@@ -63,14 +75,15 @@ def act(keyframes: Sequence[Keyframe], places: Sequence[Place], home: Home, seed
 class _Stage:
     """The home while actions are being grounded: where the body stands and what it rests on."""
 
-    def __init__(self, home: Home, walkable: Walkable, rng: np.random.Generator) -> None:
-        self.home, self.walkable, self.rng = home, walkable, rng
+    def __init__(self, home: Home, walkable: Walkable, rng: np.random.Generator, words: Words) -> None:
+        self.home, self.walkable, self.rng, self.words = home, walkable, rng, words
         self.at: Point | None = None
         self.resting: Spot | None = None
 
     def contact(self, index: int, keyframe: Keyframe, place: Place, free: str = "right") -> Action:
         """The action of a keyframe; walks get their goal later, when what follows them is known."""
-        keyframe = keyframe.model_copy(update={"caption": look_of(keyframe.caption)})
+        performed = performed_as(keyframe.skill, look_of(keyframe.caption), keyframe.emotion, self.words)
+        keyframe = keyframe.model_copy(update={"caption": performed})
         action = Action(
             keyframe.skill, keyframe.caption, keyframe.emotion, keyframe.furniture, place.object_id, keyframe=index
         )
@@ -112,7 +125,8 @@ class _Stage:
             # The body may come back to a piece: it need not touch the very same place again.
             found = self._roomiest(found)
             return found[int(self.rng.integers(min(len(found), 3)))]
-        return found[0]
+        wanted_side = wanted_edge(keyframe.caption) if need == "lie" else None
+        return next((s for s in found if Bed.of(s).edge_side == wanted_side), found[0])
 
     def _roomiest(self, found: list[Spot]) -> list[Spot]:
         """Those with as much elbow room as any."""

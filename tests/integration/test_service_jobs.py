@@ -19,8 +19,9 @@ from running import ENDED, SHORT, RunningService, finished
 
 from motion_backend.formats.raw import read_raw
 
-STORIES = int(os.environ.get("SIMS_TEST_STORIES", "10"))
+STORIES = int(os.environ.get("SIMS_TEST_STORIES", "6"))
 """Stories posted at once, on each database; every film is asked for twice."""
+SEVERAL = "He wakes up, reads at the desk, argues on the phone, eats at the table and falls asleep in bed."
 LONG = (
     "He wakes up, reads at the desk, sits on the sofa, argues on the phone, drinks, dances, tidies the shelf, "
     "eats at the table, gets angry, calms down and falls asleep in bed."
@@ -195,7 +196,7 @@ def test_stories_are_listed_newest_first_page_after_page(client: httpx.Client) -
 def test_a_service_stops_gracefully_and_goes_on_when_it_starts_again(tmp_path: Path) -> None:
     service = RunningService(tmp_path).start()
     with service.client() as client:
-        story = post(client, theme=LONG).json()
+        story = post(client, theme=SEVERAL).json()
         while client.get(story["links"]["self"]).json()["motion"]["frames"] == 0:
             time.sleep(0.01)
     begun = time.monotonic()

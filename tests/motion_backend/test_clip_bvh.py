@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 
 import numpy as np
 import pytest
@@ -116,6 +117,18 @@ def test_euler_angles_of_any_order_turn_as_scipy_says(order, angles):
     ours = euler_to_quat(np.array(angles), order)
     scipys = Rotation.from_euler("".join("XYZ"[axis] for axis in order), angles).as_quat()
     assert abs(float(ours @ scipys)) > 1 - 1e-9
+
+
+def test_a_map_of_joints_tells_unit_and_axes_where_names_do_not(tmp_path):
+    text = body(STEPS, turn=Z_UP, metres=39.37)
+    strange = {name: f"bone{number}" for number, name in enumerate(re.findall(r"(?:ROOT|JOINT) (\w+)", text))}
+    given_map = {ours: strange[theirs] for ours, theirs in find_map(strange)[1].items()}
+    (tmp_path / "walk.bvh").write_text(re.sub(r"(?<=ROOT |OINT )\w+", lambda found: strange[found[0]], text))
+    (clip,) = read_clips(tmp_path / "walk.bvh", joints=given_map)
+    known = read_bvh_clip(text, "walk")
+    np.testing.assert_array_equal(clip.joint_positions(), known.joint_positions())
+    assert clip.notes == known.notes
+    assert any("no family" in note for note in read_clips(tmp_path / "walk.bvh")[0].notes)
 
 
 @pytest.mark.parametrize("order", ["ZXY", "XYZ", "YZX"])

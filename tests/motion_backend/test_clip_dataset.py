@@ -17,8 +17,10 @@ from motion_backend import rotations
 from motion_backend.clips.augmenting import change_speed, mirror, mirror_words, reverse
 from motion_backend.clips.building import Kept, Unread, collect, folder_labels, motion_files, read_folder
 from motion_backend.clips.clip import ClipError
+from motion_backend.clips.copies import Copy, joined_subjects, near_copies
 from motion_backend.clips.dataset import Dataset, Entry, dataset_bytes, read_dataset, splits
-from motion_backend.clips.labels import label_of, read_labels, subject_of
+from motion_backend.clips.labels import labels_of, read_labels, subject_of
+from motion_backend.clips.reading import read_clips
 from motion_backend.clips.wording import WAYS, skill_of, ways_to_say
 from motion_backend.formats.bvh import write_bvh
 from motion_backend.skeleton import INDEX
@@ -87,6 +89,83 @@ def test_an_array_that_claims_to_be_huge_is_refused_unread(tmp_path: Path) -> No
             new.writestr(name, content)
     with pytest.raises(ClipError, match="size"):
         read_dataset(path)
+
+
+def rewritten(tmp_path: Path, **changed: object) -> Path:
+    """A collection of one clip with other arrays, or other values in its manifest."""
+    source, path = tmp_path / "whole.npz", tmp_path / "changed.npz"
+    source.write_bytes(dataset_bytes(collect([entry()])))
+    with np.load(source) as whole:
+        arrays = dict(whole)
+    manifest = json.loads(arrays["manifest"].tobytes())
+    for name, value in changed.items():
+        if name in arrays:
+            arrays[name] = value
+        else:
+            (manifest if name in manifest else manifest["clips"][0])[name] = value
+    arrays["manifest"] = np.frombuffer(json.dumps(manifest).encode(), dtype=np.uint8)
+    np.savez(path, **arrays)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("changed", "says"),
+    [
+        ({"captions": []}, "captions"),
+        ({"captions": "walks"}, "captions"),
+        ({"clips": []}, "starts"),
+        ({"offsets": [[float("nan")] * 3] * 22}, "offset"),
+        ({"offsets": [[1e300] * 3] * 22}, "offset"),
+        ({"root_positions": np.full((40, 3), 1e30, np.float32)}, "root"),
+        ({"local_rotations": np.zeros((40, 22, 4), np.int16)}, "rotation"),
+        ({"starts": np.array([0, 40], np.uint64)}, "starts"),
+        ({"starts": np.array([0.0, 40.0])}, "starts"),
+    ],
+)
+def test_a_collection_with_values_that_nobody_could_draw_is_refused(
+    tmp_path: Path, changed: dict[str, object], says: str
+) -> None:
+    assert read_dataset(rewritten(tmp_path, style="as written")).entries[0].style == "as written"
+    with pytest.raises(ClipError, match=f"changed.npz: .*{says}"):
+        read_dataset(rewritten(tmp_path, **changed))
+
+
+def test_names_that_are_not_utf_8_are_kept(tmp_path: Path) -> None:
+    (found,) = kept(collect([entry("caf\udce9.bvh")]), tmp_path).entries
+    assert found.name == "caf\udce9.bvh"
+
+
+def test_every_skill_is_shown_by_its_longest_recorded_clip() -> None:
+    changed = replace(entry("changed", frames=60), changed=("mirrored",))
+    other = replace(entry("other", skill="sit"), changed=("mirrored",))
+    dataset = Dataset(entry().motion.skeleton, (entry("short", frames=20), entry("long"), changed, other))
+    assert [one.name for one in dataset.of_every_skill()] == ["long", "other"]
+
+
+def test_hidden_files_are_left_alone_and_clips_of_one_name_are_told_apart(tmp_path: Path) -> None:
+    for name in ("._a.bvh", ".git/b.bvh", "a.bvh"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        write_bvh(tumbling(40), tmp_path / name)
+    assert motion_files(tmp_path, {}) == ["a.bvh"]
+    with pytest.MonkeyPatch.context() as patch:
+        (clip,) = read_clips(tmp_path / "a.bvh")
+        patch.setattr("motion_backend.clips.building.read_clips", lambda *_, **__: (clip, clip))
+        names = [one.entry.name if isinstance(one, Kept) else one.name for one in read_folder(tmp_path, {})]
+    assert names == ["a.bvh#a", "a.bvh#a (2)"]
+
+
+def test_a_file_that_only_the_table_knows_is_told(tmp_path: Path) -> None:
+    write_bvh(tumbling(40), tmp_path / "a.bvh")
+    (tmp_path / "manifest.csv").write_text("file,kind\na.bvh,\nb.bvh,\nc.txt,licence\n")
+    lost = [one for one in read_folder(tmp_path, folder_labels(tmp_path)) if isinstance(one, Unread)]
+    assert [one.name for one in lost] == ["b.bvh"]
+
+
+@pytest.mark.parametrize(("table", "says"), [("file,file\na,b\n", "twice"), ("file\na.bvh\na.bvh\n", "line 3")])
+def test_a_table_that_says_something_twice_is_refused(tmp_path: Path, table: str, says: str) -> None:
+    (tmp_path / "t.csv").write_text(table)
+    with pytest.raises(ClipError, match=says):
+        read_labels(tmp_path / "t.csv")
 
 
 def test_mirroring_twice_is_no_change_and_once_swaps_hands() -> None:
@@ -168,12 +247,65 @@ def test_names_tell_skills(name: str, skill: str) -> None:
 def test_a_table_of_labels_is_read_and_its_faults_are_named(tmp_path: Path) -> None:
     table = tmp_path / "labels.csv"
     table.write_text("file,skill,caption\na.bvh,touch,she waves\n")
-    found = label_of(read_labels(table), "a.bvh", "a")
+    (found,) = labels_of(read_labels(table), "a.bvh", "a")
     assert (found.skill, found.caption) == ("touch", "she waves")
     for text, says in (("name\nx\n", "file"), ("file,skill\na\n", "line 2"), ("file\n\xff", "not a table")):
         table.write_bytes(text.encode("latin-1"))
         with pytest.raises(ClipError, match=says):
             read_labels(table)
+
+
+def test_rows_with_seconds_are_clips_of_their_own(tmp_path: Path) -> None:
+    write_bvh(tumbling(61), tmp_path / "a.bvh")
+    table = tmp_path / "manifest.csv"
+    table.write_text(
+        "file,skill,start,stop,caption\na.bvh,touch,,0.5,she waves\na.bvh,squat,0.5,9,\na.bvh,idle,,,\na.bvh,idle,7,,\n"
+    )
+    found = list(read_folder(tmp_path, folder_labels(tmp_path)))
+    clips = [one.entry for one in found if isinstance(one, Kept)]
+    told = [(one.name, one.skill, one.captions[0], len(one.motion)) for one in clips]
+    assert told[0] == ("a.bvh@0-0.5", "touch", "she waves", 15)
+    assert told[1][:2] == ("a.bvh@0.5-9", "squat")
+    assert told[2][:2] == ("a.bvh", "idle")
+    assert told[1][3] + 15 == told[2][3]
+    (lost,) = (one for one in found if isinstance(one, Unread))
+    assert lost.name.startswith("a.bvh@7-")
+    assert "lasts 2.0 s" in lost.why
+
+
+@pytest.mark.parametrize("cells", ["2,1", "-1,", "a,", "nan,", ",inf", "1,1"])
+def test_seconds_that_are_no_segment_are_named_with_their_line(tmp_path: Path, cells: str) -> None:
+    table = tmp_path / "labels.csv"
+    table.write_text(f"file,start,stop\na.bvh,{cells}\n")
+    with pytest.raises(ClipError, match=r"labels\.csv, line 2: .*(segment|seconds)"):
+        read_labels(table)
+
+
+def test_an_excerpt_of_another_subject_is_found_and_kept_on_its_side() -> None:
+    whole = [entry(f"whole{seed}", f"s{seed}", seed=seed, frames=90) for seed in range(6)]
+    cut = replace(entry("cut", "another"), motion=whole[2].motion.part(31, 71), hands=whole[2].hands[31:71])
+    (copy,) = near_copies([*whole, cut])
+    assert (copy.clip, copy.of, copy.start) == ("cut", "whole2", 31)
+    assert copy.degrees < 0.1
+    for second in ("another", "zz"):
+        copies = near_copies([*whole, replace(cut, subject=second)])
+        sides = {one.name: one.split for one in collect([*whole, replace(cut, subject=second)], copies=copies).entries}
+        assert sides["cut"] == sides["whole2"]
+    assert near_copies([*whole, replace(cut, subject="s2")]) == []
+
+
+def test_a_body_that_stands_still_is_no_copy_of_another() -> None:
+    frozen = entry(frames=40).motion
+    frozen = replace(frozen, local_rotations=frozen.local_rotations[:1].repeat(40, axis=0))
+    assert near_copies([replace(entry(name, name), motion=frozen) for name in "ab"]) == []
+
+
+@given(st.lists(st.tuples(st.sampled_from("abcdef"), st.sampled_from("abcdef")), max_size=8))
+def test_subjects_are_joined_however_long_the_chain_of_copies(pairs: list[tuple[str, str]]) -> None:
+    group = joined_subjects("abcdef", [Copy("", "", pair, 0.0, 0) for pair in pairs])
+    assert all(group[a] == group[b] for a, b in pairs)
+    assert all(group[name] == name for name in group.values())
+    assert sum(name == first for name, first in group.items()) >= 6 - len({frozenset(pair) for pair in pairs})
 
 
 def test_trials_of_one_subject_are_of_one_subject() -> None:

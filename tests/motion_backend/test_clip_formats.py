@@ -117,9 +117,13 @@ def test_an_acclaim_skeleton_is_looked_for_beside_the_motion(tmp_path):
     with pytest.raises(ClipError, match=r"13_29\.amc.*\.asf"):
         read_clips(motion)
     written(tmp_path / "a.asf", ASF.replace("length 8", "length 9"))
-    assert at(read_clips(motion)[0], "shin")[0, 0, 1] == pytest.approx(7 * INCH / 0.45)
+    (clip,) = read_clips(motion)
+    assert at(clip, "shin")[0, 0, 1] == pytest.approx(7 * INCH / 0.45)
+    assert "on the skeleton a.asf, whose name is of another subject" in clip.notes
     written(tmp_path / "13.asf", ASF)
-    assert at(read_clips(motion)[0], "shin")[0, 0, 1] == pytest.approx(8 * INCH / 0.45)
+    (clip,) = read_clips(motion)
+    assert at(clip, "shin")[0, 0, 1] == pytest.approx(8 * INCH / 0.45)
+    assert not any("another subject" in note for note in clip.notes)
     given = read_clips(motion, skeleton_file=tmp_path / "a.asf")[0]
     assert at(given, "shin")[0, 0, 1] == pytest.approx(7 * INCH / 0.45)
 

@@ -7,7 +7,6 @@ import shutil
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
-from time import perf_counter
 
 import numpy as np
 import pytest
@@ -22,7 +21,7 @@ from scene_graphs.layouts import Layout, Placed
 
 RUNNER = Path(__file__).parent / "gltf_validate.mjs"
 VALIDATOR = Path(__file__).parents[1] / "gltf" / "node_modules" / "gltf-validator"
-TYPES = {5121: "u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+TYPES = {5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 WIDTHS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 
 
@@ -45,7 +44,8 @@ def accessor(document, binary: bytes, index: int):
     view = document["bufferViews"][part["bufferView"]]
     count = part["count"] * WIDTHS[part["type"]]
     values = np.frombuffer(binary, TYPES[part["componentType"]], count, view["byteOffset"])
-    return values.reshape(part["count"], -1)
+    values = values.reshape(part["count"], -1)
+    return values / np.iinfo(values.dtype).max if part.get("normalized") else values
 
 
 def played(document, binary: bytes, frame: int):
@@ -79,7 +79,29 @@ def test_a_viewer_plays_the_joints_where_the_motion_has_them():
     for frame in (0, 7, 19):
         world = played(document, binary, frame)
         for joint, name in enumerate(motion.skeleton.names):
-            np.testing.assert_allclose(world[name], motion.joint_positions()[frame, joint], atol=1e-4)
+            np.testing.assert_allclose(world[name], motion.joint_positions()[frame, joint], atol=2e-4)
+
+
+def test_sixteen_bits_of_turn_move_no_joint_by_a_fifth_of_a_millimetre():
+    motion = tumbling(300, seed=1)
+    document, binary = read_glb(body_glb(motion))
+    turns = np.tile(rotations.IDENTITY, (300, 22, 1))
+    nodes, animation = document["skins"][0]["joints"], document["animations"][0]
+    for channel in animation["channels"]:
+        if channel["target"]["path"] == "rotation":
+            output = animation["samplers"][channel["sampler"]]["output"]
+            turns[:, nodes.index(channel["target"]["node"])] = accessor(document, binary, output)
+    again, _ = motion.skeleton.forward_kinematics(motion.root_positions, rotations.normalize(turns))
+    assert np.abs(again - motion.joint_positions()).max() < 2e-4
+
+
+def test_weights_in_the_file_sum_to_one_and_name_no_joint_for_nothing():
+    document, binary = read_glb(body_glb(tumbling(2)))
+    for primitive in document["meshes"][0]["primitives"]:
+        shares = accessor(document, binary, primitive["attributes"]["WEIGHTS_0"])
+        holders = accessor(document, binary, primitive["attributes"]["JOINTS_0"])
+        np.testing.assert_allclose(shares.sum(axis=1), 1.0, atol=1e-9)
+        assert (holders[shares == 0] == 0).all()
 
 
 def test_rotations_never_jump_to_the_other_hemisphere():
@@ -116,13 +138,8 @@ def test_still_meshes_of_one_look_are_merged_and_walls_kept_apart():
     assert [m.get("alphaMode") for m in document["materials"]] == [None, "BLEND"]
 
 
-def test_a_long_film_body_is_small_and_quick():
-    motion = tumbling(90 * 30)
-    body_glb(tumbling(2))
-    start = perf_counter()
-    data = body_glb(motion)
-    assert perf_counter() - start < 0.5
-    assert len(data) < 2_000_000
+def test_a_minute_of_body_is_small():
+    assert len(body_glb(tumbling(60 * 30))) < 700_000
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")

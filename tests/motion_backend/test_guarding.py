@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from motion_backend.obstacles import Obstacles
+from motion_backend.procedural.going import NARROW_ARMS
 from motion_backend.procedural.guarding import arms_in, hands_clear
-from motion_backend.procedural.performing import NARROW_ARMS
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.solving import solve
 from motion_backend.procedural.stances import standing

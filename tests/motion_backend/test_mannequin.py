@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from motion_backend import rotations
+from motion_backend.builds import Proportions
 from motion_backend.mannequin import build_mannequin
 from motion_backend.skeleton import INDEX, build_skeleton
 from motion_backend.skinning import skin, strongest_four
@@ -113,3 +114,34 @@ def test_a_bent_knee_keeps_its_thickness():
 def test_a_seated_body_rests_on_its_seat():
     seated = posed(left_hip=(-90.0, 0.0, 0.0), right_hip=(-90.0, 0.0, 0.0))
     assert seated[:, 1].min() == pytest.approx(-0.09, abs=0.03)
+
+
+STOUT = Proportions(girth=1.25, chest=0.9, hips=1.1, limbs=1.2, head=0.9)
+
+
+def breadth(mesh, material: str) -> float:
+    index = [m.name for m in mesh.materials].index(material)
+    x = mesh.vertices[np.unique(mesh.faces[mesh.face_materials == index]), 0]
+    return float(np.ptp(x))
+
+
+def test_proportions_change_the_flesh_and_not_the_height():
+    stout = build_mannequin(SKELETON, STOUT)
+    assert breadth(stout, "trousers") > 1.08 * breadth(MESH, "trousers")
+    assert breadth(stout, "hair") == pytest.approx(0.9 * breadth(MESH, "hair"), rel=0.02)
+    assert stout.vertices[:, 1].min() == MESH.vertices[:, 1].min()
+    np.testing.assert_allclose(np.linalg.norm(stout.normals, axis=1), 1.0, atol=1e-4)
+    np.testing.assert_array_equal(build_mannequin(SKELETON, Proportions()).vertices, MESH.vertices)
+
+
+def test_no_triangle_is_torn_by_other_proportions():
+    for mesh in (build_mannequin(SKELETON, STOUT), build_mannequin(SKELETON, Proportions(0.8, 0.8, 0.8, 0.8, 1.25))):
+        corners, before = mesh.vertices[mesh.faces], MESH.vertices[MESH.faces]
+        longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=-1).max(axis=1)
+        assert (longest < 2 * np.linalg.norm(before - np.roll(before, 1, axis=1), axis=-1).max(axis=1)).all()
+
+
+@pytest.mark.parametrize("field", ["girth", "chest", "hips", "limbs", "head"])
+def test_proportions_of_no_person_are_refused_by_name(field: str):
+    with pytest.raises(ValueError, match=rf"proportions\.{field}"):
+        Proportions(**{field: 1.5})

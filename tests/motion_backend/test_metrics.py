@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from motion_backend import metrics, rotations
-from motion_backend.metrics import Kinematics
+from motion_backend.measures import contact, feet, smoothness
+from motion_backend.measures.furniture import penetration
+from motion_backend.measures.kinematics import Kinematics
 from motion_backend.motion import Action, ContactGoal, Motion, Skill
 from motion_backend.obstacles import Obstacles
-from motion_backend.skeleton import build_skeleton
+from motion_backend.skeleton import INDEX, build_skeleton
 from scene_graphs.homes import home_from_layouts
 from scene_graphs.layouts import Layout, Opening
 
@@ -44,50 +46,50 @@ def touch(**changes: object) -> Action:
 def test_a_body_that_stands_still_neither_skates_nor_jerks_nor_sinks() -> None:
     motion = standing_still()
     body = Kinematics.of(motion)
-    assert metrics.skate_ratio(motion, body) == 0
-    assert metrics.skate_speed(motion, body) == pytest.approx(0, abs=1e-4)
-    assert metrics.jerk(body.positions, 30) == pytest.approx(0, abs=1e-3)
-    assert metrics.sole_heights(motion, body).min() == pytest.approx(0, abs=1e-6)
+    assert feet.skate_ratio(body) == 0
+    assert feet.skate_speed(body) == pytest.approx(0, abs=1e-4)
+    assert smoothness.jerk(body.positions, 30) == pytest.approx(0, abs=1e-3)
+    assert body.soles[..., 1].min() == pytest.approx(0, abs=1e-6)
 
 
 def test_a_body_that_glides_skates_all_the_time_at_its_own_speed() -> None:
     root = np.outer(np.arange(60) / 30, [1.2, 0.0, 0.0])
     motion = standing_still(root=root)
     body = Kinematics.of(motion)
-    assert metrics.skate_ratio(motion, body) == 1.0
-    assert metrics.skate_speed(motion, body) == pytest.approx(120, rel=1e-3)
+    assert feet.skate_ratio(body) == 1.0
+    assert feet.skate_speed(body) == pytest.approx(120, rel=1e-3)
 
 
 def test_slow_creeping_is_skate_speed_but_not_gmd_skating() -> None:
     motion = standing_still(root=np.outer(np.arange(60) / 30, [0.3, 0.0, 0.0]))
     body = Kinematics.of(motion)
-    assert metrics.skate_ratio(motion, body) == 0.0
-    assert metrics.skate_speed(motion, body) == pytest.approx(30, rel=1e-3)
+    assert feet.skate_ratio(body) == 0.0
+    assert feet.skate_speed(body) == pytest.approx(30, rel=1e-3)
 
 
 def test_a_body_in_the_air_does_not_skate() -> None:
     root = np.outer(np.arange(60) / 30, [1.2, 0.0, 0.0])
     root[:, 1] = 0.2
     motion = standing_still(root=root)
-    assert metrics.skate_ratio(motion, Kinematics.of(motion)) == 0.0
+    assert feet.skate_ratio(Kinematics.of(motion)) == 0.0
 
 
 def test_jerk_of_a_cubic_is_its_third_derivative() -> None:
     time = np.arange(90) / 30
     positions = np.zeros((90, 2, 3))
     positions[:, 0, 0] = positions[:, 1, 2] = 5 * time**3
-    assert metrics.jerk(positions, 30) == pytest.approx(30.0, rel=1e-6)
+    assert smoothness.jerk(positions, 30) == pytest.approx(30.0, rel=1e-6)
 
 
 @pytest.mark.parametrize(("depth", "seen"), [(0.03, 0.03), (-0.01, 0.0)])
 def test_penetration_is_the_depth_of_the_deepest_skin_point(depth: float, seen: float) -> None:
     motion = standing_still(10)
     body = Kinematics.of(motion)
-    head = body.positions[0, metrics.INDEX["head"]]
+    head = body.positions[0, INDEX["head"]]
     # A ceiling comes down on the head: its crown is at the capsule's end plus its radius at 45 degrees.
     crown = head[1] + 0.09 + 0.09 * np.sqrt(0.5)
     ceiling = box((0.0, crown - depth + 0.5, 0.0), (4.0, 1.0, 4.0))
-    found = metrics.penetration(motion, body, ceiling, None)
+    found = penetration(body, ceiling, None)
     np.testing.assert_allclose(found, seen, atol=2e-3)
 
 
@@ -97,9 +99,9 @@ def test_only_contact_bodies_may_sink_and_only_into_their_own_target() -> None:
     hips = body.positions[0, 0]
     seat = box((0.0, hips[1] - 0.09 + 0.03 - 0.5, -0.3), (0.5, 1.0, 0.6), owner="0/chair")
     sit = Action(Skill.SITDOWN, "sit", "neutral", object_id="0/chair")
-    free = metrics.penetration(motion, body, seat, None)
-    own = metrics.penetration(motion, body, seat, sit)
-    other = metrics.penetration(motion, body, seat, replace(sit, object_id="0/table"))
+    free = penetration(body, seat, None)
+    own = penetration(body, seat, sit)
+    other = penetration(body, seat, replace(sit, object_id="0/table"))
     assert free.max() > 0.05
     np.testing.assert_allclose(other, free)
     np.testing.assert_allclose(own, np.maximum(free - 0.05, 0), atol=0.03)
@@ -108,19 +110,38 @@ def test_only_contact_bodies_may_sink_and_only_into_their_own_target() -> None:
 
 def test_success_must_be_sustained_for_a_second_unless_any_frame_counts() -> None:
     motion = standing_still(90)
-    wrist = motion.joint_positions()[0, metrics.INDEX["right_wrist"]]
+    wrist = motion.joint_positions()[0, INDEX["right_wrist"]]
     goal = ContactGoal("right_wrist", tuple(float(v) for v in wrist))  # type: ignore[arg-type]
     sliding = standing_still(root=np.outer(np.concatenate([np.zeros(20), np.arange(1, 71) / 30]), [1.0, 0.0, 0.0]))
     for moved, sustained in ((motion, True), (sliding, False)):
         trial = replace(moved, goals=(goal,))
-        reached, reached_any, error = metrics.success(trial, touch(), Kinematics.of(trial))
-        assert (reached, reached_any) == (sustained, True)
-        assert error == pytest.approx(0, abs=1e-5)
+        found = contact.outcome(touch(), Kinematics.of(trial))
+        assert (found.reached, found.reached_any) == (sustained, True)
+        assert found.error == pytest.approx(0, abs=1e-5)
+        assert found.seconds == 0
+
+
+@pytest.mark.parametrize(("away", "reached", "strict"), [(0.05, True, True), (0.15, True, False), (0.25, False, False)])
+def test_strict_success_asks_for_ten_centimetres(away: float, reached: bool, strict: bool) -> None:
+    motion = standing_still(60)
+    wrist = motion.joint_positions()[0, INDEX["right_wrist"]].astype(float)
+    trial = replace(motion, goals=(ContactGoal("right_wrist", (wrist[0], wrist[1] + away, wrist[2])),))
+    found = contact.outcome(touch(), Kinematics.of(trial))
+    assert (found.reached, found.reached_strict) == (reached, strict)
+    assert found.error == pytest.approx(away, abs=1e-5)
+    assert (found.seconds is None) == (not reached)
+
+
+def test_execution_time_is_when_the_threshold_is_first_met() -> None:
+    motion = standing_still(root=np.outer(np.arange(90) / 30, [1.0, 0.0, 0.0]))
+    found = contact.outcome(Action(Skill.LOCO, "walk", "neutral", goal=(2.3, 0.0)), Kinematics.of(motion))
+    assert found.seconds == pytest.approx(2.0, abs=1 / 30)
 
 
 def test_a_trial_without_a_goal_is_not_a_success() -> None:
     motion = standing_still()
-    assert metrics.success(motion, touch(), Kinematics.of(motion)) == (False, False, None)
+    found = contact.outcome(touch(), Kinematics.of(motion))
+    assert (found.reached, found.reached_any, found.error) == (False, False, None)
 
 
 def test_a_walk_succeeds_where_it_ends_not_where_it_passes() -> None:
@@ -129,8 +150,9 @@ def test_a_walk_succeeds_where_it_ends_not_where_it_passes() -> None:
     there = Action(Skill.LOCO, "walk", "neutral", goal=(2.9, 0.0))
     passed = replace(there, goal=(1.0, 0.0))
     body = Kinematics.of(motion)
-    assert metrics.success(motion, there, body)[:2] == (True, True)
-    assert metrics.success(motion, passed, body)[:2] == (False, True)
+    for action, reached in ((there, True), (passed, False)):
+        found = contact.outcome(action, body)
+        assert (found.reached, found.reached_any) == (reached, True)
 
 
 def test_a_motion_that_was_not_completed_is_never_reached() -> None:
@@ -142,22 +164,76 @@ def test_a_motion_that_was_not_completed_is_never_reached() -> None:
 
 def test_rising_means_high_and_upright() -> None:
     motion = standing_still(40)
-    assert metrics.risen(motion, Kinematics.of(motion)).all()
+    assert contact.risen(Kinematics.of(motion)).all()
     low = replace(motion, root_positions=motion.root_positions - np.array([0, 0.3, 0], np.float32))
-    assert not metrics.risen(low, Kinematics.of(low)).any()
+    assert not contact.risen(Kinematics.of(low)).any()
     bent = motion.local_rotations.copy()
     bent[:, 0] = rotations.rotvec_to_quat(np.array([0.8, 0.0, 0.0]))
     tilted = replace(motion, local_rotations=bent)
-    assert not metrics.risen(tilted, Kinematics.of(tilted)).any()
+    assert not contact.risen(Kinematics.of(tilted)).any()
 
 
 def test_a_jump_at_a_seam_is_found_and_a_smooth_seam_is_not() -> None:
     root = np.outer(np.arange(60) / 30, [0.5, 0.0, 0.0])
     smooth = replace(standing_still(root=root), actions=np.repeat([0, 1], 30).astype(np.int32))
-    assert metrics.seam_jump(smooth) == pytest.approx(0, abs=1e-4)
+    assert smoothness.seam_jump(smooth) == pytest.approx(0, abs=1e-4)
     root[30:, 2] += 0.25
     broken = replace(standing_still(root=root), actions=np.repeat([0, 1], 30).astype(np.int32))
-    assert metrics.seam_jump(broken) == pytest.approx(0.235, abs=0.02)
+    assert smoothness.seam_jump(broken) == pytest.approx(0.235, abs=0.02)
+
+
+def test_a_body_that_changes_its_speed_at_a_seam_is_found() -> None:
+    there = np.concatenate([np.arange(30), 29 + 3 * np.arange(1, 31)]) / 30
+    motion = replace(
+        standing_still(root=np.outer(there, [0.5, 0.0, 0.0])), actions=np.repeat([0, 1], 30).astype(np.int32)
+    )
+    assert smoothness.seam_speed_jump(motion) == pytest.approx(1.0, abs=1e-2)
+    assert smoothness.seam_speed_jump(standing_still()) == 0
+
+
+def test_bones_keep_their_length_whatever_the_joints_do() -> None:
+    random = np.random.default_rng(3).normal(size=(20, 22, 4))
+    motion = replace(standing_still(20), local_rotations=rotations.normalize(random).astype(np.float32))
+    assert smoothness.bone_deviation(Kinematics.of(motion)) < 1e-5
+    stretched = Kinematics.of(motion)
+    assert smoothness.bone_deviation(replace(stretched, positions=stretched.positions * 1.1)) > 0.03
+
+
+def test_the_peak_of_jerk_is_above_its_mean() -> None:
+    positions = np.zeros((200, 1, 3))
+    positions[100, 0, 0] = 0.01
+    assert smoothness.jerk_peak(positions, 30) > 10 * smoothness.jerk(positions, 30) > 0
+
+
+def test_jerk_is_held_against_recorded_walks_of_the_same_speed() -> None:
+    assert smoothness.jerk_against_real(Kinematics.of(standing_still())) is None
+    gliding = standing_still(root=np.outer(np.arange(60) / 30, [1.2, 0.0, 0.0]))
+    found = smoothness.jerk_against_real(Kinematics.of(gliding))
+    assert found is not None
+    assert found < 0.05
+    shaken = np.outer(np.arange(60) / 30, [1.0, 0.0, 0.0])
+    shaken[:, 1] = 0.002 * (-1.0) ** np.arange(60)
+    found = smoothness.jerk_against_real(Kinematics.of(standing_still(root=shaken)))
+    assert found == pytest.approx(0.002 * 8 * 30**3 / smoothness.REAL_WALK[0], rel=0.02)
+
+
+def test_a_body_floats_above_the_floor_and_not_above_what_holds_it() -> None:
+    root = np.zeros((5, 3))
+    root[:, 1] = 0.5
+    body = Kinematics.of(standing_still(root=root))
+    np.testing.assert_allclose(feet.height_above_support(body, NOTHING), 0.5, atol=1e-6)
+    podium = box((0.0, 0.25, 0.0), (2.0, 0.5, 2.0))
+    np.testing.assert_allclose(feet.height_above_support(body, podium), 0.0, atol=1e-6)
+    ceiling = box((0.0, 3.0, 0.0), (2.0, 0.5, 2.0))
+    np.testing.assert_allclose(feet.height_above_support(body, ceiling), 0.5, atol=1e-6)
+
+
+def test_a_summary_counts_every_trial_and_has_no_error_where_nothing_is_touched() -> None:
+    walk = Action(Skill.LOCO, "walk", "neutral", goal=(0.0, 0.0))
+    figures = metrics.judge(standing_still(), walk, NOTHING)
+    told = metrics.summarise([figures, replace(figures, reached=False, seconds=6.0, pen_max=0.1)])
+    assert (told["success"], told["contact_error"], told["contact_error_success"]) == (0.5, None, None)
+    assert (told["pen_max"], told["seconds"]) == (0.1, 8.0)
 
 
 @pytest.mark.parametrize(
@@ -165,7 +241,7 @@ def test_a_jump_at_a_seam_is_found_and_a_smooth_seam_is_not() -> None:
     [([0, 1, 1, 0, 1], (1, 3)), ([1, 1, 0, 1, 1], (3, 5)), ([0, 0], (0, 0)), ([1], (0, 1))],
 )
 def test_the_longest_run_is_the_later_of_equals(flags: list[int], run: tuple[int, int]) -> None:
-    assert metrics.longest_run(np.array(flags, dtype=bool)) == run
+    assert contact.longest_run(np.array(flags, dtype=bool)) == run
 
 
 def test_depth_inside_a_turned_box_is_the_distance_to_its_nearest_face() -> None:

@@ -10,7 +10,9 @@ import pytest
 from small_home import contact, rise, small_home, to
 
 from motion_backend import metrics
-from motion_backend.metrics import Kinematics
+from motion_backend.measures.contact import risen
+from motion_backend.measures.kinematics import Kinematics
+from motion_backend.measures.smoothness import seam_jump
 from motion_backend.motion import Action, BodyState, Character, Motion, Posture, Skill, join
 from motion_backend.obstacles import Obstacles
 from motion_backend.procedural.backend import ProceduralBackend
@@ -66,7 +68,7 @@ def test_every_action_of_a_day_is_reached_cleanly(index: int) -> None:
 
 
 def test_segments_join_without_a_jump() -> None:
-    assert metrics.seam_jump(join(MOTIONS)) < 0.06
+    assert seam_jump(join(MOTIONS)) < 0.06
 
 
 def test_no_joint_ever_snaps() -> None:
@@ -122,7 +124,7 @@ def test_a_seated_body_stands_up_before_it_walks() -> None:
     sofa = contact(HOME, Skill.SITDOWN, "sofa", "hands on thighs")
     motions, state = perform([sofa, Action(Skill.LOCO, "walk", "neutral", goal=(3.0, 3.0))])
     assert state.posture is Posture.STANDING
-    assert metrics.risen(motions[1], Kinematics.of(motions[1]))[-1]
+    assert risen(Kinematics.of(motions[1]))[-1]
 
 
 def test_a_body_remembers_what_it_rests_on() -> None:

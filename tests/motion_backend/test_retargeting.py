@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -121,6 +122,20 @@ def test_a_faster_recording_comes_out_at_our_rate_with_the_same_duration(walk: M
     assert made.duration == pytest.approx(clip.duration / 2, abs=0.05)
 
 
+@pytest.mark.parametrize(("frames", "fps", "says"), [(5, 1000.0, "less than two frames"), (2100, 1.0, "35 minutes")])
+def test_a_clip_that_is_too_short_or_too_long_at_our_rate_is_refused(
+    walk: Motion, frames: int, fps: float, says: str
+) -> None:
+    clip = stranger(walk, "t")
+    times = np.arange(frames) % len(clip)
+    with pytest.raises(ClipError, match=says):
+        retarget(
+            replace(
+                clip, root_positions=clip.root_positions[times], local_rotations=clip.local_rotations[times], fps=fps
+            )
+        )
+
+
 def test_the_same_clip_gives_the_same_bytes(walk: Motion) -> None:
     one, two = (retarget(stranger(walk, "n", twist=1.0)) for _ in range(2))
     assert one.motion.local_rotations.tobytes() == two.motion.local_rotations.tobytes()
@@ -220,6 +235,17 @@ def test_a_limited_curve_lies_above_and_is_no_steeper() -> None:
     found = no_faster(values, 0.1)
     assert (found >= values).all()
     assert np.abs(np.diff(found)).max() <= 0.1 + 1e-9
+
+
+def test_a_toys_own_feet_are_not_told_of(walk: Motion) -> None:
+    clip = stranger(walk.part(0, 60), "t")
+    short = np.array([0.4 if "Leg" in name or "Foot" in name else 1.0 for name in clip.bones.names])
+    bones = replace(clip.bones, offsets=clip.bones.offsets * short[:, None])
+    toy, plain = (retarget(one).report for one in (replace(clip, bones=bones), clip))
+    assert toy.source_skate is None
+    assert toy.source_depth is None
+    assert plain.source_skate is not None
+    assert any("toy" in note for note in toy.conversions)
 
 
 def test_planted_feet_are_found_where_a_walk_of_ours_says(walk: Motion) -> None:

@@ -28,6 +28,13 @@ def test_composing_is_associative_and_has_inverses(a: np.ndarray, b: np.ndarray,
 
 
 @FEW
+@given(VECTORS, hnp.arrays(np.float64, (2, 1, 3), elements=st.floats(-3.0, 3.0)))
+def test_cross_products_are_those_of_numpy_to_the_bit(a: np.ndarray, b: np.ndarray) -> None:
+    np.testing.assert_array_equal(rotations.cross(a, b), np.cross(a, b))
+    np.testing.assert_array_equal(rotations.cross(b, a), np.cross(b, a))
+
+
+@FEW
 @given(VECTORS, VECTORS)
 def test_rotation_vectors_and_turned_vectors_agree_with_scipy(v: np.ndarray, point: np.ndarray) -> None:
     ours = rotations.rotvec_to_quat(v)

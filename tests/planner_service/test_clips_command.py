@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from typer.testing import CliRunner, Result
 
 from motion_backend import rotations
@@ -16,6 +19,8 @@ from motion_backend.formats.bvh import write_bvh
 from motion_backend.motion import Motion
 from motion_backend.skeleton import INDEX, build_skeleton
 from planner_service.cli import app
+from planner_service.commands.tables import shown
+from planner_service.filing import OutputError
 
 SECONDS = 2
 
@@ -87,7 +92,7 @@ def test_a_file_that_cannot_be_read_is_told_and_the_others_are_kept(folder: Path
     ("options", "says"),
     [
         (["--speeds", "fast"], "--speeds"),
-        (["--speeds", "9"], "--speeds"),
+        (["--speeds", "0.8,9"], "--speeds"),
         (["--kinds", "keyed"], "no clip was accepted"),
     ],
 )
@@ -96,3 +101,43 @@ def test_what_a_user_does_wrong_is_one_clear_error(folder: Path, tmp_path: Path,
     assert isinstance(failed.exception, ClipError)
     assert says in str(failed.exception)
     assert not (tmp_path / "a.npz").exists()
+
+
+@pytest.mark.parametrize("out", ["", "/"])
+def test_a_collection_without_a_name_is_refused(folder: Path, out: str) -> None:
+    assert isinstance(run("build", folder, "--out", out).exception, OutputError)
+
+
+def test_recorded_motion_is_never_written_over_but_an_earlier_collection_is(folder: Path) -> None:
+    recorded = folder / "01_01.bvh"
+    before = recorded.read_bytes()
+    refused = run("build", folder, "--out", recorded)
+    assert isinstance(refused.exception, OutputError)
+    assert recorded.read_bytes() == before
+    assert sorted(path.name for path in folder.iterdir()) == ["01_01.bvh", "02_01.bvh", "labels.csv"]
+    for _ in range(2):
+        assert run("build", folder, "--out", folder / "clips.npz").exit_code == 0
+    assert len(read_dataset(folder / "clips.npz").entries) == 2
+
+
+def test_names_and_words_of_others_reach_the_terminal_as_printable_letters(folder: Path, tmp_path: Path) -> None:
+    (folder / "02_01.bvh").rename(folder / "\x1b]0;a\u202e.bvh")
+    (folder / "labels.csv").unlink()
+    (folder / "01_01.bvh").rename(folder / os.fsdecode(b"caf\xe9.bvh"))
+    (folder / "\x1b[31m.bvh").write_text("nothing")
+    out = tmp_path / "a.npz"
+    built = run("build", folder, "--out", out)
+    assert built.exit_code == 1
+    told = built.output + run("list", out).output
+    assert "\\x1b" in told
+    assert all(letter.isprintable() or letter == "\n" for letter in told)
+    assert len(json.loads(run("list", out, "--json").output)["clips"]) == 2
+    assert len(json.loads(Path(f"{out}.report.json").read_text(encoding="utf-8"))["clips"]) == 2
+
+
+@given(st.text(), st.integers(2, 50))
+def test_what_is_shown_is_one_printable_line_of_bounded_length(text: str, most: int) -> None:
+    line = shown(text, most)
+    assert line.isprintable()
+    assert len(line) <= most
+    assert shown(line, most) == line

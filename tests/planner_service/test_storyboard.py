@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from matplotlib.image import imread
 
 from motion_backend import rotations
 from motion_backend.motion import Motion, Skill
-from motion_backend.pictures import contact_sheet
 from motion_backend.skeleton import build_skeleton
 from planner_service.scripts.keyframe import Keyframe
 from planner_service.storyboard import PLAN, SIDE, storyboard
@@ -57,11 +54,3 @@ def test_the_pictures_show_the_home_and_not_an_empty_page(tmp_path):
     picture = imread(storyboard(HOME, told([0]), KEYFRAMES, tmp_path / "one.png"))[..., :3]
     pair = picture[60 : 60 + SIDE[1], 20 : 20 + PLAN[0] + SIDE[0]]
     assert len(np.unique((pair * 255).astype(int).reshape(-1, 3), axis=0)) > 500
-
-
-def test_a_motion_without_a_home_makes_a_contact_sheet(tmp_path):
-    motion = replace(told([0]), fps=30)
-    sheet = imread(contact_sheet(motion, frames=4, path=tmp_path / "sheet.png", size=(60, 80)))
-    assert sheet.shape[:2] == (80, 240)
-    room = imread(contact_sheet(motion, HOME, 7, tmp_path / "room.png", size=(60, 80)))
-    assert room.shape[:2] == (160, 360)

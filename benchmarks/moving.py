@@ -1,0 +1,32 @@
+"""How much faster than it plays the body's motion is made, skill by skill."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+from benchmarks.figure import Figure
+from benchmarks.stories import SPEED, Timed
+from benchmarks.themes import SEED
+from motion_backend.motion import Character, Skill
+from motion_backend.procedural.backend import ProceduralBackend
+
+
+def skill_figures(made: Sequence[Timed]) -> list[Figure]:
+    """The actions of all stories acted once more, each skill's beside what they play; the slowest skill counts.
+
+    Seconds of one core.
+    """
+    played, taken = dict.fromkeys(Skill, 0.0), dict.fromkeys(Skill, 0.0)
+    for one in made:
+        backend, home = ProceduralBackend(), one.story.planned.home
+        state = backend.begin(home, Character(), SEED)
+        for action in one.story.actions:
+            started = time.process_time()
+            motion, state = backend.advance(home, action, state)
+            taken[action.skill] += time.process_time() - started
+            played[action.skill] += motion.duration
+    speeds = {skill: played[skill] / taken[skill] for skill in Skill if taken[skill]}
+    slowest = min(speeds, key=lambda skill: speeds[skill])
+    note = ", ".join(f"{skill} {speed:.0f}" for skill, speed in speeds.items())
+    return [Figure("motion against playing it, slowest skill", speeds[slowest], "×", SPEED, "least", note, 0)]

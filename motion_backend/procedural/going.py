@@ -1,0 +1,146 @@
+"""Walking somewhere, and staying where one stands: the performers of loco."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion_backend import rotations
+from motion_backend.motion import FPS, Action, Part, Skill
+from motion_backend.procedural.body import Body, Point
+from motion_backend.procedural.detours import curved, to_and_fro
+from motion_backend.procedural.gait import walk
+from motion_backend.procedural.gestures import gesture
+from motion_backend.procedural.guarding import arms_in
+from motion_backend.procedural.handling import arms_on_the_way
+from motion_backend.procedural.moods import bearing_of
+from motion_backend.procedural.pose import interpolate
+from motion_backend.procedural.route import resample
+from motion_backend.procedural.stances import bend, idle
+from motion_backend.procedural.styles import Bearing, arm_arrays
+from motion_backend.procedural.walk_styles import Walk, walk_style
+from motion_backend.transitions import OWN
+
+Array = NDArray[np.float64]
+AT_THE_SPOT = 0.04
+"""A body this near to a standing point (metres) need not walk to it."""
+FACING_IT = 0.12
+"""And this near to the wanted yaw (radians) need not turn."""
+SHORT_WAY = 0.20
+"""A body that faces where it will face steps straight to a place nearer than this (metres)."""
+TURNING_ROUND = 1.2
+"""A body that arrives turned away from where it will face by more (radians) turns before the last step."""
+NARROW_ARMS = {
+    "open": ("raised", 0.80),
+    "balance": ("hang", 0.80),
+    "hips": ("hang", 0.50),
+    "pockets": ("hang", 0.45),
+    "behind_back": ("hang", 0.40),
+}
+"""What arms do where elbows or hands would meet furniture, and the clearance (metres) they need: joy goes up."""
+STAYING = 0.7
+"""How long arms take into the pose they are held in where the body stays, and out of it (seconds)."""
+ELBOW_ROOM = 0.26
+"""Clearance beyond which there is no better place to turn on the spot (metres)."""
+
+
+def go(body: Body, goal: Point, facing: float | None, action: Action) -> None:
+    """Walk to a place and end up facing a yaw, in the style of the action."""
+    near = float(np.hypot(goal[0] - body.place[0], goal[1] - body.place[1])) < AT_THE_SPOT
+    turned = facing is None or abs(float(rotations.wrap(facing - body.yaw))) < FACING_IT
+    if near and turned:
+        return
+    body.enter(Part.WALK)
+    style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
+    arms = arms_on_the_way(body.pose, style.bearing.arms)
+    style = replace(style, bearing=replace(style.bearing, arms=arms))
+    path = body.scene.walkable.path(body.place, goal) if not near else np.array([body.place, goal])
+    turning = None
+    if turned and float(np.hypot(goal[0] - body.place[0], goal[1] - body.place[1])) < SHORT_WAY:
+        path = np.array([body.place, goal])
+    else:
+        turning = _turning_place(body, path, goal, facing)
+    if style.spin and not near:
+        path = _spin_on_the_way(body, path, style)
+        style = replace(style, spin=0.0)
+    if style.veer and not near:
+        path = curved(path, style.veer > 0, body.scene.walkable)
+    if style.to_and_fro and not near:
+        *before, path = to_and_fro(path, body.scene.walkable)
+        for way in before:
+            _stride(body, way, None, style)
+    if turning is not None and facing is not None:
+        _stride(body, body.scene.walkable.path(body.place, turning), facing, style)
+        body.enter(Part.BACK_UP)
+        path = np.array([body.place, goal])
+    _stride(body, path, facing, style)
+    body.enter(OWN[action.skill])
+
+
+def _stride(body: Body, path: Array, facing: float | None, style: Walk) -> None:
+    """Walk along a path; arms that are spread come in where there is no room for them."""
+    frames = walk(body.pose, path, facing, style, body.skeleton, body.rng)
+    if style.bearing.arms[0] in NARROW_ARMS:
+        places = frames.pelvis[:, [0, 2]]
+        room = np.array([body.scene.walkable.clearance((float(x), float(z))) for x, z in places])
+        frames = arms_in(frames, room / body.skeleton.scale, *NARROW_ARMS[style.bearing.arms[0]])
+    body.way += float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+    body.add(gesture(frames, style.doing))
+
+
+def _spin_on_the_way(body: Body, path: Array, style: Walk) -> Array:
+    """Walk to the roomiest place of the path's second half and spin there; returns the way that is left."""
+    points = resample(path)
+    half = points[len(points) // 2 :]
+    room = [body.scene.walkable.clearance((float(x), float(z))) for x, z in half]
+    split = len(points) // 2 + int(np.argmax(room))
+    _stride(body, points[: split + 1], None, style)
+    return np.concatenate([[body.place], points[split:]])
+
+
+def _turning_place(body: Body, path: Array, goal: Point, facing: float | None) -> Point | None:
+    """Where to turn round before backing up to a seat, away from it; None where no turning round is needed."""
+    if facing is None or len(path) < 2:
+        return None
+    step = path[-1] - path[-2]
+    if float(np.abs(rotations.wrap(np.arctan2(step[0], step[1]) - facing))) < TURNING_ROUND:
+        return None
+    ahead = np.array([np.sin(facing), np.cos(facing)])
+    places = [(float(goal[0] + d * ahead[0]), float(goal[1] + d * ahead[1])) for d in (0.32, 0.26, 0.20, 0.14)]
+    room = [min(body.scene.walkable.clearance(place), ELBOW_ROOM) for place in places]
+    best = int(np.argmax(room))
+    return places[best] if room[best] > body.scene.walkable.clearance(goal) + 0.04 else None
+
+
+def loco(body: Body, action: Action) -> None:
+    """Walk to the goal; without one, stay."""
+    bearing = bearing_of(action.emotion, action.caption)
+    if action.goal is None:
+        _stay(body, action)
+        return
+    before = len(body.frames)
+    go(body, action.goal, action.facing, action)
+    if len(body.frames) == before:
+        body.add(idle(body.pose, 1.0, bearing.restless, body.rng, FPS))
+
+
+def _stay(body: Body, action: Action) -> None:
+    """Stand where the body is, arms as the caption has them, and let them hang again."""
+    style = walk_style(action.emotion, action.caption)
+    bearing = replace(style.bearing, arms=arms_on_the_way(body.pose, style.bearing.arms))
+    at_ease = replace(body.pose, **_carriage(replace(bearing, arms=arms_on_the_way(body.pose, ("hang", "hang")))))
+    held = replace(body.pose, **_carriage(bearing))
+    body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, held], FPS))
+    restless = bearing_of(action.emotion, action.caption).restless
+    body.add(gesture(idle(body.pose, action.hold, restless, body.rng, FPS), style.doing))
+    if style.bearing.arms != ("hang", "hang"):
+        body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, at_ease], FPS))
+
+
+def _carriage(bearing: Bearing) -> dict[str, Array]:
+    """How a standing body holds trunk, head and arms."""
+    wrists, elbows = arm_arrays(*bearing.arms)
+    lean, head = np.radians(bearing.lean), np.radians(bearing.head)
+    return {"spine": bend(0.7 * lean), "head": bend(head), "arms": wrists, "elbows": elbows}

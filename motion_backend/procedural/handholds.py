@@ -1,0 +1,122 @@
+"""Where hands can lie around a seat: on armrests, on the seat itself, on a table ahead, on the floor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion_backend.obstacles import Obstacles
+from motion_backend.procedural.stances import Seat
+from motion_backend.skeleton import SEATED_REST
+
+Array = NDArray[np.float64]
+Pair = tuple[Array | None, Array | None]
+"""Where the left and the right palm lie, (3,) in the world each; None where nothing is there."""
+TABLE_REACH = 0.74
+"""How far ahead of the pelvis the near edge of a table may be for a leaning sitter (metres at 1.70 m)."""
+INSET = 0.01
+"""A hand lies at least so far within the edge of a surface (metres)."""
+ARMREST, TABLE = (0.08, 0.36), (0.14, 0.58)
+"""Heights above the seat that armrests and tables have (metres)."""
+
+
+@dataclass(frozen=True)
+class Handholds:
+    """The surfaces about a sitter that palms can lie on."""
+
+    armrests: Pair = (None, None)
+    beside: Pair = (None, None)
+    """On the seat, or the floor that is sat on, beside the hips."""
+    behind: Pair = (None, None)
+    edge: Pair = (None, None)
+    """At the seat's front edge, outside the thighs."""
+    table: float | None = None
+    """How far ahead of the pelvis the edge of a table begins that both forearms fit on."""
+    table_top: float = 0.0
+
+    def on_table(self, seat: Seat, inwards: float, apart: float) -> Pair:
+        """Both palms on the table, so far from its edge and from each other; none where there is no table."""
+        if self.table is None:
+            return None, None
+        ahead = self.table + inwards
+        left, right = (seat.to_world((side * apart / 2, self.table_top, ahead)) for side in (1, -1))
+        return left, right
+
+
+def handholds(seat: Seat, obstacles: Obstacles, scale: float) -> Handholds:
+    """What there is about a seat for a body of that size."""
+    low, high = seat.pelvis - [1.2, 1.0, 1.2], seat.pelvis + [1.2, 0.8, 1.2]
+    near = obstacles.solid().near(low, high)
+    top = float(seat.pelvis[1]) - SEATED_REST
+    level = (top - 0.05, top + 0.05)
+    rests = (top + ARMREST[0] * scale, top + ARMREST[1] * scale)
+    back = -min(0.24 * scale, max(seat.back - 0.07, 0.0))
+    wide = np.arange(0.26, 0.16, -0.02) * scale
+    behind = [(side, ahead) for ahead in np.arange(back, -0.03, 0.03) for side in wide]
+    edge = [(side, seat.edge - 0.07) for side in wide] if seat.edge > 0.12 else []
+    armrest = [(side, ahead) for ahead in (0.24, 0.18, 0.12, 0.06) for side in np.arange(0.22, 0.44, 0.02) * scale]
+    table = _table(seat, near, (top + TABLE[0] * scale, top + TABLE[1] * scale), scale)
+    return Handholds(
+        armrests=_pair(seat, near, _middles(seat, near, armrest, rests), rests),
+        beside=_pair(seat, near, [[(side, 0.0) for side in wide]] * 2, level),
+        behind=_pair(seat, near, [behind] * 2, level),
+        edge=_pair(seat, near, [edge] * 2, level),
+        table=table[0] if table else None,
+        table_top=table[1] if table else 0.0,
+    )
+
+
+def _pair(seat: Seat, near: Obstacles, places: list[list[tuple[float, float]]], level: tuple[float, float]) -> Pair:
+    """The first of the places (to the side, ahead) on either side with a free surface at that level."""
+    found: list[Array | None] = []
+    for side, wanted in zip((1, -1), places, strict=True):
+        points = np.array([seat.to_world((side * lateral, 0.0, ahead)) for lateral, ahead in wanted]).reshape(-1, 3)
+        tops = _tops(near, points, level[1] + 0.1)
+        good = np.flatnonzero((tops >= level[0]) & (tops <= level[1]))
+        found.append(np.array([*points[good[0], :1], tops[good[0]], *points[good[0], 2:]]) if len(good) else None)
+    return found[0], found[1]
+
+
+def _middles(
+    seat: Seat, near: Obstacles, places: list[tuple[float, float]], level: tuple[float, float]
+) -> list[list[tuple[float, float]]]:
+    """For either side the middle of the armrest at the farthest of the distances ahead that it reaches."""
+    chosen: list[list[tuple[float, float]]] = []
+    for side in (1, -1):
+        points = np.array([seat.to_world((side * lateral, 0.0, ahead)) for lateral, ahead in places])
+        tops = _tops(near, points, level[1] + 0.1)
+        good = (tops >= level[0]) & (tops <= level[1])
+        rows = [[place for place, fits in zip(places, good, strict=True) if fits and place[1] == ahead]
+                for ahead in dict.fromkeys(ahead for _, ahead in places)]  # fmt: skip
+        row = next((row for row in rows if row), [])
+        chosen.append([(float(np.mean([lateral for lateral, _ in row[:5]])), row[0][1])] if row else [])
+    return chosen
+
+
+def _table(seat: Seat, near: Obstacles, level: tuple[float, float], scale: float) -> tuple[float, float] | None:
+    """How far ahead a table's edge is, and its height; a table is level under both forearms."""
+    ahead = np.arange(0.20, TABLE_REACH * scale + 0.22, 0.02)
+    points = np.array([seat.to_world((side, 0.0, a)) for a in ahead for side in (0.17, 0.0, -0.17)])
+    tops = _tops(near, points, level[1] + 0.1).reshape(-1, 3)
+    flat = (np.ptp(tops, axis=1) < 0.01) & (tops[:, 0] >= level[0]) & (tops[:, 0] <= level[1])
+    deep = flat[:-10] & flat[5:-5] & flat[10:]
+    if not deep.any():
+        return None
+    first = int(np.argmax(deep))
+    return float(ahead[first]), float(tops[first, 0])
+
+
+def _tops(near: Obstacles, points: Array, ceiling: float) -> Array:
+    """Height of the highest thing at each of N places, of what begins below `ceiling`; the floor is at 0. (N,)."""
+    tops = np.zeros(len(points))
+    for center, half, yaw in zip(near.centers, near.halves, near.yaws, strict=True):
+        if center[1] - half[1] > ceiling:
+            continue
+        moved = points - center
+        cos, sin = np.cos(yaw), np.sin(yaw)
+        across, along = cos * moved[:, 0] - sin * moved[:, 2], sin * moved[:, 0] + cos * moved[:, 2]
+        on = (np.abs(across) < half[0] - INSET) & (np.abs(along) < half[2] - INSET)
+        tops = np.where(on, np.maximum(tops, center[1] + half[1]), tops)
+    return tops

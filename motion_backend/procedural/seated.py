@@ -1,0 +1,164 @@
+"""Settled on a seat: the trunk against the back or on its elbows, the legs, and the hands on what they lie on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion_backend.procedural.handholds import Handholds
+from motion_backend.procedural.pose import Pose
+from motion_backend.procedural.resting_hands import (
+    HOLDS,
+    Hold,
+    Holds,
+    at_rest,
+    hold_of,
+    lay_hands,
+    on_thing,
+)
+from motion_backend.procedural.seated_legs import seated_legs
+from motion_backend.procedural.sit_styles import Seated
+from motion_backend.procedural.solving import solve
+from motion_backend.procedural.stances import Seat, bend, upright
+from motion_backend.procedural.styles import arm_arrays
+from motion_backend.skeleton import INDEX, Skeleton
+
+Array = NDArray[np.float64]
+ON_THIGH = 0.105
+"""Elbow above the middle of the thigh it lies on (metres at 1.70 m)."""
+ELBOW = 0.045
+"""Elbow above the table it lies on (metres at 1.70 m)."""
+NEAR_TABLE, FARTHER = 0.28, 70.0
+"""Beyond this distance of a table's edge one leans towards it, so many degrees a metre."""
+LEANS = np.radians(np.arange(8.0, 62.0, 1.0))
+"""Leans of the trunk that are tried until the elbows lie."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A seat with what is about it."""
+
+    seat: Seat
+    around: Handholds
+    room: tuple[float, float]
+    """How far ahead of the pelvis the left and the right foot may go (metres)."""
+
+
+def holds_of(style: Seated, place: Place, skeleton: Skeleton) -> Holds:
+    """What the hands of a way of sitting lie on here; a surface that is not there is replaced by the thighs."""
+    left, right = (_hold(name, index, place, skeleton.scale) for index, name in enumerate(style.arms))
+    return left, right
+
+
+def _hold(name: str, index: int, place: Place, scale: float) -> Hold | None:
+    around, side, yaw = place.around, (1, -1)[index], place.seat.yaw
+    surfaces = {
+        "armrest": (around.armrests, 0.0, (0.9, -0.3, -0.7)),
+        "beside": (around.beside, 0.2, (1.0, 0.0, -0.2)),
+        "behind": (around.behind if around.behind[index] is not None else around.beside, 0.6, (1.0, 0.1, -0.4)),
+        "edge": (around.edge if around.edge[index] is not None else around.beside, 0.3, (1.0, 0.0, -0.2)),
+        "table": (around.on_table(place.seat, 0.12 * scale, 0.30 * scale), -0.15, (0.7, -0.6, -0.3)),
+        "desk": (
+            around.on_table(place.seat, float(np.clip(0.78 * scale - (around.table or 0.0), 0.12, 0.26)), 0.20 * scale),
+            -0.5,
+            (0.9, -0.5, 0.0),
+        ),
+    }
+    if name in surfaces:
+        points, turned, elbow = surfaces[name]
+        point = points[index]
+        if point is not None:
+            return on_thing(point, yaw, side * turned, elbow)
+        return HOLDS[{"desk": "knees", "table": "lap"}.get(name, "thighs")]
+    return hold_of(name)
+
+
+def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton) -> tuple[Pose, Holds]:
+    """Settled in a way of sitting, and what the hands lie on."""
+    seat = place.seat
+    if seat.is_low(skeleton.scale):
+        style = _on_the_floor(style)
+    legs = seated_legs(seat, style.legs, skeleton, place.room)
+    wrists, elbows = arm_arrays(*style.arms)
+    pose = replace(
+        start,
+        pelvis=seat.pelvis.copy(),
+        head=bend(np.radians(style.head), np.radians(style.tilt)),
+        ankles=legs.ankles,
+        feet=legs.feet,
+        toes=np.zeros(2),
+        knees=legs.knees,
+        arms=wrists,
+        elbows=elbows,
+        reach=legs.ankles,
+        reaching=np.zeros(2),
+        pressing=np.zeros(2),
+        planted=legs.planted,
+    )
+    holds = holds_of(style, place, skeleton)
+    if style.on_elbows:
+        return _on_elbows(_leaning(pose, seat, -LEANS), place, holds, skeleton), holds
+    return at_rest(_leaning(pose, seat, np.array([_recline(style, place)])).at(0), holds, skeleton), holds
+
+
+def _on_the_floor(style: Seated) -> Seated:
+    """The same on the floor, where knees are up: hands lie on them or round them; who does something sits tailorwise."""
+    arms = tuple(
+        {"thighs": "knees", "clasped": "own_shin", "desk": "own_shin", "crossed_ankle": "knees", "belly": "knees"}.get(
+            name, name
+        )
+        for name in style.arms
+    )
+    busy = style.doing not in ("", "music") or "folded" in style.arms or "forehead" in style.arms
+    legs = "crossed" if busy and style.legs in ("rest", "together") else style.legs
+    upright_arms = style.on_elbows and "own_shin" in arms
+    return replace(style, arms=(arms[0], arms[1]), legs=legs, on_elbows=style.on_elbows and not upright_arms)
+
+
+def _recline(style: Seated, place: Place) -> float:
+    """Backward lean of the trunk, as far as there is a back to lean against, or arms (radians)."""
+    seat = place.seat
+    limit = np.pi if np.isinf(seat.back) else np.arcsin(np.clip((seat.back - 0.12) / 0.42, 0.0, 0.9))
+    propped = {"behind", "beside"} & set(style.arms)
+    free = np.radians(24 if propped else 10)
+    lean = style.recline
+    if place.around.table is not None and "table" in style.arms:
+        lean = min(lean, -FARTHER * (place.around.table - NEAR_TABLE))
+    return float(min(np.radians(lean), float(limit) + 0.03, free if np.isinf(seat.back) else np.radians(40)))
+
+
+def _leaning(pose: Pose, seat: Seat, back: Array) -> Pose:
+    """The same pose with its trunk leaned back by each of N angles (radians, forwards negative)."""
+    many = pose.repeat(len(back))
+    hips = np.stack([upright(seat.yaw, -(0.6 if lean > 0 else 0.45) * lean) for lean in back])
+    spine = np.stack([bend(-(0.4 if lean > 0 else 0.55) * lean) for lean in back])
+    # Who leans back still looks ahead, for the most part.
+    head = many.head + np.stack([bend(0.5 * max(lean, 0.0)) for lean in back])
+    return replace(many, hips=hips, spine=spine, head=head)
+
+
+def _on_elbows(leans: Pose, place: Place, holds: Holds, skeleton: Skeleton) -> Pose:
+    """The one of N leans in which the elbows lie on the thighs, or on the table where hands are on one; the arms of
+    that one."""
+    sides = (1.0, -1.0)
+    poles = np.stack([np.asarray(h.elbow) * [s, 1, 1] for h, s in zip(holds, sides, strict=True) if h])
+    many = replace(leans, elbows=np.tile(poles, (len(leans), 1, 1)), reaching=np.ones_like(leans.reaching))
+    positions, _ = skeleton.forward_kinematics(*solve(lay_hands(many, holds, skeleton), skeleton))
+    joints = positions.astype(np.float64)
+    gap = np.zeros(len(leans))
+    for name in ("left", "right"):
+        hip, knee, elbow = (joints[:, INDEX[f"{name}_{joint}"]] for joint in ("hip", "knee", "elbow"))
+        if holds[0] is not None and holds[0].part == "":
+            gap += np.abs(elbow[:, 1] - place.around.table_top - ELBOW * skeleton.scale)
+        else:
+            gap += np.abs(_from_bone(elbow, hip, knee) - ON_THIGH * skeleton.scale)
+    return at_rest(leans.at(int(np.argmin(gap))), holds, skeleton)
+
+
+def _from_bone(points: Array, start: Array, end: Array) -> Array:
+    """Distance of each of N points from its bone. (N,)."""
+    bone = end - start
+    share = np.clip(np.sum((points - start) * bone, axis=1) / np.sum(bone**2, axis=1), 0.0, 1.0)
+    return np.asarray(np.linalg.norm(points - start - share[:, None] * bone, axis=1))

@@ -1,0 +1,147 @@
+"""Joints within and beyond what a body can do, and a body that is in itself."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from small_home import contact, small_home
+
+from motion_backend import rotations
+from motion_backend.clips.reading import read_clips
+from motion_backend.clips.retargeting import retarget
+from motion_backend.joint_limits import CLEARLY, beyond_limits, cardan, limits_share, worst_joint
+from motion_backend.measures.kinematics import Kinematics
+from motion_backend.motion import Character, Motion, Skill
+from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.self_contact import deepest_pair, overlaps, pairs, self_penetration
+from motion_backend.skeleton import INDEX, JOINTS, build_skeleton
+
+WALKS = Path(os.environ.get("SIMS_TEST_DATA", ".")) / "motion" / "cmu_bvh"
+AXES = np.eye(3)
+T_POSE = np.tile(rotations.IDENTITY, (1, 22, 1))
+SKELETON = build_skeleton()
+
+
+def bent(joint: str, axis: str, degrees: float) -> np.ndarray:
+    """The T-pose with one joint turned. (1, 22, 4)."""
+    local = T_POSE.copy()
+    local[0, INDEX[joint]] = rotations.rotvec_to_quat(AXES["xyz".index(axis)] * np.radians(degrees))
+    return local
+
+
+def kinematics(local: np.ndarray) -> Kinematics:
+    root = np.tile([0.0, SKELETON.standing_height, 0.0], (len(local), 1)).astype(np.float32)
+    feet = np.ones((len(local), 4), np.float32)
+    return Kinematics.of(Motion(root, local.astype(np.float32), feet, SKELETON, np.zeros(len(local), np.int32)))
+
+
+def depth(local: np.ndarray) -> float:
+    body = kinematics(local)
+    return float(self_penetration(SKELETON, body.positions, body.world)[0])
+
+
+def test_a_t_pose_is_within_every_limit_and_so_is_a_pelvis_however_it_turns() -> None:
+    assert not beyond_limits(T_POSE).any()
+    assert not beyond_limits(bent("pelvis", "x", 170)).any()
+    assert worst_joint(T_POSE) == ("", 0.0)
+
+
+@pytest.mark.parametrize(
+    ("joint", "axis", "within", "beyond"),
+    [
+        ("knee", "x", 145, -20), ("elbow", "y", -150, 25), ("hip", "x", -120, 50), ("ankle", "x", 45, -60),
+        ("foot", "x", -60, 70), ("wrist", "z", -80, -110), ("shoulder", "z", -80, 150), ("shoulder", "y", -110, 120),
+        ("collar", "z", 30, -40),
+    ],
+)  # fmt: skip
+def test_hinges_bend_one_way_and_both_sides_alike(joint: str, axis: str, within: float, beyond: float) -> None:
+    for side, sign in (("left", 1.0), ("right", 1.0 if axis == "x" else -1.0)):
+        assert not beyond_limits(bent(f"{side}_{joint}", axis, sign * within)).any()
+        found = beyond_limits(bent(f"{side}_{joint}", axis, sign * beyond))
+        assert found[0, INDEX[f"{side}_{joint}"]] > CLEARLY
+        assert np.count_nonzero(found) == 1
+
+
+def test_it_is_told_by_how_much_and_for_how_long() -> None:
+    local = np.concatenate([T_POSE, T_POSE, T_POSE, bent("left_knee", "x", -15)])
+    assert worst_joint(local) == ("left_knee", pytest.approx(np.radians(10)))
+    assert limits_share(local) == 0.25
+    assert limits_share(bent("left_knee", "x", -9)) == 0.0
+
+
+@given(arrays(float, 3, elements=st.floats(-1.5, 1.5)), st.permutations("xyz"))
+def test_cardan_angles_make_the_rotation_again(angles: np.ndarray, order: list[str]) -> None:
+    turn = rotations.IDENTITY
+    for axis, angle in zip(order, angles, strict=True):
+        turn = rotations.compose(turn, rotations.rotvec_to_quat(AXES["xyz".index(axis)] * angle))
+    np.testing.assert_allclose(cardan(turn, "".join(order)), angles, atol=1e-6)
+
+
+@given(arrays(float, (22, 3), elements=st.floats(-2.0, 2.0)))
+def test_a_body_in_a_mirror_is_as_far_beyond(turns: np.ndarray) -> None:
+    local = rotations.rotvec_to_quat(turns)[None]
+    partner = [JOINTS.index(_other(name)) for name in JOINTS]
+    mirrored = local[:, partner] * np.array([1.0, -1.0, -1.0, 1.0])
+    # The middle of the body is its own mirror image, and its ranges are alike to both sides.
+    np.testing.assert_allclose(beyond_limits(mirrored), beyond_limits(local)[:, partner], atol=1e-7)
+
+
+def _other(name: str) -> str:
+    if name.startswith("left_"):
+        return "right_" + name[5:]
+    return "left_" + name[6:] if name.startswith("right_") else name
+
+
+def test_sitting_standing_and_lying_bodies_are_within_their_limits() -> None:
+    home, backend = small_home(), ProceduralBackend()
+    for skill, name in ((Skill.SITDOWN, "chair"), (Skill.LIEDOWN, "bed")):
+        caption = "sitting still" if skill is Skill.SITDOWN else "lying still"
+        motion, _ = backend.advance(home, contact(home, skill, name, caption), backend.begin(home, Character(), 1))
+        assert limits_share(motion.local_rotations[[0, -1]]) == 0.0
+        assert limits_share(motion.local_rotations) < 0.1
+
+
+@pytest.mark.skipif(not WALKS.is_dir(), reason="SIMS_TEST_DATA holds no motion/cmu_bvh")
+@pytest.mark.parametrize("name", ["07_01", "16_22", "35_17"])
+def test_recorded_people_walk_and_run_within_the_limits_and_hardly_touch_themselves(name: str) -> None:
+    body = Kinematics.of(retarget(read_clips(WALKS / f"{name}.bvh")[0]).motion)
+    assert limits_share(body.motion.local_rotations) == 0.0
+    assert self_penetration(SKELETON, body.positions, body.world).max() < 0.04
+
+
+def test_a_t_pose_is_nowhere_in_itself() -> None:
+    assert depth(T_POSE) == 0.0
+
+
+def test_a_forearm_through_the_head_and_a_leg_through_the_other_are_seen() -> None:
+    arm = bent("left_elbow", "y", -150)
+    arm[0, INDEX["left_shoulder"]] = rotations.rotvec_to_quat(np.array([0.0, -1.9, 0.3]))
+    assert depth(arm) > 0.02
+    leg = bent("left_hip", "z", -14)
+    body = kinematics(leg)
+    assert depth(leg) > 0.03
+    assert deepest_pair(SKELETON, body.positions, body.world)[0].startswith("left_")
+
+
+def test_the_depth_of_two_crossed_bars_is_their_radii_less_their_distance() -> None:
+    # The right leg goes back by as much as the left goes in: thighs and shins cross at the middle.
+    body = kinematics(T_POSE)
+    moved = body.positions.copy()
+    left, right = INDEX["left_knee"], INDEX["right_knee"]
+    moved[:, right] = moved[:, left] + np.array([0.0, 0.0, 0.05])
+    found = overlaps(SKELETON, moved, body.world)[0]
+    assert found[pairs().index(("left_shin", "right_shin"))] == pytest.approx(2 * 0.046 - 0.05, abs=1e-6)
+
+
+def test_overlaps_know_no_time() -> None:
+    local = np.concatenate([T_POSE, bent("left_hip", "z", -14), T_POSE])
+    body = kinematics(local)
+    together = overlaps(SKELETON, body.positions, body.world)
+    alone = kinematics(local[1:2])
+    np.testing.assert_allclose(together[1:2], overlaps(SKELETON, alone.positions, alone.world))
