@@ -48,16 +48,20 @@ def _title(done: Performance) -> str:
 
 
 def _trial(skill: Skill, caption: str, room: str | None, seed: int) -> Trial:
-    """The trial in the room, or in the first of the library that has what it needs, on furniture rather than the floor."""
+    """The trial in the room, or in one of the library that has what it needs: furniture rather than the floor."""
     rooms = [layout.id for layout in built_in_index().layouts]
     if room is not None and room not in rooms:
         raise RequestError(f"--room: the library has no room {room!r:.80}; sims layouts list names them")
     serving = (one for one in ([room] if room else rooms) if places_for(skill, caption, setting(one)))
-    found = [Trial(skill, caption, one, seed) for one in islice(serving, 1 if skill is Skill.LOCO else TRIED)]
-    if not found:
+    on_floor: Trial | None = None
+    for trial in islice((Trial(skill, caption, one, seed) for one in serving), TRIED):
+        if skill is Skill.LOCO or piece_of(trial) != FLOOR:
+            return trial
+        on_floor = on_floor or trial
+    if on_floor is None:
         where = room or "no room of the library"
         raise RequestError(f"--room: {where} has nothing for “{caption:.80}” ({skill}); leave it out or choose another")
-    return next((trial for trial in found if piece_of(trial) != FLOOR), found[0])
+    return on_floor
 
 
 def _skill_of(caption: str) -> Skill:

@@ -116,9 +116,7 @@ def _to_motion(body: Body, action: Action) -> Motion:
     touching = None
     if action.skill is Skill.TOUCH:
         touching = "both" if with_both_hands(action.caption) else action.hand
-    elif action.skill in (Skill.SITDOWN, Skill.STANDUP):
-        touching = "both"
-    if action.skill is Skill.LIEDOWN:
+    elif action.skill in (Skill.SITDOWN, Skill.STANDUP, Skill.LIEDOWN):
         touching = "both"
     pose = hands_clear(concatenate(body.frames), body.skeleton, body.scene.obstacles.solid(), touching)
     body.pose = pose.at(len(pose) - 1)

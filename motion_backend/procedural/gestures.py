@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -84,8 +85,8 @@ def _game(held: Pose, time: Array, ease: Array) -> Pose:
     return _moved(held, _along(time, shared, tilt), _along(time, shared, -tilt), ease)
 
 
-def _to_the_mouth(held: Pose, time: Array, index: int) -> Pose:
-    """A hand rises to the mouth, stays a moment, and goes down again, as often as there is time for."""
+def _to_the_mouth(held: Pose, time: Array, ease: Array, index: int = 1) -> Pose:
+    """A hand (0 left, 1 right) rises to the mouth, stays a moment and goes down, as often as there is time for."""
     times = max(round(float(time[-1]) / BITE), 1)
     share = (time / time[-1] * times) % 1.0
     share[-1] = 0.0
@@ -97,7 +98,7 @@ def _to_the_mouth(held: Pose, time: Array, index: int) -> Pose:
     # A hand that rises leaves what it may have been laid on.
     free = np.zeros_like(held.reaching)
     free[:, index] = lifted[:, 0]
-    head[:, 0] += 0.06 * lifted[:, 0]
+    head[:, 0] += 0.06 * ease * lifted[:, 0]
     return replace(
         held,
         arms=arms,
@@ -106,14 +107,6 @@ def _to_the_mouth(held: Pose, time: Array, index: int) -> Pose:
         reaching=held.reaching * (1 - free),
         pressing=held.pressing * (1 - free),
     )
-
-
-def _drink(held: Pose, time: Array, ease: Array) -> Pose:
-    return _to_the_mouth(held, time, 1)
-
-
-def _drink_left(held: Pose, time: Array, ease: Array) -> Pose:
-    return _to_the_mouth(held, time, 0)
 
 
 def _read(held: Pose, time: Array, ease: Array) -> Pose:
@@ -147,9 +140,9 @@ GESTURES: Final[dict[str, Callable[[Pose, Array, Array], Pose]]] = {
     "type": _type,
     "piano": _piano,
     "game": _game,
-    "drink": _drink,
-    "drink_left": _drink_left,
-    "eat": _drink,
+    "drink": _to_the_mouth,
+    "drink_left": partial(_to_the_mouth, index=0),
+    "eat": _to_the_mouth,
     "read": _read,
     "music": _music,
     "wave": _wave,

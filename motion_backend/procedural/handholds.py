@@ -47,8 +47,8 @@ class Handholds:
 
 def handholds(seat: Seat, obstacles: Obstacles, scale: float) -> Handholds:
     """What there is about a seat for a body of that size."""
-    low, high = seat.pelvis - [1.2, 1.0, 1.2], seat.pelvis + [1.2, 0.8, 1.2]
-    near = obstacles.solid().near(low, high)
+    about = np.array([1.2, 1.0, 1.2])
+    near = obstacles.solid().near(seat.pelvis - about, seat.pelvis + about)
     top = float(seat.pelvis[1]) - SEATED_REST
     level = (top - 0.05, top + 0.05)
     rests = (top + ARMREST[0] * scale, top + ARMREST[1] * scale)

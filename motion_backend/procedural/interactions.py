@@ -14,8 +14,8 @@ from motion_backend.procedural.pose import Pose, concatenate, interpolate, smoot
 from motion_backend.procedural.resting_hands import Holds, at_rest, follow
 from motion_backend.procedural.seated import Place, seated
 from motion_backend.procedural.sit_styles import Manner, Seated
-from motion_backend.procedural.stances import UP, Seat, bend, standing, upright
 from motion_backend.procedural.solving import released
+from motion_backend.procedural.stances import UP, Seat, bend, standing, upright
 from motion_backend.procedural.styles import Bearing, arm_arrays
 from motion_backend.skeleton import Skeleton
 
@@ -25,6 +25,8 @@ ARM = 0.54
 NOTHING: Holds = (None, None)
 AROUND, ROUND = 0.4, 0.16
 """How far hands come out on their way down to the seat, and up from it (arm lengths)."""
+OVER = 0.35
+"""How much higher than half-way, of its rise, a foot goes."""
 STEP = 1.8
 """Seconds a foot takes for a metre, where that is longer than a small step."""
 SINK = 0.014
@@ -163,7 +165,9 @@ def _place_feet(pose: Pose, before: Pose, after: Pose, first: float, each: float
         share = np.clip((time - first - order * 0.5 * each) / max(each, STEP * gap), 0.0, 1.0)
         way = smooth(share)[:, None]
         ankles[:, index] = before.ankles[index] + way * (after.ankles[index] - before.ankles[index])
-        ankles[:, index, 1] += min(0.08, 0.28 * gap) * np.sin(np.pi * share)
+        rise = float(after.ankles[index, 1] - before.ankles[index, 1])
+        # A foot that goes onto the other knee goes over it.
+        ankles[:, index, 1] += max(min(0.08, 0.28 * gap), OVER * rise) * np.sin(np.pi * share)
         feet[:, index] = rotations.slerp(before.feet[index], after.feet[index], way[:, 0])
         knees[:, index] = before.knees[index] + way * (after.knees[index] - before.knees[index])
         stands = np.where(share <= 0, before.planted[index], np.where(share >= 1, after.planted[index], 0.0))

@@ -65,7 +65,7 @@ def _on_head(direction: Vector, fingers: Vector, elbow: Vector, gap: float = ON_
 HOLDS: dict[str, Hold] = {
     "thighs": Hold("left_hip", (0.005, -0.27, 0.074), (0.05, 0.0, 1.0), (-0.2, -1.0, 0.0), (0.55, -0.3, -0.8)),
     "knees": Hold("left_hip", (0.005, -0.375, 0.066), (0.05, -0.2, 1.0), (-0.1, -1.0, -0.2), (0.6, -0.5, -0.5)),
-    "lap": Hold("left_hip", (-0.04, -0.22, 0.074), (0.05, 0.0, 1.0), (-0.25, -1.0, 0.0), (0.7, -0.4, -0.7), 0.085),
+    "lap": Hold("left_hip", (-0.04, -0.245, 0.074), (0.05, 0.0, 1.0), (-0.25, -1.0, 0.0), (0.7, -0.4, -0.7), 0.085),
     "folded": Hold("left_hip", (-0.055, -0.19, 0.085), (0.0, 0.0, 1.0), (-1.0, -0.45, 0.0), (0.8, -0.3, -0.6)),
     "folded_over": Hold("left_hip", (-0.045, -0.20, 0.122), (0.0, 0.0, 1.0), (-1.0, -0.45, 0.0), (0.8, -0.3, -0.6)),
     "clasped": Hold("left_hip", (-0.089, -0.611, 0.198), (1.0, -0.2, 0.0), (-0.2, -1.0, 0.1), (0.0, -1.0, 0.1)),
@@ -78,7 +78,7 @@ HOLDS: dict[str, Hold] = {
     "forehead": _on_head((0.55, 0.05, 0.80), (-0.30, 1.0, 0.0), (0.5, -1.0, 0.3)),
     "ears": _on_head((1.0, -0.20, 0.0), (-0.15, 0.85, -0.55), (1.0, -1.0, 0.3), 0.040, 0.11),
     "phone": _on_head((1.0, -0.25, 0.05), (-0.25, 0.75, -0.6), (0.35, -1.0, 0.1), 0.045, FINGERS),
-    "chin": Hold("head", (0.030, -0.045, 0.080), (0.55, -0.15, 0.80), (-0.45, 0.85, 0.3), (0.9, -1.0, 0.7), 0.025, 0.10),
+    "chin": Hold("head", (0.030, -0.045, 0.080), (0.55, -0.15, 0.80), (-0.45, 0.85, 0.3), (1.2, -1.0, 1.0), 0.025, 0.1),
 }  # fmt: skip
 """Rests on the body, by name."""
 
@@ -100,7 +100,8 @@ def lay_hands(pose: Pose, holds: Holds, skeleton: Skeleton) -> Pose:
     """Point `reach` and `palms` of T frames at what the hands lie on, wherever the body has taken it."""
     if holds == (None, None):
         return pose
-    positions, world = skeleton.forward_kinematics(*solve(pose, skeleton))
+    places, world = skeleton.forward_kinematics(*solve(pose, skeleton))
+    positions = places.astype(np.float64)
     chest = chest_frame(pose, skeleton)
     reach, palms = pose.reach.copy(), pose.palms.copy()
     for index, hold in enumerate(holds):
@@ -117,7 +118,7 @@ def lay_hands(pose: Pose, holds: Holds, skeleton: Skeleton) -> Pose:
             tipped = hold.gap + TIP * np.maximum(-np.sum(hand * normal, axis=1, keepdims=True), 0.0)
             rise = 0.5 * (rise + tipped)
         x = (1.0, -1.0)[index] * hand
-        palms[:, index] = rotations.basis_to_quat(x, back, np.cross(x, back))
+        palms[:, index] = rotations.basis_to_quat(x, back, rotations.cross(x, back))
     return replace(pose, reach=reach, palms=palms)
 
 
@@ -152,11 +153,11 @@ def _along_forearm(fingers: Array, normal: Array, forearm: Array) -> Array:
     flat = forearm - np.sum(forearm * normal, axis=1, keepdims=True) * normal
     size = np.linalg.norm(flat, axis=1)
     flat = rotations.normalize(flat)
-    turned = np.arctan2(np.sum(np.cross(flat, fingers) * normal, axis=1), np.sum(flat * fingers, axis=1))
+    turned = np.arctan2(np.sum(rotations.cross(flat, fingers) * normal, axis=1), np.sum(flat * fingers, axis=1))
     kept = np.clip(turned, -ASIDE, ASIDE)
     # A forearm that stands upright on the skin leaves the hand free to lie any way.
     angle = (kept + (1 - smooth((size - 0.3) / 0.3)) * (turned - kept))[:, None]
-    return np.asarray(flat * np.cos(angle) + np.cross(normal, flat) * np.sin(angle))
+    return np.asarray(flat * np.cos(angle) + rotations.cross(normal, flat) * np.sin(angle))
 
 
 def _tipped(fingers: Array, normal: Array, forearm: Array) -> tuple[Array, Array]:

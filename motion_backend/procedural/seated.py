@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from motion_backend.procedural.handholds import Handholds
+from motion_backend.procedural.handholds import Handholds, Pair
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.resting_hands import (
     HOLDS,
@@ -54,17 +54,14 @@ def holds_of(style: Seated, place: Place, skeleton: Skeleton) -> Holds:
 
 def _hold(name: str, index: int, place: Place, scale: float) -> Hold | None:
     around, side, yaw = place.around, (1, -1)[index], place.seat.yaw
-    surfaces = {
+    beside, inwards = around.beside, np.clip(0.78 * scale - (around.table or 0.0), 0.12, 0.26)
+    surfaces: dict[str, tuple[Pair, float, tuple[float, float, float]]] = {
         "armrest": (around.armrests, 0.0, (0.9, -0.3, -0.7)),
-        "beside": (around.beside, 0.2, (1.0, 0.0, -0.2)),
-        "behind": (around.behind if around.behind[index] is not None else around.beside, 0.6, (1.0, 0.1, -0.4)),
-        "edge": (around.edge if around.edge[index] is not None else around.beside, 0.3, (1.0, 0.0, -0.2)),
+        "beside": (beside, 0.2, (1.0, 0.0, -0.2)),
+        "behind": (around.behind if around.behind[index] is not None else beside, 0.6, (0.7, 0.1, -0.8)),
+        "edge": (around.edge if around.edge[index] is not None else beside, 0.3, (1.0, 0.0, -0.2)),
         "table": (around.on_table(place.seat, 0.12 * scale, 0.30 * scale), -0.15, (0.7, -0.6, -0.3)),
-        "desk": (
-            around.on_table(place.seat, float(np.clip(0.78 * scale - (around.table or 0.0), 0.12, 0.26)), 0.20 * scale),
-            -0.5,
-            (0.9, -0.5, 0.0),
-        ),
+        "desk": (around.on_table(place.seat, float(inwards), 0.20 * scale), -0.5, (0.9, -0.5, 0.0)),
     }
     if name in surfaces:
         points, turned, elbow = surfaces[name]
@@ -103,18 +100,25 @@ def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton) -> tupl
     return at_rest(_leaning(pose, seat, np.array([_recline(style, place)])).at(0), holds, skeleton), holds
 
 
+SURFACES = ("armrest", "beside", "behind", "edge", "table", "desk")
+"""What hands may lie on besides the body: of `Handholds`, "desk" being the table with the forearms on it."""
+ON_THE_FLOOR = {
+    "thighs": "knees",
+    "crossed_ankle": "knees",
+    "belly": "knees",
+    "clasped": "own_shin",
+    "desk": "own_shin",
+}
+"""Where hands lie instead where knees are up."""
+
+
 def _on_the_floor(style: Seated) -> Seated:
-    """The same on the floor, where knees are up: hands lie on them or round them; who does something sits tailorwise."""
-    arms = tuple(
-        {"thighs": "knees", "clasped": "own_shin", "desk": "own_shin", "crossed_ankle": "knees", "belly": "knees"}.get(
-            name, name
-        )
-        for name in style.arms
-    )
+    """The same on the floor: hands on the knees or round the shins; who does something sits tailorwise."""
+    left, right = (ON_THE_FLOOR.get(name, name) for name in style.arms)
     busy = style.doing not in ("", "music") or "folded" in style.arms or "forehead" in style.arms
     legs = "crossed" if busy and style.legs in ("rest", "together") else style.legs
-    upright_arms = style.on_elbows and "own_shin" in arms
-    return replace(style, arms=(arms[0], arms[1]), legs=legs, on_elbows=style.on_elbows and not upright_arms)
+    shins = "own_shin" in (left, right)
+    return replace(style, arms=(left, right), legs=legs, on_elbows=style.on_elbows and not shins)
 
 
 def _recline(style: Seated, place: Place) -> float:

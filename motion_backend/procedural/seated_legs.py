@@ -78,7 +78,6 @@ def _leg(way: str, index: int, seat: Seat, skeleton: Skeleton, room: float) -> _
     low = seat.is_low(skeleton.scale)
     shin = (FLOOR_REACH if low else SHIN_REACH) * scale
     far = float(np.clip(_stretch(seat, seat.pelvis[1] - floor, scale), 0.2, max(room, SHIN_REACH * scale)))
-    lifted = seat.pelvis[1] + 0.02 * scale
     match way:
         case "straight":
             return _Leg(0.10 * scale, floor, far, foot="heel")
@@ -99,11 +98,10 @@ def _leg(way: str, index: int, seat: Seat, skeleton: Skeleton, room: float) -> _
             return _Leg(-0.09 * scale, 0.055 * scale, near * scale, knee_out=1.0, knee_up=0.6, foot="free")
         case "held":
             ahead = max(seat.edge + 0.08, 0.38 * scale)
-            return _Leg(
-                0.06 * scale, floor if low else lifted - 0.16 * scale, ahead, 0.0, 1.0, "flat" if low else "free"
-            )
+            up, foot = (floor, "flat") if low else (seat.pelvis[1] - 0.14 * scale, "free")
+            return _Leg(0.06 * scale, up, ahead, knee_out=0.0, knee_up=1.0, foot=foot)
         case "on_knee":
-            return _Leg(-0.14 * scale, 0.0, 0.33 * scale, knee_out=1.1, knee_up=0.9, foot="free")
+            return _Leg(-0.14 * scale, 0.0, 0.33 * scale, knee_out=1.1, knee_up=0.75, foot="free")
         case _:
             return _Leg((0.12 if low else 0.10) * scale, floor, shin)
 
@@ -141,7 +139,7 @@ def _on_the_knee(
     left = hip + rotations.rotate(rotations.yaw_to_quat(seat.yaw), 2 * skeleton.offsets[INDEX["left_hip"]])
     thigh = two_bone(left, other[0], other[2], lengths).upper
     inwards = rotations.rotate(rotations.yaw_to_quat(seat.yaw), np.array([1.0, 0.0, 0.0]))
-    return np.asarray(left + 0.80 * lengths[0] * thigh + skeleton.scale * (0.125 * UP + 0.11 * inwards))
+    return np.asarray(left + 0.90 * lengths[0] * thigh + skeleton.scale * (0.125 * UP + 0.12 * inwards))
 
 
 def _stretch(seat: Seat, drop: float, scale: float) -> float:

@@ -43,7 +43,7 @@ def sitdown(body: Body, action: Action) -> None:
 
 
 def leave_seat(body: Body, seat: Seat, bearing: Bearing) -> None:
-    """From sitting to standing: hands push off from armrests or seat; the slow lean on their knees, the quick on none."""
+    """From sitting to standing: hands push off from armrests or seat, those of the slow from their knees."""
     around = handholds(seat, body.scene.obstacles, body.skeleton.scale)
     push: Holds = (None, None)
     if bearing.tempo < SLOW:
@@ -59,8 +59,10 @@ def _grips(armrests: Pair, under: Pair, seat: Seat, hands: tuple[bool, bool]) ->
     found: list[Hold | None] = []
     for index, side in enumerate((1, -1)):
         point = armrests[index] if armrests[index] is not None else under[index]
-        there = hands[index] and point is not None
-        found.append(on_thing(point, seat.yaw, side * 0.2, (1.0, 0.0, -0.5)) if there else None)
+        if point is None or not hands[index]:
+            found.append(None)
+        else:
+            found.append(on_thing(point, seat.yaw, side * 0.2, (1.0, 0.0, -0.5)))
     return found[0], found[1]
 
 

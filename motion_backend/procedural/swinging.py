@@ -27,6 +27,8 @@ TOE_BEND = np.radians(38)
 """Toes bend so far while the heel rises; beyond that the foot tips over their ends."""
 HEEL_RISE, SETTLE = 0.40, 0.30
 """Phase from the first rise of the heel to the lift, and from heel strike to the flat foot."""
+USUAL = 0.058
+"""How high the ball of a walking foot swings (metres)."""
 HANGS, DROOP = 0.035, 2.15
 """A foot that is lifted higher than this (metres) hangs down by so many radians for every metre more."""
 TIP_UP = np.radians(24)
@@ -100,7 +102,7 @@ class Swing:
 
     def height(self, u: Array) -> Array:
         """How high the ball of the foot is at shares of its way through the air. (T,)."""
-        level = 1 - min(self.heel_strike / TIP_UP, 1.0)
+        level = (1 - min(self.heel_strike / TIP_UP, 1.0)) * min(self.clearance / USUAL, 1.0)
         return np.asarray(self.clearance * np.interp(u, *_curve(_HEIGHT)) + level * np.interp(u, *_curve(_LEVEL)))
 
     def pitch(self, phase: Array) -> Array:

@@ -95,7 +95,7 @@ _WALKS: dict[str, dict[str, Any]] = {
     "relaxed": {"speed": 0.92, "swing": 23.0, "sway": 0.045, "bounce": 0.012, "hips": 5.6, "twist": 7.5,
                 "elbow": 10.0, "glance": 8.0},
 }  # fmt: skip
-_SHUFFLING = {"speed": 0.42, "stride": 0.62, "bounce": 0.004, "swing": 4.0, "clearance": 0.04, "roll": 0.22,
+_SHUFFLING = {"speed": 0.42, "stride": 0.62, "bounce": 0.004, "swing": 4.0, "clearance": 0.046, "roll": 0.22,
               "strike": 0.0, "scuff": 12.5, "twist": 3.0, "hips": 2.0, "crouch": 0.008, "nod": 9.0, "lean": 10,
               "head": 24}  # fmt: skip
 _DRAGGING = {"speed": 0.6, "stride": 0.95, "drag": 0.09, "sway": 0.05, "hips": 5.5, "swing": 12.0, "clearance": 0.085,
