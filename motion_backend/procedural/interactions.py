@@ -52,10 +52,14 @@ def sit_down(start: Pose, place: Place, style: Seated, felt: Holds, skeleton: Sk
     moved = interpolate([0.0, max(0.75, 1.1 * travel) * pace], keys, FPS)
     moved = follow(_place_feet(moved, landed, settled, first=0.15, each=0.42), settled, holds, skeleton)
     moved = _taken(moved, landed, holds)
-    # Hands that were on the seat come up round the thighs.
-    round_them = np.sin(np.pi * smooth(np.linspace(0.0, 1.0, len(moved))))[:, None, None] * touched.reaching[:, None]
-    moved = replace(moved, arms=moved.arms + ROUND * round_them * np.array([[1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]))
+    moved = _round_the_thighs(moved, touched.reaching)
     return concatenate([part for part in (ready, down, settle, moved) if part is not None]), holds
+
+
+def _round_the_thighs(moved: Pose, hands: Array) -> Pose:
+    """Hands on their way between lap and seat come out and up; `hands` (2,) says whether they go there."""
+    out = ROUND * np.sin(np.pi * smooth(np.linspace(0.0, 1.0, len(moved))))[:, None, None] * hands[:, None]
+    return replace(moved, arms=moved.arms + out * np.array([[1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]))
 
 
 def _taken(moved: Pose, start: Pose, holds: Holds) -> Pose:
@@ -216,7 +220,7 @@ def stand_up(
     seconds = max(0.62, 1.1 * travel) * pace
     gather = interpolate([0.0, seconds], [start, replace(ready, ankles=start.ankles, feet=start.feet)], FPS)
     gather = follow(_place_feet(gather, start, ready, first=0.0, each=0.36), ready, push, skeleton)
-    gather = _taken(gather, start, push)
+    gather = _round_the_thighs(_taken(gather, start, push), ready.reaching)
     ready = gather.at(len(gather) - 1)
     up = _rising(ready, end, seat, (forward, 1.25 * pace * (0.7 + 0.3 * depth)))
     return concatenate([gather, follow(replace(up, knees=knees_over_feet(up)), ready, push, skeleton)])

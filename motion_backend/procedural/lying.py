@@ -25,9 +25,9 @@ PROPPED = 0.35
 """How far the pelvis of who lies on the elbows tips back from lying flat (radians)."""
 ON_ARM, ON_HANDS = 0.05, 0.05
 """How high a head lies on an arm rather than on a pillow, or on hands upon it."""
-NEEDS = {"wide": 0.85, "loose": 0.50, "behind_head": 0.46, "sides": 0.34}
+NEEDS = {"wide": 0.85, "goalpost": 0.53, "loose": 0.50, "behind_head": 0.46, "sides": 0.34}
 """How much room beside the middle of the body arms need (metres at 1.70 m)."""
-NARROW = {"wide": "raised", "loose": "close", "sides": "close"}
+NARROW = {"wide": "goalpost", "goalpost": "behind_head", "loose": "close", "sides": "close"}
 """Where they rest with less."""
 
 
@@ -95,20 +95,24 @@ def _on_the_back(pose: Pose, bed: Bed, style: Lying, skeleton: Skeleton) -> Pose
         return propped(replace(pose, head=bend(0.30)), bed.surface, skeleton)
     nods = np.linspace(-0.2, 0.9, 56)
     heights = head_middle(replace(pose, head=np.stack([bend(float(nod)) for nod in nods])), skeleton)[:, 1]
-    under = bed.pillow + (ON_HANDS * skeleton.scale if "behind_head" in style.arms else 0.0)
+    hands = (_hand(style, bed, 0, skeleton.scale), _hand(style, bed, 1, skeleton.scale))
+    under_head = any(hand.with_head and hand.wrist[2] < 0 for hand in hands)
+    under = bed.pillow + (ON_HANDS * skeleton.scale if under_head else 0.0)
     resting = bed.surface + under + SKULL * skeleton.scale
     nod = float(nods[int(np.argmin(np.abs(heights - resting)))]) + style.nod
     pose = replace(pose, head=bend(nod, turn=style.turn))
-    return hands_at_rest(pose, (_hand(style, bed, 0, skeleton.scale), _hand(style, bed, 1, skeleton.scale)), skeleton)
+    return hands_at_rest(pose, hands, skeleton)
 
 
 def _hand(style: Lying, bed: Bed, index: int, scale: float) -> Rest:
-    """Where a hand rests; with something beside arms that are spread go up, elbows forwards and hands onto the hips."""
+    """Where a hand rests; with something beside, forearms go up, or hands under the head or onto the hips."""
     name = style.arms[index]
     name = name if name in BACK else "sides"
+    while bed.beside[index] < NEEDS.get(name, 0.0) * scale and name in NARROW:
+        name = NARROW[name]
     rest = BACK[name]
-    if bed.beside[index] < NEEDS.get(name, 0.0) * scale:
-        return replace(rest, elbow=(0.9, 0.3, 0.55)) if name == "behind_head" else BACK[NARROW[name]]
+    if name == "behind_head" and bed.beside[index] < NEEDS[name] * scale:
+        return replace(rest, elbow=(0.9, 0.3, 0.55))
     if index == 1 and style.arms[0] == name and name in ("belly", "chest"):
         x, y, z = np.array(rest.wrist) + LOWER
         return replace(rest, wrist=(x, y, z))

@@ -132,10 +132,11 @@ def _hand_on_thigh(bent: Pose, index: int, skeleton: Skeleton) -> Pose:
     out = rotations.normalize(UP - (UP @ along) * along)
     reach, reaching = bent.reach.copy(), np.zeros(2)
     reach[index], reaching[index] = hip + 0.78 * lengths[0] * along + ON_THIGH * skeleton.scale * out, 1.0
-    palms = bent.palms.copy()
+    palms, elbows = bent.palms.copy(), bent.elbows.copy()
     x = along if index == 0 else -along
+    elbows[index] = np.array([1.0 if index == 0 else -1.0, -0.2, -0.4])
     palms[index] = rotations.basis_to_quat(x, out, rotations.cross(x, out))
-    return replace(bent, reach=reach, reaching=reaching, palms=palms, pressing=reaching.copy())
+    return replace(bent, reach=reach, reaching=reaching, palms=palms, elbows=elbows, pressing=reaching.copy())
 
 
 def _feeling_about(held: Pose, laid: Laid, frames: int, sliding: bool) -> Pose:

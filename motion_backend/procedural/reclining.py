@@ -46,6 +46,7 @@ def lie_down(landed: Pose, seat: Seat, bed: Bed, style: Lying, skeleton: Skeleto
         landed, hips=upright(seat.yaw, 0.05), spine=bend(0.2), head=bend(0.1, turn=0.7 * _head_side(seat, bed))
     )
     leaning = _leaning(sat, seat, bed, skeleton)
+    landed, sat = _bound_for(leaning, landed), _bound_for(leaning, sat)
     middle = _half_way(leaning, seat, bed, skeleton)
     over = _legs_over(middle, bed, skeleton)
     end = lying(landed, bed, style, skeleton)
@@ -62,6 +63,7 @@ def rise_to_edge(start: Pose, seat: Seat, bed: Bed, bearing: Bearing, skeleton: 
     pace = 1 / bearing.tempo
     sat = _sitting(start, seat, skeleton)
     leaning = _leaning(sat, seat, bed, skeleton)
+    sat = _bound_for(leaning, sat)
     middle = _half_way(leaning, seat, bed, skeleton)
     rolled = _rolled(start, bed, bearing, skeleton)
     over = _legs_over(middle, bed, skeleton)
@@ -129,6 +131,13 @@ def _leaning(sat: Pose, seat: Seat, bed: Bed, skeleton: Skeleton) -> Pose:
     return _on_a_hand(pose, seat, bed, skeleton, share=1.0)
 
 
+def _bound_for(leaning: Pose, pose: Pose) -> Pose:
+    """The same pose with hands that are free bound for where they bear, so that they go there by the shortest way."""
+    free = pose.reaching[:, None] <= 0
+    reach, palms = np.where(free, leaning.reach, pose.reach), np.where(free, leaning.palms, pose.palms)
+    return replace(pose, reach=reach, palms=palms)
+
+
 def _on_a_hand(pose: Pose, seat: Seat, bed: Bed, skeleton: Skeleton, share: float) -> Pose:
     """The hand on the side of the head end on the mattress beside the edge, the other before the body."""
     way = _head_side(seat, bed)
@@ -136,7 +145,11 @@ def _on_a_hand(pose: Pose, seat: Seat, bed: Bed, skeleton: Skeleton, share: floa
     up = np.array([np.sin(bed.head_yaw), 0.0, np.cos(bed.head_yaw)])
     inward = -np.array([np.sin(seat.yaw), 0.0, np.cos(seat.yaw)])
     room = bed.back - float((seat.pelvis - bed.pelvis) @ up) - 0.12
-    place = seat.pelvis + min(0.36 * skeleton.scale, room) * up + 0.10 * skeleton.scale * inward
+    place = (
+        seat.pelvis
+        + float(np.clip(room, 0.24 * skeleton.scale, 0.36 * skeleton.scale)) * up
+        + 0.10 * skeleton.scale * inward
+    )
     place[1] = bed.surface + HAND_REST
     mirror = np.array([way, 1.0, 1.0])
     arms, elbows = pose.arms.copy(), pose.elbows.copy()

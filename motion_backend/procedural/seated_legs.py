@@ -101,7 +101,7 @@ def _leg(way: str, index: int, seat: Seat, skeleton: Skeleton, room: float) -> _
             up, foot = (floor, "flat") if low else (seat.pelvis[1] - 0.14 * scale, "free")
             return _Leg(0.06 * scale, up, ahead, knee_out=0.0, knee_up=1.0, foot=foot)
         case "on_knee":
-            return _Leg(-0.14 * scale, 0.0, 0.33 * scale, knee_out=1.1, knee_up=0.75, foot="free")
+            return _Leg(-0.14 * scale, 0.0, 0.33 * scale, knee_out=1.1, knee_up=0.9, foot="free")
         case _:
             return _Leg((0.12 if low else 0.10) * scale, floor, shin)
 

@@ -71,6 +71,7 @@ def describe(motion: Motion, skill: Skill) -> Array:
     near = np.array([np.linalg.norm(local[:, INDEX[a]] - local[:, INDEX[b]], axis=-1) for a, b in NEAR])
     return np.concatenate(
         [
+            joints[[0, -1]].ravel(),
             joints.mean(axis=0).ravel(),
             joints.std(axis=0).ravel(),
             np.ptp(joints, axis=0).ravel(),

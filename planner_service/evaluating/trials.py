@@ -47,6 +47,7 @@ AHEAD: Final = (0.4, 0.7, 1.0)
 """A table over a point this far before the sitter (metres) is the seat's: chairs stand back from theirs."""
 _AT_TABLE: Final = re.compile(r"\b(?:table|keyboard|keys|typing|writing|eating)\b", re.IGNORECASE)
 _ARMRESTS: Final = re.compile(r"\barmrests?\b", re.IGNORECASE)
+_HEIGHT: Final = re.compile(r"\b(?:low|medium|high)\b", re.IGNORECASE)
 _ON_FLOOR: Final = re.compile(r"\bhands on floor\b|\bprone\b", re.IGNORECASE)
 _IN_CHAIR: Final = re.compile(r"\bchair\b", re.IGNORECASE)
 _ON_EDGE: Final = re.compile(r"\bfoot on the floor\b", re.IGNORECASE)
@@ -163,8 +164,7 @@ def places_for(skill: Skill, caption: str, where: Setting) -> tuple[str, ...]:
 def _serves(caption: str, need: str, placed: Placed, spot: Spot, home: Home) -> bool:
     """Whether a spot has what the words of a caption ask for."""
     if need == "touch":
-        wanted = height_of(caption)
-        return wanted == "medium" or spot.height == wanted
+        return spot.height == height_of(caption) if _HEIGHT.search(caption) else True
     if need == "lie":
         return True
     if _AT_TABLE.search(caption):

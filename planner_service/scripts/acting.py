@@ -32,6 +32,8 @@ LAST_HOLD = 1.5
 """Seconds more for the last keyframe."""
 PACING = 1.5
 """A wandering walk goes at least this far, where the room allows it (metres)."""
+LEG_ROOM = 0.12
+"""Clearance of a place where one stands to touch something (metres)."""
 WALLED = 0.08
 """How far a point of furniture may lie in the wall of its room (metres)."""
 STEP = 0.40
@@ -229,6 +231,9 @@ class _Stage:
 def can_stand(walkable: Walkable, start: Point, spot: Spot) -> bool:
     """Whether a spot's standing point is nearly free, can be walked to, and no wall is between the two."""
     if walkable.nearest_free(spot.standing, within=STEP) is None or not walkable.reachable(start, spot.standing):
+        return False
+    # A body sits down from between things; where it stands to touch, its legs need room.
+    if spot.affordance == "touch" and walkable.clearance(spot.standing) < LEG_ROOM:
         return False
     # Furniture may stand a little into its own wall; the next room's wall is farther from it than that.
     goal, here = np.array(spot.point)[[0, 2]], np.array(spot.standing)
