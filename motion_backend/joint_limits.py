@@ -89,6 +89,26 @@ def beyond_limits(local_rotations: NDArray[np.floating]) -> Array:
     return beyond
 
 
+def overbent(joint: str, turn: Array) -> Array:
+    """How far a hinged joint bends beyond its range about its main hinge, signed. (T, 4) to (T,) radians."""
+    group, place = _group_of(joint)
+    angle = cardan(turn * group.mirrored[place], group.order)[..., 0]
+    return np.asarray(angle - np.clip(angle, group.low[place, 0], group.high[place, 0]))
+
+
+def aside_within(joint: str, turn: Array) -> Array:
+    """A hinged joint's rotations with all but the angle of the main hinge brought within its range. (T, 4)."""
+    group, place = _group_of(joint)
+    angles = cardan(turn * group.mirrored[place], group.order)
+    angles[..., 1:] = np.clip(angles[..., 1:], group.low[place, 1:], group.high[place, 1:])
+    parts = []
+    for column, axis in enumerate(group.order):
+        vectors = np.zeros((*angles.shape[:-1], 3))
+        vectors[..., "xyz".index(axis)] = angles[..., column]
+        parts.append(rotations.rotvec_to_quat(vectors))
+    return np.asarray(rotations.compose(rotations.compose(parts[0], parts[1]), parts[2]) * group.mirrored[place])
+
+
 def limits_share(local_rotations: NDArray[np.floating]) -> float:
     """Share of frames in which a joint is `CLEARLY` beyond its range."""
     return float((beyond_limits(local_rotations).max(axis=1) > CLEARLY).mean()) if len(local_rotations) else 0.0
@@ -125,6 +145,12 @@ def _hinge_groups() -> tuple[_Group, ...]:
         ranges = np.radians([[getattr(limit, axis) for axis in order] for _, limit in limits])  # (joints, 3, 2)
         found.append(_Group(order, joints, _mirrored(joints), ranges[..., 0], ranges[..., 1]))
     return tuple(found)
+
+
+def _group_of(joint: str) -> tuple[_Group, int]:
+    """The group that a joint's range is in, and its place there."""
+    group = next(group for group in _hinge_groups() if INDEX[joint] in group.joints)
+    return group, group.joints.index(INDEX[joint])
 
 
 def _joints_of(part: str) -> list[int]:

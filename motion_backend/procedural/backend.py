@@ -20,7 +20,7 @@ from motion_backend.procedural.guarding import hands_clear
 from motion_backend.procedural.handling import with_both_hands
 from motion_backend.procedural.performing import perform
 from motion_backend.procedural.pose import Pose, concatenate
-from motion_backend.procedural.solving import released, solve
+from motion_backend.procedural.solving import hips_within, released, solve
 from motion_backend.procedural.stances import idle, standing
 from motion_backend.procedural.styles import Bearing
 from motion_backend.skeleton import HAND_REST, LYING_REST, SEATED_REST, build_skeleton
@@ -118,7 +118,9 @@ def _to_motion(body: Body, action: Action) -> Motion:
         touching = "both" if with_both_hands(action.caption) else action.hand
     elif action.skill in (Skill.SITDOWN, Skill.STANDUP, Skill.LIEDOWN):
         touching = "both"
-    pose = hands_clear(concatenate(body.frames), body.skeleton, body.scene.obstacles.solid(), touching)
+    pose = hands_clear(
+        hips_within(concatenate(body.frames), body.skeleton), body.skeleton, body.scene.obstacles.solid(), touching
+    )
     body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)
     return Motion(

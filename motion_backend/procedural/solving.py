@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
+from motion_backend.joint_limits import aside_within, overbent
 from motion_backend.kinematics import Limb, arm_rotations, leg_rotations, two_bone
 from motion_backend.procedural.pose import Pose
 from motion_backend.skeleton import INDEX, Skeleton
@@ -22,6 +23,10 @@ SPINE = ("spine1", "spine2", "spine3")
 
 WRIST_ASIDE, WRIST_BEND, FOREARM_ROLL = (-0.25, 0.25), (-1.30, 1.15), 1.32
 """How far a left hand turns and bends against the forearm, and either rolls about it (radians)."""
+
+
+EASED = 6
+"""Frames before and after in which a pelvis tips back (see `hips_within`)."""
 
 
 def solve(pose: Pose, skeleton: Skeleton) -> tuple[Array, Array]:
@@ -41,6 +46,27 @@ def solve(pose: Pose, skeleton: Skeleton) -> tuple[Array, Array]:
     return pose.pelvis.copy(), rotations.continuous(local)
 
 
+def hips_within(pose: Pose, skeleton: Skeleton) -> Pose:
+    """Frames in which no hip bends beyond its range: the pelvis tips back and the spine bends in its place.
+
+    Hips lie on the axis that the pelvis tips about, so that legs and feet stay where they are.
+    """
+    from scipy.ndimage import gaussian_filter1d, maximum_filter1d
+
+    most = np.zeros(len(pose))
+    for index, (name, _) in enumerate(SIDES):
+        thigh, _ = leg_rotations(_leg(pose, skeleton, index, name))
+        bent = overbent(f"{name}_hip", rotations.compose(rotations.inverse(pose.hips), thigh))
+        most = np.maximum(most, -bent)
+    if not most.any():
+        return pose
+    back = gaussian_filter1d(maximum_filter1d(most, 2 * EASED + 1, mode="nearest"), EASED / 2, mode="nearest")
+    tipped = np.zeros((len(pose), 3))
+    tipped[:, 0] = back
+    hips = rotations.compose(pose.hips, rotations.rotvec_to_quat(-tipped))
+    return replace(pose, hips=hips, spine=pose.spine + tipped)
+
+
 def chest_frame(pose: Pose, skeleton: Skeleton) -> tuple[Array, Array]:
     """World rotation (T, 4) and position (T, 3) of spine3, the frame that arms hang in."""
     third = rotations.rotvec_to_quat(pose.spine / 3)
@@ -51,15 +77,19 @@ def chest_frame(pose: Pose, skeleton: Skeleton) -> tuple[Array, Array]:
     return rotation, position
 
 
-def _solve_leg(local: Array, pose: Pose, skeleton: Skeleton, index: int, name: str) -> None:
+def _leg(pose: Pose, skeleton: Skeleton, index: int, name: str) -> Limb:
     offsets = skeleton.offsets
     hip = pose.pelvis + rotations.rotate(pose.hips, offsets[INDEX[f"{name}_hip"]])
     lengths = (-float(offsets[INDEX[f"{name}_knee"], 1]), -float(offsets[INDEX[f"{name}_ankle"], 1]))
-    leg = two_bone(hip, pose.ankles[:, index], pose.knees[:, index], lengths)
-    thigh, shin = leg_rotations(leg)
+    return two_bone(hip, pose.ankles[:, index], pose.knees[:, index], lengths)
+
+
+def _solve_leg(local: Array, pose: Pose, skeleton: Skeleton, index: int, name: str) -> None:
+    thigh, shin = leg_rotations(_leg(pose, skeleton, index, name))
     local[:, INDEX[f"{name}_hip"]] = rotations.compose(rotations.inverse(pose.hips), thigh)
     local[:, INDEX[f"{name}_knee"]] = rotations.compose(rotations.inverse(thigh), shin)
-    local[:, INDEX[f"{name}_ankle"]] = rotations.compose(rotations.inverse(shin), pose.feet[:, index])
+    foot = rotations.compose(rotations.inverse(shin), pose.feet[:, index])
+    local[:, INDEX[f"{name}_ankle"]] = aside_within(f"{name}_ankle", foot)
     bend = np.zeros((len(pose), 3))
     bend[:, 0] = -pose.toes[:, index]
     local[:, INDEX[f"{name}_foot"]] = rotations.rotvec_to_quat(bend)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,10 +16,21 @@ from small_home import contact, small_home
 from motion_backend import rotations
 from motion_backend.clips.reading import read_clips
 from motion_backend.clips.retargeting import retarget
-from motion_backend.joint_limits import CLEARLY, beyond_limits, cardan, limits_share, worst_joint
+from motion_backend.joint_limits import (
+    CLEARLY,
+    aside_within,
+    beyond_limits,
+    cardan,
+    limits_share,
+    overbent,
+    worst_joint,
+)
 from motion_backend.measures.kinematics import Kinematics
 from motion_backend.motion import Character, Motion, Skill
 from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.procedural.solving import hips_within, solve
+from motion_backend.procedural.stances import standing
+from motion_backend.procedural.styles import Bearing
 from motion_backend.self_contact import deepest_pair, overlaps, pairs, self_penetration
 from motion_backend.skeleton import INDEX, JOINTS, build_skeleton
 
@@ -145,3 +157,35 @@ def test_overlaps_know_no_time() -> None:
     together = overlaps(SKELETON, body.positions, body.world)
     alone = kinematics(local[1:2])
     np.testing.assert_allclose(together[1:2], overlaps(SKELETON, alone.positions, alone.world))
+
+
+@given(st.lists(st.floats(-3, 3), min_size=3, max_size=3), st.sampled_from(["left_ankle", "right_ankle", "left_hip"]))
+def test_a_joint_kept_from_turning_aside_bends_as_before_and_is_within_its_range(
+    vector: list[float], joint: str
+) -> None:
+    turn = rotations.rotvec_to_quat(np.array([vector]) / 2)
+    kept = aside_within(joint, turn)
+    beyond = np.tile(rotations.IDENTITY, (1, len(JOINTS), 1))
+    beyond[:, INDEX[joint]] = kept
+    assert beyond_limits(beyond)[0, INDEX[joint]] == pytest.approx(abs(overbent(joint, turn)[0]), abs=1e-6)
+    np.testing.assert_allclose(overbent(joint, kept), overbent(joint, turn), atol=1e-6)
+
+
+@given(st.floats(0.0, 0.9), st.floats(0.0, 1.2))
+def test_a_body_folded_too_far_tips_its_pelvis_back_and_leaves_legs_and_trunk_where_they_are(
+    drop: float, lean: float
+) -> None:
+    skeleton = build_skeleton()
+    upright = standing((0.0, 0.0), 0.3, Bearing(), skeleton)
+    pitch = rotations.compose(rotations.yaw_to_quat(0.3), rotations.rotvec_to_quat(np.array([lean, 0.0, 0.0])))
+    folded = replace(upright, pelvis=upright.pelvis - [0.0, 0.75 * drop, 0.0], hips=pitch).repeat(40)
+    kept = hips_within(folded, skeleton)
+    before, after = (solve(pose, skeleton) for pose in (folded, kept))
+    hips = [INDEX["left_hip"], INDEX["right_hip"]]
+    assert np.all(np.abs(overbent("left_hip", after[1][:, hips[0]])) < 0.02)
+    legs = [INDEX[f"{side}_{part}"] for side in ("left", "right") for part in ("hip", "knee", "ankle")]
+    there, here = (skeleton.forward_kinematics(*made) for made in (before, after))
+    np.testing.assert_allclose(there[0][:, legs], here[0][:, legs], atol=1e-5)
+    chest = INDEX["spine3"]
+    turned = rotations.compose(rotations.inverse(there[1][:, chest]), here[1][:, chest])
+    assert np.linalg.norm(rotations.quat_to_rotvec(turned), axis=-1).max() < 1e-6
