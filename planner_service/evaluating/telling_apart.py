@@ -71,7 +71,8 @@ def describe(motion: Motion, skill: Skill) -> Array:
     near = np.array([np.linalg.norm(local[:, INDEX[a]] - local[:, INDEX[b]], axis=-1) for a, b in NEAR])
     return np.concatenate(
         [
-            joints[[0, -1]].ravel(),
+            # A thing is picked up or put down: what tells them apart is how a hand comes and goes.
+            joints[[0, -1]].ravel() if skill is Skill.TOUCH else [],
             joints.mean(axis=0).ravel(),
             joints.std(axis=0).ravel(),
             np.ptp(joints, axis=0).ravel(),
