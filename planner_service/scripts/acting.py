@@ -7,12 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import cos, sin
 from typing import Any
 
 import numpy as np
 
 from motion_backend.motion import Action, Skill
+from motion_backend.obstacles import Obstacles
 from motion_backend.procedural.lie_styles import wanted_edge
 from motion_backend.procedural.lying import Bed
 from planner_service.scripts.checking import free_hand, hand_of
@@ -32,6 +34,8 @@ LAST_HOLD = 1.5
 """Seconds more for the last keyframe."""
 PACING = 1.5
 """A wandering walk goes at least this far, where the room allows it (metres)."""
+OFF, SHOULDER = 0.06, 0.55
+"""A hand's joint from what it touches, and the shoulder of a bending body above it (metres)."""
 LEG_ROOM = 0.12
 """Clearance of a place where one stands to touch something (metres)."""
 WALLED = 0.08
@@ -122,6 +126,7 @@ class _Stage:
                 found = self._roomiest(found)
                 found.sort(key=lambda s: -s.point[1])
                 found = [s for s in found if s.point[1] > found[0].point[1] - 0.1]
+            found = [s for s in found if self._within_arms_way(s)] or found
             least = min(self._cluttered(s) for s in found)
             found = [s for s in found if self._cluttered(s) == least]
             # The body may come back to a piece: it need not touch the very same place again.
@@ -129,6 +134,17 @@ class _Stage:
             return found[int(self.rng.integers(min(len(found), 3)))]
         wanted_side = wanted_edge(keyframe.caption) if need == "lie" else None
         return next((s for s in found if Bed.of(s).edge_side == wanted_side), found[0])
+
+    def _within_arms_way(self, spot: Spot) -> bool:
+        """Whether nothing solid, such as a chair's own back, is between a body's shoulder and what it touches."""
+        end = np.asarray(spot.point) + OFF * np.asarray(spot.normal)
+        shoulder = np.array([spot.standing[0], spot.point[1] + SHOULDER, spot.standing[1]])
+        way = end + np.linspace(0.0, 1.0, 12)[:, None] * (shoulder - end)
+        return float(self._solid.depth(way).max()) < 0.0
+
+    @cached_property
+    def _solid(self) -> Obstacles:
+        return Obstacles.of_home(self.home).solid()
 
     def _roomiest(self, found: list[Spot]) -> list[Spot]:
         """Those with as much elbow room as any."""
