@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from motion_backend.motion import FPS, Action, Part
 from motion_backend.obstacles import Obstacles
 from motion_backend.procedural.body import Body, spot_of
-from motion_backend.procedural.interactions import lower_onto
 from motion_backend.procedural.lie_styles import lie_style
 from motion_backend.procedural.lying import Bed
 from motion_backend.procedural.reclining import edge_seat, lie_down
+from motion_backend.procedural.sitting import lower_onto
 from motion_backend.procedural.sitting_down import at_standing_point
 from motion_backend.procedural.stances import UP, Seat, idle
 from scene_graphs.surfaces import Spot

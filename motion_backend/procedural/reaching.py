@@ -13,9 +13,9 @@ from motion_backend.kinematics import two_bone
 from motion_backend.motion import FPS
 from motion_backend.procedural.footsteps import yaw_of
 from motion_backend.procedural.handling import CARRY, KEPT, Laid, carrying, empty, handled
-from motion_backend.procedural.interactions import knees_over_feet
 from motion_backend.procedural.kneeling import down_on_knees, prone
 from motion_backend.procedural.pose import Pose, concatenate, interpolate, settle_from, smooth
+from motion_backend.procedural.sitting import knees_over_feet
 from motion_backend.procedural.solving import chest_frame, released
 from motion_backend.procedural.stances import (
     UP,

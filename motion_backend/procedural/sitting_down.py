@@ -9,10 +9,10 @@ from motion_backend.procedural.body import Body, spot_of
 from motion_backend.procedural.gestures import gesture
 from motion_backend.procedural.going import go
 from motion_backend.procedural.handholds import Pair, handholds
-from motion_backend.procedural.interactions import sit_down, stand_up
 from motion_backend.procedural.resting_hands import HOLDS, Hold, Holds, follow, on_thing
 from motion_backend.procedural.seated import Place
 from motion_backend.procedural.sit_styles import sit_style
+from motion_backend.procedural.sitting import sit_down, stand_up
 from motion_backend.procedural.stances import Seat, idle
 from motion_backend.procedural.styles import Bearing
 
