@@ -22,8 +22,12 @@ EXAMPLES: Final = (
     "A woman searches for her keys, misses the bus, gets angry and then calms down with a book.",
 )
 
+_OVER: Final = "is relieved, calm and at ease"
+"""What somebody is who is "no longer nervous": the encoder does not see a negation."""
 _BACK: Final = re.compile(r"\b(?:it|them)\b", re.IGNORECASE)
 _FEELS: Final = re.compile(r"(?:feels?|felt|is|are|was|were)\b", re.IGNORECASE)
+_LOUDER: Final = {"stressed": ("drunk", "angry", "sad", "hurried")}
+"""Moods that a mere hint of another one does not end within a sentence: who is angry paces with anger."""
 _ROOMS: Final = {
     "living_room": r"living[ -]?room|lounge|sitting room",
     "bedroom": r"bed ?rooms?",
@@ -102,7 +106,11 @@ def moods_of(clauses: Sequence[Clause], judged: Sequence[str | None]) -> tuple[s
     for index, (clause, judgement) in enumerate(zip(clauses, judged, strict=True)):
         after = clauses[index + 1] if index + 1 < len(clauses) else None
         if clause.emotion is not None:
-            mood = _rest(mood) if not clause.sure and re.search(r"\brest", clause.text) else clause.emotion
+            before = clauses[index - 1] if index else clause
+            if not clause.sure and re.search(r"\brest", clause.text):
+                mood = _rest(mood)
+            elif clause.sure or mood not in _LOUDER.get(clause.emotion, ()) or before.sentence != clause.sentence:
+                mood = clause.emotion
         elif mood == "neutral" and after is not None and after.sentence == clause.sentence and _FEELS.match(after.text):
             mood = after.emotion or mood
         moods.append(judgement if judgement is not None and mood == "neutral" else mood)
@@ -150,6 +158,8 @@ def _clause(moment: str, before: str, sentence: int) -> Clause:
     query = text
     if idiom is not None:
         query = idiom.meaning
+    elif emotion == "relaxed" and state_words(text) and all(feeling.negated for feeling in feelings(text)):
+        query = _OVER
     elif before and (_BACK.search(text) or (len(text.split()) <= 2 and emotion is None)):
         query = f"{before}, {text}"
     return Clause(text, query, emotion, sure, next(iter(rooms_in(text)), None), has_verb(text), sentence)

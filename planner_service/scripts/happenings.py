@@ -190,6 +190,7 @@ def told_of_hero(event: str, theme: str) -> str:
     hero = _HERO.match(theme.strip())
     if hero:
         text = re.sub(rf"^(?:the|an?) (?:\w+ )?{hero['kind']}\b(?!['’])", "The character", text, flags=re.IGNORECASE)
+        text = re.sub(r"^The character (\w+)", lambda m: f"The character {_agreeing(m[1])}", text)
     text = _BASE_VERB.sub(lambda m: f"and {third_person(m[1])} " if m[1] in BASES else m[0], text)
     if text.lower().startswith(("his ", "her ", "their ", "the ", "a ", "an ")) and not text.startswith(
         "The character"

@@ -31,12 +31,16 @@ _JOINT: Final = re.compile(
     re.IGNORECASE,
 )
 _BY_THEN: Final = re.compile(
-    r"^(before|after|during|until) ((?:the|his|her|their|a|an) (?:\w+ )?\w+) (?=(?:he|she|they)\b)", re.IGNORECASE
+    r"^(before|after|during|until) ((?:the|his|her|their|a|an) (?:\w+ )?\w+)"
+    r" (?=(?:he|she|they|the \w+|(?-i:[A-Z])\w+)\b)",
+    re.IGNORECASE,
 )
 """A time that is told by a thing, with no comma after it: "before the interview he is nervous"."""
+_ANOTHER: Final = re.compile(r"^(?:someone|somebody)\b.*\b(?:his|her|him)\b", re.IGNORECASE)
+"""Somebody who does something to whom the story is about."""
 _GOES_ON: Final = re.compile(r"^(?:it|everything|all) (?:is|was|gets|got|becomes|became)\b", re.IGNORECASE)
 _NO_NAME_WORDS: Final = """thunder lightning rain snow wind music hunger fear sleep love work lunch dinner breakfast
-nothing everything noise guests friends summer winter spring autumn money"""
+nothing everything noise guests friends summer winter spring autumn money nobody everybody somebody someone everyone"""
 _NO_NAMES: Final = frozenset(_NO_NAME_WORDS.split())
 """What stands before a verb at the beginning of a sentence and is nobody's name."""
 _EARLIER: Final = frozenset(("after", "when", "whenever", "because", "as soon as", "once", "since", "as"))
@@ -47,7 +51,7 @@ _STATE: Final = re.compile(
     re.IGNORECASE,
 )
 _FILLER_WORDS: Final = """very really so too quite extremely deeply totally a bit little more and at first again now
-suddenly all completely rather still finally even then or much"""
+suddenly all completely rather still finally even then or much no not longer any anymore"""
 _FILLER: Final = frozenset(_FILLER_WORDS.split())
 STRONG: Final = re.compile(r"\b(?:very|extremely|deeply|totally|completely|terribly|utterly)\b", re.IGNORECASE)
 
@@ -149,7 +153,7 @@ def _in_time(pieces: list[_Piece]) -> list[_Piece]:
 
 def without_subject(text: str) -> str:
     """The words without who does it: "the character is happy" is "is happy", "Anna reads" is "reads"."""
-    short = _SUBJECT.sub("", text, count=1)
+    short = text if _ANOTHER.match(text) else _SUBJECT.sub("", text, count=1)
     named = re.match(r"^[A-Z][a-z]+\s+(?=([a-z]+)\b)", short)
     first = short.split()[0].lower() if short else ""
     if short == text and named and is_verb(named[1]) and not is_verb(first) and first not in _NO_NAMES:

@@ -17,7 +17,9 @@ from scene_graphs import furniture
 
 NEVER: Final = -10.0
 """What may not be chosen."""
-_SAME_FEELING, _OTHER_FEELING, _NO_FEELING = 0.12, -0.08, -0.02
+_SAME_FEELING, _OTHER_FEELING, _NO_FEELING, _OPPOSITE_FEELING = 0.12, -0.08, -0.02, -0.2
+_OPPOSITES: Final = {"happy": ("sad", "angry"), "sad": ("happy",), "angry": ("happy",)}
+"""A defeat is no victory, however near in meaning they are."""
 _THEME_ROOM, _OWN_ROOM = 0.03, 0.08
 _FURNITURE: Final = 0.08
 _DEED, _REELING = 0.06, -0.3
@@ -78,6 +80,8 @@ def _feeling(demand: Demand, traits: Traits) -> Scores:
     other = np.where(
         traits.of_emotion("neutral"), _NO_FEELING, _OTHER_FEELING if demand.emotion != "neutral" else _NO_FEELING
     )
+    for opposite in _OPPOSITES.get(demand.emotion, ()):
+        other = np.where(traits.of_emotion(opposite), _OPPOSITE_FEELING, other)
     return np.where(traits.of_emotion(demand.emotion), _SAME_FEELING, other) * demand.certainty
 
 

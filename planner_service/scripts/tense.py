@@ -209,7 +209,7 @@ def word_to_past(word: str, before: str, after_subject: bool = False) -> str:
     if after_subject:
         base = lower if before == "they" and lower in BASES else base_of(lower)
         return past(base) if base else word
-    if lower in _PRESENT and before not in _NOUN_BEFORE:
+    if lower in _PRESENT and before not in _NOUN_BEFORE and before not in _PRESENT:
         return _match_case(past(_PRESENT[lower]), word)
     return word
 

@@ -166,6 +166,34 @@ def test_each_emotion_means_itself() -> None:
 def test_a_negated_feeling_is_not_felt() -> None:
     assert feelings("he is not angry") == []
     assert [feeling.emotion for feeling in feelings("can't stop crying")] == ["sad"]
+    assert [feeling.emotion for feeling in feelings("nobody comes to her party")][-1] == "sad"
+
+
+def test_what_is_over_leaves_relief_and_is_looked_for_as_such() -> None:
+    assert [feeling.emotion for feeling in feelings("she is no longer nervous")] == ["relaxed"]
+    (clause,) = clauses_of("She is no longer nervous.")
+    assert (clause.emotion, "nervous" in clause.query) == ("relaxed", False)
+
+
+def test_words_of_a_longer_saying_mean_what_the_whole_means() -> None:
+    assert [feeling.emotion for feeling in feelings("tears up the letter")] == ["angry"]
+    assert [feeling.emotion for feeling in feelings("tears run down her face")] == ["sad"]
+
+
+def test_nobody_is_not_the_one_the_story_is_about() -> None:
+    assert [clause.text for clause in clauses_of("Nobody came, so she eats alone.")] == ["Nobody came", "eats alone"]
+    assert clauses_of("Somebody scratched his car.")[0].text == "Somebody scratched his car"
+
+
+def test_a_hint_within_a_sentence_does_not_end_a_louder_mood() -> None:
+    clauses = clauses_of("He shouts, paces up and down and slams the door. He paces.")
+    assert moods_of(clauses, [None] * len(clauses)) == ("angry", "angry", "angry", "stressed")
+
+
+def test_a_time_without_a_comma_comes_before_whoever_does_it() -> None:
+    assert [clause.text for clause in clauses_of("After a long shift the nurse sings and yawns.")] == [
+        "after a long shift, the nurse sings", "yawns"
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize("text", ["reads books", "he yodels", "is sitting", "to win", "cried"])

@@ -14,7 +14,7 @@ from motion_backend.language.text import HashingEncoder
 from motion_backend.motion import Skill
 from planner_service.scripts.keyframe import EMOTIONS, Keyframe, ShortScript
 from planner_service.scripts.library import Features, LibraryError, ScriptLibrary, built_in
-from planner_service.scripts.mood_reader import MoodReader, clear_moods, lessons
+from planner_service.scripts.mood_reader import MoodReader, clear_moods, lessons, moments
 from planner_service.scripts.succession import Row, succession
 from planner_service.scripts.traits import After, Before, Traits, after_of, before_of
 from scene_graphs.furniture import categories_of
@@ -142,9 +142,20 @@ def test_a_mood_reader_reads_what_it_was_taught_and_is_unsure_of_what_is_like_no
     assert abs(felt[2, EMOTIONS.index("sad")] - felt[2, EMOTIONS.index("happy")]) < 0.2
 
 
-def test_scripts_teach_by_summary_and_cues() -> None:
+def test_scripts_teach_by_summary_and_cues_and_moments_of_all_emotions_are_taught_besides() -> None:
     one = script(1, emotion="sad", cues=["weeps"])
-    assert lessons([one]) == ([one.summary, "weeps"], ["sad", "sad"])
+    texts, emotions = lessons([one])
+    assert (texts[:2], emotions[:2]) == ([one.summary, "weeps"], ["sad", "sad"])
+    assert set(emotions[2:]) == set(moments()) == set(EMOTIONS)
+    assert len(set(texts)) == len(texts) == len(emotions)
+
+
+def test_a_kind_of_emotion_shows_where_no_single_one_is_far_ahead() -> None:
+    row = np.zeros((1, len(EMOTIONS)))
+    row[0, [EMOTIONS.index("sad"), EMOTIONS.index("angry"), EMOTIONS.index("happy")]] = 0.4, 0.35, 0.3
+    assert clear_moods(row) == ["sad"]
+    row[0, EMOTIONS.index("angry")] = 0.1
+    assert clear_moods(row) == [None]
 
 
 # Searching.
