@@ -65,12 +65,10 @@ serve: $(READY) page
 demo: $(READY)
 	@$(BIN)/sims story "$(THEME)" --out $(OUT) --seed 7
 
-# Two files at a time; those that run a whole service after the others, so that each has a core of its own.
-SERVICES = $(shell grep -lw RunningService tests/integration/*.py) tests/web
+# Three files at a time, in the order of tests/conftest.py: those that run a whole service mostly wait for it.
 test: $(READY_DEV) page $(NODE_TESTS)
 	@if $(NODE_20); then npm test --silent --prefix web; fi
-	@$(BIN)/python -m pytest --numprocesses 2 --dist loadfile $(addprefix --ignore=,$(SERVICES))
-	@$(BIN)/python -m pytest --numprocesses 2 --dist loadfile $(SERVICES)
+	@$(BIN)/python -m pytest --numprocesses 3 --dist loadfile --no-loadscope-reorder
 
 lint: $(READY_DEV) web/node_modules/.ready
 	@$(BIN)/ruff check .

@@ -96,16 +96,20 @@ def overbent(joint: str, turn: Array) -> Array:
     return np.asarray(angle - np.clip(angle, group.low[place, 0], group.high[place, 0]))
 
 
+def out_of_cone(joint: str, turn: Array) -> Array:
+    """How far a joint that has a cone is beyond its range. (..., 4) to (...) radians."""
+    limit = _ANATOMY[joint.rpartition("_")[2]]
+    if not isinstance(limit, Cone):
+        raise ValueError(f"{joint} has no cone but hinges: ask overbent")
+    return _beyond_cone(turn * _mirrored([INDEX[joint]]), limit)
+
+
 def aside_within(joint: str, turn: Array) -> Array:
     """A hinged joint's rotations with all but the angle of the main hinge brought within its range. (T, 4)."""
     group, place = _group_of(joint)
     angles = cardan(turn * group.mirrored[place], group.order)
     angles[..., 1:] = np.clip(angles[..., 1:], group.low[place, 1:], group.high[place, 1:])
-    parts = []
-    for column, axis in enumerate(group.order):
-        vectors = np.zeros((*angles.shape[:-1], 3))
-        vectors[..., "xyz".index(axis)] = angles[..., column]
-        parts.append(rotations.rotvec_to_quat(vectors))
+    parts = [rotations.axis_to_quat(axis, angles[..., column]) for column, axis in enumerate(group.order)]
     return np.asarray(rotations.compose(rotations.compose(parts[0], parts[1]), parts[2]) * group.mirrored[place])
 
 
@@ -178,10 +182,11 @@ def _excess(angles: Array, low: Array | float, high: Array | float) -> Array:
 def cardan(turn: Array, order: str) -> Array:
     """Angles about three different axes, outermost first, that together make a rotation. (..., 4) to (..., 3)."""
     first, second, third, sign = _axes(order)
-    m = rotations.quat_to_matrix(turn)
-    middle = np.arcsin(np.clip(sign * m[..., first, third], -1.0, 1.0))
-    outer = np.arctan2(-sign * m[..., second, third], m[..., third, third])
-    inner = np.arctan2(-sign * m[..., first, second], m[..., first, first])
+    a, b, c, w = turn[..., first], turn[..., second], turn[..., third], sign * turn[..., 3]
+    # The entries of the rotation's matrix that the angles are read from.
+    middle = np.arcsin(np.clip(sign * (2 * (a * c + b * w)), -1.0, 1.0))
+    outer = np.arctan2(-sign * (2 * (b * c - a * w)), 1 - 2 * (a * a + b * b))
+    inner = np.arctan2(-sign * (2 * (a * b - c * w)), 1 - 2 * (b * b + c * c))
     return np.stack([outer, middle, inner], axis=-1)
 
 

@@ -29,7 +29,7 @@ def two_bone(root: Array, target: Array, pole: Array, lengths: tuple[float, floa
     """
     upper_length, lower_length = lengths
     reach = target - root
-    distance = np.linalg.norm(reach, axis=-1, keepdims=True)
+    distance = rotations.length(reach)
     along = reach / np.maximum(distance, 1e-9)
     longest = STRAIGHTEST * (upper_length + lower_length)
     shortest = abs(upper_length - lower_length) + 0.12 * min(lengths)
@@ -44,11 +44,12 @@ def two_bone(root: Array, target: Array, pole: Array, lengths: tuple[float, floa
 
 def _aside(pole: Array, along: Array) -> Array:
     """Unit vectors towards the pole at right angles to the reach; any such vector where the pole lies along it."""
-    across = pole - np.sum(pole * along, axis=-1, keepdims=True) * along
-    helper = np.where(np.abs(along[..., 2:]) < 0.7, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0])
-    any_side = helper - np.sum(helper * along, axis=-1, keepdims=True) * along
-    lost = np.linalg.norm(across, axis=-1, keepdims=True) < 1e-6
-    return rotations.normalize(np.where(lost, any_side, across))
+    across = pole - rotations.dot(pole, along) * along
+    lost = rotations.length(across) < 1e-6
+    if lost.any():
+        helper = np.where(np.abs(along[..., 2:]) < 0.7, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0])
+        across = np.where(lost, helper - rotations.dot(helper, along) * along, across)
+    return rotations.normalize(across)
 
 
 def leg_rotations(leg: Limb) -> tuple[Array, Array]:

@@ -44,13 +44,13 @@ class Part(StrEnum):
 
     STAND = "stand"
     GETUP = "getup"
-    """From lying to the edge of the bed."""
+    """From lying to the edge of the bed, or from the floor to the knees."""
     STANDUP = "standup"
     WALK = "walk"
     BACK_UP = "back up"
     """From the place it turned round at to the seat."""
     EDGE = "edge"
-    """Onto the edge of a bed."""
+    """Onto the edge of a bed, or onto the knees to lie on the floor."""
     SITDOWN = "sitdown"
     LIEDOWN = "liedown"
     TOUCH = "touch"
@@ -63,6 +63,15 @@ class Phase:
     part: Part
     start: int
     stop: int
+
+
+@dataclass(frozen=True)
+class Note:
+    """Something that a keyframe's caption asks for and the body did otherwise, since the place does not allow it."""
+
+    keyframe: int
+    words: str
+    """What is lacking and what was done instead: "no table before the seat: hands in the lap"."""
 
 
 @dataclass(frozen=True)
@@ -132,6 +141,8 @@ class Motion:
     """Why not, when it was not completed."""
     phases: tuple[Phase, ...] = ()
     """What it is made of, in order; empty where nobody knows."""
+    notes: tuple[Note, ...] = ()
+    """What was done otherwise than captions say."""
 
     def __len__(self) -> int:
         return int(self.root_positions.shape[0])
@@ -153,6 +164,7 @@ class Motion:
             for phase in self.phases
             if phase.start < stop and phase.stop > start
         ]
+        served = set(self.actions[window].tolist())
         return replace(
             self,
             root_positions=self.root_positions[window],
@@ -160,6 +172,7 @@ class Motion:
             contacts=self.contacts[window],
             actions=self.actions[window],
             phases=tuple(cut),
+            notes=tuple(note for note in self.notes if note.keyframe in served),
         )
 
 
@@ -181,6 +194,7 @@ def join(motions: list[Motion]) -> Motion:
             for start, motion in zip(starts, motions, strict=False)
             for phase in motion.phases
         ),
+        notes=tuple(note for motion in motions for note in motion.notes),
     )
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,10 +57,14 @@ class Obstacles:
 
     def near(self, low: Array, high: Array) -> Obstacles:
         """Only the boxes whose surroundings meet the axis-aligned box from low to high (3,) each."""
+        return self.only(np.all((self.centers + self.spans >= low) & (self.centers - self.spans <= high), axis=1))
+
+    @cached_property
+    def spans(self) -> Array:
+        """Half sizes of the boxes along the axes of the home. (N, 3)."""
         cos, sin = np.abs(np.cos(self.yaws)), np.abs(np.sin(self.yaws))
         x, y, z = self.halves.T
-        span = np.stack([cos * x + sin * z, y, sin * x + cos * z], axis=1)
-        return self.only(np.all((self.centers + span >= low) & (self.centers - span <= high), axis=1))
+        return np.stack([cos * x + sin * z, y, sin * x + cos * z], axis=1)
 
     def only(self, chosen: NDArray[np.bool_]) -> Obstacles:
         """The boxes a mask (N,) chooses."""
@@ -69,6 +74,11 @@ class Obstacles:
     def solid(self) -> Obstacles:
         """Without what gives way."""
         return self.only(~self.soft)
+
+    def sunk_into(self, owner: str | None, by: float) -> Obstacles:
+        """The same with the boxes of one piece smaller all round, by as much as is sunk into it (metres)."""
+        own = np.array([one == owner for one in self.owners], dtype=bool)
+        return replace(self, halves=np.maximum(self.halves - by * own[:, None], 0.0))
 
     def inside(self, points: Array, index: int) -> Array:
         """Depth of points (P, 3) in one box: positive inside, to the nearest face; negative outside. (P,)."""

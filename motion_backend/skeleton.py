@@ -62,6 +62,15 @@ class Skeleton:
                 positions[joint] = positions[parent] + self.offsets[joint]
         return positions
 
+    @cached_property
+    def _levels(self) -> tuple[tuple[list[int], list[int]], ...]:
+        """Joints that are equally far from the pelvis, which is first, and their parents: those are turned together."""
+        depths = [0] * len(self.parents)
+        for joint, parent in enumerate(self.parents[1:], start=1):
+            depths[joint] = depths[parent] + 1
+        levels = [[j for j, depth in enumerate(depths) if depth == level] for level in range(1, max(depths) + 1)]
+        return tuple((joints, [self.parents[joint] for joint in joints]) for joints in levels)
+
     @property
     def scale(self) -> float:
         """Size against the reference body of 1.70 m."""
@@ -85,14 +94,12 @@ class Skeleton:
         frames = len(root_positions)
         positions = np.empty((frames, len(self.parents), 3))
         world = np.empty((frames, len(self.parents), 4))
-        for joint, parent in enumerate(self.parents):
-            local = np.asarray(local_rotations[:, joint], dtype=np.float64)
-            if parent < 0:
-                positions[:, joint] = root_positions
-                world[:, joint] = local
-            else:
-                world[:, joint] = rotations.compose(world[:, parent], local)
-                positions[:, joint] = positions[:, parent] + rotations.rotate(world[:, parent], self.offsets[joint])
+        local = np.asarray(local_rotations, dtype=np.float64)
+        positions[:, 0], world[:, 0] = root_positions, local[:, 0]
+        for joints, parents in self._levels:
+            above = world[:, parents]
+            world[:, joints] = rotations.compose(above, local[:, joints])
+            positions[:, joints] = positions[:, parents] + rotations.rotate(above, self.offsets[joints])
         return positions.astype(np.float32), world
 
 

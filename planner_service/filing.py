@@ -114,6 +114,7 @@ def story_to_markdown(story: Story) -> str:
         )
     ]
     rooms = [f"- {line}" for line in planned.stage.explain()]
+    notes = [f"- keyframe {note.keyframe}: {note.words}" for note in story.motion.notes] or ["- nothing"]
     repairs = [f"- {line}" for line in script.repairs] or ["- none"]
     missed = [f"- not covered: {event}" for event in script.uncovered]
     return "\n".join(
@@ -138,6 +139,10 @@ def story_to_markdown(story: Story) -> str:
             "Repairs:",
             "",
             *repairs,
+            "",
+            "Done otherwise than the captions say:",
+            "",
+            *notes,
             "",
             "| # | skill | emotion | caption | furniture | reached |",
             "|---|---|---|---|---|---|",
@@ -200,11 +205,13 @@ def report_to_dict(story: Story) -> dict[str, Any]:
 
 
 def _performances(story: Story) -> Iterator[dict[str, Any]]:
-    """The figures of every keyframe, the parts it is made of and, where its own words are not known, what stood in."""
+    """The figures of every keyframe, the parts it is made of, what stood in where its own words are not known, and
+    what was done otherwise."""
     told = story.planned.script.keyframes
     for figure, action, span in zip(story.figures, story.actions, story.segments, strict=True):
         own = look_of(told[action.keyframe].caption)
         row = figure.to_dict() | {"performed_as": action.caption if action.caption != own else None}
         phases = [phase for phase in story.motion.phases if span[0] <= phase.start < span[1]]
+        row["notes"] = [note.words for note in story.motion.notes if note.keyframe == action.keyframe]
         row["phases"] = [{"part": phase.part.value, "start": phase.start, "stop": phase.stop} for phase in phases]
         yield row

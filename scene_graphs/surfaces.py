@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, inf, pi, sin
+from math import cos, inf, sin
 
 from scene_graphs.affording.resting import TO_FOOT, TO_HEAD, lying, sitting
 from scene_graphs.affording.spot import Spot
@@ -33,9 +33,12 @@ def floor_spot(affordance: str, point_xz: Point2, facing: float) -> Spot:
     """The floor as a place to sit (looking to `facing`) or lie (head towards `facing`), object id "floor"."""
     if affordance not in ("sit", "lie"):
         raise ValueError(f"the floor affords sit and lie, not {affordance!r}")
-    approach = facing if affordance == "sit" else facing + pi
-    ahead = 0.30
-    standing = (point_xz[0] + ahead * sin(approach), point_xz[1] + ahead * cos(approach))
+    # One lies down on the floor from the knees, left of the place, looking to where the head will be.
+    ahead, left = (0.30, 0.0) if affordance == "sit" else (-0.07, 0.30)
+    standing = (
+        point_xz[0] + ahead * sin(facing) - left * cos(facing),
+        point_xz[1] + ahead * cos(facing) + left * sin(facing),
+    )
     room = (inf, 0.0) if affordance == "sit" else (TO_HEAD, TO_FOOT)
     point = (point_xz[0], 0.0, point_xz[1])
-    return Spot(affordance, "floor", point, (0.0, 1.0, 0.0), facing, standing, wrap(approach), ahead, *room)
+    return Spot(affordance, "floor", point, (0.0, 1.0, 0.0), facing, standing, wrap(facing), max(ahead, left), *room)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 *_PROCESSORS, _ = structlog.get_config()["processors"]
 structlog.configure([*_PROCESSORS, structlog.dev.ConsoleRenderer(exception_formatter=structlog.dev.plain_traceback)])
 # How long an example takes says more about what else the machine does.
-settings.register_profile("unhurried", deadline=None)
+settings.register_profile("unhurried", deadline=None, derandomize=True)
 settings.load_profile("unhurried")
 
 
@@ -65,6 +65,11 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningService
     """One service on SQLite for all tests that only use it; those that break it start their own."""
     with RunningService(tmp_path_factory.mktemp("service")) as running:
         yield running
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Files that run a whole service go first: they wait for it most of the time, while others compute."""
+    items.sort(key=lambda item: not hasattr(getattr(item, "module", None), "RunningService"))
 
 
 def pytest_unconfigure() -> None:

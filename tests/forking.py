@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import pickle
+import resource
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
@@ -12,7 +13,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import BinaryIO, Self
 
-HEAVY = ("planner_service.stories", "planner_service.store.engine", "planner_service.importing", "matplotlib.figure")
+HEAVY = (
+    *("planner_service.stories", "planner_service.store.engine", "planner_service.importing", "planner_service.filing"),
+    *("planner_service.storyboard", "matplotlib.figure", "scipy.ndimage", "motion_backend.procedural.backend"),
+)
 """What commands load when they first use it."""
 
 
@@ -29,12 +33,16 @@ class Forked:
         self._process.communicate(timeout=60)
 
     def run(
-        self, arguments: Sequence[str | bytes], folder: Path, environment: Mapping[str, str]
+        self, arguments: Sequence[str | bytes], folder: Path, environment: Mapping[str, str], most: int | None = None
     ) -> tuple[int, bytes, bytes]:
-        """The exit code, standard output and standard error of `sims` with these arguments in a folder."""
+        """The exit code, standard output and standard error of `sims` with these arguments in a folder.
+
+        No file may have more than `most` bytes.
+        """
         assert self._process.stdin is not None
         assert self._process.stdout is not None
-        pickle.dump(([os.fsencode(one) for one in arguments], str(folder), dict(environment)), self._process.stdin)
+        asked = ([os.fsencode(one) for one in arguments], str(folder), dict(environment), most)
+        pickle.dump(asked, self._process.stdin)
         self._process.stdin.flush()
         answer: tuple[int, bytes, bytes] = pickle.load(self._process.stdout)  # noqa: S301 our own process
         return answer
@@ -49,14 +57,16 @@ def _serve(asked: BinaryIO, answers: BinaryIO) -> None:
         import_module(name)
     while True:
         try:
-            arguments, folder, environment = pickle.load(asked)  # noqa: S301
+            arguments, folder, environment, most = pickle.load(asked)  # noqa: S301
         except EOFError:
             return
-        pickle.dump(_forked(arguments, folder, environment, planner_service.cli.main), answers)
+        pickle.dump(_forked(arguments, folder, environment, most, planner_service.cli.main), answers)
         answers.flush()
 
 
-def _forked(arguments: list[bytes], folder: str, environment: dict[str, str], main) -> tuple[int, bytes, bytes]:
+def _forked(
+    arguments: list[bytes], folder: str, environment: dict[str, str], most: int | None, main
+) -> tuple[int, bytes, bytes]:
     outputs = [os.memfd_create(name) for name in ("out", "err")]
     pid = os.fork()
     if pid == 0:
@@ -68,6 +78,8 @@ def _forked(arguments: list[bytes], folder: str, environment: dict[str, str], ma
             for number, output in zip((1, 2), outputs, strict=True):
                 os.dup2(output, number)
             os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+            if most is not None:
+                resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
             sys.stdin = io.TextIOWrapper(io.FileIO(0, closefd=False))
             sys.stdout, sys.stderr = (io.TextIOWrapper(io.FileIO(n, "w", closefd=False), "utf-8") for n in (1, 2))
             sys.argv = ["sims", *map(os.fsdecode, arguments)]

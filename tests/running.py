@@ -16,8 +16,8 @@ from typing import Any
 import httpx
 from encoded import lend
 
-PATIENCE = 90.0
-"""Seconds for anything that has to happen."""
+PATIENCE = 240.0
+"""Seconds for anything that has to happen, on a machine that does much else."""
 SHORT = "A tired woman comes home and falls asleep on the sofa."
 """A theme whose story is quickly made."""
 ENDED = ("succeeded", "failed", "cancelled")

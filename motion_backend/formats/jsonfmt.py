@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motion_backend.motion import ContactGoal, Motion, Part, Phase
+from motion_backend.motion import ContactGoal, Motion, Note, Part, Phase
 from motion_backend.skeleton import Skeleton
 
 DIGITS = 6
@@ -33,6 +33,7 @@ def motion_to_dict(motion: Motion) -> dict[str, Any]:
         "completed": motion.completed,
         "reason": motion.reason,
         "phases": [{"part": phase.part.value, "start": phase.start, "stop": phase.stop} for phase in motion.phases],
+        "notes": [{"keyframe": note.keyframe, "words": note.words} for note in motion.notes],
     }
 
 
@@ -54,6 +55,7 @@ def dict_to_motion(data: dict[str, Any]) -> Motion:
         completed=bool(data.get("completed", True)),
         reason=str(data.get("reason", "")),
         phases=tuple(Phase(Part(phase["part"]), phase["start"], phase["stop"]) for phase in data.get("phases", [])),
+        notes=tuple(Note(note["keyframe"], str(note["words"])) for note in data.get("notes", [])),
     )
 
 

@@ -11,7 +11,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from motion_backend.motion import ContactGoal, Motion, Part, Phase
+from motion_backend.motion import ContactGoal, Motion, Note, Part, Phase
 from motion_backend.skeleton import Skeleton
 
 VERSION = 1
@@ -42,6 +42,8 @@ def npz_bytes(motion: Motion) -> bytes:
         "reason": np.array(motion.reason),
         "phase_parts": np.array([phase.part.value for phase in motion.phases], dtype=np.str_),
         "phase_frames": np.array([(phase.start, phase.stop) for phase in motion.phases], dtype=np.int32).reshape(-1, 2),
+        "note_keyframes": np.array([note.keyframe for note in motion.notes], dtype=np.int32),
+        "note_words": np.array([note.words for note in motion.notes], dtype=np.str_),
     }
     return archive(arrays)
 
@@ -70,6 +72,7 @@ def read_npz(file: Path | str | BinaryIO) -> Motion:
             data["joint_offsets"],
         )
         phases = zip(data["phase_parts"], data["phase_frames"].tolist(), strict=True) if "phase_parts" in data else ()
+        notes = zip(data["note_keyframes"].tolist(), data["note_words"], strict=True) if "note_words" in data else ()
         goals = zip(data["goal_joints"], data["goal_positions"].tolist(), strict=True)
         return Motion(
             root_positions=data["root_positions"],
@@ -82,4 +85,5 @@ def read_npz(file: Path | str | BinaryIO) -> Motion:
             completed=bool(data["completed"]),
             reason=str(data["reason"]),
             phases=tuple(Phase(Part(part), start, stop) for part, (start, stop) in phases),
+            notes=tuple(Note(keyframe, str(words)) for keyframe, words in notes),
         )

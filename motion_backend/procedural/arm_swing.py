@@ -19,6 +19,8 @@ USUAL = 1.25
 """Speed at which arms swing as far as the style says (metres a second)."""
 FOLDS = 0.6
 """How much the elbow bends for every radian that the arm is forward of where it is farthest back."""
+HANGS, FREE = 6.0, 0.6
+"""How far forward of an upright trunk an arm hangs (degrees), and the share of the trunk's bend it does not follow."""
 TAPS = 1.6
 """Taps on the chest a second, of each hand."""
 SWINGING = ("hang", "bent", "fists")
@@ -29,8 +31,8 @@ def swing_arms(style: Walk, steps: Steps, speed: Array) -> tuple[Array, Array]:
     frames = len(steps.phase)
     fixed, poles = arm_arrays(*style.bearing.arms)
     wrists, elbows = np.repeat(fixed[None], frames, axis=0), np.repeat(poles[None], frames, axis=0)
-    # Arms come a little after the legs they answer.
-    cycle = steps.first * np.cos(np.pi * (steps.phase - 0.08)) * steps.moving
+    # An arm is farthest forward as the heel of the other side comes down, before that foot is flat.
+    cycle = steps.first * np.cos(np.pi * (steps.phase + 0.05)) * steps.moving
     for index, side in ((0, 1), (1, -1)):
         if style.bearing.arms[index] in SWINGING:
             wrists[:, index] = _hanging(style, index, side * cycle, steps.moving, speed)
@@ -49,12 +51,13 @@ def _hanging(style: Walk, index: int, beat: Array, moving: Array, speed: Array) 
     side = 1 if index == 0 else -1
     bent = style.elbow + {"bent": 25, "fists": 4}.get(style.bearing.arms[index], 0)
     reach = np.radians(style.swing) * np.clip(speed / USUAL, 0.35, 1.3)
-    swing = reach * beat + np.radians(6)
+    # Arms hang down from a bent trunk.
+    swing = reach * beat + np.radians(HANGS + FREE * style.bearing.lean)
     bend = np.radians(8 + (bent - 8) * (0.35 + 0.65 * moving)) + FOLDS * (swing + reach * moving)
     shoulder, fore = swing - 0.25 * bend, swing + 0.75 * bend
     wrist = np.stack(
         [
-            side * (0.17 - 0.12 * np.maximum(np.sin(swing), 0) + style.splay),
+            side * (0.15 - 0.10 * np.maximum(np.sin(swing), 0) + style.splay),
             -UPPER * np.cos(shoulder) - LOWER * np.cos(fore),
             UPPER * np.sin(shoulder) + LOWER * np.sin(fore),
         ],

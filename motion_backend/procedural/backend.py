@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend.measures.kinematics import Kinematics
-from motion_backend.motion import FPS, Action, BodyState, Character, ContactGoal, Motion, Part, Posture, Skill
+from motion_backend.motion import FPS, Action, BodyState, Character, ContactGoal, Motion, Note, Part, Posture, Skill
 from motion_backend.obstacles import Obstacles
 from motion_backend.procedural.body import Body, Scene
+from motion_backend.procedural.elbowing import elbows_clear
 from motion_backend.procedural.guarding import hands_clear
-from motion_backend.procedural.handling import with_both_hands
+from motion_backend.procedural.handling import steadies, with_both_hands
 from motion_backend.procedural.performing import perform
 from motion_backend.procedural.pose import Pose, concatenate
 from motion_backend.procedural.solving import hips_within, released, solve
@@ -30,6 +31,8 @@ from scene_graphs.navigation import NoPath, Walkable
 from scene_graphs.surfaces import Spot
 
 Array = NDArray[np.float64]
+SINKS = 0.03
+"""How deep arms sink into what is lain on (metres)."""
 
 
 class ProceduralBackend:
@@ -115,12 +118,16 @@ def _spot_from_lists(values: dict[str, Any] | None) -> Spot | None:
 def _to_motion(body: Body, action: Action) -> Motion:
     touching = None
     if action.skill is Skill.TOUCH:
-        touching = "both" if with_both_hands(action.caption) else action.hand
-    elif action.skill in (Skill.SITDOWN, Skill.STANDUP, Skill.LIEDOWN):
+        both = with_both_hands(action.caption) or steadies(action.caption)
+        touching = "both" if both else action.hand
+    elif action.skill in (Skill.SITDOWN, Skill.STANDUP, Skill.LIEDOWN, Skill.GETUP):
         touching = "both"
-    pose = hands_clear(
-        hips_within(concatenate(body.frames), body.skeleton), body.skeleton, body.scene.obstacles.solid(), touching
-    )
+    solid = body.scene.obstacles.solid()
+    pose = hands_clear(hips_within(concatenate(body.frames), body.skeleton), body.skeleton, solid, touching)
+    if action.skill in (Skill.LOCO, Skill.TOUCH):
+        pose = elbows_clear(pose, body.skeleton, solid)
+    elif action.skill in (Skill.LIEDOWN, Skill.GETUP):
+        pose = elbows_clear(pose, body.skeleton, solid.sunk_into(action.object_id, SINKS))
     body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)
     return Motion(
@@ -132,6 +139,7 @@ def _to_motion(body: Body, action: Action) -> Motion:
         fps=FPS,
         goals=contact_goals(action),
         phases=body.phases,
+        notes=tuple(Note(action.keyframe, words) for words in body.otherwise),
     )
 
 

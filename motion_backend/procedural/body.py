@@ -44,6 +44,8 @@ class Body:
     """How far it set out to walk (metres)."""
     parts: list[tuple[Part, int]] = field(default_factory=list)
     """What it has been doing, and from which frame on."""
+    otherwise: list[str] = field(default_factory=list)
+    """What it does otherwise than the caption says, in words (`Note.words`)."""
 
     def enter(self, part: Part) -> None:
         """Frames added from now on are this part of the action."""
@@ -59,6 +61,10 @@ class Body:
         return tuple(
             Phase(part, start, stop) for (part, start), stop in zip(self.parts, stops, strict=True) if stop > start
         )
+
+    def note(self, *words: str) -> None:
+        """Say what is done otherwise than the caption says, and why; each thing once."""
+        self.otherwise.extend(said for said in dict.fromkeys(words) if said not in self.otherwise)
 
     def add(self, frames: Pose) -> None:
         """Append frames and take the last as the present pose."""

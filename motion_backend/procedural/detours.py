@@ -51,4 +51,4 @@ def to_and_fro(path: Array, walkable: Walkable) -> list[Array]:
 
 
 def _is_free(points: Array | Sequence[Array], walkable: Walkable) -> bool:
-    return all(walkable.clearance((float(x), float(z))) >= walkable.radius + ROOM for x, z in points[::3])
+    return bool((walkable.field.at(np.asarray(points[::3])) >= walkable.radius + ROOM).all())

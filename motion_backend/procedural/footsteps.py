@@ -25,6 +25,8 @@ LEAD = 0.35
 """Phase before the first step."""
 NARROWER = 0.36
 """How much nearer to each other feet land in full stride than where the body stands (share of the width)."""
+TURNING = 0.5
+"""Who turns by this much within half a second (radians) steps no narrower than usual where they stand."""
 SIDEWAYS = 90.0
 """How far from its way a body faces that steps sideways (degrees)."""
 SKIPPING = 0.7
@@ -108,12 +110,14 @@ def plan_phase(
 
 def _first_foot(start: Pose, route: Route, style: Walk) -> int:
     """The foot that has further to go steps first; in a turn the inner one, and sideways the leading one."""
-    turn = route.heading[min(20, len(route.heading) - 1)] - route.heading[0]
-    if abs(turn) > 0.15:
-        return 1 if turn > 0 else -1
+    soon = min(20, len(route.heading) - 1)
+    turn = float(route.heading[soon] - route.heading[0])
+    left = np.array([np.cos(route.heading[0]), -np.sin(route.heading[0])])
     if style.aside == SIDEWAYS:
-        left = np.array([np.cos(route.heading[0]), -np.sin(route.heading[0])])
         return 1 if (route.position[-1] - route.position[0]) @ left >= 0 else -1
+    outwards = float((route.position[soon] - route.position[0]) @ left)
+    if abs(turn) > 0.15 or abs(outwards) > 0.05:
+        return 1 if turn / 0.5 + outwards / 0.1 > 0 else -1
     ahead = np.array([np.sin(route.heading[0]), np.cos(route.heading[0])])
     near, far = (start.ankles[index][[0, 2]] @ ahead for index in (0, 1))
     return 1 if near <= far + 0.01 else -1
@@ -193,12 +197,16 @@ def _swing_of(
     middle = route.position[at] - 0.065 * min(speed, 1.6) * np.cos(np.radians(style.aside)) * ahead
     middle = middle - style.drag * under_way * (beat.index == 1) * ahead
     middle = middle + under_way * (0.006 + 2 * style.uneven * 0.1) * rng.standard_normal(2)
-    width = style.width * (1 - (0.0 if style.aside == SIDEWAYS else NARROWER) * under_way)
+    last = len(phase) - 1
+    turned = abs(float(route.heading[min(at + 8, last)] - route.heading[max(at - 8, 0)]))
+    turning = min(turned / TURNING, 1.0)
+    stance = max(style.width, turning * Walk.width)
+    width = stance * (1 - (0.0 if style.aside == SIDEWAYS else NARROWER) * under_way * (1 - turning))
     target = home_ankle(middle, heading, beat.index, width, skeleton)
     before = max(int(np.searchsorted(phase, beat.window[0])) - 1, 0)
     origin, yaw = feet.ankles[before, beat.index].copy(), float(feet.yaw[before, beat.index])
     beside = feet.ankles[before, 1 - beat.index]
-    target = _clear_of(beside, target, heading, side, min(APART, 1.2 * style.width) * skeleton.scale)
+    target = _clear_of(beside, target, heading, side, min(APART, 1.2 * stance) * skeleton.scale)
     forward = float((target - origin)[[0, 2]] @ ahead) / (FULL_STRIDE * skeleton.scale)
     stride = float(np.clip(forward, -1.0, 1.0))
     dragged = 0.6 if style.drag and beat.index == 1 else 1.0

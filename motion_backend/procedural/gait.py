@@ -16,7 +16,7 @@ from motion_backend.motion import FPS
 from motion_backend.procedural.arm_swing import swing_arms
 from motion_backend.procedural.footsteps import LEAD, Steps, drift, plan_phase, plan_steps, yaw_of
 from motion_backend.procedural.pose import Pose, settle_from, smooth
-from motion_backend.procedural.route import Route, plan_route
+from motion_backend.procedural.route import Route, evenly, plan_route
 from motion_backend.procedural.walk_styles import Walk
 from motion_backend.skeleton import INDEX, Skeleton
 
@@ -29,8 +29,9 @@ SURGE = 0.013
 """How far the pelvis runs ahead of its mean way after each heel strike, and behind before it (metres)."""
 LEANING = 0.045
 """How much further forward the trunk is carried in walking than in standing (radians)."""
-LATE = 0.2
-"""How much later than half-way through a stance the body is farthest over the foot (share of a step)."""
+LATE, DROPS_LATE = 0.06, 0.2
+"""How much later than half-way through a stance the body is farthest over the foot, and the other side of the pelvis
+lowest (share of a step)."""
 HOP = 0.07
 """How far the pelvis goes up and down in a skip (metres)."""
 
@@ -58,11 +59,7 @@ def _with_spin(route: Route, turns: float, fps: int) -> Route:
     """Whole turns on the spot, half-way along where the body is fastest or at the end of a short way."""
     frames = int((turns * 2 * np.pi / SPIN_RATE + 0.4) * fps)
     at = len(route.heading) - 1
-    # Even turning with a short ease at both ends: a peak would take more steps than feet can make.
-    share = np.arange(1, frames + 1) / frames
-    ease = 0.4 * fps / frames
-    angle = np.cumsum(smooth(share / ease) * smooth((1 - share) / ease))
-    angle = 2 * np.pi * turns * angle / angle[-1]
+    angle = 2 * np.pi * turns * evenly(frames, fps)
     return Route(
         np.concatenate([route.position, np.repeat(route.position[at : at + 1], frames, axis=0)]),
         np.concatenate([route.heading, route.heading[at] + angle]),
@@ -85,6 +82,7 @@ def _carry(start: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skele
     bearing, first = style.bearing, steps.first
     moving = steps.moving * smooth((steps.phase[-1] - steps.phase) / 0.8)
     cycle, wave = np.cos(np.pi * steps.phase), np.sin(np.pi * (steps.phase - LATE))
+    drop = np.sin(np.pi * (steps.phase - DROPS_LATE))
     left = np.stack([np.cos(route.heading), -np.sin(route.heading)], axis=1)
     ahead = np.stack([np.sin(route.heading), np.cos(route.heading)], axis=1)
     unsteady = style.wobble * drift(frames, 0.5, FPS, rng)
@@ -94,17 +92,17 @@ def _carry(start: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skele
     surge = SURGE * brisk * np.cos(2 * np.pi * (steps.phase - 0.24))
     ground = route.position + aside[:, None] * left + surge[:, None] * ahead
     hip_turn = np.radians(style.twist) * first * cycle * moving
-    roll = -np.radians(style.hips) * first * wave * moving
+    roll = -np.radians(style.hips) * first * drop * moving
     # A bowed body straightens up a little where it arrives, so as not to bump its head.
     arriving = smooth((np.arange(frames) - frames + 30) / 30)
     lean = np.radians(bearing.lean) * (1 - 0.55 * arriving * (bearing.lean > 8))
     lean = lean + LEANING * brisk + 0.03 * np.clip(route.speed - 1.0, 0, 1)
-    tilt = 0.3 * lean - 0.015 * brisk * np.cos(2 * np.pi * (steps.phase - 0.1))
+    tilt = 0.3 * lean + 0.014 * brisk * np.cos(2 * np.pi * (steps.phase + 0.2))
     hips = rotations.compose(
         rotations.yaw_to_quat(route.heading + hip_turn),
         rotations.rotvec_to_quat(np.stack([tilt, np.zeros(frames), roll], axis=1)),
     )
-    jolt = 0.02 * brisk * np.cos(2 * np.pi * (steps.phase - 0.02)) + 3 * style.stamp * _landing(steps)
+    jolt = 0.014 * brisk * np.cos(2 * np.pi * (steps.phase + 0.14)) + 3 * style.stamp * _landing(steps)
     looking = 0.25 * np.radians(style.veer) * moving
     spine = np.stack([0.7 * lean + 0.10 * unsteady + jolt, looking - 1.7 * hip_turn, -roll + 0.12 * unsteady], axis=1)
     arms, elbows = swing_arms(style, steps, route.speed)
@@ -138,7 +136,8 @@ def _gaze(route: Route, style: Walk, hip_turn: Array, moved: tuple[Array, Array]
     turn = turn + np.radians(style.glance) * ease * drift(frames, 0.4, FPS, rng)
     seconds = np.arange(frames) / FPS
     turn = turn + np.radians(style.veer) * smooth(seconds / 0.5) * smooth((seconds[-1] - seconds) / 0.9)
-    nod = np.radians(style.bearing.head) - 0.1 * np.clip(route.speed - 1.2, 0, 1) + 0.12 * unsteady - 0.7 * jolt
+    upright = 0.6 * LEANING * np.clip(route.speed, 0.0, 1.2) + 0.1 * np.clip(route.speed - 1.2, 0, 1)
+    nod = np.radians(style.bearing.head) - upright + 0.12 * unsteady - 0.7 * jolt
     nod = nod + np.radians(style.nod) * ease * drift(frames, 0.35, FPS, rng)
     return np.stack([nod, turn, np.radians(style.tilt) * ease + 0.08 * unsteady], axis=1)
 
@@ -164,7 +163,9 @@ def _height(pose: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skele
     pelvis = pose.pelvis.copy()
     at_rest = skeleton.standing_height * 0.998 - (0.004 + 0.3 * style.crouch) * skeleton.scale
     # Long steps need bent knees, or the body would fall into each of them.
-    lower = 0.009 + (0.009 + 0.025 * np.clip(route.speed - 1.1, 0.0, 0.7)) * (style.double > 0)
+    lower = 0.004 + (0.014 * np.clip(route.speed / 0.8, 0.0, 1.0) + 0.025 * np.clip(route.speed - 1.1, 0.0, 0.7)) * (
+        style.double > 0
+    )
     walking = skeleton.standing_height * 0.996 - (style.crouch + lower) * skeleton.scale
     # The last step ends upright: legs straighten as the feet come together.
     ending = smooth((steps.phase[-1] - steps.phase) / 0.8)

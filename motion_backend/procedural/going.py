@@ -83,8 +83,7 @@ def _stride(body: Body, path: Array, facing: float | None, style: Walk) -> None:
     """Walk along a path; arms that are spread come in where there is no room for them."""
     frames = walk(body.pose, path, facing, style, body.skeleton, body.rng)
     if style.bearing.arms[0] in NARROW_ARMS:
-        places = frames.pelvis[:, [0, 2]]
-        room = np.array([body.scene.walkable.clearance((float(x), float(z))) for x, z in places])
+        room = body.scene.walkable.field.at(frames.pelvis[:, [0, 2]])
         frames = arms_in(frames, room / body.skeleton.scale, *NARROW_ARMS[style.bearing.arms[0]])
     body.way += float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
     body.add(gesture(frames, style.doing))
@@ -94,8 +93,7 @@ def _spin_on_the_way(body: Body, path: Array, style: Walk) -> Array:
     """Walk to the roomiest place of the path's second half and spin there; returns the way that is left."""
     points = resample(path)
     half = points[len(points) // 2 :]
-    room = [body.scene.walkable.clearance((float(x), float(z))) for x, z in half]
-    split = len(points) // 2 + int(np.argmax(room))
+    split = len(points) // 2 + int(np.argmax(body.scene.walkable.field.at(half)))
     _stride(body, points[: split + 1], None, style)
     return np.concatenate([[body.place], points[split:]])
 

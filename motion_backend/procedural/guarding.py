@@ -42,9 +42,9 @@ def hands_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles, touching: 
         if not moved.any():
             continue
         # A segment begins in the pose the one before left, which was cleared already.
-        eased = _eased(push) * smooth(np.arange(len(push)) / 8)[:, None]
-        used = np.linalg.norm(eased, axis=1) > 1e-4
-        reach[used, index] = (wrist + eased)[used]
+        led = eased(push) * smooth(np.arange(len(push)) / 8)[:, None]
+        used = np.linalg.norm(led, axis=1) > 1e-4
+        reach[used, index] = (wrist + led)[used]
         reaching[used, index] = 1.0
     return replace(pose, reach=reach, reaching=reaching)
 
@@ -81,9 +81,14 @@ def _way_out(points: Array, shoulder: Array, obstacles: Obstacles) -> Array:
     flat = points.reshape(-1, 3)
     origin = np.repeat(shoulder, count, axis=0)
     total = np.zeros_like(flat)
+    wide = np.sqrt(2) * THICKNESS
+    low, high = np.minimum(flat, origin) - wide, np.maximum(flat, origin) + wide
     close = obstacles.near(flat.min(axis=0) - THICKNESS, flat.max(axis=0) + THICKNESS)
-    for index in range(len(close.owners)):
-        total += _out_of_box(flat + total, origin, close, index)
+    for index, span in enumerate(close.spans):
+        about = np.all((close.centers[index] + span >= low) & (close.centers[index] - span <= high), axis=1)
+        met = np.flatnonzero(about | total.any(axis=1))
+        if len(met):
+            total[met] += _out_of_box(flat[met] + total[met], origin[met], close, index)
     ways = total.reshape(frames, -1, 3)
     longest = np.argmax(np.linalg.norm(ways, axis=2), axis=1)
     return np.asarray(ways[np.arange(frames), longest])
@@ -124,7 +129,7 @@ def _crosses(start: Array, end: Array, half: Array) -> NDArray[np.bool_]:
     return np.asarray((enters < leaves) & (enters > 0) & (enters < 1))
 
 
-def _eased(push: Array) -> Array:
+def eased(push: Array) -> Array:
     """The push led in and out over a few frames, so that hands do not snap."""
     from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 

@@ -16,6 +16,8 @@ Pair = tuple[Array | None, Array | None]
 """Where the left and the right palm lie, (3,) in the world each; None where nothing is there."""
 TABLE_REACH = 0.74
 """How far ahead of the pelvis the near edge of a table may be for a leaning sitter (metres at 1.70 m)."""
+ELBOWS = [(up, ahead) for up in (0.30, 0.45, 0.60, 0.75) for ahead in (-0.08, 0.05, 0.18)]
+"""Heights above the pelvis, and distances ahead of it, at which elbows are that are not on anything (metres)."""
 INSET = 0.01
 """A hand lies at least so far within the edge of a surface (metres)."""
 ARMREST, TABLE = (0.08, 0.36), (0.14, 0.58)
@@ -57,7 +59,7 @@ def handholds(seat: Seat, obstacles: Obstacles, scale: float) -> Handholds:
     behind = [(side, ahead) for ahead in np.arange(back, -0.03, 0.03) for side in wide]
     edge = [(side, seat.edge - 0.07) for side in wide] if seat.edge > 0.12 else []
     armrest = [(side, ahead) for ahead in (0.24, 0.18, 0.12, 0.06) for side in np.arange(0.22, 0.44, 0.02) * scale]
-    table = _table(seat, near, (top + TABLE[0] * scale, top + TABLE[1] * scale), scale)
+    table = table_before(seat, near, scale)
     return Handholds(
         armrests=_pair(seat, near, _middles(seat, near, armrest, rests), rests),
         beside=_pair(seat, near, [[(side, 0.0) for side in wide]] * 2, level),
@@ -66,6 +68,17 @@ def handholds(seat: Seat, obstacles: Obstacles, scale: float) -> Handholds:
         table=table[0] if table else None,
         table_top=table[1] if table else 0.0,
     )
+
+
+def elbow_room(seat: Seat, near: Obstacles, scale: float) -> tuple[float, float]:
+    """How far to either side of the middle something begins that is as high as elbows; infinite beyond their reach."""
+    aside = np.arange(0.26, 0.62, 0.02) * scale
+    found = []
+    for side in (1, -1):
+        places = [(side * a, seat.pelvis[1] + up * scale, ahead) for a in aside for up, ahead in ELBOWS]
+        depth = near.depth(np.array([seat.to_world(place) for place in places])).reshape(len(aside), -1).max(axis=1)
+        found.append(float(aside[np.argmax(depth > 0)]) if (depth > 0).any() else np.inf)
+    return found[0], found[1]
 
 
 def _pair(seat: Seat, near: Obstacles, places: list[list[tuple[float, float]]], level: tuple[float, float]) -> Pair:
@@ -95,9 +108,11 @@ def _middles(
     return chosen
 
 
-def _table(seat: Seat, near: Obstacles, level: tuple[float, float], scale: float) -> tuple[float, float] | None:
+def table_before(seat: Seat, near: Obstacles, scale: float, reach: float = TABLE_REACH) -> tuple[float, float] | None:
     """How far ahead a table's edge is, and its height; a table is level under both forearms."""
-    ahead = np.arange(0.20, TABLE_REACH * scale + 0.22, 0.02)
+    top = float(seat.pelvis[1]) - SEATED_REST
+    level = (top + TABLE[0] * scale, top + TABLE[1] * scale)
+    ahead = np.arange(0.20, reach * scale + 0.22, 0.02)
     points = np.array([seat.to_world((side, 0.0, a)) for a in ahead for side in (0.17, 0.0, -0.17)])
     tops = _tops(near, points, level[1] + 0.1).reshape(-1, 3)
     flat = (np.ptp(tops, axis=1) < 0.01) & (tops[:, 0] >= level[0]) & (tops[:, 0] <= level[1])

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
-from motion_backend.procedural.lie_styles import Lying
+from motion_backend.procedural.lie_styles import Lying, lie_style, wanted_edge
 from motion_backend.procedural.lying_hands import ABOVE, BACK, BELOW, LOWER, Rest, hands_at_rest, head_middle, propped
 from motion_backend.procedural.lying_legs import foot_down, on_a_side, on_the_back, shortened
 from motion_backend.procedural.pose import Pose
@@ -25,6 +26,8 @@ PROPPED = 0.35
 """How far the pelvis of who lies on the elbows tips back from lying flat (radians)."""
 ON_ARM, ON_HANDS = 0.05, 0.05
 """How high a head lies on an arm rather than on a pillow, or on hands upon it."""
+OVER_EDGE = 0.30
+"""How far from the edge the pelvis of who puts a foot down lies at most (metres)."""
 NEEDS = {"wide": 0.85, "goalpost": 0.53, "loose": 0.50, "behind_head": 0.46, "sides": 0.34}
 """How much room beside the middle of the body arms need (metres at 1.70 m)."""
 NARROW = {"wide": "goalpost", "goalpost": "behind_head", "loose": "close", "sides": "close"}
@@ -74,6 +77,18 @@ class Bed:
         supine = rotations.basis_to_quat(np.cross(up_the_bed, UP), up_the_bed, UP)
         roll = {"back": 0.0, "left": ROLL, "right": -ROLL}[side]
         return rotations.compose(supine, rotations.rotvec_to_quat(np.array([0.0, roll, 0.0])))
+
+
+def place_to_lie(found: Sequence[Spot], caption: str) -> Spot:
+    """The first spot with the edge on the side that a caption wants; near to it where a foot goes down there."""
+    wanted = wanted_edge(caption)
+    spot = next((spot for spot in found if Bed.of(spot).edge_side == wanted), found[0])
+    if not lie_style("neutral", caption).legs.endswith("_down"):
+        return spot
+    over = max(spot.edge - OVER_EDGE, 0.0)
+    x, y, z = spot.point
+    point = (x + over * float(np.sin(spot.approach)), y, z + over * float(np.cos(spot.approach)))
+    return replace(spot, point=point, edge=spot.edge - over)
 
 
 def lying(start: Pose, bed: Bed, style: Lying, skeleton: Skeleton) -> Pose:

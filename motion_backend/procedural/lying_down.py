@@ -1,4 +1,4 @@
-"""Going to a bed and lying down on it: the performer of liedown."""
+"""Going to a bed or a free floor, lying down there and getting up: the performers of liedown and of leaving a bed."""
 
 from __future__ import annotations
 
@@ -7,36 +7,72 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from motion_backend.motion import FPS, Action, Part
+from motion_backend.motion import FPS, Action, Part, Posture
 from motion_backend.obstacles import Obstacles
-from motion_backend.procedural.body import Body, spot_of
+from motion_backend.procedural.body import Body, spot_of, spot_under
+from motion_backend.procedural.floor_ways import Mat, kneel_down, kneel_up, lie_down_from_knees, rise_to_knees
+from motion_backend.procedural.going import go
 from motion_backend.procedural.lie_styles import lie_style
 from motion_backend.procedural.lying import Bed
-from motion_backend.procedural.reclining import edge_seat, lie_down
+from motion_backend.procedural.reclining import edge_seat, lie_down, rise_to_edge
 from motion_backend.procedural.sitting import lower_onto
-from motion_backend.procedural.sitting_down import at_standing_point
+from motion_backend.procedural.sitting_down import at_standing_point, leave_seat
 from motion_backend.procedural.stances import UP, Seat, idle
+from motion_backend.procedural.styles import Bearing
 from scene_graphs.surfaces import Spot
 
 Array = NDArray[np.float64]
-
-
-def edge_of(body: Body, spot: Spot) -> Seat:
-    """The edge of a bed that is sat on before and after lying."""
-    return edge_seat(Bed.of(spot), spot.standing, spot.approach, spot.edge, body.skeleton.scale)
+FLOOR = 0.02
+"""What is lain on is the floor if it is no higher than this (metres)."""
 
 
 def liedown(body: Body, action: Action) -> None:
-    """From standing: to the bed, onto its edge, down, and the pose held there."""
+    """From standing: to the bed and onto its edge, or onto the knees on the floor; down, and the pose held there."""
     style = lie_style(action.emotion, action.caption)
     spot = spot_of(action)
-    seat, bed = edge_of(body, spot), _made(body, spot)
-    at_standing_point(body, action, seat)
-    body.enter(Part.EDGE)
-    body.add(lower_onto(body.pose, seat, style.bearing, body.skeleton))
-    body.enter(Part.LIEDOWN)
-    body.add(lie_down(body.pose, seat, bed, style, body.skeleton))
+    if _on_floor(spot):
+        mat = Mat(_made(body, spot), body.skeleton)
+        go(body, mat.standing_point, spot.facing, action)
+        body.enter(Part.EDGE)
+        body.add(kneel_down(body.pose, mat, style.bearing))
+        body.enter(Part.LIEDOWN)
+        body.add(lie_down_from_knees(body.pose, mat, style))
+    else:
+        seat = _edge_of(body, spot)
+        at_standing_point(body, action, seat)
+        body.enter(Part.EDGE)
+        body.add(lower_onto(body.pose, seat, style.bearing, body.skeleton))
+        body.enter(Part.LIEDOWN)
+        body.add(lie_down(body.pose, seat, _made(body, spot), style, body.skeleton))
     body.add(idle(body.pose, action.hold, 0.6 * style.bearing.restless, body.rng, FPS))
+
+
+def get_up(body: Body, bearing: Bearing) -> None:
+    """From lying to the edge of the bed, or from the floor to the knees."""
+    spot = spot_under(body)
+    if _on_floor(spot):
+        body.add(rise_to_knees(body.pose, Mat(Bed.of(spot), body.skeleton), bearing))
+    else:
+        body.add(rise_to_edge(body.pose, _edge_of(body, spot), Bed.of(spot), bearing, body.skeleton))
+
+
+def leave_bed(body: Body, bearing: Bearing) -> None:
+    """From the edge of the bed, or from the knees, to standing."""
+    spot = spot_under(body)
+    if not _on_floor(spot):
+        leave_seat(body, _edge_of(body, spot), bearing)
+        return
+    body.add(kneel_up(body.pose, Mat(Bed.of(spot), body.skeleton), bearing))
+    body.posture, body.rest = Posture.STANDING, None
+
+
+def _on_floor(spot: Spot) -> bool:
+    return spot.point[1] < FLOOR
+
+
+def _edge_of(body: Body, spot: Spot) -> Seat:
+    """The edge of a bed that is sat on before and after lying."""
+    return edge_seat(Bed.of(spot), spot.standing, spot.approach, spot.edge, body.skeleton.scale)
 
 
 def _made(body: Body, spot: Spot) -> Bed:

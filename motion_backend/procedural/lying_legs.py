@@ -20,8 +20,6 @@ KNEE: Final = 0.09
 """Half a knee and a little (metres)."""
 BEYOND: Final = 0.07
 """How far outside the edge of a bed a foot stands beside it (metres)."""
-MOVED: Final = 0.14
-"""How far one moves over to the edge at most, so that a foot gets down (metres)."""
 
 
 @dataclass(frozen=True)
@@ -79,6 +77,7 @@ SIDE: Final[dict[str, tuple[Fold, Fold]]] = {
     "straight": (Fold(14, 22, 0.058), Fold(20, 34, 0.045)),
     "bent": (Fold(48, 78, 0.058), Fold(56, 86, 0.045)),
     "tucked": (Fold(96, 122, 0.058), Fold(104, 126, 0.040)),
+    "gathered": (Fold(36, 82, 0.058), Fold(46, 92, 0.045)),
     "left_bent": (Fold(48, 78, 0.058), Fold(12, 20, 0.045)),
     "right_bent": (Fold(12, 20, 0.058), Fold(56, 86, 0.045)),
     "crossed": (Fold(3, 12, 0.055, 26), Fold(18, 10, 0.030, 26)),
@@ -134,7 +133,7 @@ def foot_down(pose: Pose, index: int, edge: tuple[float, float], skeleton: Skele
     drop = hip[1] - (skeleton.ankle_height + SHANK * scale)
     span = float(np.sqrt(max((0.985 * THIGH * scale) ** 2 - drop**2, 0.01)))
     aside = distance + BEYOND - HIP * scale
-    moved = float(np.clip(aside - 0.72 * span, 0.0, MOVED))
+    moved = max(aside - 0.72 * span, 0.0)
     aside -= moved
     along = float(np.sqrt(max(span**2 - aside**2, 0.02)))
     ankle = hip + moved * out + aside * out + along * down_the_bed

@@ -7,11 +7,9 @@ from collections.abc import Callable
 from motion_backend.motion import FPS, Action, Part, Posture, Skill
 from motion_backend.procedural.body import Body, spot_under
 from motion_backend.procedural.going import loco
-from motion_backend.procedural.lying import Bed
-from motion_backend.procedural.lying_down import edge_of, liedown
+from motion_backend.procedural.lying_down import get_up, leave_bed, liedown
 from motion_backend.procedural.moods import bearing_of
 from motion_backend.procedural.pose import settle_from
-from motion_backend.procedural.reclining import rise_to_edge
 from motion_backend.procedural.sitting_down import leave_seat, sitdown
 from motion_backend.procedural.stances import Seat, idle
 from motion_backend.procedural.styles import Bearing
@@ -31,17 +29,12 @@ def perform(body: Body, action: Action) -> None:
     body.rest = action.spot if body.posture is not Posture.STANDING else None
 
 
-def _get_up(body: Body, bearing: Bearing) -> None:
-    """From lying to the edge of the bed."""
-    spot = spot_under(body)
-    body.add(rise_to_edge(body.pose, edge_of(body, spot), Bed.of(spot), bearing, body.skeleton))
-
-
 def _stand_up(body: Body, bearing: Bearing) -> None:
-    """From a seat, or from the edge of the bed."""
-    spot = spot_under(body)
-    seat = edge_of(body, spot) if body.posture is Posture.LYING else Seat.of(spot)
-    leave_seat(body, seat, bearing)
+    """From a seat, or from where one has come to from lying."""
+    if body.posture is Posture.LYING:
+        leave_bed(body, bearing)
+    else:
+        leave_seat(body, Seat.of(spot_under(body)), bearing)
 
 
 def _stand(body: Body, action: Action) -> None:
@@ -53,7 +46,7 @@ def _stand(body: Body, action: Action) -> None:
         body.add(settle_from(body.pose, idle(body.pose, 0.8, restless, body.rng, FPS), FPS))
 
 
-RISES: dict[Part, Callable[[Body, Bearing], None]] = {Part.GETUP: _get_up, Part.STANDUP: _stand_up}
+RISES: dict[Part, Callable[[Body, Bearing], None]] = {Part.GETUP: get_up, Part.STANDUP: _stand_up}
 """How a body gets off what it rests on, part by part."""
 SKILLS: dict[Skill, Callable[[Body, Action], None]] = {
     Skill.LOCO: loco,

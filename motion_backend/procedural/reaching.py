@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.kinematics import two_bone
 from motion_backend.motion import FPS
+from motion_backend.procedural.deeds import OVER, Way, deed
 from motion_backend.procedural.footsteps import yaw_of
-from motion_backend.procedural.handling import CARRY, KEPT, Laid, carrying, empty, handled
-from motion_backend.procedural.kneeling import down_on_knees, prone
-from motion_backend.procedural.pose import Pose, concatenate, interpolate, settle_from, smooth
+from motion_backend.procedural.handling import Laid
+from motion_backend.procedural.kneeling import down_on_knees, elbows_out, prone
+from motion_backend.procedural.pose import Pose, settle_from
 from motion_backend.procedural.sitting import knees_over_feet
 from motion_backend.procedural.solving import chest_frame, released
 from motion_backend.procedural.stances import (
@@ -39,14 +40,14 @@ BENT_OVER = 0.82
 """Cosine of the chest's tilt from which the free hand is laid on a thigh."""
 LOW, HIGH = 0.72, 1.35
 """Below this share of the standing height a pelvis is low; a hand above this (metres at 1.70 m) is high."""
-FREE_ARM = {"pick": "bent", "put": "counter", "rotate": "carry"}
+FREE_ARM = {"pick": "bent", "put": "counter", "rotate": "carry", "press": "hips"}
 """What the other arm does meanwhile."""
 ON_THIGH = 0.112
 """A wrist above the middle of the thigh its hand lies on (metres at 1.70 m)."""
 DEEP = 0.30
 """Lowering the pelvis by more than this (metres) slows a reach down."""
-SLIDE = 0.025
-"""How far a touching hand slides to each side (metres)."""
+POINTS_DOWN = 0.4
+"""Fingers whose direction has this much of down in it point down."""
 HEAD_ROOM = 0.13
 """Distance of the middle of the head to furniture that a reaching body keeps (metres)."""
 
@@ -71,40 +72,26 @@ def touch(start: Pose, laid: Laid, manner: Manner, skeleton: Skeleton, depth: De
     """
     pace = 1 / manner.bearing.tempo
     down = down_on_knees(start, skeleton) if manner.prone else []
-    hands = [index for index, *_ in laid.hands]
     if manner.prone:
-        bent = prone(down[-1], laid.wrist, hands[0], skeleton)
+        bent = prone(down[-1], laid.wrist, laid.hands[0][0], skeleton)
         pace *= SLOWLY
     else:
         bent = _free_arm(_reaching(start, laid, skeleton, depth), laid, manner.doing, skeleton)
         # A deep bend takes its time, however hurried.
         pace *= max(1.0, float(start.pelvis[1] - bent.pelvis[1]) / (DEEP * skeleton.scale))
-    reached = _hand_at(start, bent, laid, 0.0, skeleton)
-    over = _hand_at(start, bent, laid, 0.12, skeleton)
+
+    def hand(off: float, tilt: float) -> Pose:
+        posed = _hand_at(start, bent, laid.tilted(tilt), off, skeleton)
+        return elbows_out(posed, laid) if manner.prone else posed
+
+    over, reached = hand(OVER, 0.0), hand(0.0, 0.0)
     away = replace(start, reach=over.reach, palms=over.palms)
-    down = [replace(key, reach=over.reach, palms=over.palms) for key in down]
     # The eyes go first.
     lead = replace(away, head=0.85 * reached.head + 0.15 * start.head)
-    frames = max(round(manner.hold * FPS), 1)
-    held = _feeling_about(reached.repeat(frames), laid, frames, sliding=not manner.doing)
-    held = handled(held, laid, manner.doing)
-    carried = carrying(away, hands)
-    after = {"pick": carried, "put": empty(away, hands)}.get(manner.doing, away)
-    keys, waits = [lead, *down, over, reached], [0.35, *[KNEELING] * len(down), 0.55, 0.35]
-    if manner.doing == "put":
-        lead = replace(lead, arms=carried.arms, elbows=carried.elbows)
-        keys, waits = [carried, lead, *down, over, reached], [CARRY, 0.3, *waits[1:]]
-    go = interpolate(_times(waits, pace), [away, *keys], FPS)
-    back_keys, waits = [over, *down[::-1], after], [0.3, *[KNEELING] * len(down), 0.75]
-    back = interpolate(_times(waits, pace), [reached, *back_keys], FPS)
-    whole = concatenate([go, held, back, *([carried.repeat(KEPT)] if manner.doing == "pick" else [])])
+    kneeling = tuple(replace(key, reach=over.reach, palms=over.palms) for key in down)
+    whole = deed(Way(away, lead, kneeling, hand, laid, manner.hold, manner.bearing.tempo, pace, KNEELING), manner.doing)
     knees = whole.knees if manner.prone else knees_over_feet(whole)
     return settle_from(start, replace(whole, knees=knees), FPS, seconds=0.3)
-
-
-def _times(waits: list[float], pace: float) -> list[float]:
-    """When the keys are reached (seconds), from 0, with so long before each at an even pace."""
-    return [float(t) for t in np.concatenate([[0.0], np.cumsum(waits)]) * pace]
 
 
 def _free_arm(bent: Pose, laid: Laid, doing: str, skeleton: Skeleton) -> Pose:
@@ -139,21 +126,6 @@ def _hand_on_thigh(bent: Pose, index: int, skeleton: Skeleton) -> Pose:
     return replace(bent, reach=reach, reaching=reaching, palms=palms, elbows=elbows, pressing=reaching.copy())
 
 
-def _feeling_about(held: Pose, laid: Laid, frames: int, sliding: bool) -> Pose:
-    """A held touch, alive: breath, and the hand sliding a little to and fro along what it lies on."""
-    time = np.arange(frames) / FPS
-    breath = 0.02 * np.sin(2 * np.pi * 0.35 * time)
-    along = rotations.rotate(laid.palm, np.array([0.0, 0.0, 1.0]))
-    slide = SLIDE * np.sin(2 * np.pi * 0.55 * time) * smooth(time / 0.3) * smooth((time[-1] - time) / 0.3)
-    reach = held.reach.copy()
-    reach[:, laid.hands[0][0]] += float(sliding) * slide[:, None] * along
-    look = np.stack([0.03 * breath / 0.02, 0.08 * np.sin(2 * np.pi * 0.3 * time), 0 * time], axis=1)
-    look *= smooth(time / 0.4)[:, None]
-    return replace(
-        held, reach=reach, spine=held.spine + np.stack([breath, 0 * breath, 0 * breath], axis=1), head=held.head + look
-    )
-
-
 def _hand_at(start: Pose, bent: Pose, laid: Laid, off: float, skeleton: Skeleton) -> Pose:
     """A bent posture with the hands on the surface, or `off` metres out from it."""
     reaching, pressing = bent.reaching.copy(), bent.pressing.copy()
@@ -171,7 +143,7 @@ def _hand_at(start: Pose, bent: Pose, laid: Laid, off: float, skeleton: Skeleton
         if wrist[1] < 0.7 * skeleton.scale:
             # Down low it goes outwards: behind is the thigh.
             elbows[index] = np.array([1.0 * side, -0.1, -0.3])
-        if laid.down:
+        if float(rotations.rotate(palm, np.array([side, 0.0, 0.0]))[1]) < -POINTS_DOWN:
             # The palm of a hand that points down a front looks forwards only with the elbow below.
             elbows[index] = np.array([0.3 * side, -1.0, -0.4])
         if laid.normal[1] > 0.7 and high > 0:
@@ -194,7 +166,7 @@ def _reaching(start: Pose, laid: Laid, skeleton: Skeleton, depth: Depth) -> Pose
     tries = replace(
         tries,
         pelvis=start.pelvis - crouch * UP - back * ahead,
-        hips=np.stack([upright(yaw, 0.45 * float(a[0])) for a in lean]),
+        hips=upright(yaw, 0.45 * lean[:, 0]),
         spine=np.concatenate([0.55 * lean + 0.02, turn * np.minimum(lean / 0.3, 1.0), 0 * lean], axis=1),
     )
     arm = 0.54 * skeleton.scale

@@ -51,8 +51,8 @@ def lie_down(landed: Pose, seat: Seat, bed: Bed, style: Lying, skeleton: Skeleto
     over = _legs_over(middle, bed, skeleton)
     end = lying(landed, bed, style, skeleton)
     # Hands are turned to what they lie on only as they get there.
-    gathered = replace(lying(landed, bed, _gathered(style), skeleton), palms=end.palms, pressing=np.zeros(2))
-    keys, waits = [sat, leaning, middle, over, gathered, *_freed(end, bed), end], [0.45, 0.45, 0.6, 0.65, 0.8]
+    bent = replace(lying(landed, bed, gathered(style), skeleton), palms=end.palms, pressing=np.zeros(2))
+    keys, waits = [sat, leaning, middle, over, bent, *freed(end, bed), end], [0.45, 0.45, 0.6, 0.65, 0.8]
     waits += [0.55] * (len(keys) - len(waits) - 1) + [0.75 if len(keys) == 6 else 0.5]
     times = np.concatenate([[0.0], np.cumsum(waits)]) * pace
     return interpolate(times.tolist(), [landed, *keys], FPS)
@@ -67,18 +67,18 @@ def rise_to_edge(start: Pose, seat: Seat, bed: Bed, bearing: Bearing, skeleton: 
     middle = _half_way(leaning, seat, bed, skeleton)
     rolled = _rolled(start, bed, bearing, skeleton)
     over = _legs_over(middle, bed, skeleton)
-    keys = [start, *_freed(start, bed), rolled, over, middle, leaning, sat]
+    keys = [start, *freed(start, bed), rolled, over, middle, leaning, sat]
     waits = [0.5] * (len(keys) - 6) + [0.85, 0.75, 0.65, 0.55, 0.45]
     times = np.concatenate([[0.0], np.cumsum(waits)]) * pace
     return interpolate(times.tolist(), keys, FPS)
 
 
-def _gathered(style: Lying) -> Lying:
-    """The way of lying that a body comes down in: knees bent, arms beside it."""
-    return Lying(bearing=style.bearing, side=style.side, legs="bent", arms=("loose", "loose"))
+def gathered(style: Lying) -> Lying:
+    """The way of lying that a body comes down in: knees bent, arms over the trunk."""
+    return Lying(bearing=style.bearing, side=style.side, legs="bent", arms=("chest", "belly"))
 
 
-def _freed(pose: Pose, bed: Bed) -> list[Pose]:
+def freed(pose: Pose, bed: Bed) -> list[Pose]:
     """What comes between bent knees and legs that cross or hang over the edge: the leg is lifted over first."""
     local = rotations.rotate(rotations.inverse(pose.hips), pose.ankles - pose.pelvis)
     ankles, knees = pose.ankles.copy(), pose.knees.copy()

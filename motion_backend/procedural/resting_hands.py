@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.procedural.pose import Pose, smooth
-from motion_backend.procedural.solving import SIDES, chest_frame, limb_of_arm, released, solve
+from motion_backend.procedural.solving import SIDES, chest_frame, limb_of_arm, released, trunk_and_legs
 from motion_backend.skeleton import INDEX, Skeleton
 
 Array = NDArray[np.float64]
@@ -48,6 +48,8 @@ class Hold:
     """From the wrist to the part of the hand that lies there."""
 
 
+BACK: Vector = (0.4, 0.0, -1.0)
+"""Where the elbow of a hand points that lies close beside the hips: out to the side it turns the hand into them."""
 Holds = tuple[Hold | None, Hold | None]
 """What the left and the right hand lie on."""
 _HEAD, _SKULL = np.array([0.0, 0.065, -0.010]), np.array([0.082, 0.100, 0.098])
@@ -73,7 +75,7 @@ HOLDS: dict[str, Hold] = {
     "other_shin": Hold("right_knee", (0.042, -0.13, 0.045), (0.7, 0.0, 0.7), (-0.7, -0.15, 0.7), (0.8, -0.5, -0.3)),
     "crossed_ankle": Hold("right_knee", (0.052, -0.29, 0.015), (1.0, 0.0, 0.1), (0.0, -0.3, 1.0), (0.6, -0.5, -0.6)),
     "behind_head": _on_head((0.62, 0.10, -0.78), (-1.0, 0.20, -0.5), (1.0, 0.30, 0.0)),
-    "nape": _on_head((0.62, -0.35, -0.70), (-0.8, 0.6, -0.3), (1.0, -0.3, 0.55), 0.035),
+    "nape": _on_head((0.75, -0.25, -0.60), (-0.8, 0.6, -0.3), (1.0, -0.3, 0.55), 0.035),
     "temples": _on_head((0.95, 0.10, 0.25), (-0.25, 1.0, -0.35), (0.8, -1.0, 0.2), 0.035, 0.10),
     "forehead": _on_head((0.55, 0.05, 0.80), (-0.30, 1.0, 0.0), (0.5, -1.0, 0.3)),
     "ears": _on_head((1.0, -0.20, 0.0), (-0.15, 0.85, -0.55), (1.0, -1.0, 0.3), 0.040, 0.11),
@@ -100,8 +102,7 @@ def lay_hands(pose: Pose, holds: Holds, skeleton: Skeleton) -> Pose:
     """Point `reach` and `palms` of T frames at what the hands lie on, wherever the body has taken it."""
     if holds == (None, None):
         return pose
-    places, world = skeleton.forward_kinematics(*solve(pose, skeleton))
-    positions = places.astype(np.float64)
+    positions, world = _joints(pose, holds, skeleton)
     chest = chest_frame(pose, skeleton)
     reach, palms = pose.reach.copy(), pose.palms.copy()
     for index, hold in enumerate(holds):
@@ -131,6 +132,14 @@ def follow(pose: Pose, rest: Pose, holds: Holds, skeleton: Skeleton) -> Pose:
             reach[:, index], palms[:, index] = rest.reach[index], rest.palms[index]
     left, right = (hold if hold is not None and hold.part else None for hold in holds)
     return lay_hands(replace(pose, reach=reach, palms=palms), (left, right), skeleton)
+
+
+def _joints(pose: Pose, holds: Holds, skeleton: Skeleton) -> tuple[Array, Array]:
+    """World positions (T, 22, 3) and rotations (T, 22, 4) of trunk and legs; zeros where no hand lies on them."""
+    if not any(hold is not None and hold.part for hold in holds):
+        return np.zeros((len(pose), len(INDEX), 3)), np.zeros((len(pose), len(INDEX), 4))
+    positions, world = skeleton.forward_kinematics(pose.pelvis, trunk_and_legs(pose, skeleton))
+    return positions.astype(np.float64), world
 
 
 def _in_world(hold: Hold, index: int, positions: Array, world: Array, scale: float) -> tuple[Array, Array, Array]:

@@ -18,6 +18,11 @@ TURN_IN_PLACE = 0.9
 SHORTEST_WALK = 0.35
 """Over less than this (metres) a body shuffles without turning into the direction of travel."""
 
+TURN_ON_THE_WAY = 1.2
+"""A body that shuffles turns by less than this (radians) as it goes, by more when it is there."""
+EASE = 0.4
+"""How long a turn takes to get going and to end (seconds)."""
+
 
 @dataclass(frozen=True)
 class Route:
@@ -42,7 +47,10 @@ def plan_route(
     length = SPACING * (len(points) - 1)
     end = start_yaw if end_yaw is None else end_yaw
     if length < SHORTEST_WALK:
-        return _shuffle(points, start_yaw, end, fps)
+        turn = float(rotations.wrap(end - start_yaw))
+        if length < SPACING or abs(turn) < TURN_ON_THE_WAY:
+            return _shuffle(points, start_yaw, turn, fps)
+        return _joined([_shuffle(points, start_yaw, 0.0, fps), _turn(points[-1], start_yaw, start_yaw + turn, fps)])
     tangent = _tangents(points)
     tangent = tangent + _less_turning(tangent, aside, start_yaw, end_yaw)
     pieces: list[Route] = []
@@ -57,6 +65,10 @@ def plan_route(
     pieces.append(walked)
     if abs(last_turn) > TURN_IN_PLACE:
         pieces.append(_turn(points[-1], float(walked.heading[-1]), float(walked.heading[-1]) + last_turn, fps))
+    return _joined(pieces)
+
+
+def _joined(pieces: list[Route]) -> Route:
     return Route(
         np.concatenate([p.position for p in pieces]),
         np.concatenate([p.heading for p in pieces]),
@@ -117,16 +129,25 @@ def _walk(points: Array, tangent: Array, yaw: float, last_turn: float, pace: tup
     return Route(position, heading, np.interp(at, time, limit))
 
 
+def evenly(frames: int, fps: int) -> Array:
+    """Share of a turn done at each of its frames: at one rate, with a short ease at both ends. (frames,).
+
+    With a peak, single steps would have to turn further than feet can.
+    """
+    at = (np.arange(frames) + 0.5) / fps
+    done = np.cumsum(smooth((at + 0.02) / EASE) * smooth((frames / fps - at + 0.02) / EASE))
+    return np.asarray(done / done[-1])
+
+
 def _turn(point: Array, start: float, end: float, fps: int) -> Route:
     frames = max(int(np.ceil((abs(end - start) / 2.1 + 0.15) * fps)), 1)
-    share = smooth(np.arange(1, frames + 1) / frames)
+    share = evenly(frames, fps)
     return Route(np.repeat(point[None], frames, axis=0), start + share * (end - start), np.zeros(frames))
 
 
-def _shuffle(points: Array, start: float, end: float, fps: int) -> Route:
-    turn = float(rotations.wrap(end - start))
+def _shuffle(points: Array, start: float, turn: float, fps: int) -> Route:
     length = SPACING * (len(points) - 1)
     frames = max(int(np.ceil(max(abs(turn) / 2.0, length / 0.35, 0.1) * fps)), 1)
-    share = smooth(np.arange(1, frames + 1) / frames)
+    share = evenly(frames, fps)
     position = points[0] + share[:, None] * (points[-1] - points[0])
     return Route(position, start + share * turn, np.full(frames, length / frames * fps))

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from motion_backend.procedural.handholds import Handholds, Pair
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.resting_hands import (
+    BACK,
     HOLDS,
     Hold,
     Holds,
@@ -18,8 +19,9 @@ from motion_backend.procedural.resting_hands import (
     lay_hands,
     on_thing,
 )
-from motion_backend.procedural.seated_legs import seated_legs
+from motion_backend.procedural.seated_legs import Room, seated_legs
 from motion_backend.procedural.sit_styles import Seated
+from motion_backend.procedural.skirting import arms_inside
 from motion_backend.procedural.solving import solve
 from motion_backend.procedural.stances import Seat, bend, upright
 from motion_backend.procedural.styles import arm_arrays
@@ -42,8 +44,10 @@ class Place:
 
     seat: Seat
     around: Handholds
-    room: tuple[float, float]
-    """How far ahead of the pelvis the left and the right foot may go (metres)."""
+    room: tuple[Room, Room]
+    """Of the left and the right foot."""
+    elbows: tuple[float, float] = (np.inf, np.inf)
+    """How far to the left and to the right of the middle there is room for elbows (metres)."""
 
 
 def holds_of(style: Seated, place: Place, skeleton: Skeleton) -> Holds:
@@ -53,23 +57,49 @@ def holds_of(style: Seated, place: Place, skeleton: Skeleton) -> Holds:
 
 
 def _hold(name: str, index: int, place: Place, scale: float) -> Hold | None:
+    if name in SURFACES:
+        return _on_surface(name, index, place, scale) or HOLDS[INSTEAD.get(name, "thighs")]
+    return hold_of(name)
+
+
+def _on_surface(name: str, index: int, place: Place, scale: float) -> Hold | None:
+    """A hand on a surface that belongs to no body; None where it is not there."""
     around, side, yaw = place.around, (1, -1)[index], place.seat.yaw
     beside, inwards = around.beside, np.clip(0.78 * scale - (around.table or 0.0), 0.12, 0.26)
     surfaces: dict[str, tuple[Pair, float, tuple[float, float, float]]] = {
         "armrest": (around.armrests, 0.0, (0.9, -0.3, -0.7)),
-        "beside": (beside, 0.2, (1.0, 0.0, -0.2)),
+        "beside": (beside, 0.2, BACK),
         "behind": (around.behind if around.behind[index] is not None else beside, 0.6, (0.7, 0.1, -0.8)),
-        "edge": (around.edge if around.edge[index] is not None else beside, 0.3, (1.0, 0.0, -0.2)),
+        "edge": (around.edge if around.edge[index] is not None else beside, 0.3, BACK),
         "table": (around.on_table(place.seat, 0.12 * scale, 0.30 * scale), -0.15, (0.7, -0.6, -0.3)),
         "desk": (around.on_table(place.seat, float(inwards), 0.20 * scale), -0.5, (0.9, -0.5, 0.0)),
     }
-    if name in surfaces:
-        points, turned, elbow = surfaces[name]
-        point = points[index]
-        if point is not None:
-            return on_thing(point, yaw, side * turned, elbow)
-        return HOLDS[{"desk": "knees", "table": "lap"}.get(name, "thighs")]
-    return hold_of(name)
+    points, turned, elbow = surfaces[name]
+    point = points[index]
+    return None if point is None else on_thing(point, yaw, side * turned, elbow)
+
+
+def lacking(style: Seated, place: Place, skeleton: Skeleton) -> tuple[str, ...]:
+    """What the hands of a way of sitting were to be on and is not there, and where they are instead (`Note.words`)."""
+    left, right = (_lost(name, index, place, skeleton.scale) for index, name in enumerate(style.arms))
+    if left is not None and left == right:
+        return (f"no {left[0]}: each hand {left[1]}",)
+    sides = zip(("left", "right"), (left, right), strict=True)
+    return tuple(f"no {lost[0]} on the {side}: {side} hand {lost[1]}" for side, lost in sides if lost is not None)
+
+
+def _lost(name: str, index: int, place: Place, scale: float) -> tuple[str, str] | None:
+    """What is not there for one hand, and where that is instead."""
+    if name == "keys":
+        return LACKED[name], "in the air"
+    if name not in SURFACES:
+        return None
+    low, there = place.seat.is_low(scale), _on_surface(name, index, place, scale) is not None
+    if name == "behind" and there and not low:
+        return LACKED[name], "on the seat"
+    if low and name in ON_THE_FLOOR:
+        return LACKED[name], WHERE[ON_THE_FLOOR[name]]
+    return None if there else (LACKED[name], WHERE[INSTEAD.get(name, "thighs")])
 
 
 def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton) -> tuple[Pose, Holds]:
@@ -97,11 +127,32 @@ def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton) -> tupl
     holds = holds_of(style, place, skeleton)
     if style.on_elbows:
         return _on_elbows(_leaning(pose, seat, -LEANS), place, holds, skeleton), holds
-    return at_rest(_leaning(pose, seat, np.array([_recline(style, place)])).at(0), holds, skeleton), holds
+    rested = at_rest(_leaning(pose, seat, np.array([_recline(style, place)])).at(0), holds, skeleton)
+    inside = arms_inside(rested.repeat(1), seat, place.elbows, skeleton, np.ones(1))
+    return lay_hands(inside, holds, skeleton).at(0), holds
 
 
 SURFACES = ("armrest", "beside", "behind", "edge", "table", "desk")
 """What hands may lie on besides the body: of `Handholds`, "desk" being the table with the forearms on it."""
+INSTEAD = {"desk": "knees", "table": "lap"}
+"""Where hands lie if a surface is not there; on the thighs otherwise."""
+LACKED = {
+    "armrest": "armrest",
+    "beside": "room beside the hips",
+    "behind": "floor in reach",
+    "edge": "room beside the thighs",
+    "table": "table before the seat",
+    "desk": "table before the seat",
+    "keys": "piano",
+}
+"""What is not there, of what hands were to be on, in words."""
+WHERE = {
+    "thighs": "on its thigh",
+    "knees": "on its knee",
+    "lap": "in the lap",
+    "own_shin": "on its shin",
+}
+"""Where a hand is instead, in words."""
 ON_THE_FLOOR = {
     "thighs": "knees",
     "crossed_ankle": "knees",
@@ -112,13 +163,19 @@ ON_THE_FLOOR = {
 """Where hands lie instead where knees are up."""
 
 
+CLEAR_OF_KNEES = 10.0
+"""How far one leans back whose arms are crossed behind knees that are up (degrees)."""
+
+
 def _on_the_floor(style: Seated) -> Seated:
     """The same on the floor: hands on the knees or round the shins; who does something sits tailorwise."""
     left, right = (ON_THE_FLOOR.get(name, name) for name in style.arms)
     busy = style.doing not in ("", "music") or "folded" in style.arms or "forehead" in style.arms
     legs = "crossed" if busy and style.legs in ("rest", "together") else style.legs
     shins = "own_shin" in (left, right)
-    return replace(style, arms=(left, right), legs=legs, on_elbows=style.on_elbows and not shins)
+    # Between trunk and knees there is little room for folded arms.
+    recline = max(style.recline, CLEAR_OF_KNEES) if "crossed" in (left, right) else style.recline
+    return replace(style, arms=(left, right), legs=legs, recline=recline, on_elbows=style.on_elbows and not shins)
 
 
 def _recline(style: Seated, place: Place) -> float:
@@ -136,7 +193,7 @@ def _recline(style: Seated, place: Place) -> float:
 def _leaning(pose: Pose, seat: Seat, back: Array) -> Pose:
     """The same pose with its trunk leaned back by each of N angles (radians, forwards negative)."""
     many = pose.repeat(len(back))
-    hips = np.stack([upright(seat.yaw, -(0.6 if lean > 0 else 0.45) * lean) for lean in back])
+    hips = upright(seat.yaw, -np.where(back > 0, 0.6, 0.45) * back)
     spine = np.stack([bend(-(0.4 if lean > 0 else 0.55) * lean) for lean in back])
     # Who leans back still looks ahead, for the most part.
     head = many.head + np.stack([bend(0.5 * max(lean, 0.0)) for lean in back])

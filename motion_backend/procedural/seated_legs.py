@@ -20,6 +20,11 @@ HEEL: Final = 0.055
 """Ankle to heel along the sole (metres at 1.70 m)."""
 EASY_ANKLE: Final = 0.45
 """A foot that rests on its heel points so far down from square to the shin (radians)."""
+AHEAD: Final = 0.60
+"""Seated pelvis to the ankle of a leg that carries the other on its knee (metres at 1.70 m): the lower that knee is,
+the less the hip of the other has to turn outwards."""
+ON_KNEE: Final = 0.09
+"""Ankle over the knee it is laid on (metres at 1.70 m)."""
 WAYS: Final[dict[str, tuple[str, str]]] = {
     "rest": ("rest", "rest"),
     "together": ("together", "together"),
@@ -29,7 +34,7 @@ WAYS: Final[dict[str, tuple[str, str]]] = {
     "left_straight": ("straight", "rest"),
     "right_straight": ("rest", "straight"),
     "feet_crossed": ("over", "under"),
-    "crossed": ("rest", "on_knee"),
+    "crossed": ("ahead", "on_knee"),
     "held": ("straight", "held"),
     "drawn": ("drawn", "drawn"),
 }
@@ -46,6 +51,14 @@ class Legs:
     planted: Array
 
 
+class Room(NamedTuple):
+    """How far a foot may go before it meets something, from the middle of the seat (metres)."""
+
+    ahead: float
+    aside: float
+    """Outwards: where the shin still has room beside it."""
+
+
 class _Leg(NamedTuple):
     """One leg: its ankle to the side (outwards), up from the floor and ahead of the pelvis, and where its knee goes."""
 
@@ -59,13 +72,16 @@ class _Leg(NamedTuple):
     """flat, heel (toes up as the shin leans) or free (square to the shin, a little pointed)."""
 
 
-def seated_legs(seat: Seat, legs: str, skeleton: Skeleton, room: tuple[float, float]) -> Legs:
-    """Both legs on a seat; feet at most `room` metres ahead for left and right."""
+def seated_legs(seat: Seat, legs: str, skeleton: Skeleton, room: tuple[Room, Room]) -> Legs:
+    """Both legs on a seat, where the left and the right foot have that much room."""
     ways = ("tailor", "tailor") if legs == "crossed" and seat.is_low(skeleton.scale) else WAYS[legs]
     hung = seat.pelvis[1] - skeleton.ankle_height > HANGING * skeleton.scale
     solved: list[tuple[Array, Array, Array, float]] = []
     for index, way in enumerate(ways):
-        leg = _leg(way, index, seat, skeleton, room[index])
+        leg = _leg(way, index, seat, skeleton, room[index].ahead)
+        if leg.outwards > room[index].aside:
+            share = (room[index].aside / leg.outwards) ** 2
+            leg = leg._replace(outwards=room[index].aside, knee_out=share * leg.knee_out)
         if hung and leg.foot != "free":
             leg = leg._replace(up=seat.pelvis[1] - 0.36 * skeleton.scale, foot="free", knee_up=0.4)
         solved.append(_placed(leg, index, seat, skeleton, solved))
@@ -89,6 +105,8 @@ def _leg(way: str, index: int, seat: Seat, skeleton: Skeleton, room: float) -> _
             return _Leg(-0.06 * scale, floor + 0.12 * scale, far + 0.05 * scale, knee_up=0.4, foot="heel")
         case "open":
             return _Leg((0.34 if low else 0.28) * scale, floor, shin, knee_out=0.6)
+        case "ahead":
+            return _Leg(0.10 * scale, floor, float(np.clip(AHEAD * scale, shin, max(room, shin))))
         case "together":
             return _Leg(0.06 * scale, floor, shin, knee_out=0.0)
         case "drawn":
@@ -101,7 +119,7 @@ def _leg(way: str, index: int, seat: Seat, skeleton: Skeleton, room: float) -> _
             up, foot = (floor, "flat") if low else (seat.pelvis[1] - 0.14 * scale, "free")
             return _Leg(0.06 * scale, up, ahead, knee_out=0.0, knee_up=1.0, foot=foot)
         case "on_knee":
-            return _Leg(-0.14 * scale, 0.0, 0.33 * scale, knee_out=1.1, knee_up=0.9, foot="free")
+            return _Leg(-0.14 * scale, 0.0, 0.33 * scale, knee_out=1.1, knee_up=0.7, foot="free")
         case _:
             return _Leg((0.12 if low else 0.10) * scale, floor, shin)
 
@@ -135,11 +153,10 @@ def _placed(
 def _on_the_knee(
     other: tuple[Array, Array, Array, float], hip: Array, lengths: tuple[float, float], skeleton: Skeleton, seat: Seat
 ) -> Array:
-    """The ankle laid over the other thigh, just behind its knee: shin on thigh."""
+    """The ankle laid over the other knee: shin on thigh."""
     left = hip + rotations.rotate(rotations.yaw_to_quat(seat.yaw), 2 * skeleton.offsets[INDEX["left_hip"]])
     thigh = two_bone(left, other[0], other[2], lengths).upper
-    inwards = rotations.rotate(rotations.yaw_to_quat(seat.yaw), np.array([1.0, 0.0, 0.0]))
-    return np.asarray(left + 0.90 * lengths[0] * thigh + skeleton.scale * (0.125 * UP + 0.12 * inwards))
+    return np.asarray(left + lengths[0] * thigh + ON_KNEE * skeleton.scale * UP)
 
 
 def _stretch(seat: Seat, drop: float, scale: float) -> float:

@@ -14,6 +14,7 @@ from motion_backend.procedural.pose import Pose, concatenate, interpolate, smoot
 from motion_backend.procedural.resting_hands import Holds, at_rest, follow
 from motion_backend.procedural.seated import Place, seated
 from motion_backend.procedural.sit_styles import Manner, Seated
+from motion_backend.procedural.skirting import arms_inside, hands_round_body
 from motion_backend.procedural.solving import released
 from motion_backend.procedural.stances import UP, Seat, bend, standing, upright
 from motion_backend.procedural.styles import Bearing, arm_arrays
@@ -23,10 +24,12 @@ Array = NDArray[np.float64]
 ARM = 0.54
 """Shoulder to wrist at the reference height (metres)."""
 NOTHING: Holds = (None, None)
-AROUND, ROUND = 0.4, 0.16
-"""How far hands come out on their way down to the seat, and up from it (arm lengths)."""
-OVER = 0.35
-"""How much higher than half-way, of its rise, a foot goes."""
+AROUND, ROUND, OVER_KNEES = 0.4, 0.16, 0.5
+"""How far hands come out on their way down to the seat, up from it, and over knees that are up (arm lengths)."""
+BEGINS = 7
+"""Frames in which arms come in where there is little room beside a seat."""
+OVER = 0.14
+"""How much higher than half-way a foot goes at most that is laid over the other leg (metres)."""
 STEP = 1.8
 """Seconds a foot takes for a metre, where that is longer than a small step."""
 SINK = 0.014
@@ -52,13 +55,20 @@ def sit_down(start: Pose, place: Place, style: Seated, felt: Holds, skeleton: Sk
     moved = interpolate([0.0, max(0.75, 1.1 * travel) * pace], keys, FPS)
     moved = follow(_place_feet(moved, landed, settled, first=0.15, each=0.42), settled, holds, skeleton)
     moved = _taken(moved, landed, holds)
-    moved = _round_the_thighs(moved, touched.reaching)
-    return concatenate([part for part in (ready, down, settle, moved) if part is not None]), holds
+    moved = _round_the_thighs(moved, touched.reaching, place.seat.is_low(skeleton.scale))
+    share = smooth(np.arange(len(moved)) / BEGINS)
+    moved = arms_inside(moved, place.seat, place.elbows, skeleton, share)
+    whole = concatenate([part for part in (ready, down, settle, moved) if part is not None])
+    return hands_round_body(whole, skeleton), holds
 
 
-def _round_the_thighs(moved: Pose, hands: Array) -> Pose:
-    """Hands on their way between lap and seat come out and up; `hands` (2,) says whether they go there."""
-    out = ROUND * np.sin(np.pi * smooth(np.linspace(0.0, 1.0, len(moved))))[:, None, None] * hands[:, None]
+def _round_the_thighs(moved: Pose, hands: Array, low: bool) -> Pose:
+    """Hands on their way between lap and seat come out and up; `hands` (2,) says whether they go there.
+
+    On a low seat knees are up, and both hands go over them.
+    """
+    size = OVER_KNEES if low else ROUND * hands[:, None]
+    out = size * np.sin(np.pi * smooth(np.linspace(0.0, 1.0, len(moved))))[:, None, None]
     return replace(moved, arms=moved.arms + out * np.array([[1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]))
 
 
@@ -71,7 +81,7 @@ def _taken(moved: Pose, start: Pose, holds: Holds) -> Pose:
         moved,
         palms=rotations.slerp(start.palms[None], moved.palms, turned),
         reaching=late * wanted,
-        pressing=(1 - turned) * start.pressing + turned * wanted,
+        pressing=(1 - smooth(share / 0.3)[:, None]) * start.pressing + late * wanted,
     )
 
 
@@ -164,27 +174,36 @@ def _place_feet(pose: Pose, before: Pose, after: Pose, first: float, each: float
     """Move the feet one after the other in small lifted steps from where they were to where they go."""
     ankles, feet, planted, knees = pose.ankles.copy(), pose.feet.copy(), pose.planted.copy(), pose.knees.copy()
     time = np.arange(1, len(pose) + 1) / FPS
-    for order, index in enumerate((0, 1) if after.planted[0] > after.planted[1] else (1, 0)):
+    # A foot that leaves the floor waits until the other stands.
+    wait = 0.5 * each if after.planted.all() else 0.9 * each
+    for order, index in enumerate(_first_foot(after)):
         gap = float(np.linalg.norm(after.ankles[index] - before.ankles[index]))
-        share = np.clip((time - first - order * 0.5 * each) / max(each, STEP * gap), 0.0, 1.0)
+        share = np.clip((time - first - order * wait) / max(each, STEP * gap), 0.0, 1.0)
         way = smooth(share)[:, None]
         ankles[:, index] = before.ankles[index] + way * (after.ankles[index] - before.ankles[index])
         rise = float(after.ankles[index, 1] - before.ankles[index, 1])
         # A foot that goes onto the other knee goes over it.
-        ankles[:, index, 1] += max(min(0.08, 0.28 * gap), OVER * rise) * np.sin(np.pi * share)
+        ankles[:, index, 1] += max(min(0.08, 0.28 * gap), min(0.6 * rise, OVER)) * np.sin(np.pi * share)
         feet[:, index] = rotations.slerp(before.feet[index], after.feet[index], way[:, 0])
         knees[:, index] = before.knees[index] + way * (after.knees[index] - before.knees[index])
         stands = np.where(share <= 0, before.planted[index], np.where(share >= 1, after.planted[index], 0.0))
         planted[:, index] = stands
     last = {"ankles": ankles, "feet": feet, "planted": planted, "knees": knees}
     far = float(np.linalg.norm(after.ankles - before.ankles, axis=1).max())
-    short = max(round((first + 0.5 * each + max(each, STEP * far)) * FPS) - len(pose), 0)
+    short = max(round((first + wait + max(each, STEP * far)) * FPS) - len(pose), 0)
     if short:
         # The feet take longer than the trunk: hold the trunk until both are placed.
         held = pose.at(slice(len(pose) - 1, len(pose)))
         longer = concatenate([pose, *([held] * short)])
         return _place_feet(longer, before, after, first, each)
     return replace(pose, **last)
+
+
+def _first_foot(after: Pose) -> tuple[int, int]:
+    """Which foot goes first: one that will stand, else one that comes to lie behind the other's shin."""
+    away = np.linalg.norm((after.ankles - after.pelvis)[:, [0, 2]], axis=1)
+    left = after.planted[0] > after.planted[1] or (not after.planted.any() and away[0] < away[1] - 0.02)
+    return (0, 1) if left else (1, 0)
 
 
 def stand_up(
@@ -220,10 +239,11 @@ def stand_up(
     seconds = max(0.62, 1.1 * travel) * pace
     gather = interpolate([0.0, seconds], [start, replace(ready, ankles=start.ankles, feet=start.feet)], FPS)
     gather = follow(_place_feet(gather, start, ready, first=0.0, each=0.36), ready, push, skeleton)
-    gather = _round_the_thighs(_taken(gather, start, push), ready.reaching)
+    gather = _round_the_thighs(_taken(gather, start, push), ready.reaching, seat.is_low(skeleton.scale))
     ready = gather.at(len(gather) - 1)
     up = _rising(ready, end, seat, (forward, 1.25 * pace * (0.7 + 0.3 * depth)))
-    return concatenate([gather, follow(replace(up, knees=knees_over_feet(up)), ready, push, skeleton)])
+    up = follow(replace(up, knees=knees_over_feet(up)), ready, push, skeleton)
+    return hands_round_body(concatenate([gather, up]), skeleton)
 
 
 def _rising(ready: Pose, end: Pose, seat: Seat, way: tuple[float, float]) -> Pose:

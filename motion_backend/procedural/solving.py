@@ -31,19 +31,25 @@ EASED = 6
 
 def solve(pose: Pose, skeleton: Skeleton) -> tuple[Array, Array]:
     """Handles of T frames to pelvis positions (T, 3) and local rotations (T, 22, 4)."""
-    frames = len(pose)
-    local = np.tile(rotations.IDENTITY, (frames, len(skeleton.names), 1))
+    local = trunk_and_legs(pose, skeleton)
+    frame = chest_frame(pose, skeleton)
+    for index, (name, side) in enumerate(SIDES):
+        _solve_arm(local, pose, skeleton, (index, name, side), frame)
+    return pose.pelvis.copy(), rotations.continuous(local)
+
+
+def trunk_and_legs(pose: Pose, skeleton: Skeleton) -> Array:
+    """Local rotations (T, 22, 4) of all but the arms, which are stretched out to the sides."""
+    local = np.tile(rotations.IDENTITY, (len(pose), len(skeleton.names), 1))
     local[:, INDEX["pelvis"]] = pose.hips
     third = rotations.rotvec_to_quat(pose.spine / 3)
     for name in SPINE:
         local[:, INDEX[name]] = third
     half = rotations.rotvec_to_quat(pose.head / 2)
     local[:, INDEX["neck"]] = local[:, INDEX["head"]] = half
-    chest, chest_position = chest_frame(pose, skeleton)
-    for index, (name, side) in enumerate(SIDES):
+    for index, (name, _) in enumerate(SIDES):
         _solve_leg(local, pose, skeleton, index, name)
-        _solve_arm(local, pose, skeleton, (index, name, side), (chest, chest_position))
-    return pose.pelvis.copy(), rotations.continuous(local)
+    return local
 
 
 def hips_within(pose: Pose, skeleton: Skeleton) -> Pose:
@@ -90,9 +96,7 @@ def _solve_leg(local: Array, pose: Pose, skeleton: Skeleton, index: int, name: s
     local[:, INDEX[f"{name}_knee"]] = rotations.compose(rotations.inverse(thigh), shin)
     foot = rotations.compose(rotations.inverse(shin), pose.feet[:, index])
     local[:, INDEX[f"{name}_ankle"]] = aside_within(f"{name}_ankle", foot)
-    bend = np.zeros((len(pose), 3))
-    bend[:, 0] = -pose.toes[:, index]
-    local[:, INDEX[f"{name}_foot"]] = rotations.rotvec_to_quat(bend)
+    local[:, INDEX[f"{name}_foot"]] = rotations.axis_to_quat("x", -pose.toes[:, index])
 
 
 def _solve_arm(
@@ -106,22 +110,26 @@ def _solve_arm(
     clavicle = rotations.compose(chest, collar)
     local[:, INDEX[f"{name}_shoulder"]] = rotations.compose(rotations.inverse(clavicle), upper)
     local[:, INDEX[f"{name}_elbow"]] = rotations.compose(rotations.inverse(upper), lower)
-    bend = _within_reach(rotations.compose(rotations.inverse(lower), pose.palms[:, index]), side)
-    press = rotations.rotvec_to_quat(rotations.quat_to_rotvec(bend) * pose.pressing[:, index, None])
-    local[:, INDEX[f"{name}_wrist"]] = _within_reach(press, side)
+    if pose.pressing[:, index].any():
+        local[:, INDEX[f"{name}_wrist"]] = wrist_rotations(lower, pose.palms[:, index], pose.pressing[:, index], side)
+
+
+def wrist_rotations(lower: Array, palms: Array, pressing: Array, side: int) -> Array:
+    """Local rotations (..., 4) of a wrist on a forearm (..., 4) that wants a hand (..., 4), as far as it presses."""
+    bend = _within_reach(rotations.compose(rotations.inverse(lower), palms), side)
+    press = rotations.rotvec_to_quat(rotations.quat_to_rotvec(bend) * pressing[..., None])
+    return _within_reach(press, side)
 
 
 def _within_reach(wrist: Array, side: int) -> Array:
-    """A wrist's rotation limited to what wrist and forearm can do: the forearm rolls, then the hand bends. (T, 4)."""
-    roll = 2 * np.arctan2(wrist[:, 0], wrist[:, 3])
-    roll = rotations.wrap(roll)
-    twist = np.zeros((len(wrist), 3))
-    twist[:, 0] = roll
-    swing = rotations.quat_to_rotvec(rotations.compose(rotations.inverse(rotations.rotvec_to_quat(twist)), wrist))
+    """A wrist's rotation limited to what wrist and forearm can do: the forearm rolls, then the hand bends. (..., 4)."""
+    roll = rotations.wrap(2 * np.arctan2(wrist[..., 0], wrist[..., 3]))
+    twist = rotations.axis_to_quat("x", roll)
+    swing = rotations.quat_to_rotvec(rotations.compose(rotations.inverse(twist), wrist))
     low, high = np.sort(side * np.array([WRIST_ASIDE, WRIST_BEND]), axis=1).T
-    swing[:, 1:] = np.clip(swing[:, 1:], low, high)
-    twist[:, 0] = np.clip(roll, -FOREARM_ROLL, FOREARM_ROLL)
-    return rotations.compose(rotations.rotvec_to_quat(twist), rotations.rotvec_to_quat(swing))
+    swing[..., 1:] = np.clip(swing[..., 1:], low, high)
+    twist = rotations.axis_to_quat("x", np.clip(roll, -FOREARM_ROLL, FOREARM_ROLL))
+    return rotations.compose(twist, rotations.rotvec_to_quat(swing))
 
 
 def released(pose: Pose, skeleton: Skeleton) -> Pose:
@@ -156,9 +164,7 @@ def limb_of_arm(
     target = wanted + weight * (pose.reach[:, index] - wanted)
     # Raising the arm lifts the collar bone with it, as a shoulder does.
     up = rotations.rotate(rotations.inverse(chest), target - rest)[:, 1] / span
-    lift = np.zeros((len(pose), 3))
-    lift[:, 2] = side * 0.45 * np.clip(up, 0.0, 1.0)
-    collar = rotations.rotvec_to_quat(lift)
+    collar = rotations.axis_to_quat("z", side * 0.45 * np.clip(up, 0.0, 1.0))
     clavicle = rotations.compose(chest, collar)
     joint = chest_position + rotations.rotate(chest, offsets[INDEX[f"{name}_collar"]])
     shoulder = joint + rotations.rotate(clavicle, offsets[INDEX[f"{name}_shoulder"]])

@@ -32,9 +32,9 @@ FLOOR_REACH, LOW = 0.56, 0.30
 UP = np.array([0.0, 1.0, 0.0])
 
 
-def upright(yaw: float, pitch: float = 0.0) -> Array:
-    """Pelvis rotation heading `yaw`, bent forward by `pitch` radians. (4,)."""
-    return rotations.compose(rotations.yaw_to_quat(yaw), rotations.rotvec_to_quat(np.array([pitch, 0.0, 0.0])))
+def upright(yaw: float, pitch: Array | float = 0.0) -> Array:
+    """Pelvis rotation heading `yaw`, bent forward by `pitch` (...) radians. (..., 4)."""
+    return rotations.compose(rotations.yaw_to_quat(yaw), rotations.axis_to_quat("x", np.asarray(pitch)))
 
 
 def bend(forward: float, side: float = 0.0, turn: float = 0.0) -> Array:

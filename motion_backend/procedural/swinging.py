@@ -40,9 +40,12 @@ _HEEL_OFF = ((-1.0, 0.0), (-0.5, 0.13), (0.0, 0.61), (0.12, 0.91), (0.21, 1.0), 
              (0.57, 0.28), (0.7, 0.07), (1.0, 0.0), (2.0, 0.0))  # fmt: skip
 _HEEL_STRIKE = ((-1.0, 0.0), (0.45, 0.0), (0.68, 0.38), (0.82, 0.85), (1.0, 1.0), (1.35, 0.5), (1.7, 0.15), (2.0, 0.0))
 _SCUFF = ((-1.0, 0.0), (0.0, 0.0), (0.12, 1.0), (0.88, 1.0), (1.0, 0.85), (1.5, 0.1), (2.0, 0.0))
-_HEIGHT = ((0.0, 0.0), (0.07, 0.7), (0.18, 0.98), (0.35, 1.0), (0.5, 1.0), (0.65, 0.9), (0.77, 0.64), (0.87, 0.34),
+_HEIGHT = ((0.0, 0.0), (0.07, 0.7), (0.18, 0.98), (0.35, 1.0), (0.5, 1.0), (0.64, 0.9), (0.71, 0.64), (0.78, 0.38),
+           (0.87, 0.2), (0.94, 0.09), (1.0, 0.0))  # fmt: skip
+_LIFTED = ((0.0, 0.0), (0.07, 0.7), (0.18, 0.98), (0.35, 1.0), (0.5, 1.0), (0.65, 0.9), (0.77, 0.64), (0.87, 0.34),
            (0.94, 0.14), (1.0, 0.0))  # fmt: skip
-_LEVEL = ((0.0, 0.0), (0.5, 0.0), (0.65, 0.006), (0.77, 0.018), (0.87, 0.022), (0.94, 0.013), (1.0, 0.0))
+"""How high the ball of the foot is in a usual step, and in what it is lifted higher (shares of the middle)."""
+_LEVEL = ((0.0, 0.0), (0.5, 0.0), (0.65, 0.008), (0.77, 0.032), (0.87, 0.032), (0.94, 0.018), (1.0, 0.0))
 """How much higher a foot comes that does not point its tip up (metres)."""
 
 
@@ -103,7 +106,9 @@ class Swing:
     def height(self, u: Array) -> Array:
         """How high the ball of the foot is at shares of its way through the air. (T,)."""
         level = (1 - min(self.heel_strike / TIP_UP, 1.0)) * min(self.clearance / USUAL, 1.0)
-        return np.asarray(self.clearance * np.interp(u, *_curve(_HEIGHT)) + level * np.interp(u, *_curve(_LEVEL)))
+        usual = min(self.clearance, USUAL)
+        lifted = usual * np.interp(u, *_curve(_HEIGHT)) + (self.clearance - usual) * np.interp(u, *_curve(_LIFTED))
+        return np.asarray(lifted + level * np.interp(u, *_curve(_LEVEL)))
 
     def pitch(self, phase: Array) -> Array:
         """How far the foot is pitched about the floor, heel up positive. (T,)."""
@@ -171,21 +176,15 @@ class Feet:
         """
         pitch = self.pitch + tiptoe[:, None]
         flat = rotations.yaw_to_quat(self.yaw)
-        feet = rotations.compose(flat, _pitched(pitch))
+        feet = rotations.compose(flat, rotations.axis_to_quat("x", pitch))
         ball = skeleton.offsets[INDEX["left_foot"]]
         heel, tip = HEEL * skeleton.scale, TIP * skeleton.scale
         for pivot, chosen in ((ball, pitch > 0), (heel, pitch < 0)):
             moved = rotations.rotate(flat, pivot) - rotations.rotate(feet, pivot)
             self.ankles += np.where(chosen[..., None], moved, 0.0)
-        over = rotations.compose(flat, _pitched(np.maximum(pitch - TOE_BEND, 0.0)))
+        over = rotations.compose(flat, rotations.axis_to_quat("x", np.maximum(pitch - TOE_BEND, 0.0)))
         self.ankles += rotations.rotate(flat, tip) - rotations.rotate(over, tip)
         return feet, np.clip(pitch, 0.0, TOE_BEND) * self.bend
-
-
-def _pitched(angle: Array) -> Array:
-    vector = np.zeros((*angle.shape, 3))
-    vector[..., 0] = angle
-    return rotations.rotvec_to_quat(vector)
 
 
 def _on_its_way(u: Array) -> Array:

@@ -22,7 +22,7 @@ class Walk:
     """Half the distance between the feet where the body stands; in full stride they come nearer."""
     clearance: float = 0.058
     """How high the ball of the foot swings."""
-    bounce: float = 0.003
+    bounce: float = 0.006
     stamp: float = 0.0
     """How far the body drops onto each foot that comes down (metres)."""
     sway: float = 0.038
@@ -39,7 +39,7 @@ class Walk:
     """Share of arms swinging together from side to side."""
     crouch: float = 0.0
     """How much lower the pelvis is carried."""
-    double: float = 0.15
+    double: float = 0.12
     """Share of a step on both feet; negative is flight, as in running."""
     roll: float = 1.0
     """How far the heel rises behind, against a usual step."""
@@ -114,7 +114,7 @@ _WALK_WORDS: Words = (
                      "hips": 2.0, "arms": ("bent", "bent"), "elbow": 30.0, "crouch": 0.02, "clearance": 0.14}),
     (r"backwards?\b", {"speed": 0.65, "aside": 180.0, "stride": 0.8, "swing": 12.0, "glance": 25.0, "crouch": 0.01}),
     (r"march", {"clearance": 0.30, "bounce": 0.018, "swing": 44.0, "elbow": 10.0, "lean": -3, "head": -4, "roll": 0.95,
-                "strike": 0.0, "stamp": 0.008, "speed": 1.05, "stride": 0.88}),
+                "strike": 0.0, "stamp": 0.008, "speed": 1.05, "stride": 0.88, "splay": 0.06}),
     (r"pocket", {"arms": ("pockets", "pockets"), "swing": 0.0}),
     (r"wrapped|hugging", {"arms": ("wrapped", "wrapped"), "swing": 0.0, "lean": 10, "head": 12, "stride": 0.85}),
     (r"careful|balance", {"arms": ("balance", "balance"), "swing": 0.0, "speed": 0.6, "stride": 0.85, "head": 9,

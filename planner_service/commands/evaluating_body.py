@@ -154,7 +154,8 @@ def _one_trial(
     else:
         table = plain_table("figure", "value", right=("value",))
         for name, value in told.items():
-            unit, plain = UNITS.get(name, ""), "–" if value is None else str(value)
+            words = "; ".join(value) if isinstance(value, list) else value
+            unit, plain = UNITS.get(name, ""), "–" if words in (None, "") else str(words)
             table.add_row(name, f"{_shown(value, unit)} {unit}" if isinstance(value, float) else plain)
         console.print(table)
     if out is not None:

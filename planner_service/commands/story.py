@@ -148,4 +148,6 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
     )
     for event in made.planned.script.uncovered:
         console.print(f"not covered: {event}", highlight=False)
+    for note in made.motion.notes:
+        console.print(f"done otherwise: keyframe {note.keyframe}: {note.words}", highlight=False)
     console.print(f"\nwritten to {files[0].parent}/: {', '.join(file.name for file in files)}", highlight=False)

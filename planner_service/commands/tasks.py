@@ -86,6 +86,8 @@ def _finish(plan: TaskPlan, room: Layout | None, out: Path | None, shelves: Shel
         f"written to {out}/: {', '.join(file.name for file in files)}",
         highlight=False,
     )
+    for note in made.motion.notes:
+        console.print(f"done otherwise: keyframe {note.keyframe}: {note.words}", highlight=False)
 
 
 def _show(plan: TaskPlan, console: Console) -> None:

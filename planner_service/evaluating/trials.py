@@ -127,7 +127,7 @@ class Performance:
         about = {
             "skill": self.trial.skill.value, "caption": self.trial.caption,
             "performed_as": acted if acted != look_of(self.trial.caption) else None, "room": self.trial.room,
-            "seed": self.trial.seed, "object": self.object_id,
+            "notes": [note.words for note in self.motion.notes], "seed": self.trial.seed, "object": self.object_id,
         }  # fmt: skip
         own = {name: value for name, value in self.figures.to_dict().items() if name not in ("keyframe", "skill")}
         besides = {name: round(one, 5) if isinstance(one, float) else one for name, one in self.besides.items()}

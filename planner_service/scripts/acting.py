@@ -15,9 +15,11 @@ import numpy as np
 
 from motion_backend.motion import Action, Skill
 from motion_backend.obstacles import Obstacles
-from motion_backend.procedural.lie_styles import wanted_edge
-from motion_backend.procedural.lying import Bed
+from motion_backend.procedural.lying import place_to_lie
+from motion_backend.procedural.palms import suits
+from motion_backend.procedural.perching import seat_for
 from planner_service.scripts.checking import free_hand, hand_of
+from planner_service.scripts.elbow_room import LEG_ROOM, ElbowRoom
 from planner_service.scripts.handling import Hands, done_in, look_of
 from planner_service.scripts.keyframe import Keyframe
 from planner_service.scripts.standing_in import Words, hashed_words, performed_as
@@ -34,14 +36,12 @@ LAST_HOLD = 1.5
 """Seconds more for the last keyframe."""
 PACING = 1.5
 """A wandering walk goes at least this far, where the room allows it (metres)."""
-OFF, SHOULDER = 0.06, 0.55
-"""A hand's joint from what it touches, and the shoulder of a bending body above it (metres)."""
-LEG_ROOM = 0.12
-"""Clearance of a place where one stands to touch something (metres)."""
 WALLED = 0.08
 """How far a point of furniture may lie in the wall of its room (metres)."""
 STEP = 0.40
 """From free floor to a standing point is at most one step: what a room's check allows, and half a cell (metres)."""
+KNEELING = (-0.7, 0.0, 0.4)
+"""How far before the standing point feet, body and hands are of who gets down on the knees (metres)."""
 Point = tuple[float, float]
 
 
@@ -94,11 +94,12 @@ class _Stage:
             keyframe.skill, keyframe.caption, keyframe.emotion, keyframe.furniture, place.object_id, keyframe=index
         )
         if keyframe.skill in NEEDS:
-            spot = self._spot(index, keyframe, place)
-            self.at = spot.standing
-            if keyframe.skill is not Skill.TOUCH:
+            hand, spot = hand_of(keyframe.caption, default=free), self._spot(index, keyframe, place)
+            if keyframe.skill is Skill.TOUCH:
+                hand, spot = self._elbows.freely(spot, hand, keyframe.caption)
+            else:
                 self.resting = spot
-            hand = hand_of(keyframe.caption, default=free)
+            self.at = spot.standing
             return replace(action, object_id=spot.object_id, spot=spot, hand=hand, hold=HOLDS[keyframe.skill])
         if keyframe.skill in (Skill.STANDUP, Skill.GETUP) and self.resting is not None:
             return replace(action, object_id=self.resting.object_id, spot=self.resting)
@@ -118,44 +119,33 @@ class _Stage:
                 "clear the way to it, or choose another room"
             )
         if need == "touch":
-            wanted = height_of(keyframe.caption)
-            found = [s for s in found if s.height == wanted] or [s for s in found if s.height == "medium"] or found
-            # Fronts before tops of what is taller than the chest: an arm does not go over an edge by itself.
-            found = [s for s in found if s.normal[1] < 0.5 or s.point[1] < 1.2] or found
-            if wanted == "high":
-                found = self._roomiest(found)
-                found.sort(key=lambda s: -s.point[1])
-                found = [s for s in found if s.point[1] > found[0].point[1] - 0.1]
-            found = [s for s in found if self._within_arms_way(s)] or found
-            least = min(self._cluttered(s) for s in found)
-            found = [s for s in found if self._cluttered(s) == least]
-            # The body may come back to a piece: it need not touch the very same place again.
-            found = self._roomiest(found)
-            return found[int(self.rng.integers(min(len(found), 3)))]
-        wanted_side = wanted_edge(keyframe.caption) if need == "lie" else None
-        return next((s for s in found if Bed.of(s).edge_side == wanted_side), found[0])
+            return self._to_touch(found, keyframe.caption)
+        if need == "sit":
+            return seat_for(found, keyframe.emotion, keyframe.caption, self._elbows.solid)
+        return place_to_lie(found, keyframe.caption)
 
-    def _within_arms_way(self, spot: Spot) -> bool:
-        """Whether nothing solid, such as a chair's own back, is between a body's shoulder and what it touches."""
-        end = np.asarray(spot.point) + OFF * np.asarray(spot.normal)
-        shoulder = np.array([spot.standing[0], spot.point[1] + SHOULDER, spot.standing[1]])
-        way = end + np.linspace(0.0, 1.0, 12)[:, None] * (shoulder - end)
-        return float(self._solid.depth(way).max()) < 0.0
+    def _to_touch(self, found: list[Spot], caption: str) -> Spot:
+        """One of the spots of a piece of the wanted height, with room for arms, on which nothing lies."""
+        wanted = height_of(caption)
+        level = [[s for s in found if s.height == height] for height in (wanted, "medium", "low")]
+        suited = ([s for s in some if suits(s, caption, self._elbows.solid)] for some in level)
+        found = next(filter(None, suited), level[0] or level[1] or found)
+        # Fronts before tops of what is taller than the chest: an arm does not go over an edge by itself.
+        found = [s for s in found if s.normal[1] < 0.5 or s.point[1] < 1.2] or found
+        if wanted == "high":
+            found = self._elbows.roomiest(found)
+            found.sort(key=lambda s: -s.point[1])
+            found = [s for s in found if s.point[1] > found[0].point[1] - 0.1]
+        found = [s for s in found if self._elbows.within_arms_way(s)] or found
+        least = min(self._cluttered(s) for s in found)
+        found = [s for s in found if self._cluttered(s) == least]
+        # The body may come back to a piece: it need not touch the very same place again.
+        found = self._elbows.roomiest(found)
+        return found[int(self.rng.integers(min(len(found), 3)))]
 
     @cached_property
-    def _solid(self) -> Obstacles:
-        return Obstacles.of_home(self.home).solid()
-
-    def _roomiest(self, found: list[Spot]) -> list[Spot]:
-        """Those with as much elbow room as any."""
-        room = [self._elbow_room(s) for s in found]
-        return [s for s, space in zip(found, room, strict=True) if space >= max(room) - 0.03]
-
-    def _elbow_room(self, spot: Spot) -> float:
-        """Clearance where a body stands and, since it may crouch, a step behind; more than enough counts alike."""
-        back = -0.16 * np.array([np.sin(spot.approach), np.cos(spot.approach)])
-        behind = (float(spot.standing[0] + back[0]), float(spot.standing[1] + back[1]))
-        return min(self.walkable.clearance(spot.standing), self.walkable.clearance(behind), 0.28)
+    def _elbows(self) -> ElbowRoom:
+        return ElbowRoom(self.walkable, Obstacles.of_home(self.home).solid())
 
     def _reachable(self, placed: Placed, need: str) -> list[Spot]:
         """Spots whose standing point can be walked to, best first: as they come, the nearer side first when lying."""
@@ -188,9 +178,12 @@ class _Stage:
             for yaw in np.arange(8) * np.pi / 4:
                 ahead = np.array([np.sin(yaw), np.cos(yaw)])
                 ends = [np.asarray(point) + share * length * ahead for share in (-1.0, -0.5, 0.5, 1.0)]
+                spot = floor_spot(need, point, float(yaw))
+                if need == "lie":
+                    ends += [np.asarray(spot.standing) + share * ahead for share in KNEELING]
                 room_left = min(self.walkable.clearance((float(e[0]), float(e[1]))) for e in ends)
                 if best is None or room_left > best[0]:
-                    best = (room_left, floor_spot(need, point, float(yaw)))
+                    best = (room_left, spot)
             if best is not None and best[0] > 0.35:
                 break
         if best is None or best[0] <= 0.0:

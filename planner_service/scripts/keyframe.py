@@ -28,6 +28,8 @@ def legible(text: object) -> object:
     """A text in one line, without what a terminal or page would obey instead of showing; other values unchanged."""
     if not isinstance(text, str):
         return text
+    if text.isascii() and text.isprintable():
+        return " ".join(text.split())
     shown = "".join(" " if unicodedata.category(one) in ("Cc", "Zl", "Zp") else one for one in text)
     return " ".join("".join(one for one in shown if unicodedata.category(one) not in ("Cf", "Cs", "Co")).split())
 

@@ -8,9 +8,11 @@ import secrets
 import time
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Final
 
-from sqlalchemy import Connection, Engine, Row, Select, delete, func, select, update
+from pydantic_core import from_json
+from sqlalchemy import Connection, Engine, Row, Select, bindparam, delete, func, select, update
 from sqlalchemy.exc import IntegrityError
 
 from planner_service.documents import request_from_dict, request_to_dict
@@ -142,7 +144,11 @@ class Stories:
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
-        self.writing = engine.execution_options(writes=True)
+
+    @cached_property
+    def writing(self) -> Engine:
+        """The same database for transactions that write."""
+        return self.engine.execution_options(writes=True)
 
     def add(self, connection: Connection, caller: str, request: StoryRequest) -> str:
         """A new story inside the caller's transaction; its id."""
@@ -253,15 +259,15 @@ class Stories:
 
     def get(self, story_id: str, after: int = -1) -> Record:
         """A story with what was made of it beyond the position `after`, data left out. StoryGone."""
-        beyond = (artifacts.c.story_id == story_id) & (artifacts.c.position > after)
         with self.engine.connect() as connection:
-            row = connection.execute(_listed().where(stories.c.id == story_id)).one_or_none()
+            row = connection.execute(_ONE, {"id": story_id}).one_or_none()
             if row is None:
                 raise StoryGone(story_id)
-            found = connection.execute(select(*_SHOWN).where(beyond).order_by(artifacts.c.position)).all()
+            found = connection.execute(_MADE, {"id": story_id, "after": after}).all()
+        summaries = from_json(f"[{','.join(one.summary for one in found)}]")
         made = tuple(
-            Artifact(one.position, one.kind, json.loads(one.summary), one.etag, one.following, one.progress)
-            for one in found
+            Artifact(one.position, one.kind, summary, one.etag, one.following, one.progress)
+            for one, summary in zip(found, summaries, strict=True)
         )
         return _record(row, made)
 
@@ -295,6 +301,15 @@ def _listed() -> Select[Any]:
     """Stories beside what the job engine says of them."""
     joined = stories.outerjoin(workflow_status, workflow_status.c.workflow_uuid == stories.c.id)
     return select(*_LISTED).select_from(joined)
+
+
+_ONE: Final = _listed().where(stories.c.id == bindparam("id"))
+_MADE: Final = (
+    select(*_SHOWN)
+    .where(artifacts.c.story_id == bindparam("id"), artifacts.c.position > bindparam("after"))
+    .order_by(artifacts.c.position)
+)
+"""What every look at a story asks: putting a query together takes longer than SQLite does to answer it."""
 
 
 def _record(row: Row[Any], made: tuple[Artifact, ...] = ()) -> Record:

@@ -30,7 +30,10 @@ class Spot:
     standing: Point2
     """[x, z] of the pelvis standing before and after."""
     approach: float
-    """Yaw of the body at `standing` just before: back to the seat (sit) or to the bed (lie), towards it (touch)."""
+    """Yaw of the body at `standing` just before: back to the seat (sit) or to the bed (lie), towards it (touch).
+
+    Who lies down on the floor looks to where the head will be.
+    """
     edge: float = 0.0
     """sit, lie: horizontal distance from `point` to the edge of the surface towards `standing`."""
     back: float = inf

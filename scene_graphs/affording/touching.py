@@ -23,8 +23,8 @@ def touching(placed: Placed, solid: list[Part]) -> Iterator[Spot]:
     """Spots to touch, the front first, then the sides and the back; at each the medium height first."""
     directions = [FORWARD, (1.0, 0.0), (-1.0, 0.0), (0.0, -1.0)]
     touchable = [part for part in solid if part.role not in _UNTOUCHED]
-    seen: set[tuple[Point3, Point3]] = set()
     for u in directions:
+        seen: set[tuple[Point3, Point3]] = set()
         width = placed.size[0] if u[0] == 0 else placed.size[2]
         shifts = (0.0, width / 4, -width / 4) if width >= 1.0 else (0.0,)
         for height, (least, wanted, most) in TOUCH_HEIGHTS.items():

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from good_model import seen_in
 from model_server import Asked, ModelServer, Sent, chat
-from running import RunningService
+from running import PATIENCE, RunningService
 
 from planner_service.client import ApiError, Client
 from planner_service.scripts.checking import check
@@ -38,7 +38,7 @@ def test_a_film_with_subtitles_becomes_short_scripts_that_stories_can_use(
     with Client(service.url) as client, (tmp_path / "An evening.mp4").open("rb") as file:
         begun = client.extract(video=file, licence="CC0-1.0", add=True, idempotency_key="evening")
         assert not begun.scripts
-        done = client.wait_extraction(begun.id, timeout=60)
+        done = client.wait_extraction(begun.id, timeout=PATIENCE)
         assert client.extract(
             video=film, name="An evening", licence="CC0-1.0", add=True, idempotency_key="evening"
         ).id == (begun.id)
@@ -76,7 +76,7 @@ def test_a_worker_that_is_killed_goes_on_and_asks_about_no_scene_twice(film: byt
         given = {"LLM_MODEL": "openai:gpt-x", "LLM_BASE_URL": server.url, "LLM_API_KEY": KEY, "LLM_CACHE_MB": "0"}
         service = RunningService(tmp_path, environment={f"SIMS_{name}": value for name, value in given.items()})
         with service, Client(service.url) as client:
-            done = client.wait_extraction(client.extract(video=io.BytesIO(film)).id, timeout=60)
+            done = client.wait_extraction(client.extract(video=io.BytesIO(film)).id, timeout=PATIENCE)
     asked = ["watch" if "You watch" in prompt else "write" for prompt in server.prompts]
     assert asked == ["watch", "write", "watch", "watch", "write"]
     assert len(killed) == 1

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import httpx
 import pytest
-from running import SHORT, RunningService, finished
+from running import PATIENCE, SHORT, RunningService, finished
 from sqlalchemy import text
 
 from planner_service.settings import read_settings
@@ -72,7 +72,7 @@ def unfinished(client: httpx.Client) -> int:
 
 def wait_for_work(service: RunningService, kills: int) -> None:
     """Until the worker has begun something since the last kill, or has nothing left to do."""
-    deadline = time.monotonic() + 60
+    deadline = time.monotonic() + PATIENCE
     while time.monotonic() < deadline:
         lines = service.lines()
         starts = [place for place, line in enumerate(lines) if line["event"] == "worker ready"]

@@ -8,7 +8,7 @@ import pytest
 import schemathesis
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
-from running import SHORT, RunningService, finished
+from running import PATIENCE, SHORT, RunningService, finished
 from schemathesis.checks import (
     content_type_conformance,
     not_a_server_error,
@@ -59,7 +59,7 @@ def test_every_answer_is_as_described(described: Any, known: dict[str, str]) -> 
         def ask(case: Any, real: bool) -> None:
             if real and case.method != "DELETE":
                 case.path_parameters = {name: known.get(name, v) for name, v in (case.path_parameters or {}).items()}
-            case.call_and_validate(checks=list(CHECKS), timeout=60)
+            case.call_and_validate(checks=list(CHECKS), timeout=PATIENCE)
 
         ask()
     assert len(seen) >= 29, seen

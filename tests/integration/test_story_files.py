@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import json
 import os
-import resource
 import shutil
 import subprocess
-import sys
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib.image
 import numpy as np
 import pytest
 from encoded import lend
+from forking import Forked
 
 from motion_backend.formats.bvh import read_bvh
 from motion_backend.formats.gltf import read_glb
@@ -29,37 +28,29 @@ from motion_backend.obstacles import Obstacles
 from planner_service.filing import FILES
 from scene_graphs.home_rows import home_from_dict, home_to_dict
 
-SIMS = [sys.executable, "-m", "planner_service.cli"]
 TESTS = Path(__file__).resolve().parents[1]
 VALIDATE = TESTS / "motion_backend" / "gltf_validate.mjs"
 VALIDATOR = TESTS / "gltf" / "node_modules" / "gltf-validator"
 THEME = "A person sits down on the sofa and reads a book [with a red cover]."
 SMALL = 200_000
 """Bytes a file may have on the disk that fills up: the film has more."""
-Told = subprocess.CompletedProcess[str]
 
 
-def sims_story(root: Path, name: str, seed: int, limit: Callable[[], None] | None = None) -> Told:
+@dataclass(frozen=True)
+class Told:
+    """How a command ended, and what it said."""
+
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+def sims_story(forked: Forked, root: Path, name: str, seed: int, most: int | None = None) -> Told:
     environment = {name: value for name, value in os.environ.items() if not name.startswith("SIMS_")}
     environment |= {"SIMS_DATA_DIR": str(root / "data"), "OMP_NUM_THREADS": "1"}
-    command = [
-        *SIMS,
-        "story",
-        THEME,
-        "--out",
-        str(root / name),
-        "--seed",
-        str(seed),
-        "--name",
-        "Zoë [b]",
-        "--pronouns",
-        "she",
-    ]
-    return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300, preexec_fn=limit)
-
-
-def small_files_only() -> None:
-    resource.setrlimit(resource.RLIMIT_FSIZE, (SMALL, SMALL))
+    words = ["story", THEME, "--out", str(root / name), "--seed", str(seed), "--name", "Zoë [b]", "--pronouns", "she"]
+    code, said, wrong = forked.run(words, root, environment, most)
+    return Told(code, said.decode(), wrong.decode())
 
 
 def bytes_of(folder: Path) -> dict[str, bytes]:
@@ -76,7 +67,15 @@ def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def told(root: Path) -> Told:
     """The first run; its folders have to be made."""
-    return sims_story(root, "deep/first", 7)
+    with Forked() as forked:
+        return sims_story(forked, root, "deep/first", 7)
+
+
+@pytest.fixture(scope="module")
+def forked() -> Iterator[Forked]:
+    """All other runs; with strings hashed otherwise than in the first."""
+    with Forked() as forked:
+        yield forked
 
 
 @pytest.fixture(scope="module")
@@ -220,17 +219,15 @@ def test_story_md_reads_as_a_story(folder: Path, story: dict) -> None:
 
 
 @pytest.fixture(scope="module")
-def again(root: Path, folder: Path) -> dict[str, bytes]:
+def again(forked: Forked, root: Path, folder: Path) -> dict[str, bytes]:
     """The same command into a folder that holds another story and a file of the user's, and another seed elsewhere."""
     second = root / "second"
     shutil.copytree(folder, second)
     for name in FILES:
         (second / name).write_bytes(b"an earlier story")
     (second / "notes.txt").write_text("mine")
-    with ThreadPoolExecutor(2) as pool:
-        other = pool.submit(sims_story, root, "other", 8)
-        assert sims_story(root, "second", 7).returncode == 0
-        assert other.result().returncode == 0
+    for name, seed in (("second", 7), ("other", 8)):
+        assert sims_story(forked, root, name, seed).returncode == 0
     return bytes_of(second)
 
 
@@ -250,13 +247,10 @@ def test_another_seed_is_another_film(folder: Path, root: Path, again: dict[str,
     assert all(other[name] != data for name, data in bytes_of(folder).items())
 
 
-def test_a_disk_that_fills_up_leaves_the_earlier_story_untouched(root: Path, folder: Path) -> None:
+def test_a_disk_that_fills_up_leaves_the_earlier_story_untouched(forked: Forked, root: Path, folder: Path) -> None:
     full = root / "full"
     shutil.copytree(folder, full)
-    with ThreadPoolExecutor(2) as pool:
-        fresh = pool.submit(sims_story, root, "fresh/story", 9, small_files_only)
-        done = sims_story(root, "full", 9, small_files_only)
-    for failed in (done, fresh.result()):
+    for failed in (sims_story(forked, root, name, 9, SMALL) for name in ("full", "fresh/story")):
         assert failed.returncode == 2
         assert failed.stderr.startswith("sims: --out: ")
         assert len(failed.stderr.splitlines()) == 1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 import pytest
@@ -110,6 +110,6 @@ def test_pictures_repeat_exactly(yaw: float):
 
 def test_a_picture_is_quick():
     render([box()], FRONT, (32, 24))
-    start = perf_counter()
+    start = process_time()
     render([box()], orbit((0, 0.5, 0), 4.0, 0.5, 0.3), (320, 240))
-    assert perf_counter() - start < 1.0
+    assert process_time() - start < 1.0

@@ -35,6 +35,35 @@ def test_cross_products_are_those_of_numpy_to_the_bit(a: np.ndarray, b: np.ndarr
 
 
 @FEW
+@given(hnp.arrays(np.float64, (5, 3), elements=st.floats(-3.0, 3.0)), VECTORS)
+def test_one_alone_is_turned_to_the_bit_as_among_many(many: np.ndarray, point: np.ndarray) -> None:
+    turns = rotations.rotvec_to_quat(many)
+    composed, turned = rotations.compose(turns, turns[::-1]), rotations.rotate(turns, point)
+    for one in range(len(many)):
+        np.testing.assert_array_equal(rotations.compose(turns[one], turns[4 - one : 5 - one]), composed[one : one + 1])
+        np.testing.assert_array_equal(rotations.rotate(turns[one : one + 1], point), turned[one : one + 1])
+
+
+@FEW
+@given(hnp.arrays(np.float64, 4, elements=st.floats(-7.0, 7.0)), st.integers(0, 2))
+def test_turns_about_an_axis_are_rotation_vectors_along_it_to_the_bit(angles: np.ndarray, axis: int) -> None:
+    vectors = np.zeros((4, 3))
+    vectors[:, axis] = angles
+    np.testing.assert_array_equal(rotations.axis_to_quat("xyz"[axis], angles), rotations.rotvec_to_quat(vectors))
+
+
+@FEW
+@given(hnp.arrays(np.float64, (4, 3), elements=st.floats(-4.0, 4.0)))
+def test_axes_of_a_rotation_give_it_back(vectors: np.ndarray) -> None:
+    columns = Rotation.from_rotvec(vectors).as_matrix().transpose(2, 0, 1)
+    found = rotations.basis_to_quat(*columns)
+    np.testing.assert_allclose(np.abs(np.sum(found * Rotation.from_rotvec(vectors).as_quat(), axis=-1)), 1, atol=1e-12)
+    np.testing.assert_array_equal(rotations.basis_to_quat(*columns[:, 2]), found[2])
+    for axis, column in enumerate(columns):
+        np.testing.assert_allclose(rotations.rotate(found, np.eye(3)[axis]), column, atol=1e-9)
+
+
+@FEW
 @given(VECTORS, VECTORS)
 def test_rotation_vectors_and_turned_vectors_agree_with_scipy(v: np.ndarray, point: np.ndarray) -> None:
     ours = rotations.rotvec_to_quat(v)

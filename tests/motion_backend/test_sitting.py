@@ -8,19 +8,24 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from small_home import contact, rise, small_home, to
 
 from motion_backend import metrics
-from motion_backend.joint_limits import beyond_limits
+from motion_backend.joint_limits import CLEARLY, beyond_limits
 from motion_backend.motion import Action, Character, Motion, Skill
 from motion_backend.obstacles import Obstacles
 from motion_backend.procedural.backend import ProceduralBackend
-from motion_backend.procedural.handholds import handholds
+from motion_backend.procedural.handholds import Handholds, handholds
+from motion_backend.procedural.pose import Pose, interpolate
 from motion_backend.procedural.resting_hands import HOLDS, at_rest, lay_hands
-from motion_backend.procedural.seated import SURFACES
-from motion_backend.procedural.seated_legs import WAYS, seated_legs
+from motion_backend.procedural.seated import SURFACES, Place
+from motion_backend.procedural.seated import seated as settled
+from motion_backend.procedural.seated_legs import WAYS, Room, seated_legs
 from motion_backend.procedural.sit_styles import sit_style
-from motion_backend.procedural.solving import solve
+from motion_backend.procedural.skirting import hands_round_body
+from motion_backend.procedural.solving import hips_within, solve
 from motion_backend.procedural.stances import Seat, standing
 from motion_backend.procedural.styles import ARMS, Bearing
 from motion_backend.self_contact import self_penetration
@@ -95,7 +100,7 @@ def test_a_seated_body_is_within_its_limits_and_not_in_itself_or_the_seat(captio
     motion, _ = seated(caption)
     positions, world = motion.skeleton.forward_kinematics(motion.root_positions, motion.local_rotations)
     assert self_penetration(motion.skeleton, positions[-HELD:].astype(np.float64), world[-HELD:]).max() < 0.05
-    assert np.degrees(beyond_limits(motion.local_rotations[-HELD:]).max()) < 8
+    assert beyond_limits(motion.local_rotations).max() < CLEARLY
     action = replace(contact(HOME, Skill.SITDOWN, "chair", caption), keyframe=1)
     figures = metrics.judge(motion, action, Obstacles.of_home(HOME))
     assert figures.reached
@@ -138,7 +143,7 @@ def test_forearms_are_on_a_table_in_reach_and_on_the_thighs_without_one() -> Non
 )
 def test_one_can_sit_on_the_floor(caption: str) -> None:
     motion, joints = seated(caption, "floor")
-    assert np.degrees(beyond_limits(motion.local_rotations[-HELD:]).max()) < 8
+    assert beyond_limits(motion.local_rotations).max() < CLEARLY
     assert joints[-HELD:, INDEX["pelvis"], 1].max() < 0.12
     assert joints[-HELD:, [INDEX["left_foot"], INDEX["right_foot"]], 1].min() > 0.0
 
@@ -148,9 +153,61 @@ def test_feet_of_a_sitter_stay_where_they_stand_and_hang_where_a_stool_is_high()
     feet = joints[-HELD:, [INDEX["left_ankle"], INDEX["right_ankle"]]]
     assert np.ptp(feet, axis=0).max() < 0.002
     high = Seat(np.array([0.0, 0.92, 0.0]), 0.0, np.inf, 0.2)
-    legs = seated_legs(high, "rest", SKELETON, (0.8, 0.8))
+    legs = seated_legs(high, "rest", SKELETON, (Room(0.8, 0.3), Room(0.8, 0.3)))
     assert (legs.ankles[:, 1] > 0.3).all()
     assert not legs.planted.any()
+
+
+HEIGHTS = st.floats(0.38, 0.62)
+
+
+@settings(max_examples=12)
+@given(caption=st.sampled_from(captions()["sitdown"]), height=HEIGHTS, ahead=st.floats(0.5, 0.8))
+def test_no_way_of_sitting_bends_a_joint_beyond_its_range(caption: str, height: float, ahead: float) -> None:
+    seat = Seat(np.array([0.0, height + 0.09, 0.0]), 0.0, 0.2, 0.33)
+    place = Place(seat, Handholds(), (Room(ahead, 0.4), Room(ahead, 0.4)))
+    pose, _ = settled(standing((0.0, 0.42), 0.0, Bearing(), SKELETON), place, sit_style("neutral", caption), SKELETON)
+    _, local = solve(hips_within(pose.repeat(1), SKELETON), SKELETON)
+    assert beyond_limits(local).max() < CLEARLY
+
+
+@pytest.mark.parametrize(("caption", "name"), [("stand up", "floor"), ("stand up slowly", "chair")])
+def test_who_rises_passes_hands_round_the_thighs_and_stays_within_limits(caption: str, name: str) -> None:
+    if name == "floor":
+        action = Action(Skill.SITDOWN, "sitting still", "neutral", "floor", "floor", floor_spot("sit", (3.0, 3.0), 0.0))
+    else:
+        action = contact(HOME, Skill.SITDOWN, name, "sitting still")
+    backend = ProceduralBackend()
+    state = backend.begin(HOME, Character(), 3)
+    _, state = backend.advance(HOME, to(action), state)
+    _, state = backend.advance(HOME, replace(action, keyframe=1), state)
+    motion, _ = backend.advance(HOME, replace(rise(action), caption=caption, keyframe=2), state)
+    positions, world = motion.skeleton.forward_kinematics(motion.root_positions, motion.local_rotations)
+    assert self_penetration(motion.skeleton, positions.astype(np.float64), world).max() < 0.05
+    assert beyond_limits(motion.local_rotations).max() < CLEARLY
+
+
+def deepest(pose: Pose) -> float:
+    positions, world = SKELETON.forward_kinematics(*solve(pose, SKELETON))
+    return float(self_penetration(SKELETON, positions.astype(np.float64), world).max())
+
+
+def test_a_hand_on_its_way_through_a_thigh_goes_round_it() -> None:
+    still = standing((0.0, 0.0), 0.0, Bearing(), SKELETON)
+    inside = replace(still, reach=still.pelvis - [[0.088, 0.25, 0.0], [-0.088, 0.25, 0.0]], reaching=np.ones(2))
+    through = interpolate([0.0, 0.8, 1.6], [still, inside, still], 30)
+    round_it = hands_round_body(through, SKELETON)
+    assert deepest(round_it) < 0.06 < 0.10 < deepest(through)
+    np.testing.assert_array_equal(round_it.reach[[0, -1]], through.reach[[0, -1]])
+
+
+def test_legs_and_elbows_stay_inside_what_stands_beside_a_seat() -> None:
+    beside = Placed("shelf", "wardrobe", (3.2, 0.0, 2.2), (0.6, 1.9, 1.4), 0.0)
+    home = studio(CHAIR, beside)
+    for caption in ("hands behind head, legs straight", "arms loosely, legs open"):
+        motion, _ = seated(caption, "chair", home)
+        action = replace(contact(home, Skill.SITDOWN, "chair", caption), keyframe=1)
+        assert metrics.judge(motion, action, Obstacles.of_home(home)).pen_max < 0.04
 
 
 def test_the_pose_is_taken_after_the_seat_is_touched() -> None:

@@ -13,7 +13,7 @@ from small_home import contact, rise, small_home, to
 from motion_backend.formats.jsonfmt import json_bytes, read_json
 from motion_backend.formats.npz import npz_bytes, read_npz
 from motion_backend.measures.kinematics import Kinematics
-from motion_backend.motion import Action, BodyState, Character, Motion, Part, Posture, Skill, join
+from motion_backend.motion import Action, BodyState, Character, Motion, Note, Part, Posture, Skill, join
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.transitions import DONE, ENDS, ENTERING, LEAVING, OWN, parts_of, shortfall, time_limit
 
@@ -118,3 +118,16 @@ def test_parts_are_kept_by_joining_cutting_and_files() -> None:
     assert whole.part(len(walk), len(whole)).phases == touch.phases
     assert read_npz(io.BytesIO(npz_bytes(whole))).phases == whole.phases
     assert read_json(json_bytes(whole)).phases == whole.phases
+
+
+def test_what_is_done_otherwise_is_said_and_kept() -> None:
+    typing = contact(HOME, Skill.SITDOWN, "chair", "typing, both hands on the keyboard")
+    lacking, _ = BACKEND.advance(HOME, replace(typing, keyframe=4), FROM[Posture.STANDING])
+    fine = MADE[Posture.STANDING, Skill.SITDOWN][0]
+    whole = join([fine, lacking])
+    assert fine.notes == ()
+    assert whole.notes == (Note(4, "no table before the seat: each hand in the lap"),)
+    assert whole.part(0, len(fine)).notes == ()
+    assert whole.part(len(fine), len(whole)).notes == whole.notes
+    assert read_npz(io.BytesIO(npz_bytes(whole))).notes == whole.notes
+    assert read_json(json_bytes(whole)).notes == whole.notes

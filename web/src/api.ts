@@ -64,6 +64,8 @@ export interface KeyframeFigures {
   readonly reason: string;
   readonly contact_error: number | null;
   readonly pen_max: number;
+  /** What was done otherwise than the caption says; stories made by earlier versions have none. */
+  readonly notes?: readonly string[];
 }
 
 export interface Report {

@@ -54,6 +54,7 @@ function remark(figure: KeyframeFigures, keyframe: Keyframe | undefined, seek: (
   if (!figure.reached) said.push(`not reached${figure.reason ? `: ${figure.reason}` : ""}`);
   if (figure.contact_error !== null && figure.contact_error > WIDE_CONTACT) said.push(`${centimetres(figure.contact_error)} from its place`);
   if (figure.pen_max > DEEP) said.push(`up to ${centimetres(figure.pen_max)} inside furniture`);
+  said.push(...(figure.notes ?? []));
   if (!said.length) return [];
   const place = keyframe ? ` at the ${placeWords(keyframe)}` : "";
   const name = `Moment ${figure.keyframe + 1}, ${SKILL_WORDS[figure.skill]}${place}`;

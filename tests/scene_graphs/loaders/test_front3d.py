@@ -364,7 +364,7 @@ def test_a_huge_house_is_read_or_refused_in_bounded_time(what: str) -> None:
         points = [[round(9 * cos(a), 6), a % 2, round(9 * sin(a), 6)] for a in np.linspace(0, 2 * pi, 60_000)]
         house["mesh"].append(mesh("t", "Window", points, [0, 1, 2]))
         room["children"].append({"ref": "t"})
-    start = time.perf_counter()
+    start = time.process_time()
     with suppress(LayoutError):
         read(house)
-    assert time.perf_counter() - start < 10.0
+    assert time.process_time() - start < 10.0

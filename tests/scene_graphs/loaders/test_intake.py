@@ -95,8 +95,8 @@ def test_a_floor_of_crossing_slivers_is_their_hull_at_once() -> None:
     at = np.linspace(0, 10, MOST_CORNERED * 2)
     zero, ten = np.zeros_like(at), np.full_like(at, 10.0)
     across = np.stack([np.stack([zero, at], 1), np.stack([ten, at], 1), np.stack([ten, at + 1e-4], 1)], axis=1)
-    start = time.perf_counter()
+    start = time.process_time()
     floor = floor_from_triangles(np.concatenate([across, across[..., ::-1]]))
-    assert time.perf_counter() - start < 20
+    assert time.process_time() - start < 20
     assert floor is not None
     assert shapely.Polygon(floor).area == pytest.approx(100, rel=0.01)
