@@ -76,7 +76,7 @@ def elbow_room(seat: Seat, near: Obstacles, scale: float) -> tuple[float, float]
     found = []
     for side in (1, -1):
         places = [(side * a, seat.pelvis[1] + up * scale, ahead) for a in aside for up, ahead in ELBOWS]
-        depth = near.depth(np.array([seat.to_world(place) for place in places])).reshape(len(aside), -1).max(axis=1)
+        depth = near.depth(seat.to_world(places)).reshape(len(aside), -1).max(axis=1)
         found.append(float(aside[np.argmax(depth > 0)]) if (depth > 0).any() else np.inf)
     return found[0], found[1]
 
@@ -85,7 +85,7 @@ def _pair(seat: Seat, near: Obstacles, places: list[list[tuple[float, float]]], 
     """The first of the places (to the side, ahead) on either side with a free surface at that level."""
     found: list[Array | None] = []
     for side, wanted in zip((1, -1), places, strict=True):
-        points = np.array([seat.to_world((side * lateral, 0.0, ahead)) for lateral, ahead in wanted]).reshape(-1, 3)
+        points = seat.to_world(np.array([(side * lateral, 0.0, ahead) for lateral, ahead in wanted]).reshape(-1, 3))
         tops = _tops(near, points, level[1] + 0.1)
         good = np.flatnonzero((tops >= level[0]) & (tops <= level[1]))
         found.append(np.array([*points[good[0], :1], tops[good[0]], *points[good[0], 2:]]) if len(good) else None)
@@ -98,7 +98,7 @@ def _middles(
     """For either side the middle of the armrest at the farthest of the distances ahead that it reaches."""
     chosen: list[list[tuple[float, float]]] = []
     for side in (1, -1):
-        points = np.array([seat.to_world((side * lateral, 0.0, ahead)) for lateral, ahead in places])
+        points = seat.to_world([(side * lateral, 0.0, ahead) for lateral, ahead in places])
         tops = _tops(near, points, level[1] + 0.1)
         good = (tops >= level[0]) & (tops <= level[1])
         rows = [[place for place, fits in zip(places, good, strict=True) if fits and place[1] == ahead]
@@ -113,7 +113,7 @@ def table_before(seat: Seat, near: Obstacles, scale: float, reach: float = TABLE
     top = float(seat.pelvis[1]) - SEATED_REST
     level = (top + TABLE[0] * scale, top + TABLE[1] * scale)
     ahead = np.arange(0.20, reach * scale + 0.22, 0.02)
-    points = np.array([seat.to_world((side, 0.0, a)) for a in ahead for side in (0.17, 0.0, -0.17)])
+    points = seat.to_world([(side, 0.0, a) for a in ahead for side in (0.17, 0.0, -0.17)])
     tops = _tops(near, points, level[1] + 0.1).reshape(-1, 3)
     flat = (np.ptp(tops, axis=1) < 0.01) & (tops[:, 0] >= level[0]) & (tops[:, 0] <= level[1])
     deep = flat[:-10] & flat[5:-5] & flat[10:]
@@ -125,13 +125,11 @@ def table_before(seat: Seat, near: Obstacles, scale: float, reach: float = TABLE
 
 def _tops(near: Obstacles, points: Array, ceiling: float) -> Array:
     """Height of the highest thing at each of N places, of what begins below `ceiling`; the floor is at 0. (N,)."""
-    tops = np.zeros(len(points))
-    for center, half, yaw in zip(near.centers, near.halves, near.yaws, strict=True):
-        if center[1] - half[1] > ceiling:
-            continue
-        moved = points - center
-        cos, sin = np.cos(yaw), np.sin(yaw)
-        across, along = cos * moved[:, 0] - sin * moved[:, 2], sin * moved[:, 0] + cos * moved[:, 2]
-        on = (np.abs(across) < half[0] - INSET) & (np.abs(along) < half[2] - INSET)
-        tops = np.where(on, np.maximum(tops, center[1] + half[1]), tops)
-    return tops
+    low = near.only(near.centers[:, 1] - near.halves[:, 1] <= ceiling)
+    moved = points - low.centers[:, None]
+    cos, sin = np.cos(low.yaws)[:, None], np.sin(low.yaws)[:, None]
+    across, along = cos * moved[..., 0] - sin * moved[..., 2], sin * moved[..., 0] + cos * moved[..., 2]
+    half = low.halves[:, None] - INSET
+    on = (np.abs(across) < half[..., 0]) & (np.abs(along) < half[..., 2])
+    top = (low.centers[:, 1] + low.halves[:, 1])[:, None]
+    return np.asarray(np.where(on, top, 0.0).max(axis=0, initial=0.0))

@@ -51,11 +51,11 @@ def sitdown(body: Body, action: Action) -> None:
 
 def leave_seat(body: Body, seat: Seat, bearing: Bearing) -> None:
     """From sitting to standing: hands push off from armrests or seat, those of the slow from their knees."""
-    around = handholds(seat, body.scene.obstacles, body.skeleton.scale)
     push: Holds = (None, None)
     if bearing.tempo < SLOW and not seat.is_low(body.skeleton.scale):
         push = HOLDS["knees"], HOLDS["knees"]
     elif bearing.tempo < QUICK:
+        around = handholds(seat, body.scene.obstacles, body.skeleton.scale)
         push = _grips(around.armrests, around.beside, seat, (True, True))
     body.add(stand_up(body.pose, seat, seat.standing_point(body.skeleton.scale), bearing, body.skeleton, push))
     body.posture, body.rest = Posture.STANDING, None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from motion_backend import rotations
 from motion_backend.procedural.footsteps import drift, home_ankle
@@ -99,13 +99,13 @@ class Seat:
         x, _, z = self.to_world((0.0, 0.0, (FLOOR_REACH if self.is_low(scale) else SHIN_REACH) * scale))
         return float(x), float(z)
 
-    def to_world(self, right_up_ahead: tuple[float, float, float]) -> Array:
-        """A point given to the sitter's left, up from the floor and ahead of the pelvis. (3,)."""
-        left, up, ahead = right_up_ahead
+    def to_world(self, left_up_ahead: ArrayLike) -> Array:
+        """Points given to the sitter's left, up from the floor and ahead of the pelvis. (..., 3)."""
+        left, up, ahead = np.moveaxis(np.asarray(left_up_ahead, dtype=np.float64), -1, 0)
         sin, cos = np.sin(self.yaw), np.cos(self.yaw)
         x = self.pelvis[0] + left * cos + ahead * sin
         z = self.pelvis[2] - left * sin + ahead * cos
-        return np.array([x, up, z])
+        return np.stack([x, up, z], axis=-1)
 
 
 def idle(pose: Pose, seconds: float, size: float, rng: np.random.Generator, fps: int) -> Pose:
