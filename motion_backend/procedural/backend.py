@@ -128,6 +128,9 @@ def _to_motion(body: Body, action: Action) -> Motion:
         pose = elbows_clear(pose, body.skeleton, solid)
     elif action.skill in (Skill.LIEDOWN, Skill.GETUP):
         pose = elbows_clear(pose, body.skeleton, solid.sunk_into(action.object_id, SINKS))
+    else:
+        # Who sits is among what arms rest on: only shoulders are minded.
+        pose = elbows_clear(pose, body.skeleton, solid.only(np.zeros(len(solid.owners), dtype=bool)))
     body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)
     return Motion(

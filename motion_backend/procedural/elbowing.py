@@ -29,6 +29,8 @@ TRUNK_WIDTH: Final = 0.10
 """Half of what a trunk is thick (metres at 1.70 m)."""
 SEEN: Final = 0.01
 """An arm this deep in something is swung out (metres)."""
+STRAINED: Final = float(np.radians(3))
+"""An arm whose shoulder is so far beyond its range is swung back (radians)."""
 LEAD: Final = 20
 """Frames in which an elbow swings out, and back."""
 DEEP, BEYOND, FAR, FAST = 60.0, 40.0, 0.5, 30.0
@@ -86,13 +88,16 @@ class _Arm(NamedTuple):
         return self.side * rotations.rotate(hand, np.array([1.0, 0.0, 0.0]))
 
     def beyond(self, limb: Limb) -> Array:
-        """How far the shoulder of swung bones (T, A, 3) is beyond its range. (T, A) radians."""
+        """How far the shoulder of swung bones (T, 3) or (T, A, 3) is beyond its range. (T) or (T, A) radians."""
         bone, _ = arm_rotations(limb, self.side)
-        return out_of_cone(self.joint, rotations.compose(rotations.inverse(self.clavicle)[:, None], bone))
+        clavicle = self.clavicle if bone.ndim == 2 else self.clavicle[:, None]
+        return out_of_cone(self.joint, rotations.compose(rotations.inverse(clavicle), bone))
 
 
 def elbows_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles) -> Pose:
-    """The same motion with elbows swung where an arm, or a hand that it cannot lay flat, would be in something."""
+    """The same motion with elbows swung where an arm, or a hand that it cannot lay flat, would be in something, and
+    where a shoulder would be beyond its range.
+    """
     chest, scale = chest_frame(pose, skeleton), skeleton.scale
     elbows = pose.elbows.copy()
     for index, (name, side) in enumerate(SIDES):
@@ -102,12 +107,15 @@ def elbows_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles) -> Pose:
         clavicle = rotations.compose(chest[0], collar)
         arm = _Arm(side, f"{name}_shoulder", limb, (upper, lower), shoulder, clavicle, *hand)
         before = _depth(arm.points(limb, scale), obstacles, scale)
-        for frames in _about_each(before >= SEEN):
+        strained = arm.beyond(limb)
+        for frames in _about_each((before >= SEEN) | (strained > STRAINED)):
             part, body = arm.part(frames), (chest[0][frames], chest[1][frames])
             swing = _swing(part, body, obstacles, scale, ends=frames.stop < len(pose))
-            after = _depth(part.points(part.swung(swing[:, None]), scale), obstacles, scale)
+            swung = part.swung(swing[:, None])
+            after, strain = _depth(part.points(swung, scale), obstacles, scale), part.beyond(swung)
             # A hand that cannot follow its forearm may turn over on the way: then it is better left alone.
-            if after.max() <= before[frames].max():
+            deep = before[frames].max()
+            if after.max() <= deep and (deep >= SEEN or strain.max() <= strained[frames].max()):
                 axis = rotations.rotate(rotations.inverse(body[0]), rotations.normalize(part.way))
                 elbows[frames, index] = _about(elbows[frames, index], axis, swing)
     return replace(pose, elbows=elbows)

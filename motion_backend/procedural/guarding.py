@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 HAND_LENGTH = 0.14
 THICKNESS = 0.034
 """Radius of hand and wrist (metres)."""
+FOLDED = np.radians(155)
+"""So far an elbow bends (radians)."""
 ALL_IN = 0.56
 """Arms are brought in altogether at this share of the clearance that they need."""
 UPWARDS = 0.12
@@ -44,9 +46,17 @@ def hands_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles, touching: 
         # A segment begins in the pose the one before left, which was cleared already.
         led = eased(push) * smooth(np.arange(len(push)) / 8)[:, None]
         used = np.linalg.norm(led, axis=1) > 1e-4
-        reach[used, index] = (wrist + led)[used]
+        reach[used, index] = _unfolded(wrist + led, shoulder, upper, lower)[used]
         reaching[used, index] = 1.0
     return replace(pose, reach=reach, reaching=reaching)
+
+
+def _unfolded(wrists: Array, shoulder: Array, upper: float, lower: float) -> Array:
+    """Wrists no nearer to the shoulder than an elbow can bend. (T, 3)."""
+    away = wrists - shoulder
+    length = np.linalg.norm(away, axis=1, keepdims=True)
+    least = np.sqrt(upper**2 + lower**2 + 2 * upper * lower * np.cos(FOLDED))
+    return np.asarray(shoulder + away * np.maximum(least / np.maximum(length, 1e-6), 1.0))
 
 
 def arms_in(pose: Pose, room: Array, narrow: str, wide: float) -> Pose:

@@ -43,7 +43,7 @@ HINTS: Final[dict[str, str]] = {
     "sad": "fail* reject* bad_news turned_down fired widow* alone funeral divorce* breakup nobody no_one "
     "loses_at lost_at loses_the lost_the is_beaten gives_up gives_in give_up",
     "stressed": "deadline* exam* bill bills debt* interview thunder* rent overdue mistakes robbed "
-    "trembl* pace paces pacing strange_noise hears_a_noise hears_a_sound "
+    "trembl* strange_noise hears_a_noise hears_a_sound "
     "dare dares hides_from hides_under hides_behind cannot_find can't_find",
     "angry": "unfair rude broken cheat* betray* fight* fights fought spill* noisy stolen "
     "kicks_the kicked_the kicks_a kicks_at kicks_over steals stole refuse* grounded fist fists chewed ruin*",
