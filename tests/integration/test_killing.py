@@ -20,9 +20,9 @@ from sqlalchemy import text
 from planner_service.settings import read_settings
 from planner_service.store.engine import database_url, open_engine
 
-KILLS = int(os.environ.get("SIMS_TEST_KILLS", "3"))
+KILLS = int(os.environ.get("SIMS_TEST_KILLS", "2"))
 """Moments at which processes are killed, on each database: the whole service, then its worker."""
-STORIES = 3
+STORIES = 2
 """Stories that wait at the beginning; more are posted as these are made."""
 
 
