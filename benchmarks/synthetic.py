@@ -28,7 +28,7 @@ LIKELY: Final = {
     "table_lamp 3 multi_seat_sofa 1 coffee_table 1 plant 4 picture 3 rug 2 chaise_longue_sofa 1 stool 1",
 }
 """What is met in a room of each type, and how often beside the rest."""
-SMALLEST, LARGEST = 5, 25
+MIN_NODES, MAX_NODES = 5, 25
 SPREAD: Final = 0.78
 """Side of the square that one piece has to itself; pieces nearer than 1 are joined."""
 GENERAL: Final = 0.4
@@ -40,7 +40,7 @@ _KIND_OF: Final = {category: kind for kind, members in KINDS.items() for categor
 def rooms_at_random(count: int, seed: int) -> PackedRooms:
     """Packed graphs of 5 to 25 pieces, 11 on average, and twice as many relations."""
     rng = np.random.default_rng(seed)
-    sizes = np.minimum(SMALLEST + rng.poisson(rng.gamma(2.0, 3.15, count)), LARGEST)
+    sizes = np.minimum(MIN_NODES + rng.poisson(rng.gamma(2.0, 3.15, count)), MAX_NODES)
     categories, kinds = _categories(rng, sizes)
     starts, rooms = offsets(sizes), np.repeat(np.arange(count), sizes)
     order = np.lexsort((_ALPHABETICAL[categories], rooms))
@@ -111,10 +111,10 @@ def _neighbours(
     found, degrees = [], []
     for start in range(0, len(sizes), block):
         own = sizes[start : start + block]
-        points = rng.random((len(own), LARGEST, 2)) * SPREAD * np.sqrt(own)[:, None, None]
+        points = rng.random((len(own), MAX_NODES, 2)) * SPREAD * np.sqrt(own)[:, None, None]
         apart = ((points[:, :, None] - points[:, None]) ** 2).sum(axis=-1)
-        there = np.arange(LARGEST) < own[:, None]
-        joined = (apart < 1.0) & there[:, :, None] & there[:, None] & ~np.eye(LARGEST, dtype=bool)
+        there = np.arange(MAX_NODES) < own[:, None]
+        joined = (apart < 1.0) & there[:, :, None] & there[:, None] & ~np.eye(MAX_NODES, dtype=bool)
         found.append(np.nonzero(joined)[2].astype(np.uint16))
         degrees.append(joined.sum(axis=2)[there])
     return np.concatenate(found), np.concatenate(degrees)

@@ -19,7 +19,7 @@ from scipy.sparse.linalg import splu
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-HEAVIEST: Final = 7.0
+MAX_LOG_WEIGHT: Final = 7.0
 """Largest logarithm of a weight: types that constraints keep rare are not asked for at any price."""
 CLOSE: Final = 1e-9
 """Relative gap between the bounds of an eigenvalue at which it is known."""
@@ -103,7 +103,7 @@ def _weights(chain: _Chain, tied: NDArray[np.bool_]) -> Array:
 
     if count < 2:
         return np.zeros(len(tied))
-    bounds = [(-HEAVIEST, HEAVIEST)] * count
+    bounds = [(-MAX_LOG_WEIGHT, MAX_LOG_WEIGHT)] * count
     found = minimize(
         dual, np.zeros(count), jac=True, method="L-BFGS-B", bounds=bounds, options={"gtol": 2e-5, "maxiter": 150}
     )

@@ -16,7 +16,7 @@ from motion_backend.skinning import SkinnedMesh
 
 Array = NDArray[np.float64]
 
-LEAST, MOST = 0.8, 1.25
+MIN_PROPORTION, MAX_PROPORTION = 0.8, 1.25
 _HIPS, _CHEST = ("pelvis", "spine1"), ("spine2", "spine3")
 _LEGS, _ARMS = ("hip", "knee"), ("elbow", "shoulder")
 
@@ -38,8 +38,10 @@ class Proportions:
     def __post_init__(self) -> None:
         for one in fields(self):
             value = getattr(self, one.name)
-            if not LEAST <= value <= MOST:
-                raise ValueError(f"proportions.{one.name} must lie between {LEAST} and {MOST}, got {value}")
+            if not MIN_PROPORTION <= value <= MAX_PROPORTION:
+                raise ValueError(
+                    f"proportions.{one.name} must lie between {MIN_PROPORTION} and {MAX_PROPORTION}, got {value}"
+                )
 
 
 AVERAGE = Proportions()

@@ -22,7 +22,7 @@ from motion_backend.motion import Posture
 Array = NDArray[np.float64]
 Category = Literal["locomotion", "grasp", "interaction"]
 Hand = Literal["left", "right", "both"]
-MOST_STATES: Final = 20_000
+MAX_STATES: Final = 20_000
 """States a planner explores before it gives up."""
 
 
@@ -216,8 +216,8 @@ def _explored(candidates: Sequence[Candidate]) -> tuple[list[State], list[Move]]
                 index[following] = len(states)
                 states.append(following)
                 way[following] = candidates[number].name
-                if len(states) > MOST_STATES:
-                    raise PlanError(f"candidates: they lead to over {MOST_STATES} states; give fewer places or things")
+                if len(states) > MAX_STATES:
+                    raise PlanError(f"candidates: they lead to over {MAX_STATES} states; give fewer places or things")
             usual = (1 / walks if candidates[number].goes else 1.0) * (
                 SELDOM if candidates[number].undoes(state) else 1.0
             )

@@ -52,7 +52,7 @@ ENDS: Final[dict[Skill, Posture]] = {
 """The posture each skill leaves the body in."""
 PATIENCE: Final = 10.0
 """Seconds for every part but walking, as UniHSI gives each of its steps."""
-SLOWEST: Final = 0.2
+STUCK_SPEED: Final = 0.2
 """Metres a second: who walks more slowly is stuck."""
 
 
@@ -84,7 +84,7 @@ def parts_of(posture: Posture, skill: Skill) -> tuple[Part, ...]:
 def time_limit(posture: Posture, action: Action, way: float) -> float:
     """Seconds an action may take that has `way` metres to walk."""
     standing_still = [part for part in parts_of(posture, action.skill) if part not in (Part.WALK, Part.BACK_UP)]
-    return PATIENCE * max(len(standing_still), 1) + way / SLOWEST + action.hold
+    return PATIENCE * max(len(standing_still), 1) + way / STUCK_SPEED + action.hold
 
 
 def shortfall(action: Action, body: Kinematics, limit: float) -> str:

@@ -20,7 +20,7 @@ from structlog.contextvars import bind_contextvars
 
 from planner_service.errors import Forbidden, Malformed, Problem, Unauthorised
 from planner_service.limiting import Rate, address_of
-from planner_service.settings import LEAST_KEY, Settings, SettingsError
+from planner_service.settings import MIN_KEY, Settings, SettingsError
 
 COOKIE: Final = "sims_session"
 COOKIE_SECONDS: Final = 30 * 24 * 3600
@@ -44,8 +44,8 @@ def check_exposure(settings: Settings) -> None:
             "set SIMS_API_KEYS (`openssl rand -hex 24` makes a good key) or SIMS_HOST=127.0.0.1"
         )
     for key in settings.api_keys:
-        if len(key) < LEAST_KEY or len(set(key)) < LEAST_KEY // 4:
-            raise SettingsError(f"SIMS_API_KEYS: a key can be guessed; use {LEAST_KEY} or more random letters")
+        if len(key) < MIN_KEY or len(set(key)) < MIN_KEY // 4:
+            raise SettingsError(f"SIMS_API_KEYS: a key can be guessed; use {MIN_KEY} or more random letters")
         if not key.isascii() or not key.isprintable() or " " in key:
             raise SettingsError("SIMS_API_KEYS: a key travels in a header: printable ASCII letters without spaces")
     for origin in settings.cors_origins:

@@ -24,7 +24,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from motion_backend.language.minilm import WeightsError
 from planner_service.commands.errors import USER_ERRORS, explain
 from planner_service.errors import (
-    MOST_FAULTS,
+    MAX_FAULTS,
     Malformed,
     ModelFailed,
     NotFound,
@@ -217,7 +217,7 @@ def validation_problem(error: RequestValidationError, media: str) -> Problem:
     if tuple(first["loc"]) == ("body",) and isinstance(error.body, bytes):
         name = f"{media!r:.80}" if media else "missing"
         return WrongMedia(f"Content-Type is {name}; send JSON as application/json")
-    faults = [Fault(pointer=_pointer(fault, error.body), detail=str(fault["msg"])) for fault in found[:MOST_FAULTS]]
+    faults = [Fault(pointer=_pointer(fault, error.body), detail=str(fault["msg"])) for fault in found[:MAX_FAULTS]]
     more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
     where = f"{faults[0].pointer}: " if faults[0].pointer else ""
     problem = Unprocessable(faults[0].pointer, faults[0].detail)

@@ -20,27 +20,25 @@ from planner_service.limiting import LARGER, BodyLimit, Limiting, Rate
 from planner_service.openapi import document
 from planner_service.parameters import only_known_parameters
 from planner_service.parts import Parts
-from planner_service.routes import (
-    events,
-    extracting,
-    extractions,
-    layout_graphs,
-    layouts,
-    long_scripts,
-    motions,
-    page,
-    service,
-    short_scripts,
-    stories,
-    task_plans,
-)
+from planner_service.routes.events import events_router
+from planner_service.routes.extracting import EXTRACT, extract_router
+from planner_service.routes.extractions import extractions_router
+from planner_service.routes.layout_graphs import layout_graphs_router
+from planner_service.routes.layouts import layouts_router
+from planner_service.routes.long_scripts import long_scripts_router
+from planner_service.routes.motions import motions_router
 from planner_service.routes.multipart import most_sent
+from planner_service.routes.page import assets, page_router
+from planner_service.routes.service import service_router
+from planner_service.routes.short_scripts import short_scripts_router
+from planner_service.routes.stories import stories_router
+from planner_service.routes.task_plans import task_plans_router
 from planner_service.store.figures import StoreFigures
 from planner_service.telemetry import Figures, Telemetry
 
-ROUTES: Final = (
-    stories, events, motions, task_plans, extracting, extractions, short_scripts, long_scripts, layouts,
-    layout_graphs, service, page,
+ROUTERS: Final = (
+    stories_router, events_router, motions_router, task_plans_router, extract_router, extractions_router,
+    short_scripts_router, long_scripts_router, layouts_router, layout_graphs_router, service_router, page_router,
 )  # fmt: skip
 """In the order in which paths are looked for."""
 
@@ -73,9 +71,9 @@ def create_app(parts: Parts) -> FastAPI:
     )
     app.state.parts, app.state.gate, app.state.figures = parts, gate, figures
     register_handlers(app)
-    for module in ROUTES:
-        app.include_router(module.router)
-    app.mount("/assets", page.assets())
+    for router in ROUTERS:
+        app.include_router(router)
+    app.mount("/assets", assets())
     return app
 
 
@@ -95,7 +93,7 @@ def _middleware(gate: Gate, figures: Figures, parts: Parts) -> list[Middleware]:
         Middleware(Unforeseen),
         Middleware(Access, gate=gate),
         Middleware(Limiting, rate=Rate(parts.settings.rate)),
-        Middleware(BodyLimit, larger=LARGER | {("POST", extracting.EXTRACT): most_sent(parts.settings)}),
+        Middleware(BodyLimit, larger=LARGER | {("POST", EXTRACT): most_sent(parts.settings)}),
         Middleware(Head),
     ]
 

@@ -28,9 +28,9 @@ from starlette.responses import Response
 
 from planner_service.schemas.problems import PROBLEM_MEDIA, Fault, ProblemDetails
 
-LONGEST_DETAIL: Final = 600
-LONGEST_POINTER: Final = 200
-MOST_FAULTS: Final = 20
+MAX_DETAIL_LENGTH: Final = 600
+MAX_POINTER_LENGTH: Final = 200
+MAX_FAULTS: Final = 20
 
 
 class Problem(Exception):  # noqa: N818 - the word of RFC 9457
@@ -50,15 +50,17 @@ class Problem(Exception):  # noqa: N818 - the word of RFC 9457
     def details(self, path: str) -> ProblemDetails:
         """The members of RFC 9457, every text of them short and printable."""
         faults = [
-            Fault(pointer=printable(fault.pointer, LONGEST_POINTER), detail=printable(fault.detail, LONGEST_DETAIL))
-            for fault in self.errors[:MOST_FAULTS]
+            Fault(
+                pointer=printable(fault.pointer, MAX_POINTER_LENGTH), detail=printable(fault.detail, MAX_DETAIL_LENGTH)
+            )
+            for fault in self.errors[:MAX_FAULTS]
         ]
         return ProblemDetails(
             type=self.kind,
             title=self.title or HTTPStatus(self.status).phrase,
             status=self.status,
-            detail=printable(self.detail, LONGEST_DETAIL),
-            instance=printable(path, LONGEST_POINTER),
+            detail=printable(self.detail, MAX_DETAIL_LENGTH),
+            instance=printable(path, MAX_POINTER_LENGTH),
             errors=faults or None,
         )
 

@@ -11,11 +11,11 @@ from planner_service.placing import Placing, StandIn, usable_offers
 from planner_service.scripts.acting import NEEDS, Place
 from planner_service.scripts.keyframe import LongScript, PlannedKeyframe
 from planner_service.seating import pull_to_dict, seat, seat_with_pulls
-from scene_graphs.distance import MOST_NODES, exact_distance
+from scene_graphs.distance import MAX_NODES, exact_distance
 from scene_graphs.explaining import Explanation, explain
 from scene_graphs.furniture import ROOM_TYPES, canonical_room, display_name
 from scene_graphs.graph import FurnitureGraph, graph_from_layout, graph_from_uses
-from scene_graphs.homes import MOST_ROOMS, Home, home_from_layouts
+from scene_graphs.homes import MAX_ROOMS, Home, home_from_layouts
 from scene_graphs.layouts import Layout
 from scene_graphs.library import built_in_layouts
 from scene_graphs.merging import merge
@@ -117,9 +117,9 @@ def furnish(
     uses = {room: _script_graphs(script, room, wanted) for room in wanted}
     merged = {room: merge([graph for _, graph in graphs]).graph for room, graphs in uses.items()}
     for room, graph in merged.items():
-        if len(graph) > MOST_NODES:
+        if len(graph) > MAX_NODES:
             used = f"{len(graph)} pieces of furniture in the {room.replace('_', ' ')}"
-            raise FurnishError(f"theme: the story uses {used}, at most {MOST_NODES} can be; tell of fewer events")
+            raise FurnishError(f"theme: the story uses {used}, at most {MAX_NODES} can be; tell of fewer events")
     chosen = _given(merged, layouts) if layouts else _retrieved(merged, index, seed)
     unique = list(dict.fromkeys([layout for layout, _ in chosen.values()] + list(layouts)))
     if isinstance(given, Home):
@@ -146,8 +146,8 @@ def _room_types(script: LongScript, rooms: Sequence[str]) -> list[str]:
     unknown = [room for room, name in zip(rooms, asked, strict=True) if name not in ROOM_TYPES]
     if unknown:
         raise FurnishError(f"rooms: {unknown[0]!r} is none of {', '.join(ROOM_TYPES)}")
-    if len(asked) > MOST_ROOMS:
-        raise FurnishError(f"rooms: a home has at most {MOST_ROOMS} rooms, {len(asked)} were asked for")
+    if len(asked) > MAX_ROOMS:
+        raise FurnishError(f"rooms: a home has at most {MAX_ROOMS} rooms, {len(asked)} were asked for")
     met = dict.fromkeys(keyframe.room for keyframe in script.keyframes if keyframe.room)
     return list(met) + [room for room in asked if room not in met] or [asked[0] if asked else "living_room"]
 

@@ -14,7 +14,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from planner_service.errors import TooLarge, TooMany
 
-MOST_BYTES: Final = 4 << 20
+MAX_BYTES: Final = 4 << 20
 """Of one body."""
 LARGER: Final = {("POST", "/v1/layouts"): 32 << 20}
 """Calls that take other people's files."""
@@ -93,12 +93,12 @@ def address_of(scope: Scope) -> str:
 
 
 class BodyLimit:
-    """ASGI: no body of more than `MOST_BYTES` is read, whether its length was declared or it comes in chunks.
+    """ASGI: no body of more than `MAX_BYTES` is read, whether its length was declared or it comes in chunks.
 
     Calls that are `larger` may send more.
     """
 
-    def __init__(self, app: ASGIApp, most: int = MOST_BYTES, larger: Mapping[tuple[str, str], int] = LARGER) -> None:
+    def __init__(self, app: ASGIApp, most: int = MAX_BYTES, larger: Mapping[tuple[str, str], int] = LARGER) -> None:
         self.app = app
         self.most = most
         self.larger = larger

@@ -23,9 +23,9 @@ from planner_service.shelves import Shelves
 from planner_service.store.engine import database_url, open_engine, unopened
 from planner_service.uploads import Uploads
 
-MOST_PLANNED: Final = 8
+MAX_PLANNED: Final = 8
 """Requests that may wait for a language model at once: each holds a thread, and the others need some too."""
-MOST_UPLOADS: Final = 8
+MAX_UPLOADS: Final = 8
 """Films that may come in at once: each may fill some gigabytes of the disk."""
 
 
@@ -41,11 +41,11 @@ class Parts:
     """What plans; None for the rules."""
     importing: CapacityLimiter = field(default_factory=partial(CapacityLimiter, 2))
     """Scene files that are read at once: each may take a second and some hundred megabytes."""
-    planning: threading.BoundedSemaphore = field(default_factory=lambda: threading.BoundedSemaphore(MOST_PLANNED))
+    planning: threading.BoundedSemaphore = field(default_factory=lambda: threading.BoundedSemaphore(MAX_PLANNED))
     """Taken by every request that waits for the model."""
     transcriber: Transcriber | None = None
     """What hears the speech of films; here only because a film that nobody can hear or watch is refused at once."""
-    uploading: threading.BoundedSemaphore = field(default_factory=lambda: threading.BoundedSemaphore(MOST_UPLOADS))
+    uploading: threading.BoundedSemaphore = field(default_factory=lambda: threading.BoundedSemaphore(MAX_UPLOADS))
     """Taken by every film that is coming in."""
     stopping: threading.Event = field(default_factory=threading.Event)
     """Set when the service is about to end, so that streams end too."""

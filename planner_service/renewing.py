@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from planner_service.scripts.keyframe import MOST_VERSIONS, ShortScript
+from planner_service.scripts.keyframe import MAX_VERSIONS, ShortScript
 from planner_service.store.keeping import AbsentError, ChangedError, FixedError, FullError
 
 if TYPE_CHECKING:
@@ -73,8 +73,8 @@ def changing(script: ShortScript, ours: Ours, read: Reader) -> Renewal:
 
 def following(kept: ShortScript, script: ShortScript) -> ShortScript:
     """The script as the version after the one that is kept."""
-    if kept.version >= MOST_VERSIONS:
-        raise FullError(f"the short script {kept.id!r} has had {MOST_VERSIONS} versions; choose another id")
+    if kept.version >= MAX_VERSIONS:
+        raise FullError(f"the short script {kept.id!r} has had {MAX_VERSIONS} versions; choose another id")
     return script.model_copy(update={"version": kept.version + 1})
 
 

@@ -16,8 +16,8 @@ from scene_graphs.retrieval import LayoutIndex, LayoutMatch
 
 EFFORT: Final = 4_000_000
 """Nodes of the query, times steps of the search in all rooms or homes: a second or two at most."""
-LEAST_STEPS, MOST_STEPS = 50, 100_000
-MOST_HOMES: Final = 5_000
+MIN_STEPS, MAX_STEPS = 50, 100_000
+MAX_HOMES: Final = 5_000
 """Homes of several rooms that are searched."""
 
 
@@ -44,12 +44,12 @@ def retrieved(
     """
     named = list(dict.fromkeys(canonical_room(room) for room in rooms))
     kinds: Sequence[str | None] = named or [None]
-    effort = max(EFFORT // max(len(query), 1), LEAST_STEPS)
+    effort = max(EFFORT // max(len(query), 1), MIN_STEPS)
     if max_rooms > 1:
-        homes = retrieve_home(index, query, max_rooms, k, named, limit=MOST_STEPS, budget=MOST_HOMES, effort=effort)
+        homes = retrieve_home(index, query, max_rooms, k, named, limit=MAX_STEPS, budget=MAX_HOMES, effort=effort)
         return [Retrieved(match, explain(query, _together(index, match), match, index.costs)) for match in homes]
     size = sum(len(index.of_type(kind)) for kind in kinds)
-    steps = min(max(effort // size, LEAST_STEPS), MOST_STEPS)
+    steps = min(max(effort // size, MIN_STEPS), MAX_STEPS)
     matches = [match for kind in kinds for match in index.search(query, k, kind, limit=steps)]
     # Where one type's search was cut, its nearest may be missing from all of them.
     proven = len(kinds) == 1 or all(match.exact for match in matches)

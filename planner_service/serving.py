@@ -17,7 +17,7 @@ import structlog
 
 from planner_service.settings import Settings, SettingsError
 
-FIRST_WAIT, LONGEST_WAIT = 0.2, 15.0
+FIRST_WAIT, MAX_WAIT_SECONDS = 0.2, 15.0
 """Seconds before a worker that died is started again; doubled while it keeps dying."""
 LIVED: Final = 30.0
 """Seconds after which a worker counts as having lived."""
@@ -77,7 +77,7 @@ class Supervisor:
                 if slot.process is None and now >= slot.due:
                     self._spawn(slot)
                 elif slot.process is not None and slot.process.poll() is not None:
-                    slot.wait = FIRST_WAIT if now - slot.started > LIVED else min(2 * slot.wait, LONGEST_WAIT)
+                    slot.wait = FIRST_WAIT if now - slot.started > LIVED else min(2 * slot.wait, MAX_WAIT_SECONDS)
                     log.warning("worker ended, starting it again", worker=slot.id, code=slot.process.returncode)
                     slot.process, slot.due = None, now + slot.wait
 
@@ -87,7 +87,7 @@ class Supervisor:
         try:
             slot.process = subprocess.Popen(command, stdin=subprocess.PIPE, env=environment(self.settings, slot.id))
         except OSError as error:  # no memory or no process number left, for now
-            slot.due = slot.started + LONGEST_WAIT
+            slot.due = slot.started + MAX_WAIT_SECONDS
             log.error("worker cannot be started", worker=slot.id, reason=str(error))
 
 

@@ -9,7 +9,7 @@ from platformdirs import user_data_path
 from pydantic import Field, SecretStr, ValidationError, field_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
-LEAST_KEY = 16
+MIN_KEY = 16
 """Letters of an API key: shorter ones can be guessed."""
 Words = Annotated[tuple[str, ...], NoDecode]
 """Words parted by commas."""
@@ -85,8 +85,8 @@ class Settings(BaseSettings):
     @field_validator("api_keys")
     @classmethod
     def _long(cls, keys: tuple[str, ...]) -> tuple[str, ...]:
-        if any(len(key) < LEAST_KEY for key in keys):
-            raise ValueError(f"a key has at least {LEAST_KEY} letters; `openssl rand -hex 24` makes a good one")
+        if any(len(key) < MIN_KEY for key in keys):
+            raise ValueError(f"a key has at least {MIN_KEY} letters; `openssl rand -hex 24` makes a good one")
         return keys
 
     @field_validator("log_level", mode="before")

@@ -42,16 +42,16 @@ __all__ = [
     "UnfitError", "open_shelves",
 ]  # fmt: skip
 
-LONGEST_ID: Final = 120
+MAX_ID_LENGTH: Final = 120
 _TAKEN_ENDINGS: Final = ("/scene.glb", "/drawing.svg", "/drawing.png")
 """What follows the id of a room in an address."""
 _ROOM_ID: Final = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.:-]*(?:/[A-Za-z0-9_][A-Za-z0-9_.:-]*)*")
 """What is the end of an address as it stands."""
-MOST_SCRIPTS: Final = 100_000
+MAX_SCRIPTS: Final = 100_000
 """Short scripts of the users': all are compared with every query."""
 RESERVED: Final = frozenset({"search", "export", "extract"})
 """Paths of their own beside /v1/short-scripts/{id}, so no script can be called that."""
-MOST_LAYOUTS: Final = 5_000
+MAX_LAYOUTS: Final = 5_000
 """Rooms of the users': all are kept in memory, and a graph is made of each."""
 
 
@@ -143,12 +143,12 @@ class Shelves:
         if replace:
             ours = self._scripts.fixed
             renewals = {one.id: replacing(one, ours, partial(_read_script, one.id), added) for one in scripts}
-            self._scripts.renew(renewals, MOST_SCRIPTS, "short script")
+            self._scripts.renew(renewals, MAX_SCRIPTS, "short script")
             return added
         for script in scripts:
             if script.id in self._scripts.fixed:
                 raise _taken(script.id)
-        self._scripts.put({one.id: {"body": body_of(one)} for one in scripts}, MOST_SCRIPTS, "short script", within)
+        self._scripts.put({one.id: {"body": body_of(one)} for one in scripts}, MAX_SCRIPTS, "short script", within)
         added.new.extend(script.id for script in scripts)
         return added
 
@@ -159,7 +159,7 @@ class Shelves:
         """
         _fit((script,))
         renewal = changing(script, self._scripts.fixed, partial(_read_script, script.id))
-        self._scripts.renew({script.id: renewal}, MOST_SCRIPTS, "short script")
+        self._scripts.renew({script.id: renewal}, MAX_SCRIPTS, "short script")
         return self.scripts().get(script.id)
 
     def script_versions(self, script_id: str) -> tuple[ShortScript, ...]:
@@ -192,16 +192,20 @@ class Shelves:
         FullError."""
         rows: dict[str, dict[str, str]] = {}
         for layout in layouts:
-            if not _ROOM_ID.fullmatch(layout.id) or len(layout.id) > LONGEST_ID or layout.id.endswith(_TAKEN_ENDINGS):
+            if (
+                not _ROOM_ID.fullmatch(layout.id)
+                or len(layout.id) > MAX_ID_LENGTH
+                or layout.id.endswith(_TAKEN_ENDINGS)
+            ):
                 like = "letters, digits and _.:- between slashes, such as my-house/kitchen"
-                raise ShelfError(f"id: {layout.id!r:.80} is no id of a room; use at most {LONGEST_ID} {like}")
+                raise ShelfError(f"id: {layout.id!r:.80} is no id of a room; use at most {MAX_ID_LENGTH} {like}")
             if layout.id in self._rooms.fixed or layout.id in rows:
                 raise TakenError(f"id: there is a room {layout.id!r} already; choose another id")
             usable = {name: sorted(found) for name, found in survey(layout).usable.items()}
             whole = {"layout": layout_to_dict(layout), "usable": usable}
             body = json.dumps(whole, separators=(",", ":"), allow_nan=False)
             rows[layout.id] = {"body": body, "room_type": layout.room_type}
-        self._rooms.put(rows, MOST_LAYOUTS, "room")
+        self._rooms.put(rows, MAX_LAYOUTS, "room")
 
     def remove_layout(self, layout_id: str) -> None:
         """Remove a room of the users'; stories keep their own copy. FixedError for one of ours, AbsentError."""

@@ -15,14 +15,14 @@ from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.llm.served import for_story
 from planner_service.scripts.acting import act
 from planner_service.scripts.captions import Vocabulary
-from planner_service.scripts.composing import MOST, Request, compose, script_of
+from planner_service.scripts.composing import MAX_SHORT_SCRIPTS, Request, compose, script_of
 from planner_service.scripts.keyframe import Keyframe, LongScript
 from planner_service.scripts.narrating import Told, narrate
 from planner_service.scripts.protagonist import cast_by
 from planner_service.scripts.told_by_model import narrate_with_model
 from planner_service.shelves import Shelves
 from scene_graphs.furniture import ROOM_TYPES, canonical_room
-from scene_graphs.homes import MOST_ROOMS, Home
+from scene_graphs.homes import MAX_ROOMS, Home
 from scene_graphs.layouts import Layout
 
 Progress = Callable[[str, float], None]
@@ -31,10 +31,10 @@ STAGES = ("plan", "furnish", "narrate", "act", "move", "judge")
 BACKENDS = ("procedural",)
 METHODS = ("matching", "direct")
 PRONOUNS = ("he", "she", "they")
-LONGEST_NAME = 40
-LARGEST_SEED = 2**53 - 1
+MAX_NAME_LENGTH = 40
+MAX_SEED = 2**53 - 1
 """The largest whole number that every JSON reader keeps exactly."""
-LEAST_HEIGHT, MOST_HEIGHT = 1.2, 2.2
+MIN_HEIGHT, MAX_HEIGHT = 1.2, 2.2
 """Metres."""
 
 
@@ -67,30 +67,32 @@ class StoryRequest:
             _one_of("rooms", canonical_room(room), ROOM_TYPES, room)
         _one_of("backend", self.backend, BACKENDS)
         _one_of("method", self.method, METHODS)
-        if max(len(set(self.rooms)), len(self.layouts)) > MOST_ROOMS:
-            field, count = ("rooms", len(self.rooms)) if len(self.rooms) > MOST_ROOMS else ("layout", len(self.layouts))
-            raise RequestError(f"{field}: a home has one to {MOST_ROOMS} rooms, {count} were asked for; leave some out")
+        if max(len(set(self.rooms)), len(self.layouts)) > MAX_ROOMS:
+            field, count = ("rooms", len(self.rooms)) if len(self.rooms) > MAX_ROOMS else ("layout", len(self.layouts))
+            raise RequestError(f"{field}: a home has one to {MAX_ROOMS} rooms, {count} were asked for; leave some out")
         ids = [layout.id for layout in self.layouts]
         for number, layout_id in enumerate(ids):
             if layout_id in ids[:number]:
                 raise RequestError(f"layout: two rooms are called {layout_id!r}; give every room its own id")
-        if self.short_scripts is not None and not 1 <= self.short_scripts <= MOST:
-            raise RequestError(f"short_scripts: must be a number from 1 to {MOST}, got {self.short_scripts}")
+        if self.short_scripts is not None and not 1 <= self.short_scripts <= MAX_SHORT_SCRIPTS:
+            raise RequestError(
+                f"short_scripts: must be a number from 1 to {MAX_SHORT_SCRIPTS}, got {self.short_scripts}"
+            )
         if self.home is not None and self.layouts:
             raise RequestError("home: give a whole home or layouts to join to one, not both")
-        if not 0 <= self.seed <= LARGEST_SEED:
-            raise RequestError(f"seed: must be a whole number from 0 to {LARGEST_SEED}, got {self.seed}")
+        if not 0 <= self.seed <= MAX_SEED:
+            raise RequestError(f"seed: must be a whole number from 0 to {MAX_SEED}, got {self.seed}")
         _check_character(self.character)
         object.__setattr__(self, "character", cast_by(self.theme, self.character))
 
 
 def _check_character(character: Character) -> None:
     name = character.name.strip()
-    if not name or len(name) > LONGEST_NAME or not name.isprintable():
-        raise RequestError(f"name: must be 1 to {LONGEST_NAME} printable letters, got {name[:LONGEST_NAME]!r}")
+    if not name or len(name) > MAX_NAME_LENGTH or not name.isprintable():
+        raise RequestError(f"name: must be 1 to {MAX_NAME_LENGTH} printable letters, got {name[:MAX_NAME_LENGTH]!r}")
     _one_of("pronouns", character.pronouns.strip().lower().split("/")[0], PRONOUNS, character.pronouns)
-    if not LEAST_HEIGHT <= character.height <= MOST_HEIGHT:
-        raise RequestError(f"height: must be {LEAST_HEIGHT} to {MOST_HEIGHT} metres, got {character.height:g}")
+    if not MIN_HEIGHT <= character.height <= MAX_HEIGHT:
+        raise RequestError(f"height: must be {MIN_HEIGHT} to {MAX_HEIGHT} metres, got {character.height:g}")
 
 
 def _one_of(field: str, value: str, known: Sequence[str], shown: str | None = None) -> None:
@@ -208,7 +210,7 @@ def _rooms(request: StoryRequest) -> tuple[str, ...]:
 def types_of(layouts: Sequence[Layout]) -> tuple[str, ...]:
     """The room types that rooms of the user's can be; a story is then looked for that plays there."""
     own = [layout.room_type for layout in layouts] + [tag for layout in layouts for tag in layout.tags]
-    return tuple(room for room in dict.fromkeys(own) if room in ROOM_TYPES)[:MOST_ROOMS]
+    return tuple(room for room in dict.fromkeys(own) if room in ROOM_TYPES)[:MAX_ROOMS]
 
 
 def load_backend(name: str) -> MotionBackend:

@@ -14,9 +14,9 @@ from scene_graphs.graph import FurnitureGraph, graph_from_layout, offers
 from scene_graphs.layouts import Layout
 from scene_graphs.surfaces import Spot, spots
 
-MOST_CELLS: Final = 150_000
+MAX_CELLS: Final = 150_000
 """Cells of the map of a floor: 375 square metres at 5 cm; a larger room is looked at more coarsely."""
-MOST_SPOTS: Final = 8
+MAX_SPOTS: Final = 8
 """Of one object for one affordance, the usable ones first."""
 _CELL: Final = 0.05
 
@@ -51,7 +51,7 @@ def survey(layout: Layout) -> Survey:
 
 def cell_of(layout: Layout) -> float:
     """The cells of a map of its floor, in metres: coarser ones for a larger room."""
-    return max(_CELL, sqrt(layout.area / MOST_CELLS))
+    return max(_CELL, sqrt(layout.area / MAX_CELLS))
 
 
 def _spots(check: RoomCheck) -> Iterator[tuple[Spot, bool]]:
@@ -61,4 +61,4 @@ def _spots(check: RoomCheck) -> Iterator[tuple[Spot, bool]]:
         # Only what a piece is for: a side table has the height of a stool, and is no seat.
         for affordance in (one for one in AFFORDANCES if one in offers(placed)):
             found = [(spot, check.is_usable(spot)) for spot in spots(placed, affordance)]
-            yield from sorted(found, key=lambda one: not one[1])[:MOST_SPOTS]
+            yield from sorted(found, key=lambda one: not one[1])[:MAX_SPOTS]

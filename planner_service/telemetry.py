@@ -24,8 +24,8 @@ METHODS: Final = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OP
 SECONDS: Final = (0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 UNKNOWN: Final = "unknown"
 """The route of a request that was refused before it reached one."""
-LONGEST_PATH: Final = 200
-LONGEST_ID: Final = 64
+MAX_PATH_LENGTH: Final = 200
+MAX_ID_LENGTH: Final = 64
 """Letters of a story's id that are written down: whoever asks may send any."""
 HUNG_UP: Final = 499
 """The status in log and figures where the caller left before there was an answer."""
@@ -136,10 +136,10 @@ class Telemetry:
         log.info(
             "request",
             method=method,
-            path=printable(scope["path"], LONGEST_PATH) if route == UNKNOWN else route,
+            path=printable(scope["path"], MAX_PATH_LENGTH) if route == UNKNOWN else route,
             status=status,
             ms=round((now - watch.begun) * 1000, 1),
-            story_id=scope.get("path_params", {}).get("story_id", "")[:LONGEST_ID] or None,
+            story_id=scope.get("path_params", {}).get("story_id", "")[:MAX_ID_LENGTH] or None,
             hung_up=watch.hung_up or None,
         )
 

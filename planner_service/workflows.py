@@ -22,9 +22,9 @@ from planner_service.jobs import EXTRACT, WORKFLOW
 from planner_service.making import Maker
 from planner_service.store.stories import Stories, StoryGone
 
-MOST_ATTEMPTS: Final = 10
+MAX_ATTEMPTS: Final = 10
 """How often a story may take its worker down with it before it is given up."""
-LONGEST_WAIT: Final = 15.0
+MAX_WAIT_SECONDS: Final = 15.0
 """Seconds between two attempts to reach the database."""
 UNUSABLE: Final = (OperationalError, InterfaceError)
 """What a locked, full or absent database raises."""
@@ -35,12 +35,12 @@ log = structlog.get_logger("sims.worker")
 def register(maker: Maker, reader: Reader) -> None:
     """Tell the job engine how stories and extractions are made; call before DBOS.launch()."""
 
-    @DBOS.workflow(name=WORKFLOW, max_recovery_attempts=MOST_ATTEMPTS)
+    @DBOS.workflow(name=WORKFLOW, max_recovery_attempts=MAX_ATTEMPTS)
     def act_out(story_id: str) -> None:
         with structlog.contextvars.bound_contextvars(story_id=story_id):
             make(maker, story_id)
 
-    @DBOS.workflow(name=EXTRACT, max_recovery_attempts=MOST_ATTEMPTS)
+    @DBOS.workflow(name=EXTRACT, max_recovery_attempts=MAX_ATTEMPTS)
     def extract(extraction_id: str) -> None:
         with structlog.contextvars.bound_contextvars(story_id=extraction_id):
             read(reader, extraction_id)
@@ -107,7 +107,7 @@ def step(name: str, run: Callable[..., R], *args: object) -> R:
             except UNUSABLE as error:
                 log.warning("database not usable, trying again", step=name, reason=str(error.orig), wait=wait)
                 time.sleep(wait)
-                wait = min(2 * wait, LONGEST_WAIT)
+                wait = min(2 * wait, MAX_WAIT_SECONDS)
             else:
                 log.info("step done", step=name, ms=round(1000 * (time.perf_counter() - started), 1))
                 return done

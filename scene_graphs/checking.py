@@ -25,10 +25,10 @@ DOOR_CLEAR = 0.6
 """Depth of the floor inside a door that nothing may stand on, in metres."""
 OUT_OF_REACH = 1.4
 """Things whose bottom hangs higher than this offer no spot a room must make reachable."""
-MOST_OVERLAPS = 100
+MAX_OVERLAPS = 100
 """Overlaps that are told of one room; a heap of things has thousands."""
 _STANDING = STANDING_RADIUS - 1e-9
-_LEAST_OVERLAP = 2e-3
+_MIN_OVERLAP = 2e-3
 _STEPS = (0.0, 0.1, 0.2, 0.3, 0.35)
 _TURNS = (0.0, *(sign * eighth * pi / 8 for eighth in (2, 4, 1, 3) for sign in (1, -1)))
 
@@ -108,7 +108,7 @@ class RoomCheck:
         found = {}
         for index, door in enumerate(self.layout.doors):
             covered = shapely.area(shapely.intersection(self._outlines, door_area(door, self._inward(door))))
-            for number in np.flatnonzero(covered > _LEAST_OVERLAP)[:1]:
+            for number in np.flatnonzero(covered > _MIN_OVERLAP)[:1]:
                 found[index] = str(self._owners[number])
         return found
 
@@ -186,7 +186,7 @@ class RoomCheck:
             for a, b in _neighbours(solid)
             if a.parent != b.id and b.parent != a.id and solids_overlap(a, b)
         )
-        return list(islice(found, MOST_OVERLAPS))
+        return list(islice(found, MAX_OVERLAPS))
 
     def _blocked_doors(self) -> list[str]:
         blocked, found = self.blocked_doors(), []
@@ -214,7 +214,7 @@ def solids_overlap(a: Placed, b: Placed) -> bool:
     (low_a, high_a, plans_a), (low_b, high_b, plans_b) = _columns(a), _columns(b)
     shared = np.minimum(high_a[:, None], high_b) - np.maximum(low_a[:, None], low_b)
     i, k = np.nonzero(shared > 0.01)
-    return bool((shapely.area(shapely.intersection(plans_a[i], plans_b[k])) > _LEAST_OVERLAP).any())
+    return bool((shapely.area(shapely.intersection(plans_a[i], plans_b[k])) > _MIN_OVERLAP).any())
 
 
 def door_area(door: Opening, inward: Point2, depth: float = DOOR_CLEAR) -> shapely.Polygon:

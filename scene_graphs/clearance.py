@@ -17,7 +17,7 @@ from scene_graphs.layouts import Array, Placed, Point2
 
 BODY_RADIUS = 0.22
 """Radius of the disc a walking body keeps free."""
-LOWEST, HIGHEST = 0.02, 1.8
+MIN_OBSTACLE_HEIGHT, MAX_OBSTACLE_HEIGHT = 0.02, 1.8
 """Heights above the floor between which a part is in a walker's way."""
 _MANY: Final = 150
 """Obstacles of which the nearest is looked up in a tree."""
@@ -49,7 +49,7 @@ def obstacles(objects: Iterable[Placed]) -> list[tuple[Placed, shapely.Polygon]]
     for placed in objects:
         for part in parts_of(placed):
             bottom, top = part.low[1] + placed.position[1], part.high[1] + placed.position[1]
-            if part.is_soft or top <= LOWEST or bottom >= HIGHEST:
+            if part.is_soft or top <= MIN_OBSTACLE_HEIGHT or bottom >= MAX_OBSTACLE_HEIGHT:
                 continue
             found.append((placed, shapely.Polygon(part_outline(placed, part.low, part.high))))
     return found

@@ -19,7 +19,7 @@ from scene_graphs.distance import check_size
 from scene_graphs.furniture import Furniture
 from scene_graphs.graph import FurnitureGraph
 from scene_graphs.growing import Effort, Grown, Homes
-from scene_graphs.homes import MOST_ROOMS
+from scene_graphs.homes import MAX_ROOMS
 from scene_graphs.retrieval import LayoutIndex
 
 BEAM: Final = 20
@@ -51,7 +51,7 @@ class HomeMatch:
 def retrieve_home(
     index: LayoutIndex,
     query: FurnitureGraph,
-    max_rooms: int = MOST_ROOMS,
+    max_rooms: int = MAX_ROOMS,
     k: int = 1,
     room_types: Sequence[str] = (),
     *,
@@ -69,8 +69,8 @@ def retrieve_home(
     first mapping there is. `budget` is how many homes of several rooms are searched. A match that any of them may have
     spoilt is not `exact`. NoSuitableRoom if no room is of a type; ValueError for an empty or too large query.
     """
-    if not 1 <= max_rooms <= MOST_ROOMS:
-        raise ValueError(f"max_rooms must be 1 to {MOST_ROOMS}, got {max_rooms}")
+    if not 1 <= max_rooms <= MAX_ROOMS:
+        raise ValueError(f"max_rooms must be 1 to {MAX_ROOMS}, got {max_rooms}")
     if min(k, budget, effort, 1 if limit is None else limit) < 1:
         raise ValueError(f"k, limit, budget and effort must be at least 1, got {k}, {limit}, {budget} and {effort}")
     if not len(query):

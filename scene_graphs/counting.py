@@ -24,7 +24,7 @@ from scene_graphs.vocabulary import (
     PAIRS,
 )
 
-MOST: Final = 255
+MAX_COUNT: Final = 255
 """A count stops there: it may stand for more."""
 ANY_NUMBER: Final = 1 << 16
 _BLOCK: Final = 4096
@@ -55,7 +55,7 @@ class Counts:
         """How often each room has one thing, or `ANY_NUMBER` where the count may stand for more. (rooms,)."""
         row = COUNTED.get(key)
         counts = (self.rare(key) if row is None else self.table[row]).astype(np.int32)
-        return np.where(counts == MOST, ANY_NUMBER, counts)
+        return np.where(counts == MAX_COUNT, ANY_NUMBER, counts)
 
     def rare(self, key: Key) -> NDArray[np.uint8]:
         """How often each room has one thing that has no row in the table. (rooms,)."""
@@ -119,4 +119,4 @@ def _sorted(blocks: list[tuple[Ints, Ints]]) -> tuple[Ints, Ints]:
 
 
 def _clipped(counts: Ints) -> NDArray[np.uint8]:
-    return np.minimum(counts, MOST).astype(np.uint8)
+    return np.minimum(counts, MAX_COUNT).astype(np.uint8)

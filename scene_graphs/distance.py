@@ -20,7 +20,7 @@ from scene_graphs.packing import PackedRooms
 
 __all__ = ["CostTable", "GroupCosts", "Level", "Match", "Pair", "check_size", "exact_distance", "lower_bound"]
 
-MOST_NODES = 52
+MAX_NODES = 52
 """A query with more nodes is refused: no script uses that much furniture, and the search would not end."""
 
 
@@ -80,8 +80,8 @@ def exact_distance(
 
 def check_size(query: FurnitureGraph) -> None:
     """ValueError if a query is too large to be searched for."""
-    if len(query) > MOST_NODES:
-        raise ValueError(f"a query may have at most {MOST_NODES} pieces of furniture, got {len(query)}; split it")
+    if len(query) > MAX_NODES:
+        raise ValueError(f"a query may have at most {MAX_NODES} pieces of furniture, got {len(query)}; split it")
 
 
 def _pairs(

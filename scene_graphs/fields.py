@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 Row = Mapping[str, Any]
-FARTHEST = 1000.0
+MAX_COORDINATE = 1000.0
 """No coordinate lies farther from the origin, in metres."""
 
 _UNTOLD = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\ufffe\uffff")
@@ -67,7 +67,7 @@ def read_point2(value: Any, where: str) -> tuple[float, float]:
     """An [x, z] point in metres."""
     if not isinstance(value, list | tuple) or len(value) != 2:
         raise LayoutError(f"{where} must be [x, z] in metres, got {value!r:.60}")
-    x, z = (read_number(number, where, -FARTHEST, FARTHEST) for number in value)
+    x, z = (read_number(number, where, -MAX_COORDINATE, MAX_COORDINATE) for number in value)
     return (x, z)
 
 

@@ -17,7 +17,7 @@ from scene_graphs.retrieval import LayoutIndex
 
 ANOTHER_ROOM: Final = 50
 """What every room after the first costs: half a missing key object."""
-MOST_PAIRED: Final = 1000
+MAX_PAIRED: Final = 1000
 """Of more rooms the nearest of each type are taken, and what that may have missed is not called exact."""
 _BLOCK: Final = 1 << 20
 
@@ -128,7 +128,7 @@ class Homes:
         """Prepare for homes of 2 to `most` rooms: of too many rooms choose the nearest of each type in turn."""
         self.doubt = min([self.doubt, *(self._floor(size) for size in range(3, most + 1))])
         changes = self._changes[self.numbers]
-        if len(changes) <= MOST_PAIRED:
+        if len(changes) <= MAX_PAIRED:
             return
         turns: Counter[str] = Counter()
         ranked = []
@@ -136,7 +136,7 @@ class Homes:
             room_type = self.index.rooms.room_type(int(self.numbers[place]))
             turns[room_type] += 1
             ranked.append((turns[room_type], rank, place))
-        chosen = np.sort([place for *_, place in sorted(ranked)[:MOST_PAIRED]])
+        chosen = np.sort([place for *_, place in sorted(ranked)[:MAX_PAIRED]])
         hidden = self._constant + _fare(2) + np.delete(changes, chosen).min() + changes.min()
         self.doubt = min(self.doubt, float(hidden))
         self.numbers = self.numbers[chosen]

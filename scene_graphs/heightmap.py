@@ -52,7 +52,7 @@ UNIHSI: Final = HeightmapSpec(9, 0.2, 0.4, "scene", relative=False)
 class SceneHeights:
     """How high everything in a home is, on cells of 2 cm, computed once and then looked up.
 
-    Solid parts that begin below a walker's head count (`HIGHEST`), what a body sinks into does not. Cells outside the
+    Solid parts that begin below a walker's head count (`MAX_OBSTACLE_HEIGHT`), what a body sinks into does not. Cells outside the
     rooms and their doorways are as high as the highest room. ValueError if the home has too many cells of that size.
     """
 

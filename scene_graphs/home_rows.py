@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from scene_graphs.fields import FARTHEST, LayoutError, Row, read_number, read_point3, read_rows
-from scene_graphs.homes import MOST_ROOMS, Home, Room, Wall
+from scene_graphs.fields import MAX_COORDINATE, LayoutError, Row, read_number, read_point3, read_rows
+from scene_graphs.homes import MAX_ROOMS, Home, Room, Wall
 from scene_graphs.layout_rows import opening_from_row, opening_to_row, segment_from_row
-from scene_graphs.layouts import LARGEST, layout_from_dict, layout_to_dict
+from scene_graphs.layouts import MAX_SIZE, layout_from_dict, layout_to_dict
 
-MOST_WALLS: Final = 2000
-MOST_OPENINGS: Final = 50
+MAX_WALLS: Final = 2000
+MAX_OPENINGS: Final = 50
 """Of one wall, and doorways of one home."""
 
 
@@ -34,18 +34,18 @@ def home_to_dict(home: Home) -> dict[str, Any]:
 
 def home_from_dict(row: Row, where: str = "home") -> Home:
     """Read a home. LayoutError naming the field that is missing, out of bounds or of another type."""
-    rooms = tuple(_room(item, place) for item, place in read_rows(row, "rooms", where, MOST_ROOMS))
+    rooms = tuple(_room(item, place) for item, place in read_rows(row, "rooms", where, MAX_ROOMS))
     if not rooms:
-        raise LayoutError(f"{where}.rooms must hold 1 to {MOST_ROOMS} rooms, each with layout, offset and yaw")
+        raise LayoutError(f"{where}.rooms must hold 1 to {MAX_ROOMS} rooms, each with layout, offset and yaw")
     walls = tuple(
         Wall(
             segment_from_row(item, place),
-            read_number(item.get("height"), f"{place}.height", 0.0, LARGEST),
-            tuple(opening_from_row(inner, at) for inner, at in read_rows(item, "openings", place, MOST_OPENINGS)),
+            read_number(item.get("height"), f"{place}.height", 0.0, MAX_SIZE),
+            tuple(opening_from_row(inner, at) for inner, at in read_rows(item, "openings", place, MAX_OPENINGS)),
         )
-        for item, place in read_rows(row, "walls", where, MOST_WALLS)
+        for item, place in read_rows(row, "walls", where, MAX_WALLS)
     )
-    doorways = tuple(opening_from_row(item, place) for item, place in read_rows(row, "doorways", where, MOST_OPENINGS))
+    doorways = tuple(opening_from_row(item, place) for item, place in read_rows(row, "doorways", where, MAX_OPENINGS))
     return Home(rooms, walls, doorways)
 
 
@@ -55,6 +55,6 @@ def _room(row: Row, where: str) -> Room:
         raise LayoutError(f"{where}.layout must be an object, got {type(layout).__name__}")
     return Room(
         layout_from_dict(layout, f"{where}.layout"),
-        read_point3(row.get("offset"), f"{where}.offset", -FARTHEST, FARTHEST),
+        read_point3(row.get("offset"), f"{where}.offset", -MAX_COORDINATE, MAX_COORDINATE),
         read_number(row.get("yaw", 0.0), f"{where}.yaw", -100.0, 100.0),
     )

@@ -17,7 +17,7 @@ from scene_graphs.joining import WALL_GAP, HomeError, Pose, arrangements, span_o
 from scene_graphs.layouts import Array, Layout, Opening, Placed, Point2, Point3, Segment
 
 __all__ = [
-    "MOST_ROOMS",
+    "MAX_ROOMS",
     "Home",
     "HomeError",
     "Room",
@@ -26,7 +26,7 @@ __all__ = [
     "random_home",
 ]
 
-MOST_ROOMS: Final = 4
+MAX_ROOMS: Final = 4
 _DRAWS: Final = 12
 """Of rooms for a random home, before it is told why they cannot be joined."""
 
@@ -114,8 +114,8 @@ def home_from_layouts(layouts: Sequence[Layout], seed: int) -> Home:
     Every room can be walked to from every other. The same layouts and seed give the same home. HomeError if there are
     too few or many rooms, a room has no free wall for a doorway, or one cannot be placed or walked to.
     """
-    if not 1 <= len(layouts) <= MOST_ROOMS:
-        raise HomeError(f"a home has 1 to {MOST_ROOMS} rooms, got {len(layouts)}")
+    if not 1 <= len(layouts) <= MAX_ROOMS:
+        raise HomeError(f"a home has 1 to {MAX_ROOMS} rooms, got {len(layouts)}")
     cut_off = None
     for plan in arrangements(layouts, seed):
         rooms = tuple(

@@ -24,8 +24,8 @@ DOOR_HEIGHT: Final = 2.1
 CLEAR: Final = 0.75
 """Free space we want on both sides of the way through a doorway and half a metre on; `TIGHT` is the least we take."""
 TIGHT: Final = 0.4
-_WIDEST_DOOR: Final = 1.4
-_NARROWEST_DOOR: Final = 0.75
+_MAX_DOOR: Final = 1.4
+_MIN_DOOR: Final = 0.75
 _FROM_CORNER: Final = 0.1
 _STEP: Final = 0.2
 _ENTERED: Final = 0.5
@@ -151,8 +151,8 @@ def _stretches(layout: Layout, start: Array, along: Array, length: float) -> Ite
     doors = [span for door in layout.doors if (span := span_on(door, start, along, length)) is not None]
     windows = [span for window in layout.windows if (span := span_on(window, start, along, length)) is not None]
     for low, high in doors:
-        if high - low >= _NARROWEST_DOOR:
-            yield start + along * (low + high) / 2, min(high - low, _WIDEST_DOOR), top, -0.5
+        if high - low >= _MIN_DOOR:
+            yield start + along * (low + high) / 2, min(high - low, _MAX_DOOR), top, -0.5
     half = DOOR_WIDTH / 2
     for middle in np.arange(half + _FROM_CORNER, length - half - _FROM_CORNER + 1e-9, _STEP):
         cut = sum(low < middle + half and high > middle - half for low, high in (*doors, *windows))

@@ -6,23 +6,23 @@ from typing import Any
 
 import shapely
 
-from scene_graphs.fields import FARTHEST, LayoutError, Row, read_number, read_point2, read_point3, read_text
+from scene_graphs.fields import MAX_COORDINATE, LayoutError, Row, read_number, read_point2, read_point3, read_text
 from scene_graphs.furniture import canonical
 from scene_graphs.placed import Opening, Placed, Point2, Segment
-from scene_graphs.solids import MOST_PARTS, ROLES, THINNEST, Part, Point3
+from scene_graphs.solids import MAX_PARTS, ROLES, THINNEST, Part, Point3
 
-MOST_OBJECTS = 500
-MOST_CORNERS = 400
-SMALLEST, LARGEST = 1e-4, 30.0
+MAX_OBJECTS = 500
+MAX_CORNERS = 400
+MIN_SIZE, MAX_SIZE = 1e-4, 30.0
 """No object is shorter or longer, in metres."""
-LOWEST = 1.5
+MIN_ROOM_HEIGHT = 1.5
 """No room is lower, in metres."""
-WIDEST = 60.0
+MAX_ROOM_WIDTH = 60.0
 """No room is wider: maps of the floor take memory by its area."""
-MOST_TAGS = 100
+MAX_TAGS = 100
 NEAR = 1.2
 """Objects whose footprints are this near, in metres, are joined in a room's graph."""
-MOST_CROWDED = 1_000_000
+MAX_CROWDED = 1_000_000
 """Objects of a room times pairs of them that stand near each other; 13,000 in the fullest of 539 real rooms."""
 _SLACK = 0.05
 """How far a part may stand out of its piece's box, in metres."""
@@ -49,11 +49,11 @@ def opening_to_row(opening: Opening) -> dict[str, Any]:
 def placed_from_row(row: Row, where: str) -> Placed:
     """A piece of furniture; `pos` is read as `position` and its category is made canonical."""
     position = row.get("position", row.get("pos"))
-    size = read_point3(row.get("size"), f"{where}.size", SMALLEST, LARGEST)
+    size = read_point3(row.get("size"), f"{where}.size", MIN_SIZE, MAX_SIZE)
     return Placed(
         id=read_text(row, "id", where),
         category=canonical(read_text(row, "category", where)),
-        position=read_point3(position, f"{where}.position", -FARTHEST, FARTHEST),
+        position=read_point3(position, f"{where}.position", -MAX_COORDINATE, MAX_COORDINATE),
         size=size,
         yaw=read_number(row.get("yaw", 0.0), f"{where}.yaw", -100.0, 100.0),
         parent=None if row.get("parent") is None else read_text(row, "parent", where),
@@ -65,15 +65,15 @@ def placed_from_row(row: Row, where: str) -> Placed:
 def _shape(value: Any, where: str, size: Point3) -> tuple[Part, ...]:
     if value is None:
         return ()
-    if not isinstance(value, list) or len(value) > MOST_PARTS:
-        raise LayoutError(f"{where} must be a list of at most {MOST_PARTS} boxes [role, low, high]")
+    if not isinstance(value, list) or len(value) > MAX_PARTS:
+        raise LayoutError(f"{where} must be a list of at most {MAX_PARTS} boxes [role, low, high]")
     return tuple(_part(item, f"{where}[{index}]", size) for index, item in enumerate(value))
 
 
 def _part(value: Any, where: str, size: Point3) -> Part:
     if not isinstance(value, list) or len(value) != 3 or not (isinstance(value[0], str) and value[0] in ROLES):
         raise LayoutError(f"{where} must be [role, low, high] with a role of {', '.join(sorted(ROLES))}")
-    low, high = (read_point3(corner, where, -LARGEST, LARGEST) for corner in value[1:])
+    low, high = (read_point3(corner, where, -MAX_SIZE, MAX_SIZE) for corner in value[1:])
     (w, h, d), s = size, _SLACK
     inside = all(
         least - s <= start and start + THINNEST / 2 <= end and end <= most + s
@@ -96,11 +96,11 @@ def check_ids(objects: list[Placed], where: str) -> None:
 
 def check_crowd(objects: list[Placed], where: str) -> None:
     """Refuse a heap of things: what stands near what would take minutes to find."""
-    if len(objects) * len(objects) * (len(objects) - 1) / 2 <= MOST_CROWDED:
+    if len(objects) * len(objects) * (len(objects) - 1) / 2 <= MAX_CROWDED:
         return
     outlines = [shapely.Polygon(placed.footprint) for placed in objects]
     pairs = len(shapely.STRtree(outlines).query(outlines, "dwithin", NEAR)[0]) // 2
-    if pairs * len(objects) > MOST_CROWDED:
+    if pairs * len(objects) > MAX_CROWDED:
         raise LayoutError(
             f"{where}.objects are a heap: {pairs} pairs of {len(objects)} stand within {NEAR} m; is it metres?"
         )
@@ -118,8 +118,8 @@ def segment_from_row(row: Row, where: str) -> Segment:
 def opening_from_row(row: Row, where: str) -> Opening:
     """A door or window."""
     segment = segment_from_row(row, where)
-    bottom = read_number(row.get("bottom", 0.0), f"{where}.bottom", 0.0, LARGEST)
-    top = read_number(row.get("top", 2.1), f"{where}.top", 0.0, LARGEST)
+    bottom = read_number(row.get("bottom", 0.0), f"{where}.bottom", 0.0, MAX_SIZE)
+    top = read_number(row.get("top", 2.1), f"{where}.top", 0.0, MAX_SIZE)
     if top <= bottom:
         raise LayoutError(f"{where}.top must be above bottom, got {top} and {bottom}")
     return Opening(segment, bottom, top)
@@ -128,8 +128,8 @@ def opening_from_row(row: Row, where: str) -> Opening:
 def read_outline(row: Row, where: str) -> tuple[Point2, ...]:
     """The corners of the floor, turned counter-clockwise as seen from above."""
     corners, place = row.get("floor_polygon"), f"{where}.floor_polygon"
-    if not isinstance(corners, list) or not 3 <= len(corners) <= MOST_CORNERS:
-        raise LayoutError(f"{place} must be a list of 3 to {MOST_CORNERS} [x, z] corners in metres")
+    if not isinstance(corners, list) or not 3 <= len(corners) <= MAX_CORNERS:
+        raise LayoutError(f"{place} must be a list of 3 to {MAX_CORNERS} [x, z] corners in metres")
     points = [read_point2(corner, f"{place}[{index}]") for index, corner in enumerate(corners)]
     while len(points) > 1 and points[0] == points[-1]:
         points.pop()
@@ -137,7 +137,7 @@ def read_outline(row: Row, where: str) -> tuple[Point2, ...]:
     if polygon is None or not polygon.is_valid or polygon.area < 0.5:
         raise LayoutError(f"{place} must be a simple polygon of at least 0.5 square metres; order its corners around")
     low_x, low_z, high_x, high_z = polygon.bounds
-    if max(high_x - low_x, high_z - low_z) > WIDEST:
-        raise LayoutError(f"{place} must fit in {WIDEST:g} by {WIDEST:g} metres; is it in centimetres?")
+    if max(high_x - low_x, high_z - low_z) > MAX_ROOM_WIDTH:
+        raise LayoutError(f"{place} must fit in {MAX_ROOM_WIDTH:g} by {MAX_ROOM_WIDTH:g} metres; is it in centimetres?")
     # Seen from above [x, z] is a left-handed pair: counter-clockwise there is clockwise to shapely.
     return tuple(reversed(points)) if polygon.exterior.is_ccw else tuple(points)

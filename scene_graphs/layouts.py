@@ -19,15 +19,15 @@ import shapely
 
 from scene_graphs.fields import LayoutError, Row, read_number, read_rows, read_text, read_texts
 from scene_graphs.layout_rows import (
-    LARGEST,
-    LOWEST,
-    MOST_CORNERS,
-    MOST_CROWDED,
-    MOST_OBJECTS,
-    MOST_TAGS,
+    MAX_CORNERS,
+    MAX_CROWDED,
+    MAX_OBJECTS,
+    MAX_ROOM_WIDTH,
+    MAX_SIZE,
+    MAX_TAGS,
+    MIN_ROOM_HEIGHT,
+    MIN_SIZE,
     NEAR,
-    SMALLEST,
-    WIDEST,
     check_crowd,
     check_ids,
     opening_from_row,
@@ -40,15 +40,15 @@ from scene_graphs.placed import Array, Opening, Placed, Point2, Segment
 from scene_graphs.solids import Point3
 
 __all__ = [
-    "LARGEST",
-    "LOWEST",
-    "MOST_CORNERS",
-    "MOST_CROWDED",
-    "MOST_OBJECTS",
-    "MOST_TAGS",
+    "MAX_CORNERS",
+    "MAX_CROWDED",
+    "MAX_OBJECTS",
+    "MAX_ROOM_WIDTH",
+    "MAX_SIZE",
+    "MAX_TAGS",
+    "MIN_ROOM_HEIGHT",
+    "MIN_SIZE",
     "NEAR",
-    "SMALLEST",
-    "WIDEST",
     "Array",
     "Layout",
     "LayoutError",
@@ -63,8 +63,8 @@ __all__ = [
     "write_layouts",
 ]
 
-MOST_LAYOUTS = 200_000
-_MOST_BYTES = 1 << 29
+MAX_LAYOUTS = 200_000
+_MAX_BYTES = 1 << 29
 
 
 @dataclass(frozen=True)
@@ -120,24 +120,24 @@ def layout_from_dict(row: Row, where: str = "layout") -> Layout:
     `where` names the row in errors. LayoutError if a field is missing, out of bounds or of another type.
     """
     room_type = read_text(row, "room_type", where)
-    objects = [placed_from_row(item, place) for item, place in read_rows(row, "objects", where, MOST_OBJECTS)]
+    objects = [placed_from_row(item, place) for item, place in read_rows(row, "objects", where, MAX_OBJECTS)]
     check_ids(objects, where)
     check_crowd(objects, where)
     return Layout(
         id=read_text(row, "id", where),
         room_type=room_type,
         floor_polygon=read_outline(row, where),
-        height=read_number(row.get("height", 2.7), f"{where}.height", LOWEST, LARGEST),
+        height=read_number(row.get("height", 2.7), f"{where}.height", MIN_ROOM_HEIGHT, MAX_SIZE),
         doors=tuple(opening_from_row(item, place) for item, place in read_rows(row, "doors", where, 100)),
         windows=tuple(opening_from_row(item, place) for item, place in read_rows(row, "windows", where, 100)),
         objects=tuple(objects),
-        tags=read_texts(row, "tags", where, MOST_TAGS) or (room_type,),
+        tags=read_texts(row, "tags", where, MAX_TAGS) or (room_type,),
         source=read_text(row, "source", where, "user"),
         licence=read_text(row, "licence", where, "unknown"),
     )
 
 
-def read_layouts(path: str | Path, most_bytes: int = _MOST_BYTES) -> list[Layout]:
+def read_layouts(path: str | Path, most_bytes: int = _MAX_BYTES) -> list[Layout]:
     """Read rooms from .json (one row or a list) or .jsonl (a row a line), either with .gz behind it.
 
     LayoutError, naming file and line, for the first row that is not a valid layout or repeats an id, or where the file
@@ -154,8 +154,8 @@ def read_layouts(path: str | Path, most_bytes: int = _MOST_BYTES) -> list[Layout
             raise LayoutError(f"{where}.id {layout.id!r} occurs twice; give every room its own id")
         seen.add(layout.id)
         layouts.append(layout)
-        if len(layouts) > MOST_LAYOUTS:
-            raise LayoutError(f"{file.name} holds more than {MOST_LAYOUTS} rooms; split it")
+        if len(layouts) > MAX_LAYOUTS:
+            raise LayoutError(f"{file.name} holds more than {MAX_LAYOUTS} rooms; split it")
     return layouts
 
 

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from scene_graphs.fields import LayoutError
 from scene_graphs.furniture import canonical
-from scene_graphs.packing import MOST_IN_ROOM, PackedRooms, renumbered
+from scene_graphs.packing import MAX_OBJECTS_IN_ROOM, PackedRooms, renumbered
 from scene_graphs.texts import Ints, Texts, offsets
 from scene_graphs.vocabulary import EVERYTHING, KNOWN, NUMBER
 
-MOST_BYTES: Final = 1 << 30
+MAX_BYTES: Final = 1 << 30
 """Of a file when it is unpacked: two million rooms."""
 _TEXTS: Final = ("ids", "words", "object_ids", "serves")
 _KINDS: Final[dict[str, type[np.generic]]] = {
@@ -91,8 +91,8 @@ def _read_arrays(file: Path) -> Arrays:
             sizes = {info.filename: info.file_size for info in archive.infolist()}
             if set(sizes) != {f"{name}.npy" for name in _KINDS}:
                 raise LayoutError(f"{file.name} holds no packed rooms: its arrays are not those of one")
-            if sum(sizes.values()) > MOST_BYTES:
-                raise LayoutError(f"{file.name} is larger than {MOST_BYTES >> 20} MiB when it is unpacked; split it")
+            if sum(sizes.values()) > MAX_BYTES:
+                raise LayoutError(f"{file.name} is larger than {MAX_BYTES >> 20} MiB when it is unpacked; split it")
             return {name: _array(archive.read(f"{name}.npy"), name, kind) for name, kind in _KINDS.items()}
     except (OSError, zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
         raise LayoutError(f"{file.name} cannot be read, it is missing, cut off or damaged: {error}") from error
@@ -129,7 +129,7 @@ def _checked(arrays: Arrays) -> PackedRooms:
     _check_starts(arrays, "type_starts", len(ids), len(arrays["types"]))
     node_starts: Ints = arrays["node_starts"]
     sizes = np.diff(node_starts)
-    _demand(sizes.max(initial=0) <= MOST_IN_ROOM, "node_starts make a room too large")
+    _demand(sizes.max(initial=0) <= MAX_OBJECTS_IN_ROOM, "node_starts make a room too large")
     for name in ("offers", "object_ids"):
         _demand(len(arrays.get(name, texts.get(name, ()))) == sizes.sum(), f"{name} are not as many as nodes")
     _demand(_names(arrays["categories"], texts["words"]), "categories name words there are not")

@@ -18,7 +18,7 @@ from scene_graphs.graph import FurnitureGraph
 from scene_graphs.texts import Ints, Texts, offsets, places_of
 from scene_graphs.vocabulary import EVERYTHING, KNOWN, MINOR, NUMBER, affordances_of, flags
 
-MOST_IN_ROOM: Final = 65_535
+MAX_OBJECTS_IN_ROOM: Final = 65_535
 """Neighbours are kept in two bytes."""
 DEAREST_ROOM: Final = 1 << 30
 """Distances are kept in four bytes."""
@@ -216,8 +216,8 @@ def renumbered(
 
 
 def _check(graph: FurnitureGraph, nodes: Sequence[Furniture]) -> None:
-    if len(nodes) > MOST_IN_ROOM:
-        raise ValueError(f"a room may have at most {MOST_IN_ROOM} nodes, got {len(nodes)}; split it")
+    if len(nodes) > MAX_OBJECTS_IN_ROOM:
+        raise ValueError(f"a room may have at most {MAX_OBJECTS_IN_ROOM} nodes, got {len(nodes)}; split it")
     refuse_loops(graph)
 
 

@@ -10,14 +10,14 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from scene_graphs.clearance import HIGHEST
+from scene_graphs.clearance import MAX_OBSTACLE_HEIGHT
 from scene_graphs.forms import parts_of
 from scene_graphs.homes import Home
 from scene_graphs.layouts import Array, Placed, Point2
 
 CELL: Final = 0.02
 """Side of a cell, in metres: LINGO's and TRUMANS'."""
-MOST_CELLS: Final = 40_000_000
+MAX_CELLS: Final = 40_000_000
 """Of one raster; a home of four halls has 36 million of 2 cm."""
 
 Heights = NDArray[np.float32]
@@ -42,8 +42,8 @@ class Raster:
         if not cell > 0:
             raise ValueError(f"cell must be a positive length in metres, got {cell!r}")
         nx, nz = (int(np.ceil((b - a) / cell)) + 2 for a, b in zip(low, high, strict=True))
-        if nx * nz > MOST_CELLS:
-            raise ValueError(f"{nx} by {nz} cells of {cell} m are more than {MOST_CELLS}; take a greater cell")
+        if nx * nz > MAX_CELLS:
+            raise ValueError(f"{nx} by {nz} cells of {cell} m are more than {MAX_CELLS}; take a greater cell")
         return cls((low[0] - cell / 2, low[1] - cell / 2), cell, (nx, nz))
 
     def cells_at(self, x: Array, z: Array) -> tuple[Indices, Indices]:
@@ -86,7 +86,7 @@ class Raster:
         thinnest = self.cell * (abs(cos) + abs(sin))
         for part in parts_of(placed):
             bottom, top = part.low[1] + placed.position[1], part.high[1] + placed.position[1]
-            if part.is_soft or top <= 0.0 or bottom >= HIGHEST:
+            if part.is_soft or top <= 0.0 or bottom >= MAX_OBSTACLE_HEIGHT:
                 continue
             half_x, half_z = (max(part.size[axis], thinnest) / 2 + 1e-9 for axis in (0, 2))
             covers = (np.abs(across - part.center[0]) <= half_x) & (np.abs(ahead - part.center[2]) <= half_z)

@@ -18,7 +18,7 @@ from scene_graphs.covering import Block, Mask, blocks
 from scene_graphs.flat_faces import EVEN, KINDS, RISEN, FlatFace, flat_faces
 from scene_graphs.forms import parts
 from scene_graphs.furniture import canonical, typical_size
-from scene_graphs.solids import MOST_PARTS, THINNEST, Part, Point3
+from scene_graphs.solids import MAX_PARTS, THINNEST, Part, Point3
 from scene_graphs.voxelising import Voxels, voxelise
 
 TALL: Final = 0.30
@@ -30,7 +30,7 @@ _LIKENESS: Final = (0.85, 0.6, 0.4, 0.2)
 """What share of their cells two layers must have in common to be one, tried in turn until the boxes are few enough."""
 _FEW: Final = 32
 _PASSES: Final = 3
-_MOST_BOXES: Final = 256
+_MAX_BOXES: Final = 256
 """A heap of loose triangles would take thousands."""
 _ASIDE: Final = 0.08
 """Share of its size that a seat must lie off the middle of what rises, to have a front."""
@@ -43,7 +43,7 @@ def shape_of(vertices: ArrayLike, faces: ArrayLike, category: str) -> tuple[Part
 
     That is the frame of `Placed`: metres, Y up, origin at the bottom centre, front +Z. The "seat", "mattress" or "top"
     parts that fit the category come first; boxes for the rest follow, true to about 3 cm and hollow where the mesh is.
-    At most `MOST_PARTS`. Empty for lamps, plants, pictures, screens and rugs, whose parametric form says more.
+    At most `MAX_PARTS`. Empty for lamps, plants, pictures, screens and rugs, whose parametric form says more.
     LayoutError for what is no mesh.
     """
     voxels, role = voxelise(vertices, faces), surface_role(category)
@@ -60,7 +60,7 @@ def shape_of(vertices: ArrayLike, faces: ArrayLike, category: str) -> tuple[Part
     found = [Part(_role(*corners, flat), *corners) for corners in boxes]
     kept = [part for part in found if not (part.is_soft and max(part.size) < _CRUMB)]
     kept.sort(key=lambda part: -part.size[0] * part.size[1] * part.size[2])
-    return tuple(_tidy(part) for part in (*(face.part for face in flat), *kept)[:MOST_PARTS])
+    return tuple(_tidy(part) for part in (*(face.part for face in flat), *kept)[:MAX_PARTS])
 
 
 def front_of_mesh(vertices: ArrayLike, faces: ArrayLike, category: str) -> float | None:
@@ -111,7 +111,7 @@ def _boxes(voxels: Voxels, rest: Mask, likeness: float) -> list[tuple[Point3, Po
             share = rest[block.x0 : block.x1, start:end, block.z0 : block.z1].mean(axis=(0, 2))
             filled = start + np.flatnonzero(share >= 0.5 * share.max())
             found.append(_corners(voxels, block, int(filled[0]), int(filled[-1]) + 1))
-            if len(found) == _MOST_BOXES:
+            if len(found) == _MAX_BOXES:
                 return found
             near = block.grown(1)
             left[near.x0 : near.x1, max(filled[0] - 1, 0) : filled[-1] + 2, near.z0 : near.z1] = False

@@ -19,7 +19,7 @@ SOFT_ROLES = frozenset({"pillow", "foliage", "rug"})
 """Roles a body may sink into or step on: drawn, but no obstacle."""
 THINNEST = 0.004
 """Parts thinner than this are left out."""
-MOST_PARTS = 64
+MAX_PARTS = 64
 """No piece is made of more."""
 
 

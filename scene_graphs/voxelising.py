@@ -14,7 +14,7 @@ from itertools import chain
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from scene_graphs.fields import FARTHEST, LayoutError
+from scene_graphs.fields import MAX_COORDINATE, LayoutError
 from scene_graphs.placed import Array
 
 Mask = NDArray[np.bool_]
@@ -24,10 +24,10 @@ CELL = 0.03
 """Width of a cell in plan, in metres."""
 LAYER = 0.02
 """Height of a cell."""
-MOST_CELLS = 128
+MAX_CELLS = 128
 """Cells along the longest side: what is larger than 3.84 m gets wider cells."""
-MOST_TRIANGLES = 5_000_000
-MOST_SAMPLES = 20_000_000
+MAX_TRIANGLES = 5_000_000
+MAX_SAMPLES = 20_000_000
 """Points a surface is sampled with; a real piece of furniture takes well under a million."""
 _AT_ONCE = 500_000
 _THINNEST = 0.02
@@ -83,7 +83,7 @@ def voxelise(vertices: ArrayLike, faces: ArrayLike) -> Voxels:
     low, high = used.min(axis=0), used.max(axis=0)
     extent = np.maximum(high - low, _THINNEST) + _MARGIN
     low = (low + high - extent) / 2
-    finest = np.maximum([CELL, LAYER, CELL], extent.max() / MOST_CELLS)
+    finest = np.maximum([CELL, LAYER, CELL], extent.max() / MAX_CELLS)
     counts = np.maximum(np.ceil(extent / finest - 1e-6), 1).astype(np.intp)
     cell = extent / counts
     lowest = np.full((int(counts.prod()), 3), np.inf, dtype=np.float32)
@@ -109,12 +109,14 @@ def _checked(vertices: ArrayLike, faces: ArrayLike) -> tuple[Array, NDArray[np.i
         raise LayoutError(f"a mesh is vertices (N, 3) and faces (M, 3), got {points.shape} and {corners.shape}")
     if not len(corners) or not np.issubdtype(corners.dtype, np.integer):
         raise LayoutError(f"a mesh needs faces of whole numbers, got {len(corners)} of {corners.dtype}")
-    if len(corners) > MOST_TRIANGLES:
-        raise LayoutError(f"a mesh of {len(corners)} triangles is too fine; simplify it to {MOST_TRIANGLES} or fewer")
+    if len(corners) > MAX_TRIANGLES:
+        raise LayoutError(f"a mesh of {len(corners)} triangles is too fine; simplify it to {MAX_TRIANGLES} or fewer")
     if corners.min() < 0 or corners.max() >= len(points):
         raise LayoutError(f"faces must name vertices 0 to {len(points) - 1}, got {corners.min()} to {corners.max()}")
-    if not (np.abs(points) <= FARTHEST).all():
-        raise LayoutError(f"vertices must be finite and within {FARTHEST:g} m of the origin; is the mesh in metres?")
+    if not (np.abs(points) <= MAX_COORDINATE).all():
+        raise LayoutError(
+            f"vertices must be finite and within {MAX_COORDINATE:g} m of the origin; is the mesh in metres?"
+        )
     return points, corners.astype(np.intp)
 
 
@@ -139,7 +141,7 @@ def _samples(triangles: Array, step: float) -> Iterator[Array]:
     height = np.linalg.norm(np.cross(along, across), axis=1) / np.maximum(length, 1e-12)
     rows = np.stack([np.ceil(height / step), np.ceil(length / step)], axis=1).astype(np.int64) + 1
     total = int(rows.prod(axis=1).sum())
-    if total > MOST_SAMPLES:
+    if total > MAX_SAMPLES:
         raise LayoutError(f"a mesh whose surface takes {total} samples is no piece of furniture; simplify it")
     kinds, kind = np.unique(rows, axis=0, return_inverse=True)
     order = np.argsort(kind.ravel(), kind="stable")

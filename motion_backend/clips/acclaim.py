@@ -15,14 +15,14 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.clips.bvh import euler_to_quat
-from motion_backend.clips.clip import MOST_JOINTS, MOST_TURNS, Array, Clip, ClipError, make_bones, make_clip
+from motion_backend.clips.clip import MAX_JOINTS, MAX_TURNS, Array, Clip, ClipError, make_bones, make_clip
 from motion_backend.clips.mapping import JointMap
 from motion_backend.clips.tposes import t_posed
 
 INCH: Final = 0.0254
 RATE: Final = 120.0
 """Frames a second of CMU's captures; the format does not say."""
-_LONGEST: Final = 20 << 20
+_MAX_MOTION_LENGTH: Final = 20 << 20
 """Characters of a motion: some twenty times that in words."""
 _ROOT: Final = "root"
 _TURNS: Final = {"rx": 0, "ry": 1, "rz": 2}
@@ -93,8 +93,8 @@ def parse_asf(text: str) -> Acclaim:
     if not length > 0:
         raise ClipError(f":units length must be above zero, got {length:g}")
     bones = [_bone(block, angle) for block in _blocks(sections.get("bonedata", []), ":bonedata")]
-    if not 0 < len(bones) < MOST_JOINTS:
-        raise ClipError(f"an .asf skeleton has 1 to {MOST_JOINTS - 1} bones in its :bonedata, this has {len(bones)}")
+    if not 0 < len(bones) < MAX_JOINTS:
+        raise ClipError(f"an .asf skeleton has 1 to {MAX_JOINTS - 1} bones in its :bonedata, this has {len(bones)}")
     bones.insert(0, _root_bone(sections.get("root", []), angle))
     places = {bone.name: place for place, bone in enumerate(bones)}
     if len(places) < len(bones):
@@ -121,8 +121,8 @@ def _parse_amc(text: str, asf: Acclaim) -> tuple[dict[str, Array], float]:
         raise ClipError("an .amc motion has its frames numbered from 1")
     heads = text[: first.start()].lower().split()
     angle = np.pi / 180 if ":degrees" in heads else 1.0 if ":radians" in heads else asf.angle
-    if len(text) > _LONGEST:
-        raise ClipError(f"it has more than {_LONGEST >> 20} MB of text; cut it into shorter files")
+    if len(text) > _MAX_MOTION_LENGTH:
+        raise ClipError(f"it has more than {_MAX_MOTION_LENGTH >> 20} MB of text; cut it into shorter files")
     words = text[first.start() :].split()
     bones = {bone.name: bone for bone in asf.bones}
     spans, place = [], 1
@@ -134,7 +134,7 @@ def _parse_amc(text: str, asf: Acclaim) -> tuple[dict[str, Array], float]:
         raise ClipError(f"an .amc frame lists bones of its skeleton; {(words[1:2] or ['nothing'])[0][:40]!r} is none")
     if len(words) % place:
         raise ClipError(f"frames of {place} words do not fill the {len(words)} there are; is the file cut off?")
-    if len(words) // place * len(bones) > MOST_TURNS:
+    if len(words) // place * len(bones) > MAX_TURNS:
         raise ClipError(f"{len(words) // place} frames of {len(bones)} bones are too many; cut the file")
     if words[::place] != [str(number + 1) for number in range(len(words) // place)]:
         raise ClipError("the frames are not numbered one after the other, or do not list the same bones")

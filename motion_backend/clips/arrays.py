@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 from motion_backend.clips.clip import ClipError
 
-LARGEST_UNPACKED: Final = 256 << 20
+MAX_UNPACKED_BYTES: Final = 256 << 20
 """Bytes of all arrays of an archive."""
 _MAGIC: Final = b"\x93NUMPY"
-_LONGEST_HEADER: Final = 10_000
+_MAX_HEADER_LENGTH: Final = 10_000
 _PLAIN: Final = frozenset("biufUS")
 """Kinds of numbers and texts."""
 
@@ -43,7 +43,7 @@ def npy_header(data: bytes) -> Header:
     long = data[6] > 1
     size = int(struct.unpack_from("<I" if long else "<H", data, 8)[0])
     start = (12 if long else 10) + size
-    if size > _LONGEST_HEADER or start > len(data):
+    if size > _MAX_HEADER_LENGTH or start > len(data):
         raise ClipError("its header is cut off or longer than any")
     try:
         header = ast.literal_eval(data[start - size : start].decode("latin-1").strip())
@@ -85,8 +85,8 @@ def _entries(data: bytes) -> list[zipfile.ZipInfo]:
             entries = archive.infolist()
     except (zipfile.BadZipFile, ValueError, struct.error, OverflowError, NotImplementedError) as error:
         raise ClipError(f"not an .npz archive: {error}") from error
-    if sum(info.file_size for info in entries) > LARGEST_UNPACKED:
-        raise ClipError(f"the archive unpacks to more than {LARGEST_UNPACKED >> 20} MB")
+    if sum(info.file_size for info in entries) > MAX_UNPACKED_BYTES:
+        raise ClipError(f"the archive unpacks to more than {MAX_UNPACKED_BYTES >> 20} MB")
     if any(info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED) for info in entries):
         raise ClipError("the archive is packed in a way that numpy does not")
     return entries

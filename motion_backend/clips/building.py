@@ -22,7 +22,7 @@ from motion_backend.clips.wording import emotion_of, ways_to_say
 from motion_backend.skeleton import Skeleton
 
 SUFFIXES = (".amc", ".bvh", ".glb", ".gltf", ".json", ".npy", ".npz", ".txt")
-MOST_FILES = 20_000
+MAX_FILES = 20_000
 
 
 @dataclass(frozen=True)
@@ -66,8 +66,8 @@ def motion_files(folder: Path, labels: Labels, but: Collection[Path] = ()) -> li
         raise ClipError(f"{folder} holds none of the motion files that the table of clips names")
     if not found:
         raise ClipError(f"{folder} holds no motion file ({', '.join(SUFFIXES)})")
-    if len(found) > MOST_FILES:
-        raise ClipError(f"{folder} holds {len(found)} files, more than {MOST_FILES}: build it in parts")
+    if len(found) > MAX_FILES:
+        raise ClipError(f"{folder} holds {len(found)} files, more than {MAX_FILES}: build it in parts")
     return found
 
 

@@ -15,9 +15,9 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.clips.clip import (
-    MOST_FRAMES,
-    MOST_JOINTS,
-    MOST_TURNS,
+    MAX_FRAMES,
+    MAX_JOINTS,
+    MAX_TURNS,
     Array,
     Bones,
     Clip,
@@ -105,7 +105,7 @@ def parse_bvh(text: str) -> BvhText:
     frames, step = int(counts[1]), _number(counts[2], "Frame Time")
     if not step > 0.0:
         raise ClipError(f"Frame Time must be above zero seconds, got {counts[2]}")
-    if frames > MOST_FRAMES or frames * len(hierarchy.names) > MOST_TURNS:
+    if frames > MAX_FRAMES or frames * len(hierarchy.names) > MAX_TURNS:
         raise ClipError(f"{frames} frames of {len(hierarchy.names)} joints are too many; cut it into shorter files")
     values = all_numbers(tail[counts.end() :], "the MOTION section")
     if len(values) != frames * hierarchy.width:
@@ -126,8 +126,8 @@ def parse_hierarchy(text: str) -> Hierarchy:
         match line.split():
             case ["ROOT" | "JOINT", *words]:
                 joint = len(read.names)
-                if joint >= MOST_JOINTS:
-                    raise ClipError(f"the hierarchy has more than {MOST_JOINTS} joints")
+                if joint >= MAX_JOINTS:
+                    raise ClipError(f"the hierarchy has more than {MAX_JOINTS} joints")
                 read.names.append(" ".join(words) or f"joint {joint}")
                 read.parents.append(stack[-1] if stack else -1)
                 read.offsets.append((0.0, 0.0, 0.0))

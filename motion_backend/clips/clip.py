@@ -18,13 +18,13 @@ from motion_backend import rotations
 
 Array = NDArray[np.float64]
 
-MOST_FRAMES = 200_000
-MOST_JOINTS = 512
-MOST_TURNS = 6_000_000
+MAX_FRAMES = 200_000
+MAX_JOINTS = 512
+MAX_TURNS = 6_000_000
 """Joints times frames of all clips of one file: 192 MB of quaternions."""
-SLOWEST, FASTEST = 1.0, 1000.0
+MIN_FPS, MAX_FPS = 1.0, 1000.0
 """Frames a second."""
-LARGEST = 1e4
+MAX_COORDINATE = 1e4
 """Metres: no joint lies farther from the origin or its parent."""
 _OFF_UNIT = 0.01
 """By which a quaternion's length may be off without a word."""
@@ -122,8 +122,8 @@ class Clip:
 def make_bones(names: Sequence[str], parents: Sequence[int], offsets: Any) -> tuple[Bones, list[int]]:
     """Checked bones with every parent before its children, and where each came from. ClipError if it is no tree."""
     count = len(names)
-    if not 1 <= count <= MOST_JOINTS:
-        raise ClipError(f"a skeleton has 1 to {MOST_JOINTS} joints, this one has {count}")
+    if not 1 <= count <= MAX_JOINTS:
+        raise ClipError(f"a skeleton has 1 to {MAX_JOINTS} joints, this one has {count}")
     if len(parents) != count:
         raise ClipError(f"{count} joints need as many parents, there are {len(parents)}")
     if len(set(names)) < count:
@@ -133,7 +133,7 @@ def make_bones(names: Sequence[str], parents: Sequence[int], offsets: Any) -> tu
     place = {old: new for new, old in enumerate(order)}
     lengths = _numbers(offsets, (count, 3), "the joint offsets")[order]
     lengths[0] = 0.0
-    if np.abs(lengths).max() > LARGEST:
+    if np.abs(lengths).max() > MAX_COORDINATE:
         raise ClipError(f"a bone is {np.abs(lengths).max():.3g} m long; are the units right?")
     if count > 1 and not lengths.any():
         raise ClipError("every joint offset is zero: the file holds no skeleton; name one that goes with it")
@@ -153,14 +153,14 @@ def make_clip(
 ) -> Clip:
     """A checked clip: finite numbers, unit quaternions, two frames at least, sizes in bounds. ClipError otherwise."""
     frames, joints = len(root_positions), len(bones.names)
-    if not 2 <= frames <= MOST_FRAMES:
-        raise ClipError(f"{name} has {frames} frame{'s' * (frames != 1)}; a clip has 2 to {MOST_FRAMES}")
-    if frames * joints > MOST_TURNS:
+    if not 2 <= frames <= MAX_FRAMES:
+        raise ClipError(f"{name} has {frames} frame{'s' * (frames != 1)}; a clip has 2 to {MAX_FRAMES}")
+    if frames * joints > MAX_TURNS:
         raise ClipError(f"{name} has {frames} frames of {joints} joints; cut it into shorter clips")
-    if not SLOWEST <= fps <= FASTEST:
-        raise ClipError(f"{name} has {fps:.4g} frames a second; {SLOWEST:g} to {FASTEST:g} can be read")
+    if not MIN_FPS <= fps <= MAX_FPS:
+        raise ClipError(f"{name} has {fps:.4g} frames a second; {MIN_FPS:g} to {MAX_FPS:g} can be read")
     roots = _numbers(root_positions, (frames, 3), f"{name}: root positions")
-    if np.abs(roots).max() > LARGEST:
+    if np.abs(roots).max() > MAX_COORDINATE:
         raise ClipError(f"{name}: the root comes {np.abs(roots).max():.3g} m from the origin; are the units right?")
     turns, odd = unit_quaternions(_numbers(local_rotations, (frames, joints, 4), f"{name}: rotations"))
     rest, _ = unit_quaternions(_numbers(tpose, (joints, 4), f"{name}: T-pose"))

@@ -24,7 +24,7 @@ SAME = 3.0
 is not counted, as bodies rest differently."""
 _PROBE = float(np.cos(np.radians(3 * SAME)))
 """Mean cosine from which a single pose may be one of a copy."""
-SHORTEST = 15
+MIN_COPY_FRAMES = 15
 """Frames: less is a pose that bodies have in common."""
 MOVING = 3.0
 """Degrees that directions turn about their mean, on average, in a clip that tells something."""
@@ -58,7 +58,7 @@ def near_copies(entries: Sequence[Entry]) -> list[Copy]:
     found: dict[tuple[int, int], Copy] = {}
     for number, pose in enumerate(poses):
         length = len(pose)
-        if length < SHORTEST or _turning(pose) < MOVING:
+        if length < MIN_COPY_FRAMES or _turning(pose) < MOVING:
             continue
         middle, places = length // 2, len(whole) - length + 1
         probes = pose[[0, middle, -1]].reshape(3, -1).astype(np.float32)

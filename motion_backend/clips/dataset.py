@@ -22,13 +22,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
-from motion_backend.clips.clip import LARGEST, ClipError
-from motion_backend.clips.clip import MOST_FRAMES as LONGEST_CLIP
+from motion_backend.clips.clip import MAX_COORDINATE, ClipError
+from motion_backend.clips.clip import MAX_FRAMES as MAX_CLIP_SECONDS
 from motion_backend.motion import FPS, Motion
 from motion_backend.skeleton import JOINTS, PARENTS, Skeleton
 
 VERSION = 1
-MOST_FRAMES, MOST_CLIPS, LARGEST_MANIFEST = 5_000_000, 100_000, 64 << 20
+MAX_FRAMES, MAX_CLIPS, MAX_MANIFEST_BYTES = 5_000_000, 100_000, 64 << 20
 """What is read at most: 5 million frames are 46 hours."""
 TEST_SHARE = 0.2
 _DAMAGED = (
@@ -177,7 +177,7 @@ def _array(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
         shape, fortran, dtype = np.lib.format.read_array_header_1_0(file)
         size = int(np.prod(shape, dtype=object)) * dtype.itemsize
         heading = file.tell()
-    most = {"manifest": LARGEST_MANIFEST, "starts": 8 * (MOST_CLIPS + 1)}.get(name, MOST_FRAMES * 176)
+    most = {"manifest": MAX_MANIFEST_BYTES, "starts": 8 * (MAX_CLIPS + 1)}.get(name, MAX_FRAMES * 176)
     if dtype.hasobject or fortran or heading + size != info.file_size or size > most:
         raise ValueError(f"{name} has a size it cannot have")
     with archive.open(info) as file:
@@ -193,17 +193,17 @@ def _unpacked(arrays: dict[str, NDArray[Any]]) -> Dataset:
     if starts.dtype != np.int64 or starts.shape != (len(rows) + 1,) or len(rows) < 1:
         raise ValueError("it does not say where each clip starts")
     lengths = np.diff(starts)
-    if starts[0] != 0 or starts[-1] != frames or not ((lengths >= 1) & (lengths <= LONGEST_CLIP)).all():
+    if starts[0] != 0 or starts[-1] != frames or not ((lengths >= 1) & (lengths <= MAX_CLIP_SECONDS)).all():
         raise ValueError("its clips do not add up to its frames, or one is too long")
     for name, (dtype, shape) in _FRAMES.items():
         if arrays[name].dtype != dtype or arrays[name].shape != (frames, *shape):
             raise ValueError(f"{name} must be {np.dtype(dtype)} of shape ({frames}, …), is {arrays[name].shape}")
-    if not (np.abs(arrays["root_positions"]) <= LARGEST).all():
+    if not (np.abs(arrays["root_positions"]) <= MAX_COORDINATE).all():
         raise ValueError("a root position is not a number, or far away")
     if not arrays["local_rotations"].any(axis=-1).all():
         raise ValueError("a rotation is nought")
     offsets = np.array(manifest["offsets"], dtype=np.float64).reshape(len(JOINTS), 3)
-    if not (np.abs(offsets) <= LARGEST).all():
+    if not (np.abs(offsets) <= MAX_COORDINATE).all():
         raise ValueError("a joint's offset is not a number, or far away")
     skeleton = Skeleton(JOINTS, PARENTS, offsets)
     bounds = zip(rows, starts[:-1], starts[1:], strict=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from motion_backend import rotations
-from motion_backend.clips.clip import MOST_FRAMES, Array, Clip, ClipError, make_bones, make_clip, unit_quaternions
+from motion_backend.clips.clip import MAX_FRAMES, Array, Clip, ClipError, make_bones, make_clip, unit_quaternions
 from motion_backend.clips.keys import resampled_positions, resampled_rotations, uniform_times
 from motion_backend.clips.orienting import Y_UP_FACING_X
 from motion_backend.clips.tposes import t_posed
@@ -66,8 +66,8 @@ def _rows(text: str, name: str) -> Array:
     rows = read.get("Frames") if isinstance(read, dict) else None
     if not isinstance(rows, list) or not all(isinstance(row, list) for row in rows):
         raise ClipError('a DeepMimic motion is an object whose "Frames" are lists of numbers')
-    if not 2 <= len(rows) <= MOST_FRAMES:
-        raise ClipError(f"it has {len(rows)} frames; a clip has 2 to {MOST_FRAMES}")
+    if not 2 <= len(rows) <= MAX_FRAMES:
+        raise ClipError(f"it has {len(rows)} frames; a clip has 2 to {MAX_FRAMES}")
     wrong = next((number for number, row in enumerate(rows) if len(row) != WIDTH), None)
     if wrong is not None:
         raise ClipError(f"Frames[{wrong}] has {len(rows[wrong])} numbers; {WIDTH} are wanted")

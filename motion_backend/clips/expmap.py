@@ -13,7 +13,7 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.clips.bvh import all_numbers, bvh_bones, parse_hierarchy
-from motion_backend.clips.clip import MOST_TURNS, Array, Bones, Clip, ClipError, make_bones, make_clip
+from motion_backend.clips.clip import MAX_TURNS, Array, Bones, Clip, ClipError, make_bones, make_clip
 from motion_backend.clips.orienting import unit_of
 from motion_backend.clips.stray_frames import without_stray_frames
 from motion_backend.clips.tposes import t_posed
@@ -118,7 +118,7 @@ def _bones_of(skeleton: str, wanted: set[str]) -> tuple[Bones, list[int]]:
 
 def _table(text: str) -> Array:
     """All numbers. (T, 117)."""
-    if text.count(",") > MOST_TURNS:
+    if text.count(",") > MAX_TURNS:
         raise ClipError("it has too many frames; cut it into shorter files")
     rows = [line for line in text.splitlines() if line.strip()]
     wrong = next((number for number, row in enumerate(rows) if row.count(",") != WIDTH - 1), None)

@@ -20,7 +20,7 @@ LEVEL = 0.02
 SLACK = (1.15, 1.5)
 """Times, and cm/s beyond, that its feet may slide as fast as the source's: a few frames more or less near the floor
 move the mean by as much."""
-FASTEST = 20.0
+MAX_JOINT_TURN_RATE = 20.0
 """Radians a second that no joint turns faster."""
 AWAY = 5.0
 """Degrees between limbs of source and copy, on average."""
@@ -136,7 +136,7 @@ def faults(
         f"its lowest point is {100 * lowest:+.1f} cm from the floor": abs(lowest) > LEVEL,
         f"feet slide at {skate:.1f} cm/s, the source's at {source_skate:.1f}": skate
         > SLACK[0] * source_skate + SLACK[1],
-        f"a joint turns at {fastest:.0f} rad/s": fastest > FASTEST,
+        f"a joint turns at {fastest:.0f} rad/s": fastest > MAX_JOINT_TURN_RATE,
         f"a limb points {away:.1f} degrees away from the source's": away > AWAY,
     }
     return tuple(text for text, true in found.items() if true)

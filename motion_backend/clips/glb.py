@@ -15,14 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
-from motion_backend.clips.clip import MOST_JOINTS, MOST_TURNS, Array, Bones, Clip, ClipError, make_bones, make_clip
+from motion_backend.clips.clip import MAX_JOINTS, MAX_TURNS, Array, Bones, Clip, ClipError, make_bones, make_clip
 from motion_backend.clips.keys import resampled_positions, resampled_rotations, uniform_times
 from motion_backend.clips.mapping import JointMap
 from motion_backend.clips.tposes import t_posed
 from scene_graphs.loaders.gltf_document import Document, list_of, numbers_of
 
-MOST_ANIMATIONS: Final = 1_000
-_MOST_NODES: Final = 20_000
+MAX_ANIMATIONS: Final = 1_000
+_MAX_NODES: Final = 20_000
 _STEERS: Final = re.compile(r"IK(?![a-z])|^(control|ctrl)|pole", re.ASCII)
 _STRETCH: Final = 0.01
 """Metres by which a bone's far end may move before it is said that it stays."""
@@ -72,11 +72,11 @@ def read_glb_clips(data: bytes, name: str, joints: JointMap | None = None) -> tu
     """One clip an animation, in the file's order. ClipError or LayoutError says what is wrong with the file."""
     document = Document.of(data, name)
     animations = list_of(document.json, "animations", name)
-    if not 0 < len(animations) <= MOST_ANIMATIONS:
-        raise ClipError(f"{name} has {len(animations)} animations; 1 to {MOST_ANIMATIONS} can be read")
+    if not 0 < len(animations) <= MAX_ANIMATIONS:
+        raise ClipError(f"{name} has {len(animations)} animations; 1 to {MAX_ANIMATIONS} can be read")
     rig = _rig(document)
     rest = t_posed(rig.bones, _pose(rig, {}, np.zeros(1))[1][0], joints)
-    clips, left = [], MOST_TURNS
+    clips, left = [], MAX_TURNS
     for number in range(len(animations)):
         clip, read = _clip(rig, number, rest, left)
         clips.append(clip)
@@ -111,7 +111,7 @@ def _clip(rig: Rig, number: int, rest: Array, left: int) -> tuple[Clip, int]:
 
 
 def _too_many(document: Document) -> str:
-    return f"{document.name} has more than {MOST_TURNS} keys and rotations; cut it into several files"
+    return f"{document.name} has more than {MAX_TURNS} keys and rotations; cut it into several files"
 
 
 def _moved(rig: Rig, tracks: Tracks, wanted: Array) -> tuple[Array, Array, int]:
@@ -177,8 +177,8 @@ def _rig(document: Document) -> Rig:
     skin = document.item("skins", 0)
     joints = list_of(skin, "joints", f"{document.name} skins[0]")
     rows = [document.item("nodes", joint) for joint in joints]
-    if len(set(joints)) < len(joints) or not 0 < len(joints) <= MOST_JOINTS:
-        raise ClipError(f"{document.name} skins[0] must have 1 to {MOST_JOINTS} joints, each once")
+    if len(set(joints)) < len(joints) or not 0 < len(joints) <= MAX_JOINTS:
+        raise ClipError(f"{document.name} skins[0] must have 1 to {MAX_JOINTS} joints, each once")
     named = {joint: str(row.get("name") or f"node {joint}") for joint, row in zip(joints, rows, strict=True)}
     bones = [joint for joint in joints if not _STEERS.search(named[joint])]
     parents = _parents(document)
@@ -210,8 +210,8 @@ def _rig(document: Document) -> Rig:
 def _parents(document: Document) -> dict[int, int]:
     """Each node's parent. ClipError if a node has two."""
     rows = list_of(document.json, "nodes", document.name)
-    if len(rows) > _MOST_NODES:
-        raise ClipError(f"{document.name} has more than {_MOST_NODES} nodes")
+    if len(rows) > _MAX_NODES:
+        raise ClipError(f"{document.name} has more than {_MAX_NODES} nodes")
     parents: dict[int, int] = {}
     for number in range(len(rows)):
         for child in list_of(document.item("nodes", number), "children", f"{document.name} nodes[{number}]"):
@@ -224,7 +224,7 @@ def _parents(document: Document) -> dict[int, int]:
 
 def _chain(parents: dict[int, int], node: int) -> Iterator[int]:
     """The nodes above one, nearest first. ClipError if they run in a circle."""
-    for _ in range(_MOST_NODES):
+    for _ in range(_MAX_NODES):
         if node not in parents:
             return
         node = parents[node]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
-from motion_backend.clips.clip import MOST_FRAMES, Clip, ClipError, make_bones, make_clip
+from motion_backend.clips.clip import MAX_FRAMES, Clip, ClipError, make_bones, make_clip
 from motion_backend.clips.tposes import t_posed
 
 FPS: Final = 30.0
@@ -62,8 +62,8 @@ def read_kimodo_clip(arrays: Mapping[str, NDArray[Any]], name: str) -> Clip:
             f"posed_joints and global_rot_mats must be (T, {len(names)}, 3) and (T, {len(names)}, 3, 3), "
             f"not {positions.shape} and {turned.shape}"
         )
-    if frames > MOST_FRAMES or positions.dtype.kind != "f" or turned.dtype.kind != "f":
-        raise ClipError(f"posed_joints and global_rot_mats must be floats of at most {MOST_FRAMES} frames")
+    if frames > MAX_FRAMES or positions.dtype.kind != "f" or turned.dtype.kind != "f":
+        raise ClipError(f"posed_joints and global_rot_mats must be floats of at most {MAX_FRAMES} frames")
     matrices = turned.astype(np.float64)
     square = np.einsum("tjik,tjil->tjkl", matrices, matrices)
     if not (np.abs(square - np.eye(3)) < 0.05).all() or not (np.linalg.det(matrices) > 0).all():

@@ -20,7 +20,7 @@ from motion_backend.clips.wording import skill_of
 TABLE = "manifest.csv"
 NO_MOTION = frozenset({"labels", "skeleton", "licence"})
 """Kinds of rows whose file holds no motion."""
-_LARGEST = 16 << 20
+_MAX_LABELS_BYTES = 16 << 20
 _PLACE = ("file", "clip", "start", "stop")
 _WORDS = ("skill", "style", "caption", "subject", "licence", "kind", "source")
 
@@ -56,8 +56,8 @@ Labels = dict[tuple[str, str], tuple[Label, ...]]
 def read_labels(path: Path) -> Labels:
     """The rows of a table. ClipError names the line that is wrong."""
     try:
-        if path.stat().st_size > _LARGEST:
-            raise ClipError(f"{path.name}: a table of clips has at most {_LARGEST >> 20} MB")
+        if path.stat().st_size > _MAX_LABELS_BYTES:
+            raise ClipError(f"{path.name}: a table of clips has at most {_MAX_LABELS_BYTES >> 20} MB")
         text = path.read_text(encoding="utf-8-sig")
         rows = csv.DictReader(io.StringIO(text), strict=True)
         if "file" not in (rows.fieldnames or ()):

@@ -19,11 +19,11 @@ from motion_backend.skeleton import JOINTS
 JointMap = dict[str, str]
 """Our joint name to the source's."""
 _PAIRED = ("hip", "knee", "ankle", "shoulder", "elbow", "wrist")
-LEAST = ("pelvis", *(f"{side}_{joint}" for joint in _PAIRED for side in ("left", "right")))
+REQUIRED_JOINTS = ("pelvis", *(f"{side}_{joint}" for joint in _PAIRED for side in ("left", "right")))
 """Joints without which a body cannot be told."""
 _ONE_OF = (("spine1", "spine2", "spine3"), ("neck", "head"))
 """Of these one of each is wanted too."""
-_LARGEST_MAP = 1 << 20
+_MAX_MAP_BYTES = 1 << 20
 
 
 @dataclass(frozen=True)
@@ -211,7 +211,7 @@ def joint_places(names: Sequence[str], given: JointMap | None = None) -> dict[st
 def read_map(path: Path) -> JointMap:
     """A user's own map from JSON: our joint names to the source's. ClipError names what is wrong."""
     try:
-        if path.stat().st_size > _LARGEST_MAP:
+        if path.stat().st_size > _MAX_MAP_BYTES:
             raise ClipError(f"{path.name}: a joint map is a small JSON object")
         read = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError) as error:
@@ -226,7 +226,7 @@ def read_map(path: Path) -> JointMap:
 
 def checked_map(given: JointMap, names: Iterable[str]) -> JointMap:
     """The map in our joints' order, if it is enough to tell a body and the skeleton has what it names."""
-    lost = [joint for joint in LEAST if joint not in given]
+    lost = [joint for joint in REQUIRED_JOINTS if joint not in given]
     lost += [some[0] for some in _ONE_OF if not given.keys() & set(some)]
     if lost:
         raise ClipError(f"the joint map lacks {_listed(lost)}")

@@ -26,20 +26,20 @@ HAND_AWAY = 0.25
 """Metres that a resting hand is beside or before its shoulder: a hanging one touches nothing."""
 BRIEF = 3
 """Frames under which a contact, or a gap in one, is noise."""
-FARTHEST = 0.06
+MAX_FOOT_SHIFT = 0.06
 """Metres by which a foot is moved at most to stand still."""
 CLEARANCE = 0.02
 """Metres that toes pass over the floor."""
-MOST_TOES = 1.0
+MAX_TOES = 1.0
 """Radians by which toes are bent at most."""
 TOE_SPEED = 9.0
 """Radians a second."""
-EQUAL, MOST_UNEQUAL = 0.01, 0.05
+EQUAL, MAX_UNEQUAL = 0.01, 0.05
 """Metres by which feet of one body may stand at different heights: unseen up to the first; beyond the second no fault
 of how a skeleton was measured."""
 NEAR_FLOOR = 0.01
 """Metres under which a corner of a sole counts as on the floor: recorded feet do not stand to the millimetre."""
-FEWEST_LOW = 15
+MIN_LOW = 15
 """Corners of soles on the floor, over all frames, from which their speed says something."""
 STRAIGHT = 0.02
 """Metres that a knee is out of the line from hip to ankle when its leg is as good as straight."""
@@ -93,7 +93,7 @@ class Feet:
         either = rotations.wrap(np.stack([middle + half, middle - half]))
         least = np.take_along_axis(either, np.abs(either).argmin(axis=0)[None], axis=0)[0]
         through = self.balls[..., 1] + down < wanted
-        turn = -no_faster(np.where(through, np.clip(-least, 0.0, MOST_TOES), 0.0), TOE_SPEED / self.fps)
+        turn = -no_faster(np.where(through, np.clip(-least, 0.0, MAX_TOES), 0.0), TOE_SPEED / self.fps)
         bent = rotations.compose(self.toe_turns, rotations.rotvec_to_quat(turn[..., None] * [1.0, 0.0, 0.0]))
         return replace(self, toe_turns=bent)
 
@@ -101,7 +101,7 @@ class Feet:
         """How far each ankle must rise for its own foot to stand on the floor, where legs differ. (2,) metres."""
         levels = np.percentile(self.soles[..., [0, 2, 3], 1].min(axis=2), 10.0, axis=0)
         beyond = np.sign(levels) * np.maximum(np.abs(levels) - EQUAL, 0.0)
-        return np.asarray(-beyond if np.abs(levels).max() < MOST_UNEQUAL else np.zeros(2))
+        return np.asarray(-beyond if np.abs(levels).max() < MAX_UNEQUAL else np.zeros(2))
 
     def contacts(self) -> Array:
         """1 where planted: left ankle, left toe, right ankle, right toe. (T, 4)."""
@@ -122,7 +122,7 @@ class Feet:
         low = self.soles[..., 1] < NEAR_FLOOR
         on = low[1:] & low[:-1]
         speed = np.linalg.norm(np.diff(self.soles[..., [0, 2]], axis=0), axis=-1) * self.fps * 100
-        return float(speed[on].mean()) if on.sum() >= FEWEST_LOW else 0.0
+        return float(speed[on].mean()) if on.sum() >= MIN_LOW else 0.0
 
     def depth(self) -> float:
         """Mean depth of the lowest sole corner under the floor, metres."""
@@ -189,7 +189,7 @@ def held_still(feet: Feet) -> Array:
                 shift[:, side, axis] = np.interp(frames, known, shift[known, side, axis])
     shift[..., 1] = 0.0
     length = np.linalg.norm(shift, axis=-1, keepdims=True)
-    shift *= np.minimum(1.0, FARTHEST / np.maximum(length, 1e-9))
+    shift *= np.minimum(1.0, MAX_FOOT_SHIFT / np.maximum(length, 1e-9))
     return np.asarray(low_pass(shift, feet.fps, cutoff=8.0) if len(shift) > 8 else shift)
 
 

@@ -24,19 +24,19 @@ LIMBS = tuple(
     for upper, lower in (("hip", "knee"), ("knee", "ankle"), ("shoulder", "elbow"), ("elbow", "wrist"))
 )
 """Bones whose direction is carried over exactly: the joint that turns each, and its far end."""
-_SHORTEST = 0.02
+_MIN_BONE_LENGTH = 0.02
 """Metres under which a bone of the source points nowhere in particular."""
 TRUNK = ("pelvis", "spine1", "spine2", "spine3", "neck", "head")
 SURE_BEND = 0.1
 """Mean sine of a limb's bend from which its plane can be told."""
 SURE_AXIS = 0.8
 """How much of its bending is about one axis, for it to be a hinge."""
-MOST_ROLL = 1.2
+MAX_ROLL = 1.2
 """Radians beyond which a limb does not bend as ours do but the wrong way, as knees in a bad fit of markers."""
-FEWEST_FLAT = 4
+MIN_FLAT = 4
 UPRIGHT = 0.8
 """Share of a leg's length that a hip is above the ankle when one stands."""
-MOST_PITCH, MOST_TILT = 0.3, 0.6
+MAX_PITCH, MAX_TILT = 0.3, 0.6
 """Radians by which a standing sole may seem to point up or down, or lean to a side, and still be taken for flat."""
 _UP = np.array([0.0, 1.0, 0.0])
 _BONES = {
@@ -97,14 +97,14 @@ def common_rest(positions: Array, turns: Array, joints: JointMap, places: dict[s
             ours[joint] = ours[parent]
         if far is not None:
             bone = found[places[far]] - found[places[name]]
-            if np.linalg.norm(bone) < _SHORTEST:
+            if np.linalg.norm(bone) < _MIN_BONE_LENGTH:
                 raise ClipError(f"the bone from {joints[name]!r} to {joints[far]!r} has no length")
             rest = rotations.rotate(ours[joint], rotations.normalize(body.offsets[INDEX[far]]))
             ours[joint] = rotations.compose(shortest_turn(rest, rotations.normalize(bone)), ours[joint])
         elif name.endswith("ankle") and name.replace("ankle", "foot") in joints:
             # Soles lie flat at rest whatever a bone from ankle to toes says: only where they point is taken over.
             toes = found[places[name.replace("ankle", "foot")]] - found[places[name]]
-            if np.hypot(toes[0], toes[2]) > _SHORTEST:
+            if np.hypot(toes[0], toes[2]) > _MIN_BONE_LENGTH:
                 ours[joint] = rotations.yaw_to_quat(np.arctan2(toes[0], toes[2]))
         elif name.endswith("foot"):
             ours[joint] = ours[parent]
@@ -163,7 +163,7 @@ def rolled_to_hinges(source: Source, rest: Rest, world: Array) -> Rest:
         if size < SURE_BEND or size < SURE_AXIS * np.linalg.norm(hinges, axis=1).mean():
             continue
         angle = np.arctan2(rotations.cross(wanted, hinge) @ bone, wanted @ hinge)
-        if abs(angle) > MOST_ROLL:
+        if abs(angle) > MAX_ROLL:
             continue
         ours[INDEX[upper]] = rotations.compose(ours[INDEX[upper]], rotations.rotvec_to_quat(angle * bone))
     return rest._replace(ours=ours)
@@ -182,7 +182,7 @@ def with_flat_feet(source: Source, rest: Rest, world: Array, leg: float, fps: fl
             ankle, turns = source.at(f"{side}_ankle")[:, 0], world[:, INDEX[f"{side}_ankle"]]
             tall = source.at(f"{side}_hip")[:, 0, 1] - ankle[:, 1] > UPRIGHT * leg
             flat = tall & _flat_frames(ankle, turns, fps)
-            if flat.sum() >= FEWEST_FLAT:
+            if flat.sum() >= MIN_FLAT:
                 found = rotations.rotate(rotations.inverse(world[flat, INDEX[f"{side}_{joint}"]]), _UP)
                 ups[side] = np.median(found, axis=0)
         for side, other in (("left", "right"), ("right", "left")):
@@ -190,7 +190,7 @@ def with_flat_feet(source: Source, rest: Rest, world: Array, leg: float, fps: fl
                 continue
             # A foot that never rests is taken to be the other's image.
             up = ups[side] if side in ups else ups[other] * [-1.0, 1.0, 1.0]
-            if abs(np.arctan2(up[2], up[1])) < MOST_PITCH and abs(np.arctan2(up[0], up[1])) < MOST_TILT:
+            if abs(np.arctan2(up[2], up[1])) < MAX_PITCH and abs(np.arctan2(up[0], up[1])) < MAX_TILT:
                 place = INDEX[f"{side}_{joint}"]
                 ours[place] = rotations.compose(ours[place], shortest_turn(_UP, rotations.normalize(up)))
     return rest._replace(ours=ours)

@@ -26,9 +26,9 @@ from motion_backend.formats.npz import read_npz
 from motion_backend.motion import Motion
 from scene_graphs.fields import LayoutError
 
-LARGEST_FILE: Final = 256 << 20
+MAX_FILE_BYTES: Final = 256 << 20
 """Bytes."""
-LARGEST_TEXT: Final = 40 << 20
+MAX_TEXT_BYTES: Final = 40 << 20
 """Bytes of a file of text, such as seven minutes of BVH at 120 Hz: it takes eight times that to read."""
 FORMATS: Final = {
     "bvh": "BVH: .bvh, any channel order, axes and unit",
@@ -60,8 +60,8 @@ class MotionFile(NamedTuple):
 
     def text(self) -> str:
         """The content as text. ClipError if it is none, or too long."""
-        if len(self.data) > LARGEST_TEXT:
-            raise ClipError(f"it has more than {LARGEST_TEXT >> 20} MB of text; cut it into shorter files")
+        if len(self.data) > MAX_TEXT_BYTES:
+            raise ClipError(f"it has more than {MAX_TEXT_BYTES >> 20} MB of text; cut it into shorter files")
         return _text(self.data, "the file")
 
 
@@ -102,8 +102,8 @@ def clip_of_motion(motion: Motion, name: str) -> Clip:
 
 def _content(path: Path) -> bytes:
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise ClipError(f"{path.name} is larger than {LARGEST_FILE >> 20} MB; cut it into shorter files")
+        if path.stat().st_size > MAX_FILE_BYTES:
+            raise ClipError(f"{path.name} is larger than {MAX_FILE_BYTES >> 20} MB; cut it into shorter files")
         return path.read_bytes()
     except OSError as error:
         raise ClipError(f"{path} cannot be read: {error.strerror or error}") from error

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.clips import grounding
-from motion_backend.clips.clip import MOST_TURNS, Clip, ClipError
+from motion_backend.clips.clip import MAX_TURNS, Clip, ClipError
 from motion_backend.clips.fidelity import Fidelity, fastest_turn, faults, limb_differences
 from motion_backend.clips.mapping import JointMap, checked_map, find_map
 from motion_backend.clips.planting import ANKLES, BALLS, Feet, above_floor, bend_legs, held_still, resting_hands
@@ -44,9 +44,9 @@ from motion_backend.skeleton import INDEX, Skeleton, build_skeleton
 Array = NDArray[np.float64]
 KEYED = frozenset({"glb", "kimodo"})
 """Formats whose clips nobody's camera shook: they are not smoothed."""
-MOST_FRAMES = 60_000
+MAX_FRAMES = 60_000
 """At our rate: 33 minutes, for which some 700 MB are needed."""
-SHORTEST_LEG = 0.05
+MIN_LEG_LENGTH = 0.05
 TOY = 0.47
 """Leg over leg and trunk under which a body has a toy's proportions: its path then says nothing of ours."""
 
@@ -158,7 +158,7 @@ def _leg(positions: Array, places: Mapping[str, int]) -> float:
     """Thigh and shank, mean of both sides."""
     chains = [[places[f"{side}_{joint}"] for joint in ("hip", "knee", "ankle")] for side in ("left", "right")]
     found = np.mean([np.linalg.norm(np.diff(positions[chain], axis=0), axis=1).sum() for chain in chains])
-    if found < SHORTEST_LEG:
+    if found < MIN_LEG_LENGTH:
         raise ClipError(f"its legs are {found:.3g} m long, hip to ankle: are the units right?")
     return float(found)
 
@@ -173,7 +173,7 @@ def _is_toy(positions: Array, places: Mapping[str, int]) -> bool:
 
 def _timelines(clip: Clip, places: dict[str, int], ratio: float, notes: list[str]) -> tuple[Source, Source]:
     """The source at our size and rate, its pelvis starting above the origin: as it is, and smoothed."""
-    if clip.duration * FPS > MOST_FRAMES or clip.duration * FPS * len(clip.bones.names) > MOST_TURNS:
+    if clip.duration * FPS > MAX_FRAMES or clip.duration * FPS * len(clip.bones.names) > MAX_TURNS:
         raise ClipError(
             f"it lasts {clip.duration / 60:.0f} minutes, too long for {len(clip.bones.names)} joints; cut it"
         )

@@ -10,11 +10,11 @@ from motion_backend.clips.clip import Clip
 from motion_backend.clips.mapping import JointMap
 from motion_backend.clips.tposes import is_t_pose
 
-FASTEST = 15.0
+MAX_JOINT_SPEED = 15.0
 """Metres a second: no joint of a person moves faster; what does is a jump of the data."""
 _LEAD = 0.25
 """Seconds at the start in which such frames are looked for."""
-_FEWEST = 4
+_MIN_FRAMES = 4
 
 
 def without_stray_frames(clip: Clip, given: JointMap | None = None) -> Clip:
@@ -22,10 +22,10 @@ def without_stray_frames(clip: Clip, given: JointMap | None = None) -> Clip:
 
     A T-pose that stands in front is the source's own, better than one made of its rest pose.
     """
-    steps = min(len(clip) - 2, max(_FEWEST, round(_LEAD * clip.fps)))
+    steps = min(len(clip) - 2, max(_MIN_FRAMES, round(_LEAD * clip.fps)))
     positions, _ = clip.bones.forward_kinematics(clip.root_positions[: steps + 1], clip.local_rotations[: steps + 1])
     speeds = np.linalg.norm(np.diff(positions, axis=0), axis=-1).max(axis=1) * clip.fps  # (steps,)
-    jumps = np.flatnonzero(speeds > FASTEST)
+    jumps = np.flatnonzero(speeds > MAX_JOINT_SPEED)
     if len(jumps) == 0:
         return clip
     first = int(jumps[-1]) + 1

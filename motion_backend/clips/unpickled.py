@@ -16,8 +16,8 @@ import numpy as np
 
 from motion_backend.clips.clip import ClipError
 
-MOST_STEPS: Final = 1_000_000
-_DEEPEST: Final = 8
+MAX_STEPS: Final = 1_000_000
+_MAX_DEPTH: Final = 8
 _NUMPY: Final = ("numpy.core.multiarray", "numpy._core.multiarray")
 _NAMES: Final = {
     "collections OrderedDict": "dict",
@@ -69,8 +69,8 @@ class _Machine:
     def run(self, data: bytes) -> Any:
         """Follow the opcodes to STOP and answer what is left."""
         for step, (code, argument, _) in enumerate(pickletools.genops(data)):
-            if step > MOST_STEPS:
-                raise ClipError(f"it is built in more than {MOST_STEPS} steps")
+            if step > MAX_STEPS:
+                raise ClipError(f"it is built in more than {MAX_STEPS} steps")
             if code.name == "STOP":
                 return self.stack.pop()
             self._step(code.name, argument)
@@ -212,7 +212,7 @@ class _Finish:
 
     done: dict[int, Any] = field(default_factory=dict)
 
-    def __call__(self, value: Any, deep: int = _DEEPEST) -> Any:
+    def __call__(self, value: Any, deep: int = _MAX_DEPTH) -> Any:
         if id(value) not in self.done:
             self.done[id(value)] = self._finished(value, deep)
         return self.done[id(value)]

@@ -24,9 +24,9 @@ FILES = {
     "model.safetensors": "53aa51172d142c89d9012cce15ae4d6cc0ca6895895114379cacb4fab128d9db",
     "vocab.txt": "07eced375cec144d27c900241f3e339478dec958f92fddbc551f295c992038a3",
 }
-LAYERS, HEADS, WIDTH, LONGEST = 6, 12, 384, 256
+LAYERS, HEADS, WIDTH, MAX_TOKENS = 6, 12, 384, 256
 _BATCH = 32
-_LONGEST_WORD = 100
+_MAX_WORD_LENGTH = 100
 
 
 class WeightsError(ValueError):
@@ -86,7 +86,7 @@ class WordPiece:
         self.ids = {piece: index for index, piece in enumerate(vocabulary)}
         self.unknown, self.start, self.end = (self.ids[mark] for mark in ("[UNK]", "[CLS]", "[SEP]"))
 
-    def encode(self, text: str, longest: int = LONGEST) -> list[int]:
+    def encode(self, text: str, longest: int = MAX_TOKENS) -> list[int]:
         """Token ids between [CLS] and [SEP], cut to `longest`."""
         ids: list[int] = []
         for word in _words(text):
@@ -96,7 +96,7 @@ class WordPiece:
         return [self.start, *ids[: longest - 2], self.end]
 
     def _pieces(self, word: str) -> list[int]:
-        if len(word) > _LONGEST_WORD:
+        if len(word) > _MAX_WORD_LENGTH:
             return [self.unknown]
         pieces, start = [], 0
         while start < len(word):

@@ -24,11 +24,11 @@ UNITS: Final = {
     "log_jerk": "", "pelvis_yaw": "rad",
 }  # fmt: skip
 """Every feature, in order, and its unit."""
-SLOWEST: Final = 0.3
+MIN_WALKING_SPEED: Final = 0.3
 """A body slower than this (metres a second) does not walk."""
 STEADY: Final = 0.7
 """No quarter of a window of steady walking is slower than this share of the whole."""
-MOST_TURN: Final = np.radians(30)
+MAX_TURN: Final = np.radians(30)
 """And the way turns by no more than this in it."""
 STANDS: Final = 0.5
 """A foot stands while its ankle or ball is slower than this share of the body."""
@@ -139,7 +139,7 @@ def _walks_steadily(positions: Array, fps: float) -> bool:
     ends = np.concatenate([quarters[:4], positions[-1:, 0][:, [0, 2]]])
     paces = np.linalg.norm(np.diff(ends, axis=0), axis=1) / (SECONDS / 4)
     way = _way(positions, fps)
-    return bool(paces.mean() > SLOWEST and paces.min() > STEADY * paces.mean() and way.turn < MOST_TURN)
+    return bool(paces.mean() > MIN_WALKING_SPEED and paces.min() > STEADY * paces.mean() and way.turn < MAX_TURN)
 
 
 def _strides(apart: Array) -> _Strides | None:

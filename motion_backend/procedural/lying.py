@@ -20,7 +20,7 @@ from scene_graphs.surfaces import Spot
 Array = NDArray[np.float64]
 ROLL = 1.31
 """How far a pelvis is turned over to lie on a side (radians)."""
-SKULL = 0.085
+SKULL_RADIUS = 0.085
 """Half a head: its middle above what it lies on (metres at 1.70 m)."""
 PROPPED = 0.35
 """How far the pelvis of who lies on the elbows tips back from lying flat (radians)."""
@@ -113,7 +113,7 @@ def _on_the_back(pose: Pose, bed: Bed, style: Lying, skeleton: Skeleton) -> Pose
     hands = (_hand(style, bed, 0, skeleton.scale), _hand(style, bed, 1, skeleton.scale))
     under_head = any(hand.with_head and hand.wrist[2] < 0 for hand in hands)
     under = bed.pillow + (ON_HANDS * skeleton.scale if under_head else 0.0)
-    resting = bed.surface + under + SKULL * skeleton.scale
+    resting = bed.surface + under + SKULL_RADIUS * skeleton.scale
     nod = float(nods[int(np.argmin(np.abs(heights - resting)))]) + style.nod
     pose = replace(pose, head=bend(nod, turn=style.turn))
     return hands_at_rest(pose, hands, skeleton)
@@ -162,6 +162,6 @@ def _on_a_side(pose: Pose, bed: Bed, style: Lying, skeleton: Skeleton) -> Pose:
     tilts = np.linspace(-0.7, 0.5, 61) * down
     tries = np.stack([bend(0.65 * curl + 0.08, side=float(tilt)) for tilt in tilts])
     heights = head_middle(replace(pose, head=tries), skeleton)[:, 1]
-    resting = bed.surface + under + SKULL * skeleton.scale
+    resting = bed.surface + under + SKULL_RADIUS * skeleton.scale
     pose = replace(pose, head=tries[int(np.argmin(np.abs(heights - resting)))])
     return hands_at_rest(pose, (below, above) if style.side == "left" else (above, below), skeleton)

@@ -15,7 +15,7 @@ from scene_graphs.surfaces import Spot
 
 AT_TABLE = frozenset({"table", "desk"})
 """Arms of a way of sitting that lie on a table."""
-LEAST_EDGE = 0.12
+MIN_EDGE = 0.12
 """Thighs rest on so much of a seat at least (metres)."""
 AT_EASE = 0.45
 """Distance of a table's edge from the pelvis to which nobody draws nearer (metres)."""
@@ -39,7 +39,7 @@ def seat_for(found: Sequence[Spot], emotion: str, caption: str, obstacles: Obsta
 
 def _drawn_up(spot: Spot, obstacles: Obstacles) -> Spot | None:
     """The same seat sat on so far to the front that the table before it is near; None where no table is in reach."""
-    seat, forward = Seat.of(spot), max(spot.edge - LEAST_EDGE, 0.0)
+    seat, forward = Seat.of(spot), max(spot.edge - MIN_EDGE, 0.0)
     near = obstacles.near(seat.pelvis - ABOUT, seat.pelvis + ABOUT)
     table = table_before(seat, near, 1.0, TABLE_REACH + forward)
     if table is None:

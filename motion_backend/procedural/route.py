@@ -15,7 +15,7 @@ SPACING = 0.03
 """Metres between the samples of a path."""
 TURN_IN_PLACE = 0.9
 """A body turns on the spot before it walks off in a direction further away than this (radians)."""
-SHORTEST_WALK = 0.35
+MIN_WALK_LENGTH = 0.35
 """Over less than this (metres) a body shuffles without turning into the direction of travel."""
 
 TURN_ON_THE_WAY = 1.2
@@ -46,7 +46,7 @@ def plan_route(
     points = resample(path)
     length = SPACING * (len(points) - 1)
     end = start_yaw if end_yaw is None else end_yaw
-    if length < SHORTEST_WALK:
+    if length < MIN_WALK_LENGTH:
         turn = float(rotations.wrap(end - start_yaw))
         if length < SPACING or abs(turn) < TURN_ON_THE_WAY:
             return _shuffle(points, start_yaw, turn, fps)

@@ -18,14 +18,14 @@ from planner_service.client.resources import Job, StoryEvent
 J = TypeVar("J", bound=Job)
 SILENCE: Final = 45.0
 """Seconds without a byte after which a connection counts as broken; the service sends something every 15."""
-LOOK, LEAST_LOOK = 5.0, 0.1
+LOOK, MIN_LOOK = 5.0, 0.1
 """Seconds of silence after which one who waits for a limited time looks at the clock."""
 BREAKS: Final = 30
 """Tries in a row to connect that may fail."""
 LATER: Final = (429, 502, 503, 504)
 """Answers of a service that is busy or on its way up."""
 KINDS: Final = {"stories": "story", "extractions": "extraction"}
-PAUSE, LONGEST_PAUSE = 0.5, 2.0
+PAUSE, MAX_PAUSE_SECONDS = 0.5, 2.0
 """Seconds before one connects again, doubled with every break; in all a minute, for a service that starts again."""
 
 
@@ -100,7 +100,7 @@ class Following:
 
     def request(self, connecting: float) -> dict[str, Any]:
         """What httpx is to send, to go on from the last event; `connecting` is the time to wait for a connection."""
-        silence = SILENCE if self.timeout is None else max(LEAST_LOOK, min(LOOK, self._left()))
+        silence = SILENCE if self.timeout is None else max(MIN_LOOK, min(LOOK, self._left()))
         return {
             "method": "GET",
             "url": f"/v1/{self.kind}/{quote(self.story_id, safe='')}/events",
@@ -158,7 +158,7 @@ class Following:
     def _give_up(self) -> bool:
         """Count a break; whether there were too many of them."""
         self._look()
-        self.pause = min(PAUSE * 2**self._breaks, LONGEST_PAUSE, self._left())
+        self.pause = min(PAUSE * 2**self._breaks, MAX_PAUSE_SECONDS, self._left())
         self._breaks += 1
         return self._breaks > BREAKS
 

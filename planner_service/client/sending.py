@@ -12,7 +12,7 @@ from planner_service.client.errors import error_of, not_ours, unreachable
 
 T = TypeVar("T")
 TRIES: Final = 4
-LONGEST_WAIT: Final = 60.0
+MAX_WAIT_SECONDS: Final = 60.0
 """Seconds; a service that wants more is not waited for."""
 LOOPBACK: Final = ("localhost", "127.0.0.1", "[::1]")
 
@@ -76,4 +76,4 @@ class Sending(Generic[T]):
     def _again(self, wait: float) -> bool:
         self.wait = wait
         self.tries += 1
-        return self.call.repeatable and self.tries < TRIES and wait <= LONGEST_WAIT
+        return self.call.repeatable and self.tries < TRIES and wait <= MAX_WAIT_SECONDS

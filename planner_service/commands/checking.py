@@ -14,13 +14,13 @@ from planner_service.settings import read_settings
 from planner_service.shelves import open_shelves
 from scene_graphs.usability import count_uses
 
-MOST_CHECKED = 10_000
+MAX_CHECKED = 10_000
 """Rooms of one command."""
 
 
 def check(names: Annotated[list[str], typer.Argument(help="Layout files or ids.")]) -> None:
     """Count which furniture can be sat and lain on, as placed or pulled out, and what keeps a body from the rest."""
-    layouts = chosen_layouts(names, open_shelves(read_settings()), "NAMES", most=MOST_CHECKED)
+    layouts = chosen_layouts(names, open_shelves(read_settings()), "NAMES", most=MAX_CHECKED)
     counted = ("pieces", "surface", "as placed", "pulled out")
     table = plain_table("furniture", "to", *counted, "the rest", right=counted)
     for (category, affordance), counts in sorted(count_uses(layouts).items()):

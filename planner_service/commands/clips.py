@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from motion_backend.clips.building import Kept, Unread
     from motion_backend.clips.dataset import Dataset
 
-LONGEST_LINE = 300
+MAX_LINE_LENGTH = 300
 
 app = typer.Typer(no_args_is_help=True, help="Recorded and keyed motion, retargeted to our body.")
 app.command()(sheet)
@@ -71,16 +71,16 @@ def build(
     lost = [one for one in found if not isinstance(one, Kept)]
     for unread in lost:
         why = unread.why if unread.why.startswith(unread.name) else f"{unread.name}: {unread.why}"
-        console.print(f"not read: {shown(why, LONGEST_LINE)}", soft_wrap=True)
+        console.print(f"not read: {shown(why, MAX_LINE_LENGTH)}", soft_wrap=True)
     for clip in kept:
         if not clip.report.accepted:
             why = f"{clip.entry.name}: {'; '.join(clip.report.refused)}"
-            console.print(f"refused: {shown(why, LONGEST_LINE)}", soft_wrap=True)
+            console.print(f"refused: {shown(why, MAX_LINE_LENGTH)}", soft_wrap=True)
     accepted = [one.entry for one in kept if one.report.accepted]
     copies = near_copies(accepted)
     for copy in copies:
         alike = f"{copy.clip} is nearly in {copy.of} ({copy.degrees:.1f}°)"
-        console.print(f"kept on one side of the split: {shown(alike, LONGEST_LINE)}", soft_wrap=True)
+        console.print(f"kept on one side of the split: {shown(alike, MAX_LINE_LENGTH)}", soft_wrap=True)
     dataset = collect(accepted, mirror, reverse, rates, copies)
     told = {
         "clips": [one.report.to_dict() for one in kept],

@@ -58,7 +58,7 @@ def planning(
         told = {"figures": figures, "misses": list(map(asdict, misses))}
         console.print_json(json.dumps({**told, "encoder": found.encoder, "scripts": found.scripts}))
     else:
-        console.print(_table(found.figures))
+        console.print(_planning_table(found.figures))
         console.print(f"{found.scripts} scripts, encoder {found.encoder}; a limit is for the column marked *")
         for miss in misses:
             console.print(f"{miss.split} {miss.id}: {miss.text}", soft_wrap=True)
@@ -68,7 +68,7 @@ def planning(
         raise typer.Exit(1)
 
 
-def _table(figures: Sequence[Figure]) -> Table:
+def _planning_table(figures: Sequence[Figure]) -> Table:
     numbers = ("all", "tune", "held out", "limit")
     table = plain_table("figure", *numbers, "", right=numbers)
     for figure in figures:

@@ -38,9 +38,9 @@ UNITS = {
 }  # fmt: skip
 WORST = ("contact_error", "pen_max", "pen_share", "skate_ratio", "self_pen_max", "limits_share", "seam_speed_jump")
 """Of what the worst trials are named."""
-MOST_WORST = 4
-LONGEST_CAPTION = 200
-MOST_DIGITS = 6
+MAX_WORST = 4
+MAX_CAPTION_LENGTH = 200
+MAX_DIGITS = 6
 FILMED = ("film.glb", "storyboard.png")
 """Files of one trial."""
 PAPER_APD = {"sitdown": "1.14 (UniHSI), 16.55 (SIMS)", "liedown": "1.35 (UniHSI), 16.36 (SIMS)"}
@@ -115,8 +115,8 @@ def body(
 def _chosen(captions: str, skills: Sequence[Skill] | None, only: str | None) -> Mapping[Skill, list[str]]:
     """The captions to be acted, by skill."""
     known = {Skill(name): some for name, some in known_captions().items() if not skills or Skill(name) in skills}
-    if only is not None and not (0 < len(only) <= LONGEST_CAPTION and only.isprintable()):
-        raise RequestError(f"--only: a caption is 1 to {LONGEST_CAPTION} printable letters, got {only!r:.80}")
+    if only is not None and not (0 < len(only) <= MAX_CAPTION_LENGTH and only.isprintable()):
+        raise RequestError(f"--only: a caption is 1 to {MAX_CAPTION_LENGTH} printable letters, got {only!r:.80}")
     if only is not None:
         found = {skill: [only] for skill, some in known.items() if only in some}
         if not found and skills:
@@ -126,7 +126,7 @@ def _chosen(captions: str, skills: Sequence[Skill] | None, only: str | None) -> 
         return found
     if captions == "all":
         return known
-    if not captions.isdecimal() or len(captions) > MOST_DIGITS or int(captions) < 1:
+    if not captions.isdecimal() or len(captions) > MAX_DIGITS or int(captions) < 1:
         raise RequestError(f"--captions: {captions!r:.40} must be a number from 1 on, or all")
     # Spread over the list, which is in the order of the alphabet.
     return {skill: some[:: max(len(some) // int(captions), 1)][: int(captions)] for skill, some in known.items()}
@@ -262,10 +262,10 @@ def _worst(results: Sequence[Result]) -> list[dict[str, Any]]:
         seen: set[object] = set()
         for one in sorted((one for one in begun if one[name]), key=lambda one: -one[name]):
             own = {one["caption"], (one["room"], one["object"])}
-            if seen.isdisjoint(own) and len(seen) < 2 * MOST_WORST:
+            if seen.isdisjoint(own) and len(seen) < 2 * MAX_WORST:
                 rows.append(_as_row(name, one))
                 seen |= own
-    return rows + [_as_row("reached", one) for one in begun if not one["reached"]][: 5 * MOST_WORST]
+    return rows + [_as_row("reached", one) for one in begun if not one["reached"]][: 5 * MAX_WORST]
 
 
 def _as_row(name: str, one: Mapping[str, Any]) -> dict[str, Any]:
@@ -277,7 +277,7 @@ def _as_row(name: str, one: Mapping[str, Any]) -> dict[str, Any]:
 
 def _by_caption(results: Sequence[Result]) -> list[dict[str, Any]]:
     """The mean of every figure of each caption (the largest, where it is one)."""
-    from planner_service.evaluating.body import LARGEST
+    from planner_service.evaluating.body import WORST_OF_TRIALS
 
     rows = []
     for skill, caption in dict.fromkeys((one.trial.skill, one.trial.caption) for one in results):
@@ -287,7 +287,7 @@ def _by_caption(results: Sequence[Result]) -> list[dict[str, Any]]:
         row: dict[str, Any] = {"skill": skill.value, "caption": caption, "trials": len(own)}
         for name in FIGURES:
             values = [float(one[name]) for one in own if one[name] is not None]
-            found = (max(values) if name in LARGEST else sum(values) / len(values)) if values else None
+            found = (max(values) if name in WORST_OF_TRIALS else sum(values) / len(values)) if values else None
             row[name] = None if found is None else round(found, 5)
         rows.append(row)
     return rows

@@ -29,7 +29,7 @@ PAPER = {
 """Simple, mid and hard; shares in percent, errors in cm. Theirs are simulated bodies."""
 UNITS = {"script_success": (100, "%"), "script_success_any": (100, "%"), "contact_error": (100, "cm")}
 NAMES = {"success_steps_unihsi": "success_steps (UniHSI)"}
-LEAST_CELLS = 64
+MIN_CELLS = 64
 """Rooms × seeds below which it is only a sample."""
 
 
@@ -59,18 +59,18 @@ def scripts(
         }  # fmt: skip
         console.print_json(json.dumps(value))
         return
-    console.print(_table(figures))
+    console.print(_script_table(figures))
     console.print(
         f"{len(trials)} scripts, {cells} rooms × seeds; 95 % over these; backend procedural: kinematic",
         soft_wrap=True,
     )
-    if cells < LEAST_CELLS:
-        console.print(f"a sample; figures to be quoted need {LEAST_CELLS} rooms × seeds")
+    if cells < MIN_CELLS:
+        console.print(f"a sample; figures to be quoted need {MIN_CELLS} rooms × seeds")
     for one in faults:
         console.print(f"{one.trial.level}, {one.trial.room}, seed {one.trial.seed}: {one.fault}", soft_wrap=True)
 
 
-def _table(figures: Sequence[ScriptFigure]) -> Table:
+def _script_table(figures: Sequence[ScriptFigure]) -> Table:
     levels = ("simple", "mid", "hard")
     table = plain_table("figure", "of", *levels, right=levels)
     for name in dict.fromkeys(figure.name for figure in figures):

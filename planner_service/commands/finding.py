@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from planner_service.retrieving import Retrieved
     from scene_graphs.retrieval import LayoutIndex
 
-MOST_FOUND: Final = 50
-LARGEST_GRAPH: Final = 1 << 20
+MAX_FOUND: Final = 50
+MAX_GRAPH_BYTES: Final = 1 << 20
 """Bytes of a file that holds a graph."""
 _WORD: Final = re.compile(r"(?P<word>[^\W\d][^\d:]*?)(?P<number>\d{1,2})?(?::(?P<needs>[a-z]+(?:\+[a-z]+)*))?")
 
@@ -41,7 +41,7 @@ def find(
         ),
     ],
     rooms: Annotated[int, typer.Option("--rooms", min=1, max=4, help="How many rooms a home may have.")] = 1,
-    k: Annotated[int, typer.Option("-k", min=1, max=MOST_FOUND, help="How many rooms, or homes, to show.")] = 5,
+    k: Annotated[int, typer.Option("-k", min=1, max=MAX_FOUND, help="How many rooms, or homes, to show.")] = 5,
     room: Annotated[list[str] | None, typer.Option(help="Only rooms of this type; may be given again.")] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for pictures: the graph beside the rooms.")] = None,
 ) -> None:
@@ -123,9 +123,9 @@ def _json(path: Path) -> Any:
         if not path.is_file():
             raise RequestError(f"{path}: cannot be read: there is no such file")
         with path.open("rb") as file:
-            data = file.read(LARGEST_GRAPH + 1)
-        if len(data) > LARGEST_GRAPH:
-            raise RequestError(f"{path.name}: a graph has at most {LARGEST_GRAPH >> 20} MB")
+            data = file.read(MAX_GRAPH_BYTES + 1)
+        if len(data) > MAX_GRAPH_BYTES:
+            raise RequestError(f"{path.name}: a graph has at most {MAX_GRAPH_BYTES >> 20} MB")
         row = json.loads(data)
     except OSError as error:
         raise RequestError(f"{path}: cannot be read: {error.strerror or error}") from error

@@ -14,18 +14,18 @@ from planner_service.llm.choosing import KINDS, load_model
 from planner_service.llm.protocol import LanguageModel
 from planner_service.llm.served import for_story
 from planner_service.scripts.captions import captions
-from planner_service.scripts.wishes import MOST_WANTED, Wish
+from planner_service.scripts.wishes import MAX_WANTED, Wish
 from planner_service.settings import Settings, SettingsError, read_settings
 from planner_service.shelves import Shelves, open_shelves
 from scene_graphs.furniture import canonical_room, is_known
 
-MOST_SYNONYMS = 20
+MAX_SYNONYMS = 20
 
 
 def imitate(
     emotion: Annotated[str, typer.Option(help="What the new scripts are to feel like, such as sad.")],
     room: Annotated[str, typer.Option(help="The room type they are to play in.")],
-    count: Annotated[int, typer.Option(min=1, max=MOST_WANTED, help="How many.")] = 5,
+    count: Annotated[int, typer.Option(min=1, max=MAX_WANTED, help="How many.")] = 5,
     furniture: Annotated[
         str, typer.Option(help="What they may use, such as bed,desk; left out: all that stands in such rooms.")
     ] = "",
@@ -59,7 +59,7 @@ def imitate(
 
 def rephrase_captions(
     skill: Annotated[str | None, typer.Option(help="Only captions of this skill.")] = None,
-    count: Annotated[int, typer.Option(min=1, max=MOST_SYNONYMS, help="How many other ways to say each.")] = 5,
+    count: Annotated[int, typer.Option(min=1, max=MAX_SYNONYMS, help="How many other ways to say each.")] = 5,
     again: Annotated[bool, typer.Option("--again", help="Also those for which you have some.")] = False,
     seed: Annotated[int, typer.Option(min=0, help="Another seed asks the model anew.")] = 0,
 ) -> None:

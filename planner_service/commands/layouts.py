@@ -15,7 +15,7 @@ from planner_service.commands.checking import check
 from planner_service.commands.errors import writing_database
 from planner_service.commands.finding import find
 from planner_service.commands.picturing import draw
-from planner_service.commands.rooms import LARGEST_FILE
+from planner_service.commands.rooms import MAX_FILE_BYTES
 from planner_service.commands.tables import plain_table
 from planner_service.settings import read_settings
 from planner_service.shelves import open_shelves
@@ -23,7 +23,7 @@ from planner_service.stories import RequestError
 from scene_graphs.furniture import ROOM_TYPES
 from scene_graphs.layouts import write_layouts
 from scene_graphs.loaders import FORMATS, Options, Source
-from scene_graphs.loaders.source import MOST_BYTES
+from scene_graphs.loaders.source import MAX_BYTES
 
 app = typer.Typer(no_args_is_help=True, help="List, draw, check, import and generate furnished rooms.")
 for command in (find, check, draw):
@@ -74,7 +74,7 @@ def import_layouts(
         )
     sizes = None if assets is None else Source.of_path(assets)
     options = Options(assets=sizes, scan=scan, room_type=room, up=up, front=front, unit=unit)
-    source = Source.of_path(path, LARGEST_FILE if format_name == "native" else MOST_BYTES)
+    source = Source.of_path(path, MAX_FILE_BYTES if format_name == "native" else MAX_BYTES)
     console = Console(markup=False, highlight=False)
     shelves = None if dry_run else open_shelves(read_settings(), writes=True)
     with writing_database(), _progress("looking over", console) as seen:

@@ -17,9 +17,9 @@ from planner_service.settings import read_settings
 from planner_service.shelves import open_shelves
 from planner_service.stories import RequestError
 
-MOST_DRAWN = 400
+MAX_DRAWN = 400
 """Rooms of one command."""
-ENDINGS = ("png", "svg")
+PICTURE_ENDINGS = ("png", "svg")
 
 
 def draw(
@@ -33,9 +33,9 @@ def draw(
 ) -> None:
     """Draw rooms from above: furniture with names, graph, surfaces, standing points and a path."""
     endings = [word.strip().lower() for word in formats.split(",")]
-    if not endings or any(word not in ENDINGS for word in endings):
+    if not endings or any(word not in PICTURE_ENDINGS for word in endings):
         raise RequestError(f"--format: {formats!r:.40} must be png, svg or png,svg")
-    layouts = chosen_layouts(names, open_shelves(read_settings()), "NAMES", most=MOST_DRAWN)
+    layouts = chosen_layouts(names, open_shelves(read_settings()), "NAMES", most=MAX_DRAWN)
     drawings: dict[str, Writer] = {}
     for layout in layouts:
         if to is not None and all(placed.id != to for placed in layout.objects):

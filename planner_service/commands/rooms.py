@@ -6,21 +6,21 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from planner_service.shelves import Shelves
-from scene_graphs.homes import MOST_ROOMS
+from scene_graphs.homes import MAX_ROOMS
 from scene_graphs.layouts import Layout, LayoutError, read_layouts
 
-LARGEST_FILE = 64 << 20
+MAX_FILE_BYTES = 64 << 20
 """Bytes of a user's file of rooms, after unpacking."""
 
 
 def chosen_layouts(
-    names: Sequence[str], shelves: Shelves, field: str = "--layout", most: int = MOST_ROOMS
+    names: Sequence[str], shelves: Shelves, field: str = "--layout", most: int = MAX_ROOMS
 ) -> tuple[Layout, ...]:
     """The layouts that paths and ids stand for, in order, at most `most`; LayoutError names field and remedy."""
     found: list[Layout] = []
     for name in names:
         if _is_file(name):
-            rooms = read_layouts(name, LARGEST_FILE)
+            rooms = read_layouts(name, MAX_FILE_BYTES)
             if not rooms:
                 raise LayoutError(f"{field}: {name} holds no room; `sims layouts generate` writes such files")
             found.extend(rooms)

@@ -17,7 +17,7 @@ from planner_service.scripts.keyframe import ShortScript
 from planner_service.scripts.library import LibraryError
 from planner_service.shelves import Shelves
 
-LARGEST: Final = 64_000_000
+MAX_SCRIPT_FILE_BYTES: Final = 64_000_000
 """Bytes of a script file."""
 
 
@@ -25,11 +25,11 @@ def read_scripts(file: Path) -> list[ShortScript]:
     """Short scripts of a JSON or JSON-lines file. Raises LibraryError naming file, line and what is wrong."""
     try:
         with file.open("rb") as stream:
-            data = stream.read(LARGEST + 1)
+            data = stream.read(MAX_SCRIPT_FILE_BYTES + 1)
     except OSError as error:
         raise LibraryError(f"FILE: {file} cannot be read: {error.strerror}") from error
-    if len(data) > LARGEST:
-        raise LibraryError(f"{file.name}: larger than {LARGEST // 1_000_000} MB; split it")
+    if len(data) > MAX_SCRIPT_FILE_BYTES:
+        raise LibraryError(f"{file.name}: larger than {MAX_SCRIPT_FILE_BYTES // 1_000_000} MB; split it")
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

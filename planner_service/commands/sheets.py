@@ -16,7 +16,7 @@ from planner_service.stories import RequestError
 if TYPE_CHECKING:
     from motion_backend.rendering import Image
 
-MOST_SHOWN: Final = 40
+MAX_SHOWN: Final = 40
 """Clips of a collection on one sheet."""
 
 
@@ -59,8 +59,8 @@ def _of_clips(file: Path, names: list[str] | None) -> Image:
 
     dataset = read_dataset(file)
     chosen = [dataset.named(name) for name in names] if names else dataset.of_every_skill()
-    if len(chosen) > MOST_SHOWN:
-        raise ClipError(f"--clip: a sheet shows at most {MOST_SHOWN} clips, these are {len(chosen)}; name fewer")
+    if len(chosen) > MAX_SHOWN:
+        raise ClipError(f"--clip: a sheet shows at most {MAX_SHOWN} clips, these are {len(chosen)}; name fewer")
     return drawn([(shown(f"{entry.name}: {entry.captions[0]}"), entry.motion) for entry in chosen])
 
 

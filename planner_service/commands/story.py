@@ -21,7 +21,7 @@ from scene_graphs.furniture import ROOM_TYPES
 
 SHARES = {"plan": 0.30, "furnish": 0.05, "narrate": 0.02, "act": 0.06, "move": 0.12, "judge": 0.20, "write": 0.25}
 """About how much of the time each stage takes, for the bar."""
-LONGEST_FILE = 100_000
+MAX_FILE_LINES = 100_000
 """Bytes of a theme's file that are read."""
 TOLD = {
     "plan": "weaving short scripts",
@@ -88,12 +88,12 @@ def read_theme(argument: str) -> str:
     path = argument[1:]
     try:
         with Path(path).open("rb") as file:
-            data = file.read(LONGEST_FILE + 1)
+            data = file.read(MAX_FILE_LINES + 1)
     except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
         why = f"{getattr(error, 'strerror', None) or error}; after @ comes the path of a file"
         raise RequestError(f"theme: {path or '@'} cannot be read: {why}") from error
-    if len(data) > LONGEST_FILE:
-        raise RequestError(f"theme: {path} has more than {LONGEST_FILE} bytes; a theme is a few sentences")
+    if len(data) > MAX_FILE_LINES:
+        raise RequestError(f"theme: {path} has more than {MAX_FILE_LINES} bytes; a theme is a few sentences")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -27,7 +27,7 @@ from scene_graphs.packed_library import built_in_index
 Array = NDArray[np.float64]
 RESAMPLES: Final = 1000
 CONTACTS: Final = (Skill.SITDOWN, Skill.LIEDOWN, Skill.TOUCH)
-LARGEST: Final = ("pen_max", "self_pen_max", "bone_deviation")
+WORST_OF_TRIALS: Final = ("pen_max", "self_pen_max", "bone_deviation")
 """Of these the largest of all trials counts, not the mean."""
 Progress = Callable[[int, int], None]
 
@@ -178,7 +178,7 @@ def sum_up(results: Sequence[Result], names: Sequence[str], seed: int = 0) -> li
 def _with_interval(results: Sequence[Result], name: str, seed: int) -> tuple[float, float, float]:
     """A mean with its bootstrapped interval, or the largest value, of which there is none."""
     values = np.array([float(result.figures[name]) for result in results])
-    if name in LARGEST:
+    if name in WORST_OF_TRIALS:
         return (float(values.max()),) * 3
     keys = [(result.trial.room, result.trial.seed) for result in results]
     cells = {key: index for index, key in enumerate(sorted(set(keys)))}

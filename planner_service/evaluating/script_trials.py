@@ -35,7 +35,7 @@ Placed = tuple[Keyframe, Place]
 LEVELS: Final[Mapping[Level, tuple[int, int]]] = {"simple": (2, 2), "mid": (3, 4), "hard": (4, 6)}
 """How many interactions a script has, at least and at most."""
 INTERACTIONS: Final = (Skill.SITDOWN, Skill.LIEDOWN, Skill.TOUCH)
-MOST_DRAWS: Final = 1000
+MAX_DRAWS: Final = 1000
 """Wordings looked at for one script; a room in which so many do not help has too little in it."""
 RESAMPLES: Final = 1000
 Progress = Callable[[int, int], None]
@@ -152,7 +152,7 @@ def _told() -> Mapping[Skill, tuple[Keyframe, ...]]:
 def _interactions(count: int, where: Setting, luck: np.random.Generator) -> list[Placed]:
     """Skills by chance, each in told words and at a piece that the room has for them; no piece twice running."""
     chosen: list[Placed] = []
-    for _ in range(MOST_DRAWS):
+    for _ in range(MAX_DRAWS):
         if len(chosen) == count:
             return chosen
         told = _told()[INTERACTIONS[int(luck.integers(len(INTERACTIONS)))]]

@@ -41,7 +41,7 @@ REST: Final = {Skill.STANDUP: (Skill.SITDOWN, "sitting still"), Skill.GETUP: (Sk
 """What a body does before it rises."""
 AWAY: Final = (1.0, 5.0)
 """How far from the standing point a trial begins (metres)."""
-LONGEST: Final = 2.5
+MIN_WALKING_ROOM: Final = 2.5
 """A room is for walking if one can walk at least this far in it (metres)."""
 AHEAD: Final = (0.4, 0.7, 1.0)
 """A table over a point this far before the sitter (metres) is the seat's: chairs stand back from theirs."""
@@ -147,7 +147,7 @@ def places_for(skill: Skill, caption: str, where: Setting) -> tuple[str, ...]:
     What the words ask for is there: a table before the seat, armrests, a height to reach to.
     """
     if skill is Skill.LOCO:
-        return (FLOOR,) if where.longest_walk >= LONGEST else ()
+        return (FLOOR,) if where.longest_walk >= MIN_WALKING_ROOM else ()
     skill, caption = REST.get(skill, (skill, caption))
     need = NEEDS[skill]
     if need == "sit" and _ON_FLOOR.search(caption):

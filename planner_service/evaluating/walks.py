@@ -42,9 +42,9 @@ ODD: Final = re.compile(
     r"\b(?:run|jog|crawl|sneak|stealth|zombie|hop|jump|balanc|stagger|exaggerat|strid)", re.IGNORECASE
 )
 """Walks that are not plain, by their style or caption; a caption may say what the style does not."""
-MOST_WINDOWS: Final = 12
+MAX_WINDOWS: Final = 12
 """Of one person, spread over their clips: who walked up and down thirty times is one person still."""
-FEWEST_PEOPLE: Final = 4
+MIN_PEOPLE: Final = 4
 SPEEDS: Final = ((0.3, 0.8), (0.8, 1.1), (1.1, 1.4), (1.4, 1.7), (1.7, 2.2))
 """Bins in which jerk is compared (metres a second)."""
 GROUND: Final = Layout("ground", "living_room", ((0.0, 0.0), (0.0, 4.0), (16.0, 4.0), (16.0, 0.0)))
@@ -156,11 +156,11 @@ def recorded_walks(dataset: Dataset, style: str = "") -> Walks:
     ]
     found = _walks("recorded", [(entry.subject, entry.motion) for entry in chosen])
     people = np.array(found.groups)
-    if len(set(found.groups)) < FEWEST_PEOPLE:
+    if len(set(found.groups)) < MIN_PEOPLE:
         what = f"walks called {style!r:.40}" if style else "plain walks"
         raise ClipError(
             f"--clips: recorded {what} of {len(set(found.groups))} people hold 2 s of steady walking; at least "
-            f"{FEWEST_PEOPLE} are needed (sims clips build --kinds 'real mocap')"
+            f"{MIN_PEOPLE} are needed (sims clips build --kinds 'real mocap')"
         )
     kept = np.sort(np.concatenate([_spread(np.flatnonzero(people == name)) for name in np.unique(people)]))
     return _chosen(found, kept)
@@ -236,8 +236,8 @@ def _is_asked_for(entry: Entry, style: str) -> bool:
 
 
 def _spread(of: NDArray[np.int64]) -> NDArray[np.int64]:
-    """At most `MOST_WINDOWS` of these, from the first to the last."""
-    return of[np.unique(np.linspace(0, len(of) - 1, min(len(of), MOST_WINDOWS)).round().astype(np.int64))]
+    """At most `MAX_WINDOWS` of these, from the first to the last."""
+    return of[np.unique(np.linspace(0, len(of) - 1, min(len(of), MAX_WINDOWS)).round().astype(np.int64))]
 
 
 def _walks(name: str, motions: Sequence[tuple[str, Motion]]) -> Walks:

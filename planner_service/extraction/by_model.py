@@ -10,22 +10,22 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 import prompts
 from motion_backend.motion import Skill
 from planner_service.extraction.making import Draft, Maker, Span
-from planner_service.extraction.portions import LONGEST_PIECE, shown
+from planner_service.extraction.portions import MAX_PIECE_LENGTH, shown
 from planner_service.extraction.text import TextScene
 from planner_service.llm.answers import problems_of
 from planner_service.llm.asking import ask
 from planner_service.llm.protocol import LanguageModel
 from planner_service.scripts.checking import check, read_keyframe
 from planner_service.scripts.emotions import emotion_of
-from planner_service.scripts.keyframe import EMOTIONS, MOST_PIECES
+from planner_service.scripts.keyframe import EMOTIONS, MAX_PIECES
 from planner_service.scripts.offering import captions_offered, furniture_offered
 from planner_service.scripts.planning import DirectKeyframe
 from planner_service.scripts.voice import Voice, retell
 from scene_graphs.furniture import ROOM_TYPES, canonical_room
 
-_MOST_SCENES: Final = 8
+_MAX_SCENES: Final = 8
 """Scenes of one question."""
-_MOST_SCRIPTS: Final = 12
+_MAX_SCRIPTS: Final = 12
 """Short scripts of one answer."""
 Numbered = Mapping[int, TextScene]
 
@@ -56,7 +56,7 @@ def pieces_of(scenes: Sequence[TextScene]) -> Iterator[Numbered]:
     letters = 0
     for number, scene in enumerate(scenes, start=1):
         size = len(shown(scene))
-        if piece and (letters + size > LONGEST_PIECE or len(piece) == _MOST_SCENES):
+        if piece and (letters + size > MAX_PIECE_LENGTH or len(piece) == _MAX_SCENES):
             yield piece
             piece, letters = {}, 0
         piece[number] = scene
@@ -70,14 +70,14 @@ def ask_for_scripts(model: LanguageModel, scenes: Numbered, maker: Maker) -> dic
     prompt = prompts.render(
         "extract_scripts",
         name=maker.name,
-        scenes="\n\n".join(f"[{number}] {shown(scene)[:LONGEST_PIECE]}" for number, scene in scenes.items()),
+        scenes="\n\n".join(f"[{number}] {shown(scene)[:MAX_PIECE_LENGTH]}" for number, scene in scenes.items()),
         skills=", ".join(Skill),
         emotions=", ".join(EMOTIONS),
         rooms=", ".join(ROOM_TYPES),
         furniture=furniture_offered(),
         captions=captions_offered(),
-        most=str(_MOST_SCRIPTS),
-        most_keyframes=str(MOST_PIECES // 2),
+        most=str(_MAX_SCRIPTS),
+        most_keyframes=str(MAX_PIECES // 2),
     )
     answer = ask(model, prompt, FoundScripts, lambda found: _problems(found, scenes))
     made: dict[int, list[Draft]] = {number: [] for number in scenes}
@@ -102,15 +102,15 @@ def draft_of(found: FoundScript, span: Span, maker: Maker, model: str) -> Draft:
 def unread(scenes: Numbered) -> Iterator[str]:
     """What a question leaves out of scenes that nobody cut into portions."""
     for number, scene in scenes.items():
-        if (letters := len(shown(scene))) > LONGEST_PIECE:
-            yield f"scene {number}: only its first {LONGEST_PIECE} of {letters} letters were read"
+        if (letters := len(shown(scene))) > MAX_PIECE_LENGTH:
+            yield f"scene {number}: only its first {MAX_PIECE_LENGTH} of {letters} letters were read"
 
 
 def _problems(answer: FoundScripts, scenes: Numbered) -> list[str]:
     found = []
-    if len(answer.scripts) > _MOST_SCRIPTS:
-        found.append(f"scripts: {len(answer.scripts)} of them, at most {_MOST_SCRIPTS}")
-    for index, script in enumerate(answer.scripts[:_MOST_SCRIPTS]):
+    if len(answer.scripts) > _MAX_SCRIPTS:
+        found.append(f"scripts: {len(answer.scripts)} of them, at most {_MAX_SCRIPTS}")
+    for index, script in enumerate(answer.scripts[:_MAX_SCRIPTS]):
         found += [f"scripts.{index}.{problem}" for problem in faults_of(script, scenes)]
     return found
 
@@ -128,8 +128,8 @@ def faults_of(script: FoundScript, scenes: Collection[int]) -> Iterator[str]:
         yield f"emotion: {script.emotion!r:.60} is none of {', '.join(EMOTIONS)}"
     if canonical_room(script.room) not in ROOM_TYPES:
         yield f"room: {script.room!r:.60} is none of {', '.join(ROOM_TYPES)}"
-    if not 1 <= len(script.keyframes) <= MOST_PIECES:
-        yield f"keyframes: {len(script.keyframes)} of them, wanted 1 to {MOST_PIECES}"
+    if not 1 <= len(script.keyframes) <= MAX_PIECES:
+        yield f"keyframes: {len(script.keyframes)} of them, wanted 1 to {MAX_PIECES}"
         return
     try:
         keyframes = [read_keyframe(keyframe.model_dump()) for keyframe in script.keyframes]

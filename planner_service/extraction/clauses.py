@@ -10,7 +10,7 @@ from typing import Final
 
 from planner_service.extraction.text import Line, TextScene
 from planner_service.scripts.emotions import feelings
-from planner_service.scripts.events import LONGEST, Clause, ThemeError, clauses_of, moods_of
+from planner_service.scripts.events import MAX_THEME_LENGTH, Clause, ThemeError, clauses_of, moods_of
 from planner_service.scripts.sentences import moments_of, sentences_of
 from planner_service.scripts.verbs import is_verb
 
@@ -70,7 +70,7 @@ def clauses_in(scene: TextScene) -> tuple[Told, ...]:
         if line.spoken:
             continue
         for sentence in sentences_of(_TOSSES.sub(r"\1 about", _WHILE.sub("", line.text))):
-            for moment in moments_of(sentence[:LONGEST]):
+            for moment in moments_of(sentence[:MAX_THEME_LENGTH]):
                 moment = _ADVERBIAL.sub("", moment)  # "that night she …"
                 named = _who(moment)
                 who = who if named in ("", SOMETHING) else named

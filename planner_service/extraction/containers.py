@@ -26,7 +26,7 @@ SOUNDS: Final = (
 )
 TEXTS: Final = ("mov_text", "subrip", "srt", "ass", "ssa", "webvtt", "text")
 """Decoders of subtitles that are letters, not pictures."""
-_MOST_TRACKS: Final = 32
+_MAX_TRACKS: Final = 32
 _PROBED: Final = 5_000_000
 """Bytes that are looked at to find out what the tracks are."""
 _ATOMS: Final = (b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip", b"pnot")
@@ -105,7 +105,7 @@ def opened(source: Path | BinaryIO, form: str) -> Iterator[InputContainer]:
                 container_options={
                     "protocol_whitelist": "",
                     "codec_whitelist": ",".join((*CODECS, *SOUNDS, *TEXTS)),
-                    "max_streams": str(_MOST_TRACKS),
+                    "max_streams": str(_MAX_TRACKS),
                     "probesize": str(_PROBED),
                     **({"enable_drefs": "0", "use_absolute_path": "0"} if form == "mp4" else {}),
                 },

@@ -14,11 +14,11 @@ from planner_service.extraction.making import Draft, Maker
 from planner_service.extraction.outline import LEEWAY, SceneOutline, inside
 from planner_service.llm.asking import ask
 from planner_service.llm.protocol import LanguageModel
-from planner_service.scripts.keyframe import EMOTIONS, MOST_PIECES
+from planner_service.scripts.keyframe import EMOTIONS, MAX_PIECES
 from planner_service.scripts.offering import captions_offered, furniture_offered
 from scene_graphs.furniture import ROOM_TYPES
 
-_MOST_SCRIPTS: Final = 4
+_MAX_SCRIPTS: Final = 4
 """Of one scene."""
 
 
@@ -47,8 +47,8 @@ def scripts_of(model: LanguageModel, outline: SceneOutline, maker: Maker) -> tup
     prompt = prompts.render(
         "write_scripts",
         number=str(outline.number),
-        most=str(_MOST_SCRIPTS),
-        keyframes=str(MOST_PIECES // 2),
+        most=str(_MAX_SCRIPTS),
+        keyframes=str(MAX_PIECES // 2),
         skills=", ".join(Skill),
         emotions=", ".join(EMOTIONS),
         rooms=", ".join(ROOM_TYPES),
@@ -64,9 +64,9 @@ def scripts_of(model: LanguageModel, outline: SceneOutline, maker: Maker) -> tup
 
 
 def _problems(answer: FilmedScripts, outline: SceneOutline) -> Iterator[str]:
-    if len(answer.scripts) > _MOST_SCRIPTS:
-        yield f"scripts: {len(answer.scripts)} of them, at most {_MOST_SCRIPTS}"
-    for index, script in enumerate(answer.scripts[:_MOST_SCRIPTS]):
+    if len(answer.scripts) > _MAX_SCRIPTS:
+        yield f"scripts: {len(answer.scripts)} of them, at most {_MAX_SCRIPTS}"
+    for index, script in enumerate(answer.scripts[:_MAX_SCRIPTS]):
         for fault in faults_of(script, (outline.number,)):
             yield f"scripts.{index}.{fault}"
         if not outline.start - LEEWAY <= script.start < script.end <= outline.end + LEEWAY:

@@ -6,7 +6,7 @@ from typing import Final
 
 from planner_service.extraction.containers import load_av, opened, said
 from planner_service.extraction.film import Film, text_tracks
-from planner_service.extraction.subtitles import LARGEST, MOST_CUES, Cue, Subtitles, cues_of, ordered
+from planner_service.extraction.subtitles import MAX_CUES, MAX_SUBTITLE_BYTES, Cue, Subtitles, cues_of, ordered
 
 _COMMAS: Final = 8
 """Before the text in an event as FFmpeg gives it: order, layer, style, name, three margins, effect."""
@@ -42,7 +42,7 @@ def _read(film: Film, place: int) -> tuple[list[Cue], str]:
         track = text_tracks(container)[place]
         packets = container.demux(track)
         base = float(track.time_base or 0)
-        while len(cues) < MOST_CUES and letters < LARGEST:
+        while len(cues) < MAX_CUES and letters < MAX_SUBTITLE_BYTES:
             try:
                 packet = next(packets, None)
                 if packet is None:

@@ -8,10 +8,10 @@ from typing import Final, Literal
 from planner_service.extraction.containers import checked_container, container_of, names_pictures
 from planner_service.extraction.making import Maker
 from planner_service.extraction.of_text import refuse_other_languages, scenes_read
-from planner_service.extraction.plain import MOST_BYTES, first_bytes, read_text
+from planner_service.extraction.plain import MAX_BYTES, first_bytes, read_text
 from planner_service.extraction.portions import portions_of
 from planner_service.extraction.results import Extraction, Means, Source
-from planner_service.extraction.subtitles import LARGEST, form_of, read_subtitles
+from planner_service.extraction.subtitles import MAX_SUBTITLE_BYTES, form_of, read_subtitles
 from planner_service.extraction.text import TextScene, scenes_of_cues, scenes_of_text
 
 _HEAD: Final = 4096
@@ -73,10 +73,10 @@ def words_in(source: Source, means: Means) -> Words:
 
 
 def _words_in(source: Source, means: Means) -> Words:
-    data = first_bytes(source.file, source.name, LARGEST + 1)
+    data = first_bytes(source.file, source.name, MAX_SUBTITLE_BYTES + 1)
     if form_of(data[:_HEAD].decode("utf-8", "ignore").replace("\0", "")) is not None:
         return _of_subtitles(source, data, means)
-    text, notes = read_text(data[: MOST_BYTES + 1], source.name)
+    text, notes = read_text(data[: MAX_BYTES + 1], source.name)
     if form_of(text) is not None:
         return _of_subtitles(source, data, means)
     if means.model is None:

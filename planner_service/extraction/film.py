@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from av.subtitles.stream import SubtitleStream
     from av.video.stream import VideoStream
 
-LONGEST_SIDE: Final = 512
+MAX_SIDE_PIXELS: Final = 512
 """Pixels of the longer side of a JPEG."""
 _QUANTISER: Final = 4
 """Of the JPEGs; near libjpeg's quality 80."""
@@ -160,10 +160,10 @@ def frames_at(film: Film, times: Iterable[float]) -> Iterator[Frame]:
 
 
 def jpeg_of(picture: VideoFrame, aspect: float) -> bytes:
-    """The picture upright and with square pixels as JPEG, its longer side at most `LONGEST_SIDE`."""
+    """The picture upright and with square pixels as JPEG, its longer side at most `MAX_SIDE_PIXELS`."""
     av = load_av()
     wide = picture.width * aspect
-    share = min(1.0, LONGEST_SIDE / max(wide, picture.height))
+    share = min(1.0, MAX_SIDE_PIXELS / max(wide, picture.height))
     width, height = (max(2, round(side * share / 2) * 2) for side in (wide, picture.height))
     small = picture.reformat(width, height, "rgb24", interpolation="AREA")
     if picture.rotation % 360:

@@ -14,13 +14,13 @@ from planner_service.extraction.film import Film
 from planner_service.extraction.shots import Progress, Shot, shots_of
 from planner_service.extraction.subtitles import Cue
 
-MOST_SCENES: Final = 60
+MAX_SCENES: Final = 60
 """Scenes of a film: a question to a model each, so that a longer film has longer ones."""
-MOST_FRAMES: Final = 24
+MAX_FRAMES: Final = 24
 """Frames that show a scene, one a second at most."""
-SHORTEST: Final = 6.0
-LONGEST: Final = 60.0
-"""Seconds of a scene, where the film is not longer than `MOST_SCENES` of them."""
+MIN_SCENE_SECONDS: Final = 6.0
+MAX_SCENE_SECONDS: Final = 60.0
+"""Seconds of a scene, where the film is not longer than `MAX_SCENES` of them."""
 _NEW: Final = 0.3
 """From where on a boundary between two shots is one between scenes."""
 _QUIET: Final = 2.0
@@ -51,18 +51,18 @@ def scenes_of(
 
 
 def scenes_in(shots: Sequence[Shot], cues: Sequence[Cue]) -> list[Scene]:
-    """The scenes that shots make: at most `MOST_SCENES`, which leave nothing out."""
+    """The scenes that shots make: at most `MAX_SCENES`, which leave nothing out."""
     end = shots[-1].end
-    longest = max(LONGEST, ceil(2 * end / MOST_SCENES))
+    longest = max(MAX_SCENE_SECONDS, ceil(2 * end / MAX_SCENES))
     bounds = [shots[0].start]
     for index, shot in enumerate(shots):
         if index and _ends(shots, index, cues, shot.start - bounds[-1], longest):
             bounds.append(shot.start)
         while shot.end - bounds[-1] > longest:
             bounds.append(_inside(shot, bounds[-1], longest))
-    if len(bounds) > 1 and end - bounds[-1] < SHORTEST:
+    if len(bounds) > 1 and end - bounds[-1] < MIN_SCENE_SECONDS:
         bounds.pop()
-    while len(bounds) > MOST_SCENES:
+    while len(bounds) > MAX_SCENES:
         lengths = [after - before for before, after in zip(bounds, [*bounds[2:], end], strict=False)]
         bounds.pop(1 + int(np.argmin(np.round(lengths, 4))))
     return [
@@ -73,7 +73,7 @@ def scenes_in(shots: Sequence[Shot], cues: Sequence[Cue]) -> list[Scene]:
 
 def _ends(shots: Sequence[Shot], index: int, cues: Sequence[Cue], length: float, longest: float) -> bool:
     """Whether a scene ends before the shot `index`, `length` seconds after it began."""
-    if length < SHORTEST:
+    if length < MIN_SCENE_SECONDS:
         return False
     shot = shots[index]
     if shot.end - shot.start + length > longest:
@@ -111,6 +111,6 @@ def _times(start: float, end: float) -> tuple[float, ...]:
     """Moments of a scene as far from each other as can be, of those that an album holds; its middle if it is short."""
     first, last = ceil(start - FIRST), ceil(end - FIRST)
     seconds = range(first, last)
-    count = min(MOST_FRAMES, len(seconds))
+    count = min(MAX_FRAMES, len(seconds))
     times = tuple(FIRST + seconds[(2 * index + 1) * len(seconds) // (2 * count)] for index in range(count))
     return times or (round((start + end) / 2, 3),)

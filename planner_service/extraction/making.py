@@ -11,7 +11,7 @@ from motion_backend.language.text import SentenceEncoder
 from planner_service.extraction.writing import summarise
 from planner_service.scripts.captions import Vocabulary
 from planner_service.scripts.checking import repair
-from planner_service.scripts.keyframe import MOST_PIECES, Keyframe, ShortScript, Source
+from planner_service.scripts.keyframe import MAX_PIECES, Keyframe, ShortScript, Source
 from planner_service.scripts.library import ScriptLibrary
 from planner_service.scripts.likeness import Likeness
 from planner_service.scripts.naming import slug_of
@@ -69,8 +69,8 @@ class Maker:
     def make(self, summary: str, keyframes: Sequence[Keyframe], emotion: str, room: str, span: Span, by: str) -> Draft:
         """A script that a body can act out. ValidationError where a field does not fit."""
         kept, repairs = repair(keyframes, self._vocabulary)
-        if len(kept) > MOST_PIECES:
-            repairs = (*repairs, f"{len(kept)} keyframes; the first {MOST_PIECES} are kept")
+        if len(kept) > MAX_PIECES:
+            repairs = (*repairs, f"{len(kept)} keyframes; the first {MAX_PIECES} are kept")
         start, end = span
         script = ShortScript.model_validate(
             {
@@ -78,7 +78,7 @@ class Maker:
                 "summary": summary,
                 "emotion": emotion,
                 "room": room,
-                "keyframes": kept[:MOST_PIECES],
+                "keyframes": kept[:MAX_PIECES],
                 "source": self.source,
                 "licence": self.licence,
                 "origin": {"name": self.name[:200], "start": start, "end": end, "by": by[:200]},

@@ -14,7 +14,7 @@ from planner_service.extraction.reading import SceneRead
 from planner_service.extraction.repeats import told_once
 from planner_service.extraction.results import Extraction, Means, Source, readers, report_of
 from planner_service.extraction.speech import hear
-from planner_service.extraction.subtitles import LARGEST, Subtitles, read_subtitles
+from planner_service.extraction.subtitles import MAX_SUBTITLE_BYTES, Subtitles, read_subtitles
 from planner_service.extraction.text import scenes_of_cues
 from planner_service.extraction.watching import Watched, watch_film
 
@@ -48,7 +48,7 @@ def words_of(film: Film, source: Source, means: Means) -> Subtitles | None:
     FilmError, SubtitleError, SpeechError.
     """
     if source.subtitles is not None:
-        subtitles: Subtitles | None = read_subtitles(first_bytes(source.subtitles, "subtitles", LARGEST + 1))
+        subtitles: Subtitles | None = read_subtitles(first_bytes(source.subtitles, "subtitles", MAX_SUBTITLE_BYTES + 1))
     else:
         subtitles = embedded_cues(film)
     if subtitles is None and means.transcriber is not None and film.sound:

@@ -16,7 +16,7 @@ from planner_service.extraction.text import TextScene
 from planner_service.llm.protocol import ModelError
 from planner_service.llm.served import for_story
 
-_MOST_FAILURES: Final = 3
+_MAX_FAILURES: Final = 3
 """Unanswered questions after which a model is not asked again."""
 
 
@@ -39,7 +39,7 @@ def read_piece(piece: Numbered, maker: Maker, means: Means, before: Before) -> P
     """
     room, failures, notes = before.room, before.failures, list[str]()
     found: dict[int, tuple[Draft, ...]] | None = None
-    if means.model is not None and failures < _MOST_FAILURES:
+    if means.model is not None and failures < _MAX_FAILURES:
         try:
             found = ask_for_scripts(for_story(means.model, min(piece)) or means.model, piece, maker)
             notes += unread(piece)
@@ -48,7 +48,7 @@ def read_piece(piece: Numbered, maker: Maker, means: Means, before: Before) -> P
                 raise
             failures += 1
             notes.append(f"scenes {min(piece)} to {max(piece)}: read by rules, since the model failed: {error}")
-            if failures == _MOST_FAILURES:
+            if failures == _MAX_FAILURES:
                 notes.append("the model is not asked any more; the rest is read by rules")
     reports: list[SceneReport] = []
     drafts: list[Draft] = []

@@ -13,7 +13,7 @@ from scene_graphs.furniture import ROOM_TYPES, canonical, canonical_room, displa
 
 LEEWAY: Final = 1.0
 """Seconds by which a model's time may lie outside of the scene; it is moved inside."""
-_MOST: Final = 40
+_MAX_ENTRIES: Final = 40
 """Entries of each list."""
 _NOBODY: Final = frozenset(("", "none", "nothing", "unknown", "floor", "ground", "air", "n/a"))
 Said = Annotated[str, Field(max_length=500)]
@@ -113,15 +113,15 @@ def problems_in(answer: SceneAnswer, scene: Scene) -> list[str]:
     """What a model has to mend: emotions that are none, times of another scene, too much or nothing at all."""
     found = [] if answer.summary.strip() else ["summary: it is empty; write what happens"]
     lists = {name: len(getattr(answer, name)) for name in ("characters", "objects", "contacts", "moments")}
-    found += [f"{name}: {many} of them, at most {_MOST}" for name, many in lists.items() if many > _MOST]
+    found += [f"{name}: {many} of them, at most {_MAX_ENTRIES}" for name, many in lists.items() if many > _MAX_ENTRIES]
     feeling = [("characters", index, one.emotion) for index, one in enumerate(answer.characters)]
     feeling += [("moments", index, one.emotion) for index, one in enumerate(answer.moments)]
-    for name, index, emotion in feeling[: 2 * _MOST]:
+    for name, index, emotion in feeling[: 2 * _MAX_ENTRIES]:
         if emotion_of(emotion) is None:
             found.append(f"{name}.{index}.emotion: {emotion!r} is none of {', '.join(EMOTIONS)}")
     timed = [("contacts", index, one.time) for index, one in enumerate(answer.contacts)]
     timed += [("moments", index, one.time) for index, one in enumerate(answer.moments)]
-    for name, index, time in timed[: 2 * _MOST]:
+    for name, index, time in timed[: 2 * _MAX_ENTRIES]:
         if not scene.start - LEEWAY <= time <= scene.end + LEEWAY:
             found.append(f"{name}.{index}.time: {time:g} is not in the scene, {scene.start:g} to {scene.end:g} s")
     return found

@@ -9,15 +9,15 @@ from typing import BinaryIO, Final
 
 from planner_service.extraction.decoding import decode
 
-LONGEST: Final = 200_000
+MAX_TEXT_LENGTH: Final = 200_000
 """Letters of one text: about 35,000 words."""
-MOST_BYTES: Final = 4 * LONGEST
+MAX_BYTES: Final = 4 * MAX_TEXT_LENGTH
 """No text of that many letters has more in UTF-8 or UTF-16."""
 ENGLISH: Final = "English"
 _KEPT: Final = "\n\t"
 _BREAKS: Final = str.maketrans({"\r": "\n", "\f": "\n\n", "\v": "\n", "\x85": "\n", "\u2028": "\n", "\u2029": "\n\n"})
 _HIDDEN: Final = ("Cc", "Cf", "Cs", "Co")
-_MOST_HIDDEN: Final = 0.01
+_MAX_HIDDEN: Final = 0.01
 """Share of control characters above which bytes are no text."""
 _COMMON_WORDS: Final = {
     ENGLISH: "the and to of a in he she it is was his her on with that for at they their up from as into then not i",
@@ -30,7 +30,7 @@ _COMMON_WORDS: Final = {
 }
 _FEW: Final = 8
 """Words below which nobody can tell a language."""
-_LEAST_ENGLISH: Final = 0.1
+_MIN_ENGLISH: Final = 0.1
 """English prose has every third of its words among ours."""
 
 
@@ -41,10 +41,10 @@ class ExtractionError(ValueError):
 def read_text(data: bytes, name: str) -> tuple[str, tuple[str, ...]]:
     """The text of a file, and what was guessed about it.
 
-    ExtractionError for what is no text, has no word in it, or is longer than `LONGEST` letters.
+    ExtractionError for what is no text, has no word in it, or is longer than `MAX_TEXT_LENGTH` letters.
     """
-    if len(data) > MOST_BYTES:
-        raise too_long(name, f"more than {MOST_BYTES:,} bytes")
+    if len(data) > MAX_BYTES:
+        raise too_long(name, f"more than {MAX_BYTES:,} bytes")
     if not data.strip():
         raise ExtractionError(f"{name}: is empty; give a text, subtitles or a film")
     decoded = decode(data)
@@ -69,10 +69,10 @@ def first_bytes(file: Path | BinaryIO, name: str, most: int) -> bytes:
 def tidy(text: str, name: str) -> str:
     """A text without control characters and with one kind of line end. ExtractionError as for `read_text`."""
     text = text.replace("\r\n", "\n").translate(_BREAKS)
-    if len(text) > LONGEST:
+    if len(text) > MAX_TEXT_LENGTH:
         raise too_long(name, f"{len(text):,} letters")
     shown = "".join(letter for letter in text if letter in _KEPT or unicodedata.category(letter) not in _HIDDEN)
-    if len(text) - len(shown) > _MOST_HIDDEN * len(text) + 8:
+    if len(text) - len(shown) > _MAX_HIDDEN * len(text) + 8:
         raise ExtractionError(f"{name}: is no text (control characters in it); give a text, subtitles or a film")
     if not any(letter.isalpha() for letter in shown):
         raise ExtractionError(f"{name}: there is no word in it; give a text in which somebody does something")
@@ -81,7 +81,9 @@ def tidy(text: str, name: str) -> str:
 
 def too_long(name: str, size: str) -> ExtractionError:
     """The error for a text of that size."""
-    return ExtractionError(f"{name}: has {size}; at most {LONGEST:,} letters are read at once, so cut it into chapters")
+    return ExtractionError(
+        f"{name}: has {size}; at most {MAX_TEXT_LENGTH:,} letters are read at once, so cut it into chapters"
+    )
 
 
 def language_of(text: str) -> str:
@@ -97,6 +99,6 @@ def language_of(text: str) -> str:
         for name, common in ((name, frozenset(known.split())) for name, known in _COMMON_WORDS.items())
     }
     best = max(shares, key=lambda name: shares[name])
-    if shares[best] < _LEAST_ENGLISH:
+    if shares[best] < _MIN_ENGLISH:
         return "another language" if len(words) >= 3 * _FEW else ENGLISH
     return ENGLISH if shares[ENGLISH] >= shares[best] else best

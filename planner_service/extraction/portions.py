@@ -9,9 +9,9 @@ from typing import Final
 
 from planner_service.extraction.text import Line, TextScene
 
-LONGEST_PIECE: Final = 6000
+MAX_PIECE_LENGTH: Final = 6000
 """Letters of a text that one question shows."""
-_LONGEST_PLACE: Final = 200
+_MAX_PLACE_LENGTH: Final = 200
 _ROUND_A_LINE: Final = 3
 """Quotation marks, and the blank before the next line."""
 _SENTENCE_END: Final = re.compile(r"[.!?…]+[\"”’»)\]]*\s|[。！？]+[」』”]*")
@@ -28,7 +28,7 @@ def portions_of(scenes: Sequence[TextScene]) -> tuple[tuple[TextScene, ...], tup
     cut: list[TextScene] = []
     notes: list[str] = []
     for scene in scenes:
-        if len(shown(scene)) <= LONGEST_PIECE:
+        if len(shown(scene)) <= MAX_PIECE_LENGTH:
             cut.append(scene)
             continue
         first = len(cut) + 1
@@ -38,12 +38,12 @@ def portions_of(scenes: Sequence[TextScene]) -> tuple[tuple[TextScene, ...], tup
 
 
 def _where(scene: TextScene) -> str:
-    return f"{scene.place[:_LONGEST_PLACE]}: " if scene.place else ""
+    return f"{scene.place[:_MAX_PLACE_LENGTH]}: " if scene.place else ""
 
 
 def _packed(scene: TextScene) -> Iterator[tuple[Line, ...]]:
     """Its lines, as many together as one question holds."""
-    most = LONGEST_PIECE - len(_where(scene))
+    most = MAX_PIECE_LENGTH - len(_where(scene))
     packed: list[Line] = []
     letters = 0
     for line in scene.lines:

@@ -21,7 +21,7 @@ from planner_service.scripts.mood_reader import clear_moods
 from planner_service.scripts.sentences import state_words
 from planner_service.scripts.usual import WALKS
 
-_MOST_DEEDS: Final = 6
+_MAX_DEEDS: Final = 6
 """Deeds of one short script; a scene with more is told in several."""
 _USUAL: Final = {
     "bedroom": {"sit": "bed", "lie": "bed", "touch": "nightstand"},
@@ -164,7 +164,7 @@ def read_scene(scene: TextScene, maker: Maker, room: str = "") -> SceneRead:
         return SceneRead((), tuple(unused), said, room)
     mood = _mood(scene, told, maker)
     drafts: list[Draft] = []
-    parts = -(-len(done) // _MOST_DEEDS)
+    parts = -(-len(done) // _MAX_DEEDS)
     for part in range(parts):
         some = done[part * len(done) // parts : (part + 1) * len(done) // parts]
         body, shown = _Body(room), list[Told]()

@@ -10,7 +10,7 @@ from motion_backend.language.text import SentenceEncoder
 from planner_service.extraction.making import Draft
 from planner_service.extraction.pieces import PieceRead
 from planner_service.scripts.keyframe import ShortScript
-from planner_service.scripts.likeness import NEAREST, doings_of
+from planner_service.scripts.likeness import MIN_DUPLICATE_COSINE, doings_of
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def _repeats(scripts: Sequence[ShortScript], encoder: SentenceEncoder) -> dict[s
         near = [[True]]
         if len(summaries) > 1:
             vectors = encoder.encode(summaries)
-            near = ((vectors @ vectors.T).round(4) >= NEAREST).tolist()
+            near = ((vectors @ vectors.T).round(4) >= MIN_DUPLICATE_COSINE).tolist()
         kept: list[int] = []
         for index, summary in enumerate(summaries):
             first = next((one for one in kept if near[index][one]), index)

@@ -19,10 +19,10 @@ from planner_service.llm.choosing import base_url_of
 from planner_service.llm.patience import ATTEMPTS, BUSY, FIRST_WAIT, message_of, retry_after, without_key
 from planner_service.settings import Settings, SettingsError
 
-LARGEST_ANSWER: Final = 1_000_000
+MAX_ANSWER_BYTES: Final = 1_000_000
 """Bytes of what is heard in a minute."""
 _VENDOR: Final = "https://api.openai.com/v1"
-_MOST_SEGMENTS: Final = 1000
+_MAX_SEGMENTS: Final = 1000
 _REMEDIES: Final = {
     401: "check SIMS_ASR_API_KEY",
     403: "check SIMS_ASR_API_KEY",
@@ -55,7 +55,7 @@ class ServedTranscriber:
             if not isinstance(said, str):
                 raise SpeechError(f"speech: {self.name} answered no text; check SIMS_ASR_BASE_URL")
             return heard(piece, 0.0, piece.end - piece.start, said)
-        rows = [(_number(row, "start"), _number(row, "end"), _text(row)) for row in segments[:_MOST_SEGMENTS]]
+        rows = [(_number(row, "start"), _number(row, "end"), _text(row)) for row in segments[:_MAX_SEGMENTS]]
         return [
             cue
             for start, end, text in rows
@@ -103,9 +103,9 @@ class ServedTranscriber:
         ):
             for chunk in response.iter_raw():
                 body += chunk
-                if len(body) > LARGEST_ANSWER:
+                if len(body) > MAX_ANSWER_BYTES:
                     raise SpeechError(
-                        f"speech: {self.name} sent more than {LARGEST_ANSWER} bytes for a minute of sound"
+                        f"speech: {self.name} sent more than {MAX_ANSWER_BYTES} bytes for a minute of sound"
                     )
                 if time.monotonic() > deadline:
                     raise SpeechError(f"speech: {self.name} was not done after {self.seconds:g} s")

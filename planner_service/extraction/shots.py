@@ -28,7 +28,7 @@ STEEP: Final = 2.0
 """A cut, or a fade, differs so many times more than any change around it."""
 FADE: Final = 0.35
 """The least difference of what is before and after a fade."""
-SHORTEST: Final = 0.6
+MIN_SHOT_SECONDS: Final = 0.6
 """Seconds of a shot."""
 SLOW: Final = 1.5
 """Seconds from a fade to any other cut."""
@@ -81,9 +81,9 @@ def shots_of(film: Film, progress: Progress | None = None, album: Album | None =
     end = float(samples.times[-1]) + 1 / film.rate
     if film.claimed is not None and film.claimed > end + 2:
         film.faults["seconds less than it says it has"] = round(film.claimed - end)
-    cuts = _apart(_hard_cuts(samples), [], SHORTEST)
+    cuts = _apart(_hard_cuts(samples), [], MIN_SHOT_SECONDS)
     cuts = sorted(_apart(_fades(samples, cuts), cuts, SLOW))
-    bounds = [0.0, *(cut for cut in cuts if SHORTEST <= cut <= end - SHORTEST), end]
+    bounds = [0.0, *(cut for cut in cuts if MIN_SHOT_SECONDS <= cut <= end - MIN_SHOT_SECONDS), end]
     return tuple(_shot(samples, start, stop) for start, stop in pairwise(bounds))
 
 

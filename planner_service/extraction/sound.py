@@ -16,7 +16,7 @@ from planner_service.extraction.film import Film
 
 RATE: Final = 16_000
 """Samples a second."""
-LONGEST: Final = 60.0
+MAX_AUDIO_SECONDS: Final = 60.0
 """Seconds of a piece."""
 _QUIET_WITHIN: Final = 8.0
 """Seconds before the end of a piece in which a quiet place is looked for."""
@@ -50,9 +50,9 @@ def sound_of(film: Film) -> Iterator[SoundPiece]:
         if not held:
             start = time
         held.append(samples)
-        if length + len(samples) / RATE >= LONGEST:
+        if length + len(samples) / RATE >= MAX_AUDIO_SECONDS:
             whole = np.concatenate(held)
-            cut = _quiet_place(whole[: int(LONGEST * RATE)])
+            cut = _quiet_place(whole[: int(MAX_AUDIO_SECONDS * RATE)])
             yield from _piece(start, whole[:cut])
             held, start = [whole[cut:]], start + cut / RATE
     if held:

@@ -12,7 +12,7 @@ from typing import Any, Final, Protocol
 from planner_service.extraction.film import Film
 from planner_service.extraction.shots import Progress
 from planner_service.extraction.sound import SoundPiece, sound_of
-from planner_service.extraction.subtitles import MOST_CUES, Cue, Subtitles, cues_of, ordered
+from planner_service.extraction.subtitles import MAX_CUES, Cue, Subtitles, cues_of, ordered
 from planner_service.settings import Settings, SettingsError
 
 INSTALL: Final = 'pip install "sims-stories[asr]"'
@@ -40,8 +40,8 @@ def hear(transcriber: Transcriber, film: Film, progress: Progress | None = None)
     cues: list[Cue] = []
     for piece in sound_of(film):
         cues += transcriber.transcribe(piece)
-        if len(cues) > MOST_CUES:
-            raise SpeechError(f"speech: {transcriber.name} heard more than {MOST_CUES} cues; give subtitles instead")
+        if len(cues) > MAX_CUES:
+            raise SpeechError(f"speech: {transcriber.name} heard more than {MAX_CUES} cues; give subtitles instead")
         if progress is not None:
             progress("listening", min(0.99, piece.end / film.claimed) if film.claimed else 0.0)
     if progress is not None:

@@ -11,14 +11,14 @@ from typing import Final
 from planner_service.extraction.decoding import decode
 from planner_service.extraction.speaking import spoken
 
-LARGEST: Final = 10_000_000
+MAX_SUBTITLE_BYTES: Final = 10_000_000
 """Bytes of a subtitle file."""
-MOST_CUES: Final = 50_000
-LATEST: Final = 24 * 3600.0
+MAX_CUES: Final = 50_000
+MAX_CUE_SECONDS: Final = 24 * 3600.0
 """Seconds; no cue is later."""
 _SHOWN: Final = 2.0
 """Seconds that a cue is given whose end is not after its beginning."""
-_LONGEST: Final = 2000
+_MAX_CUE_LENGTH: Final = 2000
 """Letters of one cue."""
 _TIME: Final = r"(-?)(?:(\d{1,4}):)?(\d{1,3}):(\d{1,2})[.,:](\d{1,3})"
 _ARROW: Final = re.compile(rf"^\s*{_TIME}\s*-->\s*{_TIME}")
@@ -73,8 +73,10 @@ class _Faults:
 
 def read_subtitles(data: bytes) -> Subtitles:
     """The cues of an SRT, WebVTT or ASS file, whatever it is called. SubtitleError."""
-    if len(data) > LARGEST:
-        raise SubtitleError(f"subtitles: {len(data)} bytes, at most {LARGEST} are read; give those of one film")
+    if len(data) > MAX_SUBTITLE_BYTES:
+        raise SubtitleError(
+            f"subtitles: {len(data)} bytes, at most {MAX_SUBTITLE_BYTES} are read; give those of one film"
+        )
     if not data.strip():
         raise SubtitleError("subtitles: the file is empty; give SRT, WebVTT or ASS")
     decoded = decode(data)
@@ -88,8 +90,8 @@ def read_subtitles(data: bytes) -> Subtitles:
     cues: list[Cue] = []
     for cue in _ass_cues(lines) if form == "ass" else _arrow_cues(lines):
         cues.extend(_tidy(cue, faults))
-        if len(cues) > MOST_CUES:
-            raise SubtitleError(f"subtitles: there are more than {MOST_CUES} cues; give those of one film")
+        if len(cues) > MAX_CUES:
+            raise SubtitleError(f"subtitles: there are more than {MAX_CUES} cues; give those of one film")
     if not cues:
         raise SubtitleError("subtitles: there is no cue with words in it")
     notes = ([decoded.note] if decoded.note else []) + list(faults.notes)
@@ -114,14 +116,14 @@ def cues_of(start: float, end: float, text: str, speaker: str | None = None) -> 
     """One cue for each who speaks in a text that may hold tags, names and sounds."""
     return [
         Cue(start, end, part.text, part.speaker or speaker, part.sounds)
-        for part in spoken(text[:_LONGEST])
+        for part in spoken(text[:_MAX_CUE_LENGTH])
         if part.text or part.sounds
     ]
 
 
 def _tidy(cue: Cue, faults: _Faults) -> list[Cue]:
     """What the cue says, in a time that can be; nothing for a cue before the beginning or without words."""
-    if cue.end < 0 or max(cue.start, cue.end) > LATEST:
+    if cue.end < 0 or max(cue.start, cue.end) > MAX_CUE_SECONDS:
         faults.count("outside of any film, left out")
         return []
     if cue.start < 0:
@@ -130,8 +132,8 @@ def _tidy(cue: Cue, faults: _Faults) -> list[Cue]:
     if cue.end <= cue.start:
         faults.count(f"that ended before they began, given {_SHOWN:.0f} seconds")
         cue = replace(cue, end=cue.start + _SHOWN)
-    if len(cue.text) > _LONGEST:
-        faults.count(f"of more than {_LONGEST} letters, cut")
+    if len(cue.text) > _MAX_CUE_LENGTH:
+        faults.count(f"of more than {_MAX_CUE_LENGTH} letters, cut")
     return cues_of(round(cue.start, 3), round(cue.end, 3), cue.text, cue.speaker)
 
 

@@ -14,9 +14,9 @@ from planner_service.scripts.verbs import has_verb
 
 PAUSE: Final = 5.0
 """Seconds without a subtitle after which another scene begins."""
-_LONGEST_SCENE: Final = 90.0
+_MAX_SCENE_SECONDS: Final = 90.0
 """Seconds of subtitles that are one scene at most."""
-_LONGEST_SENTENCE: Final = 300
+_MAX_SENTENCE_LENGTH: Final = 300
 """Letters after which subtitles are no longer joined."""
 _RUNS_ON: Final = 2.0
 """Seconds between two subtitles of one sentence."""
@@ -90,7 +90,7 @@ def scenes_of_cues(cues: Iterable[Cue]) -> tuple[TextScene, ...]:
     for line in sorted(lines, key=lambda line: line.start or 0.0):
         last = scenes[-1] if scenes else []
         near = last and (line.start or 0.0) - (last[-1].end or 0.0) < PAUSE
-        if near and (line.end or 0.0) - (last[0].start or 0.0) <= _LONGEST_SCENE:
+        if near and (line.end or 0.0) - (last[0].start or 0.0) <= _MAX_SCENE_SECONDS:
             last.append(line)
         else:
             scenes.append([line])
@@ -102,7 +102,7 @@ def _sentences(cues: Sequence[Cue]) -> Iterator[Line]:
     text, speaker, start, end = "", None, 0.0, 0.0
     for cue in cues:
         runs_on = not re.search(r"[.!?…\"”]$", text) and cue.start - end < _RUNS_ON and cue.speaker in (None, speaker)
-        if text and cue.text and not (runs_on and len(text) < _LONGEST_SENTENCE):
+        if text and cue.text and not (runs_on and len(text) < _MAX_SENTENCE_LENGTH):
             yield _line(text, speaker, start, end)
             text = ""
         if cue.text:

@@ -22,9 +22,9 @@ from planner_service.scripts.keyframe import EMOTIONS
 from planner_service.scripts.offering import furniture_offered
 from scene_graphs.furniture import ROOM_TYPES
 
-_MOST_SAID: Final = 4000
+_MAX_SAID_LENGTH: Final = 4000
 """Letters of a scene's subtitles that a model reads."""
-_MOST_FAILURES: Final = 3
+_MAX_FAILURES: Final = 3
 """Scenes in a row without an answer, after which a model is not asked again."""
 
 
@@ -54,7 +54,7 @@ def watch(model: LanguageModel, film: Film, scene: Scene, album: Album | None = 
         rooms=", ".join(ROOM_TYPES),
         furniture=furniture_offered(),
         film=film.name,
-        subtitles=_said(scene.cues)[:_MOST_SAID] or "(nothing)",
+        subtitles=_said(scene.cues)[:_MAX_SAID_LENGTH] or "(nothing)",
     )
     images = [frame.jpeg for frame in frames]
     answer = ask(model, prompt, SceneAnswer, lambda seen: problems_in(seen, scene), images=images)
@@ -81,7 +81,7 @@ def watch_film(
         outline: SceneOutline | None = None
         drafts: tuple[Draft, ...] = ()
         notes: tuple[str, ...] = ()
-        if wrong < _MOST_FAILURES:
+        if wrong < _MAX_FAILURES:
             own = for_story(model, scene.number) or model
             try:
                 outline = watch(own, film, scene, album)
@@ -92,7 +92,7 @@ def watch_film(
                     raise
                 wrong, failure = wrong + 1, str(error)
         if wrong:
-            again = "not asked any more: " if wrong >= _MOST_FAILURES and not notes else ""
+            again = "not asked any more: " if wrong >= _MAX_FAILURES and not notes else ""
             notes = (f"scene {scene.number}: the model gave no answer ({again}{failure})",)
         yield Watched(scene, outline, drafts, notes, wrong)
         if progress is not None:
@@ -102,9 +102,9 @@ def watch_film(
 def _unshown(scene: Scene) -> tuple[str, ...]:
     """A note where more is said in a scene than the model was shown."""
     letters = len(_said(scene.cues))
-    if letters <= _MOST_SAID:
+    if letters <= _MAX_SAID_LENGTH:
         return ()
-    return (f"scene {scene.number}: only the first {_MOST_SAID} of {letters} letters of what is said were shown",)
+    return (f"scene {scene.number}: only the first {_MAX_SAID_LENGTH} of {letters} letters of what is said were shown",)
 
 
 def _said(cues: Sequence[Cue]) -> str:

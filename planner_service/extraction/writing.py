@@ -12,7 +12,7 @@ from planner_service.scripts.keyframe import Keyframe
 from planner_service.scripts.tense import BASES, gerund, is_verb_form, past, third_person
 from planner_service.scripts.voice import Voice, retell
 
-_LONGEST: Final = 110
+_MAX_CLAUSE_LENGTH: Final = 110
 """Letters of one clause in a summary."""
 _A_SENTENCE: Final = 3
 """Clauses of one sentence."""
@@ -102,11 +102,11 @@ def _listed(clauses: Sequence[str]) -> str:
 
 def _cut(text: str) -> str:
     """At most so many letters, cut at a comma or else at a word."""
-    if len(text) <= _LONGEST:
+    if len(text) <= _MAX_CLAUSE_LENGTH:
         return text
-    short = text[:_LONGEST].rsplit(" ", 1)[0]
+    short = text[:_MAX_CLAUSE_LENGTH].rsplit(" ", 1)[0]
     comma = short.rfind(",")
-    short = short[:comma] if comma > _LONGEST // 3 else short
+    short = short[:comma] if comma > _MAX_CLAUSE_LENGTH // 3 else short
     return re.sub(r"(?:\s+(?:and|or|the|a|an|of|to|in|on|at|with|for|from|into|their|that|who|which|by))+$", "", short)
 
 

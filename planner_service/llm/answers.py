@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from planner_service.llm.protocol import InvalidAnswerError, T
 
-_SHOWN = 8
+MAX_PROBLEMS_SHOWN = 8
 """Problems told to the model at once."""
 _CONTROL = re.compile(r"(?<!\\)(?:\\\\)*\\(?:u00[01][0-9a-f]|[bf])")
 """A control character in JSON, other than the ends of lines and tabs: no terminal or database is safe from them."""
@@ -43,7 +43,11 @@ def problems_of(error: ValidationError) -> list[str]:
     found = [
         f"{'.'.join(map(str, item['loc'])) or 'the value'}: {item['msg']}" for item in error.errors(include_url=False)
     ]
-    return found if len(found) <= _SHOWN else [*found[:_SHOWN], f"and {len(found) - _SHOWN} more"]
+    return (
+        found
+        if len(found) <= MAX_PROBLEMS_SHOWN
+        else [*found[:MAX_PROBLEMS_SHOWN], f"and {len(found) - MAX_PROBLEMS_SHOWN} more"]
+    )
 
 
 def _objects(text: str) -> Iterator[object]:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import prompts
 from planner_service.llm.protocol import InvalidAnswerError, LanguageModel, ModelError, Remembering, T
 
-_SHOWN = 4000
+MAX_ANSWER_CHARACTERS_SHOWN = 4000
 """Letters of a refused answer that the model is shown again."""
 
 
@@ -55,6 +55,9 @@ def ask(
                 return answer
             text = answer.model_dump_json()
         question = prompts.render(
-            "repair_answer", prompt=prompt, answer=text[:_SHOWN], problems="\n".join(f"- {line}" for line in problems)
+            "repair_answer",
+            prompt=prompt,
+            answer=text[:MAX_ANSWER_CHARACTERS_SHOWN],
+            problems="\n".join(f"- {line}" for line in problems),
         )
     raise ModelAnswerError(model.name, schema.__name__, repairs + 1, problems)

@@ -8,7 +8,7 @@ from typing import Final
 from planner_service.llm.protocol import ModelError
 from planner_service.llm.questions import Question, Reply
 
-_LEAST_ANSWER: Final = 64
+_MIN_ANSWER: Final = 64
 """Tokens below which there is no sense in asking."""
 
 
@@ -54,12 +54,12 @@ class Spending:
         if limits.story_dollars is not None and limits.price is not None:
             left = limits.story_dollars - self.dollars - limits.dollars(question.guess, 0)
             tokens = min(tokens, int(left * 1e6 / limits.price[1])) if limits.price[1] > 0 else tokens
-            if left <= 0 or tokens < _LEAST_ANSWER:
+            if left <= 0 or tokens < _MIN_ANSWER:
                 raise BudgetError(
                     f"{question.title}: the story has spent {self.dollars:.4f} of {limits.story_dollars:g} dollars on "
                     "its language model, too little is left for another question; raise SIMS_LLM_STORY_DOLLARS"
                 )
-        if tokens < _LEAST_ANSWER:
+        if tokens < _MIN_ANSWER:
             raise BudgetError(
                 f"{question.title}: the story has spent {self.tokens} of {limits.story_tokens} tokens on its language "
                 "model, too few are left for another question; raise SIMS_LLM_STORY_TOKENS"

@@ -18,7 +18,7 @@ from planner_service.errors import printable
 from planner_service.llm.patience import ATTEMPTS, BUSY, FIRST_WAIT, message_of, retry_after, without_key
 from planner_service.llm.protocol import ModelError
 
-LARGEST_ANSWER: Final = 2_000_000
+MAX_ANSWER_BYTES: Final = 2_000_000
 """Bytes of a body."""
 _SAID: Final = 200
 _REMEDIES: Final = {
@@ -87,8 +87,8 @@ class Carrier(httpx2.AsyncBaseTransport):
             assert isinstance(response.stream, httpx2.AsyncByteStream)
             async for chunk in response.stream:
                 body += chunk
-                if len(body) > LARGEST_ANSWER or (claimed.isdecimal() and int(claimed[:20]) > LARGEST_ANSWER):
-                    raise ServerError(f"{self.server} sent more than {LARGEST_ANSWER} bytes for one answer")
+                if len(body) > MAX_ANSWER_BYTES or (claimed.isdecimal() and int(claimed[:20]) > MAX_ANSWER_BYTES):
+                    raise ServerError(f"{self.server} sent more than {MAX_ANSWER_BYTES} bytes for one answer")
         finally:
             await response.aclose()
         kept = {name: response.headers[name] for name in ("content-type", "retry-after") if name in response.headers}

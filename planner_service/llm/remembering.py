@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-MOST_FILES: Final = 5000
+MAX_FILES: Final = 5000
 log = logging.getLogger("sims.llm")
 
 
@@ -65,7 +65,7 @@ class Memory:
         size = 0
         for number, (_, bytes_, path) in enumerate(rows):
             size += bytes_
-            if number >= MOST_FILES or size > self.most_bytes:
+            if number >= MAX_FILES or size > self.most_bytes:
                 path.unlink(missing_ok=True)
 
     def _path(self, model: str, digest: str, seed: int) -> Path:

@@ -19,7 +19,7 @@ from planner_service.llm.answers import problems_of
 from planner_service.llm.protocol import ModelError
 from planner_service.llm.questions import Question, Reply, Source
 
-LARGEST: Final = 64_000_000
+MAX_RECORDING_BYTES: Final = 64_000_000
 """Bytes of a recording that are read."""
 
 
@@ -146,8 +146,8 @@ def key_of(line: Line) -> Key:
 def read_recording(path: Path) -> list[Line]:
     """The lines of a recording. RecordingError names the line that cannot be read."""
     try:
-        if path.stat().st_size > LARGEST:
-            raise RecordingError(f"{path}: more than {LARGEST} bytes, that is no recording of ours")
+        if path.stat().st_size > MAX_RECORDING_BYTES:
+            raise RecordingError(f"{path}: more than {MAX_RECORDING_BYTES} bytes, that is no recording of ours")
         rows = path.read_text(encoding="utf-8").split("\n")
     except (OSError, UnicodeDecodeError) as error:
         raise RecordingError(f"{path} cannot be read: {error}") from error

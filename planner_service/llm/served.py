@@ -16,7 +16,7 @@ from planner_service.llm.protocol import InvalidAnswerError, LanguageModel, T
 from planner_service.llm.questions import Source, question_of
 from planner_service.llm.remembering import Memory
 
-LONGEST_ANSWER: Final = 100_000
+MAX_ANSWER_LENGTH: Final = 100_000
 """Letters of an answer that are read."""
 log = logging.getLogger("sims.llm")
 
@@ -58,9 +58,9 @@ class ServedModel:
             *(self.name, question.title, 1000 * (time.monotonic() - begun)),
             *(reply.tokens_in, reply.tokens_out, self.spending.tokens),
         )
-        if len(reply.text) > LONGEST_ANSWER:
-            said = f"the answer has {len(reply.text)} letters; at most {LONGEST_ANSWER} are read"
-            raise InvalidAnswerError(reply.text[:LONGEST_ANSWER], [said])
+        if len(reply.text) > MAX_ANSWER_LENGTH:
+            said = f"the answer has {len(reply.text)} letters; at most {MAX_ANSWER_LENGTH} are read"
+            raise InvalidAnswerError(reply.text[:MAX_ANSWER_LENGTH], [said])
         return read_answer(reply.text, schema)
 
     def recall(self, prompt: str, schema: type[T], images: Sequence[bytes] = ()) -> T | None:

@@ -23,7 +23,7 @@ from planner_service.store.stories import Record, Stories, StoryGone
 LastEvent = Annotated[
     int | None, Header(alias="Last-Event-ID", ge=0, le=10**9, description="The last event that was received.")
 ]
-router = APIRouter(prefix="/v1/stories", tags=["stories"])
+events_router = APIRouter(prefix="/v1/stories", tags=["stories"])
 POLL: Final = 0.1
 """Seconds between two looks at a story in the making."""
 QUEUED_POLL: Final = 0.25
@@ -76,7 +76,7 @@ def watching(
     return Watch(parts, record, last_event_id or 0).opened()
 
 
-@router.get(
+@events_router.get(
     "/{story_id}/events",
     response_class=EventSourceResponse,
     responses={204: {"description": "The story has ended, and Last-Event-ID is its last event."}},

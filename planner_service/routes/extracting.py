@@ -25,8 +25,8 @@ from planner_service.extraction.of_film import mute
 from planner_service.extraction.of_text import scenes_read
 from planner_service.extraction.plain import ExtractionError
 from planner_service.extraction.results import Means, Source
-from planner_service.extraction.subtitles import LARGEST, SubtitleError, read_subtitles
-from planner_service.limiting import MOST_BYTES
+from planner_service.extraction.subtitles import MAX_SUBTITLE_BYTES, SubtitleError, read_subtitles
+from planner_service.limiting import MAX_BYTES
 from planner_service.parts import Parts, PartsDep
 from planner_service.reporting import extraction_shown
 from planner_service.routes.bodies import parsed
@@ -40,7 +40,7 @@ from planner_service.store.extractions import ExtractionRequest
 from planner_service.store.stories import Record
 from planner_service.uploads import Coming
 
-router = APIRouter(prefix="/v1/short-scripts", tags=["extractions"])
+extract_router = APIRouter(prefix="/v1/short-scripts", tags=["extractions"])
 EXTRACT: Final = "/v1/short-scripts/extract"
 AT_ONCE: Final = 24
 """Pieces of a text or of subtitles that the rules read while the caller waits: some seconds."""
@@ -53,7 +53,7 @@ _FILES: Final = ("video", "subtitles")
 _FIELDS: Final = ("name", "licence", "add")
 
 
-@router.post(
+@extract_router.post(
     "/extract",
     response_model=ExtractionShown,
     responses={
@@ -105,8 +105,8 @@ async def _bounded(request: Request) -> bytes:
     body = bytearray()
     async for chunk in request.stream():
         body += chunk
-        if len(body) > MOST_BYTES:
-            raise TooLarge(f"a body with a text has at most {MOST_BYTES} bytes; send a part of it")
+        if len(body) > MAX_BYTES:
+            raise TooLarge(f"a body with a text has at most {MAX_BYTES} bytes; send a part of it")
     return bytes(body)
 
 
@@ -116,7 +116,7 @@ def _of_text(request: Request, body: bytes, parts: Parts, key: str | None) -> Re
     name, content = ask.name or "text", hashlib.sha256(data).hexdigest()
     wanted = ExtractionRequest(name, ask.licence, ask.add, film=False, file=content)
     with parts.uploads.begin() as coming:
-        receiving = coming.receive(MOST_BYTES)
+        receiving = coming.receive(MAX_BYTES)
         receiving.write(data)
         receiving.finish()
         source = Source(name, io.BytesIO(data), None, ask.licence)
@@ -127,7 +127,7 @@ async def _of_form(request: Request, parts: Parts, key: str | None) -> Record:
     if not parts.uploading.acquire(blocking=False):
         raise Unavailable("other films are coming in; send it again", retry_after=10)
     try:
-        most = {"video": parts.settings.upload_mb << 20, "subtitles": LARGEST}
+        most = {"video": parts.settings.upload_mb << 20, "subtitles": MAX_SUBTITLE_BYTES}
         with await run_in_threadpool(_place, parts) as coming:
             form = await FormReader(coming, most, _FIELDS, _look).read(request)
             return await to_thread.run_sync(_of_files, request, parts, key, form, coming, limiter=parts.importing)

@@ -17,7 +17,7 @@ from planner_service.schemas.extractions import ExtractionPage, ExtractionShown
 from planner_service.schemas.stories import Json
 from planner_service.store.stories import EXTRACTION, Record, StoryGone
 
-router = APIRouter(prefix="/v1/extractions", tags=["extractions"])
+extractions_router = APIRouter(prefix="/v1/extractions", tags=["extractions"])
 ExtractionId = Annotated[str, Path(max_length=64, description="The id of an extraction.")]
 
 
@@ -36,7 +36,7 @@ def record_of(extraction_id: ExtractionId, stories: StoriesDep) -> Record:
 RecordDep = Annotated[Record, Depends(record_of)]
 
 
-@router.get("", response_model=ExtractionPage)
+@extractions_router.get("", response_model=ExtractionPage)
 def list_extractions(
     stories: StoriesDep,
     limit: Annotated[int, Query(ge=1, le=100)] = 20,
@@ -49,13 +49,15 @@ def list_extractions(
     return {"items": list(map(extraction_summary, shown)), "next": shown[-1].id if len(found) > limit else None}
 
 
-@router.get("/{extraction_id}", response_model=ExtractionShown)
+@extractions_router.get("/{extraction_id}", response_model=ExtractionShown)
 def show(record: RecordDep) -> Json:
     """An extraction, as far as it is made."""
     return extraction_shown(record)
 
 
-@router.post("/{extraction_id}/cancel", status_code=202, response_model=ExtractionShown, responses={409: {}})
+@extractions_router.post(
+    "/{extraction_id}/cancel", status_code=202, response_model=ExtractionShown, responses={409: {}}
+)
 def cancel(record: RecordDep, parts: PartsDep, stories: StoriesDep) -> Json:
     """Stop an extraction: the scene that is being read is the last. Scripts that were made can still be fetched."""
     if state_now(record) in ("queued", "running"):
@@ -67,7 +69,7 @@ def cancel(record: RecordDep, parts: PartsDep, stories: StoriesDep) -> Json:
     return extraction_shown(record)
 
 
-@router.delete("/{extraction_id}", status_code=204)
+@extractions_router.delete("/{extraction_id}", status_code=204)
 def forget(record: RecordDep, parts: PartsDep, stories: StoriesDep) -> None:
     """Delete an extraction; scripts that it put into the library stay. One in the making is stopped."""
     running = state_now(record) in ("queued", "running")
@@ -84,7 +86,7 @@ def watching(record: RecordDep, parts: PartsDep, last_event_id: LastEvent = None
     return Watch(parts, record, last_event_id or 0, extraction_events, state_now).opened()
 
 
-@router.get(
+@extractions_router.get(
     "/{extraction_id}/events",
     response_class=EventSourceResponse,
     responses={204: {"description": "The extraction has ended, and Last-Event-ID is its last event."}},

@@ -13,16 +13,16 @@ from scene_graphs.furniture import Furniture, is_minor
 from scene_graphs.graph import FurnitureGraph, graph_from_parts, needs_of
 from scene_graphs.merging import merge
 
-router = APIRouter(prefix="/v1/layout-graphs", tags=["layout graphs"])
-MOST_EDGES: Final = 300
+layout_graphs_router = APIRouter(prefix="/v1/layout-graphs", tags=["layout graphs"])
+MAX_EDGES: Final = 300
 """Of all graphs together: aligning tries thousands of renamings on each."""
 
 
-@router.post("/merge", response_model=Merged)
+@layout_graphs_router.post("/merge", response_model=Merged)
 def merge_graphs(ask: MergeAsk) -> Json:
     """Merge the graphs of scripts: of every category as many pieces as the script has that uses most (SIMS 3.2)."""
-    if sum(len(graph.edges) for graph in ask.graphs) > MOST_EDGES:
-        raise Unprocessable("/graphs", f"at most {MOST_EDGES} edges in all graphs together")
+    if sum(len(graph.edges) for graph in ask.graphs) > MAX_EDGES:
+        raise Unprocessable("/graphs", f"at most {MAX_EDGES} edges in all graphs together")
     graphs = [graph_of(graph, f"/graphs/{number}") for number, graph in enumerate(ask.graphs)]
     merged = merge(graphs, ask.method)
     nodes = sorted(merged.graph)

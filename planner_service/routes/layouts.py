@@ -17,7 +17,7 @@ from fastapi.concurrency import run_in_threadpool
 from motion_backend.formats.glb import scene_glb
 from planner_service.errors import Conflict, NotFound, TooLarge, Unavailable, Unprocessable
 from planner_service.importing import take_in
-from planner_service.limiting import MOST_BYTES
+from planner_service.limiting import MAX_BYTES
 from planner_service.parts import Parts, PartsDep
 from planner_service.picturing import Shown, picture
 from planner_service.retrieving import retrieved, retrieved_to_dict
@@ -57,7 +57,7 @@ def _shown_over(
 
 
 ShownDep = Annotated[Shown, Depends(_shown_over)]
-router = APIRouter(prefix="/v1/layouts", tags=["layouts"])
+layouts_router = APIRouter(prefix="/v1/layouts", tags=["layouts"])
 LayoutId = Annotated[str, Path(max_length=400, description="The id of a room; it may hold slashes.")]
 GLB: Final = "model/gltf-binary"
 SVG: Final = "image/svg+xml"
@@ -66,11 +66,11 @@ OTHER: Final = "application/octet-stream"
 """A scene file of another format, sent as it is."""
 Format = Literal["native", "3d-front", "procthor", "virtualhome", "glb", "obj"]
 """What is one file; scans that are folders of files are taken in on the command line."""
-MOST_UNPACKED: Final = 32 << 20
+MAX_UNPACKED_BYTES: Final = 32 << 20
 """Bytes of a scene file that was sent packed."""
-MOST_WAITING: Final = 8
+MAX_WAITING: Final = 8
 """Scene files that wait to be read, each held in memory."""
-MOST_ROOMS: Final = 200
+MAX_ROOMS: Final = 200
 """Of one scene file: each is looked over while the caller waits, about 0.1 s."""
 DRAWN: Final = {"Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'"}
 """A picture that is opened by itself runs nothing and loads nothing."""
@@ -78,7 +78,7 @@ REVALIDATED: Final = {"Cache-Control": "private, no-cache"}
 """Kept, but asked for again each time: a room may be removed and another be given its id."""
 
 
-@router.get("", response_model=LayoutPage)
+@layouts_router.get("", response_model=LayoutPage)
 def list_layouts(
     parts: PartsDep,
     limit: Limit = 20,
@@ -96,7 +96,7 @@ def list_layouts(
     return {"items": [room_summary(parts.shelves, layout) for layout in shown], "next": following}
 
 
-@router.post(
+@layouts_router.post(
     "",
     status_code=201,
     response_model=LayoutShown | LayoutsImported,
@@ -133,18 +133,18 @@ async def create(
     A room with problems is kept; the answer says what they are. Of another format the body is the file itself (gzip is
     unpacked), and the answer lists the rooms with what was kept, dropped and guessed.
     """
-    if format_name != "native" and parts.importing.statistics().tasks_waiting >= MOST_WAITING:
+    if format_name != "native" and parts.importing.statistics().tasks_waiting >= MAX_WAITING:
         raise Unavailable("other scene files are being read; send it again", retry_after=10)
     body = await request.body()
     if format_name == "native":
-        if len(body) > MOST_BYTES:
-            raise TooLarge(f"a body of this format has at most {MOST_BYTES} bytes")
+        if len(body) > MAX_BYTES:
+            raise TooLarge(f"a body of this format has at most {MAX_BYTES} bytes")
         layout = layout_given(await run_in_threadpool(parsed, LayoutAsk, request, body))
         await run_in_threadpool(_adding, parts.shelves.add_layouts, layout)
         response.headers["Location"] = path_of(layout.id)
         return await run_in_threadpool(room_shown, parts.shelves, layout)
-    options = Options(scan=scan, room_type=room, up=up, front=front, unit=unit, most_rooms=MOST_ROOMS)
-    source = Source.of_bytes(name, body, MOST_UNPACKED)
+    options = Options(scan=scan, room_type=room, up=up, front=front, unit=unit, most_rooms=MAX_ROOMS)
+    source = Source.of_bytes(name, body, MAX_UNPACKED_BYTES)
     try:
         take = partial(_adding, take_in, parts.shelves, source, format_name, options)
         taken = await to_thread.run_sync(take, limiter=parts.importing)
@@ -157,7 +157,7 @@ async def create(
     }
 
 
-@router.post("/retrieve", response_model=LayoutMatches)
+@layouts_router.post("/retrieve", response_model=LayoutMatches)
 def retrieve(ask: RetrieveAsk, parts: PartsDep) -> Json:
     """The rooms that have the furniture of a graph, nearest first, and what would stand for each of its pieces; or,
     with `max_rooms` above 1, the homes of one room and more."""
@@ -170,7 +170,7 @@ def retrieve(ask: RetrieveAsk, parts: PartsDep) -> Json:
     return {"matches": [retrieved_to_dict(index, one, nodes_of(ask.graph)) for one in found]}
 
 
-@router.get("/{layout_id:path}/scene.glb", response_class=Response, responses={200: {"content": {GLB: {}}}})
+@layouts_router.get("/{layout_id:path}/scene.glb", response_class=Response, responses={200: {"content": {GLB: {}}}})
 def scene(layout_id: LayoutId, request: Request, parts: PartsDep) -> Response:
     """The room with its walls, floor and furniture."""
     layout = _layout(parts, layout_id)
@@ -181,19 +181,19 @@ def scene(layout_id: LayoutId, request: Request, parts: PartsDep) -> Response:
     return unchanging(request, f"{_etag(layout)}-scene", make, GLB, REVALIDATED)
 
 
-@router.get("/{layout_id:path}/drawing.svg", response_class=Response, responses={200: {"content": {SVG: {}}}})
+@layouts_router.get("/{layout_id:path}/drawing.svg", response_class=Response, responses={200: {"content": {SVG: {}}}})
 def drawing_svg(layout_id: LayoutId, request: Request, parts: PartsDep, shown: ShownDep) -> Response:
     """The room from above: names, graph, surfaces and standing points, and a path from the door."""
     return _drawing(_layout(parts, layout_id), shown, request, "svg")
 
 
-@router.get("/{layout_id:path}/drawing.png", response_class=Response, responses={200: {"content": {PNG: {}}}})
+@layouts_router.get("/{layout_id:path}/drawing.png", response_class=Response, responses={200: {"content": {PNG: {}}}})
 def drawing_png(layout_id: LayoutId, request: Request, parts: PartsDep, shown: ShownDep) -> Response:
     """The same as pixels."""
     return _drawing(_layout(parts, layout_id), shown, request, "png")
 
 
-@router.get("/{layout_id:path}", response_model=LayoutShown)
+@layouts_router.get("/{layout_id:path}", response_model=LayoutShown)
 def show(layout_id: LayoutId, request: Request, parts: PartsDep) -> Response:
     """A room whole: its native JSON, its problems, where a body can sit, lie or touch, and its graph."""
     layout = _layout(parts, layout_id)
@@ -204,7 +204,7 @@ def show(layout_id: LayoutId, request: Request, parts: PartsDep) -> Response:
     return unchanging(request, _etag(layout), make, "application/json", REVALIDATED)
 
 
-@router.delete(
+@layouts_router.delete(
     "/{layout_id:path}", status_code=204, responses={409: {"description": "It is shipped, or in SIMS_LAYOUTS."}}
 )
 def delete(layout_id: LayoutId, parts: PartsDep) -> None:

@@ -14,10 +14,10 @@ from planner_service.scripts.events import clean
 from planner_service.scripts.keyframe import LongScript
 from planner_service.stories import StoryRequest, Studio
 
-router = APIRouter(prefix="/v1/long-scripts", tags=["long scripts"])
+long_scripts_router = APIRouter(prefix="/v1/long-scripts", tags=["long scripts"])
 
 
-@router.post("", response_model=LongScript)
+@long_scripts_router.post("", response_model=LongScript)
 def compose(ask: LongScriptAsk, parts: PartsDep) -> LongScript:
     """Plan a theme: its events, the short scripts chosen for them, and every keyframe. Nothing is stored."""
     studio = Studio(parts.shelves, parts.model, parts.settings.llm_on_failure == "error")

@@ -14,7 +14,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.requests import ClientDisconnect, Request
 
 from planner_service.errors import Malformed, Problem, TooLarge, TooSlow, Unprocessable
-from planner_service.extraction.subtitles import LARGEST
+from planner_service.extraction.subtitles import MAX_SUBTITLE_BYTES
 from planner_service.schemas.problems import Fault
 from planner_service.uploads import Coming, OverlongError, Receiving
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from planner_service.settings import Settings
 
 FORM: Final = "multipart/form-data"
-LONGEST_FIELD: Final = 2000
+MAX_FIELD_LENGTH: Final = 2000
 """Bytes of a part that is no file."""
 HEAD: Final = 4096
 """Bytes of a file that tell what it is."""
@@ -155,8 +155,8 @@ class FormReader:
         part, piece = self._part, data[start:end]
         if part.receiving is None:
             part.text += piece
-            if len(part.text) > LONGEST_FIELD:
-                raise _too_large(part.name, f"it has more than {LONGEST_FIELD} bytes; send fewer")
+            if len(part.text) > MAX_FIELD_LENGTH:
+                raise _too_large(part.name, f"it has more than {MAX_FIELD_LENGTH} bytes; send fewer")
             return
         if len(part.head) < HEAD:
             part.head += piece
@@ -216,7 +216,7 @@ def title_of(name: str) -> str:
 
 def most_sent(settings: Settings) -> int:
     """Bytes of a form: a film, its subtitles, and what is around them."""
-    return (settings.upload_mb << 20) + LARGEST + (1 << 20)
+    return (settings.upload_mb << 20) + MAX_SUBTITLE_BYTES + (1 << 20)
 
 
 def _malformed(detail: str, pointer: str = "") -> Problem:

@@ -47,7 +47,7 @@ color-scheme: light dark }</style>
 <a href="/openapi.json">the calls there are</a>, <a href="/readyz">whether the service is ready</a>.</p>
 </html>
 """
-router = APIRouter(include_in_schema=False)
+page_router = APIRouter(include_in_schema=False)
 
 
 def page_is_built() -> bool:
@@ -55,7 +55,7 @@ def page_is_built() -> bool:
     return (PAGE / "index.html").is_file()
 
 
-@router.get("/")
+@page_router.get("/")
 def page() -> Response:
     """The page, or how to build it."""
     if page_is_built():
@@ -63,8 +63,8 @@ def page() -> Response:
     return HTMLResponse(NOTE, headers=HEADERS)
 
 
-@router.get("/favicon.ico")
-@router.get("/favicon.svg")
+@page_router.get("/favicon.ico")
+@page_router.get("/favicon.svg")
 def icon() -> Response:
     """The small picture in the browser's tab."""
     own = PAGE / "favicon.svg"

@@ -18,7 +18,7 @@ from planner_service.routes.page import page_is_built
 from planner_service.schemas.service import Check, Health, Login, Readiness, Session
 from planner_service.telemetry import Figures
 
-router = APIRouter(tags=["service"])
+service_router = APIRouter(tags=["service"])
 UNBUILT: Final = "the page is not built; `make page` builds it (needs Node 20 or newer), all else works without"
 
 
@@ -34,13 +34,15 @@ async def figures_of(request: Request) -> Figures:
     return figures
 
 
-@router.get("/healthz")
+@service_router.get("/healthz")
 def healthz() -> Health:
     """Is the process alive? Looks at nothing else."""
     return Health()
 
 
-@router.get("/readyz", responses={503: {"model": Readiness, "description": "Something that is needed is not there."}})
+@service_router.get(
+    "/readyz", responses={503: {"model": Readiness, "description": "Something that is needed is not there."}}
+)
 def readyz(parts: PartsDep) -> Response:
     """Can stories be made? Looks at the database and the library; says whether the page is built."""
     checks = [_check("database", parts, _database), _check("library", parts, _library)]
@@ -69,19 +71,19 @@ def _library(parts: Parts) -> str:
     return f"{len(parts.shelves.scripts())} short scripts, {len(parts.shelves.layouts().layouts)} rooms"
 
 
-@router.get("/metrics", response_class=Response, responses={200: {"content": {"text/plain": {}}}})
+@service_router.get("/metrics", response_class=Response, responses={200: {"content": {"text/plain": {}}}})
 def metrics(figures: Annotated[Figures, Depends(figures_of)]) -> Response:
     """Figures for Prometheus: requests, stages, queue, failures. Needs a key where keys are set."""
     return Response(generate_latest(figures.registry), headers={"Content-Type": CONTENT_TYPE_LATEST})
 
 
-@router.get("/session")
+@service_router.get("/session")
 def session(request: Request, gate: Annotated[Gate, Depends(gate_of)]) -> Session:
     """Whether a key is needed here, and whether this caller has shown one."""
     return Session(required=gate.locked, authenticated=request.state.caller is not None)
 
 
-@router.post("/session", status_code=204, response_class=Response)
+@service_router.post("/session", status_code=204, response_class=Response)
 def log_in(login: Login, request: Request, gate: Annotated[Gate, Depends(gate_of)]) -> Response:
     """Show a key once and get a cookie for it, for 30 days: pages cannot send a key with downloads and streams."""
     value = gate.log_in(login.key, request.scope)
@@ -91,7 +93,7 @@ def log_in(login: Login, request: Request, gate: Annotated[Gate, Depends(gate_of
     return answer
 
 
-@router.delete("/session", status_code=204, response_class=Response)
+@service_router.delete("/session", status_code=204, response_class=Response)
 def log_out(request: Request) -> Response:
     """Forget the cookie."""
     answer = Response(status_code=204, headers={"Cache-Control": "no-store"})

@@ -23,14 +23,14 @@ from planner_service.schemas.short_scripts import (
     ShortScriptVersions,
 )
 from planner_service.schemas.stories import Json
-from planner_service.scripts.events import LONGEST
-from planner_service.scripts.keyframe import MOST_PIECES, MOST_VERSIONS, ShortScript, Source
+from planner_service.scripts.events import MAX_THEME_LENGTH
+from planner_service.scripts.keyframe import MAX_PIECES, MAX_VERSIONS, ShortScript, Source
 from planner_service.scripts.picking import UNKNOWN, Choice, unknown_licences, unlicensed
 from planner_service.shelves import AbsentError, ChangedError, FixedError, FullError, TakenError, UnfitError
 
-router = APIRouter(prefix="/v1/short-scripts", tags=["short scripts"])
+short_scripts_router = APIRouter(prefix="/v1/short-scripts", tags=["short scripts"])
 ScriptId = Annotated[str, Path(max_length=200, description="The id of a short script.")]
-Version = Annotated[int | None, Query(ge=1, le=MOST_VERSIONS, description="As it was then; left out: as it is.")]
+Version = Annotated[int | None, Query(ge=1, le=MAX_VERSIONS, description="As it was then; left out: as it is.")]
 REVALIDATED: Final = {"Cache-Control": "private, no-cache"}
 """Kept, but asked for again each time: another version of the service may bring another text."""
 LINES: Final = "application/jsonl"
@@ -43,7 +43,7 @@ def chosen(
     room: Annotated[RoomName | None, Query(description="Only scripts that play in this type of room.")] = None,
     furniture: Annotated[
         list[Annotated[str, Field(min_length=1, max_length=60)]] | None,
-        Query(max_length=MOST_PIECES, description="Only scripts that use this; given again, all of these."),
+        Query(max_length=MAX_PIECES, description="Only scripts that use this; given again, all of these."),
     ] = None,
     source: Annotated[Source | None, Query(description="Only scripts that came to be written like this.")] = None,
     licence: Annotated[
@@ -57,7 +57,7 @@ def chosen(
 ChoiceDep = Annotated[Choice, Depends(chosen)]
 
 
-@router.get("", response_model=ShortScriptPage)
+@short_scripts_router.get("", response_model=ShortScriptPage)
 def list_short_scripts(parts: PartsDep, choice: ChoiceDep, limit: Limit = 20, cursor: Cursor = None) -> Json:
     """The short scripts there are, in the order of their ids."""
     wanted = {script.id: script for script in choice.of(parts.shelves.scripts())}
@@ -65,11 +65,11 @@ def list_short_scripts(parts: PartsDep, choice: ChoiceDep, limit: Limit = 20, cu
     return {"items": [_shown(parts, script) for script in shown], "next": following}
 
 
-@router.get("/search", response_model=ShortScriptsFound)
+@short_scripts_router.get("/search", response_model=ShortScriptsFound)
 def search_short_scripts(
     parts: PartsDep,
     choice: ChoiceDep,
-    q: Annotated[str, Query(min_length=1, max_length=LONGEST, description="What happens, in your own words.")],
+    q: Annotated[str, Query(min_length=1, max_length=MAX_THEME_LENGTH, description="What happens, in your own words.")],
     k: Annotated[int, Query(ge=1, le=100, description="How many.")] = 5,
 ) -> Json:
     """The short scripts nearest in meaning. The first search after a start loads the sentence encoder."""
@@ -78,7 +78,7 @@ def search_short_scripts(
     return {"items": items, "encoder": library.encoder.name}
 
 
-@router.get(
+@short_scripts_router.get(
     "/export",
     response_class=StreamingResponse,
     responses={
@@ -104,7 +104,9 @@ def export(
     return StreamingResponse(lines, headers=SAVED | {UNLICENSED: str(len(unknown_licences(scripts)))}, media_type=LINES)
 
 
-@router.post("", status_code=201, response_model=ShortScriptShown, responses={409: {"description": "The id is taken."}})
+@short_scripts_router.post(
+    "", status_code=201, response_model=ShortScriptShown, responses={409: {"description": "The id is taken."}}
+)
 def create(script: ShortScript, response: Response, parts: PartsDep) -> Json:
     """Add a short script to the library; it is there for every story from now on."""
     _refuse_unlicensed(script)
@@ -118,7 +120,7 @@ def create(script: ShortScript, response: Response, parts: PartsDep) -> Json:
     return _shown(parts, script)
 
 
-@router.get("/{script_id}", response_model=ShortScriptShown)
+@short_scripts_router.get("/{script_id}", response_model=ShortScriptShown)
 def show(script_id: ScriptId, request: Request, parts: PartsDep, version: Version = None) -> Response:
     """One short script."""
     script = parts.shelves.scripts().find(script_id)
@@ -133,7 +135,7 @@ def show(script_id: ScriptId, request: Request, parts: PartsDep, version: Versio
     return unchanging(request, _etag(body), lambda: body, "application/json", REVALIDATED)
 
 
-@router.get("/{script_id}/versions", response_model=ShortScriptVersions)
+@short_scripts_router.get("/{script_id}/versions", response_model=ShortScriptVersions)
 def versions(script_id: ScriptId, parts: PartsDep) -> Json:
     """A short script as it was and is, the oldest version that is kept first."""
     try:
@@ -142,7 +144,7 @@ def versions(script_id: ScriptId, parts: PartsDep) -> Json:
         raise _absent() from error
 
 
-@router.put(
+@short_scripts_router.put(
     "/{script_id}",
     response_model=ShortScriptShown,
     responses={409: {"description": "Somebody else changed it meanwhile, or it is shipped with the service."}},
@@ -173,7 +175,9 @@ def replace(
         raise _unfit(error) from error
 
 
-@router.delete("/{script_id}", status_code=204, responses={409: {"description": "It is shipped with the service."}})
+@short_scripts_router.delete(
+    "/{script_id}", status_code=204, responses={409: {"description": "It is shipped with the service."}}
+)
 def delete(script_id: ScriptId, parts: PartsDep) -> None:
     """Remove a short script that a user added, with all its versions; stories that were made of it stay as they are."""
     try:

@@ -28,7 +28,7 @@ from scene_graphs.home_rows import home_from_dict
 from scene_graphs.homes import Home
 from scene_graphs.layouts import Layout
 
-router = APIRouter(prefix="/v1/stories", tags=["stories"])
+stories_router = APIRouter(prefix="/v1/stories", tags=["stories"])
 StoryId = Annotated[str, Path(max_length=64, description="The id of a story.")]
 Key = Annotated[
     str | None,
@@ -63,7 +63,7 @@ def record_of(story_id: StoryId, stories: StoriesDep) -> Record:
 RecordDep = Annotated[Record, Depends(record_of)]
 
 
-@router.post("", status_code=202, response_model=StoryShown)
+@stories_router.post("", status_code=202, response_model=StoryShown)
 def create(ask: StoryAsk, request: Request, response: Response, parts: PartsDep, key: Key = None) -> Json:
     """Make a story of a theme. It is queued when this answers; follow it at `links.events`."""
     caller, body = request.state.caller, ask.model_dump_json()
@@ -104,7 +104,7 @@ def character_of(ask: CharacterAsk | None) -> Character:
     return Character(ask.name, ask.pronouns, ask.height) if ask else Character()
 
 
-@router.get("", response_model=StoryPage)
+@stories_router.get("", response_model=StoryPage)
 def list_stories(
     stories: StoriesDep,
     limit: Annotated[int, Query(ge=1, le=100)] = 20,
@@ -129,13 +129,13 @@ def check_cursor(cursor: str | None) -> None:
         raise Unprocessable("?cursor", "not a cursor that this service gave; leave it out for the first page")
 
 
-@router.get("/{story_id}", response_model=StoryShown)
+@stories_router.get("/{story_id}", response_model=StoryShown)
 async def show(record: RecordDep) -> Json:
     """A story, as far as it is made."""
     return story_shown(record)
 
 
-@router.post("/{story_id}/cancel", status_code=202, response_model=StoryShown, responses={409: {}})
+@stories_router.post("/{story_id}/cancel", status_code=202, response_model=StoryShown, responses={409: {}})
 def cancel(record: RecordDep, parts: PartsDep, stories: StoriesDep) -> Json:
     """Stop a story: the segment in the making is the last. What was made can still be fetched."""
     state = state_of(record.status)
@@ -148,7 +148,7 @@ def cancel(record: RecordDep, parts: PartsDep, stories: StoriesDep) -> Json:
     return story_shown(record)
 
 
-@router.delete("/{story_id}", status_code=204)
+@stories_router.delete("/{story_id}", status_code=204)
 def forget(record: RecordDep, parts: PartsDep, stories: StoriesDep) -> None:
     """Delete a story and all that was made of it; one in the making is stopped."""
     running = state_of(record.status) in ("queued", "running")
@@ -159,7 +159,7 @@ def forget(record: RecordDep, parts: PartsDep, stories: StoriesDep) -> None:
         parts.jobs.forget(record.id)
 
 
-@router.get("/{story_id}/home", response_model=Json)
+@stories_router.get("/{story_id}/home", response_model=Json)
 def home(record: RecordDep, request: Request, stories: StoriesDep) -> Response:
     """The home whole: rooms with their furniture, walls, doorways. It can be posted again as `home`."""
     etag = _made(record, "home")
@@ -170,14 +170,14 @@ def home(record: RecordDep, request: Request, stories: StoriesDep) -> Response:
     return unchanging(request, f"{etag}-home", make, "application/json")
 
 
-@router.get("/{story_id}/scene.glb", response_class=Response, responses={200: {"content": {GLB: {}}}})
+@stories_router.get("/{story_id}/scene.glb", response_class=Response, responses={200: {"content": {GLB: {}}}})
 def scene(record: RecordDep, request: Request, stories: StoriesDep) -> Response:
     """The home alone."""
     etag = _made(record, "home")
     return unchanging(request, f"{etag}-scene", lambda: scene_glb(home_from_dict(_home_row(stories, record))), GLB)
 
 
-@router.get("/{story_id}/film.glb", response_class=Response, responses={200: {"content": {GLB: {}}}})
+@stories_router.get("/{story_id}/film.glb", response_class=Response, responses={200: {"content": {GLB: {}}}})
 def film(record: RecordDep, request: Request, stories: StoriesDep) -> Response:
     """The home and the animated character in one file."""
     etag = _made(record, "film")
@@ -185,7 +185,7 @@ def film(record: RecordDep, request: Request, stories: StoriesDep) -> Response:
     return unchanging(request, etag, lambda: stories.data(record.id, position), GLB, _named(record, ".glb"))
 
 
-@router.get(
+@stories_router.get(
     "/{story_id}/motion",
     response_class=Response,
     responses={

@@ -15,10 +15,10 @@ from planner_service.tasks.plan import TaskPlan
 from planner_service.tasks.planning import plan_task
 from scene_graphs.homes import Home, home_from_layouts
 
-router = APIRouter(prefix="/v1/task-plans", tags=["task plans"])
+task_plans_router = APIRouter(prefix="/v1/task-plans", tags=["task plans"])
 
 
-@router.post("", response_model=TaskPlan)
+@task_plans_router.post("", response_model=TaskPlan)
 def plan(ask: TaskAsk, parts: PartsDep) -> TaskPlan:
     """Break an instruction into locomotion, grasp and interaction; `keyframes` can be sent to POST /v1/motions."""
     if ask.layout_id is not None and ask.home is not None:

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, ConfigDict, Field
 from pydantic import BaseModel as Model
 
-from planner_service.extraction.plain import LONGEST
+from planner_service.extraction.plain import MAX_TEXT_LENGTH
 from planner_service.schemas.stories import Ask, Failure, State
 from planner_service.scripts.keyframe import ShortScript
 from planner_service.scripts.picking import UNKNOWN
@@ -45,7 +45,7 @@ class ExtractAsk(ExtractFields):
         }
     )
 
-    text: str = Field(min_length=1, max_length=LONGEST, description="It is told apart by what it holds.")
+    text: str = Field(min_length=1, max_length=MAX_TEXT_LENGTH, description="It is told apart by what it holds.")
 
 
 class SceneExtracted(Model):

@@ -7,13 +7,13 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from planner_service.schemas.stories import Ask
-from scene_graphs.distance import MOST_NODES
+from scene_graphs.distance import MAX_NODES
 
 Affordance = Literal["sit", "lie", "touch"]
-MOST_GRAPHS = 12
+MAX_GRAPHS = 12
 """As many as a story has short scripts."""
-MOST_EDGES = 200
-Place = Annotated[int, Field(ge=0, lt=MOST_NODES)]
+MAX_EDGES = 200
+Place = Annotated[int, Field(ge=0, lt=MAX_NODES)]
 Edge = Annotated[list[Place], Field(min_length=2, max_length=2)]
 
 
@@ -28,8 +28,8 @@ class NodeAsk(Ask):
 class GraphAsk(Ask):
     """Furniture, and which pieces belong together."""
 
-    nodes: list[NodeAsk] = Field(min_length=1, max_length=MOST_NODES)
-    edges: list[Edge] = Field([], max_length=MOST_EDGES, description="Pairs of places in `nodes`.")
+    nodes: list[NodeAsk] = Field(min_length=1, max_length=MAX_NODES)
+    edges: list[Edge] = Field([], max_length=MAX_EDGES, description="Pairs of places in `nodes`.")
 
 
 class MergeAsk(Ask):
@@ -54,7 +54,7 @@ class MergeAsk(Ask):
         }
     )
 
-    graphs: list[GraphAsk] = Field(min_length=1, max_length=MOST_GRAPHS)
+    graphs: list[GraphAsk] = Field(min_length=1, max_length=MAX_GRAPHS)
     method: Literal["canonical", "aligned"] = Field(
         "canonical", description="Pieces numbered in their order, as in the paper; or so that most edges are shared."
     )

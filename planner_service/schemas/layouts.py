@@ -8,19 +8,19 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from planner_service.schemas.layout_graphs import GraphAsk, GraphNode
 from planner_service.schemas.stories import Ask, SubstitutionShown
-from scene_graphs.fields import FARTHEST
-from scene_graphs.homes import MOST_ROOMS
-from scene_graphs.layouts import LARGEST, LOWEST, MOST_CORNERS, MOST_OBJECTS, MOST_TAGS, SMALLEST
-from scene_graphs.solids import MOST_PARTS, ROLES
+from scene_graphs.fields import MAX_COORDINATE
+from scene_graphs.homes import MAX_ROOMS
+from scene_graphs.layouts import MAX_CORNERS, MAX_OBJECTS, MAX_SIZE, MAX_TAGS, MIN_ROOM_HEIGHT, MIN_SIZE
+from scene_graphs.solids import MAX_PARTS, ROLES
 
 Affordance = Literal["sit", "lie", "touch"]
 Name = Annotated[str, Field(min_length=1, max_length=200)]
-Coordinate = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST)]
-Length = Annotated[float, Field(ge=SMALLEST, le=LARGEST)]
+Coordinate = Annotated[float, Field(ge=-MAX_COORDINATE, le=MAX_COORDINATE)]
+Length = Annotated[float, Field(ge=MIN_SIZE, le=MAX_SIZE)]
 Point2 = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
 Point3 = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
 Size3 = Annotated[list[Length], Field(min_length=3, max_length=3)]
-MOST_OPENINGS = 100
+MAX_OPENINGS = 100
 Box = Annotated[list[str | Point3], Field(min_length=3, max_length=3)]
 EXAMPLE: dict[str, Any] = {
     "id": "my-nook",
@@ -40,8 +40,8 @@ class Opening(Ask):
     segment: Annotated[list[Point2], Field(min_length=2, max_length=2)] = Field(
         description="Two [x, z] points on the outline."
     )
-    bottom: float = Field(0.0, ge=0, le=LARGEST, description="Height in metres where the opening begins.")
-    top: float = Field(2.1, ge=0, le=LARGEST, description="Height in metres where it ends.")
+    bottom: float = Field(0.0, ge=0, le=MAX_SIZE, description="Height in metres where the opening begins.")
+    top: float = Field(2.1, ge=0, le=MAX_SIZE, description="Height in metres where it ends.")
 
 
 class Piece(Ask):
@@ -56,7 +56,7 @@ class Piece(Ask):
     mesh: Name | None = Field(None, description="A name of the maker's for its shape; kept, not used.")
     shape: list[Box] | None = Field(
         None,
-        max_length=MOST_PARTS,
+        max_length=MAX_PARTS,
         description="Solid boxes it is made of, each [role, low, high] in its own frame (origin at the bottom centre, "
         f"front +z), with a role of {', '.join(sorted(ROLES))}; left out: the usual form of its category.",
     )
@@ -71,14 +71,14 @@ class LayoutAsk(Ask):
     source: Name = Field("user", description="Where the room comes from.")
     licence: Name = Field("unknown", description="Under which it may be passed on.")
     room_type: Name = Field(description='"bedroom", "living_room", "dining_room", "study", or another name.')
-    tags: list[Name] = Field([], max_length=MOST_TAGS, description="Every room type it can serve as.")
+    tags: list[Name] = Field([], max_length=MAX_TAGS, description="Every room type it can serve as.")
     floor_polygon: list[Point2] = Field(
-        min_length=3, max_length=MOST_CORNERS, description="[x, z] corners in order, not closed."
+        min_length=3, max_length=MAX_CORNERS, description="[x, z] corners in order, not closed."
     )
-    height: float = Field(2.7, ge=LOWEST, le=LARGEST, description="Metres.")
-    doors: list[Opening] = Field([], max_length=MOST_OPENINGS)
-    windows: list[Opening] = Field([], max_length=MOST_OPENINGS)
-    objects: list[Piece] = Field([], max_length=MOST_OBJECTS)
+    height: float = Field(2.7, ge=MIN_ROOM_HEIGHT, le=MAX_SIZE, description="Metres.")
+    doors: list[Opening] = Field([], max_length=MAX_OPENINGS)
+    windows: list[Opening] = Field([], max_length=MAX_OPENINGS)
+    objects: list[Piece] = Field([], max_length=MAX_OBJECTS)
 
 
 class LayoutLinks(BaseModel):
@@ -199,7 +199,7 @@ class RetrieveAsk(Ask):
     rooms: list[Annotated[str, Field(min_length=1, max_length=60)]] = Field(
         [], max_length=4, description="Room types; empty: any."
     )
-    max_rooms: int = Field(1, ge=1, le=MOST_ROOMS, description="Above 1, homes of one to so many rooms are looked for.")
+    max_rooms: int = Field(1, ge=1, le=MAX_ROOMS, description="Above 1, homes of one to so many rooms are looked for.")
 
 
 class MappedPiece(BaseModel):

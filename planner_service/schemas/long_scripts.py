@@ -7,9 +7,9 @@ from typing import Literal
 from pydantic import ConfigDict, Field
 
 from planner_service.schemas.stories import Ask, RoomType, Seed
-from planner_service.scripts.composing import MOST
-from planner_service.scripts.events import LONGEST
-from scene_graphs.homes import MOST_ROOMS
+from planner_service.scripts.composing import MAX_SHORT_SCRIPTS
+from planner_service.scripts.events import MAX_THEME_LENGTH
+from scene_graphs.homes import MAX_ROOMS
 
 
 class LongScriptAsk(Ask):
@@ -24,10 +24,12 @@ class LongScriptAsk(Ask):
         }
     )
 
-    theme: str = Field(min_length=1, max_length=LONGEST, description="What happens, in a few English sentences.")
+    theme: str = Field(
+        min_length=1, max_length=MAX_THEME_LENGTH, description="What happens, in a few English sentences."
+    )
     method: Literal["matching", "direct"] = Field(
         "matching", description="Woven from the library's short scripts, or written at once (SIMS 10's baseline)."
     )
-    short_scripts: int | None = Field(None, ge=1, le=MOST, description="How many are woven; null: choose.")
-    rooms: list[RoomType] = Field([], max_length=MOST_ROOMS, description="Room types to play in; empty: choose.")
+    short_scripts: int | None = Field(None, ge=1, le=MAX_SHORT_SCRIPTS, description="How many are woven; null: choose.")
+    rooms: list[RoomType] = Field([], max_length=MAX_ROOMS, description="Room types to play in; empty: choose.")
     seed: Seed = 0

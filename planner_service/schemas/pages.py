@@ -11,9 +11,9 @@ from fastapi import Query
 from planner_service.errors import Unprocessable
 
 T = TypeVar("T")
-LONGEST_CURSOR: Final = 600
+MAX_CURSOR_LENGTH: Final = 600
 Limit = Annotated[int, Query(ge=1, le=100, description="Most items of the answer.")]
-Cursor = Annotated[str | None, Query(max_length=LONGEST_CURSOR, description="`next` of the page before.")]
+Cursor = Annotated[str | None, Query(max_length=MAX_CURSOR_LENGTH, description="`next` of the page before.")]
 
 
 def page_of(items: Mapping[str, T], limit: int, cursor: str | None) -> tuple[list[T], str | None]:

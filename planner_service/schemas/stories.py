@@ -8,19 +8,19 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from motion_backend.motion import Skill
-from planner_service.scripts.composing import MOST
-from planner_service.scripts.events import LONGEST
+from planner_service.scripts.composing import MAX_SHORT_SCRIPTS
+from planner_service.scripts.events import MAX_THEME_LENGTH
 from planner_service.scripts.keyframe import Event, Keyframe
-from planner_service.stories import LARGEST_SEED, LEAST_HEIGHT, LONGEST_NAME, MOST_HEIGHT
-from scene_graphs.homes import MOST_ROOMS
+from planner_service.stories import MAX_HEIGHT, MAX_NAME_LENGTH, MAX_SEED, MIN_HEIGHT
+from scene_graphs.homes import MAX_ROOMS
 
 State = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 Stage = Literal["plan", "furnish", "narrate", "act", "move", "judge", "film"]
 Kind = Literal["story", "motion"]
 RoomType = Literal["bedroom", "living_room", "dining_room", "study"]
-Seed = Annotated[int, Field(ge=0, le=LARGEST_SEED, description="The same seed gives the same story.")]
+Seed = Annotated[int, Field(ge=0, le=MAX_SEED, description="The same seed gives the same story.")]
 LayoutId = Annotated[str, StringConstraints(min_length=1, max_length=200)]
-MOST_KEYFRAMES = 60
+MAX_KEYFRAMES = 60
 """Keyframes of one motion."""
 Json = dict[str, Any]
 
@@ -34,9 +34,9 @@ class Ask(BaseModel):
 class CharacterAsk(Ask):
     """Who acts."""
 
-    name: str = Field("Sam", min_length=1, max_length=LONGEST_NAME, description="Printable letters.")
+    name: str = Field("Sam", min_length=1, max_length=MAX_NAME_LENGTH, description="Printable letters.")
     pronouns: Literal["he", "she", "they"] = "they"
-    height: float = Field(1.70, ge=LEAST_HEIGHT, le=MOST_HEIGHT, description="Metres.")
+    height: float = Field(1.70, ge=MIN_HEIGHT, le=MAX_HEIGHT, description="Metres.")
 
 
 class StoryAsk(Ask):
@@ -55,13 +55,15 @@ class StoryAsk(Ask):
         }
     )
 
-    theme: str = Field(min_length=1, max_length=LONGEST, description="What happens, in a few English sentences.")
-    rooms: list[RoomType] = Field([], max_length=MOST_ROOMS, description="Room types to play in; empty: choose.")
+    theme: str = Field(
+        min_length=1, max_length=MAX_THEME_LENGTH, description="What happens, in a few English sentences."
+    )
+    rooms: list[RoomType] = Field([], max_length=MAX_ROOMS, description="Room types to play in; empty: choose.")
     layouts: list[LayoutId] = Field(
-        [], max_length=MOST_ROOMS, description="Ids of rooms to play in, joined to a home in place of retrieved ones."
+        [], max_length=MAX_ROOMS, description="Ids of rooms to play in, joined to a home in place of retrieved ones."
     )
     home: Json | None = Field(None, description="A whole home to play in, as GET /v1/stories/{id}/home gives it.")
-    short_scripts: int | None = Field(None, ge=1, le=MOST, description="How many are woven; null: choose.")
+    short_scripts: int | None = Field(None, ge=1, le=MAX_SHORT_SCRIPTS, description="How many are woven; null: choose.")
     method: Literal["matching", "direct"] = Field(
         "matching", description="Woven from the library's short scripts, or written at once (SIMS 10's baseline)."
     )
@@ -89,7 +91,7 @@ class MotionAsk(Ask):
 
     layout_id: LayoutId | None = Field(None, description="The room; or give `home`.")
     home: Json | None = Field(None, description="A whole home, as GET /v1/stories/{id}/home gives it; or `layout_id`.")
-    keyframes: list[Keyframe] = Field(min_length=1, max_length=MOST_KEYFRAMES)
+    keyframes: list[Keyframe] = Field(min_length=1, max_length=MAX_KEYFRAMES)
     backend: Literal["procedural"] | None = None
     seed: Seed = 0
     character: CharacterAsk | None = None

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import ConfigDict, Field
 
 from planner_service.schemas.stories import Ask, Json, LayoutId, Seed
-from planner_service.tasks.plan import LONGEST_ACTION
+from planner_service.tasks.plan import MAX_ACTION_LENGTH
 
 
 class TaskAsk(Ask):
@@ -22,7 +22,7 @@ class TaskAsk(Ask):
         }
     )
 
-    action: str = Field(min_length=1, max_length=LONGEST_ACTION, description="What is to be done, in plain English.")
+    action: str = Field(min_length=1, max_length=MAX_ACTION_LENGTH, description="What is to be done, in plain English.")
     layout_id: LayoutId | None = Field(None, description="A room of the library to do it in, or give `home`, or none.")
     home: Json | None = Field(None, description="A whole home, as GET /v1/stories/{id}/home gives it; or `layout_id`.")
     seed: Seed = 0

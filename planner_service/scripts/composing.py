@@ -32,9 +32,9 @@ from planner_service.scripts.traits import Scores
 from scene_graphs.furniture import ROOM_TYPES, canonical_room
 
 Method = Literal["matching", "direct"]
-MOST: Final = 12
+MAX_SHORT_SCRIPTS: Final = 12
 """Short scripts in a long one."""
-FEWEST: Final = 2
+MIN_SHORT_SCRIPTS: Final = 2
 """Short scripts when the number is not asked for."""
 _OFFERED: Final = 6
 """Candidates an event that a language model chooses from."""
@@ -56,8 +56,8 @@ class Request:
     def __post_init__(self) -> None:
         if self.method not in ("matching", "direct"):
             raise ValueError(f"method: {self.method!r} is neither 'matching' nor 'direct'")
-        if self.short_scripts is not None and not 1 <= self.short_scripts <= MOST:
-            raise ValueError(f"short_scripts: {self.short_scripts} is not a number from 1 to {MOST}")
+        if self.short_scripts is not None and not 1 <= self.short_scripts <= MAX_SHORT_SCRIPTS:
+            raise ValueError(f"short_scripts: {self.short_scripts} is not a number from 1 to {MAX_SHORT_SCRIPTS}")
         for room in self.rooms:
             if canonical_room(room) not in ROOM_TYPES:
                 raise ValueError(f"rooms: {room!r} is none of {', '.join(ROOM_TYPES)}")
@@ -100,14 +100,14 @@ def compose(
     record = _Record(insist=insist)
     if request.method == "direct":
         return _direct(theme, by_rules, model, request, record)
-    clauses = grouped(_events(theme, by_rules, model, record), request.short_scripts or MOST)
+    clauses = grouped(_events(theme, by_rules, model, record), request.short_scripts or MAX_SHORT_SCRIPTS)
     if not any(_ENGLISH.search(clause.text) for clause in clauses):
         raise ThemeError(f"no word of {theme[:60]!r} is in Latin letters. {LANGUAGE}")
     limits = Limits(tuple(map(canonical_room, request.rooms)), rooms_in(theme))
     reading = read(theme, clauses, library, limits)
     if not reading.covered:
         raise ThemeError(_not_understood(reading, library, request))
-    rows = _rows(reading, request.short_scripts or min(MOST, max(FEWEST, len(reading.covered))))
+    rows = _rows(reading, request.short_scripts or min(MAX_SHORT_SCRIPTS, max(MIN_SHORT_SCRIPTS, len(reading.covered))))
     chosen = _arranged(theme, reading, rows, library, model, record) or _matched(reading, rows, library, request.seed)
     return _long_script(theme, reading, chosen, library, request, record)
 
@@ -116,7 +116,7 @@ def _events(theme: str, by_rules: Sequence[Clause], model: LanguageModel | None,
     """What happens in the theme: as the model reads it, else as the rules do."""
     if model is not None:
         try:
-            planned = planning.plan_events(model, theme, MOST)
+            planned = planning.plan_events(model, theme, MAX_SHORT_SCRIPTS)
         except ModelError as error:
             record.failed("events found", error)
         else:

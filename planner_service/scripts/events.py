@@ -14,7 +14,7 @@ from planner_service.scripts.idioms import idiom_in
 from planner_service.scripts.sentences import STRONG, moments_of, sentences_of, state_words, without_subject
 from planner_service.scripts.verbs import has_verb
 
-LONGEST: Final = 2000
+MAX_THEME_LENGTH: Final = 2000
 """Letters of a theme."""
 LANGUAGE: Final = "Themes are read in English."
 EXAMPLES: Final = (
@@ -74,8 +74,8 @@ def clean(theme: object) -> str:
     text = "\n".join(line for line in lines if line)
     if not text:
         raise ThemeError("it is empty.")
-    if len(text) > LONGEST:
-        raise ThemeError(f"it has {len(text)} letters; at most {LONGEST} are read.")
+    if len(text) > MAX_THEME_LENGTH:
+        raise ThemeError(f"it has {len(text)} letters; at most {MAX_THEME_LENGTH} are read.")
     if not any(letter.isalpha() for letter in text):
         raise ThemeError(f"there is no word in {text[:60]!r}.")
     return text

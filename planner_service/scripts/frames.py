@@ -114,7 +114,7 @@ _HEAVY: Final = re.compile(r"\bheav", re.IGNORECASE)
 _CALM: Final = ("neutral", "relaxed")
 _SLOW: Final = ("neutral", "relaxed", "sad", "tired")
 _QUICK: Final = ("happy", "angry", "hurried", "stressed")
-_LONGEST: Final = 33
+_MAX_SENTENCE_WORDS: Final = 33
 """Words of a sentence."""
 _WINDOW: Final = 5
 """Sentences within which no frame comes again."""
@@ -189,7 +189,7 @@ class Ear:
     def _cost(self, option: Sentence) -> int:
         recent = list(self._recent)
         cost = 200 * (option.opening in self._openings) + 2 * min(self._used[option.frame], 10)
-        cost += 200 * (len(option.text.split()) > _LONGEST)
+        cost += 200 * (len(option.text.split()) > _MAX_SENTENCE_WORDS)
         if option.frame and option.family != "plain":
             cost += 100 * any(option.head == said.head for said in recent)
             cost += 8 * any(option.family == said.family for said in recent[-2:])

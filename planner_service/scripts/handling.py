@@ -14,12 +14,12 @@ from typing import Final
 
 from motion_backend.motion import Action, Skill
 
-LONGEST_CAPTION: Final = 200
+MAX_CAPTION_LENGTH: Final = 200
 GRASPING: Final = 0.6
 """Seconds that a hand stays longer on what it takes or lays down."""
 DOING: Final = 2.5
 """Seconds that a pose is held longer for each thing done in it."""
-LONGEST_HOLD: Final = 12.0
+MAX_HOLD_SECONDS: Final = 12.0
 """LINGO's longest motion (B.2.3), in seconds."""
 _TAKEN: Final = re.compile(r"^(?:pick up|take|grab|get|fetch|grasp|hold|lift|bring|carry) (?P<thing>.+)$")
 _LAID: Final = re.compile(r"^(?:put(?: down| back| away)?|place|set(?: down)?|lay|drop|return) (?P<thing>.+)$")
@@ -53,7 +53,7 @@ class Hands:
         rest = [text for text in done if text not in grasps]
         hold = action.hold
         if action.skill in (Skill.TOUCH, Skill.SITDOWN, Skill.LIEDOWN):
-            hold = min(hold + GRASPING * len(grasps) + DOING * len(rest), max(hold, LONGEST_HOLD))
+            hold = min(hold + GRASPING * len(grasps) + DOING * len(rest), max(hold, MAX_HOLD_SECONDS))
         return replace(action, holds=", ".join(self.things) or None, interaction=", ".join(rest) or None, hold=hold)
 
     def _grasp(self, text: str) -> bool:

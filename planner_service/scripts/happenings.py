@@ -13,9 +13,9 @@ from planner_service.scripts.protagonist import cast_by, name_in
 from planner_service.scripts.tense import BASES, base_of, base_of_gerund, is_past, is_verb_form, past, third_person
 from planner_service.scripts.voice import Voice, retell
 
-_LONGEST: Final = 24
+_MAX_QUOTED_WORDS: Final = 24
 """Words of an event's own text that a story may quote."""
-_MOST: Final = 3
+_MAX_EVENTS_PER_SENTENCE: Final = 3
 """Events in one sentence."""
 _WEATHER: Final = re.compile(
     r"(?:is|was) (?:raining|snowing|storming)\b|(?:starts|begins) to (?:rain|snow)\b|(?:rains|snows)\b"
@@ -108,7 +108,7 @@ def told_together(events: Sequence[str], theme: str, voice: Voice, named: bool =
         sentence = happening(event, theme, voice, named or bool(told))
         joint = joint_between(theme, before, event) if told and sentence else ""
         words = len(told[-1].split()) + len(sentence.split()) if told and sentence else 0
-        if joint and sentence and words <= _LONGEST and together < _MOST:
+        if joint and sentence and words <= _MAX_QUOTED_WORDS and together < _MAX_EVENTS_PER_SENTENCE:
             told[-1] = _with(told[-1], joint, sentence, voice)
             together += 1
         elif sentence:
@@ -231,7 +231,7 @@ def event_retold(event: str, voice: Voice, named: bool = False, others: frozense
     """
     text = event.strip().rstrip(".!?")
     words = re.sub(r"[,;]", "", text.lower()).split()
-    if not words or len(words) > _LONGEST:
+    if not words or len(words) > _MAX_QUOTED_WORDS:
         return None
     if _WEATHER.match(text):
         return (told := retell(f"It {text}", voice, named)) and told + "."

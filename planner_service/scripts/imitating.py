@@ -18,7 +18,7 @@ from planner_service.scripts.captions import Vocabulary
 from planner_service.scripts.checking import read_keyframe, repair
 from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.fitting import is_floor
-from planner_service.scripts.keyframe import EMOTIONS, MOST_PIECES, Keyframe, Origin, ShortScript
+from planner_service.scripts.keyframe import EMOTIONS, MAX_PIECES, Keyframe, Origin, ShortScript
 from planner_service.scripts.library import ScriptLibrary
 from planner_service.scripts.likeness import Likeness
 from planner_service.scripts.naming import slug_of
@@ -28,13 +28,13 @@ from planner_service.scripts.wishes import Wish, examples
 from scene_graphs.furniture import categories_of, display_name
 
 Captions = Mapping[str, Mapping[str, Sequence[str]]]
-MOST_QUESTIONS: Final = 4
+MAX_QUESTIONS: Final = 4
 """How often a model is asked, its one second try at each question not counted."""
-_LEAST_KEYFRAMES: Final = 2
-_SHORTEST: Final = 20
+_MIN_KEYFRAMES: Final = 2
+_MIN_SUMMARY_LENGTH: Final = 20
 """Letters of a summary by which something can be found."""
-_MOST_KEYFRAMES: Final = 12
-"""Asked for; up to MOST_PIECES are taken."""
+_MAX_KEYFRAMES: Final = 12
+"""Asked for; up to MAX_PIECES are taken."""
 _SHOWN: Final = 12
 """Refused scripts that a model is told of."""
 
@@ -123,14 +123,14 @@ def imitate(model: LanguageModel, library: ScriptLibrary, wish: Wish, captions: 
     """Short scripts like stored ones of an emotion and room, valid, repaired and unlike all there are.
 
     `captions` are those that the body knows, by skill, each with other words for it; a model's own words become the
-    nearest of them. What is missing is asked for again, at most MOST_QUESTIONS times; fewer than wished for are better
+    nearest of them. What is missing is asked for again, at most MAX_QUESTIONS times; fewer than wished for are better
     than none. ModelError when nothing at all can be used.
     """
     like = examples(library, wish, seed)
     vocabulary = Vocabulary({skill: list(some) for skill, some in captions.items()}, captions, library.encoder)
     desk = _Desk(model, wish, like, vocabulary, Likeness(library), {script.id for script in library.scripts})
     questions = 0
-    while desk.missing and questions < MOST_QUESTIONS:
+    while desk.missing and questions < MAX_QUESTIONS:
         questions += 1
         try:
             answer = ask(model, _question(desk, captions), WrittenScripts, _some, repairs=1)
@@ -166,7 +166,7 @@ def _question(desk: _Desk, captions: Captions) -> str:
         furniture=", ".join(sorted({display_name(word) for word in wish.furniture})),
         skills=", ".join(Skill),
         emotions=", ".join(EMOTIONS),
-        most=str(_MOST_KEYFRAMES),
+        most=str(_MAX_KEYFRAMES),
         captions="\n".join(f"{skill}: {'; '.join(known)}" for skill, known in captions.items()),
         examples="\n".join(map(_shown, desk.like)),
         before="\n".join([*written, *refused]) or "nothing",
@@ -182,8 +182,8 @@ def _shown(script: ShortScript) -> str:
 def _script(written: WrittenScript, wish: Wish, vocabulary: Vocabulary) -> tuple[ShortScript, tuple[str, ...]]:
     """A script as it can be acted out, and what was repaired; _Unfit says why it cannot be used."""
     summary = " ".join(written.summary.split())
-    if not _SHORTEST <= len(summary) <= 400:
-        raise _Unfit(f"summary: {len(summary)} letters, it must have {_SHORTEST} to 400")
+    if not _MIN_SUMMARY_LENGTH <= len(summary) <= 400:
+        raise _Unfit(f"summary: {len(summary)} letters, it must have {_MIN_SUMMARY_LENGTH} to 400")
     _refuse_count(len(written.keyframes), least=0)
     try:
         keyframes = [read_keyframe(keyframe.model_dump()) for keyframe in written.keyframes]
@@ -199,9 +199,9 @@ def _script(written: WrittenScript, wish: Wish, vocabulary: Vocabulary) -> tuple
     return ShortScript.model_validate({**row, "source": "imitation"}), repairs
 
 
-def _refuse_count(keyframes: int, least: int = _LEAST_KEYFRAMES) -> None:
-    if not least <= keyframes <= MOST_PIECES:
-        raise _Unfit(f"keyframes: {keyframes} of them, there must be {_LEAST_KEYFRAMES} to {MOST_PIECES}")
+def _refuse_count(keyframes: int, least: int = _MIN_KEYFRAMES) -> None:
+    if not least <= keyframes <= MAX_PIECES:
+        raise _Unfit(f"keyframes: {keyframes} of them, there must be {_MIN_KEYFRAMES} to {MAX_PIECES}")
 
 
 def _refuse_strange(keyframes: Iterable[Keyframe], offered: Collection[str]) -> None:

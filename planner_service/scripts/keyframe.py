@@ -15,12 +15,12 @@ EMOTIONS = ("neutral", "happy", "angry", "hurried", "tired", "sad", "stressed", 
 
 Room = Literal["bedroom", "living_room", "dining_room", "study"]
 Source = Literal["authored", "video", "text", "imitation"]
-MOST_PIECES = 24
+MAX_PIECES = 24
 """Pieces of furniture in one short script: one a keyframe."""
-MOST_VERSIONS = 1_000_000
+MAX_VERSIONS = 1_000_000
 Word = Annotated[str, Field(min_length=1, max_length=60)]
 Instance = Annotated[int, Field(ge=1, le=99, strict=True)]
-Place = Annotated[int, Field(ge=0, lt=MOST_PIECES, strict=True)]
+Place = Annotated[int, Field(ge=0, lt=MAX_PIECES, strict=True)]
 _INSTANCE = re.compile(r"^(?P<name>.*?)[\s_#]+(?P<number>[1-9]\d?)$")
 
 
@@ -65,8 +65,8 @@ class ScriptGraph(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    nodes: tuple[tuple[Word, Instance], ...] = Field((), max_length=MOST_PIECES)
-    edges: tuple[tuple[Place, Place], ...] = Field((), max_length=MOST_PIECES * (MOST_PIECES - 1) // 2)
+    nodes: tuple[tuple[Word, Instance], ...] = Field((), max_length=MAX_PIECES)
+    edges: tuple[tuple[Place, Place], ...] = Field((), max_length=MAX_PIECES * (MAX_PIECES - 1) // 2)
 
     @field_validator("edges")
     @classmethod
@@ -110,7 +110,7 @@ class ShortScript(BaseModel):
     summary: Line = Field(min_length=1, max_length=400)
     emotion: Literal["neutral", "happy", "angry", "hurried", "tired", "sad", "stressed", "drunk", "relaxed"]
     room: Room
-    keyframes: tuple[Keyframe, ...] = Field(min_length=1, max_length=MOST_PIECES)
+    keyframes: tuple[Keyframe, ...] = Field(min_length=1, max_length=MAX_PIECES)
     cues: tuple[Annotated[Line, Field(min_length=1, max_length=200)], ...] = Field((), max_length=12)
     """Other words for what happens, by which it is found too; they are never told."""
     graph: ScriptGraph | None = None
@@ -119,7 +119,7 @@ class ShortScript(BaseModel):
     licence: Line = Field("MIT", min_length=1, max_length=200)
     origin: Origin | None = None
     """Where it was found; None for what somebody wrote."""
-    version: int = Field(1, ge=1, le=MOST_VERSIONS, strict=True)
+    version: int = Field(1, ge=1, le=MAX_VERSIONS, strict=True)
     """Raised when a script is kept again under its id."""
 
 

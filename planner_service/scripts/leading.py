@@ -30,7 +30,7 @@ _OFTEN: Final = 0.75
 """Share of the stories that tell what the nearest summaries say besides the event."""
 _TOGETHER: Final = 0.8
 """Share of the events told in one sentence with the next, where that can be."""
-_MOST: Final = 3
+_MAX_EVENTS_PER_LEAD: Final = 3
 """Events in one sentence."""
 
 
@@ -86,7 +86,7 @@ def _together(script: LongScript, scenes: Sequence[Scene], leads: list[Lead], va
     moved: set[int] = set()
     for place in range(len(leads) - 1):
         one, two = leads[place : place + 2]
-        able = one.events and two.events and len(one.events) + len(two.events) <= _MOST
+        able = one.events and two.events and len(one.events) + len(two.events) <= _MAX_EVENTS_PER_LEAD
         if not able or not variety.chance(_TOGETHER):
             continue
         before, after = (script.events[events[end]] for events, end in ((one.events, -1), (two.events, 0)))

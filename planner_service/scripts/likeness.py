@@ -13,7 +13,7 @@ from planner_service.scripts.fitting import place_of
 from planner_service.scripts.keyframe import ShortScript
 from planner_service.scripts.library import ScriptLibrary
 
-NEAREST: Final = 0.90
+MIN_DUPLICATE_COSINE: Final = 0.90
 """Cosine of two summaries' vectors from which on they tell the same."""
 Doings = tuple[tuple[Skill, str, str, int], ...]
 
@@ -44,7 +44,9 @@ class Likeness:
         vector = self._vectors(script)[0]
         near = np.concatenate([block @ vector for block in self._blocks]).round(4)
         best = int(near.argmax())
-        return Twin(self._ids[best], f"summaries alike ({near[best]:.2f})") if near[best] >= NEAREST else None
+        return (
+            Twin(self._ids[best], f"summaries alike ({near[best]:.2f})") if near[best] >= MIN_DUPLICATE_COSINE else None
+        )
 
     def add(self, script: ShortScript) -> None:
         """From now on new ones are held against this one, too."""

@@ -30,7 +30,7 @@ _VERB = re.compile(r"(?:^|~)(\w+)")
 _MANNER = re.compile(r"\{\w+\}|\b(?:both|their|with|over|about|from|into|then|without)\b|^\w+")
 """What is left out of a template to find the words for the manner in which something is done."""
 _RISES = (Skill.STANDUP, Skill.GETUP)
-_LONGEST = 24
+_MAX_MOMENT_WORDS = 24
 """Words of a sentence after which no more is added to it."""
 _FURTHER = ("to and fro", "from wall to wall", "this way and that", "from one end to the other")
 """Where a walk with no goal goes after another one."""
@@ -303,7 +303,7 @@ def sentences_of(told: Sequence[Phrase], variety: Variety) -> list[tuple[Phrase,
         tied = bool(current) and (current[-1].arrives or current[-1].rises)
         purpose = [following] if phrase.arrives and following is not None else []
         words = sum(len(p.text.split()) for p in [*current, phrase, *purpose])
-        room = 0 < len(current) < most and words <= _LONGEST and not (phrase.rises or phrase.anew)
+        room = 0 < len(current) < most and words <= _MAX_MOMENT_WORDS and not (phrase.rises or phrase.anew)
         turns = len(current) >= 2 and (phrase.arrives or phrase.mood != current[-1].mood)
         if tied or (room and not turns):
             current.append(phrase)

@@ -9,7 +9,7 @@ from collections.abc import Collection
 from typing import Final
 
 _WORDS: Final = 6
-_LONGEST: Final = 70
+_MAX_NAME_LENGTH: Final = 70
 _PALE_WORDS: Final = "the character a an and their is are of to in on at for with from it they then them has"
 _PALE: Final = frozenset(_PALE_WORDS.split())
 
@@ -22,6 +22,6 @@ def slug_of(summary: str, name: str, taken: Collection[str], first: str = "") ->
     plain = unicodedata.normalize("NFKD", summary).encode("ascii", "ignore").decode().lower().replace("'", "")
     words = [word for word in re.findall(r"[a-z0-9]+", plain) if word not in _PALE][:_WORDS]
     words = words or ["scene", hashlib.sha256(f"{name}{summary}".encode()).hexdigest()[:8]]
-    slug = "-".join(filter(None, (first, *words)))[:_LONGEST].strip("-")
+    slug = "-".join(filter(None, (first, *words)))[:_MAX_NAME_LENGTH].strip("-")
     names = (slug if number == 1 else f"{slug}-{number}" for number in range(1, len(taken) + 2))
     return next(one for one in names if one not in taken)

@@ -194,7 +194,7 @@ class _Narrator:
     def _turn_to(self, scene: Scene) -> None:
         """A sentence that leads from the mood of the scene before to that of this one."""
         emotion = self._emotion(scene)
-        turns = reasons.TURNS.get(emotion, {})
+        turns = reasons.MOOD_CHANGES.get(emotion, {})
         fits = scene.event is None or emotion_of(self.script.events[scene.event].emotion) in (emotion, None)
         if self.mood and emotion != self.mood and fits and self.variety.chance(0.75):
             options = self._framed(turns.get(self.mood, turns.get("", ())))

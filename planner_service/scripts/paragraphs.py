@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from planner_service.scripts.frames import Sentence
 
-FEWEST, MOST = 3, 6
+MIN_SENTENCES, MAX_SENTENCES = 3, 6
 """Sentences in a paragraph, where the story is long enough for it."""
 
 
@@ -24,24 +24,24 @@ def balanced(scenes: Sequence[Sequence[Sentence]]) -> list[list[Sentence]]:
     """One paragraph a scene; short ones join a neighbour, long ones are parted in the middle."""
     joined: list[list[Sentence]] = []
     for scene in scenes:
-        short = bool(joined) and min(len(scene), len(joined[-1])) < FEWEST
-        if short and (len(scene) + len(joined[-1]) <= MOST or not scene):
+        short = bool(joined) and min(len(scene), len(joined[-1])) < MIN_SENTENCES
+        if short and (len(scene) + len(joined[-1]) <= MAX_SENTENCES or not scene):
             joined[-1] += scene
         else:
             joined.append(list(scene))
     for index in range(len(joined) - 1, 0, -1):
-        if len(joined[index]) < FEWEST:
+        if len(joined[index]) < MIN_SENTENCES:
             joined[index - 1] += joined.pop(index)
-    if len(joined) > 1 and len(joined[0]) < FEWEST:
+    if len(joined) > 1 and len(joined[0]) < MIN_SENTENCES:
         joined[0] += joined.pop(1)
     return [part for paragraph in joined for part in _parted(paragraph)]
 
 
 def _parted(paragraph: list[Sentence]) -> list[list[Sentence]]:
     """A paragraph as it is, or parts of it where a sentence about the body can begin the next with the name."""
-    places = range(FEWEST, len(paragraph) - FEWEST + 1)
+    places = range(MIN_SENTENCES, len(paragraph) - MIN_SENTENCES + 1)
     able = [place for place in places if paragraph[place].named is not None]
-    if len(paragraph) <= MOST or not able:
+    if len(paragraph) <= MAX_SENTENCES or not able:
         return [paragraph]
     at = min(able, key=lambda place: abs(2 * place - len(paragraph)))
     return [*_parted(paragraph[:at]), *_parted([paragraph[at].with_name(), *paragraph[at + 1 :]])]

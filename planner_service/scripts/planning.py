@@ -18,8 +18,8 @@ from planner_service.scripts.keyframe import EMOTIONS, Event, Keyframe
 from planner_service.scripts.library import Found
 from planner_service.scripts.offering import captions_offered, furniture_offered
 
-MOST_KEYFRAMES: Final = 40
-_MOST_CAPTIONS: Final = 40
+MAX_KEYFRAMES: Final = 40
+_MAX_CAPTIONS: Final = 40
 
 
 class _Answer(BaseModel):
@@ -134,8 +134,8 @@ def direct(model: LanguageModel, theme: str) -> tuple[Keyframe, ...]:
     """The keyframes a model writes by itself (SIMS 10), in known words, not yet repaired. Raises ModelError."""
 
     def problems(answer: DirectScript) -> list[str]:
-        if not 1 <= len(answer.keyframes) <= MOST_KEYFRAMES:
-            return [f"keyframes: {len(answer.keyframes)} of them, wanted 1 to {MOST_KEYFRAMES}"]
+        if not 1 <= len(answer.keyframes) <= MAX_KEYFRAMES:
+            return [f"keyframes: {len(answer.keyframes)} of them, wanted 1 to {MAX_KEYFRAMES}"]
         try:
             keyframes = _keyframes(answer)
         except ValidationError as error:
@@ -150,8 +150,8 @@ def direct(model: LanguageModel, theme: str) -> tuple[Keyframe, ...]:
         skills=", ".join(Skill),
         emotions=", ".join(EMOTIONS),
         furniture=furniture_offered(),
-        captions=captions_offered(_MOST_CAPTIONS),
-        most=str(MOST_KEYFRAMES),
+        captions=captions_offered(_MAX_CAPTIONS),
+        most=str(MAX_KEYFRAMES),
     )
     return tuple(_keyframes(ask(model, prompt, DirectScript, problems)))
 

@@ -16,9 +16,9 @@ from planner_service.scripts.sentences import state_words
 from planner_service.scripts.suiting import Demand, Limits, suitability
 from planner_service.scripts.traits import Scores
 
-NEAREST: Final = {"hashing": 0.15}
-"""Scores below this are no match, by encoder name; `_NEAREST` for any that knows meaning."""
-_NEAREST: Final = 0.27
+MIN_SCORES: Final = {"hashing": 0.15}
+"""Scores below this are no match, by encoder name; `_MIN_SCORE` for any that knows meaning."""
+_MIN_SCORE: Final = 0.27
 """Measured for MiniLM: "goes to work" has 0.29 with this library, "lorem ipsum dolor sit amet" 0.26."""
 _BARE_NOUN: Final = 0.1
 """What an event without a verb must reach above that."""
@@ -70,7 +70,7 @@ def read(theme: str, clauses: Sequence[Clause], library: ScriptLibrary, limits: 
     scores = np.array(scored)
     felt = library.moods(vectors[:-1])
     moods = moods_of(clauses, clear_moods(felt))
-    nearest = NEAREST.get(library.encoder.name, _NEAREST)
+    nearest = MIN_SCORES.get(library.encoder.name, _MIN_SCORE)
     demands = [
         Demand(
             clause.text,

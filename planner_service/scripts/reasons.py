@@ -118,7 +118,7 @@ somewhere, or to do something."""
 _BRIGHTER: Final = ("Then all at once everything looked brighter.", "And then {name} could not help but smile.")
 """To a good mood where there was no bad one."""
 
-TURNS: Final[dict[str, dict[str, tuple[str, ...]]]] = {
+MOOD_CHANGES: Final[dict[str, dict[str, tuple[str, ...]]]] = {
     "happy": {
         "neutral": _BRIGHTER,
         "relaxed": _BRIGHTER,

@@ -22,10 +22,10 @@ from planner_service.scripts.library import LibraryError
 Synonyms = dict[str, dict[str, list[str]]]
 """By skill and caption."""
 FILE: Final = "caption_synonyms.json"
-MOST_LETTERS: Final = 200
-MOST_QUESTIONS: Final = 3
+MAX_LETTERS: Final = 200
+MAX_QUESTIONS: Final = 3
 """About one batch of captions."""
-LARGEST: Final = 8_000_000
+MAX_SYNONYM_BYTES: Final = 8_000_000
 """Bytes of a file of synonyms."""
 _BATCH: Final = 12
 _NONE: Final = "no side"
@@ -74,7 +74,7 @@ def rephrase(
 ) -> Rephrased:
     """`count` other ways to say each caption, by skill; `known` are all captions there are, none of which they may be.
 
-    What is missing of a batch is asked for again, at most MOST_QUESTIONS times. ModelError when nothing can be used.
+    What is missing of a batch is asked for again, at most MAX_QUESTIONS times. ModelError when nothing can be used.
     """
     taken = {_plain(caption) for caption in known} | {_plain(one) for some in captions.values() for one in some}
     made: Synonyms = {}
@@ -101,8 +101,8 @@ def rephrase(
 
 def fault_of(phrase: str, caption: str, skill: str) -> str | None:
     """Why a phrase cannot stand for a caption of a skill; None where nothing speaks against it."""
-    if not 0 < len(phrase) <= MOST_LETTERS:
-        return f"{len(phrase)} letters, it must have 1 to {MOST_LETTERS}"
+    if not 0 < len(phrase) <= MAX_LETTERS:
+        return f"{len(phrase)} letters, it must have 1 to {MAX_LETTERS}"
     if not phrase.isprintable() or not re.search(r"[^\W\d_]", phrase):
         return "it is no plain text"
     if _told(phrase) != _told(caption) and (_told(phrase), _told(caption)) != ("both", _NONE):
@@ -120,8 +120,8 @@ def read_synonyms(file: Path) -> Synonyms:
     if not file.exists():
         return {}
     try:
-        if file.stat().st_size > LARGEST:
-            raise ValueError(f"it has more than {LARGEST} bytes")
+        if file.stat().st_size > MAX_SYNONYM_BYTES:
+            raise ValueError(f"it has more than {MAX_SYNONYM_BYTES} bytes")
         rows = json.loads(file.read_text(encoding="utf-8"))
         return {
             str(skill): {str(caption): [str(phrase) for phrase in phrases] for caption, phrases in said.items()}
@@ -163,7 +163,7 @@ def _batches(captions: Mapping[str, Sequence[str]]) -> Iterator[tuple[str, Seque
 def _fill(model: LanguageModel, skill: str, found: dict[str, list[str]], taken: set[str], count: int) -> None:
     """Ask until every caption has its phrases, or often enough."""
     refused: list[str] = []
-    for _ in range(MOST_QUESTIONS):
+    for _ in range(MAX_QUESTIONS):
         wanting = [caption for caption, phrases in found.items() if len(phrases) < count]
         if not wanting:
             return
@@ -190,7 +190,7 @@ def _take(
         phrase = " ".join(raw.split())
         fault = fault_of(phrase, caption, skill) or ("it is there already" if _plain(phrase) in taken else None)
         if fault is not None:
-            yield f"- {phrase[:MOST_LETTERS]} (for: {caption}): {fault}"
+            yield f"- {phrase[:MAX_LETTERS]} (for: {caption}): {fault}"
         elif len(kept) < count:
             kept.append(phrase)
             taken.add(_plain(phrase))

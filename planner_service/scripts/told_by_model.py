@@ -26,7 +26,7 @@ _SHOWN: Final = 8
 _USED: Final = (Skill.SITDOWN, Skill.LIEDOWN, Skill.TOUCH)
 _COMMON: Final = frozenset({"bar", "bench", "chest", "monitor", "shelf", "stool", "tv"})
 """Words that a story may use of something that is no piece of furniture, or is part of one."""
-_LEAST_SHARE: Final = 0.6
+_MIN_SHARE: Final = 0.6
 """Of the pieces that are used, how many a story has to name."""
 
 
@@ -85,7 +85,7 @@ def _problems(text: str, voice: Voice, moments: Sequence[_Moment], said: str) ->
     plain = list(used.values())  # what several pieces are called tells none of them apart
     used = {name: asked if plain.count(asked) == 1 else name for name, asked in used.items()}
     missing = [name for name, asked in used.items() if not _mentions(text, name, asked)]
-    if len(missing) > (1 - _LEAST_SHARE) * len(used):
+    if len(missing) > (1 - _MIN_SHARE) * len(used):
         found.append(f"text: nothing is told of the {', the '.join(missing)}; say what {voice.name} does there")
     found += _disorder(text, [names for names in used.items() if names[0] not in missing])
     known = " ".join([*(f"{moment.furniture} {moment.asked}" for moment in moments), said]).lower()

@@ -13,9 +13,9 @@ from planner_service.scripts.library import LibraryError, ScriptLibrary
 from planner_service.scripts.picking import Choice
 from scene_graphs.furniture import ROOM_TYPES, categories_of, is_known
 
-MOST_WANTED: Final = 20
+MAX_WANTED: Final = 20
 _EXAMPLES: Final = 5
-_LEAST: Final = 3
+_MIN_EXAMPLES: Final = 3
 """Examples below which those of another room, then of another emotion, are taken as well."""
 _FROM: Final = 200
 """Scripts among which the examples are chosen."""
@@ -35,8 +35,8 @@ class Wish:
             raise LibraryError(f"emotion: {self.emotion!r:.80} is none of {', '.join(EMOTIONS)}")
         if self.room not in ROOM_TYPES:
             raise LibraryError(f"room: {self.room!r:.80} is none of {', '.join(ROOM_TYPES)}")
-        if not 1 <= self.count <= MOST_WANTED:
-            raise LibraryError(f"count: {self.count} cannot be imitated at once; ask for 1 to {MOST_WANTED}")
+        if not 1 <= self.count <= MAX_WANTED:
+            raise LibraryError(f"count: {self.count} cannot be imitated at once; ask for 1 to {MAX_WANTED}")
         strange = [word for word in self.furniture if not is_known(word)]
         if strange or not self.furniture:
             said = f"{strange[0]!r:.80} is not known" if strange else "nothing to play with"
@@ -55,7 +55,7 @@ def examples(library: ScriptLibrary, wish: Wish, seed: int) -> tuple[ShortScript
     """
     found: dict[str, ShortScript] = {}
     for choice in (Choice(wish.emotion, wish.room), Choice(wish.emotion), Choice(room=wish.room), Choice()):
-        if len(found) < _LEAST:
+        if len(found) < _MIN_EXAMPLES:
             found |= {script.id: script for script in choice.of(library)}
     if not found:
         raise LibraryError("library: there is no short script to imitate; add one first")

@@ -11,7 +11,7 @@ from sqlalchemy import Connection, Engine, delete, insert, select, update
 from planner_service.store.shelving import bodies_in, raised, refuse_more
 from planner_service.store.tables import script_versions, short_scripts
 
-MOST_KEPT: Final = 100
+MAX_KEPT: Final = 100
 """Older versions of one script; those before them are forgotten."""
 Renewal = Callable[[str | None], str | None]
 """From the body that is kept now (None: there is none) the one to keep instead (None: it stays as it is)."""
@@ -49,4 +49,4 @@ def _set_aside(connection: Connection, script_id: str, body: str) -> None:
     version = int(json.loads(body).get("version", 1))
     old = script_versions.c
     connection.execute(insert(script_versions).values(script_id=script_id, version=version, body=body))
-    connection.execute(delete(script_versions).where(old.script_id == script_id, old.version <= version - MOST_KEPT))
+    connection.execute(delete(script_versions).where(old.script_id == script_id, old.version <= version - MAX_KEPT))

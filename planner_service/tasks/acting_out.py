@@ -8,24 +8,24 @@ from typing import Final
 import numpy as np
 
 from motion_backend.motion import Posture, Skill
-from planner_service.scripts.handling import LONGEST_CAPTION, caption_of
+from planner_service.scripts.handling import MAX_CAPTION_LENGTH, caption_of
 from planner_service.scripts.keyframe import Keyframe
 from planner_service.scripts.mending import RISES
 from planner_service.tasks.deeds import LIE, LYING, PHONE, SIT, TOUCH, WALK, WALKS
-from planner_service.tasks.plan import MOST_KEYFRAMES, Step, SubTask
+from planner_service.tasks.plan import MAX_KEYFRAMES, Step, SubTask
 from planner_service.tasks.reading import Clause, clause_of, is_furniture
 from planner_service.tasks.surroundings import Surroundings
 from planner_service.tasks.things import FIXED, is_one, kept_at
 
 _RISES_FOR_IT: Final = "it rises for it: a hand reaches things standing"
-_MOST_OF_A_STEP: Final = 4
+_MAX_PER_STEP: Final = 4
 """Keyframes that one step may take: rising, a walk, a touch or a rest."""
 _FROM_THERE: Final = "done from where it rests: the pose is held, and nothing moves"
 _UNDRAWN: Final = "nothing is drawn in the hands"
 
 
 def act_out(
-    tasks: Sequence[SubTask], room: Surroundings, seed: int, most: int = MOST_KEYFRAMES
+    tasks: Sequence[SubTask], room: Surroundings, seed: int, most: int = MAX_KEYFRAMES
 ) -> tuple[list[Step], list[Keyframe]]:
     """Every step with what becomes of it, and the keyframes, which a body can act in this order as they are.
 
@@ -73,7 +73,7 @@ class _Actor:
 
     def _act(self, task: SubTask) -> tuple[list[int], str]:
         """Add what a step needs; keyframes that it shares, and what its acting leaves out."""
-        if len(self.keyframes) + _MOST_OF_A_STEP > self.most:
+        if len(self.keyframes) + _MAX_PER_STEP > self.most:
             raise _CannotError(f"a plan has at most {self.most} keyframes; act the rest as a plan of its own")
         clause = clause_of(task.text)
         if clause is None:
@@ -245,7 +245,7 @@ class _Actor:
         done = [*self.done.get(index, []), text]
         pose = self._one_of(how) if how else self.keyframes[index].caption.rpartition("; ")[2]
         caption = caption_of(done, pose)
-        if len(caption) > LONGEST_CAPTION:
+        if len(caption) > MAX_CAPTION_LENGTH:
             return [index], "the caption of this rest names no more than is done before it"
         self.done[index] = done
         self.keyframes[index] = self.keyframes[index].model_copy(update={"caption": caption})

@@ -10,12 +10,12 @@ from pydantic import BaseModel, ConfigDict, Field
 from motion_backend.markov import Category, Hand
 from planner_service.scripts.keyframe import Keyframe
 
-MOST_STEPS: Final = 24
-MOST_KEYFRAMES: Final = 60
+MAX_STEPS: Final = 24
+MAX_KEYFRAMES: Final = 60
 """As many as POST /v1/motions takes."""
-LONGEST_STEP: Final = 80
+MAX_STEP_LENGTH: Final = 80
 """Letters of a step."""
-LONGEST_ACTION: Final = 300
+MAX_ACTION_LENGTH: Final = 300
 """Letters of an instruction."""
 
 

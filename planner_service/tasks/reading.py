@@ -10,10 +10,10 @@ from typing import Final, cast
 
 from motion_backend.markov import Hand
 from planner_service.tasks.deeds import DEEDS, Deed
-from planner_service.tasks.plan import LONGEST_ACTION, TaskError
+from planner_service.tasks.plan import MAX_ACTION_LENGTH, TaskError
 from scene_graphs import furniture
 
-MOST_CLAUSES: Final = 12
+MAX_CLAUSES: Final = 12
 _POLITE: Final = re.compile(
     r"^(?:please|now|first(?:ly)?|finally|next|also|just|quickly|slowly|carefully|again|will|(?:can|could|would) you|"
     r"i (?:want|would like|need) (?:you )?to|(?:you|he|she|they|i|we|it) (?:should|must|has to|have to|wants? to)|"
@@ -98,8 +98,8 @@ def clauses(action: str) -> tuple[Clause, ...]:
         found.append(_resolved(clause, found))
     if not found:
         raise TaskError("action: there is nothing to do in it; say what is to be done, such as “watch TV on the sofa”")
-    if len(found) > MOST_CLAUSES:
-        raise TaskError(f"action: {len(found)} things to do, at most {MOST_CLAUSES} are planned at once; split it up")
+    if len(found) > MAX_CLAUSES:
+        raise TaskError(f"action: {len(found)} things to do, at most {MAX_CLAUSES} are planned at once; split it up")
     return tuple(found)
 
 
@@ -108,8 +108,8 @@ def tidy(action: str) -> str:
     text = " ".join(action.split())
     if not text:
         raise TaskError("action: it is empty; say what is to be done, such as “watch TV on the sofa”")
-    if len(text) > LONGEST_ACTION:
-        raise TaskError(f"action: it has {len(text)} letters, at most {LONGEST_ACTION} are read; split it up")
+    if len(text) > MAX_ACTION_LENGTH:
+        raise TaskError(f"action: it has {len(text)} letters, at most {MAX_ACTION_LENGTH} are read; split it up")
     if not text.isprintable():
         raise TaskError("action: there are control characters in it; write plain text")
     return text
@@ -205,7 +205,7 @@ def _verb_at(text: str) -> tuple[str, str]:
     """The longest verb that a text begins with, its particle wherever it stands, and the rest; "" if none is known."""
     found = text.split()
     low = [word.lower().strip(",;.!?") for word in found]
-    for count in range(min(len(low), _LONGEST), 0, -1):
+    for count in range(min(len(low), _MAX_VERB_WORDS), 0, -1):
         if (verb := _forms().get(" ".join(low[:count]))) is not None and (count > 1 or not _apart(low)):
             return verb, " ".join(found[count:])
     if place := _apart(low):
@@ -225,7 +225,7 @@ def _apart(low: list[str]) -> int:
 _PARTICLES: Final = frozenset(("on", "off", "up", "down", "away", "back", "out"))
 _BEHIND: Final = frozenset(("on", "in", "at", "with", "from", "of", "by"))
 """Words that may follow such a particle."""
-_LONGEST: Final = 4
+_MAX_VERB_WORDS: Final = 4
 """Words of a verb."""
 
 

@@ -12,7 +12,7 @@ from planner_service.tasks.plan import SubTask, TaskError, TaskPlan
 from planner_service.tasks.surroundings import Surroundings
 from scene_graphs.homes import Home
 
-MOST_INSTRUCTIONS: Final = 200
+MAX_INSTRUCTIONS: Final = 200
 
 
 def plan_routine(home: Home, count: int, seed: int = 0) -> TaskPlan:
@@ -20,8 +20,8 @@ def plan_routine(home: Home, count: int, seed: int = 0) -> TaskPlan:
 
     Raises TaskError for a number that is out of bounds or a home where nothing can be done over and over.
     """
-    if not 1 <= count <= MOST_INSTRUCTIONS:
-        raise TaskError(f"count: must be a whole number from 1 to {MOST_INSTRUCTIONS}, got {count}")
+    if not 1 <= count <= MAX_INSTRUCTIONS:
+        raise TaskError(f"count: must be a whole number from 1 to {MAX_INSTRUCTIONS}, got {count}")
     try:
         planner = Planner(candidates_from_home(home, usable_offers(home)), seed)
     except PlanError as error:

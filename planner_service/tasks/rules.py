@@ -8,7 +8,7 @@ from typing import Final
 from motion_backend.markov import Category, Hand
 from motion_backend.motion import Posture
 from planner_service.tasks.deeds import SEATS, TABLES, Deed
-from planner_service.tasks.plan import MOST_STEPS, SubTask, TaskError
+from planner_service.tasks.plan import MAX_STEPS, SubTask, TaskError
 from planner_service.tasks.preparing import Preparing, with_hand
 from planner_service.tasks.reading import Clause, clauses, is_furniture
 from planner_service.tasks.surroundings import Surroundings
@@ -29,8 +29,8 @@ def plan_by_rules(action: str, room: Surroundings) -> tuple[SubTask, ...]:
         body.put_back_before(clause, asked[index:])
         body.do(clause)
     body.put_back_at_end()
-    if len(body.steps) > MOST_STEPS:
-        raise TaskError(f"action: it takes {len(body.steps)} steps, at most {MOST_STEPS} are planned; split it up")
+    if len(body.steps) > MAX_STEPS:
+        raise TaskError(f"action: it takes {len(body.steps)} steps, at most {MAX_STEPS} are planned; split it up")
     return tuple(body.steps)
 
 

@@ -12,7 +12,7 @@ from motion_backend.markov import Category, Hand
 from planner_service.llm.asking import ask
 from planner_service.llm.protocol import LanguageModel
 from planner_service.tasks.deeds import Kind
-from planner_service.tasks.plan import LONGEST_STEP, MOST_STEPS, SubTask
+from planner_service.tasks.plan import MAX_STEP_LENGTH, MAX_STEPS, SubTask
 from planner_service.tasks.reading import clause_of, misleading
 from planner_service.tasks.surroundings import Surroundings
 
@@ -46,7 +46,7 @@ class TaskSteps(_Answer):
 def plan_with_model(action: str, room: Surroundings, model: LanguageModel) -> tuple[SubTask, ...]:
     """The steps a model breaks an instruction into. Raises ModelError."""
     prompt = prompts.render(
-        "plan_task", action=action, furniture=", ".join(room.names[:_SHOWN]) or "none", most=str(MOST_STEPS)
+        "plan_task", action=action, furniture=", ".join(room.names[:_SHOWN]) or "none", most=str(MAX_STEPS)
     )
     answer = ask(model, prompt, TaskSteps, problems_in)
     return tuple(
@@ -57,8 +57,8 @@ def plan_with_model(action: str, room: Surroundings, model: LanguageModel) -> tu
 
 def problems_in(answer: TaskSteps) -> list[str]:
     """What is wrong with an answer, in words for the model."""
-    if not 1 <= len(answer.steps) <= MOST_STEPS:
-        return [f"steps: {len(answer.steps)} of them, wanted 1 to {MOST_STEPS}"]
+    if not 1 <= len(answer.steps) <= MAX_STEPS:
+        return [f"steps: {len(answer.steps)} of them, wanted 1 to {MAX_STEPS}"]
     found = []
     for index, step in enumerate(answer.steps):
         where = f"steps.{index}"
@@ -74,8 +74,8 @@ def _faults_of_text(step: TaskStep) -> list[str]:
     found = []
     for name, text, least in (("step", step.step, 1), ("object", step.object or "", 0)):
         tidy = _tidy(text)
-        if not least <= len(tidy) <= LONGEST_STEP:
-            found.append(f"{name}: must have {least} to {LONGEST_STEP} letters")
+        if not least <= len(tidy) <= MAX_STEP_LENGTH:
+            found.append(f"{name}: must have {least} to {MAX_STEP_LENGTH} letters")
         elif not tidy.isprintable() or re.search(r"[,;<>{}]", tidy):
             found.append(f"{name}: plain words without commas, semicolons or brackets, one thing a step")
         elif name == "step" and (fault := misleading(tidy)):

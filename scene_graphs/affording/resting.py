@@ -22,7 +22,7 @@ SEAT_END = 0.2
 """Least distance of the one who sits there to the end of the bed."""
 SIT_HEIGHTS = (0.28, 0.68)
 LIE_HEIGHTS = (0.18, 0.80)
-TO_HEAD, TO_FOOT, SHORTEST = 0.85, 0.95, 1.55
+TO_HEAD, TO_FOOT, MIN_BED_LENGTH = 0.85, 0.95, 1.55
 _LOW_TABLES = frozenset({"coffee_table", "pedestal_table", "table"})
 _UP = (0.0, 1.0, 0.0)
 _AROUND = [FORWARD, (1.0, 0.0), (-1.0, 0.0), (0.0, -1.0)]
@@ -63,9 +63,9 @@ def lying(placed: Placed, solid: list[Part]) -> Iterator[Spot]:
     for bed in (part for part in solid if part.role in ("mattress", "seat")):
         if not LIE_HEIGHTS[0] <= placed.position[1] + bed.top <= LIE_HEIGHTS[1]:
             continue
-        if bed.size[2] >= SHORTEST and bed.size[0] >= 0.5:
+        if bed.size[2] >= MIN_BED_LENGTH and bed.size[0] >= 0.5:
             ways = [(u, (0.0, -1.0)) for u in ((1.0, 0.0), (-1.0, 0.0))]
-        elif bed.size[0] >= SHORTEST and bed.size[2] >= 0.5:
+        elif bed.size[0] >= MIN_BED_LENGTH and bed.size[2] >= 0.5:
             ways = [(FORWARD, head) for head in ((-1.0, 0.0), (1.0, 0.0))]
         else:
             continue

@@ -18,7 +18,7 @@ DOOR_WIDTH = 0.9
 DOOR_TOP = 2.05
 WINDOW = (0.9, 2.1)
 """Heights between which a window opens the wall."""
-NARROWEST = 2.3
+MIN_WING_WIDTH = 2.3
 """Neither wing of an L-shaped room is narrower, in metres."""
 _FROM_CORNER = 0.25
 _DOOR_WALL, _WINDOW_WALL = 1.6, 1.9
@@ -149,7 +149,8 @@ def build_shell(rng: np.random.Generator, area: float, is_l_shaped: bool = False
     whole = area / (1 - cut[0] * cut[1])
     width, depth = (max(_to_step(side), 2.6) for side in (stretch * whole**0.5, whole**0.5 / stretch))
     notch = tuple(
-        min(_to_step(part * side), _to_step(side - NARROWEST)) for part, side in zip(cut, (width, depth), strict=True)
+        min(_to_step(part * side), _to_step(side - MIN_WING_WIDTH))
+        for part, side in zip(cut, (width, depth), strict=True)
     )
     outline = _outline(width, depth, (notch[0], notch[1]), int(rng.integers(4)))
     empty = Shell(outline, round(float(rng.uniform(2.55, 2.85)), 2))

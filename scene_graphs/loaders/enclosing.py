@@ -13,9 +13,9 @@ from scene_graphs.placed import Array, Point2
 
 GAP: Final = 0.6
 """Half the width of the widest doorway that does not break the ring of walls, in metres."""
-_LEAST: Final = 1.0
+_MIN_ENCLOSED: Final = 1.0
 _STRAIGHT: Final = 1e-3
-_MOST_TRIANGLES: Final = 20_000
+_MAX_TRIANGLES: Final = 20_000
 """Of more, only the hull is taken."""
 
 
@@ -32,12 +32,12 @@ def floor_of_scene(floors: ArrayLike, walls: ArrayLike) -> list[Point2] | None:
 
 
 def _is_small(triangles: Array) -> bool:
-    return len(triangles) <= _MOST_TRIANGLES
+    return len(triangles) <= _MAX_TRIANGLES
 
 
 def _hull(triangles: Array) -> list[Point2] | None:
     hull = shapely.convex_hull(shapely.multipoints(triangles.reshape(-1, 2)))
-    return _corners(hull) if isinstance(hull, shapely.Polygon) and hull.area >= _LEAST else None
+    return _corners(hull) if isinstance(hull, shapely.Polygon) and hull.area >= _MIN_ENCLOSED else None
 
 
 def _corners(floor: shapely.Polygon) -> list[Point2]:
@@ -56,4 +56,4 @@ def _rings(corners: Array) -> list[shapely.Polygon]:
         for piece in shapely.get_parts(thick)
         for ring in piece.interiors
     ]
-    return [area for area in inner if isinstance(area, shapely.Polygon) and area.area >= _LEAST]
+    return [area for area in inner if isinstance(area, shapely.Polygon) and area.area >= _MIN_ENCLOSED]

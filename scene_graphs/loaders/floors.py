@@ -19,8 +19,8 @@ AROUND: Final = 0.5
 """Free floor around furniture where the floor is not known, in metres."""
 ON_WALL: Final = 0.6
 """An opening may be drawn this far from the outline it belongs to: walls have a thickness."""
-NARROWEST: Final = 0.3
-MOST_CORNERED: Final = 2_000
+MIN_FLOOR_WIDTH: Final = 0.3
+MAX_CORNERED: Final = 2_000
 """Corners of what polygons are united to on the way; a grid of crossing slivers would have millions."""
 
 
@@ -46,7 +46,7 @@ def floor_from_boxes(boxes: ArrayLike) -> list[Point2] | None:
 
 
 def united(polygons: NDArray[np.object_]) -> shapely.Geometry:
-    """The union of polygons (N,); of a tangle, whose corners become many more or than `MOST_CORNERED`, the hull.
+    """The union of polygons (N,); of a tangle, whose corners become many more or than `MAX_CORNERED`, the hull.
 
     Neighbours are united first, two and two, so that what they are united to is never much larger than the outcome.
     """
@@ -60,7 +60,7 @@ def united(polygons: NDArray[np.object_]) -> shapely.Geometry:
     most = 2 * shapely.get_num_coordinates(level).sum()
     while len(level) > 1:
         corners = shapely.get_num_coordinates(level)
-        if corners.max() > MOST_CORNERED or corners.sum() > most:
+        if corners.max() > MAX_CORNERED or corners.sum() > most:
             return shapely.GeometryCollection(list(polygons)).convex_hull
         if len(level) % 2:
             level = np.concatenate([level, np.array([shapely.Polygon()], dtype=object)])
@@ -90,12 +90,12 @@ def on_outline(segment: Segment, floor: Sequence[Point2]) -> Segment | None:
     best: tuple[float, Segment] | None = None
     for start, end in zip(outline, np.roll(outline, -1, axis=0), strict=True):
         length = float(np.hypot(*(end - start)))
-        if length < NARROWEST:
+        if length < MIN_FLOOR_WIDTH:
             continue
         along = (end - start) / length
         positions = np.clip((ends - start) @ along, 0.0, length)
         away = float(np.abs((ends - start) @ np.array([-along[1], along[0]])).max())
-        if away > ON_WALL or abs(positions[1] - positions[0]) < NARROWEST:
+        if away > ON_WALL or abs(positions[1] - positions[0]) < MIN_FLOOR_WIDTH:
             continue
         on = start + positions[:, None] * along
         if best is None or away < best[0]:

@@ -13,19 +13,19 @@ import numpy as np
 from scene_graphs.fields import LayoutError, Row
 from scene_graphs.layouts import Array
 from scene_graphs.loaders.future3d import Model, Models
-from scene_graphs.loaders.gaps import MOST_GAPS, Gap, distinct, gap_around
+from scene_graphs.loaders.gaps import MAX_GAPS, Gap, distinct, gap_around
 from scene_graphs.loaders.intake import Intake, slug_id
 from scene_graphs.loaders.plan_boxes import UprightBox
 from scene_graphs.loaders.poses import coordinates, corners_of, read_pose
 from scene_graphs.solids import Part
 
-MOST_ENTRIES: Final = 200_000
+MAX_ENTRIES: Final = 200_000
 """Models, meshes or placed things of one house; 340 things a house is usual."""
-MOST_ITEMS: Final = 10_000
+MAX_ITEMS: Final = 10_000
 """Pieces of furniture of one house."""
-MOST_POINTS: Final = 4_000_000
+MAX_POINTS: Final = 4_000_000
 """Of all meshes placed that a room is read from: floors, walls, doors, windows."""
-MOST_TRIANGLES: Final = 10_000
+MAX_TRIANGLES: Final = 10_000
 """Of all floors of one house; a real room has some tens."""
 NOT_A_HOUSE: Final = "is not a 3D-FRONT house: it needs furniture, mesh and scene.room; give one <house uid>.json"
 _FLOOR, _CEILING = "Floor", ("WallInner", "Ceiling")
@@ -107,7 +107,7 @@ class House:
         if not isinstance(children, list):
             self._intake.drop("a room whose children are no list", name)
             return room
-        self._count("things placed", len(children), MOST_ENTRIES)
+        self._count("things placed", len(children), MAX_ENTRIES)
         for child in children:
             self._place(room, child)
         return room
@@ -150,7 +150,7 @@ class House:
         else:
             if not pose.is_upright:
                 self._intake.guess("turn of a tilted piece")
-            self._count("pieces of furniture", 1, MOST_ITEMS)
+            self._count("pieces of furniture", 1, MAX_ITEMS)
             name = told if isinstance(told := child.get("instanceid"), str) and told.strip() else ref
             room.items.append(Item(name, model, *model.placed(pose)))
 
@@ -166,14 +166,14 @@ class House:
         if isinstance(pose, str) or points is None:
             self._intake.drop("a mesh of the building whose xyz or place is no list of numbers", ref)
             return
-        self._count("points of meshes", len(points), MOST_POINTS)
+        self._count("points of meshes", len(points), MAX_POINTS)
         points = pose.to_world(points)
         if kind == _FLOOR:
             corners = corners_of(mesh.get("faces"), len(points))
             if corners is None:
                 self._intake.drop("a floor whose faces are no list of its points", ref)
                 return
-            self._count("triangles of floors", len(corners), MOST_TRIANGLES)
+            self._count("triangles of floors", len(corners), MAX_TRIANGLES)
             room.triangles.append(points[corners])
         elif gap_rank is not None:
             self._put_aside(gap_rank, points)
@@ -192,15 +192,15 @@ class House:
     def _put_aside(self, rank: int, points: Array) -> None:
         gap = gap_around(points, list(_GAPS.values())[rank])
         if gap is not None:
-            self._count("doors and windows", 1, MOST_GAPS)
+            self._count("doors and windows", 1, MAX_GAPS)
             self._gaps.append((rank, gap))
 
 
 def _by_uid(row: Row, key: str, name: str) -> Mapping[str, Row]:
     """The rows of a list by their uid, the first of each."""
     rows = row.get(key, [])
-    if not isinstance(rows, list) or len(rows) > MOST_ENTRIES:
-        raise LayoutError(f"{name}.{key} must be a list of at most {MOST_ENTRIES} objects; {name} {NOT_A_HOUSE}")
+    if not isinstance(rows, list) or len(rows) > MAX_ENTRIES:
+        raise LayoutError(f"{name}.{key} must be a list of at most {MAX_ENTRIES} objects; {name} {NOT_A_HOUSE}")
     found: dict[str, Row] = {}
     for entry in rows:
         if isinstance(entry, dict) and isinstance(uid := entry.get("uid"), str):

@@ -14,7 +14,7 @@ import numpy as np
 
 from scene_graphs.fields import LayoutError, Row
 from scene_graphs.furniture import canonical
-from scene_graphs.layouts import LARGEST, Point3
+from scene_graphs.layouts import MAX_SIZE, Point3
 from scene_graphs.loaders.obj import nodes_of_obj
 from scene_graphs.loaders.plan_boxes import UprightBox
 from scene_graphs.loaders.poses import Pose, numbers
@@ -113,9 +113,9 @@ def _name(word: str) -> str:
 
 def _box(entry: Row) -> Point3 | None:
     """Width, height, depth by the axis rule above."""
-    if (size := numbers(entry.get("size"), 3, LARGEST)) is not None:
+    if (size := numbers(entry.get("size"), 3, MAX_SIZE)) is not None:
         return (size[0], size[2], size[1])
-    if (bbox := numbers(entry.get("bbox"), 3, LARGEST)) is not None:
+    if (bbox := numbers(entry.get("bbox"), 3, MAX_SIZE)) is not None:
         return (bbox[0], bbox[1], bbox[2])
     return None
 

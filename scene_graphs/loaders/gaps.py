@@ -13,13 +13,13 @@ from scene_graphs.layouts import Array, Point2, Segment
 from scene_graphs.loaders.floors import ON_WALL, on_outline
 from scene_graphs.loaders.plan_boxes import rectangle_around
 
-MOST_GAPS: Final = 1000
+MAX_GAPS: Final = 1000
 """Doors and windows of one house."""
-NARROWEST, WIDEST_GAP = 0.4, 6.0
+MIN_GAP, MAX_GAP = 0.4, 6.0
 """No door or window is narrower or wider, in metres."""
 SAME: Final = 0.35
 """Two things whose middles are this near to each other's line are one gap: a leaf, its frame and its hole."""
-MOST_TRIES: Final = 200_000
+MAX_TRIES: Final = 200_000
 """Sides of rooms compared with gaps near them; 500 in a house of eight rooms."""
 _COVERED: Final = 0.6
 """The share of a gap's width that lies in a room's wall if it is that room's."""
@@ -44,7 +44,7 @@ def gap_around(points: Array, is_door: bool | None = None) -> Gap | None:
     start, end = rectangle_around(points[:, [0, 2]]).long_axis
     width = float(np.hypot(end[0] - start[0], end[1] - start[1]))
     bottom, top = float(points[:, 1].min()), float(points[:, 1].max())
-    if not NARROWEST <= width <= WIDEST_GAP or top - bottom < NARROWEST:
+    if not MIN_GAP <= width <= MAX_GAP or top - bottom < MIN_GAP:
         return None
     if is_door is None:
         is_door = bottom <= _DOOR_SILL and top >= _DOOR_TOP
@@ -55,7 +55,7 @@ def distinct(gaps: Sequence[Gap]) -> list[Gap]:
     """The gaps, the first of those that fill one hole."""
     if not gaps:
         return []
-    lines = shapely.linestrings([gap.segment for gap in gaps[:MOST_GAPS]])
+    lines = shapely.linestrings([gap.segment for gap in gaps[:MAX_GAPS]])
     middles = shapely.centroid(lines)
     kept: list[int] = []
     for number, (line, middle) in enumerate(zip(lines, middles, strict=True)):
@@ -80,8 +80,8 @@ def gaps_of_rooms(gaps: Sequence[Gap], floors: Sequence[Sequence[Point2] | None]
         shapely.prepare(walls)
         for number in np.flatnonzero(shapely.dwithin(lines, walls, ON_WALL)).tolist():
             gap, tries = gaps[number], tries + len(floor)
-            if tries > MOST_TRIES:
-                raise LayoutError(f"doors and windows stand at more than {MOST_TRIES} walls; split the house")
+            if tries > MAX_TRIES:
+                raise LayoutError(f"doors and windows stand at more than {MAX_TRIES} walls; split the house")
             on_wall = on_outline(gap.segment, floor)
             if on_wall is not None and _length(on_wall) >= _COVERED * _length(gap.segment):
                 room.append(gap)

@@ -9,11 +9,11 @@ from typing import Any, Final
 import numpy as np
 
 from scene_graphs.fields import LayoutError
-from scene_graphs.loaders.gltf_document import LARGEST_NUMBER, Document, list_of, numbers_of
+from scene_graphs.loaders.gltf_document import MAX_NUMBER, Document, list_of, numbers_of
 from scene_graphs.loaders.scene_tree import (
-    DEEPEST,
-    MOST_NODES,
-    MOST_TRIANGLES,
+    MAX_DEPTH,
+    MAX_NODES,
+    MAX_TRIANGLES,
     NOTHING,
     Indices,
     Node,
@@ -49,8 +49,8 @@ class _Scene:
         """The nodes of the scene, with all below them."""
         document, name = self.document, self.document.name
         nodes = list_of(document.json, "nodes", name)
-        if len(nodes) > MOST_NODES:
-            raise LayoutError(f"{name} has more than {MOST_NODES} nodes; join what belongs together")
+        if len(nodes) > MAX_NODES:
+            raise LayoutError(f"{name} has more than {MAX_NODES} nodes; join what belongs together")
         if document.json.get("scenes"):
             scene = document.item("scenes", document.json.get("scene", 0))
             return [self._node(number, np.eye(4), 0) for number in list_of(scene, "nodes", f"{name} scene")]
@@ -68,11 +68,11 @@ class _Scene:
         where = f"{self.document.name} nodes[{number}]"
         if number in self._seen:
             raise LayoutError(f"{where} has two parents or is its own; the nodes must be a tree")
-        if depth > DEEPEST:
-            raise LayoutError(f"{where} lies deeper than {DEEPEST} nodes within nodes")
+        if depth > MAX_DEPTH:
+            raise LayoutError(f"{where} lies deeper than {MAX_DEPTH} nodes within nodes")
         self._seen.add(number)
         matrix = above @ _matrix(row, where)
-        if not np.abs(matrix).max() <= LARGEST_NUMBER:
+        if not np.abs(matrix).max() <= MAX_NUMBER:
             raise LayoutError(f"{where} is scaled or moved beyond any room")
         own = NOTHING if row.get("mesh") is None else self._placed(row["mesh"], matrix)
         children = tuple(self._node(child, matrix, depth + 1) for child in list_of(row, "children", where))
@@ -95,8 +95,8 @@ class _Scene:
             where = f"{self.document.name} meshes[{number}]"
             parts = list_of(row, "primitives", where)
             self._parts += len(parts)
-            if self._parts > MOST_NODES:
-                raise LayoutError(f"{where}: more than {MOST_NODES} primitives; join what belongs together")
+            if self._parts > MAX_NODES:
+                raise LayoutError(f"{where}: more than {MAX_NODES} primitives; join what belongs together")
             self._meshes[number] = joined(
                 [self._primitive(part, f"{where}.primitives[{index}]") for index, part in enumerate(parts)]
             )
@@ -124,14 +124,14 @@ class _Scene:
         used, corners = np.unique(corners, return_inverse=True)
         with np.errstate(invalid="ignore"):  # a NaN that signals; it is refused below
             own = points[used].astype(float)
-        if not (np.abs(own) <= LARGEST_NUMBER).all():
+        if not (np.abs(own) <= MAX_NUMBER).all():
             raise LayoutError(f"{where} has points that are no numbers or lie beyond any room")
         return Triangles(own, corners.reshape(-1, 3))
 
     def _count(self, triangles: int) -> None:
         self._triangles += triangles
-        if self._triangles > 2 * MOST_TRIANGLES:
-            raise LayoutError(f"{self.document.name} has more than {MOST_TRIANGLES} triangles; simplify it")
+        if self._triangles > 2 * MAX_TRIANGLES:
+            raise LayoutError(f"{self.document.name} has more than {MAX_TRIANGLES} triangles; simplify it")
 
 
 def _label(extras: Any) -> str | None:

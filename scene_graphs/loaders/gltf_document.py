@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scene_graphs.fields import LayoutError
-from scene_graphs.loaders.scene_tree import MOST_TRIANGLES
+from scene_graphs.loaders.scene_tree import MAX_TRIANGLES
 from scene_graphs.loaders.source import parse_json
 from scene_graphs.placed import Array
 
-LARGEST_NUMBER: Final = 1e7
+MAX_NUMBER: Final = 1e7
 """No number of a matrix or a point is larger."""
-MOST_VALUES: Final = 3 * MOST_TRIANGLES
+MAX_VALUES: Final = 3 * MAX_TRIANGLES
 """Points, and corners of triangles, that are read from one file."""
 _MAGIC, _JSON, _BIN = b"glTF", 0x4E4F534A, 0x004E4942
 _TYPES: Final = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
@@ -88,8 +88,8 @@ class Document:
         if stride < width * item or last > min(end, len(data)):
             raise LayoutError(f"{place} reaches beyond its buffer; the file is cut off or damaged")
         self._values += count
-        if self._values > 2 * MOST_VALUES:
-            raise LayoutError(f"{self.name} has more than {MOST_TRIANGLES} triangles; simplify it")
+        if self._values > 2 * MAX_VALUES:
+            raise LayoutError(f"{self.name} has more than {MAX_TRIANGLES} triangles; simplify it")
         values = np.ndarray((count, width), dtype, data, start, (stride, item))
         if row.get("normalized") is True and values.dtype.kind in "iu":
             return np.maximum(values / np.iinfo(values.dtype).max, -1.0)
@@ -125,7 +125,7 @@ def numbers_of(row: Mapping[str, Any], key: str, count: int, where: str) -> Arra
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= LARGEST_NUMBER
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= MAX_NUMBER
 
 
 def _chunks(data: bytes, name: str) -> tuple[dict[str, Any], bytes | None]:

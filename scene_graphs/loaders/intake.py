@@ -10,14 +10,14 @@ from typing import Any, Final
 
 import shapely
 
-from scene_graphs.fields import FARTHEST, LayoutError
+from scene_graphs.fields import MAX_COORDINATE, LayoutError
 from scene_graphs.furniture import canonical, canonical_room
 from scene_graphs.layout_rows import placed_from_row, placed_to_row
 from scene_graphs.layouts import (
-    LARGEST,
-    LOWEST,
-    MOST_OBJECTS,
-    SMALLEST,
+    MAX_OBJECTS,
+    MAX_SIZE,
+    MIN_ROOM_HEIGHT,
+    MIN_SIZE,
     Layout,
     Opening,
     Placed,
@@ -31,8 +31,8 @@ from scene_graphs.loaders.gaps import Gap
 from scene_graphs.loaders.options import Options
 from scene_graphs.loaders.report import Report, printable
 
-MOST_DOORS: Final = 100
-MOST_ADDED: Final = 2 * MOST_OBJECTS
+MAX_DOORS: Final = 100
+MAX_ADDED: Final = 2 * MAX_OBJECTS
 """Objects of one room that are looked at; of these the largest stay."""
 OUTSIDE: Final = 0.3
 """What stands with its centre farther outside its room, in metres, is dropped."""
@@ -44,9 +44,9 @@ STRUCTURE: Final = frozenset(
     )
 )
 """Words for what a room is made of; it is no furniture."""
-_CROWDED: Final = f"a room holds at most {MOST_OBJECTS} objects, the smallest go"
+_CROWDED: Final = f"a room holds at most {MAX_OBJECTS} objects, the smallest go"
 _FELL: Final = "what it stands on was dropped"
-_LONGEST_WORD: Final = 60
+_MAX_WORD_LENGTH: Final = 60
 
 
 class Intake:
@@ -132,7 +132,7 @@ class RoomIntake:
         if (fault := _fault(position, size, yaw)) is not None:
             self.intake.drop(fault, f"{object_id}")
             return None
-        if len(self.objects) >= MOST_ADDED:
+        if len(self.objects) >= MAX_ADDED:
             self.intake.drop(_CROWDED, f"{object_id}")
             return None
         x, y, z, w, h, d = (float(value) for value in (*position, *size))
@@ -167,7 +167,7 @@ class RoomIntake:
             self._room_dropped("a room without furniture")
             return None
         height = self.height
-        if height is None or not _is_number(height) or not LOWEST <= height <= LARGEST:
+        if height is None or not _is_number(height) or not MIN_ROOM_HEIGHT <= height <= MAX_SIZE:
             self.intake.guess("height of the room")
             height = 2.6
         layout = Layout(
@@ -193,8 +193,8 @@ class RoomIntake:
 
     def _category(self, word: str) -> str | None:
         text = word.strip() if isinstance(word, str) else ""
-        if not text or len(text) > _LONGEST_WORD or not text.isprintable():
-            self.intake.drop("it has no name that says what it is", text[:_LONGEST_WORD])
+        if not text or len(text) > _MAX_WORD_LENGTH or not text.isprintable():
+            self.intake.drop("it has no name that says what it is", text[:_MAX_WORD_LENGTH])
             return None
         category = canonical(text)
         if category in STRUCTURE or not category:
@@ -258,11 +258,11 @@ class RoomIntake:
 
     def _bounded(self, objects: list[Placed]) -> list[Placed]:
         """At most as many as a room can hold: small things go first."""
-        if len(objects) <= MOST_OBJECTS:
+        if len(objects) <= MAX_OBJECTS:
             return objects
         by_size = sorted(objects, key=lambda o: (o.parent is None, o.size[0] * o.size[1] * o.size[2]), reverse=True)
-        names = {placed.id for placed in by_size[:MOST_OBJECTS]}
-        for placed in by_size[MOST_OBJECTS:]:
+        names = {placed.id for placed in by_size[:MAX_OBJECTS]}
+        for placed in by_size[MAX_OBJECTS:]:
             self.intake.drop(_CROWDED, placed.id)
         kept = []
         for placed in (one for one in objects if one.id in names):
@@ -274,11 +274,11 @@ class RoomIntake:
 
     def _openings(self, openings: Sequence[Opening], floor: Sequence[Point2], what: str) -> tuple[Opening, ...]:
         found = []
-        for _ in openings[MOST_DOORS:]:
-            self.intake.drop(f"a room has at most {MOST_DOORS} doors and as many windows")
-        for opening in openings[:MOST_DOORS]:
+        for _ in openings[MAX_DOORS:]:
+            self.intake.drop(f"a room has at most {MAX_DOORS} doors and as many windows")
+        for opening in openings[:MAX_DOORS]:
             segment = on_outline(opening.segment, floor)
-            if segment is None or not (0.0 <= opening.bottom < opening.top <= LARGEST):
+            if segment is None or not (0.0 <= opening.bottom < opening.top <= MAX_SIZE):
                 self.intake.drop(f"a {what} that is not in a wall of the room")
                 continue
             found.append(Opening(segment, float(opening.bottom), float(opening.top)))
@@ -289,12 +289,12 @@ def _fault(position: Sequence[float], size: Sequence[float], yaw: float) -> str 
     """Why no object can be there and so large; None if one can."""
     if len(position) != 3 or len(size) != 3 or not all(_is_number(value) for value in (*position, *size, yaw)):
         return "its place or size is not a number"
-    if min(size) < SMALLEST:
+    if min(size) < MIN_SIZE:
         return "its size is zero or negative"
-    if max(size) > LARGEST:
-        return f"it is larger than {LARGEST:g} m; is it metres?"
-    if max(map(abs, position)) > FARTHEST or abs(yaw) > 100.0:
-        return f"it is farther than {FARTHEST:g} m away; is it metres?"
+    if max(size) > MAX_SIZE:
+        return f"it is larger than {MAX_SIZE:g} m; is it metres?"
+    if max(map(abs, position)) > MAX_COORDINATE or abs(yaw) > 100.0:
+        return f"it is farther than {MAX_COORDINATE:g} m away; is it metres?"
     return None
 
 

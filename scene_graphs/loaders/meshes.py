@@ -12,9 +12,9 @@ from typing import Final
 
 import numpy as np
 
-from scene_graphs.fields import FARTHEST, LayoutError
+from scene_graphs.fields import MAX_COORDINATE, LayoutError
 from scene_graphs.furniture import affordances
-from scene_graphs.layout_rows import LARGEST
+from scene_graphs.layout_rows import MAX_SIZE
 from scene_graphs.layouts import Layout
 from scene_graphs.loaders.enclosing import floor_of_scene
 from scene_graphs.loaders.facing import faced
@@ -27,15 +27,15 @@ from scene_graphs.loaders.obj import nodes_of_obj
 from scene_graphs.loaders.plan_boxes import THINNEST, box_around
 from scene_graphs.loaders.scene_frame import Frame, frame_of
 from scene_graphs.loaders.scene_pieces import Building, Finds, Piece, find_pieces
-from scene_graphs.loaders.scene_tree import MOST_BYTES, Node, Triangles, joined
+from scene_graphs.loaders.scene_tree import MAX_BYTES, Node, Triangles, joined
 from scene_graphs.loaders.sizing import exact_category
 from scene_graphs.loaders.source import Source
 from scene_graphs.placed import Array, Placed, wrap
 from scene_graphs.shaping import front_of_mesh, shape_of
 from scene_graphs.solids import Part, Point3
 
-MOST_PIECES: Final = 500
-MOST_MEASURED: Final = 100
+MAX_PIECES: Final = 500
+MAX_MEASURED: Final = 100
 """Pieces whose shape is taken from their mesh, at up to 0.05 s each; of more it is that of their category."""
 _TURNED: Final = 0.01
 
@@ -51,7 +51,7 @@ def read_obj(source: Source, intake: Intake) -> list[Layout]:
 
 
 def _small(source: Source) -> Source:
-    return replace(source, most_bytes=min(source.most_bytes, MOST_BYTES))
+    return replace(source, most_bytes=min(source.most_bytes, MAX_BYTES))
 
 
 def _room(nodes: list[Node], source: Source, intake: Intake) -> list[Layout]:
@@ -79,9 +79,9 @@ class _Scene:
         """The room, filled."""
         for name, _ in self.finds.loose:
             self.intake.drop("its name is no furniture we know; name or label its node", name)
-        for piece in self.finds.pieces[MOST_PIECES:]:
-            self.intake.drop(f"a room holds at most {MOST_PIECES} objects", piece.name)
-        pieces = self.finds.pieces[:MOST_PIECES]
+        for piece in self.finds.pieces[MAX_PIECES:]:
+            self.intake.drop(f"a room holds at most {MAX_PIECES} objects", piece.name)
+        pieces = self.finds.pieces[:MAX_PIECES]
         points = [self.frame.points(piece.mesh.points) for piece in pieces]
         ground = self._ground(points)
         floor = floor_of_scene(self._plan("floor"), self._plan("wall"))
@@ -135,10 +135,10 @@ class _Scene:
         floor = room.floor or (floor_around(room.objects) if room.objects else [])
         room.objects = faced(room.objects, floor, unknown)
         used = [place for place, placed in enumerate(room.objects) if affordances(placed.category)]
-        for place in used[:MOST_MEASURED]:
+        for place in used[:MAX_MEASURED]:
             placed = room.objects[place]
             room.objects[place] = replace(placed, shape=_shape(placed, *sources[placed.id]))
-        for _ in used[MOST_MEASURED:]:
+        for _ in used[MAX_MEASURED:]:
             self.intake.guess("shape")
 
     def _headings(self, pieces: list[Piece]) -> list[float | None]:
@@ -151,7 +151,7 @@ class _Scene:
     def _add(self, room: RoomIntake, piece: Piece, own: Array, heading: float | None, on: str | None) -> Placed | None:
         """Add one piece; one without a heading gets the box that fits it best."""
         if not _is_in_a_room(own):
-            self.intake.drop(f"it is larger than {LARGEST:g} m or far away; is the unit right?", piece.name)
+            self.intake.drop(f"it is larger than {MAX_SIZE:g} m or far away; is the unit right?", piece.name)
             return None
         if not _has_surface(own, piece):
             self.intake.drop("its triangles have no surface", piece.name)
@@ -175,7 +175,7 @@ class _Scene:
 
 
 def _is_in_a_room(points: Array) -> bool:
-    return bool(np.ptp(points, axis=0).max() <= LARGEST and np.abs(points).max() <= FARTHEST)
+    return bool(np.ptp(points, axis=0).max() <= MAX_SIZE and np.abs(points).max() <= MAX_COORDINATE)
 
 
 def _has_surface(points: Array, piece: Piece) -> bool:

@@ -9,7 +9,7 @@ from typing import Final
 from scene_graphs.catalogue import ALIASES, CATALOGUE, KINDS
 from scene_graphs.furniture import ROOM_TYPES, canonical, class_of, group_of, is_known
 
-LONGEST_NAME: Final = 200
+MAX_NAME_LENGTH: Final = 200
 _HUMPS: Final = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _BREAKS: Final = re.compile(r"[^A-Za-z]+")
 _NOISE: Final = frozenset(
@@ -45,7 +45,7 @@ _NOT_AT_A_TABLE: Final = frozenset({"armchair", "lounge_chair", "lazy_sofa", "ba
 
 def words_of(name: str) -> str:
     """The words of a name in small letters with "_" between: "DiningTable.001" -> "dining_table"."""
-    spaced = _BREAKS.sub("_", _HUMPS.sub("_", name[:LONGEST_NAME]))
+    spaced = _BREAKS.sub("_", _HUMPS.sub("_", name[:MAX_NAME_LENGTH]))
     words = [word for word in spaced.lower().split("_") if word]
     while words and (len(words[-1]) == 1 or words[-1] in _NOISE):
         words.pop()

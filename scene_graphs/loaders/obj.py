@@ -11,13 +11,13 @@ from typing import Any, Final
 import numpy as np
 
 from scene_graphs.fields import LayoutError
-from scene_graphs.loaders.scene_tree import MOST_NODES, MOST_TRIANGLES, NOTHING, Node, Triangles
+from scene_graphs.loaders.scene_tree import MAX_NODES, MAX_TRIANGLES, NOTHING, Node, Triangles
 from scene_graphs.placed import Array
 
-MOST_LINES: Final = 4_000_000
+MAX_LINES: Final = 4_000_000
 """Of one file, its normals and texture points among them."""
-_LARGEST: Final = 1e7
-_MOST_CORNERS: Final = 10_000
+_MAX_COORDINATE: Final = 1e7
+_MAX_CORNERS: Final = 10_000
 """Of one face."""
 
 
@@ -29,8 +29,8 @@ def nodes_of_obj(text: str, name: str) -> list[Node]:
     """
     scene = _Scene(name)
     for number, line in enumerate(io.StringIO(text.replace("\\\n", " "), newline=None), start=1):
-        if number > MOST_LINES:
-            raise LayoutError(f"{name} has more than {MOST_LINES} lines; simplify it")
+        if number > MAX_LINES:
+            raise LayoutError(f"{name} has more than {MAX_LINES} lines; simplify it")
         scene.read(line, number)
     if not scene.faces:
         raise LayoutError(f"{name} has no faces; is it an .obj?")
@@ -75,21 +75,21 @@ class _Scene:
             point = []
         if len(point) != 3:
             raise LayoutError(f"{self.name} line {number}: v must be followed by three numbers, got {text!r:.60}")
-        if not all(abs(value) <= _LARGEST for value in point):
+        if not all(abs(value) <= _MAX_COORDINATE for value in point):
             raise LayoutError(f"{self.name} line {number}: a point beyond any room, {text!r:.60}")
         return point
 
     def _add_face(self, text: str, number: int) -> None:
         words = text.split()
-        if len(words) > _MOST_CORNERS:
-            raise LayoutError(f"{self.name} line {number}: a face has more than {_MOST_CORNERS} corners")
+        if len(words) > _MAX_CORNERS:
+            raise LayoutError(f"{self.name} line {number}: a face has more than {_MAX_CORNERS} corners")
         corners = [self._corner(word, number) for word in words]
         self._triangles += max(0, len(corners) - 2)
-        if self._triangles > MOST_TRIANGLES:
-            raise LayoutError(f"{self.name} has more than {MOST_TRIANGLES} triangles; simplify it")
+        if self._triangles > MAX_TRIANGLES:
+            raise LayoutError(f"{self.name} has more than {MAX_TRIANGLES} triangles; simplify it")
         if self._within not in self.faces:
-            if len(self.faces) >= MOST_NODES:
-                raise LayoutError(f"{self.name} has more than {MOST_NODES} groups; join what belongs together")
+            if len(self.faces) >= MAX_NODES:
+                raise LayoutError(f"{self.name} has more than {MAX_NODES} groups; join what belongs together")
             self.faces[self._within] = array("q")
         for second, third in pairwise(corners[1:]):
             self.faces[self._within].extend((corners[0], second, third))

@@ -7,7 +7,7 @@ from typing import Final
 
 from scene_graphs.loaders.source import Source
 
-MOST_ROOMS: Final = 1_000
+MAX_ROOMS: Final = 1_000
 """Rooms of one file, those that turn out to be none among them."""
 
 
@@ -27,5 +27,5 @@ class Options:
     """glb, obj: where the front of every piece points in its own frame: +z, -z, +x or -x (after `up`)."""
     unit: float = 1.0
     """glb, obj: metres a unit."""
-    most_rooms: int = MOST_ROOMS
+    most_rooms: int = MAX_ROOMS
     """A file of more is refused."""

@@ -6,14 +6,14 @@ from typing import Final
 
 import numpy as np
 
-from scene_graphs.fields import FARTHEST, LayoutError
+from scene_graphs.fields import MAX_COORDINATE, LayoutError
 from scene_graphs.layouts import Array
 from scene_graphs.loaders.source import Source
 
-MOST_VERTICES: Final = 10_000_000
-MOST_WORDS: Final = 5_000_000
+MAX_VERTICES: Final = 10_000_000
+MAX_WORDS: Final = 5_000_000
 """Numbers of the vertices of an ascii file, colours and all."""
-_LONGEST_HEADER: Final = 1 << 16
+_MAX_HEADER_LENGTH: Final = 1 << 16
 _END: Final = b"end_header"
 _ORDERS: Final = {"binary_little_endian": "<", "binary_big_endian": ">", "ascii": ""}
 _TYPES: Final = {
@@ -31,7 +31,7 @@ _TYPES: Final = {
 def read_ply_vertices(source: Source) -> Array:
     """The points x, y, z in the file's own frame and unit. (N, 3).
 
-    LayoutError if it is no PLY, its vertices do not come first, it is cut off, or a point is not within `FARTHEST`.
+    LayoutError if it is no PLY, its vertices do not come first, it is cut off, or a point is not within `MAX_COORDINATE`.
     """
     data = source.read()
     order, count, columns, start = _header(data, source.name)
@@ -45,14 +45,16 @@ def read_ply_vertices(source: Source) -> Array:
     else:
         points = _ascii_points(data[start:], count, [name for name, _ in columns], source.name)
     # A NaN is within no bound.
-    if not (np.abs(points) <= FARTHEST).all():
-        raise LayoutError(f"{source.name} has vertices that are not within {FARTHEST:g} m of its origin; is it metres?")
+    if not (np.abs(points) <= MAX_COORDINATE).all():
+        raise LayoutError(
+            f"{source.name} has vertices that are not within {MAX_COORDINATE:g} m of its origin; is it metres?"
+        )
     return points
 
 
 def _header(data: bytes, name: str) -> tuple[str, int, list[tuple[str, str]], int]:
     """Byte order ("" for ascii), number of vertices, their columns, and where the data starts."""
-    end = data.find(_END, 0, _LONGEST_HEADER)
+    end = data.find(_END, 0, _MAX_HEADER_LENGTH)
     line_end = data.find(b"\n", end)
     if not data.startswith(b"ply") or end < 0 or line_end < 0:
         raise LayoutError(f"{name} is not a PLY file: it has no header from ply to end_header")
@@ -73,14 +75,14 @@ def _header(data: bytes, name: str) -> tuple[str, int, list[tuple[str, str]], in
     if not {"x", "y", "z"} <= dict(columns).keys():
         raise LayoutError(f"{name}: a vertex must have x, y and z")
     told = lines[elements[0]][2]
-    if not (told.isascii() and told.isdigit() and len(told) < 12 and int(told) <= MOST_VERTICES):
-        raise LayoutError(f"{name} must have at most {MOST_VERTICES} vertices, got {told!r:.20}")
+    if not (told.isascii() and told.isdigit() and len(told) < 12 and int(told) <= MAX_VERTICES):
+        raise LayoutError(f"{name} must have at most {MAX_VERTICES} vertices, got {told!r:.20}")
     return _ORDERS[formats[0]], int(told), columns, line_end + 1
 
 
 def _ascii_points(body: bytes, count: int, names: list[str], name: str) -> Array:
-    if count * len(names) > MOST_WORDS:
-        raise LayoutError(f"{name} has more than {MOST_WORDS} numbers as text; save it as binary")
+    if count * len(names) > MAX_WORDS:
+        raise LayoutError(f"{name} has more than {MAX_WORDS} numbers as text; save it as binary")
     words = body.split(maxsplit=count * len(names))[: count * len(names)]
     if len(words) < count * len(names):
         raise LayoutError(f"{name} is cut off: its header promises {count} vertices")

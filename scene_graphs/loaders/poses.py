@@ -8,10 +8,10 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from scene_graphs.fields import FARTHEST, Row
+from scene_graphs.fields import MAX_COORDINATE, Row
 from scene_graphs.layouts import Array, Point3
 
-SMALLEST_SCALE, LARGEST_SCALE = 1e-5, 5.0
+MIN_SCALE, MAX_SCALE = 1e-5, 5.0
 UPRIGHT: Final = 0.995
 """Cosine of the largest tilt that is taken for none."""
 
@@ -58,13 +58,13 @@ _IDENTITY: Final = Pose((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (1.0, 1.0, 1.0))
 
 def read_pose(row: Row) -> Pose | str:
     """The pose in `pos`, `rot` (xyzw) and `scale` of a row, an absent one changing nothing; else what is wrong."""
-    place = numbers(row.get("pos", (0, 0, 0)), 3, FARTHEST)
-    turn = numbers(row.get("rot", (0, 0, 0, 1)), 4, FARTHEST)
-    scale = numbers(row.get("scale", (1, 1, 1)), 3, FARTHEST)
+    place = numbers(row.get("pos", (0, 0, 0)), 3, MAX_COORDINATE)
+    turn = numbers(row.get("rot", (0, 0, 0, 1)), 4, MAX_COORDINATE)
+    scale = numbers(row.get("scale", (1, 1, 1)), 3, MAX_COORDINATE)
     if place is None or turn is None or scale is None:
         return "its place, turn or scale is not a list of numbers in metres"
-    if not SMALLEST_SCALE <= min(map(abs, scale)) <= max(map(abs, scale)) <= LARGEST_SCALE:
-        return f"its scale is smaller than {SMALLEST_SCALE:g} or larger than {LARGEST_SCALE:g}"
+    if not MIN_SCALE <= min(map(abs, scale)) <= max(map(abs, scale)) <= MAX_SCALE:
+        return f"its scale is smaller than {MIN_SCALE:g} or larger than {MAX_SCALE:g}"
     length = hypot(*turn)
     if length < 0.5:
         return "its turn is not a quaternion"
@@ -82,7 +82,7 @@ def numbers(value: Any, count: int, most: float) -> tuple[float, ...] | None:
     return tuple(float(number) for number in value)
 
 
-def coordinates(value: Any, most: float = FARTHEST) -> Array | None:
+def coordinates(value: Any, most: float = MAX_COORDINATE) -> Array | None:
     """A flat list x, y, z, x, ... as points; None for anything else or a point farther than `most`. (N, 3)."""
     if not isinstance(value, list) or not value or len(value) % 3:
         return None

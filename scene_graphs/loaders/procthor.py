@@ -11,20 +11,20 @@ from typing import Any, Final, NamedTuple, TypeVar
 import numpy as np
 import shapely
 
-from scene_graphs.fields import FARTHEST, LayoutError, Row, read_number, read_rows, read_text
-from scene_graphs.layout_rows import MOST_CORNERS
+from scene_graphs.fields import MAX_COORDINATE, LayoutError, Row, read_number, read_rows, read_text
+from scene_graphs.layout_rows import MAX_CORNERS
 from scene_graphs.layouts import Layout
 from scene_graphs.loaders.intake import Intake, RoomIntake
-from scene_graphs.loaders.naming import LONGEST_NAME, rooms_served, words_of
+from scene_graphs.loaders.naming import MAX_NAME_LENGTH, rooms_served, words_of
 from scene_graphs.loaders.procthor_assets import ASSET_FILES, Asset, describe, read_assets
-from scene_graphs.loaders.source import MOST_ROWS, Source
+from scene_graphs.loaders.source import MAX_ROWS, Source
 from scene_graphs.loaders.unity import box_from_unity, plan_from_unity, point_from_unity
 from scene_graphs.placed import Point2, Segment
 from scene_graphs.solids import Point3
 
-MOST_ROOMS_A_HOUSE: Final = 100
-MOST_WALLS: Final = 2_000
-MOST_THINGS: Final = 5_000
+MAX_ROOMS_PER_HOUSE: Final = 100
+MAX_WALLS: Final = 2_000
+MAX_THINGS: Final = 5_000
 """Objects of one house, with the small things on them."""
 _T = TypeVar("_T")
 
@@ -59,7 +59,7 @@ def read_procthor(source: Source, intake: Intake) -> list[Layout]:
 def _wanted(scan: str | None) -> range:
     """The houses of a file to read, counted from 0: "17", "0-99", or all."""
     if scan is None:
-        return range(MOST_ROWS)
+        return range(MAX_ROWS)
     match = re.fullmatch(r"(\d{1,6})(?:-(\d{1,6}))?", scan, re.ASCII)
     if match is None:
         raise LayoutError(f"scan must number houses of the file from 0, such as 17 or 0-99, got {scan!r:.60}")
@@ -92,8 +92,8 @@ class _House:
         """Its rooms with everything in them, not finished yet. LayoutError if it is no house."""
         if not isinstance(self.row, dict) or not {"rooms", "objects"} <= self.row.keys():
             raise LayoutError(f"{self.where} must be a house with rooms, walls, doors, windows and objects")
-        walls = dict(self._each("walls", _wall, MOST_WALLS))
-        for room_id, type_, corners in self._each("rooms", _room, MOST_ROOMS_A_HOUSE):
+        walls = dict(self._each("walls", _wall, MAX_WALLS))
+        for room_id, type_, corners in self._each("rooms", _room, MAX_ROOMS_PER_HOUSE):
             if room_id in self._rooms:
                 self.intake.drop("a room whose id occurs before", room_id)
                 continue
@@ -103,7 +103,7 @@ class _House:
         self._furnish()
         ends_of = {wall_id: ends for wall_id, (_, ends) in walls.items()}
         for key, add in (("doors", RoomIntake.door), ("windows", RoomIntake.window)):
-            for hole in self._each(key, lambda item, place: _hole(item, place, ends_of), MOST_WALLS):
+            for hole in self._each(key, lambda item, place: _hole(item, place, ends_of), MAX_WALLS):
                 for room_id in sorted(hole.rooms & self._rooms.keys()):
                     add(self._rooms[room_id], hole.segment, hole.bottom, hole.top)
         for room in self._rooms.values():
@@ -120,7 +120,7 @@ class _House:
 
     def _furnish(self) -> None:
         """Put the objects of the house into the rooms they stand in."""
-        objects = list(self._each("objects", lambda item, place: (item, place, *_pose(item, place)), MOST_THINGS))
+        objects = list(self._each("objects", lambda item, place: (item, place, *_pose(item, place)), MAX_THINGS))
         plan = np.array([plan_from_unity(middle[0], middle[2]) for _, _, middle, _ in objects]).reshape(-1, 2)
         homes = self._homes(plan)
         for home, (item, place, middle, turn) in zip(homes, objects, strict=True):
@@ -152,11 +152,11 @@ class _House:
         while waiting:
             item, place, middle, turn, parent = waiting.pop()
             self._things += 1
-            if self._things > MOST_THINGS:
-                self.intake.drop(f"a house holds at most {MOST_THINGS} objects", place)
+            if self._things > MAX_THINGS:
+                self.intake.drop(f"a house holds at most {MAX_THINGS} objects", place)
                 return
             placed = self._add_one(room, item, place, middle, turn, parent)
-            children = read_rows(item, "children", place, MOST_THINGS) if item.get("children") else ()
+            children = read_rows(item, "children", place, MAX_THINGS) if item.get("children") else ()
             for child, child_place in children:
                 if placed is None:
                     self.intake.drop("what it stands on was dropped", child_place)
@@ -169,10 +169,10 @@ class _House:
     def _add_one(
         self, room: RoomIntake, item: Row, place: str, middle: Point3, turn: Point3, parent: str | None
     ) -> str | None:
-        asset_id = str(item.get("assetId", ""))[:LONGEST_NAME]
+        asset_id = str(item.get("assetId", ""))[:MAX_NAME_LENGTH]
         asset = self.assets.get(asset_id)
         if asset is None and item.get("object_name"):
-            asset_id = str(item["object_name"])[:LONGEST_NAME]
+            asset_id = str(item["object_name"])[:MAX_NAME_LENGTH]
         if asset is None:
             self.intake.guess("size")
         category, box = describe(asset_id, asset, room.tags[0], middle[1])
@@ -185,8 +185,8 @@ class _House:
 def _room(row: Row, where: str) -> tuple[str, str, list[Point2]]:
     """Id, type and outline of a room."""
     corners = row.get("floorPolygon")
-    if not isinstance(corners, list) or not 3 <= len(corners) <= MOST_CORNERS:
-        raise LayoutError(f"{where}.floorPolygon must be a list of 3 to {MOST_CORNERS} corners")
+    if not isinstance(corners, list) or not 3 <= len(corners) <= MAX_CORNERS:
+        raise LayoutError(f"{where}.floorPolygon must be a list of 3 to {MAX_CORNERS} corners")
     points = [_vector(corner, f"{where}.floorPolygon[{index}]") for index, corner in enumerate(corners)]
     type_ = words_of(read_text(row, "roomType", where, "room")) or "room"
     return read_text(row, "id", where), type_, [plan_from_unity(x, z) for x, _, z in points]
@@ -195,7 +195,7 @@ def _room(row: Row, where: str) -> tuple[str, str, list[Point2]]:
 def _wall(row: Row, where: str) -> tuple[str, tuple[str, list[Point3]]]:
     """Id of a wall, the room it belongs to, and its corners, in the house's frame."""
     corners = row.get("polygon")
-    if not isinstance(corners, list) or not 2 <= len(corners) <= MOST_CORNERS:
+    if not isinstance(corners, list) or not 2 <= len(corners) <= MAX_CORNERS:
         raise LayoutError(f"{where}.polygon must be a list of corners")
     points = [_vector(corner, f"{where}.polygon[{index}]") for index, corner in enumerate(corners)]
     return read_text(row, "id", where), (str(row.get("roomId", "")), points)
@@ -232,7 +232,7 @@ def _pose(row: Row, where: str) -> tuple[Point3, Point3]:
     return _vector(row.get("position"), f"{where}.position"), turn
 
 
-def _vector(value: Any, where: str, most: float = FARTHEST) -> Point3:
+def _vector(value: Any, where: str, most: float = MAX_COORDINATE) -> Point3:
     if not isinstance(value, dict):
         raise LayoutError(f"{where} must be {{x, y, z}}, got {value!r:.60}")
     x, y, z = (read_number(value.get(axis), f"{where}.{axis}", -most, most) for axis in ("x", "y", "z"))

@@ -7,13 +7,13 @@ from typing import Any, Final, NamedTuple
 
 from scene_graphs.fields import LayoutError, read_point3
 from scene_graphs.furniture import is_known, typical_size
-from scene_graphs.layout_rows import LARGEST, SMALLEST
+from scene_graphs.layout_rows import MAX_SIZE, MIN_SIZE
 from scene_graphs.loaders.naming import meaning, words_of
 from scene_graphs.loaders.sizing import exact_category
 from scene_graphs.loaders.source import Source
 from scene_graphs.solids import Point3
 
-MOST_ASSETS: Final = 200_000
+MAX_ASSETS: Final = 200_000
 ASSET_FILES: Final = (
     "procthor_asset_boxes.json.gz",
     "procthor_asset_boxes.json",
@@ -41,13 +41,13 @@ def read_assets(source: Source) -> dict[str, Asset]:
     LayoutError if it is neither; a single entry without a usable box is left out.
     """
     table = source.json()
-    if not isinstance(table, dict) or len(table) > MOST_ASSETS:
+    if not isinstance(table, dict) or len(table) > MAX_ASSETS:
         raise LayoutError(f'{source.name} must be an object {{"Bed_13": ["Bed", [x, y, z]]}} or asset-database.json')
     assets = {}
     for name, type_, size in _entries(table):
         try:
             if isinstance(name, str) and isinstance(type_, str):
-                assets[name] = Asset(type_, read_point3(size, name[:60], SMALLEST, LARGEST))
+                assets[name] = Asset(type_, read_point3(size, name[:60], MIN_SIZE, MAX_SIZE))
         except LayoutError:
             continue
     if table and not assets:

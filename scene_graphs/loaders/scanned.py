@@ -19,7 +19,7 @@ from scene_graphs.loaders.naming import likely_room, rooms_served
 from scene_graphs.loaders.plan_boxes import UprightBox
 from scene_graphs.loaders.sizing import exact_category
 
-MOST_THINGS: Final = 5_000
+MAX_THINGS: Final = 5_000
 """Labelled things of one scan; a room has some tens."""
 _WORDS: Final = {
     "sidecouch": "sofa",
@@ -76,10 +76,10 @@ def category_of(label: str) -> str:
 def room_of_scan(scan: Scan, intake: Intake) -> Layout | None:
     """The room: legs reach the floor, small things have what they rest on as parents, fronts are guessed."""
     room = intake.room(scan.id, "room", scan.floor, source=scan.source, licence=scan.licence)
-    for thing in scan.things[:MOST_THINGS]:
+    for thing in scan.things[:MAX_THINGS]:
         _add(room, thing, scan.level)
-    for thing in scan.things[MOST_THINGS:]:
-        intake.drop(f"a scan has at most {MOST_THINGS} things", thing.name)
+    for thing in scan.things[MAX_THINGS:]:
+        intake.drop(f"a scan has at most {MAX_THINGS} things", thing.name)
     if room.objects:
         floor = scan.floor if scan.floor is not None else floor_around(room.objects)
         room.objects = faced(_parented(room.objects), floor, {placed.id for placed in room.objects})
@@ -125,7 +125,7 @@ def _parented(objects: Sequence[Placed]) -> list[Placed]:
 
 def _add_gaps(room: RoomIntake, scan: Scan, floor: Sequence[Point2]) -> None:
     found = []
-    for thing in scan.things[:MOST_THINGS]:
+    for thing in scan.things[:MAX_THINGS]:
         label = thing.label.strip().lower()
         if label in _DOORS or label in _WINDOWS:
             gap = gap_around(thing.box.corners, label in _DOORS)

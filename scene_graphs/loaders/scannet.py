@@ -11,13 +11,13 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from scene_graphs.fields import FARTHEST, LayoutError, read_object, read_rows
+from scene_graphs.fields import MAX_COORDINATE, LayoutError, read_object, read_rows
 from scene_graphs.layouts import Array, Layout, Point2
 from scene_graphs.loaders.floors import corners_around
 from scene_graphs.loaders.intake import Intake
 from scene_graphs.loaders.plan_boxes import box_around
 from scene_graphs.loaders.ply import read_ply_vertices
-from scene_graphs.loaders.scanned import MOST_THINGS, Scan, Thing, room_of_scan
+from scene_graphs.loaders.scanned import MAX_THINGS, Scan, Thing, room_of_scan
 from scene_graphs.loaders.source import Source
 
 LICENCE: Final = "ScanNet terms of use: research only, not to be passed on"
@@ -26,7 +26,7 @@ MESH, INFO = "_vh_clean_2.ply", ".txt"
 DENSE: Final = "_vh_clean.aggregation.json"
 _SMOOTH: Final = 0.05
 """Corners of the floor's hull nearer than this to the line between others go, in metres."""
-_FEWEST: Final = 10
+_MIN_POINTS: Final = 10
 """A thing of fewer points is none."""
 
 
@@ -123,8 +123,8 @@ def _aligned(points: Array, info: dict[str, str], files: _Files) -> Array:
         except ValueError as error:
             raise LayoutError(f"{place} must be 16 numbers") from error
         turn, move = matrix[:3, :3], matrix[:3, 3]
-        if not (np.abs(matrix) <= FARTHEST).all() or not np.allclose(turn @ turn.T, np.eye(3), atol=1e-3):
-            raise LayoutError(f"{place} must be a rotation and a move within {FARTHEST:g} m")
+        if not (np.abs(matrix) <= MAX_COORDINATE).all() or not np.allclose(turn @ turn.T, np.eye(3), atol=1e-3):
+            raise LayoutError(f"{place} must be a rotation and a move within {MAX_COORDINATE:g} m")
         points = points @ turn.T + move
     upright: Array = np.stack([points[:, 0], points[:, 2], -points[:, 1]], axis=-1)
     return upright
@@ -138,7 +138,7 @@ def _groups(files: _Files, segments: NDArray[np.int64], intake: Intake) -> list[
     vertices = dict(zip(names.tolist(), np.split(order, starts[1:]), strict=True)) if len(names) else {}
     asked = missing = 0
     found: list[tuple[str, str, NDArray[np.intp]]] = []
-    for group, place in read_rows(row, "segGroups", files.aggregation.name, MOST_THINGS):
+    for group, place in read_rows(row, "segGroups", files.aggregation.name, MAX_THINGS):
         listed = group.get("segments")
         if not isinstance(listed, list) or not all(isinstance(number, int) for number in listed):
             raise LayoutError(f"{place}.segments must be a list of whole numbers")
@@ -146,8 +146,8 @@ def _groups(files: _Files, segments: NDArray[np.int64], intake: Intake) -> list[
         owned = [vertices[number] for number in set(listed) if number in vertices]
         asked, missing = asked + len(set(listed)), missing + len(set(listed)) - len(owned)
         rows = np.sort(np.concatenate(owned)) if owned else np.zeros(0, dtype=np.intp)
-        if len(rows) < _FEWEST:
-            intake.drop(f"it has fewer than {_FEWEST} points", label)
+        if len(rows) < _MIN_POINTS:
+            intake.drop(f"it has fewer than {_MIN_POINTS} points", label)
         else:
             found.append((label, str(group.get("objectId", len(found)))[:20], rows))
     if missing * 2 > asked:

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from scene_graphs.placed import Array
 
 Indices = NDArray[np.int64]
-MOST_BYTES: Final = 64 << 20
+MAX_BYTES: Final = 64 << 20
 """Of one scene file, in bytes."""
-MOST_TRIANGLES: Final = 2_000_000
-MOST_NODES: Final = 20_000
-DEEPEST: Final = 100
+MAX_TRIANGLES: Final = 2_000_000
+MAX_NODES: Final = 20_000
+MAX_DEPTH: Final = 100
 """Nodes within nodes."""
 
 

@@ -16,17 +16,17 @@ from typing import IO, Any, Final
 
 from scene_graphs.fields import LayoutError
 
-MOST_BYTES: Final = 256 << 20
+MAX_BYTES: Final = 256 << 20
 """Bytes of one file, unpacked. A 3D-FRONT house has some megabytes, a ScanNet mesh some tens."""
-MOST_TEXT: Final = 96 << 20
+MAX_TEXT_BYTES: Final = 96 << 20
 """Bytes of a text, or of a line of many: as letters it may take four times the memory."""
-MOST_STREAM: Final = 4 << 30
+MAX_STREAM_BYTES: Final = 4 << 30
 """Bytes of a file on disk that is read line by line."""
-MOST_VALUES: Final = 4_000_000
+MAX_VALUES: Final = 4_000_000
 """Of one JSON text: each takes up to some hundred bytes of memory."""
-MOST_ROWS: Final = 200_000
+MAX_ROWS: Final = 200_000
 _GZIP, _ZIP, _ZIPPED_FILE = b"\x1f\x8b", b"PK\x03\x04", b"PK\x01\x02"
-_MOST_ZIPPED: Final = 10_000
+_MAX_ZIPPED: Final = 10_000
 _DAMAGED: Final = (
     OSError,
     EOFError,
@@ -48,10 +48,10 @@ class Source:
     """For errors: the file's own name, never a path."""
     path: Path | None = None
     data: bytes | None = None
-    most_bytes: int = MOST_BYTES
+    most_bytes: int = MAX_BYTES
 
     @classmethod
-    def of_path(cls, path: str | Path, most_bytes: int = MOST_BYTES) -> Source:
+    def of_path(cls, path: str | Path, most_bytes: int = MAX_BYTES) -> Source:
         """A file or folder on disk. LayoutError if there is none, or a pipe or device, which may never end."""
         place = Path(path)
         name = place.name or place.resolve().name
@@ -64,7 +64,7 @@ class Source:
         raise LayoutError(f"{name:.100} cannot be read: {reason}; give a scene file, or a folder of files")
 
     @classmethod
-    def of_bytes(cls, name: str, data: bytes, most_bytes: int = MOST_BYTES) -> Source:
+    def of_bytes(cls, name: str, data: bytes, most_bytes: int = MAX_BYTES) -> Source:
         """What somebody sent. There is nothing beside it."""
         return cls(name, None, data, most_bytes)
 
@@ -106,8 +106,8 @@ class Source:
         return self._read(self.most_bytes)
 
     def text(self) -> str:
-        """The bytes as UTF-8. LayoutError if they are not, or are more than `MOST_TEXT`."""
-        return _decoded(self._read(min(self.most_bytes, MOST_TEXT)), self.name)
+        """The bytes as UTF-8. LayoutError if they are not, or are more than `MAX_TEXT_BYTES`."""
+        return _decoded(self._read(min(self.most_bytes, MAX_TEXT_BYTES)), self.name)
 
     def json(self) -> Any:
         """The one JSON value in it. LayoutError as `parse_json` has it."""
@@ -117,12 +117,12 @@ class Source:
         """JSON values with the place of each: those of a list, of lines (JSONL), or the one there is.
 
         Lines are read one by one, so that a file of many may be longer than what is held in memory. LayoutError for the
-        first that is no JSON, and where there are more than `MOST_ROWS`.
+        first that is no JSON, and where there are more than `MAX_ROWS`.
         """
         rows = self._line_rows() if self._is_lines() else self._value_rows()
         for number, row in enumerate(rows):
-            if number >= MOST_ROWS:
-                raise LayoutError(f"{self.name} has more than {MOST_ROWS} rows; split it")
+            if number >= MAX_ROWS:
+                raise LayoutError(f"{self.name} has more than {MAX_ROWS} rows; split it")
             yield row
 
     def _line_rows(self) -> Iterator[tuple[str, Any]]:
@@ -151,15 +151,15 @@ class Source:
         return next(lines, None) is not None
 
     def _lines(self) -> Iterator[bytes]:
-        most = self.most_bytes if self.path is None else MOST_STREAM
+        most = self.most_bytes if self.path is None else MAX_STREAM_BYTES
         read = 0
         with self._opened() as stream:
-            while line := stream.readline(MOST_TEXT + 1):
+            while line := stream.readline(MAX_TEXT_BYTES + 1):
                 read += len(line)
                 if read > most:
                     raise LayoutError(self._too_large(most))
-                if len(line) > MOST_TEXT:
-                    raise LayoutError(self._too_large(MOST_TEXT))
+                if len(line) > MAX_TEXT_BYTES:
+                    raise LayoutError(self._too_large(MAX_TEXT_BYTES))
                 yield line
 
     def _read(self, most: int) -> bytes:
@@ -203,7 +203,7 @@ class Source:
         data = packed.read(self.most_bytes + 1)
         if len(data) > self.most_bytes:
             raise LayoutError(self._too_large(self.most_bytes))
-        if data.count(_ZIPPED_FILE) > _MOST_ZIPPED:
+        if data.count(_ZIPPED_FILE) > _MAX_ZIPPED:
             raise LayoutError(f"{self.name} is a zip of many files; send one scene file")
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             files = [info for info in archive.infolist() if not info.is_dir()]
@@ -219,9 +219,9 @@ class Source:
 
 
 def parse_json(text: str, where: str) -> Any:
-    """The value of a JSON text. LayoutError if it is none, is nested too deeply or holds more than `MOST_VALUES`."""
-    if sum(text.count(sign) for sign in ",[{") > MOST_VALUES:
-        raise LayoutError(f"{where} holds more than {MOST_VALUES} values; split it")
+    """The value of a JSON text. LayoutError if it is none, is nested too deeply or holds more than `MAX_VALUES`."""
+    if sum(text.count(sign) for sign in ",[{") > MAX_VALUES:
+        raise LayoutError(f"{where} holds more than {MAX_VALUES} values; split it")
     try:
         return json.loads(text)
     except (ValueError, RecursionError) as error:

@@ -12,19 +12,19 @@ from typing import Any, Final
 
 import numpy as np
 
-from scene_graphs.fields import FARTHEST, LayoutError, Row, read_object, read_rows, read_text
+from scene_graphs.fields import MAX_COORDINATE, LayoutError, Row, read_object, read_rows, read_text
 from scene_graphs.furniture import Furniture, affordances, is_known
 from scene_graphs.graph import FurnitureGraph, graph_from_parts
-from scene_graphs.layouts import LARGEST, Layout, Point2
+from scene_graphs.layouts import MAX_SIZE, Layout, Point2
 from scene_graphs.loaders.floors import floor_from_triangles
 from scene_graphs.loaders.intake import STRUCTURE, Intake
 from scene_graphs.loaders.plan_boxes import UprightBox
 from scene_graphs.loaders.poses import numbers
-from scene_graphs.loaders.scanned import MOST_THINGS, Scan, Thing, category_of, room_of_scan
+from scene_graphs.loaders.scanned import MAX_THINGS, Scan, Thing, category_of, room_of_scan
 from scene_graphs.loaders.source import Source
 
-MOST_SCANS: Final = 10_000
-MOST_RELATIONS: Final = 200_000
+MAX_SCANS: Final = 10_000
+MAX_RELATIONS: Final = 200_000
 LICENCE: Final = "3RScan terms of use: research only, not to be passed on"
 BOXES: Final = "semseg.v2.json"
 _FILE: Final = "an object with scans or segGroups"
@@ -47,7 +47,7 @@ def graph_from_3dssg(objects: Any, relationships: Any, scan: str) -> FurnitureGr
     labels = {
         _id(row, "id", where): read_text(row, "label", where)
         for entry, place in _entries(objects, "objects.json", scan)
-        for row, where in read_rows(entry, "objects", place, MOST_THINGS)
+        for row, where in read_rows(entry, "objects", place, MAX_THINGS)
     }
     if not labels:
         raise LayoutError(f"objects.json: scans has no objects of a scan {scan!r:.60}; take one of its scans[].scan")
@@ -100,7 +100,7 @@ def _boxes_files(source: Source, intake: Intake) -> Iterator[tuple[Source, str]]
     if "scans" not in row:
         raise LayoutError(f"{listed.name} must be an object with scans or segGroups: 3DSSG's objects.json or a {BOXES}")
     found_any = False
-    for entry, place in read_rows(row, "scans", listed.name, MOST_SCANS):
+    for entry, place in read_rows(row, "scans", listed.name, MAX_SCANS):
         name = read_text(entry, "scan", place)
         if scan in (None, name) and (boxes := source.beside(f"{name}/{BOXES}")) is not None:
             found_any = True
@@ -117,7 +117,7 @@ def _layout(file: Source, name: str, intake: Intake) -> Layout | None:
     if "segGroups" not in row:
         raise LayoutError(f"{file.name}.segGroups is missing: a scan's boxes are in {BOXES}")
     things: list[Thing] = []
-    for group, _ in read_rows(row, "segGroups", file.name, MOST_THINGS):
+    for group, _ in read_rows(row, "segGroups", file.name, MAX_THINGS):
         label, number = group.get("label"), group.get("objectId", group.get("id"))
         box = _box(group.get("obb"))
         if not isinstance(label, str):
@@ -146,8 +146,8 @@ def _box(obb: Any) -> UprightBox | None:
     """The upright box of an oriented one, Z up; its width lies along the longer axis in plan."""
     if not isinstance(obb, dict):
         return None
-    middle = numbers(obb.get("centroid"), 3, FARTHEST)
-    lengths = numbers(obb.get("axesLengths"), 3, LARGEST)
+    middle = numbers(obb.get("centroid"), 3, MAX_COORDINATE)
+    lengths = numbers(obb.get("axesLengths"), 3, MAX_SIZE)
     axes = numbers(obb.get("normalizedAxes"), 9, 1.01)
     if middle is None or lengths is None or axes is None:
         return None
@@ -179,8 +179,8 @@ def _relations(relationships: Any, scan: str) -> Iterator[tuple[str, str, str]]:
     """Subject, object and name of the relations that count, of all entries of the scan."""
     for entry, place in _entries(relationships, "relationships.json", scan):
         rows = entry.get("relationships", [])
-        if not isinstance(rows, list) or len(rows) > MOST_RELATIONS:
-            raise LayoutError(f"{place}.relationships must be a list of at most {MOST_RELATIONS} relations")
+        if not isinstance(rows, list) or len(rows) > MAX_RELATIONS:
+            raise LayoutError(f"{place}.relationships must be a list of at most {MAX_RELATIONS} relations")
         for number, row in enumerate(rows):
             if not isinstance(row, list) or len(row) != 4 or not isinstance(row[3], str):
                 raise LayoutError(f"{place}.relationships[{number}] must be [subject, object, relation id, its name]")
@@ -191,7 +191,7 @@ def _relations(relationships: Any, scan: str) -> Iterator[tuple[str, str, str]]:
 
 def _entries(file: Any, name: str, scan: str) -> Iterator[tuple[Row, str]]:
     """All entries of a scan: its relations may come in several."""
-    for entry, place in read_rows(read_object(file, name, _FILE), "scans", name, MOST_SCANS):
+    for entry, place in read_rows(read_object(file, name, _FILE), "scans", name, MAX_SCANS):
         if entry.get("scan") == scan:
             yield entry, place
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, NamedTuple
 
-from scene_graphs.fields import FARTHEST, LayoutError, Row, read_point3, read_rows, read_text
+from scene_graphs.fields import MAX_COORDINATE, LayoutError, Row, read_point3, read_rows, read_text
 from scene_graphs.layouts import Layout
 from scene_graphs.loaders.facing import faced
 from scene_graphs.loaders.floors import floor_around, floor_from_boxes
@@ -22,9 +22,9 @@ from scene_graphs.loaders.unity import point_from_unity
 from scene_graphs.placed import Placed
 from scene_graphs.solids import Point3
 
-MOST_NODES: Final = 20_000
-MOST_EDGES: Final = 2_000_000
-MOST_ROOMS_A_FLAT: Final = 100
+MAX_NODES: Final = 20_000
+MAX_EDGES: Final = 2_000_000
+MAX_ROOMS_PER_FLAT: Final = 100
 FURNISHING: Final = frozenset({"Furniture", "Appliances", "Electronics", "Lamps", "Decor"})
 """Node categories that furnish a room; the rest is the building, or small things to pick up."""
 _BUILDING: Final = frozenset({"Walls", "Ceiling", "Doors", "Windows"})
@@ -118,7 +118,7 @@ class _Flat:
     def nodes(self) -> dict[str, _Node]:
         """The nodes that have a box, by id."""
         found: dict[str, _Node] = {}
-        for row, where in read_rows(self.graph, "nodes", self.name, MOST_NODES):
+        for row, where in read_rows(self.graph, "nodes", self.name, MAX_NODES):
             try:
                 node = _read_node(row, where)
             except LayoutError as error:
@@ -134,15 +134,15 @@ class _Flat:
     def rooms(self) -> dict[str, _Node]:
         """The nodes that are rooms, by id."""
         rooms = {name: node for name, node in self.nodes.items() if node.category == "Rooms"}
-        if len(rooms) > MOST_ROOMS_A_FLAT:
-            raise LayoutError(f"{self.name} holds more than {MOST_ROOMS_A_FLAT} rooms")
+        if len(rooms) > MAX_ROOMS_PER_FLAT:
+            raise LayoutError(f"{self.name} holds more than {MAX_ROOMS_PER_FLAT} rooms")
         return rooms
 
     @cached_property
     def edges(self) -> Mapping[tuple[str, str], list[str]]:
         """The targets by (relation, source)."""
         found: dict[tuple[str, str], list[str]] = defaultdict(list)
-        for row, _ in read_rows(self.graph, "edges", self.name, MOST_EDGES):
+        for row, _ in read_rows(self.graph, "edges", self.name, MAX_EDGES):
             relation = row.get("relation_type")
             if relation in ("INSIDE", "ON"):
                 found[relation, str(row.get("from_id"))].append(str(row.get("to_id")))
@@ -232,8 +232,8 @@ def _read_node(row: Row, where: str) -> _Node:
     node_id = row.get("id")
     if not isinstance(node_id, int | str) or isinstance(node_id, bool) or not 0 < len(str(node_id)) <= 60:
         raise LayoutError(f"{where}.id must be a number or a text, got {node_id!r:.60}")
-    middle = read_point3(box.get("center"), f"{where}.bounding_box.center", -FARTHEST, FARTHEST)
-    size = read_point3(box.get("size"), f"{where}.bounding_box.size", -FARTHEST, FARTHEST)
+    middle = read_point3(box.get("center"), f"{where}.bounding_box.center", -MAX_COORDINATE, MAX_COORDINATE)
+    size = read_point3(box.get("size"), f"{where}.bounding_box.size", -MAX_COORDINATE, MAX_COORDINATE)
     class_name = read_text(row, "class_name", where).lower().replace(" ", "")
     prefab = str(row.get("prefab_name") or "")[:200]
     category = read_text(row, "category", where)

@@ -31,7 +31,7 @@ from planner_service.making import Maker
 from planner_service.parts import open_parts
 from planner_service.scripts.captions import captions
 from planner_service.scripts.checking import check
-from planner_service.scripts.imitating import MOST_QUESTIONS, imitate
+from planner_service.scripts.imitating import MAX_QUESTIONS, imitate
 from planner_service.scripts.library import Features, ScriptLibrary, built_in
 from planner_service.scripts.wishes import Wish
 from planner_service.settings import Settings
@@ -199,7 +199,7 @@ def test_a_hostile_model_gives_no_script_and_no_plan_that_cannot_be_acted(
     assert not check(plan.keyframes)
     assert KEY not in " ".join((*made.notes, *plan.notes))
     assert time.monotonic() - begun < 15
-    assert len(server.asked) <= (1 + MOST_QUESTIONS + 1) * 3 * 4
+    assert len(server.asked) <= (1 + MAX_QUESTIONS + 1) * 3 * 4
 
 
 @pytest.mark.parametrize("mode", ["wrong schema", "429", "401", "drip"])

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from motion_backend.motion import Action, Character, Skill
 from motion_backend.obstacles import Obstacles
 from motion_backend.procedural.backend import ProceduralBackend
-from motion_backend.procedural.perching import LEAST_EDGE, seat_for
+from motion_backend.procedural.perching import MIN_EDGE, seat_for
 from scene_graphs.homes import Home, home_from_layouts
 from scene_graphs.layouts import Layout, Placed
 from scene_graphs.surfaces import spots
@@ -52,7 +52,7 @@ def test_a_seat_drawn_up_is_moved_ahead_only_and_never_left(gap: float) -> None:
     assert moved == pytest.approx((moved @ ahead) * ahead)
     assert drawn.edge == pytest.approx(spot.edge - moved @ ahead)
     assert drawn.back == pytest.approx(spot.back + moved @ ahead)
-    assert drawn.edge >= LEAST_EDGE - 1e-9
+    assert drawn.edge >= MIN_EDGE - 1e-9
 
 
 def test_who_wants_no_table_sits_where_one_sits() -> None:

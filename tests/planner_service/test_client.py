@@ -393,7 +393,7 @@ def test_one_who_follows_stays_while_the_service_is_away(client: Client, story: 
 
 
 def test_one_who_never_gets_an_answer_gives_up(client: Client, story: Story, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(following, "LONGEST_PAUSE", 0.001)
+    monkeypatch.setattr(following, "MAX_PAUSE_SECONDS", 0.001)
     with cutting(client.base_url, repeat(40)) as url, Client(url) as cut_off, pytest.raises(Unreachable, match="broke"):
         list(cut_off.events(story.id))
 

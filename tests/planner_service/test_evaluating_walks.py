@@ -25,7 +25,7 @@ from motion_backend.skeleton import build_skeleton
 from planner_service.cli import app
 from planner_service.evaluating.walks import (
     CAPTION,
-    MOST_WINDOWS,
+    MAX_WINDOWS,
     WalkReport,
     evaluate_walks,
     jerk_bins,
@@ -87,7 +87,7 @@ def test_another_style_is_compared_with_where_it_is_asked_for() -> None:
 def test_nobody_counts_for_more_than_a_dozen_windows() -> None:
     entries = list(collection().entries) + [entry(0, walked(1.0, 20 + k)) for k in range(6)]
     found = recorded_walks(Dataset(SKELETON, tuple(entries)))
-    assert found.groups.count("person 0") == MOST_WINDOWS
+    assert found.groups.count("person 0") == MAX_WINDOWS
 
 
 def test_too_few_people_say_what_to_do() -> None:

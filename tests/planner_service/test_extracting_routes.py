@@ -30,7 +30,7 @@ from planner_service.extraction.plain import ExtractionError
 from planner_service.extractions import Reader
 from planner_service.llm.protocol import LanguageModel
 from planner_service.llm.scripted import ScriptedModel
-from planner_service.parts import MOST_UPLOADS, Parts
+from planner_service.parts import MAX_UPLOADS, Parts
 from planner_service.reporting import extraction_events
 from planner_service.routes import multipart
 from planner_service.routes.extracting import LETTERS_AT_ONCE
@@ -376,7 +376,7 @@ def test_uploads_that_fall_silent_end_and_their_places_are_free_again(
         head = "".join(f"{name}: {value}\r\n" for name, value in sent.headers.items())
         silent = [
             all_closed.enter_context(socket.create_connection((sent.url.host, sent.url.port), timeout=30))
-            for _ in range(MOST_UPLOADS)
+            for _ in range(MAX_UPLOADS)
         ]
         for one in silent:
             one.sendall(f"POST {EXTRACT} HTTP/1.1\r\n{head}\r\n".encode() + beginning)

@@ -24,7 +24,7 @@ from sqlalchemy.exc import TimeoutError as PoolTimeout
 from planner_service import errors
 from planner_service.answering import database_problem, engine_problem, is_hang_up
 from planner_service.errors import Problem, printable
-from planner_service.limiting import MOST_BYTES
+from planner_service.limiting import MAX_BYTES
 from planner_service.llm.protocol import ModelError
 from planner_service.scripts.events import ThemeError
 from planner_service.settings import SettingsError
@@ -201,7 +201,7 @@ async def test_huge_input_is_not_repeated(app: FastAPI) -> None:
     body = {"theme": "a" * 1_000_000, "b" * 1_000_000: 1, **{f"extra{number}": 1 for number in range(5000)}}
     answer = await ask(app, "POST", "/v1/wishes/1", json=body)
     problem = check_problem(answer, 422)
-    assert len(problem["errors"]) == errors.MOST_FAULTS
+    assert len(problem["errors"]) == errors.MAX_FAULTS
     assert "more)" in problem["detail"]
 
 
@@ -215,16 +215,16 @@ async def test_broken_letters_in_names_can_still_be_told(app: FastAPI) -> None:
 async def test_a_declared_body_that_is_too_long_is_refused_unread(app: FastAPI) -> None:
     assert (
         "4194304"
-        in check_problem(await ask(app, "POST", "/v1/wishes/1", content=b"x" * (MOST_BYTES + 1)), 413)["detail"]
+        in check_problem(await ask(app, "POST", "/v1/wishes/1", content=b"x" * (MAX_BYTES + 1)), 413)["detail"]
     )
-    fits = b'{"theme": "' + b"x" * (MOST_BYTES - 13) + b'"}'
-    assert len(fits) == MOST_BYTES
+    fits = b'{"theme": "' + b"x" * (MAX_BYTES - 13) + b'"}'
+    assert len(fits) == MAX_BYTES
     check_problem(await ask(app, "POST", "/v1/wishes/1", content=fits, headers=JSON), 422)
 
 
 async def test_a_body_in_chunks_that_grows_too_long_is_refused(app: FastAPI) -> None:
     async def chunks() -> AsyncIterator[bytes]:
-        for _ in range(MOST_BYTES // 65536 + 1):
+        for _ in range(MAX_BYTES // 65536 + 1):
             yield b"x" * 65536
 
     check_problem(await ask(app, "POST", "/v1/wishes/1", content=chunks(), headers=JSON), 413)
@@ -232,7 +232,7 @@ async def test_a_body_in_chunks_that_grows_too_long_is_refused(app: FastAPI) -> 
 
 @pytest.mark.parametrize("chunked", [False, True])
 def test_over_a_real_connection_too_long_a_body_gets_its_answer(app: FastAPI, chunked: bool) -> None:
-    size = MOST_BYTES + 1_000_000
+    size = MAX_BYTES + 1_000_000
     content = (b"x" * 65536 for _ in range(size // 65536)) if chunked else b"x" * size
     with running(app) as url, httpx.Client() as client:
         check_problem(client.post(f"{url}/v1/wishes/1", content=content, headers=JSON), 413)

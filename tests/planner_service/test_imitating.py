@@ -17,11 +17,11 @@ from planner_service.llm.protocol import ModelError
 from planner_service.llm.scripted import Answer, ScriptedModel
 from planner_service.scripts.captions import captions
 from planner_service.scripts.checking import check
-from planner_service.scripts.imitating import MOST_QUESTIONS, Imitated, imitate
+from planner_service.scripts.imitating import MAX_QUESTIONS, Imitated, imitate
 from planner_service.scripts.keyframe import ShortScript
 from planner_service.scripts.library import Features, LibraryError, ScriptLibrary, built_in
 from planner_service.scripts.likeness import Likeness
-from planner_service.scripts.wishes import MOST_WANTED, Wish, examples
+from planner_service.scripts.wishes import MAX_WANTED, Wish, examples
 
 LIBRARY = ScriptLibrary(built_in(), Features(HashingEncoder()))
 CAPTIONS = {skill: dict.fromkeys(some, ()) for skill, some in captions().items()}
@@ -152,9 +152,9 @@ def test_a_bad_script_is_refused_and_asked_for_again(name: str) -> None:
 
 def test_two_that_are_alike_are_kept_once_and_the_shortfall_is_told() -> None:
     same = written(RING, "bed")
-    found = made(*[[same, same]] * MOST_QUESTIONS)
+    found = made(*[[same, same]] * MAX_QUESTIONS)
     assert [script.summary for script in found.scripts] == [RING]
-    assert found.notes[-1].startswith(f"1 of 2 short scripts after {MOST_QUESTIONS} questions")
+    assert found.notes[-1].startswith(f"1 of 2 short scripts after {MAX_QUESTIONS} questions")
 
 
 def test_what_was_written_is_kept_when_the_model_then_fails() -> None:
@@ -167,7 +167,7 @@ def test_a_model_of_which_nothing_can_be_used_is_an_error_after_few_questions() 
     model = answering(*[[written(RING, "spaceship")]] * 50)
     with pytest.raises(ModelAnswerError, match="'spaceship' is not there"):
         imitate(model, LIBRARY, WISH, CAPTIONS)
-    assert len(model.calls) == MOST_QUESTIONS
+    assert len(model.calls) == MAX_QUESTIONS
     with pytest.raises(ModelError, match="gone"):
         made(ModelError("gone"))
 
@@ -206,7 +206,7 @@ def test_whatever_a_model_writes_what_is_kept_can_be_acted_out(rows: list[dict[s
         found = imitate(model, LIBRARY, WISH, CAPTIONS)
     except ModelError:
         found = Imitated((), (), ())
-    assert len(model.calls) <= 2 * MOST_QUESTIONS
+    assert len(model.calls) <= 2 * MAX_QUESTIONS
     likeness = Likeness(LIBRARY)
     for script in found.scripts:
         assert not check(script)
@@ -220,7 +220,7 @@ def test_whatever_a_model_writes_what_is_kept_can_be_acted_out(rows: list[dict[s
         (("bored", "bedroom", 1, ("bed",)), "emotion: 'bored'"),
         (("sad", "attic", 1, ("bed",)), "room: 'attic'"),
         (("sad", "bedroom", 0, ("bed",)), "count: 0"),
-        (("sad", "bedroom", MOST_WANTED + 1, ("bed",)), "count: 21"),
+        (("sad", "bedroom", MAX_WANTED + 1, ("bed",)), "count: 21"),
         (("sad", "bedroom", 1, ()), "furniture: nothing"),
         (("sad", "bedroom", 1, ("bed", "spaceship")), "furniture: 'spaceship'"),
     ],

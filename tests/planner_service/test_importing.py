@@ -19,7 +19,7 @@ from fastapi import FastAPI
 from service_app import app_on, calling, check_problem
 
 from planner_service.limiting import LARGER
-from planner_service.routes.layouts import MOST_ROOMS
+from planner_service.routes.layouts import MAX_ROOMS
 from planner_service.schemas.layouts import LayoutsImported
 
 BINARY = {"Content-Type": "application/octet-stream"}
@@ -164,7 +164,7 @@ async def test_rooms_that_do_not_all_come_in_do_not_come_in_at_all(app: FastAPI)
 
 @pytest.mark.anyio
 async def test_a_file_of_more_rooms_than_one_call_takes_is_refused(app: FastAPI) -> None:
-    many = f"{json.dumps(house())}\n".encode() * (MOST_ROOMS + 1)
+    many = f"{json.dumps(house())}\n".encode() * (MAX_ROOMS + 1)
     assert "scan 0-99" in check_problem(await send(app, "procthor", many, name="many"), 422)["detail"]
 
 

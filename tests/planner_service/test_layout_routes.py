@@ -17,7 +17,7 @@ from service_app import app_on, calling, check_problem
 from motion_backend.formats.gltf import read_glb
 from planner_service.routes.rooms import problem_of
 from planner_service.schemas.layouts import EXAMPLE, HomeMatch, LayoutMatches, LayoutPage, LayoutShown
-from planner_service.surveying import MOST_CELLS, survey
+from planner_service.surveying import MAX_CELLS, survey
 from scene_graphs.checking import RoomCheck
 from scene_graphs.drawing import EDGE_COLOR
 from scene_graphs.generating import generate_room
@@ -366,7 +366,7 @@ def test_a_room_as_large_as_can_be_is_looked_at_more_coarsely() -> None:
     corners = [[-30, -30], [-30, 30], [30, 30], [30, -30]]
     layout = layout_from_dict(EXAMPLE | {"floor_polygon": corners, "doors": []})
     assert survey(layout).problems == ()
-    assert layout.area / MOST_CELLS > 0.05**2
+    assert layout.area / MAX_CELLS > 0.05**2
 
 
 @pytest.mark.anyio

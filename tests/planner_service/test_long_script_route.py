@@ -13,7 +13,7 @@ from fastapi import FastAPI
 from model_server import ModelServer, failing
 from service_app import calling, check_problem, warm_app_on
 
-from planner_service.parts import MOST_PLANNED
+from planner_service.parts import MAX_PLANNED
 from planner_service.schemas.short_scripts import EXAMPLE
 from planner_service.scripts.checking import check
 from planner_service.scripts.keyframe import LongScript
@@ -119,7 +119,7 @@ async def test_only_so_many_wait_for_a_model_at_once(tmp_path: Path) -> None:
     answers = tmp_path / "answers.json"
     answers.write_text("{}", encoding="utf-8")
     with warm_app_on(tmp_path / "data", llm_model=f"scripted:{answers}") as app:
-        for _ in range(MOST_PLANNED):
+        for _ in range(MAX_PLANNED):
             assert app.state.parts.planning.acquire(blocking=False)
         problem = check_problem(await ask(app, theme=THEME), 503)
         assert "the language model is busy" in problem["detail"]

@@ -16,7 +16,7 @@ from planner_service.llm.scripted import Answer, ScriptedModel
 from planner_service.scripts.captions import captions, synonyms
 from planner_service.scripts.library import LibraryError
 from planner_service.scripts.rephrasing import (
-    MOST_QUESTIONS,
+    MAX_QUESTIONS,
     all_synonyms,
     fault_of,
     read_synonyms,
@@ -90,10 +90,10 @@ def test_what_is_refused_is_told_and_asked_for_again() -> None:
 
 
 def test_a_phrase_that_is_another_caption_or_known_phrase_is_not_taken() -> None:
-    model = ScriptedModel([{"captions": [{"number": 0, "phrases": ["a known one"]}]}] * MOST_QUESTIONS)
+    model = ScriptedModel([{"captions": [{"number": 0, "phrases": ["a known one"]}]}] * MAX_QUESTIONS)
     made = rephrase(model, {"touch": ["touch"]}, ["A known one"], count=1)
     assert (made.synonyms, made.missing) == ({}, ("touch",))
-    assert len(model.calls) == MOST_QUESTIONS
+    assert len(model.calls) == MAX_QUESTIONS
 
 
 def test_what_was_got_is_kept_when_the_model_then_fails() -> None:

@@ -43,8 +43,8 @@ def test_what_is_called_proven_is_what_is_found_without_a_limit(
         right = retrieved(index, graph, k, types)
         for steps in (2, 5, 8, 12):
             with monkeypatch.context() as patch:
-                patch.setattr(retrieving, "LEAST_STEPS", steps)
-                patch.setattr(retrieving, "MOST_STEPS", steps)
+                patch.setattr(retrieving, "MIN_STEPS", steps)
+                patch.setattr(retrieving, "MAX_STEPS", steps)
                 found = retrieved(index, graph, k, types)
             for one, other in zip(found, right, strict=True):
                 if one.told.exact:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from sqlalchemy import Engine
 
-from planner_service.scripts.keyframe import MOST_VERSIONS, ShortScript
+from planner_service.scripts.keyframe import MAX_VERSIONS, ShortScript
 from planner_service.scripts.library import LibraryError, built_in
 from planner_service.settings import Settings
 from planner_service.shelves import (
@@ -25,7 +25,7 @@ from planner_service.shelves import (
 from planner_service.store.engine import database_url, open_engine
 from planner_service.store.shelving import ShelfFull
 from planner_service.store.tables import script_versions
-from planner_service.store.versions import MOST_KEPT, renew
+from planner_service.store.versions import MAX_KEPT, renew
 
 Opening = Callable[[], Shelves]
 OURS = built_in()[0]
@@ -167,17 +167,17 @@ def test_what_was_exported_elsewhere_keeps_its_version_until_it_is_changed(shelv
     shelves.add_scripts(script(version=7))
     shelves.add_scripts(script(summary="Eight.", version=1), replace=True)
     assert [one.version for one in shelves.script_versions("my-nap")] == [7, 8]
-    shelves.add_scripts(script("last", version=MOST_VERSIONS))
+    shelves.add_scripts(script("last", version=MAX_VERSIONS))
     with pytest.raises(FullError, match="versions; choose another id"):
         shelves.add_scripts(script("last", summary="One more."), replace=True)
-    assert shelves.scripts().get("last").version == MOST_VERSIONS
+    assert shelves.scripts().get("last").version == MAX_VERSIONS
 
 
 def test_of_very_many_versions_the_oldest_are_forgotten(shelves: Shelves) -> None:
-    for number in range(1, MOST_KEPT + 4):
+    for number in range(1, MAX_KEPT + 4):
         shelves.add_scripts(script(summary=f"By {number}."), replace=True)
     versions = [one.version for one in shelves.script_versions("my-nap")]
-    assert versions == list(range(3, MOST_KEPT + 4))
+    assert versions == list(range(3, MAX_KEPT + 4))
 
 
 def test_a_full_shelf_takes_changes_and_nothing_new(shelves: Shelves) -> None:

@@ -27,7 +27,7 @@ from planner_service.scripts.checking import check
 from planner_service.scripts.handling import Hands, done_in, look_of
 from planner_service.shelves import Shelves
 from planner_service.stories import StoryRequest, Studio
-from planner_service.tasks.plan import MOST_KEYFRAMES, MOST_STEPS, TaskError, TaskPlan
+from planner_service.tasks.plan import MAX_KEYFRAMES, MAX_STEPS, TaskError, TaskPlan
 from planner_service.tasks.planning import plan_task
 from planner_service.tasks.reading import clauses
 from planner_service.tasks.routine import plan_routine
@@ -128,8 +128,8 @@ def test_any_plan_is_whole_and_its_keyframes_can_be_acted(deeds: list[str], join
 def follow(plan: TaskPlan) -> None:
     """Assert that a plan is whole, that a body can act it, and that hands take and lay down in turn."""
     assert [step.step_id for step in plan.steps] == list(range(1, len(plan.steps) + 1))
-    assert 1 <= len(plan.steps) <= MOST_STEPS
-    assert len(plan.keyframes) <= MOST_KEYFRAMES
+    assert 1 <= len(plan.steps) <= MAX_STEPS
+    assert len(plan.keyframes) <= MAX_KEYFRAMES
     assert check(plan.keyframes) == ()
     acted = [index for step in plan.steps for index in step.keyframes]
     assert sorted(set(acted)) == list(range(len(plan.keyframes)))

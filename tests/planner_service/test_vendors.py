@@ -22,7 +22,7 @@ from planner_service.llm.budgets import Limits, Spending
 from planner_service.llm.carrying import ServerError
 from planner_service.llm.patience import message_of, retry_after
 from planner_service.llm.protocol import InvalidAnswerError, ModelError
-from planner_service.llm.served import LONGEST_ANSWER, ServedModel
+from planner_service.llm.served import MAX_ANSWER_LENGTH, ServedModel
 from planner_service.llm.vendors import Address, Kind, Vendor
 
 KEY = "sk-proj-0123456789abcdefghijklmnop"
@@ -220,7 +220,7 @@ def test_a_server_that_is_not_there_is_named() -> None:
         ('{"dish": "soup", "dragon": true}', "dragon"),
         ('{"dish": "so\\u0000up"}', "control characters"),
         ('{"dish": "so\\ud800up"}', "dish"),
-        ("Once upon a time " * 10_000, rf"170000 letters; at most {LONGEST_ANSWER}"),
+        ("Once upon a time " * 10_000, rf"170000 letters; at most {MAX_ANSWER_LENGTH}"),
         ('{"a":' * 40_000, "letters"),
         ('{"a":' * 9_000, "not complete"),
         (('{"a":' * 900 + "x") * 4, "not complete"),
@@ -314,7 +314,7 @@ def test_what_a_server_says_went_wrong_is_found(body: bytes, said: str) -> None:
 def test_an_answer_too_long_is_cut_before_it_is_kept() -> None:
     with ModelServer(lambda _: chat("x" * 1_000_000)) as server, pytest.raises(InvalidAnswerError) as error:
         served(server).answer("?", Meal)
-    assert len(error.value.text) == LONGEST_ANSWER
+    assert len(error.value.text) == MAX_ANSWER_LENGTH
 
 
 def test_a_question_that_is_waited_for_can_be_given_up_from_another_thread() -> None:

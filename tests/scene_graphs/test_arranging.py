@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scene_graphs.arranging import groups
 from scene_graphs.arranging.arrangement import Arrangement, Group, Item
 from scene_graphs.arranging.rectangle import Rectangle, rectangle
-from scene_graphs.arranging.shell import NARROWEST, Shell, build_shell
+from scene_graphs.arranging.shell import MIN_WING_WIDTH, Shell, build_shell
 from scene_graphs.checking import solids_overlap
 from scene_graphs.layouts import Placed
 
@@ -76,7 +76,7 @@ def test_walls_face_into_the_room_and_run_from_corner_to_corner(shell: Shell) ->
 def test_no_wing_of_a_room_is_too_narrow(shell: Shell) -> None:
     for cell in shell.outside:
         for wall, cut in ((shell.floor.half_width, cell.half_width), (shell.floor.half_depth, cell.half_depth)):
-            assert 2 * (wall - cut) >= NARROWEST - 1e-6
+            assert 2 * (wall - cut) >= MIN_WING_WIDTH - 1e-6
 
 
 @given(st.integers(0, 10_000), st.sampled_from([2, 3, 4, 5, 6]))

@@ -133,7 +133,7 @@ def test_what_was_cut_is_never_called_exact(search: Search, budget: int, limit: 
     index, query = LayoutIndex(search[0]), search[1]
     best = all_homes(index, query, 2)[0][0]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(growing, "MOST_PAIRED", 2)
+        patch.setattr(growing, "MAX_PAIRED", 2)
         match = retrieve_home(index, query, 2, budget=budget, limit=limit, effort=effort)[0]
         assert retrieve_home(index, query, 4, budget=budget, limit=limit, effort=effort)
     assert match.distance == best or not match.exact
@@ -167,7 +167,7 @@ def test_whatever_is_cut_from_a_search_for_scattered_parts_is_told(seed: int, mo
         *(retrieve_home(index, query, 2, k, effort=effort) for k in (1, 4) for effort in (1, 50, 200)),
     ]
     for most in (2, 4):
-        monkeypatch.setattr(growing, "MOST_PAIRED", most)
+        monkeypatch.setattr(growing, "MAX_PAIRED", most)
         cut += [retrieve_home(index, query, 2, k) for k in (1, 4)]
     for found, scan in [*((found, pairs) for found in cut), (retrieve_home(index, query, 4, 6), homes)]:
         for match, (distance, *_) in zip(found, scan, strict=False):
@@ -215,7 +215,7 @@ def test_rooms_are_taken_from_the_types_that_are_named() -> None:
 
 
 def test_of_many_rooms_the_nearest_of_each_type_are_paired(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(growing, "MOST_PAIRED", 4)
+    monkeypatch.setattr(growing, "MAX_PAIRED", 4)
     beds = [strewn(f"bed{i}", ["double_bed", "vase"]) for i in range(9)]
     desks = [strewn(f"desk{i}", ["desk"] * (1 + i), room_type="study") for i in range(9)]
     match = retrieve_home(LayoutIndex(beds + desks), build(["bed", "desk"], set()), 2)[0]

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scene_graphs.clearance import HIGHEST
+from scene_graphs.clearance import MAX_OBSTACLE_HEIGHT
 from scene_graphs.forms import parts_of
 from scene_graphs.heightmap import SIMS, TOKENHSI, UNIHSI, HeightmapSpec, SceneHeights
 from scene_graphs.homes import Home, home_from_layouts
@@ -44,7 +44,7 @@ def heights_within(objects: list[Placed], points: Array, margin: float) -> Array
         local = placed.to_local(np.insert(points, 1, 0.0, axis=1))[:, [0, 2]]
         for part in parts_of(placed):
             bottom, top = part.low[1] + placed.position[1], part.high[1] + placed.position[1]
-            if part.is_soft or bottom >= HIGHEST:
+            if part.is_soft or bottom >= MAX_OBSTACLE_HEIGHT:
                 continue
             reach = np.array([part.size[0], part.size[2]]) / 2 + margin
             inside = (np.abs(local - np.array([part.center[0], part.center[2]])) <= reach).all(axis=1)

@@ -240,7 +240,7 @@ def test_a_header_that_promises_more_than_there_is_takes_no_memory(good: Path, t
 
 
 def test_a_bomb_is_not_unpacked(good: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("scene_graphs.packed_file.MOST_BYTES", 1 << 20)
+    monkeypatch.setattr("scene_graphs.packed_file.MAX_BYTES", 1 << 20)
     bomb = rewritten(tmp_path / "bomb.npz", good, lambda a: a.update(offers=np.zeros(1 << 21, dtype=np.uint8)))
     assert bomb.stat().st_size < 1 << 14
     with pytest.raises(LayoutError, match="larger than 1 MiB when it is unpacked; split it"):

@@ -21,7 +21,7 @@ from scene_graphs.furniture import typical_size
 from scene_graphs.graph import offers
 from scene_graphs.layouts import Layout, LayoutError, Placed, layout_from_dict, layout_to_dict
 from scene_graphs.shaping import front_of_mesh, shape_of
-from scene_graphs.solids import MOST_PARTS, Part, Point3
+from scene_graphs.solids import MAX_PARTS, Part, Point3
 from scene_graphs.surfaces import Spot, spots
 
 Array = NDArray[np.float64]
@@ -82,7 +82,7 @@ def test_the_mesh_of_a_form_is_sat_and_lain_on_where_the_form_is(category: str, 
     assume(is_settled(category, size))
     form = standing(category, size)
     measured = standing(category, size, shape_of(*mesh_of(parts(category, size)), category))
-    assert len(measured.shape) <= MOST_PARTS
+    assert len(measured.shape) <= MAX_PARTS
     for affordance in ("sit", "lie"):
         assert agree(spots(form, affordance), spots(measured, affordance))
     assert offers(form) == offers(measured)
@@ -238,7 +238,7 @@ def test_a_surface_that_would_take_hours_to_sample_is_refused() -> None:
 def test_any_heap_of_triangles_becomes_boxes_within_its_own(seed: int, count: int, category: str) -> None:
     vertices = np.random.default_rng(seed).uniform([-0.5, 0, -0.5], [0.5, 1, 0.5], (3 * count, 3))
     found = shape_of(vertices, np.arange(3 * count).reshape(-1, 3), category)
-    assert len(found) <= MOST_PARTS
+    assert len(found) <= MAX_PARTS
     assert len(found) > 0
     low, high = vertices.min(axis=0) - 0.02, vertices.max(axis=0) + 0.02
     for part in found:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scene_graphs.clearance import HIGHEST
+from scene_graphs.clearance import MAX_OBSTACLE_HEIGHT
 from scene_graphs.forms import parts_of
 from scene_graphs.heightmap import SceneHeights
 from scene_graphs.homes import home_from_layouts
@@ -38,7 +38,7 @@ def in_parts(objects: list[Placed], points: Array, margin: float) -> np.ndarray:
     for placed in objects:
         local = placed.to_local(points)
         for part in parts_of(placed):
-            if not part.is_soft and part.low[1] + placed.position[1] < HIGHEST:
+            if not part.is_soft and part.low[1] + placed.position[1] < MAX_OBSTACLE_HEIGHT:
                 reach = np.array(part.size) / 2 + np.array([margin, np.sign(margin) * 1e-9, margin])
                 found |= (np.abs(local - np.array(part.center)) <= reach).all(axis=-1)
     return found

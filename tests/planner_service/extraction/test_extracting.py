@@ -20,7 +20,7 @@ from planner_service.extraction.making import Maker
 from planner_service.extraction.of_text import read_piece
 from planner_service.extraction.pieces import Before
 from planner_service.extraction.plain import ExtractionError
-from planner_service.extraction.portions import LONGEST_PIECE, portions_of, shown
+from planner_service.extraction.portions import MAX_PIECE_LENGTH, portions_of, shown
 from planner_service.extraction.results import Extraction, Means, Source
 from planner_service.extraction.text import Line, TextScene
 from planner_service.llm.asking import ModelAnswerError
@@ -285,10 +285,10 @@ LONG = st.lists(
 def test_long_scenes_are_cut_without_losing_a_letter(lines: list[Line], place: str) -> None:
     scene = TextScene(tuple(lines), place)
     portions, notes = portions_of((scene,))
-    assert all(len(shown(portion)) <= LONGEST_PIECE and portion.place == place for portion in portions)
+    assert all(len(shown(portion)) <= MAX_PIECE_LENGTH and portion.place == place for portion in portions)
     kept = "".join(line.text for portion in portions for line in portion.lines)
     assert "".join(kept.split()) == "".join("".join(line.text for line in lines).split())
-    assert bool(notes) == (len(portions) > 1) == (len(shown(scene)) > LONGEST_PIECE)
+    assert bool(notes) == (len(portions) > 1) == (len(shown(scene)) > MAX_PIECE_LENGTH)
 
 
 def test_a_model_is_shown_all_of_a_long_paragraph() -> None:

@@ -12,7 +12,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planner_service.extraction.film import open_film
-from planner_service.extraction.grouping import LONGEST, MOST_FRAMES, MOST_SCENES, SHORTEST, scenes_in, scenes_of
+from planner_service.extraction.grouping import (
+    MAX_FRAMES,
+    MAX_SCENE_SECONDS,
+    MAX_SCENES,
+    MIN_SCENE_SECONDS,
+    scenes_in,
+    scenes_of,
+)
 from planner_service.extraction.shots import Shot, shots_of
 from planner_service.extraction.subtitles import Cue
 
@@ -89,13 +96,13 @@ def test_scenes_are_the_whole_film_and_each_is_bounded(film: list[Shot], said: l
     cues = [Cue(start, start + length, "words") for start, length in said if start + length < film[-1].end]
     scenes = scenes_in(film, cues)
     assert [scene.number for scene in scenes] == list(range(1, len(scenes) + 1))
-    assert len(scenes) <= MOST_SCENES
+    assert len(scenes) <= MAX_SCENES
     assert [scenes[0].start, *(scene.end for scene in scenes)] == [*(scene.start for scene in scenes), film[-1].end]
     assert sum(len(scene.cues) for scene in scenes) == len(cues)
     for scene in scenes:
         assert scene.start < scene.end
         assert scene.shots
-        assert 1 <= len(scene.times) <= MOST_FRAMES
+        assert 1 <= len(scene.times) <= MAX_FRAMES
         assert list(scene.times) == sorted(set(scene.times))
         assert scene.start <= scene.times[0]
         assert scene.times[-1] <= scene.end
@@ -125,7 +132,7 @@ def test_a_scene_does_not_end_while_somebody_speaks() -> None:
 
 
 def test_a_long_shot_is_several_scenes_and_a_short_film_is_one() -> None:
-    scenes = scenes_in(row((3 * LONGEST, 0)), [])
-    assert [scene.end - scene.start for scene in scenes] == [LONGEST] * 3
-    film = open_film(io.BytesIO(film_of([Drawn(SHORTEST / 4, 0), Drawn(SHORTEST / 4, 1)])), "a film")
+    scenes = scenes_in(row((3 * MAX_SCENE_SECONDS, 0)), [])
+    assert [scene.end - scene.start for scene in scenes] == [MAX_SCENE_SECONDS] * 3
+    film = open_film(io.BytesIO(film_of([Drawn(MIN_SCENE_SECONDS / 4, 0), Drawn(MIN_SCENE_SECONDS / 4, 1)])), "a film")
     assert len(scenes_of(film, [])) == 1

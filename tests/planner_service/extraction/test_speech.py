@@ -20,7 +20,7 @@ from pydantic import SecretStr
 from planner_service.extraction import served_speech
 from planner_service.extraction.film import Film, open_film
 from planner_service.extraction.served_speech import ServedTranscriber
-from planner_service.extraction.sound import LONGEST, RATE, SoundPiece, sound_of
+from planner_service.extraction.sound import MAX_AUDIO_SECONDS, RATE, SoundPiece, sound_of
 from planner_service.extraction.speech import SpeechError, hear, load_transcriber
 from planner_service.settings import Settings, SettingsError
 
@@ -91,7 +91,7 @@ def test_sound_comes_as_waves_of_16_khz_on_the_film_s_clock() -> None:
 def test_long_sound_is_cut_into_pieces_that_follow_one_another() -> None:
     pieces = list(sound_of(film(film_of([Drawn(1)], Making("matroska", sound=150.0, sounds="pcm_s16le")))))
     assert len(pieces) >= 3
-    assert all(piece.end - piece.start <= LONGEST for piece in pieces)
+    assert all(piece.end - piece.start <= MAX_AUDIO_SECONDS for piece in pieces)
     for piece, following in pairwise(pieces):
         assert following.start == pytest.approx(piece.end, abs=0.002)
     assert pieces[-1].end == pytest.approx(150, abs=0.2)

@@ -8,7 +8,14 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from planner_service.extraction.decoding import decode
-from planner_service.extraction.subtitles import LARGEST, LATEST, Cue, SubtitleError, Subtitles, read_subtitles
+from planner_service.extraction.subtitles import (
+    MAX_CUE_SECONDS,
+    MAX_SUBTITLE_BYTES,
+    Cue,
+    SubtitleError,
+    Subtitles,
+    read_subtitles,
+)
 
 WORDS = st.text(st.sampled_from("abc déf ghi, Jkl. ñ"), min_size=1, max_size=30).filter(str.strip)
 SPANS = st.lists(st.tuples(st.integers(0, 5_000_000), st.integers(1, 9000), WORDS), min_size=1, max_size=8)
@@ -62,7 +69,7 @@ def test_what_another_library_writes_is_read(spans: list[tuple[int, int, str]], 
 def test_any_bytes_are_cues_or_a_clear_error(data: bytes) -> None:
     for body in (data, b"1\n00:00:01,000 --> 00:00:02,000\n" + data, b"WEBVTT\n\n00:01.000 --> 00:02.000\n" + data):
         for cue in cues_or_refusal(body):
-            assert 0 <= cue.start < cue.end <= LATEST + 3
+            assert 0 <= cue.start < cue.end <= MAX_CUE_SECONDS + 3
             assert cue.text or cue.sounds
             assert not any(letter in cue.text for letter in "\n\r\x00\x1b\u202e")
 
@@ -148,7 +155,7 @@ def test_a_missing_empty_line_and_cues_out_of_order_do_no_harm() -> None:
         (bytes(range(256)) * 40, "no text"),
         (b"Once upon a time there was a man.", "neither SRT nor WebVTT nor ASS"),
         (b"WEBVTT\n\n", "no cue"),
-        (b"x" * (LARGEST + 1), "at most"),
+        (b"x" * (MAX_SUBTITLE_BYTES + 1), "at most"),
     ],
     ids=["empty", "blank", "binary", "prose", "no-cues", "large"],
 )

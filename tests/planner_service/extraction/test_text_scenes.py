@@ -11,7 +11,7 @@ from stories import GERMAN, NARRATIVE, SCREENPLAY
 
 from planner_service.extraction.clauses import clauses_in
 from planner_service.extraction.deeds import deed_of, pieces_in
-from planner_service.extraction.plain import LONGEST, ExtractionError, language_of, read_text
+from planner_service.extraction.plain import MAX_TEXT_LENGTH, ExtractionError, language_of, read_text
 from planner_service.extraction.subtitles import Cue
 from planner_service.extraction.text import Line, TextScene, scenes_of_cues, scenes_of_text
 from planner_service.extraction.writing import in_present
@@ -191,7 +191,7 @@ def test_the_language_is_told_by_common_words(text: str, language: str) -> None:
         (b" \n\t ", "is empty"),
         (b"1234 --- !!", "no word in it"),
         (bytes(range(256)) * 8, "is no text"),
-        (b"a" * (LONGEST + 1), "cut it into chapters"),
+        (b"a" * (MAX_TEXT_LENGTH + 1), "cut it into chapters"),
         (b"word " * 2_000_000, "cut it into chapters"),
     ],
     ids=["empty", "blank", "no word", "binary", "long", "huge"],

@@ -13,7 +13,7 @@ from pydantic import BaseModel
 from motion_backend.language.text import HashingEncoder
 from planner_service.extraction.embedded import embedded_cues
 from planner_service.extraction.film import Film, open_film
-from planner_service.extraction.grouping import MOST_FRAMES, Scene, scenes_of
+from planner_service.extraction.grouping import MAX_FRAMES, Scene, scenes_of
 from planner_service.extraction.making import Maker
 from planner_service.extraction.subtitles import Cue
 from planner_service.extraction.watching import watch, watch_film
@@ -216,4 +216,4 @@ def test_a_scene_is_one_question_with_so_many_frames_at_most() -> None:
     for scene in (film_scenes := scenes()):
         watch(model, film(), scene)
     assert [call.images for call in model.calls] == [len(scene.times) for scene in film_scenes]
-    assert all(0 < call.images <= MOST_FRAMES for call in model.calls)
+    assert all(0 < call.images <= MAX_FRAMES for call in model.calls)

@@ -9,8 +9,8 @@ import pytest
 import shapely
 
 from scene_graphs.fields import LayoutError
-from scene_graphs.layouts import MOST_OBJECTS
-from scene_graphs.loaders.floors import MOST_CORNERED, floor_from_triangles, united
+from scene_graphs.layouts import MAX_OBJECTS
+from scene_graphs.loaders.floors import MAX_CORNERED, floor_from_triangles, united
 from scene_graphs.loaders.intake import Intake, RoomIntake
 from scene_graphs.loaders.options import Options
 from scene_graphs.loaders.plan_boxes import rectangle_around
@@ -55,9 +55,9 @@ def test_of_very_many_objects_a_bounded_number_is_looked_at_and_all_are_counted(
     room = room_of(intake)
     for number in range(100_000):
         room.add(f"{number}", "cup", (number % 59 / 10 - 2.9, 0, number // 59 % 59 / 10 - 2.9), (0.01, 0.01, 0.01))
-    assert len(room.objects) == 2 * MOST_OBJECTS
+    assert len(room.objects) == 2 * MAX_OBJECTS
     room.finish()
-    assert intake.report.kept.total() + intake.report.dropped.total() >= 100_000 - MOST_OBJECTS
+    assert intake.report.kept.total() + intake.report.dropped.total() >= 100_000 - MAX_OBJECTS
 
 
 def test_a_file_of_more_rooms_than_may_be_is_refused() -> None:
@@ -92,7 +92,7 @@ def test_triangles_that_are_points_take_nothing_from_the_floor() -> None:
 
 
 def test_a_floor_of_crossing_slivers_is_their_hull_at_once() -> None:
-    at = np.linspace(0, 10, MOST_CORNERED * 2)
+    at = np.linspace(0, 10, MAX_CORNERED * 2)
     zero, ten = np.zeros_like(at), np.full_like(at, 10.0)
     across = np.stack([np.stack([zero, at], 1), np.stack([ten, at], 1), np.stack([ten, at + 1e-4], 1)], axis=1)
     start = time.process_time()

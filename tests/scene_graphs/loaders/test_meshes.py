@@ -26,7 +26,7 @@ from scene_graphs.layouts import Layout, Placed, layout_from_dict, layout_to_dic
 from scene_graphs.library import built_in_layouts
 from scene_graphs.loaders import Imported, Options, Source, read_scene
 from scene_graphs.loaders.gltf import nodes_of_gltf
-from scene_graphs.loaders.obj import MOST_LINES
+from scene_graphs.loaders.obj import MAX_LINES
 from scene_graphs.loaders.scene_tree import Node
 from scene_graphs.surfaces import spots
 
@@ -309,7 +309,7 @@ def test_a_bad_line_of_an_obj_is_named(text: str, message: str) -> None:
 
 def test_a_text_of_millions_of_lines_is_refused() -> None:
     with pytest.raises(LayoutError, match="lines; simplify it"):
-        read_obj("\n" * (MOST_LINES + 1))
+        read_obj("\n" * (MAX_LINES + 1))
 
 
 def test_options_that_name_no_axis_are_refused() -> None:

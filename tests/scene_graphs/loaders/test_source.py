@@ -61,9 +61,9 @@ def test_what_is_packed_to_do_damage_is_refused_with_the_reason(data: bytes, say
 
 def test_a_text_of_very_many_values_or_rows_is_refused_before_it_fills_the_memory() -> None:
     with pytest.raises(LayoutError, match="values"):
-        parse_json("[" + "[]," * bounds.MOST_VALUES + "[]]", "a")
+        parse_json("[" + "[]," * bounds.MAX_VALUES + "[]]", "a")
     with pytest.raises(LayoutError, match="rows"):
-        for _ in Source.of_bytes("a", b"{}\n" * (bounds.MOST_ROWS + 2)).rows():
+        for _ in Source.of_bytes("a", b"{}\n" * (bounds.MAX_ROWS + 2)).rows():
             pass
 
 
