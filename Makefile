@@ -41,7 +41,7 @@ $(READY): pyproject.toml requirements-encoder.txt
 	@$(BIN)/python -m pip install --quiet $(if $(TORCH_INDEX),--index-url $(TORCH_INDEX)) "torch==2.13.0"
 	@$(BIN)/python -m pip install --quiet --no-deps --require-hashes -r requirements-encoder.txt
 	@$(BIN)/python -m pip install --quiet -e .
-	@$(BIN)/python -c "from scene_graphs.packed_library import compile_search; compile_search()"
+	@$(BIN)/python -c "from scene_graphs.layout_library import compile_search; compile_search()"
 	@touch $@
 
 $(READY_DEV): $(READY)

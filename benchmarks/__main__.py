@@ -20,8 +20,8 @@ from benchmarks.service import service_figures
 from benchmarks.stories import file_figures, make_stories, quality_figures, speed_figures
 from benchmarks.tables import figure_rows, markdown, plain, story_rows
 from benchmarks.weaving import weaving_figures
-from planner_service.shelves import Shelves
-from planner_service.stories import Studio
+from planner_service.library.library import Shelves
+from planner_service.pipeline import Studio
 
 
 def main() -> int:

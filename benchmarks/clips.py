@@ -13,10 +13,10 @@ import numpy as np
 
 from benchmarks.figure import Figure
 from motion_backend import rotations
-from motion_backend.clips.building import folder_labels, motion_files
-from motion_backend.clips.reading import read_clips
-from motion_backend.clips.retargeting import retarget
 from motion_backend.formats.bvh import write_bvh
+from motion_backend.mocap.dataset_builder import folder_labels, motion_files
+from motion_backend.mocap.readers import read_clips
+from motion_backend.mocap.retarget import retarget
 from motion_backend.motion import Motion
 from motion_backend.skeleton import INDEX, build_skeleton
 

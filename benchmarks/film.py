@@ -22,11 +22,10 @@ MINUTES: Final = 20
 
 def film_figures(folder: Path) -> list[Figure]:
     """The whole way of a film but for the model: from the file to the frames of every scene; seconds of one core."""
-    from planner_service.extraction.album import Album
-    from planner_service.extraction.embedded import embedded_cues
-    from planner_service.extraction.film import open_film
-    from planner_service.extraction.grouping import scenes_in
-    from planner_service.extraction.shots import shots_of
+    from planner_service.extraction.shot_detection import scenes_in, shots_of
+    from planner_service.extraction.subtitles import embedded_cues
+    from planner_service.extraction.video import open_film
+    from planner_service.extraction.video_frames import Album
 
     path = folder / "film.mkv"
     _write(path)

@@ -9,14 +9,14 @@ import numpy as np
 
 from benchmarks.figure import Figure
 from benchmarks.stories import timed
+from scene_graphs.doorways import doorway_sites
 from scene_graphs.furniture import ROOM_TYPES
-from scene_graphs.heightmap import TOKENHSI, SceneHeights
-from scene_graphs.homes import random_home
-from scene_graphs.joining import doorway_sites
-from scene_graphs.layouts import Array
-from scene_graphs.library import built_in_layouts
-from scene_graphs.navigation import Walkable
-from scene_graphs.voxels import occupancy_pair
+from scene_graphs.geometry.egocentric_heightmap import TOKENHSI, SceneHeights
+from scene_graphs.geometry.occupancy_grid import occupancy_pair
+from scene_graphs.home import random_home
+from scene_graphs.layout import Array
+from scene_graphs.layout_library import built_in_layouts
+from scene_graphs.navigation.path_planner import Walkable
 
 QUERIES = 50
 REPEATS = 5

@@ -19,15 +19,15 @@ import numpy as np
 from benchmarks.figure import Figure
 from benchmarks.stories import timed
 from benchmarks.synthetic import queries_at_random, rooms_at_random
-from scene_graphs.branching import CodedQuery
-from scene_graphs.costs import CostTable
-from scene_graphs.distance import exact_distance
 from scene_graphs.furniture import Furniture
-from scene_graphs.graph import FurnitureGraph, needs_of
-from scene_graphs.layouts import Array
-from scene_graphs.packed_file import read_packed, write_packed
-from scene_graphs.packing import PackedRooms
-from scene_graphs.retrieval import LayoutIndex
+from scene_graphs.graph.branch_and_bound import CodedQuery
+from scene_graphs.graph.edit_distance import exact_distance
+from scene_graphs.graph.furniture_graph import FurnitureGraph, needs_of
+from scene_graphs.graph.packed_graphs import PackedRooms
+from scene_graphs.graph.substitution_costs import CostTable
+from scene_graphs.layout import Array
+from scene_graphs.retrieval.layout_index import LayoutIndex
+from scene_graphs.retrieval.packed_graphs_file import read_packed, write_packed
 
 K: Final = 10
 QUERIES: Final = 200
@@ -46,8 +46,8 @@ COMPARED: Final = 1_000
 FORBIDDEN: Final = 100_000
 """A cost that no mapping pays."""
 FIRST_ANSWER: Final = """
-from scene_graphs.graph import graph_from_uses
-from scene_graphs.packed_library import built_in_index
+from scene_graphs.graph.furniture_graph import graph_from_uses
+from scene_graphs.layout_library import built_in_index
 built_in_index().search(graph_from_uses([("sofa", 1), ("tv stand", 1), ("chair", 1)]), 10)
 """
 COSTS: Final = CostTable()

@@ -12,11 +12,11 @@ import numpy as np
 
 from benchmarks.figure import Figure
 from benchmarks.themes import SEED, THEMES
-from motion_backend.formats.glb import film_glb
-from motion_backend.metrics import summarise
-from planner_service.scripts.acting import act
-from planner_service.stories import Planned, Story, StoryRequest, Studio, judge, move
-from planner_service.storyboard import storyboard
+from motion_backend.formats.glb_film import film_glb
+from motion_backend.metrics.story_metrics import summarise
+from planner_service.grounding.keyframes_to_actions import act
+from planner_service.output.storyboard import storyboard
+from planner_service.pipeline import Planned, Story, StoryRequest, Studio, judge, move
 
 PLAN_MS, SPEED = 300.0, 100.0
 REACHED, CONTACT_CM, PEN_MEAN_CM, PEN_SHARE, SKATE = 95.0, 3.0, 2.0, 5.0, 5.0

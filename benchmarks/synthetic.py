@@ -8,12 +8,9 @@ import networkx as nx
 import numpy as np
 from numpy.typing import NDArray
 
-from scene_graphs.catalogue import KINDS
-from scene_graphs.furniture import Furniture, affordances
-from scene_graphs.graph import FurnitureGraph, graph_from_parts
-from scene_graphs.packing import PackedRooms
-from scene_graphs.texts import Texts, offsets
-from scene_graphs.vocabulary import KNOWN, NUMBER, flags
+from scene_graphs.furniture import KINDS, Furniture, affordances
+from scene_graphs.graph.furniture_graph import FurnitureGraph, graph_from_parts
+from scene_graphs.graph.packed_graphs import KNOWN, NUMBER, PackedRooms, Texts, flags, offsets
 
 LIKELY: Final = {
     "bedroom": "double_bed 4 nightstand 8 wardrobe 5 pendant_lamp 5 desk 2 dressing_table 2 dressing_chair 2 "

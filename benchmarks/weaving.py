@@ -9,13 +9,13 @@ import numpy as np
 
 from benchmarks.figure import Figure
 from benchmarks.themes import SEED, THEMES
-from motion_backend.language.text import SentenceEncoder, Vectors, load_encoder
+from motion_backend.language.sentence_encoder import SentenceEncoder, Vectors, load_encoder
 from motion_backend.motion import Character
-from planner_service.scripts.by_heart import ByHeart
-from planner_service.scripts.composing import Request, compose
-from planner_service.scripts.keyframe import ShortScript
-from planner_service.scripts.library import Features, ScriptLibrary, built_in
-from planner_service.scripts.narrating import narrate
+from planner_service.composition.compose import Request, compose
+from planner_service.narration.narrator import narrate
+from planner_service.scripts.script import ShortScript
+from planner_service.scripts.script_embeddings import ByHeart
+from planner_service.scripts.script_library import Features, ScriptLibrary, built_in
 
 MANY = 100_000
 SMALL_MS, LARGE_MS, SENTENCES = 150.0, 300.0, 100.0

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from motion_backend.motion import Character
-from planner_service.stories import Planned, StoryRequest, Studio
+from planner_service.pipeline import Planned, StoryRequest, Studio
 
 FOLDER = Path(__file__).resolve().parent / "examples"
 WIDTH = 100

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend.skeleton import Skeleton
-from scene_graphs.homes import Home
-from scene_graphs.surfaces import Spot
+from scene_graphs.affordances.affordances import Spot
+from scene_graphs.home import Home
 
-Array = NDArray[np.float32]
+Floats = NDArray[np.float32]
 FPS = 30
 
 
@@ -124,11 +124,11 @@ class ContactGoal:
 class Motion:
     """What the body did over T frames; world joint positions follow by `skeleton.forward_kinematics`."""
 
-    root_positions: Array
+    root_positions: Floats
     """(T, 3) pelvis in the world."""
-    local_rotations: Array
+    local_rotations: Floats
     """(T, 22, 4) xyzw, each joint in its parent's frame, the pelvis in the world's."""
-    contacts: Array
+    contacts: Floats
     """(T, 4) 1 where planted: left ankle, left toe, right ankle, right toe."""
     skeleton: Skeleton
     actions: NDArray[np.int32]
@@ -152,7 +152,7 @@ class Motion:
         """Seconds."""
         return len(self) / self.fps
 
-    def joint_positions(self) -> Array:
+    def joint_positions(self) -> Floats:
         """World positions of all joints. (T, 22, 3) float32."""
         return self.skeleton.forward_kinematics(self.root_positions, self.local_rotations)[0]
 

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from scene_graphs.homes import Home, Wall
+from motion_backend.rotations import Array
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from scene_graphs.home import Home, Wall
+
 SHORT = 0.97
 """Sight lines end this share of the way to a point: a wall that a hand lies on does not hide it."""
 

@@ -19,8 +19,8 @@ FOLDER = Path(os.environ.setdefault(NAME, f"{tempfile.gettempdir()}/sims-test-ca
 
 def encoded() -> Path:
     """A cache folder with all sentences of our library in it; of several who ask at once, one encodes them."""
-    from planner_service.shelves import Shelves
-    from planner_service.stories import StoryRequest, Studio
+    from planner_service.library.library import Shelves
+    from planner_service.pipeline import StoryRequest, Studio
 
     FOLDER.mkdir(parents=True, exist_ok=True)
     with (FOLDER / "lock").open("w") as lock:

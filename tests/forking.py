@@ -14,8 +14,13 @@ from types import TracebackType
 from typing import BinaryIO, Self
 
 HEAVY = (
-    *("planner_service.stories", "planner_service.store.engine", "planner_service.importing", "planner_service.filing"),
-    *("planner_service.storyboard", "matplotlib.figure", "scipy.ndimage", "motion_backend.procedural.backend"),
+    *(
+        "planner_service.pipeline",
+        "planner_service.store.database",
+        "planner_service.library.import_layouts",
+        "planner_service.output.story_files",
+    ),
+    *("planner_service.output.storyboard", "matplotlib.figure", "scipy.ndimage", "motion_backend.procedural.backend"),
 )
 """What commands load when they first use it."""
 

@@ -9,8 +9,8 @@ from types import SimpleNamespace
 import pytest
 from encoded import encoded
 
-from planner_service.shelves import Shelves
-from planner_service.stories import Studio
+from planner_service.library.library import Shelves
+from planner_service.pipeline import Studio
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs"
 stories = SimpleNamespace(**runpy.run_path(str(FOLDER / "stories.py")))

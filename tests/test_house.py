@@ -95,7 +95,9 @@ def test_there_is_no_drawer_for_odds_and_ends() -> None:
 
 def test_importing_the_planner_loads_nothing_heavy() -> None:
     """Neither command line nor service."""
-    modules = "planner_service.cli, planner_service.app, planner_service.stories, motion_backend.procedural.backend"
+    modules = (
+        "planner_service.cli, planner_service.api.app, planner_service.pipeline, motion_backend.procedural.backend"
+    )
     heavy = ["torch", "matplotlib", "trimesh", "openai", "anthropic", "pydantic_ai", "av"]
     code = f"import sys, {modules}; print([name for name in {heavy!r} if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)

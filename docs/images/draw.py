@@ -9,14 +9,14 @@ import numpy as np
 from PIL import Image
 
 from motion_backend.motion import Skill
-from motion_backend.sheets import sheet
-from planner_service.commands.finding import graph_of_words
-from planner_service.evaluating.trials import Trial, perform
-from planner_service.picturing import Shown, picture
-from planner_service.stories import Story, StoryRequest, Studio
-from planner_service.storyboard import COLUMNS, GAP, HEAD, PLAN, SIDE, TEXT, storyboard
-from scene_graphs.matching_view import draw_match
-from scene_graphs.retrieval import LayoutIndex
+from motion_backend.rendering.contact_sheet import sheet
+from planner_service.cli.layouts import graph_of_words
+from planner_service.evaluation.trials import Trial, perform
+from planner_service.output.room_pictures import Shown, picture
+from planner_service.output.storyboard import COLUMNS, GAP, HEAD, PLAN, SIDE, TEXT, storyboard
+from planner_service.pipeline import Story, StoryRequest, Studio
+from scene_graphs.plots.match_plot import draw_match
+from scene_graphs.retrieval.layout_index import LayoutIndex
 
 HERE = Path(__file__).parent
 THEME = (

@@ -9,14 +9,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion_backend import rotations
-from motion_backend.clips.bvh import bvh_bones, bvh_channels, parse_bvh
+from motion_backend.mocap.readers.bvh_reader import bvh_bones, bvh_channels, parse_bvh
 from motion_backend.motion import Motion
+from motion_backend.rotations import Array
 from motion_backend.skeleton import JOINTS, Skeleton
-
-Array = NDArray[np.float64]
 
 CENTIMETRE = 0.01
 _END_SITES = {

@@ -1,4 +1,14 @@
-"""Motions as NPZ: every array exactly, with the skeleton, and the same bytes for the same motion."""
+"""Motions as NPZ: every array exactly, with the skeleton, and the same bytes for the same motion.
+
+Motions as AMASS lays them out: rotation vectors a frame, Z up, in an npz that readers of AMASS open.
+
+The joints have SMPL's first 22 names, parents and order, and SMPL's rest pose: a T-pose that faces +Z with Y up, which
+the pelvis's rotation stands up in a world with Z up. The bones are ours: `joint_offsets` says how long they are, and a
+SMPL body put on these poses has feet and hands elsewhere by the difference. `trans` is the pelvis itself, where a SMPL
+model adds its own rest pelvis to what it is given; take that away first.
+
+Motions as bare numbers: world joint positions, (T, 22, 3) float32, little-endian, nothing before or after.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +21,8 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from motion_backend.motion import ContactGoal, Motion, Note, Part, Phase
+from motion_backend import rotations
+from motion_backend.motion import ContactGoal, Floats, Motion, Note, Part, Phase
 from motion_backend.skeleton import Skeleton
 
 VERSION = 1
@@ -87,3 +98,42 @@ def read_npz(file: Path | str | BinaryIO) -> Motion:
             phases=tuple(Phase(Part(part), start, stop) for part, (start, stop) in phases),
             notes=tuple(Note(keyframe, str(words)) for keyframe, words in notes),
         )
+
+
+_STAND_UP = rotations.rotvec_to_quat(np.array([np.pi / 2, 0.0, 0.0]))
+"""From a world with Y up to one with Z up: (x, y, z) becomes (x, -z, y)."""
+_SHAPES = 16
+
+
+def amass_bytes(motion: Motion) -> bytes:
+    """poses (T, 66) radians, trans (T, 3) metres, mocap_framerate, and the skeleton they belong to.
+
+    `betas` are zeros and `gender` neutral since readers ask for them; they say nothing about our body.
+    """
+    turns = motion.local_rotations.astype(np.float64)
+    turns[:, 0] = rotations.compose(_STAND_UP, turns[:, 0])
+    vectors = rotations.quat_to_rotvec(rotations.normalize(turns))
+    return archive(
+        {
+            "poses": vectors.reshape(len(motion), -1).astype(np.float32),
+            "trans": rotations.rotate(_STAND_UP, motion.root_positions.astype(np.float64)).astype(np.float32),
+            "mocap_framerate": np.array(float(motion.fps)),
+            "gender": np.array("neutral"),
+            "betas": np.zeros(_SHAPES),
+            "joint_names": np.array(motion.skeleton.names),
+            "joint_parents": np.array(motion.skeleton.parents, dtype=np.int32),
+            "joint_offsets": motion.skeleton.offsets,
+        }
+    )
+
+
+def raw_bytes(motion: Motion) -> bytes:
+    """World positions of all joints, frame by frame, metres."""
+    return np.ascontiguousarray(motion.joint_positions(), dtype="<f4").tobytes()
+
+
+def read_raw(data: bytes, joints: int = 22) -> Floats:
+    """The positions (T, joints, 3); ValueError when the length is not a whole number of frames."""
+    if len(data) % (12 * joints):
+        raise ValueError(f"{len(data)} bytes are not a whole number of frames of {joints} joints (12 bytes each)")
+    return np.frombuffer(data, dtype="<f4").reshape(-1, joints, 3).astype(np.float32)

@@ -10,27 +10,26 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from motion_backend.measures.kinematics import Kinematics
+from motion_backend.body.scene_collision import Obstacles
+from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import FPS, Action, BodyState, Character, ContactGoal, Motion, Note, Part, Posture, Skill
-from motion_backend.obstacles import Obstacles
-from motion_backend.procedural.body import Body, Scene
-from motion_backend.procedural.elbowing import elbows_clear
-from motion_backend.procedural.guarding import hands_clear
-from motion_backend.procedural.handling import steadies, with_both_hands
-from motion_backend.procedural.performing import perform
+from motion_backend.procedural.body_state import Body, Scene
+from motion_backend.procedural.collision_avoidance.elbow_collision import elbows_clear
+from motion_backend.procedural.collision_avoidance.hand_collision import hands_clear
+from motion_backend.procedural.controller import perform
+from motion_backend.procedural.emotion_style import Bearing
+from motion_backend.procedural.held_poses import idle, standing
 from motion_backend.procedural.pose import Pose, concatenate
-from motion_backend.procedural.solving import hips_within, released, solve
-from motion_backend.procedural.stances import idle, standing
-from motion_backend.procedural.styles import Bearing
+from motion_backend.procedural.pose_solver import hips_within, released, solve
+from motion_backend.procedural.touch.hand_captions import steadies, with_both_hands
+from motion_backend.rotations import Array
 from motion_backend.skeleton import HAND_REST, LYING_REST, SEATED_REST, build_skeleton
-from motion_backend.transitions import shortfall, time_limit
-from scene_graphs.homes import Home
-from scene_graphs.navigation import NoPath, Walkable
-from scene_graphs.surfaces import Spot
+from motion_backend.state_machine import shortfall, time_limit
+from scene_graphs.affordances.affordances import Spot
+from scene_graphs.home import Home
+from scene_graphs.navigation.path_planner import NoPath, Walkable
 
-Array = NDArray[np.float64]
 SINKS = 0.03
 """How deep arms sink into what is lain on (metres)."""
 

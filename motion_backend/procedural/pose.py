@@ -11,12 +11,9 @@ from math import sqrt
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion_backend import rotations
-
-Array = NDArray[np.float64]
-
+from motion_backend.rotations import Array
 
 ROTATIONS = ("hips", "feet", "palms")
 

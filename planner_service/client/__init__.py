@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from planner_service.client.clients import AsyncClient, Client
+from planner_service.client.client import AsyncClient, Client
 from planner_service.client.errors import ApiError, ClientError, StoryCancelled, StoryFailed, Unreachable, WaitTimeout
-from planner_service.client.resources import Extraction, Page, Story, StoryEvent
+from planner_service.client.responses import Extraction, Page, Story, StoryEvent
 
 __all__ = [
     "ApiError",

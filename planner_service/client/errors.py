@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import httpx
 
-from planner_service.client.resources import Job
+from planner_service.client.responses import Job
 
 PROBLEM: Final = "application/problem+json"
 

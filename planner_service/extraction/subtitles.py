@@ -1,15 +1,83 @@
-"""Subtitles: SRT, WebVTT and ASS from bytes of any encoding to cues."""
+"""Subtitles: SRT, WebVTT and ASS from bytes of any encoding to cues.
+
+The subtitles that a film carries within itself.
+
+What one cue says: words without tags, each part with its speaker, and the sounds apart.
+"""
 
 from __future__ import annotations
 
+import html
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Final
 
-from planner_service.extraction.decoding import decode
-from planner_service.extraction.speaking import spoken
+from planner_service.extraction.text_files import decode
+from planner_service.extraction.video import Film, text_tracks
+from planner_service.extraction.video_container import load_av, opened, said
+
+_TAG: Final = re.compile(r"</?(?![vV][.\s])[a-zA-Z0-9:.][^<>]{0,200}>|<\d[\d:.]{3,15}>|</[a-zA-Z]>")
+_VOICE: Final = re.compile(r"<[vV](?:\.[^\s<>]{0,60})?\s+([^<>]{1,60})>")
+_OVERRIDE: Final = re.compile(r"\{\\[^{}]{0,500}\}")
+_SOUND: Final = re.compile(r"\[([^\[\]]{1,200})\]|\(([^()]{1,200})\)|\*([^*]{1,200})\*")
+_MUSIC: Final = re.compile(r"[♪♫#]+")
+_NAME: Final = re.compile(r"^([^\W\d_][\w .'’&-]{1,39}):(?=\s|$)\s*")
+_DASH: Final = re.compile(r"^[-–—‐]\s*(?=\S)")
+_INVISIBLE: Final = re.compile(r"[\u200b-\u200f\u202a-\u202e\u2060-\u2069\ufeff\x00-\x08\x0b-\x1f\x7f]")
+
+
+@dataclass(frozen=True)
+class Part:
+    """What one of those who speak in a cue says."""
+
+    text: str
+    speaker: str | None
+    sounds: tuple[str, ...]
+
+
+def spoken(text: str) -> Iterator[Part]:
+    """The parts of a cue: a new one where a line begins with a dash, a name in capitals or a voice tag."""
+    text = _OVERRIDE.sub("", text.replace(r"\N", "\n").replace(r"\n", "\n").replace(r"\h", " "))
+    text = _VOICE.sub(lambda voice: f"\n\x02{' '.join(voice[1].split())}\x03", text)
+    words: list[str] = []
+    sounds: list[str] = []
+    speaker: str | None = None
+    for line in text.split("\n"):
+        heard: list[str] = []
+        line, who, begins = _opened(line, heard)
+        if begins and (words or sounds):
+            yield Part(" ".join(words), speaker, tuple(sounds))
+            words, sounds, speaker = [], [], None
+        speaker = who or speaker
+        sounds += heard
+        words += line.split()
+    yield Part(" ".join(words), speaker, tuple(sounds))
+
+
+def _opened(line: str, sounds: list[str]) -> tuple[str, str | None, bool]:
+    """A line without tags, sounds, dash and name; who is named; and whether somebody begins to speak."""
+    who, begins = None, False
+    if line.startswith("\x02"):
+        who, _, line = line[1:].partition("\x03")
+        begins = True
+    line = _INVISIBLE.sub("", html.unescape(_TAG.sub("", line))).strip()
+    begins = begins or _DASH.match(line) is not None
+    line = _MUSIC.sub(" ", _SOUND.sub(lambda sound: _heard(sound, sounds), _DASH.sub("", line))).strip()
+    line = _DASH.sub("", line)
+    if (name := _NAME.match(line)) is not None and name[1].isupper():
+        line, who, begins = line[name.end() :], name[1].strip(), True
+    return line, who, begins
+
+
+def _heard(sound: re.Match[str], sounds: list[str]) -> str:
+    """Keep what is in brackets as a sound."""
+    heard = " ".join((sound[1] or sound[2] or sound[3]).split())
+    if heard:
+        sounds.append(heard)
+    return " "
+
 
 MAX_SUBTITLE_BYTES: Final = 10_000_000
 """Bytes of a subtitle file."""
@@ -174,3 +242,63 @@ def _seconds(parts: tuple[str | None, ...]) -> float:
     sign, hours, minutes, seconds, fraction = parts
     value = int(hours or 0) * 3600 + int(minutes or 0) * 60 + int(seconds or 0) + float(f"0.{fraction}")
     return -value if sign else value
+
+
+_COMMAS: Final = 8
+"""Before the text in an event as FFmpeg gives it: order, layer, style, name, three margins, effect."""
+_LONG: Final = 60.0
+"""Seconds that a cue stays at most."""
+
+
+def embedded_cues(film: Film) -> Subtitles | None:
+    """The cues of the film's track of letters, on the clock of its pictures; None where there is none.
+
+    Of several tracks with words the English one is read, else the one that is shown by default. Subtitles that are
+    pictures are not read. FilmError.
+    """
+    with opened(film.source, film.form) as container:
+        count = len(text_tracks(container))
+    empty: list[str] = []
+    for place in range(count):
+        cues, language = _read(film, place)
+        if cues:
+            without = f"; nothing in: {', '.join(empty)}" if empty else ""
+            notes = (f"{count} tracks of subtitles; read: {language}{without}",) if count > 1 else ()
+            return Subtitles(ordered(cues), "embedded", "utf-8", notes)
+        empty.append(language)
+    return None
+
+
+def _read(film: Film, place: int) -> tuple[list[Cue], str]:
+    """The cues of one of the tracks, counted in the order of `text_tracks`, and its language."""
+    error_type = load_av().FFmpegError
+    cues: list[Cue] = []
+    letters = 0
+    with opened(film.source, film.form) as container:
+        track = text_tracks(container)[place]
+        packets = container.demux(track)
+        base = float(track.time_base or 0)
+        while len(cues) < MAX_CUES and letters < MAX_SUBTITLE_BYTES:
+            try:
+                packet = next(packets, None)
+                if packet is None:
+                    break
+                found = packet.decode() if packet.pts is not None and packet.size else []
+            except error_type as error:
+                film.faults[f"times the subtitles broke off ({said(error)})"] += 1
+                continue
+            for subtitle in found:
+                row = bytes(getattr(subtitle, "ass", b""))
+                letters += len(row)
+                start = (packet.pts or 0) * base - film.start
+                length = packet.duration * base if packet.duration else 2.0
+                cues += _cues(row.decode("utf-8", errors="replace"), start, start + min(length, _LONG))
+        return cues, track.language or "no language named"
+
+
+def _cues(row: str, start: float, end: float) -> list[Cue]:
+    """What an event in FFmpeg's ASS says; nothing for one before the film."""
+    parts = row.split(",", _COMMAS)
+    if len(parts) <= _COMMAS or end <= 0:
+        return []
+    return cues_of(round(max(0.0, start), 3), round(end, 3), parts[-1], parts[3].strip() or None)

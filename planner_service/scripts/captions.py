@@ -1,4 +1,7 @@
-"""The captions that the body and the narrator know, other words for them, and the known one nearest to any other."""
+"""The captions that the body and the narrator know, other words for them, and the known one nearest to any other.
+
+Furniture and captions as prompts tell language models what they may choose from.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +14,9 @@ from typing import Any, Final, Self
 
 import numpy as np
 
-from motion_backend.language.text import SentenceEncoder, Vectors
+from motion_backend.language.sentence_encoder import SentenceEncoder, Vectors
 from motion_backend.motion import Skill
+from scene_graphs.furniture import CATALOGUE, KINDS, display_name
 
 NEAR: Final = {"hashing": 0.4}
 """By encoder, where it is not `USUALLY_NEAR`: hashed words score lower."""
@@ -108,3 +112,13 @@ def _text(name: str) -> str:
 
 def _read(name: str) -> Any:
     return json.loads(_text(name))
+
+
+def furniture_offered() -> str:
+    """Every furniture word there is, between commas."""
+    return ", ".join(sorted({display_name(word) for word in (*KINDS, *CATALOGUE)}))
+
+
+def captions_offered(most: int | None = None) -> str:
+    """A line a skill with its captions between semicolons, the first so many of them."""
+    return "\n".join(f"  {skill}: {'; '.join(known[:most])}" for skill, known in captions().items())

@@ -6,7 +6,7 @@ import re
 from functools import cache
 from typing import Final, NamedTuple
 
-from planner_service.scripts.keyframe import EMOTIONS
+from planner_service.scripts.script import EMOTIONS
 
 # Stems: "*" stands for any letters, "_" for a space.
 _WORDS: Final[dict[str, str]] = {

@@ -8,12 +8,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import Final
 
-from scene_graphs.fields import LayoutError
-from scene_graphs.layouts import Layout
-from scene_graphs.loaders.intake import Intake
-from scene_graphs.loaders.options import Options
-from scene_graphs.loaders.report import Report
-from scene_graphs.loaders.source import Source
+from scene_graphs.json_fields import LayoutError
+from scene_graphs.layout import Layout
+from scene_graphs.loaders.room_builder import Intake, Report
+from scene_graphs.loaders.scene_source import Options, Source
 
 __all__ = ["FORMATS", "Imported", "Options", "Report", "Source", "read_scene"]
 

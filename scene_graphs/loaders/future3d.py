@@ -12,16 +12,16 @@ from typing import Any, Final
 
 import numpy as np
 
-from scene_graphs.fields import LayoutError, Row
+from scene_graphs.boxes import Part, box, inside
 from scene_graphs.furniture import canonical
-from scene_graphs.layouts import MAX_SIZE, Point3
-from scene_graphs.loaders.obj import nodes_of_obj
+from scene_graphs.geometry.mesh_to_boxes import shape_of
+from scene_graphs.json_fields import LayoutError, Row
+from scene_graphs.layout import MAX_SIZE, Point3
+from scene_graphs.loaders.frames import Pose, numbers
+from scene_graphs.loaders.obj_reader import nodes_of_obj
 from scene_graphs.loaders.plan_boxes import UprightBox
-from scene_graphs.loaders.poses import Pose, numbers
-from scene_graphs.loaders.scene_tree import Triangles, joined
-from scene_graphs.loaders.source import Source
-from scene_graphs.shaping import shape_of
-from scene_graphs.solids import Part, box, inside
+from scene_graphs.loaders.scene_nodes import Triangles, joined
+from scene_graphs.loaders.scene_source import Source
 
 UNKNOWN: Final = "unknown"
 _WORDS: Final = {

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
-from scene_graphs.layouts import Array, Point2, Point3
+from scene_graphs.layout import Array, Point2, Point3
 
 LESS: Final = 0.9
 """A turned rectangle is taken where it has at most this share of the area of the one along the axes."""

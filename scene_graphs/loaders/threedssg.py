@@ -12,16 +12,16 @@ from typing import Any, Final
 
 import numpy as np
 
-from scene_graphs.fields import MAX_COORDINATE, LayoutError, Row, read_object, read_rows, read_text
 from scene_graphs.furniture import Furniture, affordances, is_known
-from scene_graphs.graph import FurnitureGraph, graph_from_parts
-from scene_graphs.layouts import MAX_SIZE, Layout, Point2
-from scene_graphs.loaders.floors import floor_from_triangles
-from scene_graphs.loaders.intake import STRUCTURE, Intake
+from scene_graphs.graph.furniture_graph import FurnitureGraph, graph_from_parts
+from scene_graphs.json_fields import MAX_COORDINATE, LayoutError, Row, read_object, read_rows, read_text
+from scene_graphs.layout import MAX_SIZE, Layout, Point2
+from scene_graphs.loaders.floor_polygon import floor_from_triangles
+from scene_graphs.loaders.frames import numbers
 from scene_graphs.loaders.plan_boxes import UprightBox
-from scene_graphs.loaders.poses import numbers
-from scene_graphs.loaders.scanned import MAX_THINGS, Scan, Thing, category_of, room_of_scan
-from scene_graphs.loaders.source import Source
+from scene_graphs.loaders.room_builder import STRUCTURE, Intake
+from scene_graphs.loaders.scan_rooms import MAX_THINGS, Scan, Thing, category_of, room_of_scan
+from scene_graphs.loaders.scene_source import Source
 
 MAX_SCANS: Final = 10_000
 MAX_RELATIONS: Final = 200_000

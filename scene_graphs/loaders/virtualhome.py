@@ -8,19 +8,17 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, NamedTuple
 
-from scene_graphs.fields import MAX_COORDINATE, LayoutError, Row, read_point3, read_rows, read_text
-from scene_graphs.layouts import Layout
-from scene_graphs.loaders.facing import faced
-from scene_graphs.loaders.floors import floor_around, floor_from_boxes
-from scene_graphs.loaders.gaps import Gap, gap_around, gaps_of_rooms
-from scene_graphs.loaders.intake import Intake, RoomIntake
-from scene_graphs.loaders.naming import meaning, rooms_served
+from scene_graphs.boxes import Point3
+from scene_graphs.json_fields import MAX_COORDINATE, LayoutError, Row, read_point3, read_rows, read_text
+from scene_graphs.layout import Layout, Placed
+from scene_graphs.loaders.doors_and_windows import Gap, gap_around, gaps_of_rooms
+from scene_graphs.loaders.floor_polygon import floor_around, floor_from_boxes
+from scene_graphs.loaders.frames import point_from_unity
+from scene_graphs.loaders.front_direction import faced
+from scene_graphs.loaders.furniture_names import exact_category, meaning, rooms_served
 from scene_graphs.loaders.plan_boxes import UprightBox
-from scene_graphs.loaders.sizing import exact_category
-from scene_graphs.loaders.source import Source
-from scene_graphs.loaders.unity import point_from_unity
-from scene_graphs.placed import Placed
-from scene_graphs.solids import Point3
+from scene_graphs.loaders.room_builder import Intake, RoomIntake
+from scene_graphs.loaders.scene_source import Source
 
 MAX_NODES: Final = 20_000
 MAX_EDGES: Final = 2_000_000

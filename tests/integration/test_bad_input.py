@@ -17,13 +17,13 @@ import pytest
 from encoded import encoded, lend
 from forking import Forked
 
-from planner_service.commands.errors import USER_ERRORS
-from planner_service.scripts.keyframe import ShortScript
+from planner_service.cli.console import USER_ERRORS
+from planner_service.library.library import Shelves, open_shelves
+from planner_service.pipeline import StoryRequest, Studio
+from planner_service.scripts.script import ShortScript
 from planner_service.settings import read_settings
-from planner_service.shelves import Shelves, open_shelves
-from planner_service.stories import StoryRequest, Studio
-from scene_graphs.generating import generate_room
-from scene_graphs.layouts import layout_from_dict, layout_to_dict
+from scene_graphs.generation.room_generator import generate_room
+from scene_graphs.layout import layout_from_dict, layout_to_dict
 
 ENVIRONMENT = {name: value for name, value in os.environ.items() if not name.startswith("SIMS_")}
 THEME = "A person enjoys a relaxed afternoon at home."

@@ -6,20 +6,17 @@ import io
 import json
 import os
 import signal
-import sys
 from pathlib import Path
 
 import pytest
+from film_made import Drawn, Making, film_of
 from good_model import seen_in
 from model_server import Asked, ModelServer, Sent, chat
 from running import PATIENCE, RunningService
 
 from planner_service.client import ApiError, Client
-from planner_service.scripts.checking import check
-from planner_service.scripts.keyframe import ShortScript
-
-sys.path.append(str(Path(__file__).parents[1] / "planner_service" / "extraction"))
-from film_made import Drawn, Making, film_of
+from planner_service.scripts.script import ShortScript
+from planner_service.scripts.script_repair import check
 
 CUES = ((0.5, 1.5, "She storms through the room."), (8.0, 9.5, "He lies down on the bed."))
 KEY = "sk-test-0123456789abcdef"

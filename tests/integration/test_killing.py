@@ -18,7 +18,7 @@ from running import PATIENCE, SHORT, RunningService, finished
 from sqlalchemy import text
 
 from planner_service.settings import read_settings
-from planner_service.store.engine import database_url, open_engine
+from planner_service.store.database import database_url, open_engine
 
 KILLS = int(os.environ.get("SIMS_TEST_KILLS", "2"))
 """Moments at which processes are killed, on each database: the whole service, then its worker."""

@@ -10,11 +10,11 @@ from good_model import EVENTS, TEXT, THEME, answer_to, chosen_in, told_in
 from pydantic import BaseModel
 
 from motion_backend.motion import Character
-from planner_service.filing import write_story
+from planner_service.library.library import Shelves
 from planner_service.llm.protocol import ModelError
-from planner_service.llm.scripted import Answer, ScriptedModel
-from planner_service.shelves import Shelves
-from planner_service.stories import Planned, StoryRequest, Studio
+from planner_service.llm.scripted_model import Answer, ScriptedModel
+from planner_service.output.story_files import write_story
+from planner_service.pipeline import Planned, StoryRequest, Studio
 
 
 def answer_well(prompt: str, _schema: type[BaseModel]) -> Answer:

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from running import SHORT, RunningService, finished
 
-from motion_backend.formats.jsonfmt import read_json
-from motion_backend.formats.raw import read_raw
-from planner_service.schemas.layouts import EXAMPLE
+from motion_backend.formats.motion_json import read_json
+from motion_backend.formats.npz import read_raw
+from planner_service.api.layouts.schemas import EXAMPLE
 
 WALK = {"skill": "loco", "caption": "walk", "furniture": "sofa"}
 SIT = {"skill": "sitdown", "caption": "sit", "furniture": "sofa"}

@@ -17,7 +17,7 @@ import httpx
 import pytest
 from running import ENDED, SHORT, RunningService, finished
 
-from motion_backend.formats.raw import read_raw
+from motion_backend.formats.npz import read_raw
 
 STORIES = int(os.environ.get("SIMS_TEST_STORIES", "6"))
 """Stories posted at once, on each database; every film is asked for twice."""

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-
 import pytest
 from encoded import encoded
+from themes import THEMES
 
 from motion_backend.language import minilm
 from motion_backend.motion import Skill
-from planner_service.shelves import Shelves
-from planner_service.stories import Story, StoryRequest, Studio
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "planner_service"))
-from themes import THEMES
+from planner_service.library.library import Shelves
+from planner_service.pipeline import Story, StoryRequest, Studio
 
 pytestmark = pytest.mark.skipif(
     minilm.weights_folder() is None or not minilm.torch_is_installed(),

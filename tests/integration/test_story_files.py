@@ -16,20 +16,20 @@ import pytest
 from encoded import lend
 from forking import Forked
 
+from motion_backend.body.scene_collision import Obstacles
 from motion_backend.formats.bvh import read_bvh
-from motion_backend.formats.gltf import read_glb
+from motion_backend.formats.gltf_document import read_glb
 from motion_backend.formats.npz import read_npz
-from motion_backend.measures.feet import skate_ratio
-from motion_backend.measures.furniture import penetration
-from motion_backend.measures.kinematics import Kinematics
-from motion_backend.measures.smoothness import seam_jump
+from motion_backend.metrics.foot_skate import skate_ratio
+from motion_backend.metrics.joint_trajectories import Kinematics
+from motion_backend.metrics.penetration import penetration
+from motion_backend.metrics.smoothness import seam_jump
 from motion_backend.motion import Action, Skill
-from motion_backend.obstacles import Obstacles
-from planner_service.filing import FILES
-from scene_graphs.home_rows import home_from_dict, home_to_dict
+from planner_service.output.story_files import FILES
+from scene_graphs.home import home_from_dict, home_to_dict
 
 TESTS = Path(__file__).resolve().parents[1]
-VALIDATE = TESTS / "motion_backend" / "gltf_validate.mjs"
+VALIDATE = TESTS / "motion_backend" / "formats" / "gltf_validate.mjs"
 VALIDATOR = TESTS / "gltf" / "node_modules" / "gltf-validator"
 THEME = "A person sits down on the sofa and reads a book [with a red cover]."
 SMALL = 200_000

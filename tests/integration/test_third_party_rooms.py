@@ -12,12 +12,12 @@ from pathlib import Path
 import pytest
 from encoded import encoded
 
-from planner_service.shelves import Shelves
-from planner_service.stories import StoryRequest, Studio
+from planner_service.library.library import Shelves
+from planner_service.pipeline import StoryRequest, Studio
+from scene_graphs.affordances.affordances import spots
+from scene_graphs.affordances.usable_furniture import count_uses
 from scene_graphs.furniture import affordances
-from scene_graphs.layouts import Layout, layout_from_dict, layout_to_dict, read_layouts
-from scene_graphs.surfaces import spots
-from scene_graphs.usability import count_uses
+from scene_graphs.layout import Layout, layout_from_dict, layout_to_dict, read_layouts
 
 DATA = os.environ.get("SIMS_TEST_DATA")
 ROOMS = Path(DATA or ".") / "layouts" / "rooms"

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from motion_backend.motion import Action, Skill
-from scene_graphs.homes import Home, home_from_layouts
-from scene_graphs.layouts import Layout, Placed
-from scene_graphs.surfaces import spots
+from scene_graphs.affordances.affordances import spots
+from scene_graphs.home import Home, home_from_layouts
+from scene_graphs.layout import Layout, Placed
 
 ROOM = Layout(
     "small",

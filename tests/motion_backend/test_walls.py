@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from motion_backend.pictures import around, home_props
-from motion_backend.raster import orbit
+from motion_backend.rendering.motion_figures import around, home_props
+from motion_backend.rendering.rasterizer import orbit
 from motion_backend.walls import Side
-from scene_graphs.homes import home_from_layouts
-from scene_graphs.layouts import Layout, Opening, Placed
+from scene_graphs.home import home_from_layouts
+from scene_graphs.layout import Layout, Opening, Placed
 
 PICTURE = Placed("picture", "picture", (2.0, 1.4, 0.02), (0.8, 0.6, 0.03))
 CORNERED = Layout(

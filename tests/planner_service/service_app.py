@@ -14,8 +14,8 @@ import uvicorn
 from encoded import lend
 from fastapi import FastAPI
 
-from planner_service.app import create_app
-from planner_service.parts import Parts, open_parts
+from planner_service.api.app import create_app
+from planner_service.api.dependencies import Parts, open_parts
 from planner_service.settings import Settings
 
 KEY = "0123456789abcdef-first-key"

@@ -7,9 +7,8 @@ from itertools import combinations, product
 import networkx as nx
 from hypothesis import strategies as st
 
-from scene_graphs.catalogue import GROUP_OF_CLASS, KINDS
-from scene_graphs.furniture import Furniture, categories_of, class_of
-from scene_graphs.graph import FurnitureGraph
+from scene_graphs.furniture import GROUP_OF_CLASS, KINDS, Furniture, categories_of, class_of
+from scene_graphs.graph.furniture_graph import FurnitureGraph
 
 CATEGORIES: tuple[str, ...] = (
     *("dining_chair", "armchair", "stool", "multi_seat_sofa", "loveseat_sofa", "double_bed", "single_bed"),

@@ -144,7 +144,7 @@ MUTANTS = (
         "there.node[filled], there.shift[filled] = place, 0",
     ),
     Mutant("extra relations cost nothing", "packing", "+ costs.extra_edge * (edges // 2)", ""),
-    Mutant("counts wrap at a byte", "counting", "np.minimum(counts, MOST).astype", "counts.astype"),
+    Mutant("counts wrap at a byte", "counting", "np.minimum(counts, MAX_COUNT).astype", "counts.astype"),
 )
 
 

@@ -7,8 +7,8 @@ from graphs_at_random import CATEGORIES, GENERIC, build, graphs
 from hypothesis import strategies as st
 
 from scene_graphs.furniture import typical_size
-from scene_graphs.graph import FurnitureGraph
-from scene_graphs.layouts import Layout, Placed
+from scene_graphs.graph.furniture_graph import FurnitureGraph
+from scene_graphs.layout import Layout, Placed
 
 SCATTERED = (
     *("double_bed", "desk", "dining_table", "bookshelf", "floor_lamp"),

@@ -8,9 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scene_graphs.catalogue import ALIASES, CATALOGUE, GROUP_OF_CLASS, KINDS
 from scene_graphs.furniture import (
     AFFORDANCES,
+    ALIASES,
+    CATALOGUE,
+    GROUP_OF_CLASS,
+    KINDS,
     Furniture,
     affordances,
     canonical,

@@ -7,7 +7,6 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from planner_service.extraction.decoding import decode
 from planner_service.extraction.subtitles import (
     MAX_CUE_SECONDS,
     MAX_SUBTITLE_BYTES,
@@ -16,6 +15,7 @@ from planner_service.extraction.subtitles import (
     Subtitles,
     read_subtitles,
 )
+from planner_service.extraction.text_files import decode
 
 WORDS = st.text(st.sampled_from("abc déf ghi, Jkl. ñ"), min_size=1, max_size=30).filter(str.strip)
 SPANS = st.lists(st.tuples(st.integers(0, 5_000_000), st.integers(1, 9000), WORDS), min_size=1, max_size=8)

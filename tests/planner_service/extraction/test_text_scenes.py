@@ -9,13 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from stories import GERMAN, NARRATIVE, SCREENPLAY
 
-from planner_service.extraction.clauses import clauses_in
-from planner_service.extraction.deeds import deed_of, pieces_in
-from planner_service.extraction.plain import MAX_TEXT_LENGTH, ExtractionError, language_of, read_text
+from planner_service.extraction.deed_parser import clauses_in, deed_of, pieces_in
+from planner_service.extraction.script_writer import in_present
 from planner_service.extraction.subtitles import Cue
-from planner_service.extraction.text import Line, TextScene, scenes_of_cues, scenes_of_text
-from planner_service.extraction.writing import in_present
-from planner_service.scripts.naming import slug_of
+from planner_service.extraction.text_files import MAX_TEXT_LENGTH, ExtractionError, language_of, read_text
+from planner_service.extraction.text_scenes import Line, TextScene, scenes_of_cues, scenes_of_text
+from planner_service.scripts.script_duplicates import slug_of
 
 CUES = st.builds(
     lambda start, text, speaker: Cue(start, start + 2, text, speaker, () if text else ("door slams",)),

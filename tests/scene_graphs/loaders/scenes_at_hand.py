@@ -10,8 +10,8 @@ import numpy as np
 import shapely
 import trimesh
 
-from scene_graphs.forms import parts
-from scene_graphs.layouts import Layout, Placed
+from scene_graphs.furniture_shapes import parts
+from scene_graphs.layout import Layout, Placed
 
 Json = dict[str, Any]
 

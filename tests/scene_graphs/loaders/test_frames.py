@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scene_graphs.loaders.unity import box_from_unity, point_from_unity, yaw_from_unity
+from scene_graphs.loaders.frames import box_from_unity, point_from_unity, yaw_from_unity
 
 degrees = st.floats(-720, 720)
 places = st.tuples(*[st.floats(-20, 20)] * 3)

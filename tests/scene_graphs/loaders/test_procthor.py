@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 from spoiling import spoiled
 from unity_houses import procthor_house, vector
 
-from scene_graphs.fields import LayoutError
-from scene_graphs.layouts import Layout, Opening, Placed, layout_from_dict, layout_to_dict
+from scene_graphs.json_fields import LayoutError
+from scene_graphs.layout import Layout, Opening, Placed, layout_from_dict, layout_to_dict
 from scene_graphs.loaders import Imported, Options, Source, read_scene
 
 ASSETS: dict[str, Any] = {

@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 from scans import ROOM
 from spoiling import spoiled
 
-from scene_graphs.fields import LayoutError
-from scene_graphs.layouts import Array, Layout, layout_from_dict, layout_to_dict
+from scene_graphs.json_fields import LayoutError
+from scene_graphs.layout import Array, Layout, layout_from_dict, layout_to_dict
 from scene_graphs.loaders import Options, Source, read_scene
-from scene_graphs.loaders.ply import read_ply_vertices
+from scene_graphs.loaders.scannet import read_ply_vertices
 
 TURN = 0.5
 """The scan is turned by this; its axisAlignment turns it back."""

@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 from scans import ROOM, Piece
 from spoiling import spoiled
 
-from scene_graphs.fields import LayoutError
 from scene_graphs.furniture import Furniture
-from scene_graphs.layouts import Layout, layout_from_dict, layout_to_dict
+from scene_graphs.json_fields import LayoutError
+from scene_graphs.layout import Layout, layout_from_dict, layout_to_dict
 from scene_graphs.loaders import Imported, Options, Source, read_scene
 from scene_graphs.loaders.threedssg import graph_from_3dssg
 

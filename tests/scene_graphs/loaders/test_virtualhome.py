@@ -16,8 +16,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from spoiling import spoiled
 
-from scene_graphs.fields import LayoutError
-from scene_graphs.layouts import Layout, layout_from_dict, layout_to_dict, read_layouts
+from scene_graphs.json_fields import LayoutError
+from scene_graphs.layout import Layout, layout_from_dict, layout_to_dict, read_layouts
 from scene_graphs.loaders import Imported, Source, read_scene
 
 DATA = Path(os.environ.get("SIMS_TEST_DATA", ".")) / "layouts"

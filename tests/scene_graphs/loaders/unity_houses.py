@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import degrees, hypot
 from typing import Any
 
-from scene_graphs.layouts import Layout, Opening, Placed, Point2
+from scene_graphs.layout import Layout, Opening, Placed, Point2
 
 Json = dict[str, Any]
 _ROOM_TYPES = {"living_room": "LivingRoom", "bedroom": "Bedroom", "kitchen": "Kitchen", "bathroom": "Bathroom"}

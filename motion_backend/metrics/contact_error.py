@@ -1,0 +1,114 @@
+"""Whether a body got where it was to get, how near, how soon and for how long (SIMS 4.3, metrics of UniHSI)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion_backend import rotations
+from motion_backend.metrics.joint_trajectories import Kinematics
+from motion_backend.motion import Action, Skill
+from motion_backend.rotations import Array
+from motion_backend.skeleton import INDEX
+
+THRESHOLDS = {Skill.SITDOWN: 0.20, Skill.TOUCH: 0.20, Skill.LIEDOWN: 0.30}
+HAND_OVER = 0.30
+STRICT = 0.10
+"""What is near enough for strict success, whatever the skill (metres)."""
+SUSTAINED = 1.0
+RISEN = (0.85, np.cos(np.radians(30)), 0.5)
+"""Share of the standing height, cosine of the trunk's tilt and seconds that count as having risen."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one trial; none of it is true of a body that gave up."""
+
+    reached: bool
+    """Sustained: without a break for one second (a walk: at its end; rising: for half a second)."""
+    reached_any: bool
+    """In any frame (SIMS' own rule)."""
+    reached_strict: bool
+    """Sustained within 10 cm."""
+    error: float | None
+    """Metres from joint to goal: the smallest in the last second of the contact. None where nothing is touched."""
+    seconds: float | None
+    """Until the threshold was first met; None if never."""
+
+
+def outcome(action: Action, body: Kinematics) -> Outcome:
+    """How a trial of one action went."""
+    motion = body.motion
+    if action.skill in THRESHOLDS:
+        return _contact(action, body) if motion.goals else _FAILED
+    if action.skill is not Skill.LOCO:
+        up = risen(body)
+        start, stop = longest_run(up)
+        held = bool(up[-1] and stop - start >= RISEN[2] * motion.fps)
+        return _if_completed(body, Outcome(held, bool(up.any()), held, None, _first(up, motion.fps)))
+    if action.goal is None:
+        done = motion.completed
+        return Outcome(done, done, done, None, motion.duration if done else None)
+    gap = np.hypot(*(body.positions[:, 0, [0, 2]] - np.asarray(action.goal)).T)
+    near = gap <= HAND_OVER
+    return _if_completed(
+        body, Outcome(bool(near[-1]), bool(near.any()), bool(gap[-1] <= STRICT), None, _first(near, motion.fps))
+    )
+
+
+_FAILED = Outcome(False, False, False, None, None)
+
+
+def _contact(action: Action, body: Kinematics) -> Outcome:
+    fps = body.motion.fps
+    distance = contact_distance(body)
+    within = distance <= THRESHOLDS[action.skill]
+    start, stop = longest_run(within)
+    end = stop if stop > start else len(distance)
+    last = distance[max(end - round(SUSTAINED * fps), 0) : end]
+    closest, farthest = longest_run(distance <= STRICT)
+    found = Outcome(
+        reached=stop - start >= SUSTAINED * fps,
+        reached_any=bool(within.any()),
+        reached_strict=farthest - closest >= SUSTAINED * fps,
+        error=float(last.min()),
+        seconds=_first(within, fps),
+    )
+    return _if_completed(body, found)
+
+
+def _if_completed(body: Kinematics, found: Outcome) -> Outcome:
+    return found if body.motion.completed else Outcome(False, False, False, found.error, None)
+
+
+def _first(flags: NDArray[np.bool_], fps: int) -> float | None:
+    return float(flags.argmax()) / fps if flags.any() else None
+
+
+def contact_distance(body: Kinematics) -> Array:
+    """Largest distance over the goals of a motion between joint and goal. (T,)."""
+    gaps = [
+        np.linalg.norm(body.positions[:, INDEX[goal.joint]] - np.asarray(goal.position), axis=1)
+        for goal in body.motion.goals
+    ]
+    return np.asarray(np.max(gaps, axis=0))
+
+
+def longest_run(flags: NDArray[np.bool_]) -> tuple[int, int]:
+    """Start and stop (exclusive) of the longest unbroken run of true; the later of equals; (0, 0) if none."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(int)))
+    runs = edges.reshape(-1, 2)
+    if not len(runs):
+        return 0, 0
+    lengths = runs[:, 1] - runs[:, 0]
+    best = len(runs) - 1 - int(np.argmax(lengths[::-1]))
+    return int(runs[best, 0]), int(runs[best, 1])
+
+
+def risen(body: Kinematics) -> NDArray[np.bool_]:
+    """Frames in which the body stands: pelvis high and trunk upright. (T,)."""
+    high = body.positions[:, 0, 1] >= RISEN[0] * body.motion.skeleton.standing_height
+    trunk = rotations.normalize(body.positions[:, INDEX["neck"]] - body.positions[:, 0])
+    return np.asarray(high & (trunk[:, 1] >= RISEN[1]))

@@ -1,0 +1,1 @@
+"""Hands, elbows and arms kept out of furniture and off the body."""

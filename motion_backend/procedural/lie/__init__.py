@@ -1,0 +1,1 @@
+"""Lying down and getting up."""

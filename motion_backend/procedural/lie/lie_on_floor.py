@@ -1,0 +1,263 @@
+"""Down onto the floor to lie there and up from it, as people go: one knee, both, hands and knees, a side."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from motion_backend import rotations
+from motion_backend.motion import FPS
+from motion_backend.procedural.emotion_style import Bearing, arm_arrays
+from motion_backend.procedural.held_poses import UP, bend, shoulders, standing, upright
+from motion_backend.procedural.lie.lie_legs import HIP, SHANK, THIGH
+from motion_backend.procedural.lie.lie_pose import Bed, lying
+from motion_backend.procedural.lie.lie_styles import Lying
+from motion_backend.procedural.lie.lie_transition import freed
+from motion_backend.procedural.pose import Pose, concatenate, interpolate, smooth
+from motion_backend.procedural.touch.hand_contacts import palm_on
+from motion_backend.rotations import Array
+from motion_backend.skeleton import HAND_REST, Skeleton
+
+KNEE: Final = 0.06
+"""Height of a knee that is knelt on (metres at 1.70 m)."""
+ANKLE, ON_TOES, CURLED = 0.165, 1.30, 1.20
+"""A foot on its toes behind a knee: height of the ankle (metres at 1.70 m), tilt and bend of the toes (radians)."""
+AHEAD: Final = 0.27
+"""How far before the knees the other foot is put to stand up (metres at 1.70 m)."""
+LIFT, ROUND, TAKEOFF, STARTS = (0.16, 0.10), (0.0, 0.12), 0.30, 0.18
+"""How high the left and the right foot are lifted, how far they go round (metres at 1.70 m); in which share of a step,
+and after which share a foot moves on.
+
+The right one goes past the knee that is down.
+"""
+TURNED: Final = 0.85
+"""In which share of its step a foot turns, while it is nearer to the toes it stands on behind."""
+ON_SIDE: Final = Lying(side="left", legs="gathered", arms=("tucked", "before"))
+"""How one comes onto the floor, and leaves it: with the left side down."""
+
+
+@dataclass(frozen=True)
+class Mat:
+    """A place on the floor to lie on, and where knees, hands and feet go beside it; it is left over the left side."""
+
+    bed: Bed
+    skeleton: Skeleton
+
+    @cached_property
+    def up(self) -> Array:
+        """Towards the head. (3,)."""
+        return np.array([np.sin(self.bed.head_yaw), 0.0, np.cos(self.bed.head_yaw)])
+
+    @cached_property
+    def out(self) -> Array:
+        """Where one looks who lies on the left side. (3,)."""
+        return np.cross(self.up, UP)
+
+    @cached_property
+    def knees(self) -> Array:
+        """Where the left and the right knee are knelt on. (2, 3)."""
+        scale = self.skeleton.scale
+        # A body that looks to its head's end with its back up has its left where one on the back has the right.
+        ways = np.array([[-HIP], [HIP]]) * scale * self.out
+        middle = self.bed.pelvis + scale * (-0.34 * self.up + 0.30 * self.out)
+        middle[1] = KNEE * scale
+        return np.asarray(middle + ways)
+
+    @cached_property
+    def ankles(self) -> Array:
+        """Where ankles are behind the knees, on curled toes. (2, 3)."""
+        scale = self.skeleton.scale
+        back = float(np.sqrt(SHANK**2 - (ANKLE - KNEE) ** 2))
+        return np.asarray(self.knees + scale * ((ANKLE - KNEE) * UP - back * self.up))
+
+    @property
+    def ankle_aside(self) -> Array:
+        """Where the left ankle is when the body has gone down beside that knee. (3,)."""
+        away = rotations.normalize(-self.up - 0.30 * self.out + 0.16 * UP)
+        return np.asarray(self.knees[0] + SHANK * self.skeleton.scale * away)
+
+    @property
+    def standing_point(self) -> tuple[float, float]:
+        """[x, z] of the pelvis standing before and after."""
+        x, _, z = self.knees.mean(axis=0) + AHEAD * self.skeleton.scale * self.up
+        return float(x), float(z)
+
+
+def kneel_down(start: Pose, mat: Mat, bearing: Bearing) -> Pose:
+    """From standing to both knees: the left foot steps back and that knee goes down, then the other."""
+    pace = 1 / bearing.tempo
+    both = _on_both_knees(start, mat)
+    half = _on_one_knee(start, both, mat)
+    down = interpolate([0.0, 1.20 * pace, 2.05 * pace], [start, half, both], FPS)
+    down = _step(down, 0, (0.05 * pace, 1.00 * pace), half, mat)
+    return _step(down, 1, (1.20 * pace, 2.05 * pace), both, mat)
+
+
+def kneel_up(knelt: Pose, mat: Mat, bearing: Bearing) -> Pose:
+    """From both knees to standing: the right foot is put forward, the left one follows as the body rises."""
+    pace = 1 / bearing.tempo
+    end = standing(mat.standing_point, mat.bed.head_yaw, bearing, mat.skeleton)
+    half = _on_one_knee(end, knelt, mat)
+    times = [0.0, 0.90 * pace, 1.50 * pace, 2.35 * pace]
+    up = interpolate(times, [knelt, half, _pushing(half, mat), end], FPS)
+    up = _step(up, 1, (0.0, 0.85 * pace), half, mat)
+    return _step(up, 0, (1.45 * pace, 2.30 * pace), end, mat)
+
+
+def lie_down_from_knees(knelt: Pose, mat: Mat, style: Lying) -> Pose:
+    """From both knees to lying: hands down, the left hip and side, then over into the way of lying."""
+    bed, skeleton = mat.bed, mat.skeleton
+    hands = _on_hands_and_knees(knelt, mat)
+    side = _on_the_side(knelt, mat)
+    end = lying(knelt, bed, style, skeleton)
+    hip = _on_the_hip(hands, side, mat)
+    keys, waits = [replace(side, reach=hip.reach)], [0.7, 0.8, 0.8]
+    if style.side != "left":
+        keys.append(replace(_on_the_back(knelt, mat), palms=end.palms, reach=hip.reach))
+        waits.append(0.8)
+    keys += [replace(key, reach=hip.reach) for key in (*freed(end, bed), end)]
+    waits += [0.6] * (len(keys) + 2 - len(waits) - 1) + [0.75]
+    keys = [replace(knelt, reach=hands.reach, palms=hands.palms), hands, hip, *keys]
+    times = np.cumsum([0.0, *waits]) / style.bearing.tempo
+    return _on_the_knee(interpolate(times.tolist(), keys, FPS), times[1:4], mat)
+
+
+def rise_to_knees(start: Pose, mat: Mat, bearing: Bearing) -> Pose:
+    """From lying to both knees: over the left side onto hands and knees, and the trunk up."""
+    if rotations.rotate(start.hips, np.array([0.0, 0.0, 1.0])) @ mat.out < -0.5:
+        over = interpolate([0.0, 0.9 / bearing.tempo], [start, _on_the_back(start, mat)], FPS)
+        return concatenate([over, rise_to_knees(over.at(len(over) - 1), mat, bearing)])
+    knelt = _on_both_knees(start, mat)
+    hands = _on_hands_and_knees(knelt, mat)
+    side = replace(_on_the_side(start, mat), palms=start.palms)
+    hip = _on_the_hip(hands, side, mat)
+    before = [replace(key, reach=hip.reach) for key in (start, *freed(start, mat.bed), side)]
+    keys = [*before, hip, hands, replace(knelt, reach=hands.reach, palms=hands.palms)]
+    waits = [0.5] * (len(keys) - 5) + [0.9, 0.75, 0.75, 0.65]
+    times = np.cumsum([0.0, *waits]) / bearing.tempo
+    return _on_the_knee(interpolate(times.tolist(), keys, FPS), times[-2:-5:-1], mat)
+
+
+def _on_both_knees(pose: Pose, mat: Mat) -> Pose:
+    """Upright on both knees."""
+    arms, elbows = arm_arrays("hang", "hang")
+    yaw, scale = mat.bed.head_yaw, mat.skeleton.scale
+    toes_down = rotations.compose(rotations.yaw_to_quat(yaw), rotations.rotvec_to_quat(np.array([ON_TOES, 0.0, 0.0])))
+    return replace(
+        pose,
+        pelvis=mat.knees.mean(axis=0) + THIGH * scale * UP,
+        hips=upright(yaw, 0.15),
+        spine=bend(0.25),
+        head=bend(0.15),
+        ankles=mat.ankles,
+        feet=np.stack([toes_down, toes_down]),
+        toes=np.full(2, CURLED),
+        knees=np.repeat((mat.up - 0.6 * UP)[None], 2, axis=0),
+        arms=arms * [1.0, 0.86, 1.0] + [0.0, 0.0, 0.30],
+        elbows=elbows,
+        reaching=np.zeros(2),
+        pressing=np.zeros(2),
+        planted=np.ones(2),
+    )
+
+
+def _on_one_knee(stood: Pose, both: Pose, mat: Mat) -> Pose:
+    """The left knee down, the right foot where it stands."""
+    return replace(
+        both,
+        hips=upright(mat.bed.head_yaw, 0.18),
+        spine=bend(0.30),
+        ankles=np.stack([both.ankles[0], stood.ankles[1]]),
+        feet=np.stack([both.feet[0], stood.feet[1]]),
+        toes=np.array([CURLED, 0.0]),
+        knees=np.stack([both.knees[0], mat.up + 0.25 * UP]),
+    )
+
+
+def _pushing(half: Pose, mat: Mat) -> Pose:
+    """Over the right foot, the left one pushing off on its toes."""
+    scale, forward = mat.skeleton.scale, upright(mat.bed.head_yaw, 0.45)
+    pelvis = half.pelvis + scale * (0.20 * mat.up + 0.22 * UP)
+    return replace(half, pelvis=pelvis, hips=forward, spine=bend(0.4), head=bend(0.0))
+
+
+def _on_hands_and_knees(knelt: Pose, mat: Mat) -> Pose:
+    """Hands under the shoulders."""
+    scale = mat.skeleton.scale
+    pose = replace(knelt, hips=upright(mat.bed.head_yaw, 1.25), spine=bend(0.15), head=bend(-0.45))
+    places = shoulders(pose.repeat(1), mat.skeleton)[0] * [1.0, 0.0, 1.0] + HAND_REST * UP
+    return _on_palms(pose, places + 0.06 * scale * mat.up, mat)
+
+
+def _on_the_hip(hands: Pose, side: Pose, mat: Mat) -> Pose:
+    """Half-way between hands and knees and lying on the side: the left hip nearly down, both hands bearing."""
+    scale, floor = mat.skeleton.scale, mat.bed.pelvis * [1.0, 0.0, 1.0]
+    pose = replace(
+        hands,
+        pelvis=floor + scale * (0.06 * mat.out + 0.17 * UP),
+        hips=rotations.slerp(hands.hips, side.hips, 0.5),
+        spine=bend(0.2, side=0.65),
+        head=bend(-0.1),
+        ankles=np.stack([mat.ankle_aside, 0.5 * (hands.ankles[1] + side.ankles[1]) + 0.05 * UP]),
+        feet=rotations.slerp(hands.feet, side.feet, 0.5),
+        toes=np.full(2, 0.4),
+        knees=0.5 * (hands.knees + side.knees),
+        planted=np.zeros(2),
+    )
+    places = scale * np.array([0.58 * mat.up + 0.36 * mat.out, 0.22 * mat.up + 0.45 * mat.out])
+    laid = _on_palms(pose, floor + places + HAND_REST * UP, mat)
+    return replace(laid, elbows=np.stack([np.array([0.7, 0.4, 0.5]), laid.elbows[1]]))
+
+
+def _on_palms(pose: Pose, places: Array, mat: Mat) -> Pose:
+    """Both hands flat on the floor."""
+    palms = np.stack([palm_on(UP, mat.bed.head_yaw, side) for side in ("left", "right")])
+    elbows = np.array([[0.8, -0.6, -0.5], [-0.8, -0.6, -0.5]])
+    return replace(pose, reach=places, reaching=np.ones(2), palms=palms, pressing=np.ones(2), elbows=elbows)
+
+
+def _on_the_side(pose: Pose, mat: Mat) -> Pose:
+    """Lying on the left side, knees bent, hands before the chest."""
+    return replace(lying(pose, mat.bed, ON_SIDE, mat.skeleton), pressing=np.zeros(2))
+
+
+def _on_the_back(pose: Pose, mat: Mat) -> Pose:
+    """On the back with the knees up, arms over the trunk."""
+    way = Lying(legs="bent", arms=("chest", "belly"))
+    return replace(lying(pose, mat.bed, way, mat.skeleton), pressing=np.zeros(2))
+
+
+def _step(pose: Pose, index: int, seconds: tuple[float, float], end: Pose, mat: Mat) -> Pose:
+    """One foot taken from where it is to where it is at the end, in a stretch of the frames; lifted, then moved."""
+    first, last = (round(at * FPS) for at in seconds)
+    share = np.clip((np.arange(len(pose)) - first) / (last - first), 0.0, 1.0)
+    here, there = pose.ankles[first, index].copy(), end.ankles[index]
+    moved = smooth((share - STARTS) / (1 - 2 * STARTS))[:, None]
+    lifted = smooth(share / TAKEOFF) * smooth((1 - share) / TAKEOFF)
+    around = lifted[:, None] * (LIFT[index] * UP + ROUND[index] * mat.out) * mat.skeleton.scale
+    ankles, feet, planted = pose.ankles.copy(), pose.feet.copy(), pose.planted.copy()
+    ankles[:, index] = here + moved * (there - here) + around
+    # Under the hip the sole looks back, whichever way the foot goes.
+    turned = smooth(share / TURNED) if end.toes[index] > 0 else 1 - smooth((1 - share) / TURNED)
+    feet[:, index] = rotations.slerp(feet[first, index][None], end.feet[index][None], turned)
+    planted[:, index] = np.where((share > 0) & (share < 1), 0.0, 1.0)
+    return replace(pose, ankles=ankles, feet=feet, planted=planted)
+
+
+def _on_the_knee(pose: Pose, times: Array, mat: Mat) -> Pose:
+    """The left knee on its place, where the body goes down over it or up: hips turn round it.
+
+    `times` are those of hands and knees, of lying half on the hip, and of lying on the side (seconds).
+    """
+    hands, hip, side = times
+    at = np.arange(1, len(pose) + 1) / FPS
+    share = smooth((at - side) / (hip - side))[:, None] * ((at - hands) / (hip - hands) > -0.9)[:, None]
+    joint = pose.pelvis + HIP * mat.skeleton.scale * rotations.rotate(pose.hips, np.array([1.0, 0.0, 0.0]))
+    thigh = joint - mat.knees[0]
+    length = np.linalg.norm(thigh, axis=1, keepdims=True)
+    knees = pose.knees.copy()
+    knees[:, 0] += share * (-thigh / length - knees[:, 0])
+    return replace(pose, pelvis=pose.pelvis + share * (THIGH * mat.skeleton.scale / length - 1) * thigh, knees=knees)

@@ -1,0 +1,114 @@
+"""Going to a bed or a free floor, lying down there and getting up: the performers of liedown and of leaving a bed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from motion_backend.body.scene_collision import Obstacles
+from motion_backend.motion import FPS, Action, Part, Posture
+from motion_backend.procedural.body_state import Body, spot_of, spot_under
+from motion_backend.procedural.emotion_style import Bearing
+from motion_backend.procedural.held_poses import UP, Seat, idle
+from motion_backend.procedural.lie.lie_on_floor import Mat, kneel_down, kneel_up, lie_down_from_knees, rise_to_knees
+from motion_backend.procedural.lie.lie_pose import Bed
+from motion_backend.procedural.lie.lie_styles import lie_style
+from motion_backend.procedural.lie.lie_transition import edge_seat, lie_down, rise_to_edge
+from motion_backend.procedural.sit.sit_skill import at_standing_point, leave_seat
+from motion_backend.procedural.sit.sit_transition import lower_onto
+from motion_backend.procedural.walk.walk_skill import go
+from motion_backend.rotations import Array
+from scene_graphs.affordances.affordances import Spot
+
+FLOOR = 0.02
+"""What is lain on is the floor if it is no higher than this (metres)."""
+
+
+def liedown(body: Body, action: Action) -> None:
+    """From standing: to the bed and onto its edge, or onto the knees on the floor; down, and the pose held there."""
+    style = lie_style(action.emotion, action.caption)
+    spot = spot_of(action)
+    if _on_floor(spot):
+        mat = Mat(_made(body, spot), body.skeleton)
+        go(body, mat.standing_point, spot.facing, action)
+        body.enter(Part.EDGE)
+        body.add(kneel_down(body.pose, mat, style.bearing))
+        body.enter(Part.LIEDOWN)
+        body.add(lie_down_from_knees(body.pose, mat, style))
+    else:
+        seat = _edge_of(body, spot)
+        at_standing_point(body, action, seat)
+        body.enter(Part.EDGE)
+        body.add(lower_onto(body.pose, seat, style.bearing, body.skeleton))
+        body.enter(Part.LIEDOWN)
+        body.add(lie_down(body.pose, seat, _made(body, spot), style, body.skeleton))
+    body.add(idle(body.pose, action.hold, 0.6 * style.bearing.restless, body.rng, FPS))
+
+
+def get_up(body: Body, bearing: Bearing) -> None:
+    """From lying to the edge of the bed, or from the floor to the knees."""
+    spot = spot_under(body)
+    if _on_floor(spot):
+        body.add(rise_to_knees(body.pose, Mat(Bed.of(spot), body.skeleton), bearing))
+    else:
+        body.add(rise_to_edge(body.pose, _edge_of(body, spot), Bed.of(spot), bearing, body.skeleton))
+
+
+def leave_bed(body: Body, bearing: Bearing) -> None:
+    """From the edge of the bed, or from the knees, to standing."""
+    spot = spot_under(body)
+    if not _on_floor(spot):
+        leave_seat(body, _edge_of(body, spot), bearing)
+        return
+    body.add(kneel_up(body.pose, Mat(Bed.of(spot), body.skeleton), bearing))
+    body.posture, body.rest = Posture.STANDING, None
+
+
+def _on_floor(spot: Spot) -> bool:
+    return spot.point[1] < FLOOR
+
+
+def _edge_of(body: Body, spot: Spot) -> Seat:
+    """The edge of a bed that is sat on before and after lying."""
+    return edge_seat(Bed.of(spot), spot.standing, spot.approach, spot.edge, body.skeleton.scale)
+
+
+def _made(body: Body, spot: Spot) -> Bed:
+    """The bed with what lies on it and stands around it."""
+    bed, scale = Bed.of(spot), body.skeleton.scale
+    up = np.array([np.sin(bed.head_yaw), 0.0, np.cos(bed.head_yaw)])
+    left = np.array([-up[2], 0.0, up[0]])
+    solid = body.scene.obstacles.solid()
+    head = np.asarray(spot.point) + 0.68 * scale * up
+    return replace(
+        bed,
+        pillow=_height_above(body.scene.obstacles, head, 0.20),
+        end=_foot_end(solid, spot, -up, scale),
+        beside=(_room_beside(solid, bed, left, up, scale), _room_beside(solid, bed, -left, up, scale)),
+    )
+
+
+def _room_beside(solid: Obstacles, bed: Bed, aside: Array, up: Array, scale: float) -> float:
+    """Distance from the body's middle to what would be in the way of its arm on one side (metres)."""
+    for distance in np.arange(0.20, 0.90, 0.03) * scale:
+        points = [bed.pelvis + along * scale * up + distance * aside + 0.02 * UP for along in (0.10, 0.30, 0.48, 0.68)]
+        if solid.depth(np.stack(points)).max() > -0.03:
+            return float(distance)
+    return np.inf
+
+
+def _height_above(obstacles: Obstacles, point: Array, most: float) -> float:
+    """How much higher than a point of the mattress the thing on it is (metres), up to `most`."""
+    column = point + np.arange(0.60, 0.0, -0.01)[:, None] * [0.0, 1.0, 0.0]
+    inside = obstacles.depth(column) > 0
+    return float(np.clip(0.60 - 0.01 * np.argmax(inside), 0.0, most)) if inside.any() else 0.0
+
+
+def _foot_end(solid: Obstacles, spot: Spot, down: Array, scale: float) -> tuple[float, float]:
+    """Distance along the bed to what would be in the way of stretched legs, and its height above the mattress."""
+    for distance in np.arange(0.45, 0.97, 0.03) * scale:
+        height = _height_above(solid, np.asarray(spot.point) + distance * down, 0.60)
+        if height > 0.03:
+            return float(distance), height
+    return np.inf, 0.0

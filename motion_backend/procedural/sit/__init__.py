@@ -1,0 +1,1 @@
+"""Sitting down and standing up."""

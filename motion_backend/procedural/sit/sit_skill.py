@@ -1,0 +1,155 @@
+"""Going to a seat, sitting down on it and standing up from it: the performers of sitdown and of leaving a seat.
+
+Where on a seat one sits for what hands are to lie on: beside an armrest, or in front, within reach of a table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from motion_backend.body.scene_collision import Obstacles
+from motion_backend.motion import FPS, Action, Posture
+from motion_backend.procedural.body_state import Body, spot_of
+from motion_backend.procedural.emotion_style import Bearing
+from motion_backend.procedural.held_poses import SHIN_REACH, Seat, idle
+from motion_backend.procedural.sit.sit_legs import Room
+from motion_backend.procedural.sit.sit_pose import Place, lacking
+from motion_backend.procedural.sit.sit_styles import sit_style
+from motion_backend.procedural.sit.sit_transition import sit_down, stand_up
+from motion_backend.procedural.touch.gestures import gesture
+from motion_backend.procedural.touch.hand_rests import (
+    BACK,
+    HOLDS,
+    TABLE_REACH,
+    Hold,
+    Holds,
+    Pair,
+    elbow_room,
+    follow,
+    handholds,
+    on_thing,
+    table_before,
+)
+from motion_backend.procedural.walk.walk_skill import go
+from motion_backend.rotations import Array
+from scene_graphs.affordances.affordances import Spot
+
+SHIN = 0.05
+"""Half as wide as a shin is (metres)."""
+SLOW, QUICK = 0.76, 1.25
+"""Tempos below and above which one rises with the hands on the knees, and with none."""
+
+
+def at_standing_point(body: Body, action: Action, seat: Seat) -> None:
+    """Stand where shins will be upright once seated, back to the seat."""
+    go(body, seat.standing_point(body.skeleton.scale), seat.yaw, action)
+
+
+def sitdown(body: Body, action: Action) -> None:
+    """From standing: to the seat, down onto it, and what is done there."""
+    style = sit_style(action.emotion, action.caption)
+    spot = spot_of(action)
+    seat = Seat.of(spot)
+    at_standing_point(body, action, seat)
+    around = handholds(seat, body.scene.obstacles, body.skeleton.scale)
+    elbows = elbow_room(seat, body.scene.obstacles.solid(), body.skeleton.scale)
+    place = Place(seat, around, _leg_room(body, seat), elbows)
+    under = around.behind if seat.is_low(body.skeleton.scale) else around.beside
+    felt = _grips(around.armrests, under, seat, style.manner.hands)
+    down, holds = sit_down(body.pose, place, style, felt, body.skeleton)
+    body.add(down)
+    body.note(*lacking(style, place, body.skeleton))
+    held = idle(body.pose, action.hold, style.bearing.restless, body.rng, FPS)
+    body.add(gesture(follow(held, body.pose, holds, body.skeleton), style.doing))
+    body.posture, body.rest = Posture.SEATED, spot
+
+
+def leave_seat(body: Body, seat: Seat, bearing: Bearing) -> None:
+    """From sitting to standing: hands push off from armrests or seat, those of the slow from their knees."""
+    push: Holds = (None, None)
+    if bearing.tempo < SLOW and not seat.is_low(body.skeleton.scale):
+        push = HOLDS["knees"], HOLDS["knees"]
+    elif bearing.tempo < QUICK:
+        around = handholds(seat, body.scene.obstacles, body.skeleton.scale)
+        push = _grips(around.armrests, around.beside, seat, (True, True))
+    body.add(stand_up(body.pose, seat, seat.standing_point(body.skeleton.scale), bearing, body.skeleton, push))
+    body.posture, body.rest = Posture.STANDING, None
+
+
+def _grips(armrests: Pair, under: Pair, seat: Seat, hands: tuple[bool, bool]) -> Holds:
+    """What the hands that are wanted take hold of: armrests, else what is under them."""
+    found: list[Hold | None] = []
+    for index, side in enumerate((1, -1)):
+        armrest, beside = armrests[index], under[index]
+        if armrest is not None and hands[index]:
+            found.append(on_thing(armrest, seat.yaw, side * 0.2, (1.0, 0.0, -0.5)))
+        elif beside is not None and hands[index]:
+            found.append(on_thing(beside, seat.yaw, side * 0.2, BACK))
+        else:
+            found.append(None)
+    return found[0], found[1]
+
+
+def _leg_room(body: Body, seat: Seat) -> tuple[Room, Room]:
+    """How far each foot may go before it meets something."""
+    near, scale = body.scene.obstacles.solid(), body.skeleton.scale
+    ahead, aside = np.arange(0.44, 0.86, 0.02), np.arange(0.12, 0.40, 0.02) * scale
+    # Before the seat's own front, where shins and feet of a sitter are.
+    front = max(SHIN_REACH * scale, seat.edge) + SHIN
+    room = []
+    for side in (1, -1):
+        points = np.array([seat.to_world((side * 0.12, up, a + 0.16)) for a in ahead for up in (0.06, 0.22)])
+        beside = np.array([seat.to_world((side * a, up, front)) for a in aside for up in (0.06, 0.22, 0.36)])
+        room.append(Room(_before(ahead, near.depth(points), 0.02), _before(aside, near.depth(beside), SHIN)))
+    return room[0], room[1]
+
+
+def _before(places: Array, depth: Array, clear: float) -> float:
+    """The last of the distances, so much before the first at which one of its points is in something, or nearly."""
+    hit = depth.reshape(len(places), -1).max(axis=1) > -0.03
+    return float(places[np.argmax(hit)] - clear) if hit.any() else float(places[-1])
+
+
+AT_TABLE = frozenset({"table", "desk"})
+"""Arms of a way of sitting that lie on a table."""
+MIN_EDGE = 0.12
+"""Thighs rest on so much of a seat at least (metres)."""
+AT_EASE = 0.45
+"""Distance of a table's edge from the pelvis to which nobody draws nearer (metres)."""
+ABOUT = 1.4
+"""A table in reach is within this distance of the pelvis (metres)."""
+
+
+def seat_for(found: Sequence[Spot], emotion: str, caption: str, obstacles: Obstacles) -> Spot:
+    """The first of the sit spots, and the place on it, where the most hands have what they are to lie on.
+
+    Chairs stand so far from their tables that a body can get between: at a table one sits on the front of the seat.
+    """
+    arms = sit_style(emotion, caption).arms
+    if AT_TABLE & set(arms):
+        return next((near for spot in found if (near := _drawn_up(spot, obstacles))), found[0])
+    if "armrest" not in arms:
+        return found[0]
+    # The first of those that are as good as any.
+    return max(found, key=lambda spot: _armrests(spot, obstacles))
+
+
+def _drawn_up(spot: Spot, obstacles: Obstacles) -> Spot | None:
+    """The same seat sat on so far to the front that the table before it is near; None where no table is in reach."""
+    seat, forward = Seat.of(spot), max(spot.edge - MIN_EDGE, 0.0)
+    near = obstacles.near(seat.pelvis - ABOUT, seat.pelvis + ABOUT)
+    table = table_before(seat, near, 1.0, TABLE_REACH + forward)
+    if table is None:
+        return None
+    moved = float(np.clip(table[0] - AT_EASE, 0.0, forward))
+    x, y, z = spot.point
+    x, z = x + moved * np.sin(spot.facing), z + moved * np.cos(spot.facing)
+    place = replace(spot, point=(float(x), y, float(z)), edge=spot.edge - moved, back=spot.back + moved)
+    return place if table_before(Seat.of(place), near, 1.0) is not None else None
+
+
+def _armrests(spot: Spot, obstacles: Obstacles) -> int:
+    return sum(rest is not None for rest in handholds(Seat.of(spot), obstacles, 1.0).armrests)

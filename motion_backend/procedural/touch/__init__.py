@@ -1,0 +1,1 @@
+"""Touching and what hands do."""

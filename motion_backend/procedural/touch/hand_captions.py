@@ -1,0 +1,110 @@
+"""What hands do at what they touch: pick up, put down, switch on, wash, rotate (LINGO Table A1)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+import numpy as np
+
+from motion_backend import rotations
+from motion_backend.procedural.emotion_style import arm_arrays
+from motion_backend.procedural.pose import Pose
+from motion_backend.rotations import Array
+from motion_backend.skeleton import HAND_REST
+
+HANDLINGS: Final = (
+    ("pick", r"\bpick(s|ing)?\b.*\bup\b|\btak(e|ing) (up|hold)|\bgrab|\bgrasp"),
+    ("put", r"\bput(s|ting)?\b.*\bdown\b|\bset(ting)? down|\bplac(e|ing)\b"),
+    ("press", r"\b(turn|switch)(ing|es)? (it )?(on|off)\b|\bpress|\bpush"),
+    ("wash", r"\bwash|\bwip(e|ing)|\bscrub|\bpolish"),
+    ("rotate", r"\brotat|\bturn(s|ing)?\b(?! (on|off))|\btwist"),
+)
+"""What a caption may say is done at a thing, the first that is found."""
+CARRIES: Final = 0.08
+"""A wrist so near to where it would carry something carries it (arm lengths)."""
+FREE: Final = ("hang", "bent")
+"""Arms that swing as one walks."""
+FINGERS, FINGER = 0.14, 0.024
+"""From the wrist to the fingertips, and half of what a hand is thick (metres)."""
+
+
+@dataclass(frozen=True)
+class Laid:
+    """Where a hand is to lie, and where the other one is when both do."""
+
+    wrist: Array
+    """(3,) world."""
+    palm: Array
+    """(4,) hand to world."""
+    normal: Array
+    """(3,) out of the surface."""
+    hand: str
+    down: bool = False
+    """Whether fingers point down a front."""
+    other: tuple[Array, Array] | None = None
+    """The other hand's wrist (3,) and palm (4,)."""
+    stroke: Array = field(default_factory=lambda: np.zeros(3))
+    """(3,) along the surface, as far as hands may go that way and its opposite (metres)."""
+
+    @property
+    def hands(self) -> tuple[tuple[int, Array, Array], ...]:
+        """Index (0 left, 1 right), wrist and palm of each hand that is laid."""
+        index = 0 if self.hand == "left" else 1
+        first = (index, self.wrist, self.palm)
+        return (first,) if self.other is None else (first, (1 - index, *self.other))
+
+    def tilted(self, angle: float) -> Laid:
+        """The first hand with its fingers turned into the surface (radians), as high over it as their tips need."""
+        side = 1.0 if self.hand == "left" else -1.0
+        turn = rotations.rotvec_to_quat(np.array([0.0, 0.0, -side * angle]))
+        lift = max(FINGERS * float(np.sin(angle)) + FINGER - HAND_REST, 0.0)
+        return replace(self, wrist=self.wrist + lift * self.normal, palm=rotations.compose(self.palm, turn))
+
+
+def handling_of(caption: str) -> str:
+    """What a touch does, a word of `HANDLINGS`, or "" for a plain touch."""
+    return next((doing for doing, pattern in HANDLINGS if re.search(pattern, caption.lower())), "")
+
+
+def with_both_hands(caption: str) -> bool:
+    """Whether a caption lays both hands on what is touched."""
+    return re.search(r"\b(both|two) (hands|palms)\b", caption.lower()) is not None
+
+
+def steadies(caption: str) -> bool:
+    """Whether the other hand keeps still what one hand turns."""
+    return handling_of(caption) == "rotate"
+
+
+def carrying(pose: Pose, hands: Iterable[int]) -> Pose:
+    """A standing pose with something held in these hands (0 left, 1 right) before the body."""
+    return _with_arms(pose, hands, "carry")
+
+
+def empty(pose: Pose, hands: Iterable[int]) -> Pose:
+    """A standing pose with these hands (0 left, 1 right) hanging, since they have put down what they held."""
+    return _with_arms(pose, hands, "hang")
+
+
+def arms_on_the_way(pose: Pose, arms: tuple[str, str]) -> tuple[str, str]:
+    """How arms are held in walking: a hand that carries something keeps it before the body, if it would only hang."""
+    left, right = ("carry" if holds and arm in FREE else arm for holds, arm in zip(holding(pose), arms, strict=True))
+    return left, right
+
+
+def holding(pose: Pose) -> tuple[bool, bool]:
+    """Whether the left and the right hand carry something before the body."""
+    wrists, _ = arm_arrays("carry", "carry")
+    left, right = np.linalg.norm(pose.arms - wrists, axis=-1) < CARRIES
+    return bool(left), bool(right)
+
+
+def _with_arms(pose: Pose, hands: Iterable[int], name: str) -> Pose:
+    wrists, poles = arm_arrays(name, name)
+    arms, elbows = pose.arms.copy(), pose.elbows.copy()
+    for index in hands:
+        arms[index], elbows[index] = wrists[index], poles[index]
+    return replace(pose, arms=arms, elbows=elbows, reaching=np.zeros(2), pressing=np.zeros(2))

@@ -1,0 +1,104 @@
+"""How hands are laid on a surface: palms against it, fingers clear of what stands there, the other hand beside."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from motion_backend import rotations
+from motion_backend.body.scene_collision import Obstacles
+from motion_backend.procedural.touch.hand_captions import Laid, handling_of, steadies, with_both_hands
+from motion_backend.rotations import Array
+from motion_backend.skeleton import HAND_REST
+from scene_graphs.affordances.affordances import Spot
+
+FINGER: Final = 0.02
+"""Half a finger's thickness (metres)."""
+APART: Final = 0.24
+"""Between two hands laid side by side (metres at 1.70 m)."""
+ELBOW: Final = 0.11
+"""From the middle of a forearm to what is beside it (metres)."""
+TURNS: Final = (0.0, 0.5, -0.5, 1.0, -1.0, 1.5, -1.5)
+"""How far a hand is turned inwards on the surface where its fingers would be in something else (radians)."""
+STROKES: Final = (0.09, 0.07, 0.05, 0.03)
+"""How far hands go to either side in wiping, the first that there is room for (metres)."""
+
+
+def suits(spot: Spot, caption: str, solid: Obstacles) -> bool:
+    """Whether a caption is done at such a spot: things lie on tops, a low front has no switch, two hands need width."""
+    doing, front = handling_of(caption), spot.normal[1] < 0.7
+    if front and (doing in ("pick", "put") or (doing and spot.height == "low")):
+        return False
+    if not (with_both_hands(caption) or steadies(caption)):
+        return True
+    left, _ = along_surface(spot)
+    under = np.asarray(spot.point) - FINGER * np.asarray(spot.normal)
+    return bool((solid.depth(under + APART * np.array([[0.8], [-0.8]]) * left) > 0).any())
+
+
+def other_hand(
+    obstacles: Obstacles, spot: Spot, laid: tuple[Array, str, bool], scale: float
+) -> tuple[Array, Array] | None:
+    """Wrist and palm of the other hand, beside the first on the same surface; None where that is too narrow.
+
+    `laid` is the first hand's wrist, its side, and whether its fingers point down.
+    """
+    wrist, hand, down = laid
+    normal = np.asarray(spot.normal, dtype=np.float64)
+    left, _ = along_surface(spot)
+    along, other = (-left, "right") if hand == "left" else (left, "left")
+    for apart in APART * scale * np.array([1.0, 0.85, 0.7]):
+        beside = wrist + apart * along
+        inside = float(obstacles.depth((beside - (HAND_REST + FINGER) * normal)[None])[0])
+        over = float(obstacles.solid().depth((beside + ELBOW * normal)[None])[0])
+        if inside > 0 and over < -ELBOW:
+            return beside, free_palm(obstacles, spot, beside, other, down)
+    return None
+
+
+def free_palm(obstacles: Obstacles, spot: Spot, wrist: Array, hand: str, down: bool = False) -> Array:
+    """The hand laid straight ahead, or turned aside where its fingers would be in something else."""
+    others = obstacles.solid()
+    others = others.only(np.array([owner != spot.object_id for owner in others.owners], dtype=bool))
+    fingers = np.array([[0.05, 0.0, 0.0], [0.10, 0.0, 0.0], [0.14, 0.0, 0.0]]) * (1.0 if hand == "left" else -1.0)
+    inward = (-1.0 if hand == "left" else 1.0) * (-1.0 if down else 1.0)
+    normal = np.asarray(spot.normal, dtype=np.float64)
+    straight = palm_on(normal, spot.facing, hand, down)
+    turns = [rotations.rotvec_to_quat(angle * inward * normal) for angle in TURNS]
+    palms = [rotations.compose(turn, straight) for turn in turns]
+    depths = [float(np.max(others.depth(wrist + rotations.rotate(palm, fingers)), initial=-1.0)) for palm in palms]
+    clear = next((index for index, depth in enumerate(depths) if depth < -FINGER), int(np.argmin(depths)))
+    return palms[clear]
+
+
+def free_stroke(obstacles: Obstacles, spot: Spot, laid: Laid) -> Array:
+    """The longest way along the surface, to both sides of all hands, with it under them and nothing in the way. (3,)"""
+    others = obstacles.solid()
+    others = others.only(np.array([owner != spot.object_id for owner in others.owners], dtype=bool))
+    aside, on = along_surface(spot)
+    for length in STROKES:
+        for way in (aside, on):
+            ends = np.concatenate([wrist + length * np.array([[-1.0], [1.0]]) * way for _, wrist, _ in laid.hands])
+            under = obstacles.depth(ends - (HAND_REST + FINGER) * laid.normal)
+            if under.min() > 0 and others.depth(ends).max() < -FINGER:
+                return np.asarray(length * way)
+    return np.asarray(STROKES[-1] * aside)
+
+
+def along_surface(spot: Spot) -> tuple[Array, Array]:
+    """Unit vectors along a surface, to the left of who stands before it and ahead, or up where it is a front."""
+    left = np.array([np.cos(spot.facing), 0.0, -np.sin(spot.facing)])
+    normal = np.asarray(spot.normal, dtype=np.float64)
+    left = rotations.normalize(left - (left @ normal) * normal)
+    return left, rotations.cross(left, normal)
+
+
+def palm_on(normal: Array, facing: float, hand: str, down: bool = False) -> Array:
+    """World rotation of a hand laid flat on a surface: palm against it, fingers forwards, or up or down it. (4,)."""
+    side = 1.0 if hand == "left" else -1.0
+    ahead = np.array([np.sin(facing), 0.0, np.cos(facing)])
+    fingers = ahead if normal[1] > 0.7 else np.array([0.0, -0.8 if down else 0.8, 0.0]) + 0.2 * ahead
+    fingers = rotations.normalize(fingers - (fingers @ normal) * normal)
+    x, y = side * fingers, normal
+    return rotations.basis_to_quat(x, y, rotations.cross(x, y))

@@ -1,0 +1,52 @@
+"""Going to a thing and laying a hand on it: the performer of touch."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from motion_backend.motion import Action
+from motion_backend.procedural.body_state import Body, spot_of
+from motion_backend.procedural.emotion_style import bearing_of
+from motion_backend.procedural.touch.hand_captions import Laid, handling_of, holding, steadies, with_both_hands
+from motion_backend.procedural.touch.hand_contacts import free_palm, free_stroke, other_hand
+from motion_backend.procedural.touch.kneel import place_to_kneel
+from motion_backend.procedural.touch.reach import Manner, touch
+from motion_backend.procedural.walk.walk_skill import go
+from motion_backend.skeleton import HAND_REST
+
+REACHED_DOWN = 1.12
+"""An arm goes down to what is lower than this (metres at 1.70 m), so that its fingers point down a front."""
+_HEIGHT: Final = re.compile(r"\b(?:low|medium|high)\b", re.IGNORECASE)
+
+
+def touch_spot(body: Body, action: Action) -> None:
+    """From standing: to the thing, the hand onto it, what the hand does there, and back."""
+    bearing = bearing_of(action.emotion, action.caption)
+    spot = spot_of(action)
+    knelt = place_to_kneel(spot, body.place, body.scene, body.skeleton.scale) if "prone" in action.caption else None
+    if "prone" in action.caption and knelt is None:
+        body.note("no room to kneel: squats")
+    asked = _HEIGHT.search(action.caption)
+    if asked and asked[0].lower() != spot.height:
+        body.note(f"nothing at {asked[0].lower()} height: {spot.height}")
+    spot, prone = knelt or spot, knelt is not None
+    go(body, spot.standing, spot.facing, action)
+    normal = np.asarray(spot.normal, dtype=np.float64)
+    goal = np.asarray(spot.point) + HAND_REST * normal
+    obstacles, scale = body.scene.obstacles, body.skeleton.scale
+    depth = obstacles.solid().depth
+    down = bool(normal[1] < 0.7 and goal[1] < REACHED_DOWN * scale and not prone)
+    palm = free_palm(obstacles, spot, goal, action.hand, down)
+    doing = handling_of(action.caption)
+    both = with_both_hands(action.caption) or (steadies(action.caption) and not any(holding(body.pose)))
+    other = other_hand(obstacles, spot, (goal, action.hand, down), scale) if both else None
+    if with_both_hands(action.caption) and other is None:
+        body.note("no room for both hands: one hand")
+    laid = Laid(goal, palm, normal, action.hand, down, other)
+    laid = replace(laid, stroke=free_stroke(obstacles, spot, laid))
+    hold = max(action.hold, 1.2)
+    body.add(touch(body.pose, laid, Manner(bearing, hold, doing, prone), body.skeleton, depth))

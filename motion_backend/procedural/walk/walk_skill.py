@@ -1,0 +1,189 @@
+"""Walking somewhere, and staying where one stands: the performers of loco.
+
+Ways that are not the shortest: a curve to the front left or right, and pacing to and fro.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from motion_backend import rotations
+from motion_backend.motion import FPS, Action, Part, Skill
+from motion_backend.procedural.body_state import Body, Point
+from motion_backend.procedural.collision_avoidance.hand_collision import arms_in
+from motion_backend.procedural.emotion_style import Bearing, arm_arrays, bearing_of
+from motion_backend.procedural.held_poses import bend, idle
+from motion_backend.procedural.pose import interpolate
+from motion_backend.procedural.touch.gestures import gesture
+from motion_backend.procedural.touch.hand_captions import arms_on_the_way
+from motion_backend.procedural.walk.gait import walk
+from motion_backend.procedural.walk.root_path import resample
+from motion_backend.procedural.walk.walk_styles import Walk, walk_style
+from motion_backend.rotations import Array
+from motion_backend.state_machine import OWN
+from scene_graphs.navigation.path_planner import Walkable
+
+BOWS = (0.24, 0.18, 0.12, 0.07)
+"""How far a curved way goes aside against its length, the widest that has room."""
+ROOM = 0.02
+"""What a detour leaves free beyond what the body needs (metres)."""
+LONG_ENOUGH = 1.0
+"""Ways shorter than this (metres) are gone straight and once."""
+BEAT = 2.4
+"""How far somebody who paces goes before turning round (metres)."""
+
+
+def curved(path: Array, left: bool, walkable: Walkable) -> Array:
+    """A path (N, 2) that bends to the left or right all the way, as far as there is room; else as it was."""
+    points = resample(path)
+    way = points[-1] - points[0]
+    length = float(np.hypot(*way))
+    if length < LONG_ENOUGH:
+        return path
+    # To end up on the left it first goes out on the right.
+    outward = np.array([-way[1], way[0]]) / length * (1.0 if left else -1.0)
+    arch = 4 * np.linspace(0, 1, len(points)) * np.linspace(1, 0, len(points))
+    for bow in BOWS:
+        curve = points + (bow * length * arch)[:, None] * outward
+        if _is_free(curve, walkable):
+            return np.asarray(curve)
+    return path
+
+
+def to_and_fro(path: Array, walkable: Walkable) -> list[Array]:
+    """The ways of pacing along a path: there, back a good part of it, and there again; once where it is short."""
+    points = resample(path)
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    if steps.sum() < LONG_ENOUGH:
+        return [path]
+    to_end = np.concatenate([np.cumsum(steps[::-1])[::-1], [0.0]])
+    turn = int(np.argmax(to_end <= min(BEAT, 0.9 * float(steps.sum()))))
+    back = points[turn:][::-1]
+    return [points, back, points[turn:]] if _is_free(back, walkable) else [path]
+
+
+def _is_free(points: Array | Sequence[Array], walkable: Walkable) -> bool:
+    return bool((walkable.field.at(np.asarray(points[::3])) >= walkable.radius + ROOM).all())
+
+
+AT_THE_SPOT = 0.04
+"""A body this near to a standing point (metres) need not walk to it."""
+FACING_IT = 0.12
+"""And this near to the wanted yaw (radians) need not turn."""
+SHORT_WAY = 0.20
+"""A body that faces where it will face steps straight to a place nearer than this (metres)."""
+TURNING_ROUND = 1.2
+"""A body that arrives turned away from where it will face by more (radians) turns before the last step."""
+NARROW_ARMS = {
+    "open": ("raised", 0.80),
+    "balance": ("hang", 0.80),
+    "hips": ("hang", 0.50),
+    "pockets": ("hang", 0.45),
+    "behind_back": ("hang", 0.40),
+}
+"""What arms do where elbows or hands would meet furniture, and the clearance (metres) they need: joy goes up."""
+STAYING = 0.7
+"""How long arms take into the pose they are held in where the body stays, and out of it (seconds)."""
+ELBOW_ROOM = 0.26
+"""Clearance beyond which there is no better place to turn on the spot (metres)."""
+
+
+def go(body: Body, goal: Point, facing: float | None, action: Action) -> None:
+    """Walk to a place and end up facing a yaw, in the style of the action."""
+    near = float(np.hypot(goal[0] - body.place[0], goal[1] - body.place[1])) < AT_THE_SPOT
+    turned = facing is None or abs(float(rotations.wrap(facing - body.yaw))) < FACING_IT
+    if near and turned:
+        return
+    body.enter(Part.WALK)
+    style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
+    arms = arms_on_the_way(body.pose, style.bearing.arms)
+    style = replace(style, bearing=replace(style.bearing, arms=arms))
+    path = body.scene.walkable.path(body.place, goal) if not near else np.array([body.place, goal])
+    turning = None
+    if turned and float(np.hypot(goal[0] - body.place[0], goal[1] - body.place[1])) < SHORT_WAY:
+        path = np.array([body.place, goal])
+    else:
+        turning = _turning_place(body, path, goal, facing)
+    if style.spin and not near:
+        path = _spin_on_the_way(body, path, style)
+        style = replace(style, spin=0.0)
+    if style.veer and not near:
+        path = curved(path, style.veer > 0, body.scene.walkable)
+    if style.to_and_fro and not near:
+        *before, path = to_and_fro(path, body.scene.walkable)
+        for way in before:
+            _stride(body, way, None, style)
+    if turning is not None and facing is not None:
+        _stride(body, body.scene.walkable.path(body.place, turning), facing, style)
+        body.enter(Part.BACK_UP)
+        path = np.array([body.place, goal])
+    _stride(body, path, facing, style)
+    body.enter(OWN[action.skill])
+
+
+def _stride(body: Body, path: Array, facing: float | None, style: Walk) -> None:
+    """Walk along a path; arms that are spread come in where there is no room for them."""
+    frames = walk(body.pose, path, facing, style, body.skeleton, body.rng)
+    if style.bearing.arms[0] in NARROW_ARMS:
+        room = body.scene.walkable.field.at(frames.pelvis[:, [0, 2]])
+        frames = arms_in(frames, room / body.skeleton.scale, *NARROW_ARMS[style.bearing.arms[0]])
+    body.way += float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+    body.add(gesture(frames, style.doing))
+
+
+def _spin_on_the_way(body: Body, path: Array, style: Walk) -> Array:
+    """Walk to the roomiest place of the path's second half and spin there; returns the way that is left."""
+    points = resample(path)
+    half = points[len(points) // 2 :]
+    split = len(points) // 2 + int(np.argmax(body.scene.walkable.field.at(half)))
+    _stride(body, points[: split + 1], None, style)
+    return np.concatenate([[body.place], points[split:]])
+
+
+def _turning_place(body: Body, path: Array, goal: Point, facing: float | None) -> Point | None:
+    """Where to turn round before backing up to a seat, away from it; None where no turning round is needed."""
+    if facing is None or len(path) < 2:
+        return None
+    step = path[-1] - path[-2]
+    if float(np.abs(rotations.wrap(np.arctan2(step[0], step[1]) - facing))) < TURNING_ROUND:
+        return None
+    ahead = np.array([np.sin(facing), np.cos(facing)])
+    places = [(float(goal[0] + d * ahead[0]), float(goal[1] + d * ahead[1])) for d in (0.32, 0.26, 0.20, 0.14)]
+    room = [min(body.scene.walkable.clearance(place), ELBOW_ROOM) for place in places]
+    best = int(np.argmax(room))
+    return places[best] if room[best] > body.scene.walkable.clearance(goal) + 0.04 else None
+
+
+def loco(body: Body, action: Action) -> None:
+    """Walk to the goal; without one, stay."""
+    bearing = bearing_of(action.emotion, action.caption)
+    if action.goal is None:
+        _stay(body, action)
+        return
+    before = len(body.frames)
+    go(body, action.goal, action.facing, action)
+    if len(body.frames) == before:
+        body.add(idle(body.pose, 1.0, bearing.restless, body.rng, FPS))
+
+
+def _stay(body: Body, action: Action) -> None:
+    """Stand where the body is, arms as the caption has them, and let them hang again."""
+    style = walk_style(action.emotion, action.caption)
+    bearing = replace(style.bearing, arms=arms_on_the_way(body.pose, style.bearing.arms))
+    at_ease = replace(body.pose, **_carriage(replace(bearing, arms=arms_on_the_way(body.pose, ("hang", "hang")))))
+    held = replace(body.pose, **_carriage(bearing))
+    body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, held], FPS))
+    restless = bearing_of(action.emotion, action.caption).restless
+    body.add(gesture(idle(body.pose, action.hold, restless, body.rng, FPS), style.doing))
+    if style.bearing.arms != ("hang", "hang"):
+        body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, at_ease], FPS))
+
+
+def _carriage(bearing: Bearing) -> dict[str, Array]:
+    """How a standing body holds trunk, head and arms."""
+    wrists, elbows = arm_arrays(*bearing.arms)
+    lean, head = np.radians(bearing.lean), np.radians(bearing.head)
+    return {"spine": bend(0.7 * lean), "head": bend(head), "arms": wrists, "elbows": elbows}

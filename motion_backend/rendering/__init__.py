@@ -1,0 +1,1 @@
+"""Pictures of motions: a software renderer, cameras, contact sheets."""

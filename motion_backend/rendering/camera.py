@@ -1,0 +1,138 @@
+"""Where to look: the frames that tell what a stretch of motion does, and a camera that sees them well in the home."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion_backend import rotations
+from motion_backend.motion import Motion, Skill
+from motion_backend.rendering.rasterizer import Camera, orbit
+from motion_backend.rotations import Array
+from motion_backend.skeleton import INDEX
+from motion_backend.walls import Side
+from scene_graphs.layout import Placed
+from scene_graphs.meshes.furniture_mesh import parts_of
+
+if TYPE_CHECKING:
+    from scene_graphs.home import Home
+
+
+FOV = 0.62
+PITCH = 0.36
+"""About 20 degrees from above."""
+YAWS = np.linspace(-np.pi, np.pi, 16, endpoint=False)
+CURTAIN = 0.20
+"""How far into a room what hangs before a window may reach (metres)."""
+STRIDE = 0.62
+"""Metres the root goes between two poses of a walk in one picture."""
+_SEEN = [INDEX[n] for n in ("pelvis", "head", "spine3", "left_knee", "right_knee", "left_foot", "right_foot")]
+_HANDS = [INDEX["left_wrist"], INDEX["right_wrist"]]
+_SHOULDERS = [INDEX["left_shoulder"], INDEX["right_shoulder"]]
+
+
+@dataclass(frozen=True)
+class Shot:
+    """The frame a picture shows and the frames it hints at."""
+
+    frame: int
+    ghosts: tuple[int, ...] = ()
+
+
+def choose_frames(motion: Motion, joints: NDArray[np.floating], start: int, stop: int, skill: Skill) -> Shot:
+    """What to show of frames start to stop (exclusive); joints are the motion's world positions (T, 22, 3)."""
+    if skill is Skill.LOCO:
+        return _along_the_way(motion.root_positions, start, stop)
+    if skill is Skill.TOUCH:
+        return _at_full_reach(joints, start, stop)
+    height = joints[start:stop, INDEX["head"], 1]
+    left = np.abs(height - np.median(height[-8:]))  # metres the head has yet to go down or up
+    if left.max() < 0.1:
+        return Shot((start + stop) // 2)
+    ghosts = tuple(start + int(np.flatnonzero(left > share * left.max())[-1]) for share in (0.85, 0.4))
+    settled = start + int(np.flatnonzero(left > 0.03 * left.max())[-1])
+    return Shot((settled + 2 * (stop - 1)) // 3, ghosts)
+
+
+def _along_the_way(roots: NDArray[np.floating], start: int, stop: int) -> Shot:
+    steps = np.linalg.norm(np.diff(roots[start:stop, [0, 2]], axis=0), axis=1)
+    way = np.concatenate([[0.0], np.cumsum(steps)])
+    if way[-1] < STRIDE:
+        return Shot(start + (stop - start) // 2)
+    middle = way[-1] / 2
+    poses = [middle + k * STRIDE for k in (-2, -1, 1, 2) if 0.0 <= middle + k * STRIDE <= way[-1]]
+    frames = [start + int(np.searchsorted(way, at)) for at in (middle, *poses)]
+    frames = [min(frame, stop - 1) for frame in frames]
+    return Shot(frames[0], tuple(sorted(set(frames[1:]))))
+
+
+def _at_full_reach(joints: NDArray[np.floating], start: int, stop: int) -> Shot:
+    reach = np.linalg.norm(joints[start:stop, _HANDS] - joints[start:stop, _SHOULDERS], axis=-1)
+    level = np.linalg.norm((joints[start:stop, _HANDS] - joints[start:stop, :1])[..., [0, 2]], axis=-1)
+    score = (reach + 2.0 * level).max(axis=1)
+    longest = np.flatnonzero(score > score.max() - 0.02)
+    frame = int(longest[len(longest) // 2])
+    pelvis = joints[start:stop, 0][:, [0, 2]]
+    away = np.flatnonzero(np.linalg.norm(pelvis[:frame] - pelvis[frame], axis=1) > STRIDE)
+    return Shot(start + frame, (start + int(away[-1]),) if len(away) else ())
+
+
+def choose_camera(home: Home | None, motion: Motion, joints: NDArray[np.floating], shot: Shot, aspect: float) -> Camera:
+    """A camera about 20 degrees above with all poses in the picture, no furniture in the way and the face in view."""
+    poses = np.asarray(joints[[shot.frame, *shot.ghosts]], dtype=np.float64)
+    low, high = poses.min(axis=(0, 1)), poses.max(axis=(0, 1)) + np.array([0, 0.12, 0])
+    low[1] = min(low[1], 0.0)
+    x, y, z = (float(v) for v in (low + high) / 2)
+    half_width = 0.5 * float(np.hypot(high[0] - low[0], high[2] - low[2])) + 0.3
+    half_height = 0.5 * float(high[1] - low[1]) + 0.15
+    distance = max(half_height, half_width / aspect) / np.tan(FOV / 2) + 0.5 * half_width
+    distance = max(distance, 3.0)
+    cameras = [orbit((x, y, z), distance, float(yaw), PITCH, FOV) for yaw in YAWS]
+    wanted = _liking(motion, shot)
+    if home is not None:
+        near = [o for o in home.objects if np.hypot(o.position[0] - x, o.position[2] - z) < distance + 1.0]
+        room = home.room_at((x, z))
+        sides = [side for wall in home.walls if (side := Side.of(wall, home)) is not None]
+        for index, camera in enumerate(cameras):
+            wanted[index] += 2.0 * visible_share(near, camera.eye, poses[0, _SEEN + _HANDS])
+            wanted[index] += 0.3 * (room is not None and home.room_at((camera.eye[0], camera.eye[2])) == room)
+            wanted[index] -= 2.0 * _at_a_window(sides, np.asarray(camera.eye))
+    return cameras[int(np.argmax(np.round(wanted, 4)))]
+
+
+def _at_a_window(sides: Sequence[Side], eye: Array) -> bool:
+    """Whether a camera is so near to a wall, on its room's side, that curtains may hang before it."""
+    return any(side.faces(eye[[0, 2]]) and side.distance(eye[[0, 2]]) < CURTAIN for side in sides)
+
+
+def _liking(motion: Motion, shot: Shot) -> Array:
+    """How much each yaw shows of the body: three-quarter views of a face, long sides of who lies or walks. (16,)."""
+    turn = motion.local_rotations[shot.frame, 0].astype(np.float64)
+    ahead, up = rotations.rotate(turn, np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]))
+    if abs(up[1]) < 0.5:
+        along = np.arctan2(up[0], up[2])
+        return np.asarray(np.abs(np.sin(YAWS - along)) * 0.6)
+    facing = np.arctan2(ahead[0], ahead[2])
+    best = 1.2 if shot.ghosts else 0.8
+    return np.asarray(np.cos(np.abs(rotations.wrap(YAWS - facing)) - best) * 0.6)
+
+
+def visible_share(objects: Sequence[Placed], eye: tuple[float, float, float], points: Array) -> float:
+    """The share of points (N, 3) that no part of the objects hides from the eye."""
+    hidden = np.zeros(len(points), dtype=bool)
+    for placed in objects:
+        boxes = parts_of(placed)
+        low = np.array([part.low for part in boxes])[:, None]
+        high = np.array([part.high for part in boxes])[:, None]
+        origin, ends = placed.to_local(eye), placed.to_local(points)
+        ray = ends - origin
+        ray = np.where(np.abs(ray) < 1e-9, 1e-9, ray)
+        first, last = (low - origin) / ray, (high - origin) / ray  # (parts, points, 3)
+        enter, leave = np.minimum(first, last).max(axis=-1), np.maximum(first, last).min(axis=-1)
+        # A hand on a table is not hidden by it: what ends within the last hundredths does not count.
+        hidden |= ((enter < leave) & (leave > 0) & (enter < 0.97)).any(axis=0)
+    return float(1.0 - hidden.mean())

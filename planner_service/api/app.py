@@ -1,0 +1,139 @@
+"""The HTTP service as one ASGI app: routes, who may ask, how much, and how errors are told."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from importlib.metadata import version
+from typing import Any, Final
+
+from fastapi import Depends, FastAPI
+from fastapi.routing import APIRoute
+from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import MutableHeaders
+from starlette.middleware import Middleware
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from planner_service.api.authentication import Access, Cors, Gate
+from planner_service.api.dependencies import Parts, only_known_parameters
+from planner_service.api.error_handlers import Unforeseen, register_handlers
+from planner_service.api.extractions.endpoints import EXTRACT, extract_router, extractions_router
+from planner_service.api.layouts.endpoints import layouts_router
+from planner_service.api.layouts.graph_endpoints import layout_graphs_router
+from planner_service.api.multipart import most_sent
+from planner_service.api.openapi import document
+from planner_service.api.rate_limit import LARGER, BodyLimit, Limiting, Rate
+from planner_service.api.scripts.endpoints import long_scripts_router, short_scripts_router
+from planner_service.api.stories.endpoints import motions_router, stories_router
+from planner_service.api.stories.event_stream import events_router
+from planner_service.api.task_plans.endpoints import task_plans_router
+from planner_service.api.telemetry import Figures, Telemetry
+from planner_service.api.web_page import assets, page_router, service_router
+from planner_service.store.job_statistics import StoreFigures
+
+ROUTERS: Final = (
+    stories_router, events_router, motions_router, task_plans_router, extract_router, extractions_router,
+    short_scripts_router, long_scripts_router, layouts_router, layout_graphs_router, service_router, page_router,
+)  # fmt: skip
+"""In the order in which paths are looked for."""
+
+
+class Service(FastAPI):
+    """FastAPI with our own OpenAPI document."""
+
+    def openapi(self) -> dict[str, Any]:
+        """Made once, on the first call."""
+        if self.openapi_schema is None:
+            self.openapi_schema = document(self, self.state.gate.locked)
+        return self.openapi_schema
+
+
+def create_app(parts: Parts) -> FastAPI:
+    """The service on these parts; they are closed when it shuts down."""
+    gate = Gate(parts.settings.api_keys, parts.settings.cors_origins)
+    figures = Figures()
+    figures.register(StoreFigures(parts.engine, parts.jobs))
+    app = Service(
+        title="sims-stories",
+        version=version("sims-stories"),
+        docs_url=None,  # those pages load scripts from elsewhere
+        redoc_url=None,
+        redirect_slashes=False,
+        generate_unique_id_function=_operation_id,
+        lifespan=_closing,
+        middleware=_middleware(gate, figures, parts),
+        dependencies=[Depends(only_known_parameters)],
+    )
+    app.state.parts, app.state.gate, app.state.figures = parts, gate, figures
+    register_handlers(app)
+    for router in ROUTERS:
+        app.include_router(router)
+    app.mount("/assets", assets())
+    return app
+
+
+@asynccontextmanager
+async def _closing(app: FastAPI) -> AsyncIterator[None]:
+    yield
+    await run_in_threadpool(app.state.parts.close)
+
+
+def _middleware(gate: Gate, figures: Figures, parts: Parts) -> list[Middleware]:
+    """Outermost first. Whoever is refused has an id, a line in the log and the headers of a page elsewhere."""
+    cors = [Middleware(Cors, origins=gate.origins)] if gate.origins else []
+    return [
+        Middleware(Telemetry, figures=figures),
+        Middleware(Hardened),
+        *cors,
+        Middleware(Unforeseen),
+        Middleware(Access, gate=gate),
+        Middleware(Limiting, rate=Rate(parts.settings.rate)),
+        Middleware(BodyLimit, larger=LARGER | {("POST", EXTRACT): most_sent(parts.settings)}),
+        Middleware(Head),
+    ]
+
+
+def _operation_id(route: APIRoute) -> str:
+    return "_".join([*(str(tag).replace(" ", "_") for tag in route.tags[:1]), route.name])
+
+
+class Hardened:
+    """ASGI: browsers take an answer for what it says it is, and tell nobody where a visitor came from."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on, with two headers more."""
+
+        async def marked(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                headers = MutableHeaders(scope=message)
+                headers["X-Content-Type-Options"] = "nosniff"
+                headers["Referrer-Policy"] = "no-referrer"
+            await send(message)
+
+        await self.app(scope, receive, marked)
+
+
+class Head:
+    """ASGI: HEAD is answered as GET is, without the body; FastAPI's own routes know GET alone."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on; after the head the answer is complete, so that the server ends streams as if the caller had left."""
+        if scope["type"] != "http" or scope["method"] != "HEAD":
+            await self.app(scope, receive, send)
+            return
+
+        async def headless(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                await send(message)
+                await send({"type": "http.response.body", "body": b""})
+
+        # A copy: the server frames the answer by the method that it keeps in the scope.
+        as_get = dict(scope, method="GET")
+        await self.app(as_get, receive, headless)
+        scope.update({name: as_get[name] for name in ("route", "path_params") if name in as_get})

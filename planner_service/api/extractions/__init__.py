@@ -1,0 +1,1 @@
+"""Extractions over HTTP."""

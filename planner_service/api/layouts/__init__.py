@@ -1,0 +1,1 @@
+"""Rooms and furniture graphs over HTTP."""

@@ -1,0 +1,1 @@
+"""Short and long scripts over HTTP."""

@@ -1,0 +1,1 @@
+"""Stories and motions over HTTP."""

@@ -1,0 +1,271 @@
+"""Stories and motions over HTTP: what may be asked for, and the one resource that both become."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+from motion_backend.motion import Skill
+from planner_service.composition.compose import MAX_SHORT_SCRIPTS
+from planner_service.pipeline import MAX_HEIGHT, MAX_NAME_LENGTH, MAX_SEED, MIN_HEIGHT
+from planner_service.scripts.script import Event, Keyframe
+from planner_service.themes.beats import MAX_THEME_LENGTH
+from scene_graphs.home import MAX_ROOMS
+from scene_graphs.json_fields import Json
+
+State = Literal["queued", "running", "succeeded", "failed", "cancelled"]
+Stage = Literal["plan", "furnish", "narrate", "act", "move", "judge", "film"]
+Kind = Literal["story", "motion"]
+RoomType = Literal["bedroom", "living_room", "dining_room", "study"]
+Seed = Annotated[int, Field(ge=0, le=MAX_SEED, description="The same seed gives the same story.")]
+LayoutId = Annotated[str, StringConstraints(min_length=1, max_length=200)]
+MAX_KEYFRAMES = 60
+"""Keyframes of one motion."""
+
+
+class Ask(BaseModel):
+    """A body that is sent: a field we do not know is a mistake, not an extension."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+
+class CharacterAsk(Ask):
+    """Who acts."""
+
+    name: str = Field("Sam", min_length=1, max_length=MAX_NAME_LENGTH, description="Printable letters.")
+    pronouns: Literal["he", "she", "they"] = "they"
+    height: float = Field(1.70, ge=MIN_HEIGHT, le=MAX_HEIGHT, description="Metres.")
+
+
+class StoryAsk(Ask):
+    """A theme, and what else is wanted of its story; what is left out is chosen."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [
+                {"theme": "A woman comes home tired, reads a book on the sofa and falls asleep.", "seed": 3},
+                {
+                    "theme": "He fails the interview, comes home, drinks and falls asleep.",
+                    "rooms": ["living_room", "bedroom"],
+                    "character": {"name": "Tom", "pronouns": "he", "height": 1.82},
+                },
+            ]
+        }
+    )
+
+    theme: str = Field(
+        min_length=1, max_length=MAX_THEME_LENGTH, description="What happens, in a few English sentences."
+    )
+    rooms: list[RoomType] = Field([], max_length=MAX_ROOMS, description="Room types to play in; empty: choose.")
+    layouts: list[LayoutId] = Field(
+        [], max_length=MAX_ROOMS, description="Ids of rooms to play in, joined to a home in place of retrieved ones."
+    )
+    home: Json | None = Field(None, description="A whole home to play in, as GET /v1/stories/{id}/home gives it.")
+    short_scripts: int | None = Field(None, ge=1, le=MAX_SHORT_SCRIPTS, description="How many are woven; null: choose.")
+    method: Literal["matching", "direct"] = Field(
+        "matching", description="Woven from the library's short scripts, or written at once (SIMS 10's baseline)."
+    )
+    backend: Literal["procedural"] | None = Field(None, description="What moves the body; null: as the service is set.")
+    seed: Seed = 0
+    character: CharacterAsk | None = None
+
+
+class MotionAsk(Ask):
+    """Keyframes to be acted out in one room of the library or in a home of one's own."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [
+                {
+                    "layout_id": "living-room-0016",
+                    "keyframes": [
+                        {"skill": "loco", "emotion": "tired", "caption": "slow walk", "furniture": "sofa"},
+                        {"skill": "sitdown", "emotion": "tired", "caption": "sit slumped", "furniture": "sofa"},
+                    ],
+                }
+            ]
+        }
+    )
+
+    layout_id: LayoutId | None = Field(None, description="The room; or give `home`.")
+    home: Json | None = Field(None, description="A whole home, as GET /v1/stories/{id}/home gives it; or `layout_id`.")
+    keyframes: list[Keyframe] = Field(min_length=1, max_length=MAX_KEYFRAMES)
+    backend: Literal["procedural"] | None = None
+    seed: Seed = 0
+    character: CharacterAsk | None = None
+
+
+class CharacterShown(BaseModel):
+    """Who acts."""
+
+    name: str
+    pronouns: str
+    height: float = Field(description="Metres.")
+
+
+class Span(BaseModel):
+    """A stretch of the told text and the keyframes it tells."""
+
+    start: int = Field(description="First character.")
+    end: int = Field(description="Behind the last one.")
+    keyframes: list[int]
+
+
+class KeyframeShown(BaseModel):
+    """One moment: what is done, how, at what, and in which frames once it was moved."""
+
+    index: int
+    skill: Skill
+    emotion: str
+    caption: str
+    furniture: str
+    object_id: str | None = Field(description='"room_index/object_id" in the home.')
+    room: RoomType | None
+    start: int | None = Field(description="First frame.")
+    end: int | None = Field(description="Behind the last frame.")
+    short_script_id: str | None = Field(description="Where it comes from; null for a connecting keyframe.")
+    reached: bool | None
+
+
+class ShortScriptChosen(BaseModel):
+    """A short script that was retrieved, for which event, and how near its summary is."""
+
+    id: str
+    summary: str
+    score: float
+    event: int
+
+
+class GraphNode(BaseModel):
+    """A piece of furniture that the script uses."""
+
+    category: str
+    instance: int
+    room: str
+
+
+class GraphShown(BaseModel):
+    """The merged furniture graphs of the short scripts, room after room (SIMS 3.2)."""
+
+    nodes: list[GraphNode] = []
+    edges: list[tuple[int, int]] = []
+
+
+class SubstitutionShown(BaseModel):
+    """What the room has instead of what was asked for."""
+
+    asked: str
+    given: str
+    level: str = Field(description="How near: same, class, group or, at last, affordance.")
+
+
+class StandingShown(BaseModel):
+    """Where a piece of furniture stands, in its room's own frame."""
+
+    position: tuple[float, float, float]
+    yaw: float
+
+
+class PullShown(BaseModel):
+    """A chair that stands pulled out from the start, since nobody could sit on it where the room had it."""
+
+    object_id: str = Field(description="As in the room's own layout.")
+    from_: StandingShown = Field(alias="from")
+    to: StandingShown
+    distance: float = Field(description="Metres.")
+
+
+class RoomShown(BaseModel):
+    """A room of the home and how well it fits."""
+
+    layout_id: str
+    room_type: str
+    distance: int = Field(description="Simplified graph edit distance.")
+    exact: bool
+    substitutions: list[SubstitutionShown]
+    missing: list[str]
+    pulled_out: list[PullShown] = []
+
+
+class HomeShown(BaseModel):
+    """How the home was found; the home itself is at links.home."""
+
+    rooms: list[RoomShown]
+
+
+class MotionShown(BaseModel):
+    """What of the motion is ready."""
+
+    frames: int
+    fps: int = 30
+    joints: int = 22
+    duration: float = Field(description="Seconds.")
+    complete: bool
+
+
+class Failure(BaseModel):
+    """Why a story could not be made."""
+
+    title: str
+    detail: str
+
+
+class Links(BaseModel):
+    """Where the rest is."""
+
+    model_config = ConfigDict(populate_by_name=True)
+
+    self_: str = Field(alias="self")
+    events: str
+    cancel: str
+    motion: str
+    film: str
+    scene: str
+    home: str
+
+
+class StorySummary(BaseModel):
+    """A story in a list."""
+
+    id: str
+    kind: Kind
+    state: State
+    stage: Stage | None = Field(description="What is being made, or where it ended.")
+    progress: float = Field(ge=0, le=1)
+    created: datetime
+    theme: str
+    title: str | None
+    seed: int
+    backend: str
+    duration: float = Field(description="Seconds of motion that are ready.")
+    error: Failure | None
+    links: Links
+
+
+class StoryShown(StorySummary):
+    """A story, as far as it is made."""
+
+    method: str
+    character: CharacterShown
+    planner: str | None = Field(description='"rules", "llm:<model>", or "given" for keyframes of one\'s own.')
+    encoder: str | None = Field(description="The sentence encoder that ranked the library.")
+    text: str | None
+    spans: list[Span] = []
+    events: list[Event] = []
+    uncovered: list[str] = Field([], description="Events no short script is about: left out, or played by the nearest.")
+    repairs: list[str] = Field([], description="What checking changed, and why.")
+    keyframes: list[KeyframeShown] = []
+    short_scripts: list[ShortScriptChosen] = []
+    graph: GraphShown = Field(default_factory=GraphShown)
+    home: HomeShown | None = None
+    motion: MotionShown
+    report: Json | None = Field(None, description="Figures for every keyframe and the whole; see docs/metrics.md.")
+
+
+class StoryPage(BaseModel):
+    """Stories, newest first."""
+
+    items: list[StorySummary]
+    next: str | None = Field(description="The cursor of the next page; null on the last.")

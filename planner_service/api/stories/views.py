@@ -1,0 +1,170 @@
+"""A stored story as clients see it: the resource put together from its artifacts, and its events in order.
+
+The frames of a story that are ready, from any to any, while the rest is made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import cached_property
+from typing import Final
+
+from motion_backend.motion import FPS, Motion, join
+from planner_service.jobs.story_stages import STAGES, read_segments
+from planner_service.store.story_store import Artifact, Record, Stories
+from planner_service.store.tables import GIVEN_UP, state_of
+from scene_graphs.json_fields import Json
+
+STOPPED: Final = {"succeeded": "done", "failed": "failed", "cancelled": "cancelled"}
+"""The last event of a story in each state it can end in."""
+SLOTS: Final = 4
+"""Event numbers of an artifact: a segment, a stage that begins, progress, and the end behind it."""
+
+
+@dataclass(frozen=True)
+class StoryEvent:
+    """One event of a story; the same number always stands for the same event."""
+
+    id: int
+    name: str
+    data: Json
+
+
+def story_summary(record: Record, frames: int) -> Json:
+    """A story in a list; `frames` are ready."""
+    return {
+        "id": record.id,
+        "kind": record.kind,
+        "state": state_of(record.status),
+        "stage": record.stage,
+        "progress": record.progress,
+        "created": datetime.fromtimestamp(record.created / 1000, UTC),
+        "theme": record.theme,
+        "title": record.title,
+        "seed": record.seed,
+        "backend": record.backend,
+        "duration": round(frames / FPS, 3),
+        "error": failure_of(record),
+        "links": _links(record.id),
+    }
+
+
+def story_shown(record: Record) -> Json:
+    """A story as far as it is made: later stages say more of its keyframes, so the last word counts."""
+    made: Json = {}
+    segments = []
+    for artifact in record.artifacts:
+        if artifact.kind == "segment":
+            segments.append(artifact.summary)
+        else:
+            made |= artifact.summary
+    frames = segments[-1]["end"] if segments else 0
+    complete = bool(made.get("count")) and len(segments) == made.get("count")
+    shown = {
+        "method": record.method,
+        "character": record.character,
+        "planner": made.get("planner"),
+        "encoder": made.get("encoder"),
+        "text": made.get("text"),
+        "graph": made.get("graph", {}),
+        "home": made.get("home"),
+        "keyframes": _keyframes(made, segments),
+        "motion": {"frames": frames, "duration": round(frames / FPS, 3), "complete": complete},
+        "report": made.get("report"),
+    }
+    lists = {name: made.get(name, []) for name in ("spans", "events", "uncovered", "repairs", "short_scripts")}
+    return story_summary(record, frames) | shown | lists
+
+
+def _keyframes(made: Json, segments: list[Json]) -> list[Json]:
+    rows = [row | {"start": None, "end": None, "reached": None} for row in made.get("keyframes", [])]
+    for row, object_id in zip(rows, made.get("objects", []), strict=False):
+        row["object_id"] = object_id
+    for segment in segments:
+        rows[segment["keyframe"]] |= {name: segment[name] for name in ("start", "end", "reached")}
+    return rows
+
+
+def failure_of(record: Record) -> Json | None:
+    """Why a story could not be made."""
+    if state_of(record.status) != "failed":
+        return None
+    if record.status == GIVEN_UP:
+        detail = f"its worker ended {record.attempts} times while it was made; post it again, or tell the operator"
+        return {"title": "Given up", "detail": detail}
+    return record.error or {"title": "Something went wrong on our side", "detail": "the service's log says more"}
+
+
+def _links(story_id: str) -> dict[str, str]:
+    here = f"/v1/stories/{story_id}"
+    parts = {name: f"{here}/{name}" for name in ("events", "cancel", "motion", "home")}
+    return {"self": here, **parts, "film": f"{here}/film.glb", "scene": f"{here}/scene.glb"}
+
+
+def events_of(record: Record) -> Iterator[StoryEvent]:
+    """The events that a story's artifacts stand for, in order, and the last one if the story has ended.
+
+    Numbers come from the positions of the artifacts: they are the same however often, and from where, one listens.
+    """
+    if record.stage is not None:
+        yield StoryEvent(1, "stage", {"stage": STAGES[0], "progress": 0.0})
+    for artifact in record.artifacts:
+        yield from _events_of(artifact)
+    state = state_of(record.status)
+    if state in STOPPED:
+        last = record.artifacts[-1].position if record.artifacts else -1
+        data: Json = {"state": state}
+        if state == "failed":
+            data["error"] = failure_of(record)
+        yield StoryEvent(SLOTS * (last + 1) + 3, STOPPED[state], data)
+
+
+def _events_of(artifact: Artifact) -> Iterator[StoryEvent]:
+    number, summary, progress = SLOTS * (artifact.position + 1), artifact.summary, artifact.progress
+    if artifact.kind == "segment":
+        names = ("index", "keyframe", "start", "end", "reached")
+        yield StoryEvent(number, "segment", {name: summary[name] for name in names} | {"progress": progress})
+    if artifact.following is not None:
+        yield StoryEvent(number + 1, "stage", {"stage": artifact.following, "progress": progress})
+    stage = artifact.following or ("move" if artifact.kind == "segment" else STAGES[-1])
+    yield StoryEvent(number + 2, "progress", {"stage": stage, "progress": progress})
+
+
+@dataclass(frozen=True)
+class Footage:
+    """What a story's segments hold."""
+
+    record: Record
+
+    @cached_property
+    def segments(self) -> tuple[Artifact, ...]:
+        """Those that are ready, in order."""
+        return tuple(artifact for artifact in self.record.artifacts if artifact.kind == "segment")
+
+    @property
+    def ready(self) -> int:
+        """Frames that can be had."""
+        return int(self.segments[-1].summary["end"]) if self.segments else 0
+
+    @property
+    def complete(self) -> bool:
+        """Whether no more will come of a story that goes well."""
+        counts = [artifact.summary["count"] for artifact in self.record.artifacts if artifact.kind == "actions"]
+        return counts == [len(self.segments)]
+
+    def etag(self, first: int, last: int) -> str:
+        """A name for exactly these frames: what was made is never changed."""
+        made = "".join(segment.etag[:8] for segment in self._between(first, last))
+        return f"{made[:64]}-{first}-{last}"
+
+    def motion(self, store: Stories, first: int, last: int) -> Motion:
+        """Frames first to last (exclusive), at least one, all of them ready."""
+        wanted = self._between(first, last)
+        whole = join(read_segments(store, self.record.id, [segment.summary["index"] for segment in wanted]))
+        start = wanted[0].summary["start"]
+        return whole.part(first - start, last - start)
+
+    def _between(self, first: int, last: int) -> list[Artifact]:
+        return [one for one in self.segments if one.summary["start"] < last and one.summary["end"] > first]

@@ -1,0 +1,153 @@
+"""`sims story THEME`: theme to film, with a progress bar and a closing table of what was reached and how well."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.text import Text
+
+from motion_backend.motion import Character
+from planner_service.cli.console import plain_table
+from planner_service.library.library import open_shelves
+from planner_service.llm.factory import load_model
+from planner_service.pipeline import STAGES, RequestError, Story, StoryRequest, Studio
+from planner_service.settings import read_settings
+from planner_service.themes.beats import clean
+from scene_graphs.furniture import ROOM_TYPES
+
+SHARES = {"plan": 0.30, "furnish": 0.05, "narrate": 0.02, "act": 0.06, "move": 0.12, "judge": 0.20, "write": 0.25}
+"""About how much of the time each stage takes, for the bar."""
+MAX_FILE_LINES = 100_000
+"""Bytes of a theme's file that are read."""
+TOLD = {
+    "plan": "weaving short scripts",
+    "furnish": "finding rooms that fit",
+    "narrate": "telling the story",
+    "act": "finding where to sit, lie, touch and walk",
+    "move": "moving the body",
+    "judge": "measuring the motion",
+    "write": "writing the film",
+}
+
+
+def story(
+    theme: Annotated[str, typer.Argument(help="What happens, in your own words; @FILE reads it from a file.")],
+    out: Annotated[Path, typer.Option(help="Folder for the story's files.")] = Path("out/story"),
+    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same story.")] = 0,
+    rooms: Annotated[
+        str | None,
+        typer.Option(help="Room types to play in, separated by commas: bedroom, living_room, dining_room, study."),
+    ] = None,
+    layout: Annotated[
+        list[str] | None,
+        typer.Option(help="A layout file, or the id of a built-in layout; may be given up to 4 times."),
+    ] = None,
+    backend: Annotated[str | None, typer.Option(help="What moves the body: procedural.")] = None,
+    name: Annotated[str, typer.Option(help="The character's name; left out: the theme's own, else Sam.")] = "Sam",
+    pronouns: Annotated[str, typer.Option(help="he, she or they; left out: as in the theme.")] = "they",
+    height: Annotated[float, typer.Option(help="The character's height in metres, 1.2 to 2.2.")] = 1.70,
+) -> None:
+    """Turn a story theme into a script, a home, a told story and an animated film."""
+    from planner_service.cli.layouts import chosen_layouts
+    from planner_service.output.story_files import FILES, check_writable, write_story
+
+    settings = read_settings()
+    check_writable(out, FILES)
+    studio = Studio(open_shelves(settings), load_model(settings), settings.llm_on_failure == "error")
+    request = StoryRequest(
+        theme=clean(read_theme(theme)),
+        rooms=() if rooms is None else read_rooms(rooms),
+        layouts=chosen_layouts(layout or [], studio.shelves),
+        seed=seed,
+        backend=backend or settings.backend,
+        character=Character(name, pronouns, height),
+    )
+    console = Console(markup=False)
+    with _bar(console) as bar:
+        task = bar.add_task(TOLD["plan"], total=1.0)
+
+        def show(stage: str, share: float) -> None:
+            before = sum(SHARES[s] for s in [*STAGES, "write"][: [*STAGES, "write"].index(stage)])
+            bar.update(task, completed=before + share * SHARES[stage], description=TOLD[stage])
+
+        made = studio.make(request, show)
+        show("write", 0.0)
+        files = write_story(made, out)
+        bar.update(task, completed=1.0, description="done")
+    _close(console, made, files)
+
+
+def read_theme(argument: str) -> str:
+    """The theme itself, or the text of the file that `@FILE` names. RequestError for one that is not UTF-8."""
+    if not argument.startswith("@"):
+        return argument
+    path = argument[1:]
+    try:
+        with Path(path).open("rb") as file:
+            data = file.read(MAX_FILE_LINES + 1)
+    except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
+        why = f"{getattr(error, 'strerror', None) or error}; after @ comes the path of a file"
+        raise RequestError(f"theme: {path or '@'} cannot be read: {why}") from error
+    if len(data) > MAX_FILE_LINES:
+        raise RequestError(f"theme: {path} has more than {MAX_FILE_LINES} bytes; a theme is a few sentences")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        why = f"{error.reason} at byte {error.start}"
+        raise RequestError(f"theme: {path} is not UTF-8 text ({why}); save it as UTF-8") from error
+
+
+def read_rooms(argument: str) -> tuple[str, ...]:
+    """The words between commas. RequestError if there are none."""
+    rooms = tuple(room.strip() for room in argument.split(",") if room.strip())
+    if not rooms:
+        raise RequestError(f"rooms: there is no room in {argument!r}; choose among {', '.join(ROOM_TYPES)}")
+    return rooms
+
+
+def _bar(console: Console) -> Progress:
+    return Progress(TextColumn("{task.description:<42}"), BarColumn(), TimeElapsedColumn(), console=console)
+
+
+def _close(console: Console, made: Story, files: list[Path]) -> None:
+    """The closing table: what was reached, and how well."""
+    console.print(f"\n{made.planned.told.title}\n", style="bold", highlight=False)
+    console.print(made.planned.told.text + "\n", highlight=False)
+    figures = ("seconds", "reached", "contact", "inside")
+    table = plain_table("#", "skill", "caption", "furniture", *figures, right=("#", *figures))
+    # What the other columns leave of the line.
+    longest = max(console.width - 68, 12)
+    for action, figure in zip(made.actions, made.figures, strict=True):
+        error = "" if figure.contact_error is None else f"{100 * figure.contact_error:.1f} cm"
+        table.add_row(
+            str(figure.keyframe),
+            figure.skill,
+            action.caption if len(action.caption) <= longest else action.caption[: longest - 1] + "…",
+            (action.object_id or "floor")[:16],
+            f"{figure.seconds:.1f}",
+            "yes" if figure.reached else Text(f"no {figure.reason}", style="red"),
+            error,
+            f"{100 * figure.pen_max:.1f} cm",
+        )
+    console.print(table)
+    for line in made.planned.stage.explain():
+        console.print(f"  {line}", highlight=False)
+    report = made.report
+    contact = "–" if report["contact_error"] is None else f"{100 * report['contact_error']:.1f} cm"
+    console.print(
+        f"\n{report['reached']} of {report['keyframes']} keyframes reached · contact error {contact} · "
+        f"inside furniture {100 * report['pen_mean']:.1f} cm mean, {100 * report['pen_share']:.1f} % of frames · "
+        f"skating {100 * report['skate_ratio_loco']:.1f} % of walking · {report['seconds']:.0f} s of motion\n"
+        f"planner: {made.planned.script.planner} · motion: {made.planned.request.backend} (kinematic, not learned) · "
+        f"encoder: {made.planned.script.encoder}",
+        highlight=False,
+    )
+    for event in made.planned.script.uncovered:
+        console.print(f"not covered: {event}", highlight=False)
+    for note in made.motion.notes:
+        console.print(f"done otherwise: keyframe {note.keyframe}: {note.words}", highlight=False)
+    console.print(f"\nwritten to {files[0].parent}/: {', '.join(file.name for file in files)}", highlight=False)

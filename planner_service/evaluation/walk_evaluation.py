@@ -1,0 +1,273 @@
+"""How far made walks are from recorded ones: features of 2 s windows, their distance, jerk and skating at equal speed.
+
+The figures are a baseline: what moves the body otherwise, a learned model say, is to come nearer than the rules do.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion_backend.metrics.foot_skate import skate_ratio, skate_speed
+from motion_backend.metrics.gait_features import UNITS, gait_features, windows
+from motion_backend.metrics.joint_trajectories import Kinematics
+from motion_backend.metrics.kernel_mmd import Distance, discrepancy, floor
+from motion_backend.mocap.clip import ClipError
+from motion_backend.mocap.dataset_file import Dataset, Entry
+from motion_backend.mocap.resampling import low_pass
+from motion_backend.motion import Action, Character, Motion, Skill
+from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.procedural.emotion_style import BEARINGS
+from motion_backend.procedural.held_poses import standing
+from motion_backend.procedural.pose_solver import solve
+from motion_backend.procedural.walk.gait import walk
+from motion_backend.procedural.walk.walk_styles import walk_style
+from motion_backend.rotations import Array
+from motion_backend.skeleton import Skeleton
+from planner_service.evaluation.body_evaluation import plan_trials
+from planner_service.evaluation.trials import perform
+from planner_service.pipeline import RequestError
+from scene_graphs.home import Home, home_from_layouts
+from scene_graphs.layout import Layout
+
+CAPTION: Final = "steadily walking forward"
+PLAIN: Final = re.compile(r"neutral|slow|brisk|normal|^$")
+ODD: Final = re.compile(
+    r"\b(?:run|jog|crawl|sneak|stealth|zombie|hop|jump|balanc|stagger|exaggerat|strid)", re.IGNORECASE
+)
+"""Walks that are not plain, by their style or caption; a caption may say what the style does not."""
+MAX_WINDOWS: Final = 12
+"""Of one person, spread over their clips: who walked up and down thirty times is one person still."""
+MIN_PEOPLE: Final = 4
+SPEEDS: Final = ((0.3, 0.8), (0.8, 1.1), (1.1, 1.4), (1.4, 1.7), (1.7, 2.2))
+"""Bins in which jerk is compared (metres a second)."""
+GROUND: Final = Layout("ground", "living_room", ((0.0, 0.0), (0.0, 4.0), (16.0, 4.0), (16.0, 0.0)))
+ENDS: Final = ((1.5, 2.0), (14.5, 2.0))
+"""An empty hall, and where walks in it lead to ([x, z], metres)."""
+
+
+@dataclass(frozen=True)
+class Walks:
+    """Windows of steady walking of one kind."""
+
+    name: str
+    features: Array
+    """(N, 16) as `UNITS` has them."""
+    groups: tuple[str, ...]
+    """Whose each is: a person, or a seed or room of ours; windows of one group are alike."""
+    skates: tuple[float, ...]
+    """Share of skating frames of each."""
+    slides: tuple[float, ...]
+    """Speed of sole corners on the floor, cm/s, likewise."""
+
+    def __len__(self) -> int:
+        return len(self.features)
+
+    def of(self, feature: str) -> Array:
+        """One feature of all windows. (N,)."""
+        return np.asarray(self.features[:, list(UNITS).index(feature)])
+
+
+@dataclass(frozen=True)
+class Compared:
+    """Made walks beside the recorded ones."""
+
+    walks: Walks
+    distance: Distance
+
+
+@dataclass(frozen=True)
+class JerkBin:
+    """Mean jerk of walks at one speed, m/s³."""
+
+    slowest: float
+    fastest: float
+    recorded: float
+    ours: float
+    windows: int
+    """Recorded ones in it."""
+
+
+@dataclass(frozen=True)
+class WalkReport:
+    """Everything that `sims evaluate walks` prints."""
+
+    recorded: Walks
+    floor: Distance
+    """Between halves of the people who were recorded."""
+    compared: tuple[Compared, ...]
+    """Walks at the recorded speeds first."""
+    jerk: tuple[JerkBin, ...]
+    caption: str
+    backend: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON; features as mean and standard deviation."""
+        recorded, matched = self.recorded, self.compared[0].walks
+        deviations = dict(zip(UNITS, apart(recorded, matched).tolist(), strict=True))
+        return {
+            "physics_mode": "none", "backend": self.backend, "caption": self.caption,
+            "recorded": {"people": len(set(recorded.groups)), **_summed(recorded), "mmd2_between_halves":
+                         vars(self.floor)},
+            "compared": [{**_summed(one.walks), "name": one.walks.name, "mmd2": vars(one.distance)}
+                         for one in self.compared],
+            "deviations_apart": deviations,
+            "jerk": [vars(one) for one in self.jerk],
+        }  # fmt: skip
+
+
+def evaluate_walks(
+    dataset: Dataset, style: str = "", caption: str = CAPTION, rooms: int = 6, seeds: int = 3
+) -> WalkReport:
+    """Compare ours with recorded walks: at their speeds, in rooms, and in every mood. ClipError for too few of them."""
+    recorded = recorded_walks(dataset, style)
+    matched = matched_walks(recorded.of("speed"), caption, dataset.skeleton)
+    if len(matched) < 2:
+        raise RequestError(f"--caption: {caption!r:.80} is not walked straight on; try {CAPTION!r}")
+    made = [
+        matched,
+        room_walks(caption, rooms, seeds),
+        *(mood_walks(caption, mood, seeds) for mood in BEARINGS),
+    ]
+    compared = [
+        Compared(one, discrepancy(recorded.features, recorded.groups, one.features, one.groups))
+        for one in made
+        if len(one) > 1
+    ]
+    between = floor(recorded.features, recorded.groups)
+    return WalkReport(recorded, between, tuple(compared), jerk_bins(recorded, matched), caption, ProceduralBackend.name)
+
+
+def recorded_walks(dataset: Dataset, style: str = "") -> Walks:
+    """Recorded walks, as they were recorded: plain ones, or those whose style has a word."""
+    chosen = [
+        entry
+        for entry in dataset.entries
+        if entry.skill == Skill.LOCO
+        and entry.kind == "real mocap"
+        and not entry.changed
+        and _is_asked_for(entry, style)
+    ]
+    found = _walks("recorded", [(entry.subject, entry.motion) for entry in chosen])
+    people = np.array(found.groups)
+    if len(set(found.groups)) < MIN_PEOPLE:
+        what = f"walks called {style!r:.40}" if style else "plain walks"
+        raise ClipError(
+            f"--clips: recorded {what} of {len(set(found.groups))} people hold 2 s of steady walking; at least "
+            f"{MIN_PEOPLE} are needed (sims clips build --kinds 'real mocap')"
+        )
+    kept = np.sort(np.concatenate([_spread(np.flatnonzero(people == name)) for name in np.unique(people)]))
+    return _chosen(found, kept)
+
+
+def matched_walks(speeds: Array, caption: str, skeleton: Skeleton, mood: str = "neutral") -> Walks:
+    """A straight walk over open ground at each of these speeds, its middle two seconds."""
+    motions = []
+    for seed, speed in enumerate(speeds.tolist()):
+        style = replace(walk_style(mood, caption), speed=speed / skeleton.scale)
+        start, way = standing((0.0, 0.0), 0.0, style.bearing, skeleton), np.array([[0.0, 0.0], [0.0, 3.0 + 3 * speed]])
+        pose = walk(start, way, None, style, skeleton, np.random.default_rng(seed))
+        root, local = solve(pose, skeleton)
+        motion = Motion(
+            root_positions=root.astype(np.float32),
+            local_rotations=local.astype(np.float32),
+            contacts=np.repeat(pose.planted, 2, axis=1).astype(np.float32),
+            skeleton=skeleton,
+            actions=np.zeros(len(pose), dtype=np.int32),
+        )
+        middle = (len(motion) - 60) // 2
+        motions.append((f"seed {seed}", motion.part(middle, middle + 60)))
+    return _walks("at recorded speeds", motions)
+
+
+def room_walks(caption: str, rooms: int, seeds: int) -> Walks:
+    """Walks to places of library rooms, as trials of the body have them."""
+    trials = plan_trials({Skill.LOCO: [caption]}, rooms, seeds)
+    return _walks("in rooms", [(trial.room, motion) for trial in trials for motion in perform(trial).motions])
+
+
+def mood_walks(caption: str, mood: str, seeds: int) -> Walks:
+    """From somewhere in an empty hall to both its ends in a mood, as a backend walks that is told no more than that."""
+    home, backend = _hall(), ProceduralBackend()
+    motions = []
+    for seed in range(seeds):
+        state = backend.begin(home, Character(), seed)
+        for index, goal in enumerate(ENDS):
+            action = Action(Skill.LOCO, caption, mood, goal=goal, keyframe=index)
+            motion, state = backend.advance(home, action, state)
+            motions.append((f"seed {seed}", motion))
+    return _walks(mood, motions)
+
+
+def jerk_bins(recorded: Walks, ours: Walks) -> tuple[JerkBin, ...]:
+    """Mean jerk by speed, where both have windows."""
+    found = []
+    for slowest, fastest in SPEEDS:
+        means = []
+        for walks in (recorded, ours):
+            inside = (walks.of("speed") >= slowest) & (walks.of("speed") < fastest)
+            means.append(np.exp(walks.of("log_jerk")[inside]))
+        if all(map(len, means)):
+            found.append(JerkBin(slowest, fastest, float(means[0].mean()), float(means[1].mean()), len(means[0])))
+    return tuple(found)
+
+
+def apart(recorded: Walks, ours: Walks) -> Array:
+    """How many standard deviations of the recorded ones the mean of ours is above theirs. (16,)."""
+    deviation = np.maximum(recorded.features.std(axis=0), 1e-9)
+    return np.asarray((ours.features.mean(axis=0) - recorded.features.mean(axis=0)) / deviation)
+
+
+@lru_cache(maxsize=1)
+def _hall() -> Home:
+    return home_from_layouts([GROUND], 0)
+
+
+def _is_asked_for(entry: Entry, style: str) -> bool:
+    if style:
+        return style.lower() in entry.style.lower()
+    return bool(PLAIN.search(entry.style.lower())) and not ODD.search(" ".join((entry.style, *entry.captions)))
+
+
+def _spread(of: NDArray[np.int64]) -> NDArray[np.int64]:
+    """At most `MAX_WINDOWS` of these, from the first to the last."""
+    return of[np.unique(np.linspace(0, len(of) - 1, min(len(of), MAX_WINDOWS)).round().astype(np.int64))]
+
+
+def _walks(name: str, motions: Sequence[tuple[str, Motion]]) -> Walks:
+    rows = [row for group, motion in motions for row in _windows_of(group, motion)]
+    features = np.array([row[1] for row in rows]).reshape(-1, len(UNITS))
+    return Walks(
+        name, features, tuple(row[0] for row in rows), tuple(row[2] for row in rows), tuple(row[3] for row in rows)
+    )
+
+
+def _windows_of(group: str, motion: Motion) -> Iterator[tuple[str, Array, float, float]]:
+    # What a camera shakes is smoothed out of recordings: both are compared without it.
+    positions = low_pass(motion.joint_positions().astype(np.float64), motion.fps)
+    for start, stop in windows(positions, motion.fps):
+        features = gait_features(positions[start:stop], motion.fps)
+        if features is not None:
+            body = Kinematics.of(motion.part(start, stop))
+            yield group, features, skate_ratio(body), skate_speed(body)
+
+
+def _chosen(walks: Walks, kept: NDArray[np.int64]) -> Walks:
+    columns = ([column[index] for index in kept] for column in (walks.groups, walks.skates, walks.slides))
+    return Walks(walks.name, walks.features[kept], *map(tuple, columns))
+
+
+def _summed(walks: Walks) -> dict[str, Any]:
+    means, deviations = walks.features.mean(axis=0).tolist(), walks.features.std(axis=0).tolist()
+    return {
+        "windows": len(walks),
+        "features": {name: {"mean": m, "sd": s} for name, m, s in zip(UNITS, means, deviations, strict=True)},
+        "skate_ratio": float(np.mean(walks.skates)),
+        "skate": float(np.mean(walks.slides)),
+    }

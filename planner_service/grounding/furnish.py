@@ -1,0 +1,222 @@
+"""From a long script to a furnished home: graphs, merging, retrieval, and every script's furniture found (SIMS 3.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from planner_service.grounding.keyframes_to_actions import NEEDS, Place
+from planner_service.grounding.object_assignment import Placing, StandIn, usable_offers
+from planner_service.grounding.room_assignment import housed
+from planner_service.grounding.seat_access import pull_to_dict, seat, seat_with_pulls
+from planner_service.scripts.script import LongScript, PlannedKeyframe
+from scene_graphs.affordances.usable_furniture import Pull
+from scene_graphs.furniture import ROOM_TYPES, canonical_room, display_name
+from scene_graphs.graph.edit_distance import MAX_NODES, exact_distance
+from scene_graphs.graph.furniture_graph import FurnitureGraph, graph_from_layout, graph_from_uses
+from scene_graphs.graph.merge import merge
+from scene_graphs.home import MAX_ROOMS, Home, home_from_layouts
+from scene_graphs.layout import Layout
+from scene_graphs.layout_library import built_in_layouts
+from scene_graphs.retrieval.layout_index import LayoutIndex, retrieve_rooms
+from scene_graphs.retrieval.match_explanation import Explanation, explain
+
+
+class FurnishError(ValueError):
+    """No home can be found for a script; the text names what is missing."""
+
+
+@dataclass(frozen=True)
+class RoomMatch:
+    """One room of the home and how well it fits what is played in it."""
+
+    room_type: str
+    """What the script asked for."""
+    layout_id: str
+    distance: int
+    exact: bool
+    substitutions: tuple[tuple[str, str, str], ...]
+    """(asked, given, level) where the room has something else than asked: same class, group or, at last, affordance."""
+    missing: tuple[str, ...]
+    pulls: tuple[Pull, ...] = ()
+    """Chairs that stand pulled out from the start, since nobody could sit on them where they stood."""
+
+
+@dataclass(frozen=True)
+class Furnished:
+    """A home for a script: each keyframe with its room and object."""
+
+    script: LongScript
+    home: Home
+    matches: tuple[RoomMatch, ...]
+    places: tuple[Place, ...]
+    graphs: Mapping[str, FurnitureGraph]
+    """Room type to the merged graph of the furniture that is used there."""
+
+    @property
+    def names(self) -> dict[int, tuple[str, str]]:
+        """Keyframe index to the words a story uses for its furniture and room; the floor has no word."""
+        named = {}
+        for index, place in enumerate(self.places):
+            room = self.matches[place.room].room_type.replace("_", " ")
+            piece = "floor"
+            if place.object_id is not None:
+                piece = display_name(self.home.object(place.object_id).category)
+            named[index] = (piece, room)
+        return named
+
+    def explain(self) -> list[str]:
+        """One line a room: which, how far from what was asked, what stands for what."""
+        lines = []
+        for number, match in enumerate(self.matches):
+            line = f"{match.room_type.replace('_', ' ')}: {match.layout_id}, graph distance {match.distance}"
+            line += "" if match.exact else " (not proven least)"
+            given = [f"{asked} → {got} ({level})" for asked, got, level in match.substitutions]
+            pulls = [f"{self._name(number, pull)} pulled out by {pull.distance:.2f} m" for pull in match.pulls]
+            lines.append("; ".join([line, *given, *[f"missing {name}" for name in match.missing], *pulls]))
+        return lines
+
+    def _name(self, room: int, pull: Pull) -> str:
+        return f"{display_name(self.home.object(f'{room}/{pull.object_id}').category)} {pull.object_id}"
+
+    def rooms_to_dicts(self) -> list[dict[str, Any]]:
+        """Plain values for JSON."""
+        return [
+            {
+                "layout_id": match.layout_id,
+                "room_type": match.room_type,
+                "distance": match.distance,
+                "exact": match.exact,
+                "substitutions": [
+                    {"asked": asked, "given": given, "level": level} for asked, given, level in match.substitutions
+                ],
+                "missing": list(match.missing),
+                "pulled_out": [pull_to_dict(pull) for pull in match.pulls],
+            }
+            for match in self.matches
+        ]
+
+
+def furnish(
+    script: LongScript,
+    index: LayoutIndex,
+    rooms: Sequence[str] = (),
+    given: Home | Sequence[Layout] = (),
+    seed: int = 0,
+) -> Furnished:
+    """Find a room for every room type of the script, join them to a home and ground every keyframe in it.
+
+    `given` are rooms of the user's own, used instead of retrieved ones and joined, or a whole home, used as it is.
+    Raises FurnishError naming what no room has.
+    """
+    layouts = [room.layout for room in given.rooms] if isinstance(given, Home) else given
+    known = [room for room in map(canonical_room, rooms) if room in ROOM_TYPES]
+    script = housed(script, index.layouts, known or ROOM_TYPES)
+    wanted = _room_types(script, rooms)
+    uses = {room: _script_graphs(script, room, wanted) for room in wanted}
+    merged = {room: merge([graph for _, graph in graphs]).graph for room, graphs in uses.items()}
+    for room, graph in merged.items():
+        if len(graph) > MAX_NODES:
+            used = f"{len(graph)} pieces of furniture in the {room.replace('_', ' ')}"
+            raise FurnishError(f"theme: the story uses {used}, at most {MAX_NODES} can be; tell of fewer events")
+    chosen = _given(merged, layouts) if layouts else _retrieved(merged, index, seed)
+    unique = list(dict.fromkeys([layout for layout, _ in chosen.values()] + list(layouts)))
+    if isinstance(given, Home):
+        unique, home = list(layouts), given
+    else:
+        home = home_from_layouts(unique, seed)
+    number = {room: unique.index(layout) for room, (layout, _) in chosen.items()}
+    # Our own rooms were checked when they were made; in a user's room a chair may stand where nobody gets to.
+    checked = {layout.id: layout for layout in built_in_layouts()}
+    are_ours = not layouts and all(checked.get(layout.id) is layout for layout in unique)
+    where = [_room_of(keyframe, wanted) for keyframe in script.keyframes]
+    placing = Placing(home, uses, number, {} if are_ours else usable_offers(home))
+    seating = seat(placing, script, where) if are_ours else seat_with_pulls(placing, script, where)
+    if seating.missing:
+        raise FurnishError(seating.missing)
+    matches = _matches(unique, chosen, seating.said)
+    pulled = tuple(replace(match, pulls=seating.pulls.get(room, ())) for room, match in enumerate(matches))
+    return Furnished(script, seating.placing.home, pulled, seating.places, merged)
+
+
+def _room_types(script: LongScript, rooms: Sequence[str]) -> list[str]:
+    """Room types in the order the story comes to them."""
+    asked = [canonical_room(room) for room in rooms]
+    unknown = [room for room, name in zip(rooms, asked, strict=True) if name not in ROOM_TYPES]
+    if unknown:
+        raise FurnishError(f"rooms: {unknown[0]!r} is none of {', '.join(ROOM_TYPES)}")
+    if len(asked) > MAX_ROOMS:
+        raise FurnishError(f"rooms: a home has at most {MAX_ROOMS} rooms, {len(asked)} were asked for")
+    met = dict.fromkeys(keyframe.room for keyframe in script.keyframes if keyframe.room)
+    return list(met) + [room for room in asked if room not in met] or [asked[0] if asked else "living_room"]
+
+
+def _room_of(keyframe: PlannedKeyframe, wanted: Sequence[str]) -> str:
+    return keyframe.room if keyframe.room is not None and keyframe.room in wanted else wanted[0]
+
+
+def _script_graphs(script: LongScript, room: str, wanted: Sequence[str]) -> list[tuple[int | None, FurnitureGraph]]:
+    """One graph for every short script that plays in a room, from its keyframes as they were planned."""
+    numbers = dict.fromkeys(k.short_script for k in script.keyframes if _room_of(k, wanted) == room)
+    graphs = []
+    for number in numbers:
+        mine = [k for k in script.keyframes if k.short_script == number and _room_of(k, wanted) == room]
+        used = [k for k in mine if not k.on_floor]
+        needs = [[NEEDS[k.skill]] if k.skill in NEEDS else [] for k in used]
+        graphs.append((number, graph_from_uses([k.piece for k in used], needs)))
+    return graphs
+
+
+Chosen = dict[str, tuple[Layout, RoomMatch]]
+
+
+def _retrieved(merged: dict[str, FurnitureGraph], index: LayoutIndex, seed: int) -> Chosen:
+    """One of the nearest rooms of the library for every room type."""
+    chosen: Chosen = {}
+    for room, match in retrieve_rooms(index, merged, seed=seed).items():
+        told = explain(merged[room], index.graph(match.layout_id), match, index.costs)
+        chosen[room] = (index.layout(match.layout_id), _room_match(room, match.layout_id, told))
+    return chosen
+
+
+def _given(merged: dict[str, FurnitureGraph], layouts: Sequence[Layout]) -> Chosen:
+    """The user's room that fits each room type best: its own type first, then the smaller distance."""
+    chosen: Chosen = {}
+    for room, graph in merged.items():
+        ranked = sorted(
+            ((room not in (layout.room_type, *layout.tags), _explained(room, graph, layout).distance, number)
+             for number, layout in enumerate(layouts))
+        )  # fmt: skip
+        best = layouts[ranked[0][2]]
+        chosen[room] = (best, _explained(room, graph, best))
+    return chosen
+
+
+def _explained(room: str, graph: FurnitureGraph, layout: Layout) -> RoomMatch:
+    own = graph_from_layout(layout)
+    return _room_match(room, layout.id, explain(graph, own, exact_distance(graph, own)))
+
+
+def _room_match(room: str, layout_id: str, told: Explanation) -> RoomMatch:
+    substitutions = tuple(
+        (display_name(pair.asked.category), display_name(pair.given.category), pair.level)
+        for pair in told.substitutions
+    )
+    missing = tuple(display_name(gap.asked.category) for gap in told.missing)
+    return RoomMatch(room, layout_id, told.distance, told.exact, substitutions, missing)
+
+
+def _matches(unique: Sequence[Layout], chosen: Chosen, stand_ins: Sequence[StandIn]) -> tuple[RoomMatch, ...]:
+    """One match a room of the home, in the home's order; a room nothing is played in matches trivially."""
+    matches = []
+    for number, layout in enumerate(unique):
+        played = [match for given, match in chosen.values() if given is layout]
+        first = played[0] if played else RoomMatch(layout.room_type, layout.id, 0, True, (), ())
+        # A room of the user's may stand for several types: what is missed or replaced in any of them is said.
+        substitutions = tuple(dict.fromkeys(s for match in played for s in match.substitutions))
+        served = {s.asked: s.given for s in stand_ins if s.room == number}
+        substitutions += tuple((asked, given, "affordance") for asked, given in served.items())
+        missing = tuple(dict.fromkeys(n for match in played for n in match.missing if n not in served))
+        matches.append(replace(first, substitutions=substitutions, missing=missing))
+    return tuple(matches)

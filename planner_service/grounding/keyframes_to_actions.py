@@ -1,0 +1,333 @@
+"""Keyframes to actions: surfaces to sit, lie and touch, standing points, hands and ways to walk (SIMS 3.4, LINGO C).
+
+Every contact gets the reachable spot nearest to where the body comes from; a walk ends where the next contact begins.
+
+Where walks go that lead to nothing: some way off, to the front left or right, or nowhere at all.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import cos, sin
+from typing import Any, Final
+
+import numpy as np
+
+from motion_backend.body.scene_collision import Obstacles
+from motion_backend.motion import Action, Skill
+from motion_backend.procedural.lie.lie_pose import place_to_lie
+from motion_backend.procedural.sit.sit_skill import seat_for
+from motion_backend.procedural.touch.hand_contacts import suits
+from planner_service.grounding.touch_stance import LEG_ROOM, ElbowRoom
+from planner_service.scripts.caption_actions import Hands, done_in, look_of
+from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
+from planner_service.scripts.script import Keyframe
+from planner_service.scripts.script_repair import free_hand, hand_of
+from scene_graphs.affordances.affordances import Spot, floor_spot, spots
+from scene_graphs.home import Home
+from scene_graphs.layout import Placed
+from scene_graphs.navigation.path_planner import Walkable
+
+Point = tuple[float, float]
+_STAYS: Final = re.compile(r"\bstand(s|ing)? (still|there|motionless)|\bwav(e|es|ing)\b", re.IGNORECASE)
+_GOES: Final = re.compile(r"\b(walk|run|step|pac|stroll|danc|rush|march|skip)", re.IGNORECASE)
+_FRONT: Final = re.compile(r"\b(?:front|forward|ahead)[ ,a-z]*?\b(left|right)\b", re.IGNORECASE)
+_TO_THE_SIDE: Final = np.radians([40.0, 50.0, 30.0, 60.0, 70.0])
+"""How far to the side of where the body looks its front left is, the best first."""
+_AWAY: Final = (1.8, 1.5, 1.2, 0.9, 0.7)
+"""How far a walk to the front goes, the best first (metres)."""
+_ROOM: Final = 0.25
+"""Clearance where it should end (metres)."""
+
+
+def stays(caption: str) -> bool:
+    """Whether a caption of loco leaves the body where it is ("stand still", "wave with the right hand")."""
+    return bool(_STAYS.search(caption)) and not _GOES.search(caption)
+
+
+def heading_after(done: Sequence[tuple[Action, Point | None]], walkable: Walkable) -> float | None:
+    """Where a body looks after actions, each with where it began (yaw); None where nobody can know."""
+    for action, at in reversed(done):
+        if action.spot is not None:
+            return action.spot.approach if action.spot.affordance == "lie" else action.spot.facing
+        if action.facing is not None:
+            return action.facing
+        if action.goal is not None:
+            return _last_step(at, action.goal, walkable)
+    return None
+
+
+def _last_step(at: Point | None, goal: Point, walkable: Walkable) -> float | None:
+    """The direction in which a walk arrives."""
+    if at is None or not walkable.reachable(at, goal):
+        return None
+    step = np.diff(walkable.path(at, goal)[-2:], axis=0).sum(axis=0)
+    return float(np.arctan2(step[0], step[1])) if np.hypot(*step) > 1e-6 else None
+
+
+def in_front(
+    caption: str, walkable: Walkable, at: Point | None, done: Sequence[tuple[Action, Point | None]]
+) -> Point | None:
+    """The goal of "walk to the front left" from where the body stands and looks; None where there is no such place."""
+    side = _FRONT.search(caption)
+    heading = heading_after(done, walkable) if side else None
+    if side is None or at is None or heading is None:
+        return None
+    sign = 1.0 if side[1].lower() == "left" else -1.0
+    for least in (_ROOM, 0.0):
+        for away in _AWAY:
+            for aside in _TO_THE_SIDE:
+                yaw = heading + sign * aside
+                goal = (float(at[0] + away * np.sin(yaw)), float(at[1] + away * np.cos(yaw)))
+                if walkable.is_free(goal) and walkable.sees(at, goal) and walkable.clearance(goal) >= least:
+                    return goal
+    return None
+
+
+NEEDS = {Skill.SITDOWN: "sit", Skill.LIEDOWN: "lie", Skill.TOUCH: "touch"}
+HOLDS = {Skill.SITDOWN: 2.5, Skill.LIEDOWN: 3.0, Skill.TOUCH: 1.4}
+"""Seconds a reached pose is held."""
+LAST_HOLD = 1.5
+"""Seconds more for the last keyframe."""
+PACING = 1.5
+"""A wandering walk goes at least this far, where the room allows it (metres)."""
+WALLED = 0.08
+"""How far a point of furniture may lie in the wall of its room (metres)."""
+STEP = 0.40
+"""From free floor to a standing point is at most one step: what a room's check allows, and half a cell (metres)."""
+KNEELING = (-0.7, 0.0, 0.4)
+"""How far before the standing point feet, body and hands are of who gets down on the knees (metres)."""
+
+
+class UnreachableError(ValueError):
+    """A keyframe has nothing it can be done at: no object, or none with a spot that can be walked to."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a keyframe happens: room of the home, and object in it (None for the floor)."""
+
+    room: int
+    object_id: str | None = None
+
+
+def act(
+    keyframes: Sequence[Keyframe],
+    places: Sequence[Place],
+    home: Home,
+    seed: int,
+    words: Words = hashed_words,
+) -> tuple[Action, ...]:
+    """Ground every keyframe in the home. Raises UnreachableError naming the keyframe that cannot be done.
+
+    An action's caption is what is performed: where the body knows no word of the keyframe's, the nearest of `words`.
+    """
+    stage = _Stage(home, Walkable(home), np.random.default_rng([seed, 7]), words)
+    drafts: list[Action] = []
+    for index, (keyframe, place) in enumerate(zip(keyframes, places, strict=True)):
+        before = keyframes[index - 1] if index else None
+        drafts.append(stage.contact(index, keyframe, place, free_hand(before)))
+    hands = Hands()
+    return tuple(hands.follow(action, done_in(keyframes[action.keyframe].caption))
+                 for action in stage.walks(drafts, places))  # fmt: skip
+
+
+class _Stage:
+    """The home while actions are being grounded: where the body stands and what it rests on."""
+
+    def __init__(self, home: Home, walkable: Walkable, rng: np.random.Generator, words: Words) -> None:
+        self.home, self.walkable, self.rng, self.words = home, walkable, rng, words
+        self.at: Point | None = None
+        self.resting: Spot | None = None
+
+    def contact(self, index: int, keyframe: Keyframe, place: Place, free: str = "right") -> Action:
+        """The action of a keyframe; walks get their goal later, when what follows them is known."""
+        performed = performed_as(keyframe.skill, look_of(keyframe.caption), keyframe.emotion, self.words)
+        keyframe = keyframe.model_copy(update={"caption": performed})
+        action = Action(
+            keyframe.skill, keyframe.caption, keyframe.emotion, keyframe.furniture, place.object_id, keyframe=index
+        )
+        if keyframe.skill in NEEDS:
+            hand, spot = hand_of(keyframe.caption, default=free), self._spot(index, keyframe, place)
+            if keyframe.skill is Skill.TOUCH:
+                hand, spot = self._elbows.freely(spot, hand, keyframe.caption)
+            else:
+                self.resting = spot
+            self.at = spot.standing
+            return replace(action, object_id=spot.object_id, spot=spot, hand=hand, hold=HOLDS[keyframe.skill])
+        if keyframe.skill in (Skill.STANDUP, Skill.GETUP) and self.resting is not None:
+            return replace(action, object_id=self.resting.object_id, spot=self.resting)
+        return action
+
+    def _spot(self, index: int, keyframe: Keyframe, place: Place) -> Spot:
+        need = NEEDS[keyframe.skill]
+        if place.object_id is None:
+            if keyframe.skill is Skill.TOUCH:
+                raise UnreachableError(f"keyframe {index}: nothing to touch, {keyframe.furniture!r} is not in the home")
+            return self._on_floor(need, place.room)
+        placed = self.home.object(place.object_id)
+        found = self._reachable(placed, need)
+        if not found:
+            raise UnreachableError(
+                f"keyframe {index}: no spot to {need} on {place.object_id} ({placed.category}) that can be walked to; "
+                "clear the way to it, or choose another room"
+            )
+        if need == "touch":
+            return self._to_touch(found, keyframe.caption)
+        if need == "sit":
+            return seat_for(found, keyframe.emotion, keyframe.caption, self._elbows.solid)
+        return place_to_lie(found, keyframe.caption)
+
+    def _to_touch(self, found: list[Spot], caption: str) -> Spot:
+        """One of the spots of a piece of the wanted height, with room for arms, on which nothing lies."""
+        wanted = height_of(caption)
+        level = [[s for s in found if s.height == height] for height in (wanted, "medium", "low")]
+        suited = ([s for s in some if suits(s, caption, self._elbows.solid)] for some in level)
+        found = next(filter(None, suited), level[0] or level[1] or found)
+        # Fronts before tops of what is taller than the chest: an arm does not go over an edge by itself.
+        found = [s for s in found if s.normal[1] < 0.5 or s.point[1] < 1.2] or found
+        if wanted == "high":
+            found = self._elbows.roomiest(found)
+            found.sort(key=lambda s: -s.point[1])
+            found = [s for s in found if s.point[1] > found[0].point[1] - 0.1]
+        found = [s for s in found if self._elbows.within_arms_way(s)] or found
+        least = min(self._cluttered(s) for s in found)
+        found = [s for s in found if self._cluttered(s) == least]
+        # The body may come back to a piece: it need not touch the very same place again.
+        found = self._elbows.roomiest(found)
+        return found[int(self.rng.integers(min(len(found), 3)))]
+
+    @cached_property
+    def _elbows(self) -> ElbowRoom:
+        return ElbowRoom(self.walkable, Obstacles.of_home(self.home).solid())
+
+    def _reachable(self, placed: Placed, need: str) -> list[Spot]:
+        """Spots whose standing point can be walked to, best first: as they come, the nearer side first when lying."""
+        start = self.at or self.walkable.random_point(np.random.default_rng(0), 0)
+        found = [s for s in spots(placed, need) if can_stand(self.walkable, start, s)]
+        # A seat with a laptop on it is taken.
+        found.sort(key=self._cluttered)
+        if need == "lie":
+            found.sort(
+                key=lambda s: (
+                    self._cluttered(s),
+                    _scoots(s),
+                    round(float(np.hypot(s.standing[0] - start[0], s.standing[1] - start[1])), 1),
+                )
+            )
+        return found
+
+    def _cluttered(self, spot: Spot) -> int:
+        """How many things lie or stand where a body or its hand would."""
+        reach = {"sit": 0.35, "lie": 0.8, "touch": 0.2}[spot.affordance]
+        things = (placed.position for placed in self.home.objects if placed.parent == spot.object_id)
+        return sum(np.hypot(x - spot.point[0], z - spot.point[2]) < reach for x, _, z in things)
+
+    def _on_floor(self, need: str, room: int) -> Spot:
+        """The freest place of a room to sit or lie on the floor, and the freest direction there."""
+        best: tuple[float, Spot] | None = None
+        length = 0.9 if need == "lie" else 0.5
+        for _ in range(60):
+            point = self.walkable.random_point(self.rng, room)
+            for yaw in np.arange(8) * np.pi / 4:
+                ahead = np.array([np.sin(yaw), np.cos(yaw)])
+                ends = [np.asarray(point) + share * length * ahead for share in (-1.0, -0.5, 0.5, 1.0)]
+                spot = floor_spot(need, point, float(yaw))
+                if need == "lie":
+                    ends += [np.asarray(spot.standing) + share * ahead for share in KNEELING]
+                room_left = min(self.walkable.clearance((float(e[0]), float(e[1]))) for e in ends)
+                if best is None or room_left > best[0]:
+                    best = (room_left, spot)
+            if best is not None and best[0] > 0.35:
+                break
+        if best is None or best[0] <= 0.0:
+            raise UnreachableError(f"room {room} has no free floor to {need} on; choose another room")
+        return best[1]
+
+    def walks(self, drafts: list[Action], places: Sequence[Place]) -> list[Action]:
+        """Give every walk its goal: where the next contact with the same thing begins, beside a thing, or anywhere."""
+        done: list[tuple[Action, Point | None]] = []
+        at: Point | None = None
+        for index, action in enumerate(drafts):
+            wanders = action.skill is Skill.LOCO and places[index].object_id is None
+            ahead = in_front(action.caption, self.walkable, at, done) if wanders else None
+            if ahead is not None:
+                action = replace(action, goal=ahead, facing=None)
+            elif action.skill is Skill.LOCO and not (wanders and stays(action.caption)):
+                following = drafts[index + 1] if index + 1 < len(drafts) else None
+                action = self._walk(action, following, places[index], at)
+            last = index == len(drafts) - 1
+            done.append((replace(action, hold=action.hold + LAST_HOLD) if last else action, at))
+            at = action.goal or (action.spot.standing if action.spot else at)
+        return [action for action, _ in done]
+
+    def _walk(self, action: Action, following: Action | None, place: Place, at: Point | None) -> Action:
+        same = following is not None and following.skill in NEEDS and following.object_id == action.object_id
+        if following is not None and following.spot is not None and (same or following.object_id == "floor"):
+            spot = following.spot
+            return replace(action, goal=spot.standing, facing=spot.approach)
+        if place.object_id is not None:
+            beside = self._reachable(self.home.object(place.object_id), "touch")
+            if beside:
+                return replace(action, goal=beside[0].standing, facing=beside[0].facing)
+        return replace(action, goal=self._anywhere(place.room, at), facing=None)
+
+    def _anywhere(self, room: int, at: Point | None) -> Point:
+        """A place to wander to: some way off, with room around it, and not through the whole house."""
+        start = at or self.walkable.random_point(self.rng, room)
+        points = [self.walkable.random_point(self.rng, room) for _ in range(12)]
+        points = [point for point in points if self.walkable.reachable(start, point)]
+        if not points:
+            raise UnreachableError(f"nothing in room {room} can be walked to from {start}")
+
+        def worth(point: Point) -> float:
+            length = float(np.hypot(point[0] - start[0], point[1] - start[1]))
+            return (
+                min(length, 2.2 * PACING)
+                - 0.4 * max(length - 3 * PACING, 0.0)
+                + min(self.walkable.clearance(point), 0.8)
+            )
+
+        return max(points, key=worth)
+
+
+def can_stand(walkable: Walkable, start: Point, spot: Spot) -> bool:
+    """Whether a spot's standing point is nearly free, can be walked to, and no wall is between the two."""
+    if walkable.nearest_free(spot.standing, within=STEP) is None or not walkable.reachable(start, spot.standing):
+        return False
+    # A body sits down from between things; where it stands to touch, its legs need room.
+    if spot.affordance == "touch" and walkable.clearance(spot.standing) < LEG_ROOM:
+        return False
+    # Furniture may stand a little into its own wall; the next room's wall is farther from it than that.
+    goal, here = np.array(spot.point)[[0, 2]], np.array(spot.standing)
+    way = goal - here
+    length = float(np.hypot(*way))
+    return walkable.sees(spot.standing, tuple(here + way * max(1.0 - WALLED / max(length, WALLED), 0.0)))
+
+
+def _scoots(spot: Spot) -> float:
+    """How far along a bed one moves between sitting down on its edge and lying (metres)."""
+    (x, _, z), (stand_x, stand_z) = spot.point, spot.standing
+    return round(abs((stand_x - x) * sin(spot.facing) + (stand_z - z) * cos(spot.facing)), 1)
+
+
+def height_of(caption: str) -> str:
+    """The height a touch caption asks for: low, medium or high."""
+    text = caption.lower()
+    if "high" in text or "above" in text or "up to" in text:
+        return "high"
+    if "low" in text or "prone" in text or "bend" in text or "under" in text:
+        return "low"
+    return "medium"
+
+
+def action_to_dict(action: Action) -> dict[str, Any]:
+    """Plain values of an action for story.json."""
+    spot = None
+    if action.spot is not None:
+        spot = {name: (None if value == np.inf else value) for name, value in vars(action.spot).items()}
+    plain: dict[str, Any] = {name: value for name, value in vars(action).items() if name != "spot"}
+    return plain | {"skill": action.skill.value, "spot": spot}

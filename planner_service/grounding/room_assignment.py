@@ -1,0 +1,49 @@
+"""Which room each keyframe plays in, where a script does not say: the one that usually has its furniture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from planner_service.scripts.script import LongScript
+from scene_graphs.furniture import canonical, categories_of
+from scene_graphs.layout import Layout
+
+USUAL = 0.3
+"""A room type of which this share has a piece is a place for it; a body need not go elsewhere."""
+
+
+def housed(script: LongScript, layouts: Sequence[Layout], types: Sequence[str]) -> LongScript:
+    """The script with a room at every keyframe, one of `types`; what has a room keeps it.
+
+    The body stays where it is as long as that kind of room usually has what is used next. A keyframe on the floor plays
+    where the next piece of furniture is.
+    """
+    if all(keyframe.room for keyframe in script.keyframes):
+        return script
+    room: str | None = next((keyframe.room for keyframe in script.keyframes if keyframe.room), None)
+    rooms: list[str | None] = []
+    for keyframe in script.keyframes:
+        if keyframe.room or keyframe.on_floor:
+            rooms.append(keyframe.room)
+        else:
+            shares = shares_of(keyframe.piece[0], layouts, types)
+            stays = room is not None and shares.get(room, 0.0) >= USUAL
+            rooms.append(room if stays else max(types, key=lambda name: shares[name]))
+        room = rooms[-1] or room
+    known = [name for name in rooms if name] or [types[0]]
+    for index in reversed(range(len(rooms))):
+        following = rooms[index + 1] if index + 1 < len(rooms) else known[-1]
+        rooms[index] = rooms[index] or following
+    keyframes = [k.model_copy(update={"room": name}) for k, name in zip(script.keyframes, rooms, strict=True)]
+    return script.model_copy(update={"keyframes": tuple(keyframes)})
+
+
+def shares_of(word: str, layouts: Sequence[Layout], types: Sequence[str]) -> dict[str, float]:
+    """For each room type, the share of its rooms that have such a piece."""
+    wanted = categories_of(canonical(word))
+    shares = {}
+    for name in types:
+        own = [layout for layout in layouts if layout.room_type == name]
+        having = sum(any(placed.category in wanted for placed in layout.objects) for layout in own)
+        shares[name] = having / max(len(own), 1)
+    return shares

@@ -1,0 +1,1 @@
+"""Stories and extractions as durable work: queue, stages, workers."""

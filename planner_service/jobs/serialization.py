@@ -1,0 +1,194 @@
+"""What the stages of a story hand to each other, as plain JSON values and back without loss.
+
+Every stage's result is stored in this form and read again by the next one, so that a story that was interrupted and
+one that was not go the very same way.
+
+What lists, events and clients see of a script and of its home: small, and stored beside the whole.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, fields
+from typing import Any
+
+import numpy as np
+
+from motion_backend.motion import Action, BodyState, Character, Posture, Skill
+from planner_service.grounding.furnish import Furnished, RoomMatch
+from planner_service.grounding.keyframes_to_actions import Place, action_to_dict
+from planner_service.grounding.seat_access import pull_from_dict, pull_to_dict
+from planner_service.narration.narrator import Span, Told
+from planner_service.pipeline import StoryRequest
+from planner_service.scripts.script import Keyframe, LongScript
+from scene_graphs.affordances.affordances import Spot
+from scene_graphs.graph.furniture_graph import graph_from_dict, graph_to_dict
+from scene_graphs.home import home_from_dict, home_to_dict
+from scene_graphs.json_fields import Json
+from scene_graphs.layout import layout_from_dict, layout_to_dict
+
+
+def request_to_dict(request: StoryRequest) -> Json:
+    """All that was asked for, own rooms whole: what a library holds later changes nothing."""
+    return {
+        "theme": request.theme,
+        "rooms": list(request.rooms),
+        "layouts": [layout_to_dict(layout) for layout in request.layouts],
+        "home": home_to_dict(request.home) if request.home else None,
+        "keyframes": [keyframe.model_dump(mode="json") for keyframe in request.keyframes],
+        "short_scripts": request.short_scripts,
+        "method": request.method,
+        "backend": request.backend,
+        "seed": request.seed,
+        "character": vars(request.character),
+    }
+
+
+def request_from_dict(row: Json) -> StoryRequest:
+    """The inverse of `request_to_dict`."""
+    return StoryRequest(
+        theme=row["theme"],
+        rooms=tuple(row["rooms"]),
+        layouts=tuple(layout_from_dict(layout) for layout in row["layouts"]),
+        home=home_from_dict(row["home"]) if row["home"] else None,
+        keyframes=tuple(Keyframe.model_validate(keyframe) for keyframe in row["keyframes"]),
+        short_scripts=row["short_scripts"],
+        method=row["method"],
+        backend=row["backend"],
+        seed=row["seed"],
+        character=Character(**row["character"]),
+    )
+
+
+def furnished_to_dict(stage: Furnished) -> Json:
+    """A script in its home: rooms whole, every keyframe's object, and how each room was chosen."""
+    return {
+        "script": stage.script.model_dump(mode="json"),
+        "home": home_to_dict(stage.home),
+        "matches": [asdict(match) | {"pulls": list(map(pull_to_dict, match.pulls))} for match in stage.matches],
+        "places": [[place.room, place.object_id] for place in stage.places],
+        "graphs": {room: graph_to_dict(graph) for room, graph in stage.graphs.items()},
+    }
+
+
+def furnished_from_dict(row: Json) -> Furnished:
+    """The inverse of `furnished_to_dict`, but for what only merging needs to know of a graph's nodes."""
+    matches = (
+        match
+        | {
+            "substitutions": tuple(map(tuple, match["substitutions"])),
+            "missing": tuple(match["missing"]),
+            # Stories of earlier versions have none.
+            "pulls": tuple(map(pull_from_dict, match.get("pulls", ()))),
+        }
+        for match in row["matches"]
+    )
+    return Furnished(
+        script=LongScript.model_validate(row["script"]),
+        home=home_from_dict(row["home"]),
+        matches=tuple(RoomMatch(**match) for match in matches),
+        places=tuple(Place(room, object_id) for room, object_id in row["places"]),
+        graphs={room: graph_from_dict(graph) for room, graph in row["graphs"].items()},
+    )
+
+
+def told_to_dict(told: Told) -> Json:
+    """Title, text and which words tell which keyframes."""
+    spans = [{"start": span.start, "end": span.end, "keyframes": list(span.keyframes)} for span in told.spans]
+    return {"title": told.title, "text": told.text, "spans": spans}
+
+
+def told_from_dict(row: Json) -> Told:
+    """The inverse of `told_to_dict`."""
+    spans = (Span(span["start"], span["end"], tuple(span["keyframes"])) for span in row["spans"])
+    return Told(row["title"], row["text"], tuple(spans))
+
+
+def action_from_dict(row: Json) -> Action:
+    """The inverse of `acting.action_to_dict`."""
+    spot = None
+    if row["spot"] is not None:
+        limits = {name: np.inf if value is None else value for name, value in row["spot"].items()}
+        spot = Spot(**{name: _tupled(value) for name, value in limits.items()})
+    known = {field.name for field in fields(Action)}
+    plain = {name: _tupled(value) for name, value in row.items() if name in known}
+    return Action(**plain | {"skill": Skill(row["skill"]), "spot": spot})
+
+
+def state_to_dict(state: BodyState) -> Json:
+    """A body between two actions."""
+    return asdict(state)
+
+
+def state_from_dict(row: Json) -> BodyState:
+    """The inverse of `state_to_dict`."""
+    return BodyState(**row | {"posture": Posture(row["posture"]), "pelvis": tuple(row["pelvis"])})
+
+
+def _tupled(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value
+
+
+__all__ = [
+    "action_from_dict",
+    "action_to_dict",
+    "furnished_from_dict",
+    "furnished_to_dict",
+    "request_from_dict",
+    "request_to_dict",
+    "state_from_dict",
+    "state_to_dict",
+    "told_from_dict",
+    "told_to_dict",
+]
+
+
+def summary_of_script(script: LongScript) -> Json:
+    """What a story shows of its script."""
+    return {
+        "planner": script.planner,
+        "encoder": script.encoder or None,
+        "events": [event.model_dump() for event in script.events],
+        "uncovered": list(script.uncovered),
+        "repairs": list(script.repairs),
+        "short_scripts": [
+            {"id": r.script.id, "summary": r.script.summary, "score": round(r.score, 4), "event": r.event}
+            for r in script.short_scripts
+        ],
+        "keyframes": _keyframes(script),
+    }
+
+
+def summary_of_home(stage: Furnished) -> Json:
+    """What a story shows of its home: rooms, graph, and the object of every keyframe."""
+    nodes: list[Json] = []
+    edges: list[list[int]] = []
+    for room, graph in stage.graphs.items():
+        numbers = {node: len(nodes) + number for number, node in enumerate(sorted(graph))}
+        nodes += [{"category": node.category, "instance": node.instance, "room": room} for node in numbers]
+        edges += sorted(sorted((numbers[a], numbers[b])) for a, b in graph.edges)
+    keyframes = _keyframes(stage.script)
+    for row, place in zip(keyframes, stage.places, strict=True):
+        row["object_id"] = place.object_id
+    return {
+        "keyframes": keyframes,
+        "repairs": list(stage.script.repairs),
+        "graph": {"nodes": nodes, "edges": edges},
+        "home": {"rooms": stage.rooms_to_dicts()},
+    }
+
+
+def _keyframes(script: LongScript) -> list[Json]:
+    ids = [retrieved.script.id for retrieved in script.short_scripts]
+    return [
+        {
+            "index": index,
+            "skill": keyframe.skill.value,
+            "emotion": keyframe.emotion,
+            "caption": keyframe.caption,
+            "furniture": keyframe.furniture,
+            "object_id": None,
+            "room": keyframe.room,
+            "short_script_id": None if keyframe.short_script is None else ids[keyframe.short_script],
+        }
+        for index, keyframe in enumerate(script.keyframes)
+    ]

@@ -1,0 +1,240 @@
+"""A story made stage by stage, every result stored before the next begins (DESIGN: plan, furnish, … judge, film).
+
+Each stage reads what it needs from the store, so any of them can be run alone, again, or by another worker.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import time
+from collections import OrderedDict
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Final
+
+from motion_backend.body.scene_collision import Obstacles
+from motion_backend.formats.glb_film import film_glb
+from motion_backend.formats.npz import npz_bytes, read_npz
+from motion_backend.metrics import story_metrics
+from motion_backend.motion import Action, Motion
+from planner_service.grounding.furnish import Furnished
+from planner_service.jobs import serialization
+from planner_service.jobs.serialization import summary_of_home, summary_of_script
+from planner_service.narration.narrator import Told
+from planner_service.output.story_files import report_to_dict
+from planner_service.pipeline import Planned, Story, StoryRequest, Studio, judge, load_backend
+from planner_service.scripts.script import LongScript
+from planner_service.store.story_store import Made, Stories
+from scene_graphs.json_fields import Json
+
+STAGES: Final = ("plan", "furnish", "narrate", "act", "move", "judge", "film")
+SCRIPT, HOME, TOLD, ACTIONS, FIRST_SEGMENT = range(5)
+"""Positions of what the stages make; the report and the film follow the last segment."""
+_DONE: Final = {"plan": 0.05, "furnish": 0.10, "narrate": 0.12, "act": 0.20, "move": 0.85, "judge": 0.92, "film": 1.0}
+"""Share of the whole that is done after a stage."""
+_OPEN: Final = 4
+"""Stories whose home and actions a worker keeps at hand."""
+
+
+@dataclass
+class OpenStory:
+    """A story in the making, read from the store as its stages come to need it."""
+
+    store: Stories
+    id: str
+    house: Studio
+
+    @cached_property
+    def studio(self) -> Studio:
+        """What it is made from, with a budget of its own."""
+        return self.house.for_story(self.request.seed)
+
+    @cached_property
+    def request(self) -> StoryRequest:
+        """What was asked for."""
+        return self.store.request(self.id)
+
+    @cached_property
+    def stage(self) -> Furnished:
+        """The script in its home, as furnishing left it."""
+        return serialization.furnished_from_dict(self._json(HOME))
+
+    @cached_property
+    def actions(self) -> tuple[Action, ...]:
+        """What there is to do."""
+        return tuple(serialization.action_from_dict(row) for row in self._json(ACTIONS)["actions"])
+
+    @cached_property
+    def obstacles(self) -> Obstacles:
+        """Furniture and walls, for measuring."""
+        return Obstacles.of_home(self.stage.home)
+
+    @cached_property
+    def acted(self) -> Story:
+        """The story acted out and measured, once all segments are there."""
+        motions = read_segments(self.store, self.id, range(len(self.actions)))
+        return judge(self.planned, self.actions, motions, lambda _stage, _share: None)
+
+    @property
+    def planned(self) -> Planned:
+        """Script, home and told story; a motion without a story has an empty one."""
+        if self.request.keyframes:
+            return Planned(self.request, self.stage.script, self.stage, Told("", "", ()))
+        told = self._json(TOLD)
+        script = self.stage.script.model_copy(update={"repairs": tuple(told["repairs"])})
+        return Planned(self.request, script, self.stage, serialization.told_from_dict(told))
+
+    def script(self) -> LongScript:
+        """The long script, as planning left it."""
+        return LongScript.model_validate(self._json(SCRIPT))
+
+    def _json(self, position: int) -> Json:
+        value: Json = json.loads(self.store.data(self.id, position))
+        return value
+
+
+def read_segments(store: Stories, story_id: str, indices: Sequence[int]) -> list[Motion]:
+    """The motions of these segments, in order. StoryGone."""
+    return [read_npz(io.BytesIO(data)) for data in store.parts(story_id, [FIRST_SEGMENT + i for i in indices])]
+
+
+@dataclass
+class Maker:
+    """One worker's desk: where results go, what stories are made from, and the stories that lie open."""
+
+    store: Stories
+    studio: Studio
+    worker: str
+    open: OrderedDict[str, OpenStory] = field(default_factory=OrderedDict)
+    backends: dict[str, Any] = field(default_factory=dict)
+
+    def plan(self, story_id: str) -> None:
+        """Theme to long script."""
+        self.store.begin(story_id, "plan")
+        story = self._opened(story_id)
+        self._record(story, "plan", SCRIPT, "script", lambda: self._script(story))
+
+    def furnish(self, story_id: str) -> None:
+        """A home for the script, and every keyframe's place in it."""
+        story = self._opened(story_id)
+        self._record(story, "furnish", HOME, "home", lambda: self._home(story))
+
+    def narrate(self, story_id: str) -> None:
+        """The told story."""
+        story = self._opened(story_id)
+        self._record(story, "narrate", TOLD, "told", lambda: self._told(story))
+
+    def act(self, story_id: str) -> int:
+        """Keyframes to actions; how many there are."""
+        story = self._opened(story_id)
+        self._record(story, "act", ACTIONS, "actions", lambda: self._actions(story))
+        return len(story.actions)
+
+    def move(self, story_id: str, index: int) -> None:
+        """The motion of one action, from the state the one before left."""
+        story = self._opened(story_id)
+        started = time.perf_counter()
+        backend = self._backend(story.request.backend)
+        home, action = story.stage.home, story.actions[index]
+        position = FIRST_SEGMENT + index
+        first = 0
+        if index == 0:
+            state = backend.begin(home, story.request.character, story.request.seed)
+        else:
+            state = serialization.state_from_dict(self.store.segment(story_id, position - 1)[1])
+            first = self._end_of(story_id, position - 1)
+        motion, after = backend.advance(home, action, state)
+        figures = story_metrics.judge(motion, action, story.obstacles)
+        summary = {
+            "index": index,
+            "keyframe": action.keyframe,
+            "start": first,
+            "end": first + len(motion),
+            "reached": figures.reached,
+            "reason": figures.reason,
+        }
+        share = (index + 1) / len(story.actions)
+        made = Made(
+            kind="segment",
+            position=position,
+            data=npz_bytes(motion),
+            summary=summary,
+            following="judge" if index + 1 == len(story.actions) else None,
+            progress=round(_DONE["act"] + share * (_DONE["move"] - _DONE["act"]), 4),
+            seconds=time.perf_counter() - started,
+            state=serialization.state_to_dict(after),
+        )
+        self.store.record(story_id, made, self.worker)
+
+    def judge(self, story_id: str) -> None:
+        """Figures for every keyframe and the whole."""
+        story = self._opened(story_id)
+        position = FIRST_SEGMENT + len(story.actions)
+        self._record(story, "judge", position, "report", lambda: self._report(story))
+
+    def film(self, story_id: str) -> None:
+        """The home and the animated body in one file."""
+        story = self._opened(story_id)
+        position = FIRST_SEGMENT + len(story.actions) + 1
+        self._record(story, "film", position, "film", lambda: (film_glb(story.stage.home, story.acted.motion), {}))
+        self.open.pop(story_id, None)
+
+    def _script(self, story: OpenStory) -> tuple[bytes, Json]:
+        script = story.studio.script(story.request)
+        return _to_bytes(script.model_dump(mode="json")), summary_of_script(script)
+
+    def _home(self, story: OpenStory) -> tuple[bytes, Json]:
+        stage = story.studio.furnish(story.request, story.script())
+        return _to_bytes(serialization.furnished_to_dict(stage)), summary_of_home(stage)
+
+    def _told(self, story: OpenStory) -> tuple[bytes, Json]:
+        stage, told = story.studio.tell(story.request, story.stage)
+        row = serialization.told_to_dict(told) | {"repairs": list(stage.script.repairs)}
+        return _to_bytes(row), row
+
+    def _actions(self, story: OpenStory) -> tuple[bytes, Json]:
+        stage = story.stage
+        actions = story.studio.act(story.request, stage)
+        rows = [serialization.action_to_dict(action) for action in actions]
+        return _to_bytes({"actions": rows}), {"count": len(actions), "objects": [a.object_id for a in actions]}
+
+    def _report(self, story: OpenStory) -> tuple[bytes, Json]:
+        row = {"report": report_to_dict(story.acted)}
+        return _to_bytes(row), row
+
+    def _record(
+        self, story: OpenStory, stage: str, position: int, kind: str, make: Callable[[], tuple[bytes, Json]]
+    ) -> None:
+        started = time.perf_counter()
+        data, summary = make()
+        following = STAGES[STAGES.index(stage) + 1] if stage != STAGES[-1] else None
+        if following == "narrate" and story.request.keyframes:
+            following = "act"
+        made = Made(
+            kind, position, data, summary, following, _DONE[stage], time.perf_counter() - started,
+            title=summary.get("title"),
+        )  # fmt: skip
+        self.store.record(story.id, made, self.worker)
+
+    def _opened(self, story_id: str) -> OpenStory:
+        if story_id not in self.open:
+            self.open[story_id] = OpenStory(self.store, story_id, self.studio)
+        self.open.move_to_end(story_id)
+        while len(self.open) > _OPEN:
+            self.open.popitem(last=False)
+        return self.open[story_id]
+
+    def _backend(self, name: str) -> Any:
+        if name not in self.backends:
+            self.backends[name] = load_backend(name)
+        return self.backends[name]
+
+    def _end_of(self, story_id: str, position: int) -> int:
+        found = self.store.get(story_id, position - 1).artifacts
+        return int(found[0].summary["end"])
+
+
+def _to_bytes(value: Json) -> bytes:
+    return json.dumps(value, separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode()

@@ -1,0 +1,117 @@
+"""One worker process: takes stories and extractions from their queues, one of each at a time, and makes them."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from typing import Final
+
+import structlog
+from sqlalchemy import Engine, text
+from sqlalchemy.exc import InterfaceError, OperationalError
+
+from planner_service.extraction.transcription import load_transcriber
+from planner_service.jobs.extraction_stages import Reader
+from planner_service.jobs.queue import APPLICATION, EXTRACTIONS, QUEUE, VERSION
+from planner_service.jobs.story_stages import Maker
+from planner_service.jobs.uploads import Uploads
+from planner_service.jobs.worker_lock import hold_name
+from planner_service.library.library import Shelves
+from planner_service.llm.factory import load_model
+from planner_service.pipeline import Studio
+from planner_service.settings import Settings
+from planner_service.store.database import database_url, open_engine
+from planner_service.store.story_store import Stories
+from scene_graphs.layout_library import compile_search
+
+POLL: Final = 0.15
+"""Seconds between two looks into the queue: an idle worker costs little, and a story starts at once."""
+RARELY: Final = 1.0
+"""The same for films, which take longer than that to read: two queues looked into so often slowed the service."""
+KEEP: Final = 3.0
+"""Seconds between two looks at whether this worker's name is still its own."""
+log = structlog.get_logger("sims.worker")
+
+
+def run_worker(settings: Settings, supervised: bool = False) -> None:
+    """Work until SIGTERM or SIGINT; supervised, also until the supervisor is gone (its end of our stdin closes).
+
+    A step that is interrupted is made again when a worker of this id starts. SettingsError if a worker of this id
+    lives already: both would make the same stories.
+    """
+    from dbos import DBOS, DBOSPortableJSONSerializer
+
+    from planner_service.jobs.workflows import register
+
+    stop = threading.Event()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: stop.set())
+    if supervised:
+        threading.Thread(target=_end_with_supervisor, daemon=True).start()
+    url = database_url(settings)
+    engine = open_engine(url)
+    shelves = Shelves(engine, settings.cache_dir, settings.layouts)
+    studio = Studio(shelves, load_model(settings), settings.llm_on_failure == "error")
+    hold = hold_name(engine, settings)
+    warm_up(studio)
+    store, strict = Stories(engine), settings.llm_on_failure == "error"
+    uploads, transcriber = Uploads(settings.uploads_dir), load_transcriber(settings)
+    reader = Reader(store, shelves, uploads, settings.worker_id, studio.model, transcriber, strict)
+    register(Maker(store, studio, settings.worker_id), reader)
+    DBOS(
+        config={
+            "name": APPLICATION,
+            "system_database_url": url,
+            "executor_id": settings.worker_id,
+            "application_version": VERSION,
+            "serializer": DBOSPortableJSONSerializer(),
+            "log_level": "CRITICAL",
+        }
+    )
+    if not _wait_for(engine, stop):
+        os._exit(0)
+    DBOS.launch()
+    for queue, poll in ((QUEUE, POLL), (EXTRACTIONS, RARELY)):
+        DBOS.register_queue(queue, worker_concurrency=1, polling_interval_sec=poll)
+    log.info("worker ready", worker=settings.worker_id, pid=os.getpid())
+    while not stop.wait(KEEP):
+        if not hold.keep():
+            log.error("somebody else has this worker's name, leaving", worker=settings.worker_id)
+            os._exit(75)
+    log.info("worker stops", worker=settings.worker_id)
+    # A step in the making is left: it is made again at the next start, and nothing of it was stored.
+    sys.stderr.flush()
+    os._exit(0)
+
+
+def warm_up(studio: Studio) -> None:
+    """Load scripts, rooms, the compiled search and the encoder now, so that the first story does not wait for them."""
+    studio.shelves.layouts()
+    compile_search()
+    studio.shelves.scripts().search("warm up", 1)
+
+
+def _wait_for(engine: Engine, stop: threading.Event) -> bool:
+    """Until the database can be written: a start that fails would count against the stories that are resumed.
+
+    False if the worker is asked to end meanwhile.
+    """
+    wait = 0.5
+    while not stop.is_set():
+        try:
+            with engine.execution_options(writes=True).begin() as connection:
+                connection.execute(text("UPDATE stage_times SET count = count WHERE worker = ''"))
+        except (OperationalError, InterfaceError) as error:
+            log.warning("database not usable, trying again", reason=str(error.orig), wait=wait)
+            stop.wait(wait)
+            wait = min(2 * wait, 15.0)
+        else:
+            return True
+    return False
+
+
+def _end_with_supervisor() -> None:
+    sys.stdin.buffer.read()
+    os._exit(0)

@@ -1,0 +1,1 @@
+"""The short scripts and rooms there are: ours and the users'."""

@@ -1,0 +1,152 @@
+"""The language model that settings name: none, one that was scripted or recorded, or a real one."""
+
+from __future__ import annotations
+
+import json
+import re
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+from urllib.parse import urlsplit
+
+from planner_service.llm.answer_cache import Memory
+from planner_service.llm.budget import Limits, Spending
+from planner_service.llm.client import ServedModel
+from planner_service.llm.messages import Question, Reply
+from planner_service.llm.protocol import LanguageModel, ModelError
+from planner_service.llm.replay_model import Recorder, Replay
+from planner_service.llm.scripted_model import ScriptedModel
+from planner_service.settings import Settings, SettingsError
+
+if TYPE_CHECKING:
+    from planner_service.llm.providers import Vendor
+
+INSTALL: Final = 'pip install "sims-stories[llm]"'
+LIBRARIES: Final = {"openai": "openai", "ollama": "openai", "anthropic": "anthropic"}
+"""Kinds of servers, and the library that speaks with them."""
+KINDS: Final = "openai:MODEL, ollama:MODEL, anthropic:MODEL, scripted:FILE, replay:FILE or record:FILE=openai:MODEL"
+_NAME: Final = re.compile(r"[\w./:@+-]{1,200}\Z")
+_RECORD: Final = re.compile(r"(?P<file>.+?)=(?P<model>(?:openai|ollama|anthropic):.+)\Z", re.DOTALL)
+
+
+def load_model(settings: Settings) -> LanguageModel | None:
+    """The model of `SIMS_LLM_MODEL`; None for an empty name, which means: rules plan and tell.
+
+    "scripted:FILE" answers from a JSON object that maps words of a prompt to the answer (an object, or text);
+    "replay:FILE" from a recording, "record:FILE=openai:MODEL" makes one. SettingsError says what cannot be used;
+    nothing is imported and nobody is asked yet.
+    """
+    name = settings.llm_model
+    if not name:
+        return None
+    kind, _, rest = name.partition(":")
+    if kind == "scripted" and rest:
+        return ScriptedModel(_scripted(rest))
+    spending = Spending(limits_of(settings))
+    try:
+        if kind == "replay" and rest:
+            file, model = rest, ""
+            if (chosen := _RECORD.match(rest)) is not None:
+                file, model = chosen["file"], chosen["model"]
+            return ServedModel(Replay(Path(file), model), spending)
+        if kind == "record" and (wanted := _RECORD.match(rest)) is not None:
+            return ServedModel(Recorder(Path(wanted["file"]), served(wanted["model"], settings)), spending)
+    except ModelError as error:
+        raise SettingsError(f"SIMS_LLM_MODEL: {error}") from error
+    if kind in LIBRARIES and rest:
+        memory = Memory(settings.cache_dir / "answers", settings.llm_cache_mb * 1_000_000)
+        return ServedModel(served(name, settings), spending, memory if settings.llm_cache_mb else None)
+    raise SettingsError(f"SIMS_LLM_MODEL: {name!r:.80} is not known; leave it empty for rules, or {KINDS}")
+
+
+class Late:
+    """A `Source` that asks a server and imports its library only then: that takes seconds."""
+
+    def __init__(self, name: str, base_url: str, key: str) -> None:
+        self.name = name
+        self._where = base_url, key
+        self._vendor: Vendor | None = None
+
+    def reply(self, question: Question, tokens: int, seconds: float) -> Reply:
+        """As the server's."""
+        return self.vendor.reply(question, tokens, seconds)
+
+    def close(self) -> None:
+        """As the server's."""
+        if self._vendor is not None:
+            self._vendor.close()
+
+    @property
+    def vendor(self) -> Vendor:
+        """The real source."""
+        if self._vendor is None:
+            from planner_service.llm.providers import Address, Vendor
+
+            kind, _, model = self.name.partition(":")
+            self._vendor = Vendor(Address(kind, model, *self._where))  # type: ignore[arg-type]
+        return self._vendor
+
+
+def served(name: str, settings: Settings) -> Late:
+    """The source of "openai:MODEL" and its like. SettingsError."""
+    kind, _, model = name.partition(":")
+    if not _NAME.match(model):
+        raise SettingsError(f"SIMS_LLM_MODEL: {model!r:.80} is no name of a model")
+    if find_spec("pydantic_ai") is None or find_spec(LIBRARIES[kind]) is None:
+        raise SettingsError(f"SIMS_LLM_MODEL: {kind}:… needs libraries that are not installed: {INSTALL}")
+    key = settings.llm_api_key.get_secret_value().strip()
+    if not all("!" <= letter <= "~" for letter in key):
+        raise SettingsError("SIMS_LLM_API_KEY: a key has no blanks and no letters beyond ASCII")
+    if not key and not settings.llm_base_url and kind != "ollama":
+        raise SettingsError(f"SIMS_LLM_API_KEY: {kind}:… needs a key; a server of your own needs SIMS_LLM_BASE_URL")
+    if not key and kind == "anthropic":
+        key = "none"  # the library wants one
+    return Late(name, base_url_of(settings.llm_base_url), key)
+
+
+def base_url_of(given: str, setting: str = "SIMS_LLM_BASE_URL", key: str = "SIMS_LLM_API_KEY") -> str:
+    """The address that a setting gives, without a slash at its end.
+
+    SettingsError for one that is none, or that holds a password.
+    """
+    if not given:
+        return ""
+    try:
+        parts = urlsplit(given)
+        good = parts.scheme in ("http", "https") and parts.hostname and not (parts.query or parts.fragment)
+        _ = parts.port
+    except ValueError:
+        good = False
+    if not good:
+        raise SettingsError(f"{setting}: it must be an address such as http://127.0.0.1:11434/v1")
+    if parts.username or parts.password:
+        raise SettingsError(f"{setting}: no password belongs into an address; use {key}")
+    return given.rstrip("/")
+
+
+def limits_of(settings: Settings) -> Limits:
+    """The bounds that settings give. SettingsError where dollars are to be counted and there is no price."""
+    price = None
+    if settings.llm_price:
+        reading, _, writing = settings.llm_price.partition("/")
+        price = float(reading), float(writing)
+    if settings.llm_story_dollars is not None and price is None:
+        raise SettingsError("SIMS_LLM_STORY_DOLLARS: it needs SIMS_LLM_PRICE, dollars a million tokens, as 1.25/10")
+    return Limits(
+        seconds=settings.llm_timeout,
+        answer_tokens=settings.llm_answer_tokens,
+        story_tokens=settings.llm_story_tokens,
+        story_seconds=settings.llm_story_seconds,
+        story_dollars=settings.llm_story_dollars,
+        price=price,
+    )
+
+
+def _scripted(file: str) -> dict[str, dict[str, object] | str]:
+    try:
+        answers = json.loads(Path(file).read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise SettingsError(f"SIMS_LLM_MODEL: {file} cannot be read: {error}") from error
+    if not isinstance(answers, dict) or not all(isinstance(answer, dict | str) for answer in answers.values()):
+        raise SettingsError(f"SIMS_LLM_MODEL: {file} must be a JSON object of prompt words to answers")
+    return answers

@@ -1,0 +1,1 @@
+"""A long script told as a story."""

@@ -1,0 +1,1 @@
+"""What a story leaves behind: files and pictures."""

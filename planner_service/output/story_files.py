@@ -1,0 +1,217 @@
+"""A story on disk: every file of it, written aside and moved into place whole, so that nothing half-made is left."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+from motion_backend.formats.bvh import write_bvh
+from motion_backend.formats.glb_film import film_glb
+from motion_backend.formats.npz import write_npz
+from planner_service.grounding.keyframes_to_actions import action_to_dict
+from planner_service.output.storyboard import storyboard
+from planner_service.pipeline import Planned, Story
+from planner_service.scripts.caption_actions import look_of
+from scene_graphs.home import home_to_dict
+
+Writer = Callable[[Path], object]
+FILES = ("story.md", "story.json", "report.json", "motion.npz", "motion.bvh", "film.glb", "storyboard.png")
+
+
+class OutputError(OSError):
+    """The folder for a story's files cannot be written."""
+
+
+def write_story(story: Story, folder: Path) -> list[Path]:
+    """All files of a story in `folder`: story.md, story.json, report.json, motion.npz, motion.bvh, film.glb,
+    storyboard.png. A file of that name from an earlier story is replaced; OutputError leaves everything as it was.
+    """
+    writers: dict[str, Writer] = {
+        "story.md": lambda path: path.write_text(story_to_markdown(story), encoding="utf-8"),
+        "story.json": lambda path: _write_json(path, story_to_dict(story)),
+        "report.json": lambda path: _write_json(path, report_to_dict(story)),
+        "motion.npz": lambda path: write_npz(story.motion, path),
+        "motion.bvh": lambda path: write_bvh(story.motion, path),
+        "film.glb": lambda path: path.write_bytes(film_glb(story.planned.home, story.motion)),
+        "storyboard.png": lambda path: _write_storyboard(story, path),
+    }
+    return write_files(folder, writers)
+
+
+def write_files(folder: Path, writers: Mapping[str, Writer]) -> list[Path]:
+    """Write every file aside, then move all of them into place. OutputError leaves everything as it was."""
+    with _writing(folder) as aside:
+        for name, write in writers.items():
+            write(aside / name)
+        _refuse_folders(folder, writers)
+        for name in writers:
+            (aside / name).replace(folder / name)
+    return [folder / name for name in writers]
+
+
+@contextmanager
+def _writing(folder: Path) -> Iterator[Path]:
+    """An empty folder inside `folder`; all that had to be made for it is removed again when the block fails."""
+    made: list[Path] = []
+    try:
+        made = [path for path in (folder, *folder.parents) if not path.exists()]
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=".writing-", dir=folder, ignore_cleanup_errors=True) as aside:
+            yield Path(aside)
+    except BaseException as error:
+        for path in made:
+            with suppress(OSError):
+                path.rmdir()
+        if isinstance(error, OSError) and not isinstance(error, OutputError):
+            why = "a file is in the way" if isinstance(error, FileExistsError) else error.strerror or error
+            raise OutputError(f"--out: {folder} cannot be written: {why}; choose another place") from error
+        raise
+
+
+def _write_storyboard(story: Story, path: Path) -> Path:
+    planned, known = story.planned, {placed.id for placed in story.planned.home.objects}
+    # What is done on the floor has no piece of furniture to outline.
+    targets = [action.object_id if action.object_id in known else None for action in story.actions]
+    return storyboard(planned.home, story.motion, planned.script.keyframes, path, planned.told.title, targets)
+
+
+class _Tried(Exception):  # noqa: N818
+    """Ends a trial, so that nothing of it stays."""
+
+
+def check_writable(folder: Path, names: Iterable[str] = ()) -> None:
+    """Fail before the work, not after it, if files of these names cannot be put there. Raises OutputError."""
+    with suppress(_Tried), _writing(folder) as aside:
+        for name in names:
+            (aside / name).touch()
+        _refuse_folders(folder, names)
+        raise _Tried
+
+
+def _refuse_folders(folder: Path, names: Iterable[str]) -> None:
+    """A file cannot take the place of a folder; seen in time, no earlier file is replaced."""
+    for name in names:
+        if (folder / name).is_dir():
+            raise OutputError(f"--out: {folder / name} is a folder, a file would be written there; move it away")
+
+
+def _write_json(path: Path, value: dict[str, Any]) -> None:
+    path.write_text(json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def story_to_markdown(story: Story) -> str:
+    """The told story with what it was made of."""
+    planned, script = story.planned, story.planned.script
+    rows = [
+        f"| {index} | {keyframe.skill.value} | {keyframe.emotion} | {keyframe.caption} | "
+        f"{action.furniture}{f' ({action.object_id})' if action.object_id else ''} | {_mark(figure.reached)} |"
+        for index, (keyframe, action, figure) in enumerate(
+            zip(script.keyframes, story.actions, story.figures, strict=True)
+        )
+    ]
+    rooms = [f"- {line}" for line in planned.stage.explain()]
+    notes = [f"- keyframe {note.keyframe}: {note.words}" for note in story.motion.notes] or ["- nothing"]
+    repairs = [f"- {line}" for line in script.repairs] or ["- none"]
+    missed = [f"- not covered: {event}" for event in script.uncovered]
+    return "\n".join(
+        [
+            f"# {planned.told.title}",
+            "",
+            planned.told.text,
+            "",
+            "## How it was made",
+            "",
+            f"Theme: {script.theme}",
+            "",
+            _makers(planned),
+            "",
+            *[f"- {chosen.script.id} ({chosen.score:.2f}): {chosen.script.summary}" for chosen in script.short_scripts],
+            *missed,
+            "",
+            "Rooms:",
+            "",
+            *rooms,
+            "",
+            "Repairs:",
+            "",
+            *repairs,
+            "",
+            "Done otherwise than the captions say:",
+            "",
+            *notes,
+            "",
+            "| # | skill | emotion | caption | furniture | reached |",
+            "|---|---|---|---|---|---|",
+            *rows,
+            "",
+        ]
+    )
+
+
+def _makers(planned: Planned) -> str:
+    script = planned.script
+    return (
+        f"Planner: {script.planner} · method: {script.method} · encoder: {script.encoder} · "
+        f"motion: {planned.request.backend} · seed: {planned.request.seed}"
+    )
+
+
+def _mark(reached: bool) -> str:
+    return "yes" if reached else "**no**"
+
+
+def story_to_dict(story: Story) -> dict[str, Any]:
+    """Everything needed to show or repeat a story, without arrays."""
+    planned = story.planned
+    return {
+        "theme": planned.script.theme,
+        "title": planned.told.title,
+        "text": planned.told.text,
+        "spans": [{"start": s.start, "end": s.end, "keyframes": list(s.keyframes)} for s in planned.told.spans],
+        "seed": planned.request.seed,
+        "backend": planned.request.backend,
+        "character": vars(planned.request.character),
+        "script": planned.script.model_dump(mode="json"),
+        "rooms": planned.stage.rooms_to_dicts(),
+        "home": home_to_dict(planned.home),
+        "actions": [
+            action_to_dict(action) | {"start": start, "stop": stop}
+            for action, (start, stop) in zip(story.actions, story.segments, strict=True)
+        ],
+        "motion": {"frames": len(story.motion), "fps": story.motion.fps, "duration": round(story.motion.duration, 3)},
+    }
+
+
+def report_to_dict(story: Story) -> dict[str, Any]:
+    """How well every step went."""
+    planned = story.planned
+    return {
+        "planner": planned.script.planner,
+        "encoder": planned.script.encoder,
+        "backend": planned.request.backend,
+        "physics_mode": "none",
+        "seed": planned.request.seed,
+        "events": [event.model_dump() for event in planned.script.events],
+        "uncovered": list(planned.script.uncovered),
+        "repairs": list(planned.script.repairs),
+        "rooms": planned.stage.rooms_to_dicts(),
+        "motion": story.report,
+        "keyframes": list(_performances(story)),
+    }
+
+
+def _performances(story: Story) -> Iterator[dict[str, Any]]:
+    """The figures of every keyframe, the parts it is made of, what stood in where its own words are not known, and
+    what was done otherwise."""
+    told = story.planned.script.keyframes
+    for figure, action, span in zip(story.figures, story.actions, story.segments, strict=True):
+        own = look_of(told[action.keyframe].caption)
+        row = figure.to_dict() | {"performed_as": action.caption if action.caption != own else None}
+        phases = [phase for phase in story.motion.phases if span[0] <= phase.start < span[1]]
+        row["notes"] = [note.words for note in story.motion.notes if note.keyframe == action.keyframe]
+        row["phases"] = [{"part": phase.part.value, "start": phase.start, "stop": phase.stop} for phase in phases]
+        yield row

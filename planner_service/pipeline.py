@@ -1,0 +1,249 @@
+"""One theme through the whole house: plan, furnish, narrate, act, move, judge."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from motion_backend.body.scene_collision import Obstacles
+from motion_backend.metrics import story_metrics
+from motion_backend.metrics.smoothness import seam_jump, seam_speed_jump
+from motion_backend.motion import Action, BodyState, Character, Motion, MotionBackend, join
+from planner_service.composition.compose import MAX_SHORT_SCRIPTS, Request, compose, script_of
+from planner_service.grounding.furnish import Furnished, furnish
+from planner_service.grounding.keyframes_to_actions import act
+from planner_service.library.library import Shelves
+from planner_service.llm.client import for_story
+from planner_service.llm.protocol import LanguageModel, ModelError
+from planner_service.narration.llm_narrator import narrate_with_model
+from planner_service.narration.narrator import Told, narrate
+from planner_service.scripts.captions import Vocabulary
+from planner_service.scripts.script import Keyframe, LongScript
+from planner_service.themes.protagonist import cast_by
+from scene_graphs.furniture import ROOM_TYPES, canonical_room
+from scene_graphs.home import MAX_ROOMS, Home
+from scene_graphs.layout import Layout
+
+Progress = Callable[[str, float], None]
+"""Called with a stage's name and the share of it that is done, 0 to 1."""
+STAGES = ("plan", "furnish", "narrate", "act", "move", "judge")
+BACKENDS = ("procedural",)
+METHODS = ("matching", "direct")
+PRONOUNS = ("he", "she", "they")
+MAX_NAME_LENGTH = 40
+MAX_SEED = 2**53 - 1
+"""The largest whole number that every JSON reader keeps exactly."""
+MIN_HEIGHT, MAX_HEIGHT = 1.2, 2.2
+"""Metres."""
+
+
+class RequestError(ValueError):
+    """What is asked of a story cannot be had; the text names the field and what would be right."""
+
+
+@dataclass(frozen=True)
+class StoryRequest:
+    """What a user may ask for; empty means: choose for me. RequestError names the first field that is out of bounds."""
+
+    theme: str
+    rooms: tuple[str, ...] = ()
+    """Room types, one to four."""
+    layouts: tuple[Layout, ...] = ()
+    """Rooms of the user's own, used in place of retrieved ones."""
+    home: Home | None = None
+    """A whole home of the user's own, used as it is."""
+    keyframes: tuple[Keyframe, ...] = ()
+    """A script of the user's own: nothing is planned, and the story is not told."""
+    short_scripts: int | None = None
+    method: str = "matching"
+    backend: str = "procedural"
+    seed: int = 0
+    character: Character = field(default_factory=Character)
+    """Who acts; with the name and pronouns of the theme's person where both are left at their defaults."""
+
+    def __post_init__(self) -> None:
+        for room in self.rooms:
+            _one_of("rooms", canonical_room(room), ROOM_TYPES, room)
+        _one_of("backend", self.backend, BACKENDS)
+        _one_of("method", self.method, METHODS)
+        if max(len(set(self.rooms)), len(self.layouts)) > MAX_ROOMS:
+            field, count = ("rooms", len(self.rooms)) if len(self.rooms) > MAX_ROOMS else ("layout", len(self.layouts))
+            raise RequestError(f"{field}: a home has one to {MAX_ROOMS} rooms, {count} were asked for; leave some out")
+        ids = [layout.id for layout in self.layouts]
+        for number, layout_id in enumerate(ids):
+            if layout_id in ids[:number]:
+                raise RequestError(f"layout: two rooms are called {layout_id!r}; give every room its own id")
+        if self.short_scripts is not None and not 1 <= self.short_scripts <= MAX_SHORT_SCRIPTS:
+            raise RequestError(
+                f"short_scripts: must be a number from 1 to {MAX_SHORT_SCRIPTS}, got {self.short_scripts}"
+            )
+        if self.home is not None and self.layouts:
+            raise RequestError("home: give a whole home or layouts to join to one, not both")
+        if not 0 <= self.seed <= MAX_SEED:
+            raise RequestError(f"seed: must be a whole number from 0 to {MAX_SEED}, got {self.seed}")
+        _check_character(self.character)
+        object.__setattr__(self, "character", cast_by(self.theme, self.character))
+
+
+def _check_character(character: Character) -> None:
+    name = character.name.strip()
+    if not name or len(name) > MAX_NAME_LENGTH or not name.isprintable():
+        raise RequestError(f"name: must be 1 to {MAX_NAME_LENGTH} printable letters, got {name[:MAX_NAME_LENGTH]!r}")
+    _one_of("pronouns", character.pronouns.strip().lower().split("/")[0], PRONOUNS, character.pronouns)
+    if not MIN_HEIGHT <= character.height <= MAX_HEIGHT:
+        raise RequestError(f"height: must be {MIN_HEIGHT} to {MAX_HEIGHT} metres, got {character.height:g}")
+
+
+def _one_of(field: str, value: str, known: Sequence[str], shown: str | None = None) -> None:
+    if value not in known:
+        raise RequestError(f"{field}: {shown or value!r:.60} is none of {', '.join(known)}")
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A story told and grounded, not yet moved."""
+
+    request: StoryRequest
+    script: LongScript
+    stage: Furnished
+    told: Told
+
+    @property
+    def home(self) -> Home:
+        """The furnished home."""
+        return self.stage.home
+
+
+@dataclass(frozen=True)
+class Story:
+    """A story that was acted out."""
+
+    planned: Planned
+    actions: tuple[Action, ...]
+    motion: Motion
+    segments: tuple[tuple[int, int], ...]
+    """First frame and stop frame of every action."""
+    figures: tuple[story_metrics.KeyframeFigures, ...]
+    report: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass
+class Studio:
+    """What stories are made from: scripts, rooms, a language model if there is one. Heavy parts load on first use."""
+
+    shelves: Shelves = field(default_factory=Shelves)
+    model: LanguageModel | None = None
+    insist: bool = False
+    """Whether a story fails where its model does; else the rules take over."""
+
+    def for_story(self, seed: int) -> Studio:
+        """The same studio for one story, with a budget of its own for the model."""
+        return replace(self, model=for_story(self.model, seed))
+
+    def plan(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Planned:
+        """Theme to narrated story in a furnished home, without motion."""
+        studio = self.for_story(request.seed)
+        progress("plan", 0.0)
+        script = studio.script(request)
+        progress("furnish", 0.0)
+        stage = studio.furnish(request, script)
+        progress("narrate", 0.0)
+        stage, told = studio.tell(request, stage)
+        return Planned(request, stage.script, stage, told)
+
+    def script(self, request: StoryRequest) -> LongScript:
+        """The long script of a theme; what the user wrote as keyframes is only checked and repaired."""
+        if request.keyframes:
+            return given_script(request)
+        asked = Request(request.short_scripts, _rooms(request), request.seed, request.method)  # type: ignore[arg-type]
+        return compose(request.theme, self.shelves.scripts(), asked, self.model, self.insist)
+
+    def furnish(self, request: StoryRequest, script: LongScript) -> Furnished:
+        """The home of a script, and every keyframe's place in it."""
+        given = request.home or request.layouts
+        return furnish(script, self.shelves.layouts(), _rooms(request), given, request.seed)
+
+    def tell(self, request: StoryRequest, stage: Furnished) -> tuple[Furnished, Told]:
+        """The story as the model tells it, else as the rules do, with a note why among the script's repairs."""
+        if self.model is not None:
+            try:
+                return stage, narrate_with_model(stage.script, request.character, self.model, stage.names)
+            except ModelError as error:
+                if self.insist:
+                    raise
+                repairs = (*stage.script.repairs, f"told by rules: {error}")
+                stage = replace(stage, script=stage.script.model_copy(update={"repairs": repairs}))
+        return stage, narrate(stage.script, request.character, request.seed, stage.names)
+
+    def act(self, request: StoryRequest, stage: Furnished) -> tuple[Action, ...]:
+        """The keyframes of a script, grounded in its home."""
+
+        def words() -> Vocabulary:
+            return Vocabulary.built_in(self.shelves.scripts().encoder)
+
+        return act(stage.script.keyframes, stage.places, stage.home, request.seed, words)
+
+    def make(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Story:
+        """Theme to acted story."""
+        planned = self.plan(request, progress)
+        progress("act", 0.0)
+        actions = self.act(request, planned.stage)
+        motions = move(planned.home, actions, request, progress)
+        return judge(planned, actions, motions, progress)
+
+
+def given_script(request: StoryRequest) -> LongScript:
+    """The script of a user's own keyframes. RequestError when there is nothing in it that a body can do."""
+    script = script_of(request.keyframes, request.theme, request.seed)
+    if not script.keyframes:
+        raise RequestError(f"keyframes: nothing is left of them: {'; '.join(script.repairs)}")
+    return script
+
+
+def _rooms(request: StoryRequest) -> tuple[str, ...]:
+    """The room types a story is looked for in."""
+    own = [room.layout for room in request.home.rooms] if request.home else request.layouts
+    return request.rooms or types_of(own)
+
+
+def types_of(layouts: Sequence[Layout]) -> tuple[str, ...]:
+    """The room types that rooms of the user's can be; a story is then looked for that plays there."""
+    own = [layout.room_type for layout in layouts] + [tag for layout in layouts for tag in layout.tags]
+    return tuple(room for room in dict.fromkeys(own) if room in ROOM_TYPES)[:MAX_ROOMS]
+
+
+def load_backend(name: str) -> MotionBackend:
+    """The motion backend of that name. RequestError names those there are."""
+    from motion_backend.procedural.backend import ProceduralBackend
+
+    _one_of("backend", name, BACKENDS)
+    known: dict[str, Callable[[], MotionBackend]] = {"procedural": ProceduralBackend}
+    return known[name]()
+
+
+def move(home: Home, actions: Sequence[Action], request: StoryRequest, progress: Progress) -> list[Motion]:
+    """One segment an action, each from the state the one before left."""
+    backend = load_backend(request.backend)
+    state: BodyState = backend.begin(home, request.character, request.seed)
+    motions = []
+    for index, action in enumerate(actions):
+        progress("move", index / len(actions))
+        motion, state = backend.advance(home, action, state)
+        motions.append(motion)
+    return motions
+
+
+def judge(planned: Planned, actions: Sequence[Action], motions: Sequence[Motion], progress: Progress) -> Story:
+    """Figures for every keyframe and the whole, and the motion in one piece."""
+    obstacles = Obstacles.of_home(planned.home)
+    figures, segments, frame = [], [], 0
+    for index, (motion, action) in enumerate(zip(motions, actions, strict=True)):
+        progress("judge", index / len(actions))
+        figures.append(story_metrics.judge(motion, action, obstacles))
+        segments.append((frame, frame + len(motion)))
+        frame += len(motion)
+    whole = join(list(motions))
+    seams = {"seam_jump": round(seam_jump(whole), 5), "seam_speed_jump": round(seam_speed_jump(whole), 5)}
+    report = story_metrics.summarise(figures) | seams
+    return Story(planned, tuple(actions), whole, tuple(segments), tuple(figures), report)

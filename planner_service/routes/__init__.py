@@ -1,1 +1,0 @@
-"""The calls of the HTTP service: one module a resource, each with a `router`."""

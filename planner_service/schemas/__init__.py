@@ -1,1 +1,0 @@
-"""What travels over HTTP, as pydantic models: one module a resource."""

@@ -1,0 +1,227 @@
+"""One pass over a script that keeps track of the body, notes what it cannot do, and mends that (SIMS 3.4).
+
+Whether a body can act a script out, and the smallest changes after which it can: Valid and Executable.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any, Final, Generic, TypeVar
+
+from motion_backend.motion import Posture, Skill
+from planner_service.scripts.caption_fallbacks import WALKS
+from planner_service.scripts.captions import Vocabulary, sides
+from planner_service.scripts.emotions import emotion_of
+from planner_service.scripts.script import Keyframe, LongScript, ShortScript
+from planner_service.scripts.script_words import (
+    Fitting,
+    Place,
+    Problem,
+    affords,
+    fields,
+    is_floor,
+    other_hand,
+    phone_hand,
+    place_of,
+)
+
+K = TypeVar("K", bound=Keyframe)
+RISES: Final = {Posture.SEATED: (Skill.STANDUP, "stand up"), Posture.LYING: (Skill.GETUP, "get up")}
+_NO_WAY_TO_GO: Final = re.compile(r"\b(spin|danc|pacing|sidestep|tap |still|wav|to the front)", re.IGNORECASE)
+
+
+class Mending(Generic[K]):
+    """The script as it can be acted out (`kept`), what was wrong (`problems`) and how the body is left (`posture`)."""
+
+    def __init__(
+        self,
+        keyframes: Sequence[K],
+        vocabulary: Vocabulary | None = None,
+        furniture: Collection[str] | None = None,
+    ) -> None:
+        self.kept: list[K] = []
+        self.problems: list[Problem] = []
+        self.posture = Posture.STANDING
+        self._resting: K | None = None
+        self._at: Place | None = None
+        self._fitting = Fitting[K](self._note, vocabulary, furniture)
+        for index, keyframe in enumerate(self._fitting.fit(keyframes)):
+            self._take(index, keyframe)
+        self.problems.sort(key=lambda problem: problem.keyframe)
+
+    def _note(self, index: int, field: str, fault: str, remedy: str) -> None:
+        self.problems.append(Problem(index, field, fault, remedy))
+
+    def _take(self, index: int, keyframe: K) -> None:
+        if self.kept and _alike(self.kept[-1], keyframe):
+            self._note(index, "skill", f"{_told(keyframe)} is there twice", "kept once")
+        elif keyframe.skill is Skill.TOUCH and not self._can_touch(keyframe.piece[0]):
+            self._note(index, "furniture", f"the home has nothing to touch, no {keyframe.furniture}", "left out")
+        elif keyframe.skill in (Skill.STANDUP, Skill.GETUP):
+            self._rise(index, keyframe)
+        elif keyframe.skill is Skill.LOCO:
+            self._be_standing(index, keyframe)
+            self._at = None if is_floor(keyframe.piece[0]) else place_of(keyframe)
+            self.kept.append(keyframe)
+        else:
+            self._use(index, keyframe)
+
+    def _rise(self, index: int, keyframe: K) -> None:
+        """Rising starts from rest, from the object rested on; the paper's tables write "floor" there."""
+        if self._resting is None:
+            self._note(index, "skill", f"{_told(keyframe)} while already standing", "left out")
+            return
+        if self.posture is Posture.LYING and keyframe.skill is Skill.STANDUP:
+            self._note(index, "skill", "standup from lying", "getup instead")
+            keyframe = keyframe.model_copy(update={"skill": Skill.GETUP, "caption": "get up"})
+        if place_of(keyframe) != place_of(self._resting):
+            fault = f"{keyframe.skill} from the {keyframe.furniture} while resting on the {self._resting.furniture}"
+            self._note(index, "furniture", fault, f"rises from the {self._resting.furniture}")
+            update = {"furniture": self._resting.furniture, "room": getattr(self._resting, "room", None)}
+            keyframe = keyframe.model_copy(update=fields(keyframe, update))
+        self._stand(keyframe)
+
+    def _stand(self, keyframe: K) -> None:
+        self.kept.append(keyframe)
+        self._at = None if is_floor(keyframe.piece[0]) else place_of(keyframe)
+        self.posture, self._resting = Posture.STANDING, None
+
+    def _be_standing(self, index: int, keyframe: K) -> None:
+        """Put in the rising that is missing before a keyframe that needs the body on its feet."""
+        if self._resting is None:
+            return
+        skill, caption = RISES[self.posture]
+        furniture_word = self._resting.furniture
+        self._note(index, "skill", f"{_told(keyframe)} while {self.posture} on the {furniture_word}", f"{skill} put in")
+        update = {"skill": skill, "caption": caption, "emotion": "neutral, calm", "short_script": None}
+        self._stand(self._resting.model_copy(update=fields(keyframe, update)))
+
+    def _use(self, index: int, keyframe: K) -> None:
+        """Sit, lie or touch: on one's feet and beside the object, or from sitting to lying on the same one."""
+        place = place_of(keyframe)
+        lies_back = keyframe.skill is Skill.LIEDOWN and self.posture is Posture.SEATED
+        if not (lies_back and self._resting is not None and place_of(self._resting) == place):
+            self._be_standing(index, keyframe)
+            if self._at != place and not is_floor(keyframe.piece[0]):
+                self._note(index, "skill", f"{_told(keyframe)} without a walk to it", "loco put in")
+                self.kept.append(self._walk(keyframe))
+                self._at = place
+        self.kept.append(self._with_a_free_hand(index, keyframe))
+        if keyframe.skill is not Skill.TOUCH:
+            self.posture = Posture.SEATED if keyframe.skill is Skill.SITDOWN else Posture.LYING
+            self._resting = keyframe
+
+    def _can_touch(self, word: str) -> bool:
+        return affords(word, "touch") and self._fitting.has(word)
+
+    def _with_a_free_hand(self, index: int, keyframe: K) -> K:
+        """A touch straight after a walk with the phone in that hand uses the other one."""
+        holding = phone_hand(self.kept[-1]) if self.kept and keyframe.skill is Skill.TOUCH else None
+        if holding is None or sides(keyframe.caption) != {holding}:
+            return keyframe
+        fault = f'"{keyframe.caption}" while the {holding} hand holds the phone'
+        return self._fitting.caption(index, keyframe, other_hand(keyframe.caption, holding), fault)
+
+    def _walk(self, keyframe: K) -> K:
+        """A connecting walk to a keyframe's object, in the manner of the walk just before, else of the mood."""
+        before = next((k for k in reversed(self.kept) if _same_script(k, keyframe)), None)
+        if before is not None and before.skill is Skill.LOCO and not _NO_WAY_TO_GO.search(before.caption):
+            caption, emotion = before.caption, before.emotion
+        else:
+            moods = [emotion_of(k.emotion) for k in (keyframe, *reversed(self.kept)) if _same_script(k, keyframe)]
+            emotion = next((mood for mood in moods if mood not in (None, "neutral")), None) or "neutral"
+            caption = WALKS[emotion]
+        update = {"skill": Skill.LOCO, "caption": caption, "emotion": emotion, "short_script": None}
+        return keyframe.model_copy(update=fields(keyframe, update))
+
+
+def _same_script(one: Keyframe, other: Keyframe) -> bool:
+    return getattr(one, "event", None) == getattr(other, "event", None)
+
+
+def _alike(one: Keyframe, other: Keyframe) -> bool:
+    return place_of(one) == place_of(other) and (one.skill, one.emotion, one.caption) == (
+        other.skill,
+        other.emotion,
+        other.caption,
+    )
+
+
+def _told(keyframe: Keyframe) -> str:
+    return f"{keyframe.skill} ({keyframe.furniture})"
+
+
+_ALIASES: Final = {
+    Skill.LOCO: "walk walking run running go move locomotion pace wander approach",
+    Skill.SITDOWN: "sit seat sitting take_a_seat",
+    Skill.STANDUP: "stand standing rise",
+    Skill.GETUP: "arise get_out_of_bed",
+    Skill.LIEDOWN: "lie lay lying laydown recline sleep",
+    Skill.TOUCH: "reach reaching grab take pick pick_up press push open reach_for",
+}
+_SKILLS: Final = {skill.value: skill for skill in Skill} | {
+    word.replace("_", ""): skill for skill, words in _ALIASES.items() for word in words.split()
+}
+
+
+def check(
+    script: ShortScript | LongScript | Sequence[Keyframe],
+    vocabulary: Vocabulary | None = None,
+    furniture: Collection[str] | None = None,
+) -> tuple[Problem, ...]:
+    """Everything that keeps the script from being acted out, in order; empty when it can be.
+
+    With a `vocabulary` captions must be known, without one they are free words for the body to read; `furniture` are
+    the categories a home has, any if not given. After a problem the script is read on as if that had been repaired,
+    so that one fault is told once.
+    """
+    keyframes = script.keyframes if isinstance(script, ShortScript | LongScript) else script
+    return tuple(Mending(keyframes, vocabulary, furniture).problems)
+
+
+def repair(
+    keyframes: Sequence[K], vocabulary: Vocabulary | None = None, furniture: Collection[str] | None = None
+) -> tuple[tuple[K, ...], tuple[str, ...]]:
+    """Keyframes that pass `check` with the same arguments, and what was changed and why, one sentence a change.
+
+    Unknown or unfit furniture is replaced, and with a `vocabulary` unknown captions by the nearest known ones; walks
+    and risings that are missing are put in; a touch leaves the hand alone that holds a phone; what cannot happen
+    (rising while standing, the same keyframe twice) is left out. What passes is returned unchanged.
+    """
+    mending = Mending(keyframes, vocabulary, furniture)
+    return tuple(mending.kept), tuple(map(str, mending.problems))
+
+
+def last_posture(keyframes: Sequence[Keyframe]) -> Posture:
+    """How the body is left when the script ends."""
+    return Mending(keyframes).posture
+
+
+def skill_of(word: str) -> Skill:
+    """The skill a word means ("walk" is loco), or ValueError listing the skills."""
+    skill = _SKILLS.get(_plain(word))
+    if skill is None:
+        raise ValueError(f"skill: {word!r} is none of {', '.join(Skill)}, nor a word for one of them")
+    return skill
+
+
+def read_keyframe(row: Mapping[str, Any]) -> Keyframe:
+    """A keyframe from loose words ("walk", "emotion/style", "furnitures"), or pydantic's ValidationError."""
+    word = row.get("skill")
+    return Keyframe.model_validate({**row, "skill": _SKILLS.get(_plain(word), word)} if isinstance(word, str) else row)
+
+
+def hand_of(caption: str, default: str = "right") -> str:
+    """The hand a touch uses, "left" or "right": the one its caption names last, else `default`."""
+    named: list[str] = re.findall(r"\b(left|right)\b", caption.lower())
+    return named[-1] if named else default
+
+
+def free_hand(before: Keyframe | None) -> str:
+    """The hand a touch may use where its caption names none: "left" after a walk with the phone in the right hand."""
+    return "left" if before is not None and phone_hand(before) == "right" else "right"
+
+
+def _plain(word: str) -> str:
+    return re.sub(r"[\s_-]+", "", word.lower())

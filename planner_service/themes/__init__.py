@@ -1,0 +1,1 @@
+"""Reading a theme: sentences, events, feelings and who it is about."""

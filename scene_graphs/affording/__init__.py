@@ -1,1 +1,0 @@
-"""Finding the places of a piece of furniture that afford sitting, lying and touching."""

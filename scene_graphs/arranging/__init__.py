@@ -1,1 +1,0 @@
-"""Composing rooms: an empty shell, groups of furniture that belong together, and where they go."""

@@ -1,0 +1,1 @@
+"""Meshes, boxes, rasters and grids of a home."""

@@ -1,0 +1,1 @@
+"""Furniture graphs: made, merged, compared exactly (SIMS 3.2)."""

@@ -1,0 +1,1 @@
+"""What furniture and rooms look like."""

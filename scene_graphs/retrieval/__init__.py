@@ -1,0 +1,1 @@
+"""The rooms and homes that fit a graph (SIMS 3.2)."""

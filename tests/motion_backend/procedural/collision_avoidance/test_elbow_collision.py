@@ -1,0 +1,69 @@
+"""Elbows swing out of what is solid; hands stay where they are."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from motion_backend.body.scene_collision import Obstacles
+from motion_backend.procedural.collision_avoidance.elbow_collision import elbows_clear
+from motion_backend.procedural.emotion_style import Bearing
+from motion_backend.procedural.held_poses import standing
+from motion_backend.procedural.pose import Pose
+from motion_backend.procedural.pose_solver import solve
+from motion_backend.procedural.touch.hand_contacts import free_palm
+from motion_backend.rotations import rotate
+from motion_backend.skeleton import INDEX, build_skeleton
+from scene_graphs.affordances.affordances import Spot
+
+SKELETON = build_skeleton()
+HIPS = standing((0.0, 0.0), 0.0, Bearing(arms=("hips", "hips")), SKELETON).repeat(60)
+
+
+def boxes(*rows: tuple[tuple[float, float, float], tuple[float, float, float]]) -> Obstacles:
+    centers, halves = zip(*rows, strict=True)
+    names = tuple(f"0/{number}" for number in range(len(rows)))
+    return Obstacles(np.array(centers), np.array(halves), np.zeros(len(rows)), names, np.zeros(len(rows), dtype=bool))
+
+
+def joints(pose: Pose, name: str) -> np.ndarray:
+    root, local = solve(pose, SKELETON)
+    return SKELETON.forward_kinematics(root, local)[0].astype(np.float64)[:, INDEX[name]]
+
+
+def wall_at(x: float) -> Obstacles:
+    return boxes(((x + 0.05, 1.3, 0.0), (0.05, 1.3, 2.0)))
+
+
+@pytest.mark.parametrize("into", [0.02, 0.05, 0.08])
+def test_an_elbow_in_a_wall_swings_out_and_the_hand_stays(into: float) -> None:
+    wall = wall_at(joints(HIPS, "left_elbow")[0, 0] + 0.042 - into)
+    swung = elbows_clear(HIPS, SKELETON, wall)
+    assert wall.depth(joints(HIPS, "left_elbow")[-1:])[0] > -0.04
+    assert wall.depth(joints(swung, "left_elbow")[-1:])[0] < -0.04
+    np.testing.assert_allclose(joints(swung, "left_wrist"), joints(HIPS, "left_wrist"), atol=1e-6)
+
+
+def test_a_segment_begins_with_the_elbows_it_was_given_and_never_snaps() -> None:
+    swung = joints(elbows_clear(HIPS, SKELETON, wall_at(joints(HIPS, "left_elbow")[0, 0])), "left_elbow")
+    np.testing.assert_allclose(swung[0], joints(HIPS, "left_elbow")[0], atol=1e-9)
+    assert np.linalg.norm(np.diff(swung, axis=0), axis=1).max() < 0.05
+
+
+def test_arms_that_are_clear_are_left_alone() -> None:
+    swung = elbows_clear(HIPS, SKELETON, wall_at(joints(HIPS, "left_elbow")[0, 0] + 0.06))
+    assert (swung.elbows == HIPS.elbows).all()
+
+
+def test_fingers_that_would_be_in_what_is_below_are_turned_aside() -> None:
+    """A hand on a screen, right over what the screen stands on."""
+    screen = boxes(((0.0, 0.75, 0.0), (0.5, 0.25, 0.02)), ((0.0, 0.25, 0.0), (0.6, 0.25, 0.2)))
+    spot = Spot("touch", "0/0", (0.0, 0.53, 0.02), (0.0, 0.0, 1.0), np.pi, (0.0, 0.5), np.pi, height="low")
+    wrist = np.array([0.0, 0.53, 0.08])
+    for hand, side in (("left", 1.0), ("right", -1.0)):
+        palm = free_palm(screen, spot, wrist, hand, down=True)
+        tips = wrist + 0.14 * side * rotate(palm, np.array([1.0, 0.0, 0.0]))
+        assert tips[1] > 0.51
+        assert abs(tips[2] - wrist[2]) < 0.01
+        free = free_palm(screen.only(np.array([True, False])), spot, wrist, hand, down=True)
+        assert side * rotate(free, np.array([1.0, 0.0, 0.0]))[1] < -0.9

@@ -1,0 +1,217 @@
+"""Lying down: every caption is its own performance, bodies lie on what they lie on, and hands where they are said."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from functools import cache
+from importlib import resources
+from itertools import combinations
+
+import numpy as np
+import pytest
+from small_home import contact, rise, small_home
+
+from motion_backend.body.capsules import placed
+from motion_backend.body.joint_limits import limits_share
+from motion_backend.body.self_collision import self_penetration
+from motion_backend.metrics.foot_skate import skate_ratio
+from motion_backend.metrics.joint_trajectories import Kinematics
+from motion_backend.motion import Action, BodyState, Character, Motion, Part, Skill
+from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.procedural.lie.lie_pose import Bed, place_to_lie
+from motion_backend.procedural.lie.lie_styles import lie_style, wanted_edge
+from motion_backend.skeleton import INDEX
+from scene_graphs.affordances.affordances import floor_spot, spots
+
+HOME = small_home()
+CAPTIONS: list[str] = json.loads(
+    resources.files("planner_service").joinpath("data/captions.json").read_text(encoding="utf-8")
+)["liedown"]
+
+
+@cache
+def lie(caption: str, name: str = "sofa", which: int = 0, height: float = 1.70) -> Motion:
+    backend = ProceduralBackend()
+    state = backend.begin(HOME, Character(height=height), 2)
+    action = contact(HOME, Skill.LIEDOWN, name, caption, which=which)
+    if caption.endswith("foot on the floor"):
+        action = replace(action, spot=place_to_lie([action.spot], caption) if action.spot else None)
+    return backend.advance(HOME, action, state)[0]
+
+
+def held(caption: str, name: str = "sofa", which: int = 0) -> dict[str, np.ndarray]:
+    """Where joints are in the last frame, seen from the pelvis along the sofa: left, towards the head, up."""
+    motion = lie(caption, name, which)
+    positions = motion.joint_positions()[-1].astype(np.float64)
+    yaw = spots(HOME.object(f"0/{name}"), "lie")[which].facing
+    up = np.array([np.sin(yaw), 0.0, np.cos(yaw)])
+    frame = np.stack([np.cross(up, [0.0, 1.0, 0.0]), up, [0.0, 1.0, 0.0]])
+    return {joint: frame @ (positions[index] - positions[0]) for joint, index in INDEX.items()}
+
+
+def which_has(side: str, name: str) -> int:
+    """The spot of a piece whose free edge is on that side of who lies on the back."""
+    found = spots(HOME.object(f"0/{name}"), "lie")
+    return next(i for i, s in enumerate(found) if (np.sin(s.facing - s.approach) > 0) == (side == "left"))
+
+
+@pytest.mark.parametrize("caption", CAPTIONS)
+def test_a_lying_body_keeps_its_joints_and_its_place(caption: str) -> None:
+    motion = lie(caption)
+    assert motion.completed, motion.reason
+    still = motion.part(len(motion) - 45, len(motion))
+    assert limits_share(still.local_rotations) <= 0.02
+    goal = np.array(motion.goals[0].position)
+    moved = np.linalg.norm(still.root_positions - goal, axis=1).max()
+    assert moved <= 0.03
+    positions, world = still.skeleton.forward_kinematics(still.root_positions, still.local_rotations)
+    assert self_penetration(still.skeleton, positions.astype(np.float64), world).max() <= 0.05
+
+
+def test_no_two_captions_of_lying_look_alike() -> None:
+    poses = {caption: np.stack(list(held(caption).values())) for caption in CAPTIONS}
+    for one, other in combinations(CAPTIONS, 2):
+        apart = np.linalg.norm(poses[one] - poses[other], axis=1).max()
+        assert apart > 0.06, f"{one!r} looks like {other!r}"
+
+
+def test_who_lies_on_a_side_has_hips_and_shoulders_one_above_the_other() -> None:
+    for caption, below, above in (
+        ("side-lie on left, legs bent", "left", "right"),
+        ("side-lie on right", "right", "left"),
+    ):
+        at = held(caption)
+        assert at[f"{above}_hip"][2] - at[f"{below}_hip"][2] > 0.16
+        assert at[f"{above}_shoulder"][2] - at[f"{below}_shoulder"][2] > 0.24
+        assert at[f"{above}_knee"][2] > at[f"{below}_knee"][2] + 0.05
+
+
+def test_curled_up_is_tighter_than_legs_bent() -> None:
+    which = which_has("left", "sofa")
+    curled = held("curled up on the left side, knees drawn up", "sofa", which)
+    bent = held("side-lie on left, legs bent", "sofa", which)
+    chest = "spine3"
+    assert np.linalg.norm(curled["left_knee"] - curled[chest]) < np.linalg.norm(bent["left_knee"] - bent[chest]) - 0.1
+
+
+def test_hands_on_the_belly_lie_on_its_skin() -> None:
+    motion = lie("hands on belly")
+    positions, world = motion.skeleton.forward_kinematics(motion.root_positions[-1:], motion.local_rotations[-1:])
+    start, end, radii = placed(motion.skeleton, positions.astype(np.float64), world)
+    names = ("torso", "left_hand", "right_hand")
+    from motion_backend.body.capsules import BODIES
+
+    torso, *hands = (next(i for i, body in enumerate(BODIES) if body.name == name) for name in names)
+    axis = end[0, torso] - start[0, torso]
+    for hand in hands:
+        middle = 0.5 * (start[0, hand] + end[0, hand])
+        share = np.clip((middle - start[0, torso]) @ axis / (axis @ axis), 0.0, 1.0)
+        gap = np.linalg.norm(middle - start[0, torso] - share * axis) - radii[torso] - radii[hand]
+        assert -0.01 < gap < 0.03
+
+
+def test_a_foot_on_the_floor_is_on_the_floor_and_a_bent_leg_is_not() -> None:
+    which = which_has("left", "sofa")
+    caption = "lying, left foot on the floor"
+    motion = lie(caption, "sofa", which)
+    assert motion.joint_positions()[-1, INDEX["left_ankle"], 1] == pytest.approx(motion.skeleton.ankle_height, abs=0.02)
+    assert lie("left leg bent", "sofa", which).joint_positions()[-1, INDEX["left_ankle"], 1] > 0.3
+    assert wanted_edge(caption) == "left"
+
+
+def test_on_the_elbows_the_forearms_lie_on_the_mattress_and_the_head_is_up() -> None:
+    motion = lie("elbows supporting body, left leg bent")
+    top = spots(HOME.object("0/sofa"), "lie")[0].point[1]
+    at = motion.joint_positions()[-1]
+    for joint in ("left_elbow", "right_elbow", "left_wrist", "right_wrist"):
+        assert at[INDEX[joint], 1] - top == pytest.approx(0.045, abs=0.03)
+    assert at[INDEX["head"], 1] - top > 0.35
+
+
+def test_the_body_sits_on_the_edge_and_bears_on_a_hand_before_it_lies() -> None:
+    motion = lie("lying down, legs straight")
+    spot = spots(HOME.object("0/sofa"), "lie")[0]
+    positions = motion.joint_positions()
+    trunk = positions[:, INDEX["neck"], 1] - positions[:, 0, 1]
+    seated = (trunk > 0.42) & (positions[:, 0, 1] < spot.point[1] + 0.15)
+    assert seated.sum() > 15
+    wrists = positions[seated][:, [INDEX["left_wrist"], INDEX["right_wrist"]]]
+    assert np.abs(wrists[..., 1] - spot.point[1] - 0.06).min() < 0.03
+
+
+@pytest.mark.parametrize("height", [1.5, 1.9])
+def test_short_and_tall_bodies_lie_as_well(height: float) -> None:
+    motion = lie("lying with hands under head, legs crossed", "bed", 0, height)
+    assert motion.completed
+    assert np.abs(motion.root_positions[-30:] - np.array(motion.goals[0].position)).max() < 0.03
+
+
+@cache
+def on_the_floor(caption: str) -> tuple[Action, Motion, BodyState]:
+    """Lying down on the floor."""
+    backend = ProceduralBackend()
+    action = Action(Skill.LIEDOWN, caption, "neutral", "floor", "floor", floor_spot("lie", (3.2, 2.6), 0.7))
+    return action, *backend.advance(HOME, action, backend.begin(HOME, Character(), 2))
+
+
+@cache
+def up_again(caption: str, how: str) -> Motion:
+    """Getting up from the floor."""
+    action, _, state = on_the_floor(caption)
+    return ProceduralBackend().advance(HOME, replace(rise(action, Skill.GETUP), caption=how), state)[0]
+
+
+def during(motion: Motion, *parts: Part) -> slice:
+    """The frames of some parts that follow each other."""
+    found = [phase for phase in motion.phases if phase.part in parts]
+    return slice(found[0].start, found[-1].stop)
+
+
+@pytest.mark.parametrize("caption", ["lying still", "side-lie on right", "curled up on the left side, knees drawn up"])
+def test_the_floor_is_lain_on_and_got_up_from(caption: str) -> None:
+    down = on_the_floor(caption)[1]
+    quick, slow = (up_again(caption, how) for how in ("get up quickly", "get up slowly"))
+    assert down.root_positions[-1, 1] < 0.15
+    for up in (quick, slow):
+        assert up.completed, up.reason
+        assert up.root_positions[-1, 1] > 0.85 * up.skeleton.standing_height
+        assert limits_share(up.local_rotations) == 0.0
+    assert limits_share(down.local_rotations) == 0.0
+    assert len(slow) > 1.5 * len(quick)
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_one_goes_down_to_the_floor_and_up_from_it_over_hands_and_knees(which: int) -> None:
+    motion = (on_the_floor("lying still")[1], up_again("lying still", "get up slowly"))[which]
+    joints = motion.joint_positions()[during(motion, *((Part.EDGE, Part.LIEDOWN), (Part.GETUP, Part.STANDUP))[which])]
+    knees, wrists = (joints[:, [INDEX[f"left_{joint}"], INDEX[f"right_{joint}"]]] for joint in ("knee", "wrist"))
+    high = joints[:, 0, 1] > 0.4
+    kneeling = high & (knees[..., 1].max(axis=1) < 0.09)
+    assert kneeling.sum() > 10
+    assert np.ptp(knees[kneeling, 0], axis=0).max() < 0.02
+    assert (kneeling & (wrists[..., 1].max(axis=1) < 0.12)).any()
+    one_down = high & (knees[:, 0, 1] < 0.09) & (knees[:, 1, 1] > 0.35)
+    assert one_down.any()
+
+
+def test_feet_do_not_slide_on_the_way_down_and_up() -> None:
+    for motion in (on_the_floor("lying still")[1], up_again("lying still", "get up slowly")):
+        assert skate_ratio(Kinematics.of(motion)) <= 0.02
+
+
+@pytest.mark.parametrize("turned", [0.0, 2.0])
+def test_who_puts_a_foot_down_lies_by_the_edge(turned: float) -> None:
+    bed = replace(HOME.object("0/bed"), yaw=turned)
+    found = spots(bed, "lie")
+    spot = place_to_lie(found, "lying, left foot on the floor")
+    assert Bed.of(spot).edge_side == "left"
+    assert spot.edge <= 0.30
+    plain = place_to_lie(found, "left leg bent")
+    assert plain == found[0]
+
+
+def test_captions_say_which_edge_is_wanted() -> None:
+    assert wanted_edge("side-lie on right") == "right"
+    assert wanted_edge("lying still") is None
+    assert lie_style("neutral", "curled up on the left side, knees drawn up").legs == "tucked"

@@ -1,0 +1,236 @@
+"""The procedural body: planted feet, exact contacts, no furniture crossed, and the same bytes for the same seed."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, replace
+
+import numpy as np
+import pytest
+from small_home import contact, rise, small_home, to
+
+from motion_backend.body.scene_collision import Obstacles
+from motion_backend.metrics import story_metrics
+from motion_backend.metrics.contact_error import risen
+from motion_backend.metrics.joint_trajectories import Kinematics
+from motion_backend.metrics.smoothness import seam_jump
+from motion_backend.motion import Action, BodyState, Character, Motion, Posture, Skill, join
+from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.procedural.emotion_style import feeling
+from motion_backend.procedural.lie.lie_styles import lie_style
+from motion_backend.procedural.sit.sit_styles import sit_style
+from motion_backend.procedural.walk.walk_styles import walk_style
+from motion_backend.skeleton import INDEX
+from scene_graphs.home import Home
+
+HOME = small_home()
+OBSTACLES = Obstacles.of_home(HOME)
+
+
+def perform(actions: list[Action], seed: int = 3, height: float = 1.70) -> tuple[list[Motion], BodyState]:
+    backend = ProceduralBackend()
+    state = backend.begin(HOME, Character(height=height), seed)
+    motions = []
+    for index, action in enumerate(actions):
+        motion, state = backend.advance(HOME, replace(action, keyframe=index), state)
+        motions.append(motion)
+    return motions, state
+
+
+def day() -> list[Action]:
+    """A little of everything."""
+    high = contact(HOME, Skill.TOUCH, "shelf", "An act of reaching high")
+    sofa = contact(HOME, Skill.SITDOWN, "sofa", "hands behind head, lean back", "relaxed")
+    bed = contact(HOME, Skill.LIEDOWN, "bed", "lying down, legs straight", "tired")
+    chair = contact(HOME, Skill.SITDOWN, "chair", "supporting head with hands, head bowed", "sad")
+    table = contact(HOME, Skill.TOUCH, "table", "touch medium height", "sad")
+    return [
+        to(high, "excited walk", "happy"), high, to(sofa), sofa, rise(sofa),
+        to(bed, "walking drunkenly", "drunk"), bed, rise(bed, Skill.GETUP),
+        to(chair, "walk on tiptoes"), chair, rise(chair), to(table, "walk with depression", "sad"), table,
+    ]  # fmt: skip
+
+
+MOTIONS, LAST = perform(day())
+
+
+@pytest.mark.parametrize("index", range(13))
+def test_every_action_of_a_day_is_reached_cleanly(index: int) -> None:
+    action = replace(day()[index], keyframe=index)
+    figures = story_metrics.judge(MOTIONS[index], action, OBSTACLES)
+    assert figures.reached, figures
+    assert figures.contact_error is None or figures.contact_error < 0.005
+    assert figures.skate_ratio <= 0.05
+    assert figures.skate < 3.0
+    assert figures.pen_mean <= 0.01
+    assert figures.pen_max <= 0.05
+    assert figures.floor_pen < 0.005
+
+
+def test_segments_join_without_a_jump() -> None:
+    assert seam_jump(join(MOTIONS)) < 0.06
+
+
+def test_no_joint_ever_snaps() -> None:
+    positions = join(MOTIONS).joint_positions().astype(np.float64)
+    speed = np.linalg.norm(np.diff(positions, axis=0), axis=-1) * 30
+    hands = [INDEX["left_wrist"], INDEX["right_wrist"], INDEX["left_elbow"], INDEX["right_elbow"]]
+    assert speed[:, hands].max() < 7.0
+    assert speed.max() < 9.0
+
+
+def test_planted_feet_do_not_move() -> None:
+    whole = join(MOTIONS)
+    positions = whole.joint_positions().astype(np.float64)
+    toes = positions[:, [INDEX["left_foot"], INDEX["right_foot"]]]
+    step = np.linalg.norm(np.diff(toes[..., [0, 2]], axis=0), axis=-1)
+    planted = whole.contacts[:, [1, 3]]
+    standing = (planted[1:] > 0) & (planted[:-1] > 0)
+    # A heel strike rolls the ball forward by a centimetre or two while the foot already counts as planted.
+    assert np.quantile(step[standing], 0.99) < 0.012
+    assert standing.mean() > 0.5
+
+
+def test_the_same_seed_gives_the_same_bytes_and_another_seed_another_body() -> None:
+    again, _ = perform(day()[:4])
+    other, _ = perform(day()[:4], seed=4)
+    for first, second in zip(MOTIONS[:4], again, strict=True):
+        assert first.root_positions.tobytes() == second.root_positions.tobytes()
+        assert first.local_rotations.tobytes() == second.local_rotations.tobytes()
+    assert other[0].root_positions.tobytes() != MOTIONS[0].root_positions.tobytes()
+
+
+def test_any_segment_can_be_made_again_from_a_stored_state() -> None:
+    backend = ProceduralBackend()
+    actions = day()
+    state = backend.begin(HOME, Character(), 3)
+    for action in actions[:3]:
+        _, state = backend.advance(HOME, action, state)
+    stored = json.loads(json.dumps(asdict(state)))
+    restored = BodyState(**(stored | {"posture": Posture(stored["posture"]), "pelvis": tuple(stored["pelvis"])}))
+    fresh, _ = ProceduralBackend().advance(HOME, actions[3], restored)
+    np.testing.assert_array_equal(fresh.local_rotations, MOTIONS[3].local_rotations)
+
+
+@pytest.mark.parametrize("height", [1.45, 1.95])
+def test_short_and_tall_bodies_reach_too(height: float) -> None:
+    motions, _ = perform(day(), height=height)
+    for index, (motion, action) in enumerate(zip(motions, day(), strict=True)):
+        figures = story_metrics.judge(motion, replace(action, keyframe=index), OBSTACLES)
+        assert figures.reached, figures
+
+
+def test_a_seated_body_stands_up_before_it_walks() -> None:
+    sofa = contact(HOME, Skill.SITDOWN, "sofa", "hands on thighs")
+    motions, state = perform([sofa, Action(Skill.LOCO, "walk", "neutral", goal=(3.0, 3.0))])
+    assert state.posture is Posture.STANDING
+    assert risen(Kinematics.of(motions[1]))[-1]
+
+
+def test_a_body_remembers_what_it_rests_on() -> None:
+    bed = contact(HOME, Skill.LIEDOWN, "bed", "legs straight")
+    _, state = perform([bed])
+    assert (state.posture, state.object_id) == (Posture.LYING, "0/bed")
+
+
+def test_a_place_that_cannot_be_reached_is_said_and_not_faked() -> None:
+    motions, state = perform([Action(Skill.LOCO, "walk", "neutral", goal=(30.0, 30.0))])
+    assert not motions[0].completed
+    assert "30" in motions[0].reason
+    assert state.posture is Posture.STANDING
+
+
+def test_an_action_without_a_place_is_not_completed() -> None:
+    motions, _ = perform([Action(Skill.SITDOWN, "sit", "neutral")])
+    assert not motions[0].completed
+
+
+def test_a_held_pose_is_alive() -> None:
+    held = MOTIONS[3].joint_positions().astype(np.float64)[-35:]
+    assert 1e-4 < np.linalg.norm(np.diff(held, axis=0), axis=-1).max() < 0.02
+
+
+def walked(caption: str, emotion: str) -> Motion:
+    start = Action(Skill.LOCO, "smoothly forward walk", "neutral", goal=(2.6, 2.6), facing=0.0)
+    way = Action(Skill.LOCO, caption, emotion, goal=(4.2, 2.9))
+    return perform([start, way])[0][1]
+
+
+def mean_speed(motion: Motion) -> float:
+    root = motion.root_positions.astype(np.float64)
+    return float(np.linalg.norm(np.diff(root[:, [0, 2]], axis=0), axis=1).sum() * 30 / len(root))
+
+
+@pytest.mark.parametrize(
+    ("caption", "emotion"),
+    [("walk", "neutral"), ("walk", "hurried"), ("walk with depression", "sad"), ("walk on tiptoes", "neutral")],
+)
+def test_nobody_lunges_into_a_walk(caption: str, emotion: str) -> None:
+    height = walked(caption, emotion).root_positions[:, 1].astype(np.float64)
+    assert height[:60].min() > 0.92 * np.median(height)
+    assert np.abs(np.diff(height, n=2)).max() * 900 < 40
+
+
+@pytest.mark.parametrize("caption", ["walk", "skip steps running", "run and spin"])
+@pytest.mark.parametrize("distance", [0.2, 0.5, 1.4])
+def test_every_walk_ends_on_both_feet(caption: str, distance: float) -> None:
+    start = Action(Skill.LOCO, "smoothly forward walk", "neutral", goal=(2.6, 2.6), facing=0.0)
+    motions, _ = perform([start, Action(Skill.LOCO, caption, "happy", goal=(2.6, 2.6 + distance), facing=0.0)])
+    motion = motions[1]
+    positions = motion.joint_positions().astype(np.float64)[-1]
+    assert motion.contacts[-1].min() == 1
+    for side, sign in (("left", 1), ("right", -1)):
+        ankle = positions[INDEX[f"{side}_ankle"]]
+        assert ankle[1] == pytest.approx(motion.skeleton.ankle_height, abs=0.008)
+        assert ankle[0] - positions[0, 0] == pytest.approx(sign * 0.085, abs=0.03)
+        assert ankle[2] - positions[0, 2] == pytest.approx(0.0, abs=0.03)
+
+
+def test_standing_knees_are_nearly_straight() -> None:
+    positions = MOTIONS[2].joint_positions().astype(np.float64)[-1]
+    for side in ("left", "right"):
+        thigh = positions[INDEX[f"{side}_knee"]] - positions[INDEX[f"{side}_hip"]]
+        shin = positions[INDEX[f"{side}_ankle"]] - positions[INDEX[f"{side}_knee"]]
+        bent = np.degrees(np.arccos(thigh @ shin / np.linalg.norm(thigh) / np.linalg.norm(shin)))
+        assert bent < 16
+
+
+def test_emotions_show_in_speed_and_posture() -> None:
+    happy, sad, hurried = (walked("walk", emotion) for emotion in ("happy", "sad", "hurried"))
+    assert mean_speed(hurried) > mean_speed(happy) > mean_speed(sad)
+
+    def bow(motion: Motion) -> float:
+        positions = motion.joint_positions().astype(np.float64)
+        rise = positions[:, INDEX["head"], 1] - positions[:, 0, 1]
+        return float(np.median(rise))
+
+    assert bow(happy) > bow(sad) + 0.015
+
+
+@pytest.mark.parametrize(
+    ("text", "caption", "mood"),
+    [
+        ("neutral, calm", "smoothly forward walk", "neutral"),
+        ("neutral, calm", "walking drunkenly", "drunk"),
+        ("tired, depressed, drunk", "", "drunk"),
+        ("painful, sad", "", "sad"),
+        ("happy, childish", "", "happy"),
+        ("cold, disturbed, anxious", "", "angry"),
+        ("thinking, stressed", "", "stressed"),
+    ],
+)
+def test_free_text_stands_for_one_of_nine_emotions(text: str, caption: str, mood: str) -> None:
+    assert feeling(text, caption) == mood
+
+
+def test_captions_change_what_is_seen() -> None:
+    assert walk_style("neutral", "walk on tiptoes").tiptoe > 0
+    assert walk_style("happy", "run and spin").spin > 0
+    assert sit_style("neutral", "arms crossed, straight legs, feet crossed").legs == "feet_crossed"
+    assert lie_style("neutral", "side-lie on left, legs bent").side == "left"
+    assert lie_style("neutral", "side-lying on right").side == "right"
+
+
+def test_a_home_is_not_changed_by_acting_in_it() -> None:
+    before: Home = small_home()
+    assert before == HOME

@@ -1,0 +1,214 @@
+"""What hands do: gestures of who sits, lies or stands, and what is done at a surface."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from small_home import contact, small_home, to
+
+from motion_backend.body.scene_collision import Obstacles
+from motion_backend.metrics import story_metrics
+from motion_backend.motion import Action, Character, Motion, Skill
+from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.procedural.emotion_style import ARMS, Bearing, feeling
+from motion_backend.procedural.held_poses import standing
+from motion_backend.procedural.lie.lie_styles import lie_style
+from motion_backend.procedural.sit.sit_pose import SURFACES
+from motion_backend.procedural.sit.sit_styles import sit_style
+from motion_backend.procedural.touch.gestures import GESTURES, gesture
+from motion_backend.procedural.touch.hand_captions import handling_of, with_both_hands
+from motion_backend.procedural.touch.hand_rests import HOLDS
+from motion_backend.procedural.walk.walk_styles import walk_style
+from motion_backend.skeleton import INDEX, build_skeleton
+
+HOME = small_home()
+OBSTACLES = Obstacles.of_home(HOME)
+LEFT, RIGHT = INDEX["left_wrist"], INDEX["right_wrist"]
+SITTING = {
+    "writing at the table, right hand moving": "write",
+    "typing, both hands on the keyboard": "type",
+    "playing a game, controller held in both hands": "game",
+    "drinking from a cup in the right hand": "drink",
+    "eating at the table, right hand to the mouth": "eat",
+    "listening to music, both hands at the ears": "music",
+    "playing the piano, both hands on the keys": "piano",
+    "talking on the phone with the left hand": "",
+    "sitting still": "",
+}
+TOUCHING = {
+    "pick up with the right hand": "pick",
+    "put down with the left hand": "put",
+    "turn on with the right hand": "press",
+    "wash with both hands": "wash",
+    "rotate with the right hand": "rotate",
+    "touch medium height": "",
+    "An act of reaching high": "",
+}
+
+
+@cache
+def performed(action: Action) -> tuple[Motion, np.ndarray]:
+    """The action after the walk to it: its motion and world joints (T, 22, 3)."""
+    backend = ProceduralBackend()
+    state = backend.begin(HOME, Character(), 3)
+    if action.skill is not Skill.LOCO:
+        _, state = backend.advance(HOME, to(action), state)
+    motion, _ = backend.advance(HOME, replace(action, keyframe=1), state)
+    return motion, motion.joint_positions().astype(np.float64)
+
+
+def moved(joints: np.ndarray, hand: int, frames: int) -> float:
+    """How far a wrist gets from its own mean in the last frames, seen from the chest (metres)."""
+    way = joints[-frames:, hand] - joints[-frames:, INDEX["spine3"]]
+    return float(np.linalg.norm(way - way.mean(axis=0), axis=1).max())
+
+
+def seated(caption: str) -> tuple[Motion, np.ndarray]:
+    return performed(replace(contact(HOME, Skill.SITDOWN, "chair", caption), hold=2.5))
+
+
+@pytest.mark.parametrize("caption", SITTING)
+def test_a_caption_of_sitting_is_shown_by_the_hands(caption: str) -> None:
+    style = sit_style("neutral", caption)
+    assert style.doing == SITTING[caption]
+    assert all(arm in ARMS or arm in HOLDS or arm in SURFACES for arm in style.arms)
+    motion, joints = seated(caption)
+    figures = story_metrics.judge(
+        motion, replace(contact(HOME, Skill.SITDOWN, "chair", caption), keyframe=1), OBSTACLES
+    )
+    assert figures.reached
+    assert figures.pen_max <= 0.05
+    busy = max(moved(joints, LEFT, 60), moved(joints, RIGHT, 60))
+    still = style.doing in ("", "music")
+    assert busy < 0.03 if still else 0.008 < busy < 0.45
+    speed = np.linalg.norm(np.diff(joints[:, [LEFT, RIGHT]], axis=0), axis=-1) * 30
+    assert speed.max() < 7.0
+
+
+@pytest.mark.parametrize(
+    "caption", ["drinking from a cup in the right hand", "eating at the table, right hand to the mouth"]
+)
+def test_a_cup_or_a_bite_comes_to_the_mouth_and_goes_back(caption: str) -> None:
+    _, joints = seated(caption)
+    gap = np.linalg.norm(joints[-75:, RIGHT] - joints[-75:, INDEX["head"]], axis=1)
+    assert gap.min() < 0.27
+    assert gap[0] > gap.min() + 0.08
+    assert gap[-1] > gap.min() + 0.08
+
+
+def test_hands_at_the_ears_and_the_phone_are_where_the_caption_says() -> None:
+    _, listening = seated("listening to music, both hands at the ears")
+    _, phoning = seated("talking on the phone with the left hand")
+    for joints, hands in ((listening, (LEFT, RIGHT)), (phoning, (LEFT,))):
+        for hand in hands:
+            assert np.linalg.norm(joints[-20, hand] - joints[-20, INDEX["head"]]) < 0.25
+    assert np.linalg.norm(phoning[-20, RIGHT] - phoning[-20, INDEX["head"]]) > 0.4
+
+
+def test_who_lies_still_hardly_moves_and_who_reads_holds_a_book_up() -> None:
+    _, still = performed(replace(contact(HOME, Skill.LIEDOWN, "bed", "lying still"), hold=2.0))
+    assert np.abs(np.diff(still[-50:], axis=0)).max() < 0.004
+    _, reads = performed(contact(HOME, Skill.LIEDOWN, "bed", "reading on the back, book held above the chest"))
+    assert (reads[-10, [LEFT, RIGHT], 1] > reads[-10, INDEX["spine3"], 1] + 0.25).all()
+    assert lie_style("neutral", "hands on belly").arms == ("belly", "belly")
+
+
+@pytest.mark.parametrize(("caption", "up"), [("stand still", False), ("wave with the right hand", True)])
+def test_a_body_without_a_goal_stays_where_it_is(caption: str, up: bool) -> None:
+    motion, joints = performed(Action(Skill.LOCO, caption, "neutral", hold=2.0))
+    assert motion.completed
+    assert motion.contacts.min() == 1
+    assert np.linalg.norm(joints[:, 0] - joints[0, 0], axis=1).max() < 0.05
+    assert (joints[:, RIGHT, 1].max() > joints[0, INDEX["head"], 1] - 0.15) == up
+    assert joints[:, LEFT, 1].max() < joints[0, INDEX["spine3"], 1]
+    assert joints[-1, RIGHT, 1] < joints[0, INDEX["spine1"], 1]
+
+
+@pytest.mark.parametrize(
+    ("caption", "name"), [*((c, "table") for c in TOUCHING), *((c, "shelf") for c in list(TOUCHING)[2:5])]
+)
+def test_whatever_is_done_at_a_surface_reaches_it_cleanly(caption: str, name: str) -> None:
+    assert handling_of(caption) == TOUCHING[caption]
+    action = replace(contact(HOME, Skill.TOUCH, name, caption), hand="left" if "left" in caption else "right")
+    motion, joints = performed(action)
+    figures = story_metrics.judge(motion, replace(action, keyframe=1), OBSTACLES)
+    assert figures.reached
+    assert figures.contact_error is not None
+    assert figures.contact_error < 0.005
+    assert figures.pen_max <= 0.05
+    speed = np.linalg.norm(np.diff(joints[:, [LEFT, RIGHT]], axis=0), axis=-1) * 30
+    assert speed.max() < 7.0
+
+
+def test_both_hands_wash_the_table_side_by_side() -> None:
+    _, joints = performed(contact(HOME, Skill.TOUCH, "table", "wash with both hands"))
+    goal = np.asarray(contact(HOME, Skill.TOUCH, "table", "x").spot.point)  # type: ignore[union-attr]
+    low = np.abs(joints[:, [LEFT, RIGHT], 1] - goal[1]).max(axis=1) < 0.08
+    assert low.sum() > 45
+    apart = np.linalg.norm(joints[low][:, LEFT] - joints[low][:, RIGHT], axis=1)
+    assert apart.min() > 0.08
+    assert moved(joints[low], RIGHT, 45) > 0.02
+
+
+def test_what_is_picked_up_is_held_before_the_body() -> None:
+    _, picked = performed(contact(HOME, Skill.TOUCH, "table", "pick up with the right hand"))
+    _, touched = performed(contact(HOME, Skill.TOUCH, "table", "touch medium height"))
+    assert picked[-1, RIGHT, 1] > touched[-1, RIGHT, 1] + 0.15
+    assert picked[-1, LEFT, 1] == pytest.approx(touched[-1, LEFT, 1], abs=0.05)
+
+
+def test_what_is_picked_up_is_carried_on_the_way_until_it_is_put_down() -> None:
+    backend, pick = ProceduralBackend(), contact(HOME, Skill.TOUCH, "table", "pick up with the right hand")
+    put = contact(HOME, Skill.TOUCH, "shelf", "put down with the right hand")
+    state = backend.begin(HOME, Character(), 3)
+    least = []
+    for action in (to(pick), pick, to(put), put, to(pick)):
+        motion, state = backend.advance(HOME, action, state)
+        joints = motion.joint_positions().astype(np.float64)
+        least.append(float((joints[:, RIGHT, 1] - joints[:, INDEX["spine1"], 1]).min()))
+    assert max(least[0], least[4]) < -0.1
+    assert least[2] > 0.05
+    assert joints[-1, RIGHT, 1] < joints[-1, INDEX["spine1"], 1]
+
+
+@pytest.mark.parametrize("caption", ["writing at the table", "typing", "eating at the table"])
+def test_who_writes_types_or_eats_has_it_on_the_lap(caption: str) -> None:
+    _, joints = seated(caption)
+    held = joints[-60]
+    for name, hand in (("left", LEFT), ("right", RIGHT))[: 1 if "eating" in caption else 2]:
+        thigh = held[[INDEX[f"{name}_hip"], INDEX[f"{name}_knee"]]]
+        assert thigh[:, 1].max() < held[hand, 1] < thigh[:, 1].max() + 0.20
+        assert np.linalg.norm(held[hand] - thigh[1]) < 0.30
+
+
+@pytest.mark.parametrize("height", [1.5, 1.9])
+def test_a_body_of_other_height_steps_straight_to_where_it_sits_down(height: float) -> None:
+    backend, action = ProceduralBackend(), contact(HOME, Skill.SITDOWN, "chair", "sitting still")
+    _, state = backend.advance(HOME, to(action), backend.begin(HOME, Character(height=height), 3))
+    motion, _ = backend.advance(HOME, action, state)
+    steps = np.linalg.norm(np.diff(motion.root_positions[:, [0, 2]], axis=0), axis=1)
+    assert steps.sum() < 0.42 * height / 1.7 + 0.12
+
+
+@pytest.mark.parametrize("doing", [*GESTURES, "", "juggle"])
+def test_a_gesture_begins_and_ends_in_the_held_pose(doing: str) -> None:
+    pose = standing((0.0, 0.0), 0.0, replace(Bearing(), arms=("desk", "desk")), build_skeleton(1.7)).repeat(80)
+    made = gesture(pose, doing)
+    assert np.isfinite(made.arms).all()
+    np.testing.assert_allclose(made.arms[-1], pose.arms[-1], atol=1e-9)
+    np.testing.assert_allclose(made.arms[0], pose.arms[0], atol=0.02)
+
+
+@pytest.mark.parametrize("caption", [*SITTING, *TOUCHING, "stand still", "wave with the right hand", "lying still"])
+def test_what_is_done_is_no_mood(caption: str) -> None:
+    assert feeling("neutral", caption) == "neutral"
+
+
+def test_words_about_hands_are_read() -> None:
+    assert with_both_hands("wash with both hands")
+    assert not with_both_hands("wash with the right hand")
+    assert walk_style("neutral", "wave with the left hand").bearing.arms == ("wave", "hang")
+    assert walk_style("neutral", "walk").doing == ""

@@ -1,0 +1,113 @@
+"""Touching: the named hand gets there and stays, eyes go first, bodies kneel, bend or rise on tiptoes as it needs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from small_home import ROOM
+
+from motion_backend.body.joint_limits import limits_share
+from motion_backend.motion import Action, Character, Motion, Skill
+from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.skeleton import INDEX
+from scene_graphs.affordances.affordances import spots
+from scene_graphs.home import home_from_layouts
+from scene_graphs.layout import Placed
+
+HOME = home_from_layouts(
+    [replace(ROOM, objects=(Placed("shelf", "bookshelf", (1.5, 0, 2.5), (0.9, 1.9, 0.35), 0.0),
+                            Placed("low", "tv_stand", (4.5, 0, 2.5), (1.2, 0.45, 0.4), 0.0)))], 0
+)  # fmt: skip
+
+
+@cache
+def act(caption: str, name: str, height: str, hand: str = "right", body: float = 1.70) -> Motion:
+    spot = next(s for s in spots(HOME.object(f"0/{name}"), "touch") if s.height == height)
+    backend = ProceduralBackend()
+    state = backend.begin(HOME, Character(height=body), 4)
+    walk = Action(Skill.LOCO, "smoothly forward walk", "neutral", goal=spot.standing, facing=spot.facing)
+    state = backend.advance(HOME, walk, state)[1]
+    action = Action(Skill.TOUCH, caption, "neutral", name, f"0/{name}", spot, hand=hand)
+    return backend.advance(HOME, action, state)[0]
+
+
+def gap(motion: Motion) -> np.ndarray:
+    goal = motion.goals[0]
+    at = motion.joint_positions()[:, INDEX[goal.joint]].astype(np.float64)
+    return np.asarray(np.linalg.norm(at - np.array(goal.position), axis=1))
+
+
+@pytest.mark.parametrize(
+    ("caption", "name", "height"),
+    [
+        ("An act of reaching high", "shelf", "high"),
+        ("touch medium height", "shelf", "medium"),
+        ("touch low height", "shelf", "low"),
+        ("Low touch from a prone position", "low", "low"),
+    ],
+)
+@pytest.mark.parametrize("hand", ["left", "right"])
+def test_the_hand_gets_there_and_stays_within_the_joints_limits(
+    caption: str, name: str, height: str, hand: str
+) -> None:
+    motion = act(caption, name, height, hand)
+    assert motion.goals[0].joint == f"{hand}_wrist"
+    assert (gap(motion) < 0.04).sum() >= motion.fps
+    assert gap(motion).min() < 0.005
+    assert limits_share(motion.local_rotations) <= 0.02
+
+
+def test_the_eyes_go_to_it_before_the_hand_moves() -> None:
+    motion = act("touch low height", "low", "low")
+    _, world = motion.skeleton.forward_kinematics(motion.root_positions, motion.local_rotations)
+    from motion_backend import rotations
+
+    look = rotations.rotate(world[:, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
+    turned = np.arccos(np.clip(look @ look[0], -1.0, 1.0))
+    came = gap(motion)[0] - gap(motion)
+    still = int(np.argmax(came > 0.03))
+    assert turned[still] > 0.3
+
+
+def test_a_prone_touch_is_on_the_knees_and_a_low_touch_on_the_feet() -> None:
+    prone, low = act("Low touch from a prone position", "low", "low"), act("touch low height", "low", "low")
+    knees = {
+        name: motion.joint_positions()[np.argmin(gap(motion))] for name, motion in (("prone", prone), ("low", low))
+    }
+    for side in ("left", "right"):
+        assert knees["prone"][INDEX[f"{side}_knee"], 1] < 0.10
+        assert knees["low"][INDEX[f"{side}_knee"], 1] > 0.25
+    assert prone.root_positions[-1, 1] > 0.95 * prone.skeleton.standing_height
+
+
+def test_only_a_short_body_rises_on_its_tiptoes() -> None:
+    heels = {}
+    for body in (1.5, 1.75):
+        motion = act("An act of reaching high", "shelf", "high", "right", body)
+        at = motion.joint_positions()[np.argmin(gap(motion))]
+        heels[body] = at[INDEX["left_ankle"], 1] - motion.skeleton.ankle_height
+        assert gap(motion).min() < 0.02
+    assert heels[1.5] > 0.02
+    assert heels[1.75] < 0.01
+
+
+def test_what_is_done_shows_in_the_other_arm() -> None:
+    shapes = []
+    for caption in ("pick up with the right hand", "put down with the right hand", "rotate with the right hand",
+                    "touch medium height with the right hand"):  # fmt: skip
+        motion = act(caption, "shelf", "medium")
+        at = motion.joint_positions()[np.argmin(gap(motion))]
+        shapes.append(at[INDEX["left_wrist"]] - at[INDEX["left_shoulder"]])
+    for index, one in enumerate(shapes):
+        for other in shapes[index + 1 :]:
+            assert np.linalg.norm(one - other) > 0.05
+
+
+def test_a_height_that_the_thing_lacks_is_said_and_no_other() -> None:
+    said = [note.words for note in act("touch medium height", "low", "low").notes]
+    assert said == ["nothing at medium height: low"]
+    assert act("touch medium height", "shelf", "medium").notes == ()
+    assert act("turn on with the right hand", "low", "low").notes == ()

@@ -1,0 +1,133 @@
+"""The state machine: what goes before each skill, when it is done, and when it has taken too long."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from small_home import contact, rise, small_home, to
+
+from motion_backend.formats.motion_json import json_bytes, read_json
+from motion_backend.formats.npz import npz_bytes, read_npz
+from motion_backend.metrics.joint_trajectories import Kinematics
+from motion_backend.motion import Action, BodyState, Character, Motion, Note, Part, Posture, Skill, join
+from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.state_machine import DONE, ENDS, ENTERING, LEAVING, OWN, parts_of, shortfall, time_limit
+
+HOME = small_home()
+SIT = contact(HOME, Skill.SITDOWN, "chair", "crossing arms")
+LIE = contact(HOME, Skill.LIEDOWN, "bed", "hands on belly")
+TOUCH = contact(HOME, Skill.TOUCH, "table", "touch medium height")
+BACKEND = ProceduralBackend()
+ACTIONS = {
+    Skill.LOCO: to(TOUCH), Skill.SITDOWN: SIT, Skill.LIEDOWN: LIE, Skill.TOUCH: TOUCH,
+    Skill.STANDUP: rise(SIT), Skill.GETUP: rise(LIE, Skill.GETUP),
+}  # fmt: skip
+FROM = {
+    Posture.STANDING: BACKEND.begin(HOME, Character(), 3),
+    Posture.SEATED: BACKEND.advance(HOME, SIT, BACKEND.begin(HOME, Character(), 3))[1],
+    Posture.LYING: BACKEND.advance(HOME, LIE, BACKEND.begin(HOME, Character(), 3))[1],
+}
+MADE: dict[tuple[Posture, Skill], tuple[Motion, BodyState]] = {
+    (posture, skill): BACKEND.advance(HOME, action, state)
+    for posture, state in FROM.items()
+    for skill, action in ACTIONS.items()
+}
+EVERY = pytest.mark.parametrize(("posture", "skill"), list(MADE))
+
+
+@given(st.sampled_from(Posture), st.sampled_from(Skill))
+def test_every_skill_follows_every_posture_and_nobody_walks_before_standing(posture: Posture, skill: Skill) -> None:
+    parts = parts_of(posture, skill)
+    upright = len(LEAVING[posture])
+    assert not {Part.WALK, Part.BACK_UP} & set(parts[:upright])
+    assert parts[upright:] == ENTERING[skill]
+    assert (Part.STANDUP in parts) == (posture is not Posture.STANDING)
+    assert (Part.GETUP in parts) == (posture is Posture.LYING)
+    assert parts[-1] is OWN[skill]
+
+
+@EVERY
+def test_the_body_does_what_the_table_says_in_its_order(posture: Posture, skill: Skill) -> None:
+    motion, after = MADE[posture, skill]
+    assert motion.completed, motion.reason
+    assert after.posture is ENDS[skill]
+    done = [phase.part for phase in motion.phases]
+    order = [part for part in (*LEAVING[posture], Part.STAND, *ENTERING[skill]) if part in done]
+    assert done == list(dict.fromkeys(order))
+    assert set(LEAVING[posture]) <= set(done)
+
+
+@EVERY
+def test_the_parts_of_a_segment_fill_it_without_a_gap(posture: Posture, skill: Skill) -> None:
+    motion, _ = MADE[posture, skill]
+    edges = [0, *(phase.stop for phase in motion.phases)]
+    assert [phase.start for phase in motion.phases] == edges[:-1]
+    assert edges[-1] == len(motion)
+
+
+@pytest.mark.parametrize("skill", list(DONE))
+def test_done_means_near_enough_for_as_long_as_is_said(skill: Skill) -> None:
+    action = ACTIONS[skill]
+    motion, _ = MADE[Posture.STANDING, skill]
+    assert shortfall(action, Kinematics.of(motion), 60.0) == ""
+    last = motion.phases[-1]
+    early = motion.part(0, last.start if skill is not Skill.LOCO else len(motion) // 3)
+    assert "keyframe 0: " in shortfall(action, Kinematics.of(early), 60.0)
+    assert f"for {DONE[skill].seconds:.1f} s" in shortfall(action, Kinematics.of(early), 60.0)
+
+
+def test_who_has_not_stood_has_not_risen() -> None:
+    motion, _ = MADE[Posture.LYING, Skill.GETUP]
+    body = Kinematics.of(motion.part(0, len(motion) // 2))
+    assert "had stood for 0.0 s" in shortfall(ACTIONS[Skill.GETUP], body, 60.0)
+
+
+def test_too_long_is_not_done_and_the_reason_names_the_keyframe() -> None:
+    motion, _ = MADE[Posture.STANDING, Skill.SITDOWN]
+    why = shortfall(replace(SIT, keyframe=7), Kinematics.of(motion), motion.duration - 0.5)
+    assert why.startswith("keyframe 7: sitdown took ")
+
+
+@given(st.sampled_from(Posture), st.sampled_from(sorted(ACTIONS)), st.floats(0, 50), st.floats(0, 50))
+def test_a_longer_way_may_take_longer(posture: Posture, skill: Skill, way: float, more: float) -> None:
+    action = ACTIONS[skill]
+    assert time_limit(posture, action, way) >= 10.0
+    assert time_limit(posture, action, way + more) >= time_limit(posture, action, way)
+    assert time_limit(Posture.LYING, action, way) > time_limit(Posture.STANDING, action, way)
+
+
+def test_what_cannot_be_walked_to_is_told_and_the_body_stands() -> None:
+    far = Action(Skill.LOCO, "smoothly forward walk", "neutral", goal=(50.0, 50.0))
+    motion, after = BACKEND.advance(HOME, far, FROM[Posture.SEATED])
+    assert not motion.completed
+    assert motion.reason
+    assert after.posture is Posture.STANDING
+    assert [phase.part for phase in motion.phases] == [Part.STANDUP, Part.STAND]
+
+
+def test_parts_are_kept_by_joining_cutting_and_files() -> None:
+    walk, state = MADE[Posture.LYING, Skill.LOCO]
+    touch, _ = BACKEND.advance(HOME, TOUCH, state)
+    whole = join([walk, touch])
+    assert [phase.part for phase in whole.phases] == [phase.part for phase in (*walk.phases, *touch.phases)]
+    assert whole.phases[-1].stop == len(whole)
+    assert whole.part(len(walk), len(whole)).phases == touch.phases
+    assert read_npz(io.BytesIO(npz_bytes(whole))).phases == whole.phases
+    assert read_json(json_bytes(whole)).phases == whole.phases
+
+
+def test_what_is_done_otherwise_is_said_and_kept() -> None:
+    typing = contact(HOME, Skill.SITDOWN, "chair", "typing, both hands on the keyboard")
+    lacking, _ = BACKEND.advance(HOME, replace(typing, keyframe=4), FROM[Posture.STANDING])
+    fine = MADE[Posture.STANDING, Skill.SITDOWN][0]
+    whole = join([fine, lacking])
+    assert fine.notes == ()
+    assert whole.notes == (Note(4, "no table before the seat: each hand in the lap"),)
+    assert whole.part(0, len(fine)).notes == ()
+    assert whole.part(len(fine), len(whole)).notes == whole.notes
+    assert read_npz(io.BytesIO(npz_bytes(whole))).notes == whole.notes
+    assert read_json(json_bytes(whole)).notes == whole.notes

@@ -1,0 +1,178 @@
+"""A script gets a home that has what it needs, and says what stands for what."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from functools import lru_cache
+from math import pi
+
+import pytest
+
+from motion_backend.motion import Skill
+from planner_service.api.stories.schemas import HomeShown
+from planner_service.grounding.furnish import FurnishError, furnish
+from planner_service.jobs import serialization
+from planner_service.scripts.script import Event, LongScript, PlannedKeyframe
+from scene_graphs.affordances.room_validation import validate
+from scene_graphs.layout import Layout, Placed
+from scene_graphs.layout_library import built_in_layouts
+from scene_graphs.retrieval.layout_index import LayoutIndex
+
+
+@lru_cache(maxsize=1)
+def index() -> LayoutIndex:
+    return LayoutIndex(built_in_layouts())
+
+
+def script(*rows: tuple[str, str, str]) -> LongScript:
+    """Keyframes as (skill, furniture, room), one short script a room."""
+    rooms = list(dict.fromkeys(room for _, _, room in rows))
+    keyframes = tuple(
+        PlannedKeyframe(skill=Skill(skill), caption="x", furniture=piece, room=room, short_script=rooms.index(room))
+        for skill, piece, room in rows
+    )
+    return LongScript(theme="t", events=(Event(text="t"),), short_scripts=(), keyframes=keyframes)
+
+
+DAY = script(
+    ("loco", "wardrobe", "bedroom"),
+    ("touch", "wardrobe", "bedroom"),
+    ("loco", "bed", "bedroom"),
+    ("sitdown", "bed", "bedroom"),
+    ("loco", "floor", "living_room"),
+    ("liedown", "sofa", "living_room"),
+)
+
+
+def test_every_keyframe_gets_an_object_of_its_room_that_affords_it() -> None:
+    found = furnish(DAY, index())
+    categories = [found.home.object(p.object_id).category if p.object_id else None for p in found.places]
+    assert categories[1] == "wardrobe"
+    assert "bed" in str(categories[3])
+    assert "sofa" in str(categories[5])
+    assert categories[4] is None
+    assert [match.room_type for match in found.matches] == ["bedroom", "living_room"]
+    assert all(place.object_id is None or place.object_id.startswith(f"{place.room}/") for place in found.places)
+
+
+def test_the_two_wardrobes_of_a_script_are_two_objects() -> None:
+    two = script(("touch", "wardrobe", "bedroom"), ("touch", "wardrobe 2", "bedroom"))
+    found = furnish(two, index())
+    assert len({place.object_id for place in found.places}) == 2
+
+
+def test_a_substitution_is_said() -> None:
+    room = Layout(
+        "mine",
+        "bedroom",
+        ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)),
+        objects=(Placed("a", "stool", (2.0, 0.0, 2.0), (0.45, 0.45, 0.45)),),
+    )
+    found = furnish(script(("sitdown", "dining chair", "bedroom")), index(), given=[room])
+    assert found.places[0].object_id == "0/a"
+    assert found.matches[0].substitutions == (("dining chair", "stool", "class"),)
+    assert "dining chair → stool" in found.explain()[0]
+
+
+def test_a_users_room_without_the_very_thing_lends_another_and_says_so() -> None:
+    room = Layout(
+        "mine",
+        "bedroom",
+        ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)),
+        objects=(
+            Placed("bed", "single_bed", (3.2, 0.0, 1.2), (1.1, 0.6, 2.0)),
+            Placed("table", "dining_table", (1.0, 0.0, 1.0), (1.2, 0.75, 0.8)),
+        ),
+    )
+    found = furnish(script(("touch", "cabinet", "bedroom"), ("liedown", "bed", "bedroom")), index(), given=[room])
+    assert [place.object_id for place in found.places] == ["0/table", "0/bed"]
+    assert ("cabinet", "dining table", "affordance") in found.matches[0].substitutions
+    assert "cabinet" not in found.matches[0].missing
+
+
+def test_a_users_chair_that_nobody_can_get_to_is_not_used() -> None:
+    corner = Placed("corner", "dining_chair", (0.3, 0.0, 0.3), (0.45, 0.9, 0.5))
+    guard = [
+        Placed("east", "wardrobe", (0.95, 0.0, 0.6), (1.2, 2.0, 0.6), 1.5707963),
+        Placed("south", "wardrobe", (0.6, 0.0, 1.5), (1.2, 2.0, 0.6)),
+    ]
+    free = Placed("free", "dining_chair", (3.0, 0.0, 3.0), (0.45, 0.9, 0.5))
+    room = Layout("mine", "bedroom", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)), objects=(corner, *guard, free))
+    found = furnish(script(("sitdown", "chair", "bedroom")), index(), given=[room])
+    assert found.places[0].object_id == "0/free"
+
+
+TABLE = Placed("table", "dining_table", (2.0, 0.0, 2.0), (1.6, 0.76, 0.9))
+UNDER = Placed("under", "dining_chair", (2.0, 0.0, 2.5), (0.47, 0.87, 0.54), pi)
+DINING = Layout(
+    "mine", "dining_room", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)), objects=(TABLE, UNDER), source="user"
+)
+
+
+def test_a_chair_pushed_under_a_table_is_pulled_out_and_that_is_said() -> None:
+    found = furnish(script(("sitdown", "chair", "dining_room")), index(), given=[DINING])
+    (pull,) = found.matches[0].pulls
+    assert found.places[0].object_id == "0/under"
+    assert found.home.object("0/under").position == pull.end != UNDER.position
+    assert found.home.object("0/table").position == TABLE.position
+    assert f"dining chair under pulled out by {pull.distance:.2f} m" in found.explain()[0]
+    (told,) = found.rooms_to_dicts()[0]["pulled_out"]
+    assert told["object_id"] == "under"
+    assert told["from"] == {"position": list(UNDER.position), "yaw": UNDER.yaw}
+    shown = HomeShown.model_validate({"rooms": found.rooms_to_dicts()})
+    assert shown.model_dump(mode="json", by_alias=True)["rooms"] == found.rooms_to_dicts()
+    assert serialization.furnished_from_dict(
+        json.loads(json.dumps(serialization.furnished_to_dict(found)))
+    ).matches == (found.matches)
+
+
+def test_nothing_is_pulled_out_where_another_chair_is_free_or_nobody_sits() -> None:
+    free = Placed("free", "dining_chair", (0.6, 0.0, 3.0), (0.45, 0.9, 0.5))
+    room = replace(DINING, objects=(*DINING.objects, free))
+    assert furnish(script(("sitdown", "chair", "dining_room")), index(), given=[room]).matches[0].pulls == ()
+    assert furnish(script(("touch", "table", "dining_room")), index(), given=[DINING]).matches[0].pulls == ()
+
+
+def test_the_second_of_two_chairs_minds_where_the_first_was_pulled_to() -> None:
+    other = replace(UNDER, id="other", position=(2.0, 0.0, 1.5), yaw=0.0)
+    room = replace(DINING, objects=(*DINING.objects, other))
+    both = script(("sitdown", "chair", "dining_room"), ("sitdown", "chair 2", "dining_room"))
+    found = furnish(both, index(), given=[room])
+    assert {place.object_id for place in found.places} == {"0/under", "0/other"}
+    assert {pull.object_id for pull in found.matches[0].pulls} == {"under", "other"}
+    assert not [problem for problem in validate(found.home.rooms[0].layout) if "chair" in problem]
+
+
+def test_where_nothing_else_serves_a_body_sits_and_lies_on_the_floor_and_that_is_said() -> None:
+    bare = Layout("bare", "bedroom", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)))
+    found = furnish(script(("loco", "bed", "bedroom"), ("liedown", "bed", "bedroom")), index(), given=[bare])
+    assert [place.object_id for place in found.places] == [None, None]
+    assert found.matches[0].substitutions == (("bed", "floor", "affordance"),)
+    assert found.matches[0].missing == ()
+
+
+def test_what_nothing_can_stand_for_is_an_error_that_names_it() -> None:
+    empty = Layout("bare", "bedroom", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)))
+    with pytest.raises(FurnishError, match="no wardrobe to touch"):
+        furnish(script(("touch", "wardrobe", "bedroom")), index(), given=[empty])
+
+
+@pytest.mark.parametrize("rooms", [["cellar"], ["bedroom"] * 5])
+def test_rooms_that_are_not_there_are_refused(rooms: list[str]) -> None:
+    with pytest.raises(FurnishError, match="rooms"):
+        furnish(DAY, index(), rooms=rooms)
+
+
+def test_the_same_seed_furnishes_alike_and_seeds_vary() -> None:
+    first, again = furnish(DAY, index(), seed=3), furnish(DAY, index(), seed=3)
+    assert first.home == again.home
+    assert first.places == again.places
+    homes = {tuple(m.layout_id for m in furnish(DAY, index(), seed=seed).matches) for seed in range(12)}
+    assert len(homes) > 1
+
+
+def test_a_script_on_the_floor_alone_still_gets_a_room() -> None:
+    found = furnish(script(("loco", "floor", "study")), index())
+    assert len(found.home.rooms) == 1
+    assert found.places[0].object_id is None

@@ -1,0 +1,183 @@
+"""Keyframes become actions that can be done: spots that can be walked to, hands, heights, and ends for every walk."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from motion_backend.motion import Skill
+from planner_service.grounding.keyframes_to_actions import Place, UnreachableError, act, can_stand, height_of
+from planner_service.scripts.script import Keyframe
+from scene_graphs.affordances.affordances import spots
+from scene_graphs.home import Home, home_from_layouts
+from scene_graphs.layout import Layout, Placed
+from scene_graphs.navigation.path_planner import Walkable
+
+ROOM = Layout(
+    "room",
+    "living_room",
+    ((0.0, 0.0), (0.0, 5.0), (6.0, 5.0), (6.0, 0.0)),
+    objects=(
+        Placed("sofa", "multi_seat_sofa", (5.4, 0.0, 2.5), (2.3, 0.85, 0.95), -np.pi / 2),
+        Placed("shelf", "bookshelf", (3.2, 0.0, 0.2), (0.9, 1.9, 0.35), 0.0),
+        Placed("stool", "stool", (1.0, 0.0, 4.0), (0.45, 0.45, 0.4), 0.0),
+    ),
+)
+HOME = home_from_layouts([ROOM], 0)
+WALKABLE = Walkable(HOME)
+
+
+def keyframe(skill: str, caption: str = "x", furniture: str = "floor") -> Keyframe:
+    return Keyframe(skill=Skill(skill), caption=caption, furniture=furniture, emotion="neutral")
+
+
+def grounded(*rows: tuple[str, str, str | None], home: Home = HOME, seed: int = 0):  # type: ignore[no-untyped-def]
+    keyframes = [keyframe(skill, caption, object_id or "floor") for skill, caption, object_id in rows]
+    places = [Place(0, f"0/{object_id}" if object_id else None) for _, _, object_id in rows]
+    return act(keyframes, places, home, seed)
+
+
+def test_a_walk_ends_where_the_next_contact_with_the_same_thing_begins() -> None:
+    walk, sit = grounded(("loco", "walk", "sofa"), ("sitdown", "sit", "sofa"))
+    assert sit.spot is not None
+    assert (walk.goal, walk.facing) == (sit.spot.standing, sit.spot.approach)
+
+
+def test_a_walk_to_a_thing_nobody_uses_ends_beside_it() -> None:
+    (walk,) = grounded(("loco", "walk", "shelf"))
+    shelf = HOME.object("0/shelf")
+    assert walk.goal is not None
+    assert np.hypot(walk.goal[0] - shelf.position[0], walk.goal[1] - shelf.position[2]) < 1.2
+
+
+def test_nothing_is_touched_through_a_wall() -> None:
+    """Cabinets stand with their backs to every wall: behind some of them is free floor of the other room."""
+    cabinets = tuple(
+        Placed(
+            f"cabinet_{number}",
+            "cabinet",
+            (2.0 + 1.82 * np.sin(yaw) + x, 0.0, 2.0 + 1.82 * np.cos(yaw) + z),
+            (0.6, 1.2, 0.34),
+            yaw + np.pi,
+        )
+        for number, (yaw, x, z) in enumerate(
+            [(0.0, 1.2, 0.0), (np.pi / 2, 0.0, 1.2), (np.pi, 1.2, 0.0), (-np.pi / 2, 0.0, 1.2)]
+        )
+    )
+    room = Layout("one", "study", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)), objects=cabinets)
+    home = home_from_layouts([room, replace(room, id="two")], 0)
+    walkable = Walkable(home)
+    start = walkable.random_point(np.random.default_rng(0), 0)
+    beside = [(placed, spot) for placed in home.objects for spot in spots(placed, "touch")]
+    through = [placed.id for placed, spot in beside if home.room_at(spot.standing) not in (None, int(placed.id[0]))]
+    assert through
+    for placed, spot in beside:
+        if can_stand(walkable, start, spot):
+            assert home.room_at(spot.standing) == int(placed.id[0])
+    assert {placed.id for placed, spot in beside if can_stand(walkable, start, spot)} == {p.id for p in home.objects}
+
+
+def test_wandering_goes_some_way_and_stays_on_free_floor() -> None:
+    first, second = grounded(("loco", "walk", None), ("loco", "walk", None))
+    assert first.goal is not None
+    assert second.goal is not None
+    assert WALKABLE.is_free(first.goal)
+    assert WALKABLE.is_free(second.goal)
+    assert np.hypot(first.goal[0] - second.goal[0], first.goal[1] - second.goal[1]) > 1.0
+
+
+@pytest.mark.parametrize("skill", ["sitdown", "liedown"])
+def test_the_floor_can_be_sat_and_lain_on_where_there_is_room(skill: str) -> None:
+    (action,) = grounded((skill, "x", None))
+    assert action.spot is not None
+    assert action.spot.point[1] == 0
+    assert WALKABLE.clearance((action.spot.point[0], action.spot.point[2])) > 0.3
+
+
+def test_nothing_can_be_touched_in_the_air() -> None:
+    with pytest.raises(UnreachableError, match="keyframe 0"):
+        grounded(("touch", "touch medium height", None))
+
+
+def test_a_bed_walled_in_by_cupboards_is_refused_by_name() -> None:
+    bed = Placed("bed", "single_bed", (0.6, 0.0, 1.0), (1.1, 0.5, 2.0), 0.0)
+    beside = Placed("beside", "wardrobe", (1.5, 0.0, 1.3), (2.6, 2.0, 0.6), np.pi / 2)
+    below = Placed("below", "wardrobe", (0.6, 0.0, 2.35), (1.2, 2.0, 0.6), 0.0)
+    home = home_from_layouts([Layout("full", "bedroom", ROOM.floor_polygon, objects=(bed, beside, below))], 0)
+    with pytest.raises(UnreachableError, match="0/bed"):
+        grounded(("liedown", "lie", "bed"), home=home)
+
+
+@pytest.mark.parametrize(
+    ("caption", "height"),
+    [
+        ("An act of reaching high", "high"),
+        ("touch medium height with the left hand", "medium"),
+        ("Low touch from a prone position", "low"),
+        ("touch", "medium"),
+    ],
+)
+def test_the_caption_says_how_high_to_touch(caption: str, height: str) -> None:
+    assert height_of(caption) == height
+    (action,) = grounded(("touch", caption, "shelf"))
+    assert action.spot is not None
+    assert action.spot.height == height
+
+
+def test_the_caption_names_the_hand() -> None:
+    left, right = grounded(("touch", "touch with the left hand", "shelf"), ("touch", "touch medium height", "shelf"))
+    assert (left.hand, right.hand) == ("left", "right")
+
+
+def test_rising_knows_what_was_rested_on() -> None:
+    sit, rise = grounded(("sitdown", "sit", "stool"), ("standup", "stand up", "stool"))
+    assert rise.spot == sit.spot
+
+
+def test_the_same_seed_grounds_alike() -> None:
+    rows = (("loco", "walk", None), ("touch", "touch", "shelf"), ("liedown", "lie", None))
+    assert grounded(*rows, seed=5) == grounded(*rows, seed=5)
+
+
+@pytest.mark.parametrize("caption", ["stand still", "wave with the right hand", "standing there, waving"])
+def test_who_stands_still_or_waves_goes_nowhere(caption: str) -> None:
+    _, stay = grounded(("touch", "touch", "shelf"), ("loco", caption, None))
+    assert (stay.goal, stay.facing) == (None, None)
+    (towards,) = grounded(("loco", caption, "shelf"))
+    assert towards.goal is not None
+    (walk,) = grounded(("loco", "walk waving", None))
+    assert walk.goal is not None
+
+
+@pytest.mark.parametrize(("side", "sign"), [("left", 1), ("right", -1)])
+@pytest.mark.parametrize(
+    "before", [("touch", "touch", "shelf"), ("sitdown", "sit", "sofa"), ("liedown", "lie", "sofa")]
+)
+def test_front_left_and_right_are_seen_from_the_body(before: tuple[str, str, str], side: str, sign: int) -> None:
+    start, still, walk = grounded(before, ("loco", "stand still", None), ("loco", f"walk to the front {side}", None))
+    assert start.spot is not None
+    assert still.goal is None
+    assert walk.goal is not None
+    way = np.subtract(walk.goal, start.spot.standing)
+    looks = start.spot.approach if before[0] == "liedown" else start.spot.facing
+    turn = (np.arctan2(way[0], way[1]) - looks + np.pi) % (2 * np.pi) - np.pi
+    if before[0] != "touch":  # before the shelf there is no room ahead: any walk will do
+        assert 0.4 < sign * turn < 1.3
+    assert WALKABLE.is_free(walk.goal)
+
+
+def test_a_second_walk_to_the_front_goes_on_from_where_the_first_came_to() -> None:
+    _, first, second = grounded(
+        ("sitdown", "sit", "sofa"), ("loco", "walk to the front left", None), ("loco", "walk to the front right", None)
+    )
+    assert first.goal is not None
+    assert second.goal is not None
+    assert first.goal != second.goal
+
+
+def test_the_free_hand_touches_while_the_other_holds_the_phone() -> None:
+    phone = "walk while talking on the phone with the right hand"
+    _, touch = grounded(("loco", phone, "shelf"), ("touch", "touch medium height", "shelf"))
+    assert touch.hand == "left"

@@ -1,0 +1,96 @@
+"""Words the body does not know are acted by the nearest known caption, and what is told keeps them."""
+
+from __future__ import annotations
+
+import pytest
+
+from motion_backend.language.sentence_encoder import HashingEncoder
+from motion_backend.motion import Skill
+from motion_backend.procedural.caption_coverage import understands
+from planner_service.output.story_files import report_to_dict, story_to_markdown
+from planner_service.pipeline import StoryRequest, Studio
+from planner_service.scripts.caption_fallbacks import hashed_words, performed_as
+from planner_service.scripts.captions import Vocabulary, captions, synonyms
+from planner_service.scripts.script import Keyframe
+
+KNOWN = [(Skill(skill), caption) for skill, some in captions().items() for caption in some]
+
+
+def nobody() -> Vocabulary:
+    raise AssertionError("the known captions were asked for")
+
+
+def acted(skill: Skill, caption: str, emotion: str = "neutral") -> str:
+    return performed_as(skill, caption, emotion, hashed_words)
+
+
+def test_known_captions_are_acted_as_they_are() -> None:
+    assert all(performed_as(skill, caption, "neutral", nobody) == caption for skill, caption in KNOWN)
+
+
+@pytest.mark.parametrize(
+    ("skill", "caption"),
+    [
+        (Skill.LOCO, "walk to the sofa"),
+        (Skill.SITDOWN, "sit down on the coffee table"),
+        (Skill.SITDOWN, "huddled with head bowed"),
+        (Skill.LIEDOWN, "lies down, knees bent"),
+        (Skill.TOUCH, "reach for the lamp"),
+        (Skill.STANDUP, "stands up with a groan"),
+    ],
+)
+def test_words_that_the_body_knows_are_its_own(skill: Skill, caption: str) -> None:
+    assert understands(skill, caption)
+    assert performed_as(skill, caption, "neutral", nobody) == caption
+
+
+def test_other_words_for_a_known_caption_are_acted_as_it() -> None:
+    others = [
+        (Skill(skill), known, other)
+        for skill, by_caption in synonyms().items()
+        for known, some in by_caption.items()
+        for other in some
+    ]
+    assert {acted(skill, other) for skill, known, other in others} - {other for *_, other in others} <= {
+        caption for _, caption in KNOWN
+    }
+    unread = [(known, acted(skill, other)) for skill, known, other in others if not understands(skill, other)]
+    assert len(unread) > 50
+    assert all(known == found for known, found in unread)
+
+
+def test_words_near_to_nothing_are_acted_as_the_mood_usually_is() -> None:
+    assert acted(Skill.LOCO, "xyzzy", "sad") == "walk with depression"
+    assert acted(Skill.SITDOWN, "xyzzy", "angry") == "crossing arms"
+
+
+def test_the_report_says_what_stood_in_and_the_story_keeps_its_words(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("planner_service.scripts.script_library.load_by_heart", lambda _: HashingEncoder())
+    words = "plodding like a ghost"
+    lines = (
+        Keyframe(skill=Skill.LOCO, emotion="sad", caption=words, furniture="chair"),
+        Keyframe(skill=Skill.SITDOWN, emotion="sad", caption="sitting with head bowed", furniture="chair"),
+    )
+    story = Studio().make(StoryRequest("", keyframes=lines))
+    assert story.planned.script.keyframes[0].caption == words
+    walk, sitting = report_to_dict(story)["keyframes"]
+    assert walk["performed_as"] == story.actions[0].caption
+    assert walk["performed_as"] in captions()["loco"]
+    assert sitting["performed_as"] is None
+    assert walk["phases"][0] == {"part": "walk", "start": 0, "stop": walk["phases"][0]["stop"]}
+    assert sitting["phases"][-1]["stop"] == len(story.motion)
+    assert walk["notes"] == sitting["notes"] == []
+
+
+def test_the_report_of_a_story_says_what_was_done_otherwise(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("planner_service.scripts.script_library.load_by_heart", lambda _: HashingEncoder())
+    lines = (
+        Keyframe(skill=Skill.LOCO, emotion="neutral", caption="smoothly forward walk", furniture="bed"),
+        Keyframe(
+            skill=Skill.SITDOWN, emotion="neutral", caption="leaning forward, forearms on the table", furniture="bed"
+        ),
+    )
+    story = Studio().make(StoryRequest("", keyframes=lines))
+    said = "no table before the seat: each hand on its knee"
+    assert [row["notes"] for row in report_to_dict(story)["keyframes"]] == [[], [said]]
+    assert f"keyframe 1: {said}" in story_to_markdown(story)

@@ -1,0 +1,51 @@
+"""Who a theme is about."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from motion_backend.motion import Character
+from planner_service.pipeline import StoryRequest
+from planner_service.themes.protagonist import cast_by
+
+
+@pytest.mark.parametrize(
+    ("theme", "name", "pronouns"),
+    [
+        ("Anna comes home and sleeps.", "Anna", "she"),
+        ("On Monday Zofia comes home with her cat.", "Zofia", "she"),
+        ("Late at night Karim writes a letter.", "Karim", "they"),
+        ("His boss calls and Paul worries.", "Paul", "he"),
+        ("She reads a book.", "Sam", "she"),
+        ("A man argues with his sister; she cries.", "Sam", "he"),
+        ("The old woman waters the plants.", "Sam", "she"),
+        ("A person is told that he fails.", "Sam", "he"),
+        ("After a quarrel with her boss she comes home.", "Sam", "she"),
+        ("A person relaxes at home.", "Sam", "they"),
+        ("Thunder rolls over the house.", "Sam", "they"),
+        ("Later Christmas comes.", "Sam", "they"),
+        ("Dinner burns.", "Sam", "they"),
+        ("Zora waters the plants.", "Zora", "they"),
+        ("Yara cannot sleep.", "Yara", "they"),
+        ("Maria cannot find her glasses.", "Maria", "she"),
+        ("Late for work, Ben gulps down his coffee.", "Ben", "he"),
+        ("Nobody calls.", "Sam", "they"),
+        ("Guests arrive.", "Sam", "they"),
+        ("Happiness is a warm bed.", "Sam", "they"),
+    ],
+)
+def test_the_theme_names_its_person(theme: str, name: str, pronouns: str) -> None:
+    assert cast_by(theme, Character(height=1.8)) == Character(name, pronouns, 1.8)
+
+
+@given(st.text(max_size=80), st.sampled_from(["Ada", "Tom", "Noor"]), st.sampled_from(["he", "she", "they"]))
+def test_a_character_that_somebody_chose_stays(theme: str, name: str, pronouns: str) -> None:
+    chosen = Character(name, pronouns, 1.6)
+    assert cast_by(theme, chosen) == chosen
+
+
+def test_a_request_acts_with_the_person_of_its_theme() -> None:
+    assert StoryRequest("Anna comes home.").character == Character("Anna", "she")
+    assert StoryRequest("Anna comes home.", character=Character("Bo", "he")).character == Character("Bo", "he")

@@ -1,0 +1,101 @@
+"""Rectangles, empty rooms and the furnishing of them."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scene_graphs.affordances.room_validation import solids_overlap
+from scene_graphs.generation import furniture_groups
+from scene_graphs.generation.furniture_placement import Arrangement, Group, Item
+from scene_graphs.generation.room_shell import MIN_WING_WIDTH, Rectangle, Shell, build_shell, rectangle
+from scene_graphs.layout import Placed
+
+places = st.tuples(st.floats(-2, 2), st.floats(-2, 2))
+rectangles = st.builds(rectangle, places, st.floats(0.1, 3), st.floats(0.1, 3), st.floats(-pi, pi))
+shells = st.builds(
+    lambda seed, area, bent: build_shell(np.random.default_rng(seed), area, bent),
+    st.integers(0, 10_000),
+    st.floats(8, 50),
+    st.booleans(),
+)
+
+
+def polygon(piece: Rectangle) -> shapely.Polygon:
+    return shapely.Polygon(piece.corners)
+
+
+@given(rectangles, rectangles)
+def test_two_rectangles_meet_if_and_only_if_their_polygons_share_floor(a: Rectangle, b: Rectangle) -> None:
+    shared = polygon(a).intersection(polygon(b)).area
+    if shared > 1e-6:
+        assert a.meets(b)
+    if polygon(a).distance(polygon(b)) > 1e-6:
+        assert not a.meets(b)
+    assert a.meets(b) == b.meets(a)
+
+
+@given(rectangles, rectangles, st.floats(0.01, 1))
+def test_what_is_nearer_than_a_gap_is_never_let_through(a: Rectangle, b: Rectangle, gap: float) -> None:
+    if polygon(a).distance(polygon(b)) < gap - 1e-6:
+        assert a.meets(b, gap)
+
+
+@given(shells, rectangles)
+def test_a_room_holds_what_lies_inside_its_outline(shell: Shell, piece: Rectangle) -> None:
+    room = shapely.Polygon(shell.outline)
+    if room.contains(polygon(piece)):
+        assert shell.holds(piece)
+    if polygon(piece).difference(room.buffer(0.01, join_style="mitre")).area > 1e-6:
+        assert not shell.holds(piece)
+
+
+@given(shells)
+def test_walls_face_into_the_room_and_run_from_corner_to_corner(shell: Shell) -> None:
+    room = shapely.Polygon(shell.outline)
+    assert not room.exterior.is_ccw
+    for index, side in enumerate(shell.sides):
+        assert room.contains(shapely.Point(side.at(0.0, 0.1)))
+        assert side.at(side.length / 2, 0.0) == pytest.approx(shell.outline[index])
+        assert room.buffer(1e-6).covers(shapely.LineString([side.at(0.0, 0.0), side.at(0.0, side.reach)]))
+        assert not room.buffer(-1e-6).contains(shapely.Point(side.at(0.0, side.reach + 0.1)))
+        for sign, closed in zip((-1, 1), side.corners, strict=True):
+            assert room.contains(shapely.Point(side.at(sign * (side.length / 2 + 0.1), 0.1))) != closed
+    for opening in (*shell.door_openings(), *shell.window_openings()):
+        assert room.exterior.distance(shapely.LineString(opening.segment)) < 2e-3
+    assert shell.doors
+
+
+@given(shells)
+def test_no_wing_of_a_room_is_too_narrow(shell: Shell) -> None:
+    for cell in shell.outside:
+        for wall, cut in ((shell.floor.half_width, cell.half_width), (shell.floor.half_depth, cell.half_depth)):
+            assert 2 * (wall - cut) >= MIN_WING_WIDTH - 1e-6
+
+
+@given(st.integers(0, 10_000), st.sampled_from([2, 3, 4, 5, 6]))
+def test_chairs_at_a_table_stand_apart(seed: int, seats: int) -> None:
+    items = furniture_groups.dining(np.random.default_rng(seed), seats).items
+    placed = [
+        Placed(str(i), item.category, (item.x, item.y, item.z), item.size, item.yaw) for i, item in enumerate(items)
+    ]
+    assert sum(item.category == "dining_chair" for item in items) == seats
+    assert not any(solids_overlap(a, b) for i, a in enumerate(placed[:-1]) for b in placed[i + 1 : -1])
+
+
+def test_nothing_is_put_on_something_nor_before_a_door() -> None:
+    shell = Shell(((-2.0, -2.0), (-2.0, 2.0), (2.0, 2.0), (2.0, -2.0)), 2.6, doors=((0, 0.0),))
+    room = Arrangement(shell, np.random.default_rng(0))
+    box = Group((Item("cabinet", 0.0, 0.5, (1.0, 1.0, 1.0)),))
+    door = shell.sides[0]
+    assert not room.try_at(box, door.at(0.0, 0.0), door.yaw)
+    assert room.try_at(box, (0.0, -0.5), 0.0)
+    assert not room.try_at(box, (0.9, -0.5), 0.0)
+    assert room.try_at(box, (0.0, 0.6), 0.0)
+    assert not room.try_at(box, (0.0, 1.6), 0.0)
+    assert [placed.id for placed in room.placed] == ["cabinet_1", "cabinet_2"]
