@@ -53,7 +53,8 @@ class SceneHeights:
     """How high everything in a home is, on cells of 2 cm, computed once and then looked up.
 
     Solid parts that begin below a walker's head count (`MAX_OBSTACLE_HEIGHT`), what a body sinks into does not. Cells
-    outside the rooms and their doorways are as high as the highest room. ValueError if the home has too many cells of that size.
+    outside the rooms and their doorways are as high as the highest room. ValueError if the home has too many cells of
+    that size.
     """
 
     def __init__(self, home: Home, cell: float = CELL) -> None:
