@@ -50,7 +50,3 @@ def main() -> None:
     except USER_ERRORS as error:
         print(f"sims: {explain(error)}", file=sys.stderr)  # noqa: T201
         sys.exit(2)
-
-
-if __name__ == "__main__":
-    main()
