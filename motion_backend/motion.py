@@ -40,7 +40,7 @@ class Posture(StrEnum):
 
 
 class Part(StrEnum):
-    """What a segment is made of: the skill itself, and what had to be done for it first (transitions.py)."""
+    """What a segment is made of: the skill itself, and what had to be done for it first (state_machine.py)."""
 
     STAND = "stand"
     GETUP = "getup"

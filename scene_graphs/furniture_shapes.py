@@ -1,12 +1,7 @@
-"""Forms of what one sits or lies on: chairs, stools, sofas, beds.
+"""The parts of every category of furniture, scaled to a piece's box.
 
-Seats end where their back and arms begin, so a seat's own rectangle is free to sit on.
-
-The parts of every category of furniture, scaled to a piece's box.
-
-Forms of lamps, plants, screens and what hangs on walls.
-
-Forms of tables and storage: hollow tables with leg room, cupboards as solid boxes, shelves of boards.
+Seats end where their back and arms begin, so a seat's own rectangle is free to sit on. Tables are hollow and have leg
+room, cupboards are solid boxes, shelves are boards.
 """
 
 from __future__ import annotations

@@ -2,11 +2,7 @@
 
 Frame: right-handed, Y up, metres, radians. Yaw is about +Y, counter-clockwise seen from above, and 0 faces +Z.
 
-What stands in a room: furniture with its place, its front and its shape, and the openings of the walls.
-
-Frame: right-handed, Y up, metres, radians. Yaw is about +Y, counter-clockwise seen from above, and 0 faces +Z.
-
-The fields of a room's native JSON: pieces, their shapes, openings and outlines, read with a bound on everything.
+A room's native JSON, pieces, their shapes, openings and outlines, is read with a bound on everything.
 """
 
 from __future__ import annotations

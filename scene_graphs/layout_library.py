@@ -1,4 +1,4 @@
-"""The packed graphs of the rooms that are shipped: a search begins without making 400 graphs.
+"""The rooms that are shipped, and their packed graphs: a search begins without making 400 graphs.
 
 `python -m scene_graphs.layout_library` packs them again, once the rooms have changed.
 

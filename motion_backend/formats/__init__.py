@@ -1,7 +1,4 @@
-"""Files a motion can be written to and read from.
-
-Every format a motion can be had in, by name: the one table that files and HTTP answers share.
-"""
+"""Every format a motion can be written to, by name: the one table that files and HTTP answers share."""
 
 from __future__ import annotations
 

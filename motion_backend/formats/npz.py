@@ -1,4 +1,4 @@
-"""Motions as NPZ: every array exactly, with the skeleton, and the same bytes for the same motion.
+"""Motions as arrays: NPZ with every array exactly, AMASS's layout, and raw float32. The same bytes for the same motion.
 
 Motions as AMASS lays them out: rotation vectors a frame, Z up, in an npz that readers of AMASS open.
 

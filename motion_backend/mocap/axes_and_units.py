@@ -1,6 +1,6 @@
 """What a file does not say: which way is up, which way the body faces, and how long a unit is.
 
-Told by the body where its joints' names are known (mapping.py), else by its size; every guess is noted.
+Told by the body where its joints' names are known (joint_map.py), else by its size; every guess is noted.
 """
 
 from __future__ import annotations

@@ -85,7 +85,7 @@ class Clip:
     within ten degrees; of a skeleton whose joints' names are of no family its rest pose."""
     fps: float
     source: str
-    """The format it was read from: a key of `reading.FORMATS`."""
+    """The format it was read from: a key of `readers.FORMATS`."""
     notes: tuple[str, ...] = ()
     """Every conversion, guess and drop, in words."""
 

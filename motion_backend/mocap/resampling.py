@@ -1,8 +1,7 @@
 """Timelines: smoothing what a camera shook, and moving samples to another rate. Rotations are xyzw, (T, …, 4).
 
-Keys at any times, and what lies between them.
-
-Frames before a motion begins that are no part of it: T-poses put in front, and markers that were not yet found.
+Keys may lie at any times. Stray frames before a motion begins are no part of it: T-poses put in front, and markers
+that were not yet found.
 """
 
 from __future__ import annotations

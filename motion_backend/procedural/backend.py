@@ -1,7 +1,7 @@
 """The procedural backend: rules, styles and inverse kinematics behind `begin` and `advance`.
 
-It learns nothing and says so. What comes before what is decided in transitions.py; here a state wakes up, one action is
-performed, and the state that is left is put into plain lists again.
+It learns nothing and says so. What comes before what is decided in state_machine.py; here a state wakes up, one action
+is performed, and the state that is left is put into plain lists again.
 """
 
 from __future__ import annotations

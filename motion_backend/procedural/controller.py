@@ -1,4 +1,4 @@
-"""The state machine of SIMS 3.4: what each skill needs before it (transitions.py), then the skill itself."""
+"""The state machine of SIMS 3.4: what each skill needs before it (state_machine.py), then the skill itself."""
 
 from __future__ import annotations
 

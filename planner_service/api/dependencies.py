@@ -1,4 +1,4 @@
-"""What the service is made of, put together at its door and handed to every route.
+"""What routes are handed: the service's parts, parameters that are known, and bodies read as JSON.
 
 Query parameters that a call does not know are refused: `frm=0` must not quietly mean everything.
 

@@ -1,4 +1,4 @@
-"""The service itself: health, readiness, figures, logging in, and the page.
+"""The page, and the service itself: health, readiness, figures, logging in, ETags, lists in pages.
 
 The page at `/`: built from web/ into planner_service/page, or a note that says how to build it.
 

@@ -1,4 +1,4 @@
-"""What a user can do wrong, as one tuple of exceptions and one line of text; anything else is a fault of ours.
+"""What the command line prints: errors as one line, tables without lines.
 
 Tables as commands print them: no lines, bold headings, figures on the right; and cells from files of others.
 """

@@ -1,6 +1,6 @@
-"""`sims evaluate walks`: made walks beside recorded ones, feature by feature and as one distance.
+"""`sims evaluate planning|scripts|walks`: how well scripts are found, woven and acted, beside the limits.
 
-`sims evaluate`: how well our short scripts are found and woven, and how well the body acts, beside the limits.
+`sims evaluate walks`: made walks beside recorded ones, feature by feature and as one distance.
 
 `sims evaluate scripts`: whole scripts acted in the largest rooms, beside the paper's Table 2.
 """

@@ -51,7 +51,7 @@ class Method(Generic[P, T]):
 
 
 class Methods:
-    """Every call of the service; each is documented in calls.py."""
+    """Every call of the service; each is documented in requests.py."""
 
     tell = Method(requests.tell)
     act = Method(requests.act)

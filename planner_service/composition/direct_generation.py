@@ -27,7 +27,7 @@ _USUAL: Final = {Skill.LIEDOWN: "sofa", Skill.SITDOWN: "armchair", Skill.TOUCH: 
 def direct_by_rules(events: Sequence[Event]) -> tuple[PlannedKeyframe, ...]:
     """Each event walked in its mood and, where its words tell of one, done at one piece of furniture.
 
-    Not yet repaired: rising is left to `checking.repair`.
+    Not yet repaired: rising is left to `script_repair.repair`.
     """
     keyframes: list[PlannedKeyframe] = []
     for index, event in enumerate(events):

@@ -1,6 +1,6 @@
-"""How well one short script comes after others: rooms, mood, what must have been before, and no repetition.
+"""Which short script plays which event of a theme: what suits best and follows well, no script twice.
 
-Which short script plays which event of a theme: what suits best and follows well, no script twice.
+How well one comes after others: rooms, mood, what must have been before, and no repetition.
 """
 
 from __future__ import annotations

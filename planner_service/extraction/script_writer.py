@@ -1,6 +1,6 @@
-"""What a short script says of itself: a summary in the text's own words, told of "the character" now.
+"""A short script from what was read of it: mended, named, labelled with where it was found and who wrote it down.
 
-A short script from what was read of it: mended, named, labelled with where it was found and who wrote it down.
+Its summary is in the text's own words, told of "the character" now.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ _SMALL: Final = frozenset(_SMALL_WORDS.split())
 
 
 def summarise(clauses: Sequence[str], keyframes: Sequence[Keyframe], emotion: str, names: Collection[str] = ()) -> str:
-    """One or two sentences in the present about "the character", at most 400 letters, that `voice.retell` can tell.
+    """One or two sentences in the present about "the character", at most 400 letters, that can be told.
 
     `clauses` are without subjects ("slumped onto the couch"); those that cannot be told of one person alone are left
     out, and where none is left the keyframes are told plainly.

@@ -104,7 +104,7 @@ def told_from_dict(row: Json) -> Told:
 
 
 def action_from_dict(row: Json) -> Action:
-    """The inverse of `acting.action_to_dict`."""
+    """The inverse of `action_to_dict`."""
     spot = None
     if row["spot"] is not None:
         limits = {name: np.inf if value is None else value for name, value in row["spot"].items()}

@@ -15,15 +15,15 @@ class ModelError(RuntimeError):
 
     ModelError
     ├── InvalidAnswerError  it answered, and the answer does not fit what was asked
-    ├── ModelAnswerError    it was told what was wrong, and still did not answer well (asking.py)
-    ├── BudgetError         the story has spent what it may (budgets.py)
-    ├── ServerError         its server was not reached, refused, or sent what cannot be read (carrying.py)
-    └── RecordingError      a recording does not have the answer, or cannot be read (replaying.py)
+    ├── ModelAnswerError    it was told what was wrong, and still did not answer well (structured_output.py)
+    ├── BudgetError         the story has spent what it may (budget.py)
+    ├── ServerError         its server was not reached, refused, or sent what cannot be read (http_transport.py)
+    └── RecordingError      a recording does not have the answer, or cannot be read (replay_model.py)
     """
 
 
 class InvalidAnswerError(ModelError):
-    """One answer that does not fit; `asking.ask` tells the model why and asks again."""
+    """One answer that does not fit; `structured_output.ask` tells the model why and asks again."""
 
     def __init__(self, text: str, problems: Sequence[str]) -> None:
         super().__init__(f"the answer does not fit: {'; '.join(problems)}")

@@ -1,6 +1,6 @@
-"""What a body usually does with a skill in a mood, for keyframes whose caption nothing known is near to.
+"""The known caption that is acted for one whose words the body does not know; what is told stays as it is.
 
-The known caption that is acted for one whose words the body does not know; what is told stays as it is.
+Where nothing known is near, it is what a body usually does with that skill in that mood.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """A library of short scripts, and the sentence features by which one is found by its meaning (SIMS 3.2).
 
-What somebody looks for in a library, held against every script: meaning first, then feeling, room and furniture.
-
-Which short scripts of a library are meant: by emotion, room, furniture, source and licence.
+A query is held against every script: meaning first, then feeling, room and furniture; a selection names emotion, room,
+furniture, source and licence.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""One pass over a script that keeps track of the body, notes what it cannot do, and mends that (SIMS 3.4).
+"""Whether a body can act a script out, and the smallest changes after which it can: Valid and Executable.
 
-Whether a body can act a script out, and the smallest changes after which it can: Valid and Executable.
+One pass over a script keeps track of the body, notes what it cannot do, and mends that (SIMS 3.4).
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""What of every short script counts besides its meaning, as arrays that are made once a library.
+"""How well short scripts suit an event: nearness in meaning, raised or lowered by feeling, room and furniture.
 
-How well short scripts suit an event: nearness in meaning, raised or lowered by feeling, room and furniture.
+What of every short script counts besides its meaning are arrays (`Traits`) that are made once a library.
 """
 
 from __future__ import annotations

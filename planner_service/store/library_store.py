@@ -1,6 +1,4 @@
-"""One shelf: what is fixed and what users added, read from the database again when somebody changed it.
-
-Rows of the users' own short scripts and rooms: written once under an id, taken away, and read again when changed.
+"""Rows of the users' own short scripts and rooms: written once under an id, taken away, and read again when changed.
 
 Short scripts that are kept again under their ids, and what they were before.
 """

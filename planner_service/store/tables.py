@@ -110,7 +110,7 @@ revisions = Table(
 
 
 SCHEMA: Final = "dbos"
-"""Where DBOS keeps its tables on PostgreSQL; on SQLite they have plain names (engine.py translates)."""
+"""Where DBOS keeps its tables on PostgreSQL; on SQLite they have plain names (database.py translates)."""
 State = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 STATES: Final[dict[str, State]] = {
     "ENQUEUED": "queued",

@@ -1,4 +1,4 @@
-"""An instruction to steps to keyframes: the whole way of a task plan (LINGO appendix C).
+"""An instruction to steps to keyframes: the whole way of a task plan (LINGO appendix C), and routines.
 
 Instructions without end in a furnished home, as a task plan that a body can act (LINGO B.1.3).
 """

@@ -16,9 +16,9 @@ __all__ = ["Spot", "floor_spot", "spots"]
 def spots(placed: Placed, affordance: str) -> tuple[Spot, ...]:
     """Candidate spots of an object for "sit", "lie" or "touch", best first; empty where its shape offers none.
 
-    They are found on its seats, mattresses and tops, those of its form or those measured from its mesh (`shaping`): one
-    spot is a place on a surface with the height, the distance to its edge and to the backrest behind it, where to stand
-    before and how to approach. Spots look at the object alone: whether a standing point is free in a room is for the
+    They are found on its seats, mattresses and tops, those of its form or those measured from its mesh: one spot is a
+    place on a surface with the height, the distance to its edge and to the backrest behind it, where to stand before
+    and how to approach. Spots look at the object alone: whether a standing point is free in a room is for the
     caller to find.
     """
     makers = {"sit": sitting, "lie": lying, "touch": touching}

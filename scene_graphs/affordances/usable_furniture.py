@@ -1,6 +1,6 @@
-"""Pulling a chair out: where a table, or anything, blocks a seat, the least move after which it can be sat on.
+"""What of a room's furniture a body can really use, piece by piece, and what keeps it from the rest.
 
-What of a room's furniture a body can really use, piece by piece, and what keeps it from the rest.
+Where a table, or anything, blocks a seat, a chair is pulled out by the least move after which it can be sat on.
 """
 
 from __future__ import annotations

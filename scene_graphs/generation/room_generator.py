@@ -32,7 +32,7 @@ def generate_room(room_type: str, seed: int) -> Layout:
 
     Living rooms of odd seeds are living-dining rooms. What falls to a room follows real rooms (`arranging.recipes`)
     within every `arranging.luck.BLOCK` seeds. Nothing overlaps or blocks a door, and everything to sit, lie or touch
-    can be walked to from the door (`checking.validate` finds nothing). ValueError for another room type.
+    can be walked to from the door (`room_validation.validate` finds nothing). ValueError for another room type.
     """
     if room_type not in ROOM_TYPES:
         raise ValueError(f"room_type must be one of {', '.join(ROOM_TYPES)}, got {room_type!r}")

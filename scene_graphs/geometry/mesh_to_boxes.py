@@ -1,8 +1,8 @@
 """From a mesh to what a body can use: the seats, mattresses and tops of a piece, and few boxes for all the rest.
 
 The paper voxelises and segments meshes for surfaces to sit, lie and put hands on (SIMS 4.1). Here a mesh becomes cells
-(`voxelising`), what the piece is for is looked for on them (`flat_faces`), and every layer of what is left is covered
-with rectangles (`covering`).
+(`voxelization`), what the piece is for is looked for on them (`planar_faces`), and every layer of what is
+left is covered with rectangles.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 """Exact search for the cheapest way to find a query's furniture in a room: a query is put in order, laid out for a set
-of packed rooms, and searched for by `kernel`, depth first, branch and bound."""
+of packed rooms, and searched for by `branch_and_bound_kernel`, depth first, branch and bound."""
 
 from __future__ import annotations
 

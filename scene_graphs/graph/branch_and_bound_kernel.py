@@ -41,7 +41,7 @@ def compiled(function: _F) -> _F:
 
 
 class Rooms(NamedTuple):
-    """The arrays of `packing.PackedRooms`."""
+    """The arrays of `packed_graphs.PackedRooms`."""
 
     categories: NDArray[np.uint32]
     offers: Bytes
@@ -62,7 +62,7 @@ class Asked(NamedTuple):
     known: int
     """How many words are known."""
     level: Bytes
-    """How near a word of the room is: place in `vocabulary.LEVELS`. (nodes, codes)."""
+    """How near a word of the room is: place in `packed_graphs.LEVELS`. (nodes, codes)."""
     change: Ints
     """What mapping a node at each level changes the cost by. (nodes, levels)."""
     most_level: int

@@ -1,7 +1,7 @@
 """Plain 3D scenes, .glb and .obj: one room out of nodes that are named or labelled as furniture.
 
 Front of a piece: where its node is turned to. A file in which no node is turned has its turns baked into the points:
-then boxes are fitted, and the front is where the backrest is not, else the likeliest (`facing`).
+then boxes are fitted, and the front is where the backrest is not, else the likeliest (`front_direction`).
 
 The frame of a user's scene file: which axis is up, how long a unit is, and which way furniture faces in it.
 """

@@ -1,7 +1,4 @@
-"""What comes in from a scene file: rooms built piece by piece, and a report of what was kept, dropped and guessed.
-
-The report of a scene file that was read: what was kept, dropped and guessed, and why.
-"""
+"""What comes in from a scene file: rooms built piece by piece, and a report of what was kept, dropped and guessed."""
 
 from __future__ import annotations
 

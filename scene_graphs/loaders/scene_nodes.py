@@ -1,6 +1,5 @@
-"""Which nodes of a scene are furniture, which are the building, and which nobody can name.
-
-The tree of a scene file: named nodes with triangles, before anybody has asked which of them are furniture.
+"""The tree of a scene file: named nodes with triangles; which are furniture, which the building, and which nobody can
+name.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""How each role of each form is drawn: cushions with soft edges, doors with handles, shades, pots and leaves.
+"""Furniture and homes as meshes: the one door to what they look like.
 
-Furniture and homes as solids and as meshes: the one door to what things are made of and what they look like.
+Each role of each form is drawn its own way: cushions with soft edges, doors with handles, shades, pots and leaves.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 Each varies with the piece it belongs to and with nothing else, so a home always looks the same.
 
-Doors and drawers of storage, with gaps between them and handles on them.
+Doors and drawers of storage have gaps between them and handles on them.
 """
 
 from __future__ import annotations

@@ -1,9 +1,7 @@
-"""Where a body of one radius can stand in a room and which of those places hang together: what checking asks, fast.
+"""How far every place on the floor is from furniture and walls, and what of furniture is in a walker's way.
 
-`clearance` measures distances everywhere; this only compares them with a radius, so it looks at the cells around each
-obstacle alone.
-
-How far every place on the floor is from furniture and walls, and what of furniture is in a walker's way.
+Where a body of one radius can stand, and which of those places hang together, is asked more often: that only compares
+distances with a radius, so it looks at the cells around each obstacle alone.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Homes grown room by room: bounds for all of them at once, an exact search for those that can be among the best.
+"""The rooms that together have what a script needs: the best pair exactly, three and four rooms by a beam (SIMS 3.2).
 
-The rooms that together have what a script needs: the best pair exactly, three and four rooms by a beam (SIMS 3.2).
+Homes grow room by room: bounds for all of them at once, an exact search for those that can be among the best.
 
     cost(Q, R1 .. Rn) = d(Q -> R1 and .. and Rn side by side) + 50 * (n - 1)
 

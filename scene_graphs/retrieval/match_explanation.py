@@ -123,7 +123,7 @@ def explain(
 ) -> Explanation:
     """Explain a match of a query with a room, by the cost table that it was found with.
 
-    `room` is the graph that was searched: `LayoutIndex.graph`, or for several rooms `merging.side_by_side` of theirs.
+    `room` is the graph that was searched: `LayoutIndex.graph`, or for several rooms `merge.side_by_side` of theirs.
     ValueError if the costs do not add up to the distance, because the match is of another query or room.
     """
     table = costs or CostTable()

@@ -1,4 +1,6 @@
-"""AMP's skeleton motions: .npy files that hold one pickled dictionary, read without unpickling.
+"""DeepMimic's JSON and AMP's npy: two ways of the same body to keep motions.
+
+AMP's skeleton motions: .npy files that hold one pickled dictionary, read without unpickling.
 
 Z up, facing +X, left +Y, metres; local or world rotations xyzw of named joints.
 

@@ -1,4 +1,6 @@
-"""Kimodo archives (npz): where 30 joints are and how they are turned in the world. Y up, facing +Z, metres, 30 fps.
+"""AMASS, SMPL-X and Kimodo archives (npz): poses of SMPL's joints.
+
+Kimodo: where 30 joints are and how they are turned in the world. Y up, facing +Z, metres, 30 fps.
 
 AMASS and SMPL-X archives (npz): axis-angle poses and a path, without the body model.
 

@@ -1,6 +1,6 @@
 """Short scripts out of a film, subtitles or a text: what is quickly read is answered at once, the rest is queued.
 
-Extractions: follow one, fetch what it gave, stop it, forget it; extracting.py begins them.
+An extraction can be followed, what it gave fetched, and it can be stopped and forgotten.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Short scripts: the library, searched by meaning, and the users' own in it.
+"""Short and long scripts over HTTP: the library, searched by meaning, and planning alone.
 
 Long scripts: planning alone, a theme in and keyframes out.
 """
