@@ -12,8 +12,7 @@ from urllib.parse import quote
 
 import httpx
 
-from planner_service.client.responses import Extraction, Page, Story, page_of
-from scene_graphs.json_fields import Json
+from planner_service.client.responses import Extraction, Json, Page, Story, page_of
 
 if TYPE_CHECKING:
     from motion_backend.motion import Motion

@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-from scene_graphs.json_fields import Json
 
+Json = dict[str, Any]
+"""An object of JSON; the client is for those who have nothing else of us, so it takes no word from the engine."""
 T = TypeVar("T")
 LAST_STATES = frozenset({"succeeded", "failed", "cancelled"})
 

@@ -17,14 +17,14 @@ __all__ = ["FORMATS", "Imported", "Options", "Report", "Source", "read_scene"]
 
 Reader = Callable[[Source, Intake], list[Layout]]
 _READERS: Final = {
-    "native": "native:read_native",
+    "native": "layout_json:read_native",
     "3d-front": "front3d:read_front3d",
     "procthor": "procthor:read_procthor",
     "virtualhome": "virtualhome:read_virtualhome",
     "3dssg": "threedssg:read_3dssg",
     "scannet": "scannet:read_scannet",
-    "glb": "meshes:read_glb",
-    "obj": "meshes:read_obj",
+    "glb": "mesh_scene:read_glb",
+    "obj": "mesh_scene:read_obj",
 }
 FORMATS: Final = tuple(_READERS)
 
