@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-
 Json = dict[str, Any]
 """An object of JSON; the client is for those who have nothing else of us, so it takes no word from the engine."""
 T = TypeVar("T")
