@@ -19,7 +19,7 @@ TORCH_INDEX ?=
 export OMP_NUM_THREADS ?= 1
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help demo serve page test lint bench format dist image clean
+.PHONY: help demo serve page test lint bench format dist docs image clean
 
 help:
 	@echo "make demo    a theme becomes a film: writes $(OUT)/ (story, film.glb, motion, report, storyboard)"
@@ -28,6 +28,7 @@ help:
 	@echo "make test    the test suite"
 	@echo "make lint    ruff, mypy --strict, tsc"
 	@echo "make bench   speed and memory, printed beside their limits"
+	@echo "make docs    the documentation site with the API reference, in out/site"
 	@echo "make dist    a wheel and a source archive, with the page in them, in dist/"
 	@echo "make image   the Dockerfile's steps as a plain script, without a container engine"
 	@echo "make clean   removes what set-up and runs made"
@@ -87,6 +88,12 @@ bench: $(READY_DEV)
 dist: $(READY_DEV) page
 	@rm -rf dist
 	@$(BIN)/python -m hatchling build -d dist
+
+# Strict: a link that leads nowhere or a name that is not there fails it.
+docs: $(READY_DEV)
+	@$(BIN)/python -m pip install --quiet -e ".[docs]"
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
+	@echo "· out/site/index.html"
 
 image:
 	@$(PYTHON) docker/run_steps.py --build-arg TORCH_INDEX=$(TORCH_INDEX)

@@ -1,4 +1,4 @@
-"""The tree in architecture.md, read from the modules' own docstrings: `python docs/tree.py` writes it anew."""
+"""The rooms in architecture.md, read from the folders' own docstrings: `python docs/tree.py` writes them anew."""
 
 from __future__ import annotations
 
@@ -22,18 +22,16 @@ def phrase_of(path: Path) -> str:
 
 
 def lines() -> Iterator[str]:
-    """A title a package, then a line a module."""
+    """A line a folder: where it is and what it is for."""
+    yield "```"
     for package in PACKAGES:
-        yield f"### {package}"
-        yield "```"
-        for path in sorted((ROOT / package).rglob("*.py")):
-            name = path.relative_to(ROOT).as_posix()
-            yield f"{name:<{WIDTH}} {phrase_of(path)}"
-        yield "```"
+        for path in sorted((ROOT / package).rglob("__init__.py")):
+            yield f"{path.parent.relative_to(ROOT).as_posix() + '/':<{WIDTH}} {phrase_of(path)}"
+    yield "```"
 
 
 def main() -> None:
-    """Put the tree between its two marks."""
+    """Put the rooms between their two marks."""
     page = PAGE.read_text(encoding="utf-8")
     before, rest = page.split(BEGIN)
     after = rest.split(END)[1]

@@ -1,1 +1,1 @@
-"""Short and long scripts: keeping, finding, composing, checking and telling them."""
+"""Short and long scripts: what they are, the library, their words and what is mended in them (SIMS 3.2)."""

@@ -1,1 +1,1 @@
-"""Touching and what hands do."""
+"""Touching: reaching for a place, and what hands do there."""
