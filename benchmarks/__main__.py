@@ -21,7 +21,7 @@ from benchmarks.stories import file_figures, make_stories, quality_figures, spee
 from benchmarks.tables import figure_rows, markdown, plain, story_rows
 from benchmarks.weaving import weaving_figures
 from planner_service.library.library import Shelves
-from planner_service.pipeline import Studio
+from planner_service.pipeline import Pipeline
 
 
 def main() -> int:
@@ -31,8 +31,8 @@ def main() -> int:
     print(f"{machine}\n")
     figures = measure_demo()
     with tempfile.TemporaryDirectory(prefix="sims-bench-") as folder:
-        studio = Studio(Shelves(cache=Path(folder)))
-        made = make_stories(studio)
+        pipeline = Pipeline(Shelves(cache=Path(folder)))
+        made = make_stories(pipeline)
         figures += speed_figures(made)
         figures += skill_figures(made)
         figures += clip_figures(Path(folder))

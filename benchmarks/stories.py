@@ -16,7 +16,7 @@ from motion_backend.formats.glb_film import film_glb
 from motion_backend.metrics.story_metrics import summarise
 from planner_service.grounding.keyframes_to_actions import act
 from planner_service.output.storyboard import storyboard
-from planner_service.pipeline import Planned, Story, StoryRequest, Studio, judge, move
+from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, judge, move
 
 PLAN_MS, SPEED = 300.0, 100.0
 REACHED, CONTACT_CM, PEN_MEAN_CM, PEN_SHARE, SKATE = 95.0, 3.0, 2.0, 5.0, 5.0
@@ -54,14 +54,14 @@ def timed(work: Callable[[], T]) -> tuple[T, float]:
     return work(), time.perf_counter() - started
 
 
-def make_stories(studio: Studio) -> list[Timed]:
+def make_stories(pipeline: Pipeline) -> list[Timed]:
     """All seven stories; each is planned once untimed, so that every cache that a server would have is warm."""
-    return [_make(studio, name, StoryRequest(theme, seed=SEED)) for name, theme in THEMES.items()]
+    return [_make(pipeline, name, StoryRequest(theme, seed=SEED)) for name, theme in THEMES.items()]
 
 
-def _make(studio: Studio, name: str, request: StoryRequest) -> Timed:
-    planned: Planned = studio.plan(request)
-    plans = tuple(timed(lambda: studio.plan(request))[1] for _ in range(REPEATS))
+def _make(pipeline: Pipeline, name: str, request: StoryRequest) -> Timed:
+    planned: Planned = pipeline.plan(request)
+    plans = tuple(timed(lambda: pipeline.plan(request))[1] for _ in range(REPEATS))
     script, stage = planned.script, planned.stage
     actions, acted = timed(lambda: act(script.keyframes, stage.places, planned.home, request.seed))
     motions, moved = timed(lambda: move(planned.home, actions, request, silent))

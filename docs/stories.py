@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from motion_backend.motion import Character
-from planner_service.pipeline import Planned, StoryRequest, Studio
+from planner_service.pipeline import Pipeline, Planned, StoryRequest
 
 FOLDER = Path(__file__).resolve().parent / "examples"
 WIDTH = 100
@@ -81,9 +81,9 @@ EXAMPLES = (
 )
 
 
-def told(example: Example, studio: Studio) -> Planned:
+def told(example: Example, pipeline: Pipeline) -> Planned:
     """The story of an example, planned and told."""
-    return studio.plan(StoryRequest(example.theme, seed=example.seed, character=example.character))
+    return pipeline.plan(StoryRequest(example.theme, seed=example.seed, character=example.character))
 
 
 def page(example: Example, planned: Planned) -> str:
@@ -142,9 +142,9 @@ def index() -> str:
 def main() -> None:
     """Write every page, and remove none."""
     FOLDER.mkdir(exist_ok=True)
-    studio = Studio()
+    pipeline = Pipeline()
     for example in EXAMPLES:
-        (FOLDER / f"{example.file}.md").write_text(page(example, told(example, studio)), encoding="utf-8")
+        (FOLDER / f"{example.file}.md").write_text(page(example, told(example, pipeline)), encoding="utf-8")
     (FOLDER / "README.md").write_text(index(), encoding="utf-8")
 
 

@@ -129,7 +129,7 @@ class Story:
 
 
 @dataclass
-class Studio:
+class Pipeline:
     """What stories are made from: scripts, rooms, a language model if there is one. Heavy parts load on first use."""
 
     shelves: Shelves = field(default_factory=Shelves)
@@ -137,19 +137,19 @@ class Studio:
     insist: bool = False
     """Whether a story fails where its model does; else the rules take over."""
 
-    def for_story(self, seed: int) -> Studio:
-        """The same studio for one story, with a budget of its own for the model."""
+    def for_story(self, seed: int) -> Pipeline:
+        """The same pipeline for one story, with a budget of its own for the model."""
         return replace(self, model=for_story(self.model, seed))
 
     def plan(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Planned:
         """Theme to narrated story in a furnished home, without motion."""
-        studio = self.for_story(request.seed)
+        pipeline = self.for_story(request.seed)
         progress("plan", 0.0)
-        script = studio.script(request)
+        script = pipeline.script(request)
         progress("furnish", 0.0)
-        stage = studio.furnish(request, script)
+        stage = pipeline.furnish(request, script)
         progress("narrate", 0.0)
-        stage, told = studio.tell(request, stage)
+        stage, told = pipeline.tell(request, stage)
         return Planned(request, stage.script, stage, told)
 
     def script(self, request: StoryRequest) -> LongScript:

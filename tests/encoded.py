@@ -20,13 +20,13 @@ FOLDER = Path(os.environ.setdefault(NAME, f"{tempfile.gettempdir()}/sims-test-ca
 def encoded() -> Path:
     """A cache folder with all sentences of our library in it; of several who ask at once, one encodes them."""
     from planner_service.library.library import Shelves
-    from planner_service.pipeline import StoryRequest, Studio
+    from planner_service.pipeline import Pipeline, StoryRequest
 
     FOLDER.mkdir(parents=True, exist_ok=True)
     with (FOLDER / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not any(FOLDER.glob("sentences-*.npz")):
-            Studio(Shelves(cache=FOLDER)).plan(StoryRequest("A person sits on the sofa."))
+            Pipeline(Shelves(cache=FOLDER)).plan(StoryRequest("A person sits on the sofa."))
     return FOLDER
 
 

@@ -105,7 +105,7 @@ def test_the_python_of_the_readme_uses_names_that_exist() -> None:
     compile(snippet, "README.md", "exec")
     names: dict[str, object] = {}
     exec(imports, names)
-    assert "Studio" in names
+    assert "Pipeline" in names
 
 
 def test_the_pictures_are_small() -> None:

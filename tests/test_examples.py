@@ -10,7 +10,7 @@ import pytest
 from encoded import encoded
 
 from planner_service.library.library import Shelves
-from planner_service.pipeline import Studio
+from planner_service.pipeline import Pipeline
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs"
 stories = SimpleNamespace(**runpy.run_path(str(FOLDER / "stories.py")))
@@ -18,18 +18,18 @@ names = [example.file for example in stories.EXAMPLES]
 
 
 @pytest.fixture(scope="module")
-def studio() -> Studio:
-    studio = Studio(Shelves(cache=encoded()))
-    if studio.shelves.scripts().encoder.name == "hashing":
+def pipeline() -> Pipeline:
+    pipeline = Pipeline(Shelves(cache=encoded()))
+    if pipeline.shelves.scripts().encoder.name == "hashing":
         pytest.skip("all-MiniLM-L6-v2 is not installed")
-    return studio
+    return pipeline
 
 
 @pytest.mark.parametrize("number", [0, 4])
-def test_an_example_is_told_today_as_its_page_says(studio: Studio, number: int) -> None:
+def test_an_example_is_told_today_as_its_page_says(pipeline: Pipeline, number: int) -> None:
     example = stories.EXAMPLES[number]
     page = (FOLDER / "examples" / f"{example.file}.md").read_text(encoding="utf-8")
-    assert stories.page(example, stories.told(example, studio)) == page, "run python docs/stories.py"
+    assert stories.page(example, stories.told(example, pipeline)) == page, "run python docs/stories.py"
 
 
 def test_there_are_ten_examples_and_a_page_for_each() -> None:

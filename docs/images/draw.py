@@ -14,7 +14,7 @@ from planner_service.cli.layouts import graph_of_words
 from planner_service.evaluation.trials import Trial, perform
 from planner_service.output.room_pictures import Shown, picture
 from planner_service.output.storyboard import COLUMNS, GAP, HEAD, PLAN, SIDE, TEXT, storyboard
-from planner_service.pipeline import Story, StoryRequest, Studio
+from planner_service.pipeline import Pipeline, Story, StoryRequest
 from scene_graphs.plots.match_plot import draw_match
 from scene_graphs.retrieval.layout_index import LayoutIndex
 
@@ -44,10 +44,10 @@ COLORS = 200
 
 def main() -> None:
     """Make the demo's story and write the pictures."""
-    studio = Studio()
-    index = studio.shelves.layouts()
+    pipeline = Pipeline()
+    index = pipeline.shelves.layouts()
     with tempfile.TemporaryDirectory() as folder:
-        board = draw_board(studio.make(StoryRequest(THEME, seed=SEED)), Path(folder, "board.png"))
+        board = draw_board(pipeline.make(StoryRequest(THEME, seed=SEED)), Path(folder, "board.png"))
         picture(index.layout(PLAN_OF), Shown(), Path(folder, "plan.png"))
         draw_found(index, Path(folder, "match.png"))
         save(cut(board, SHOWN), HERE / "storyboard.png")

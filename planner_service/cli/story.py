@@ -14,7 +14,7 @@ from motion_backend.motion import Character
 from planner_service.cli.console import plain_table
 from planner_service.library.library import open_shelves
 from planner_service.llm.factory import load_model
-from planner_service.pipeline import STAGES, RequestError, Story, StoryRequest, Studio
+from planner_service.pipeline import STAGES, Pipeline, RequestError, Story, StoryRequest
 from planner_service.settings import read_settings
 from planner_service.themes.beats import clean
 from scene_graphs.furniture import ROOM_TYPES
@@ -57,11 +57,11 @@ def story(
 
     settings = read_settings()
     check_writable(out, FILES)
-    studio = Studio(open_shelves(settings), load_model(settings), settings.llm_on_failure == "error")
+    pipeline = Pipeline(open_shelves(settings), load_model(settings), settings.llm_on_failure == "error")
     request = StoryRequest(
         theme=clean(read_theme(theme)),
         rooms=() if rooms is None else read_rooms(rooms),
-        layouts=chosen_layouts(layout or [], studio.shelves),
+        layouts=chosen_layouts(layout or [], pipeline.shelves),
         seed=seed,
         backend=backend or settings.backend,
         character=Character(name, pronouns, height),
@@ -74,7 +74,7 @@ def story(
             before = sum(SHARES[s] for s in [*STAGES, "write"][: [*STAGES, "write"].index(stage)])
             bar.update(task, completed=before + share * SHARES[stage], description=TOLD[stage])
 
-        made = studio.make(request, show)
+        made = pipeline.make(request, show)
         show("write", 0.0)
         files = write_story(made, out)
         bar.update(task, completed=1.0, description="done")

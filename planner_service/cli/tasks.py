@@ -12,7 +12,7 @@ from rich.text import Text
 from planner_service.cli.console import plain_table
 from planner_service.library.library import Shelves, open_shelves
 from planner_service.llm.factory import load_model
-from planner_service.pipeline import StoryRequest, Studio
+from planner_service.pipeline import Pipeline, StoryRequest
 from planner_service.settings import read_settings
 from planner_service.tasks.task_plan import TaskError, TaskPlan
 from planner_service.tasks.task_planner import plan_routine, plan_task
@@ -77,7 +77,7 @@ def _finish(plan: TaskPlan, room: Layout | None, out: Path | None, shelves: Shel
         raise TaskError("action: a body can act none of its steps, so nothing is written; see why above")
     layouts = () if room is None else (room,)
     request = StoryRequest(plan.action, layouts=layouts, keyframes=tuple(plan.keyframes), seed=plan.seed)
-    made = Studio(shelves).make(request)
+    made = Pipeline(shelves).make(request)
     files = write_story(made, out)
     report = made.report
     console.print(

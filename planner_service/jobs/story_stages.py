@@ -24,7 +24,7 @@ from planner_service.jobs import serialization
 from planner_service.jobs.serialization import summary_of_home, summary_of_script
 from planner_service.narration.narrator import Told
 from planner_service.output.story_files import report_to_dict
-from planner_service.pipeline import Planned, Story, StoryRequest, Studio, judge, load_backend
+from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, judge, load_backend
 from planner_service.scripts.script import LongScript
 from planner_service.store.story_store import Made, Stories
 from scene_graphs.json_fields import Json
@@ -44,10 +44,10 @@ class OpenStory:
 
     store: Stories
     id: str
-    house: Studio
+    house: Pipeline
 
     @cached_property
-    def studio(self) -> Studio:
+    def pipeline(self) -> Pipeline:
         """What it is made from, with a budget of its own."""
         return self.house.for_story(self.request.seed)
 
@@ -105,7 +105,7 @@ class Maker:
     """One worker's desk: where results go, what stories are made from, and the stories that lie open."""
 
     store: Stories
-    studio: Studio
+    pipeline: Pipeline
     worker: str
     open: OrderedDict[str, OpenStory] = field(default_factory=OrderedDict)
     backends: dict[str, Any] = field(default_factory=dict)
@@ -182,21 +182,21 @@ class Maker:
         self.open.pop(story_id, None)
 
     def _script(self, story: OpenStory) -> tuple[bytes, Json]:
-        script = story.studio.script(story.request)
+        script = story.pipeline.script(story.request)
         return _to_bytes(script.model_dump(mode="json")), summary_of_script(script)
 
     def _home(self, story: OpenStory) -> tuple[bytes, Json]:
-        stage = story.studio.furnish(story.request, story.script())
+        stage = story.pipeline.furnish(story.request, story.script())
         return _to_bytes(serialization.furnished_to_dict(stage)), summary_of_home(stage)
 
     def _told(self, story: OpenStory) -> tuple[bytes, Json]:
-        stage, told = story.studio.tell(story.request, story.stage)
+        stage, told = story.pipeline.tell(story.request, story.stage)
         row = serialization.told_to_dict(told) | {"repairs": list(stage.script.repairs)}
         return _to_bytes(row), row
 
     def _actions(self, story: OpenStory) -> tuple[bytes, Json]:
         stage = story.stage
-        actions = story.studio.act(story.request, stage)
+        actions = story.pipeline.act(story.request, stage)
         rows = [serialization.action_to_dict(action) for action in actions]
         return _to_bytes({"actions": rows}), {"count": len(actions), "objects": [a.object_id for a in actions]}
 
@@ -220,7 +220,7 @@ class Maker:
 
     def _opened(self, story_id: str) -> OpenStory:
         if story_id not in self.open:
-            self.open[story_id] = OpenStory(self.store, story_id, self.studio)
+            self.open[story_id] = OpenStory(self.store, story_id, self.pipeline)
         self.open.move_to_end(story_id)
         while len(self.open) > _OPEN:
             self.open.popitem(last=False)

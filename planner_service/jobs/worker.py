@@ -20,7 +20,7 @@ from planner_service.jobs.uploads import Uploads
 from planner_service.jobs.worker_lock import hold_name
 from planner_service.library.library import Shelves
 from planner_service.llm.factory import load_model
-from planner_service.pipeline import Studio
+from planner_service.pipeline import Pipeline
 from planner_service.settings import Settings
 from planner_service.store.database import database_url, open_engine
 from planner_service.store.story_store import Stories
@@ -53,13 +53,13 @@ def run_worker(settings: Settings, supervised: bool = False) -> None:
     url = database_url(settings)
     engine = open_engine(url)
     shelves = Shelves(engine, settings.cache_dir, settings.layouts)
-    studio = Studio(shelves, load_model(settings), settings.llm_on_failure == "error")
+    pipeline = Pipeline(shelves, load_model(settings), settings.llm_on_failure == "error")
     hold = hold_name(engine, settings)
-    warm_up(studio)
+    warm_up(pipeline)
     store, strict = Stories(engine), settings.llm_on_failure == "error"
     uploads, transcriber = Uploads(settings.uploads_dir), load_transcriber(settings)
-    reader = Reader(store, shelves, uploads, settings.worker_id, studio.model, transcriber, strict)
-    register(Maker(store, studio, settings.worker_id), reader)
+    reader = Reader(store, shelves, uploads, settings.worker_id, pipeline.model, transcriber, strict)
+    register(Maker(store, pipeline, settings.worker_id), reader)
     DBOS(
         config={
             "name": APPLICATION,
@@ -86,11 +86,11 @@ def run_worker(settings: Settings, supervised: bool = False) -> None:
     os._exit(0)
 
 
-def warm_up(studio: Studio) -> None:
+def warm_up(pipeline: Pipeline) -> None:
     """Load scripts, rooms, the compiled search and the encoder now, so that the first story does not wait for them."""
-    studio.shelves.layouts()
+    pipeline.shelves.layouts()
     compile_search()
-    studio.shelves.scripts().search("warm up", 1)
+    pipeline.shelves.scripts().search("warm up", 1)
 
 
 def _wait_for(engine: Engine, stop: threading.Event) -> bool:

@@ -19,7 +19,7 @@ from forking import Forked
 
 from planner_service.cli.console import USER_ERRORS
 from planner_service.library.library import Shelves, open_shelves
-from planner_service.pipeline import StoryRequest, Studio
+from planner_service.pipeline import Pipeline, StoryRequest
 from planner_service.scripts.script import ShortScript
 from planner_service.settings import read_settings
 from scene_graphs.generation.room_generator import generate_room
@@ -458,6 +458,6 @@ def test_furniture_of_another_kind_stands_in_and_this_is_said() -> None:
     seats = [placed for placed in given.objects if placed.category == "armchair"]
     changed = tuple(replace(placed, category="lounge_chair") if placed in seats else placed for placed in given.objects)
     request = StoryRequest("A person sits down on the armchair.", layouts=(replace(given, objects=changed),))
-    planned = Studio(Shelves(cache=encoded())).plan(request)
+    planned = Pipeline(Shelves(cache=encoded())).plan(request)
     assert "armchair → lounge chair (class)" in " ".join(planned.stage.explain())
     assert planned.stage.rooms_to_dicts()[0]["substitutions"]

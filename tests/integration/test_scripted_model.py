@@ -14,7 +14,7 @@ from planner_service.library.library import Shelves
 from planner_service.llm.protocol import ModelError
 from planner_service.llm.scripted_model import Answer, ScriptedModel
 from planner_service.output.story_files import write_story
-from planner_service.pipeline import Planned, StoryRequest, Studio
+from planner_service.pipeline import Pipeline, Planned, StoryRequest
 
 
 def answer_well(prompt: str, _schema: type[BaseModel]) -> Answer:
@@ -23,7 +23,7 @@ def answer_well(prompt: str, _schema: type[BaseModel]) -> Answer:
 
 
 def plan(model: ScriptedModel, cache: Path, **asked: object) -> Planned:
-    return Studio(Shelves(cache=cache), model=model).plan(StoryRequest(THEME, **asked))  # type: ignore[arg-type]
+    return Pipeline(Shelves(cache=cache), model=model).plan(StoryRequest(THEME, **asked))  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +46,7 @@ def test_a_model_finds_the_events_arranges_the_scripts_and_tells_the_story(cache
 
 def test_a_model_changes_what_is_played(cache: Path) -> None:
     by_model = plan(ScriptedModel(answer_well), cache)
-    by_rules = Studio(Shelves(cache=cache)).plan(StoryRequest(THEME))
+    by_rules = Pipeline(Shelves(cache=cache)).plan(StoryRequest(THEME))
     assert by_rules.script.planner == "rules"
     assert [r.script.id for r in by_model.script.short_scripts] != [r.script.id for r in by_rules.script.short_scripts]
 
@@ -71,7 +71,7 @@ def test_the_theme_and_the_character_reach_the_model(cache: Path) -> None:
 )
 def test_a_model_that_talks_nonsense_is_done_without_and_this_is_said(nonsense: str, cache: Path) -> None:
     planned = plan(ScriptedModel(lambda _prompt, _schema: nonsense), cache)
-    by_rules = Studio(Shelves(cache=cache)).plan(StoryRequest(THEME))
+    by_rules = Pipeline(Shelves(cache=cache)).plan(StoryRequest(THEME))
     assert planned.script.planner == "rules"
     assert planned.script.keyframes == by_rules.script.keyframes
     assert planned.told == by_rules.told
@@ -107,8 +107,8 @@ def test_a_model_may_write_the_keyframes_itself(cache: Path) -> None:
 
 
 def test_the_told_story_of_a_model_is_acted_out_and_filed(cache: Path, tmp_path: Path) -> None:
-    studio = Studio(Shelves(cache=cache), model=ScriptedModel(answer_well, name="scripted-a"))
-    made = studio.make(StoryRequest(THEME, seed=3))
+    pipeline = Pipeline(Shelves(cache=cache), model=ScriptedModel(answer_well, name="scripted-a"))
+    made = pipeline.make(StoryRequest(THEME, seed=3))
     write_story(made, tmp_path)
     assert "Planner: llm:scripted-a" in (tmp_path / "story.md").read_text(encoding="utf-8")
     assert '"planner": "llm:scripted-a"' in (tmp_path / "report.json").read_text(encoding="utf-8")
@@ -126,7 +126,7 @@ def test_a_story_on_the_floor_needs_no_furniture_and_is_filed(cache: Path, tmp_p
         return {"keyframes": keyframes} if schema.__name__ == "DirectScript" else answer_well(prompt, schema)
 
     request = StoryRequest("A tired person lies on the floor.", method="direct")
-    made = Studio(Shelves(cache=cache), model=ScriptedModel(answer)).make(request)
+    made = Pipeline(Shelves(cache=cache), model=ScriptedModel(answer)).make(request)
     assert [figure.reached for figure in made.figures] == [True] * len(made.figures)
     assert {action.object_id for action in made.actions} <= {None, "floor"}
     files = write_story(made, tmp_path)

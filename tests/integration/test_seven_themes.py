@@ -9,7 +9,7 @@ from themes import THEMES
 from motion_backend.language import minilm
 from motion_backend.motion import Skill
 from planner_service.library.library import Shelves
-from planner_service.pipeline import Story, StoryRequest, Studio
+from planner_service.pipeline import Pipeline, Story, StoryRequest
 
 pytestmark = pytest.mark.skipif(
     minilm.weights_folder() is None or not minilm.torch_is_installed(),
@@ -21,8 +21,8 @@ NAMES = [theme.name for theme in THEMES]
 
 @pytest.fixture(scope="module")
 def stories() -> dict[str, Story]:
-    studio = Studio(Shelves(cache=encoded()))
-    return {theme.name: studio.make(StoryRequest(theme.text, seed=SEED)) for theme in THEMES}
+    pipeline = Pipeline(Shelves(cache=encoded()))
+    return {theme.name: pipeline.make(StoryRequest(theme.text, seed=SEED)) for theme in THEMES}
 
 
 def total(stories: dict[str, Story], name: str, skills: tuple[Skill, ...] = tuple(Skill)) -> float:

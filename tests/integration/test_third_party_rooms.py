@@ -13,7 +13,7 @@ import pytest
 from encoded import encoded
 
 from planner_service.library.library import Shelves
-from planner_service.pipeline import StoryRequest, Studio
+from planner_service.pipeline import Pipeline, StoryRequest
 from scene_graphs.affordances.affordances import spots
 from scene_graphs.affordances.usable_furniture import count_uses
 from scene_graphs.furniture import affordances
@@ -74,11 +74,11 @@ def test_chairs_that_a_table_blocks_can_be_pulled_out() -> None:
 
 def test_stories_are_played_in_them_and_say_which_chairs_were_pulled_out() -> None:
     playable = [layout for layout in rooms() if layout.room_type in THEMES]
-    studio, keyframes, reached, said = Studio(Shelves(cache=encoded())), 0, 0, 0
+    pipeline, keyframes, reached, said = Pipeline(Shelves(cache=encoded())), 0, 0, 0
     sample = playable[:: len(playable) // 9]
     for layout in sample:
         request = StoryRequest(THEMES[layout.room_type], rooms=(layout.room_type,), layouts=(layout,), seed=1)
-        story = studio.make(request)
+        story = pipeline.make(request)
         keyframes += story.report["keyframes"]
         reached += story.report["reached"]
         said += any("pulled out" in line for line in story.planned.stage.explain())

@@ -27,7 +27,7 @@ from planner_service.api.scripts.schemas import (
 )
 from planner_service.api.web_page import Cursor, Limit, page_of, unchanging
 from planner_service.library.library import AbsentError, ChangedError, FixedError, FullError, TakenError, UnfitError
-from planner_service.pipeline import StoryRequest, Studio
+from planner_service.pipeline import Pipeline, StoryRequest
 from planner_service.scripts.script import MAX_PIECES, MAX_VERSIONS, LongScript, ShortScript, Source
 from planner_service.scripts.script_library import UNKNOWN, Choice, unknown_licences, unlicensed
 from planner_service.themes.beats import MAX_THEME_LENGTH, clean
@@ -228,7 +228,7 @@ long_scripts_router = APIRouter(prefix="/v1/long-scripts", tags=["long scripts"]
 @long_scripts_router.post("", response_model=LongScript)
 def compose(ask: LongScriptAsk, parts: PartsDep) -> LongScript:
     """Plan a theme: its events, the short scripts chosen for them, and every keyframe. Nothing is stored."""
-    studio = Studio(parts.shelves, parts.model, parts.settings.llm_on_failure == "error")
+    pipeline = Pipeline(parts.shelves, parts.model, parts.settings.llm_on_failure == "error")
     request = StoryRequest(
         theme=clean(ask.theme),
         rooms=tuple(ask.rooms),
@@ -237,7 +237,7 @@ def compose(ask: LongScriptAsk, parts: PartsDep) -> LongScript:
         seed=ask.seed,
     )
     with waiting_for_model(parts):
-        return studio.for_story(request.seed).script(request)
+        return pipeline.for_story(request.seed).script(request)
 
 
 @contextmanager

@@ -11,7 +11,7 @@ from motion_backend.motion import Character
 from planner_service.grounding.keyframes_to_actions import act
 from planner_service.jobs import serialization
 from planner_service.library.library import Shelves
-from planner_service.pipeline import Planned, StoryRequest, Studio, load_backend
+from planner_service.pipeline import Pipeline, Planned, StoryRequest, load_backend
 
 REQUEST = StoryRequest(
     "A woman comes home tired, reads a book on the sofa and falls asleep.",
@@ -23,7 +23,7 @@ REQUEST = StoryRequest(
 
 @pytest.fixture(scope="module")
 def planned() -> Planned:
-    return Studio(Shelves(cache=encoded())).plan(REQUEST)
+    return Pipeline(Shelves(cache=encoded())).plan(REQUEST)
 
 
 def through_json(value: dict[str, Any]) -> dict[str, Any]:

@@ -23,7 +23,7 @@ from planner_service.library.library import (
     UnfitError,
     open_shelves,
 )
-from planner_service.pipeline import StoryRequest, Studio
+from planner_service.pipeline import Pipeline, StoryRequest
 from planner_service.scripts.script import ShortScript
 from planner_service.scripts.script_library import LibraryError, built_in
 from planner_service.settings import Settings
@@ -279,8 +279,8 @@ def test_a_story_finds_its_way_into_a_users_room_when_it_fits_best(shelves: Shel
     keyframes = script(
         keyframes=[{"skill": "sitdown", "caption": "sit", "furniture": own.objects[0].category}], room="study"
     ).keyframes
-    studio = Studio(shelves)
-    plan = studio.script(StoryRequest("", rooms=("study",), keyframes=keyframes))
+    pipeline = Pipeline(shelves)
+    plan = pipeline.script(StoryRequest("", rooms=("study",), keyframes=keyframes))
     assert furnish(plan, shelves.layouts(), ("study",), (shelves.rooms()["my-study"],)).matches[0].layout_id == own.id
 
 

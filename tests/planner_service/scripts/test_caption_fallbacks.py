@@ -8,7 +8,7 @@ from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Skill
 from motion_backend.procedural.caption_coverage import understands
 from planner_service.output.story_files import report_to_dict, story_to_markdown
-from planner_service.pipeline import StoryRequest, Studio
+from planner_service.pipeline import Pipeline, StoryRequest
 from planner_service.scripts.caption_fallbacks import hashed_words, performed_as
 from planner_service.scripts.captions import Vocabulary, captions, synonyms
 from planner_service.scripts.script import Keyframe
@@ -71,7 +71,7 @@ def test_the_report_says_what_stood_in_and_the_story_keeps_its_words(monkeypatch
         Keyframe(skill=Skill.LOCO, emotion="sad", caption=words, furniture="chair"),
         Keyframe(skill=Skill.SITDOWN, emotion="sad", caption="sitting with head bowed", furniture="chair"),
     )
-    story = Studio().make(StoryRequest("", keyframes=lines))
+    story = Pipeline().make(StoryRequest("", keyframes=lines))
     assert story.planned.script.keyframes[0].caption == words
     walk, sitting = report_to_dict(story)["keyframes"]
     assert walk["performed_as"] == story.actions[0].caption
@@ -90,7 +90,7 @@ def test_the_report_of_a_story_says_what_was_done_otherwise(monkeypatch: pytest.
             skill=Skill.SITDOWN, emotion="neutral", caption="leaning forward, forearms on the table", furniture="bed"
         ),
     )
-    story = Studio().make(StoryRequest("", keyframes=lines))
+    story = Pipeline().make(StoryRequest("", keyframes=lines))
     said = "no table before the seat: each hand on its knee"
     assert [row["notes"] for row in report_to_dict(story)["keyframes"]] == [[], [said]]
     assert f"keyframe 1: {said}" in story_to_markdown(story)

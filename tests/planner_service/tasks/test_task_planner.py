@@ -23,7 +23,7 @@ from planner_service.client import requests
 from planner_service.library.library import Shelves
 from planner_service.llm.scripted_model import ScriptedModel
 from planner_service.llm.structured_output import ModelAnswerError
-from planner_service.pipeline import StoryRequest, Studio
+from planner_service.pipeline import Pipeline, StoryRequest
 from planner_service.scripts.caption_actions import Hands, done_in, look_of
 from planner_service.scripts.captions import captions
 from planner_service.scripts.script_repair import check
@@ -243,16 +243,16 @@ def test_a_caption_says_what_is_done_and_how_it_looks_and_hands_keep_what_they_t
 
 
 @pytest.fixture(scope="module")
-def studio() -> Studio:
-    return Studio(Shelves())
+def pipeline() -> Pipeline:
+    return Pipeline(Shelves())
 
 
 @pytest.mark.parametrize("action", ["watch TV on the sofa", "make a cup of tea with the left hand and drink it"])
-def test_the_body_reaches_every_step_that_is_said_to_be_acted(action: str, studio: Studio) -> None:
+def test_the_body_reaches_every_step_that_is_said_to_be_acted(action: str, pipeline: Pipeline) -> None:
     plan = plan_task(action, home())
     assert all(step.acted for step in plan.steps)
     room = home().rooms[0].layout
-    made = studio.make(StoryRequest(action, layouts=(room,), keyframes=tuple(plan.keyframes)))
+    made = pipeline.make(StoryRequest(action, layouts=(room,), keyframes=tuple(plan.keyframes)))
     assert made.planned.script.repairs == ()
     assert len(made.actions) == len(plan.keyframes)
     assert [figure.keyframe for figure in made.figures if not figure.reached] == []

@@ -15,7 +15,7 @@ from service_app import calling, check_problem, warm_app_on
 
 from planner_service.api.dependencies import MAX_PLANNED
 from planner_service.api.scripts.schemas import EXAMPLE
-from planner_service.pipeline import StoryRequest, Studio
+from planner_service.pipeline import Pipeline, StoryRequest
 from planner_service.scripts.script import LongScript
 from planner_service.scripts.script_repair import check
 
@@ -42,7 +42,7 @@ async def ask(app: FastAPI, **body: Any) -> httpx.Response:
 async def test_the_plan_is_the_engines_own_and_can_be_acted_out(app: FastAPI) -> None:
     answer = await ask(app, theme=THEME, seed=3)
     script = LongScript.model_validate_json(answer.content)
-    assert script == Studio(app.state.parts.shelves).script(StoryRequest(THEME, seed=3))
+    assert script == Pipeline(app.state.parts.shelves).script(StoryRequest(THEME, seed=3))
     assert check(script) == ()
     assert (await ask(app, theme=THEME, seed=3)).content == answer.content
 
