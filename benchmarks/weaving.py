@@ -13,9 +13,10 @@ from motion_backend.language.sentence_encoder import SentenceEncoder, Vectors, l
 from motion_backend.motion import Character
 from planner_service.composition.compose import Request, compose
 from planner_service.narration.narrator import narrate
+from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.script import ShortScript
 from planner_service.scripts.script_embeddings import ByHeart
-from planner_service.scripts.script_library import Features, ScriptLibrary, built_in
+from planner_service.scripts.script_library import Features, ScriptLibrary
 
 MANY = 100_000
 SMALL_MS, LARGE_MS, SENTENCES = 150.0, 300.0, 100.0

@@ -6,10 +6,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from motion_backend.backends import DEFAULT_BACKEND, backend_names, load_backend
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.smoothness import seam_jump, seam_speed_jump
-from motion_backend.motion import Action, BodyState, Character, Motion, MotionBackend, join
+from motion_backend.motion import Action, BodyState, Character, Motion, join
 from planner_service.composition.compose import MAX_SHORT_SCRIPTS, Request, compose, script_of
 from planner_service.grounding.furnish import Furnished, furnish
 from planner_service.grounding.keyframes_to_actions import act
@@ -21,14 +22,15 @@ from planner_service.narration.narrator import Told, narrate
 from planner_service.scripts.captions import Vocabulary
 from planner_service.scripts.script import Keyframe, LongScript
 from planner_service.themes.protagonist import cast_by
+from scene_graphs.errors import UserError
 from scene_graphs.furniture import ROOM_TYPES, canonical_room
-from scene_graphs.home import MAX_ROOMS, Home
-from scene_graphs.layout import Layout
+from scene_graphs.home import MAX_ROOMS, Home, home_from_dict, home_to_dict
+from scene_graphs.json_fields import Json
+from scene_graphs.layout import Layout, layout_from_dict, layout_to_dict
 
 Progress = Callable[[str, float], None]
 """Called with a stage's name and the share of it that is done, 0 to 1."""
 STAGES = ("plan", "furnish", "narrate", "act", "move", "judge")
-BACKENDS = ("procedural",)
 METHODS = ("matching", "direct")
 PRONOUNS = ("he", "she", "they")
 MAX_NAME_LENGTH = 40
@@ -38,7 +40,7 @@ MIN_HEIGHT, MAX_HEIGHT = 1.2, 2.2
 """Metres."""
 
 
-class RequestError(ValueError):
+class RequestError(UserError):
     """What is asked of a story cannot be had; the text names the field and what would be right."""
 
 
@@ -57,7 +59,7 @@ class StoryRequest:
     """A script of the user's own: nothing is planned, and the story is not told."""
     short_scripts: int | None = None
     method: str = "matching"
-    backend: str = "procedural"
+    backend: str = DEFAULT_BACKEND
     seed: int = 0
     character: Character = field(default_factory=Character)
     """Who acts; with the name and pronouns of the theme's person where both are left at their defaults."""
@@ -65,7 +67,7 @@ class StoryRequest:
     def __post_init__(self) -> None:
         for room in self.rooms:
             _one_of("rooms", canonical_room(room), ROOM_TYPES, room)
-        _one_of("backend", self.backend, BACKENDS)
+        _one_of("backend", self.backend, backend_names())
         _one_of("method", self.method, METHODS)
         if max(len(set(self.rooms)), len(self.layouts)) > MAX_ROOMS:
             field, count = ("rooms", len(self.rooms)) if len(self.rooms) > MAX_ROOMS else ("layout", len(self.layouts))
@@ -98,6 +100,38 @@ def _check_character(character: Character) -> None:
 def _one_of(field: str, value: str, known: Sequence[str], shown: str | None = None) -> None:
     if value not in known:
         raise RequestError(f"{field}: {shown or value!r:.60} is none of {', '.join(known)}")
+
+
+def request_to_dict(request: StoryRequest) -> Json:
+    """All that was asked for, own rooms whole: what a library holds later changes nothing."""
+    return {
+        "theme": request.theme,
+        "rooms": list(request.rooms),
+        "layouts": [layout_to_dict(layout) for layout in request.layouts],
+        "home": home_to_dict(request.home) if request.home else None,
+        "keyframes": [keyframe.model_dump(mode="json") for keyframe in request.keyframes],
+        "short_scripts": request.short_scripts,
+        "method": request.method,
+        "backend": request.backend,
+        "seed": request.seed,
+        "character": vars(request.character),
+    }
+
+
+def request_from_dict(row: Json) -> StoryRequest:
+    """The inverse of `request_to_dict`."""
+    return StoryRequest(
+        theme=row["theme"],
+        rooms=tuple(row["rooms"]),
+        layouts=tuple(layout_from_dict(layout) for layout in row["layouts"]),
+        home=home_from_dict(row["home"]) if row["home"] else None,
+        keyframes=tuple(Keyframe.model_validate(keyframe) for keyframe in row["keyframes"]),
+        short_scripts=row["short_scripts"],
+        method=row["method"],
+        backend=row["backend"],
+        seed=row["seed"],
+        character=Character(**row["character"]),
+    )
 
 
 @dataclass(frozen=True)
@@ -211,15 +245,6 @@ def types_of(layouts: Sequence[Layout]) -> tuple[str, ...]:
     """The room types that rooms of the user's can be; a story is then looked for that plays there."""
     own = [layout.room_type for layout in layouts] + [tag for layout in layouts for tag in layout.tags]
     return tuple(room for room in dict.fromkeys(own) if room in ROOM_TYPES)[:MAX_ROOMS]
-
-
-def load_backend(name: str) -> MotionBackend:
-    """The motion backend of that name. RequestError names those there are."""
-    from motion_backend.procedural.backend import ProceduralBackend
-
-    _one_of("backend", name, BACKENDS)
-    known: dict[str, Callable[[], MotionBackend]] = {"procedural": ProceduralBackend}
-    return known[name]()
 
 
 def move(home: Home, actions: Sequence[Action], request: StoryRequest, progress: Progress) -> list[Motion]:

@@ -119,7 +119,7 @@ def serve(settings: Settings) -> None:
 
     from planner_service.api.app import create_app
     from planner_service.api.authentication import check_exposure
-    from planner_service.api.dependencies import open_parts
+    from planner_service.components import open_parts
 
     check_exposure(settings)
     parts = open_parts(settings)

@@ -9,13 +9,15 @@ from platformdirs import user_data_path
 from pydantic import Field, SecretStr, ValidationError, field_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
+from scene_graphs.errors import UserError
+
 MIN_KEY = 16
 """Letters of an API key: shorter ones can be guessed."""
 Words = Annotated[tuple[str, ...], NoDecode]
 """Words parted by commas."""
 
 
-class SettingsError(ValueError):
+class SettingsError(UserError):
     """An environment variable or a line of `.env` that cannot be used."""
 
 

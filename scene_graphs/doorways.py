@@ -12,6 +12,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from scene_graphs.errors import UserError
 from scene_graphs.layout import Array, Layout, Opening, Point2, wrap
 from scene_graphs.navigation.clearance import BODY_RADIUS, find_footing, obstacles, rectangles_of
 
@@ -36,7 +37,7 @@ _ATTEMPTS: Final = 8
 _Stretch = tuple[Array, float, float, float]
 
 
-class HomeError(ValueError):
+class HomeError(UserError):
     """Rooms that cannot be made one home: says which room and why."""
 
 

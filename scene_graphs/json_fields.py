@@ -6,6 +6,8 @@ import unicodedata
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from scene_graphs.errors import UserError
+
 Json = dict[str, Any]
 """An object of JSON that we write."""
 Row = Mapping[str, Any]
@@ -16,7 +18,7 @@ _UNTOLD = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\ufff
 """What turns the writing of a whole line round, and what no XML may hold."""
 
 
-class LayoutError(ValueError):
+class LayoutError(UserError):
     """A room that cannot be read: names the place in the file, the field, what is wrong and what would be right."""
 
 

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+import networkx
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -86,6 +87,72 @@ def test_each_third_party_library_lives_where_it_belongs() -> None:
 def test_every_module_says_what_it_is() -> None:
     for path in modules():
         assert ast.get_docstring(tree_of(path)), f"{path} has no docstring"
+
+
+def test_nothing_imports_the_command_line() -> None:
+    """It is one of several doors to what is behind it: HTTP, workers and Python are others."""
+    for path in modules():
+        place = path.relative_to(ROOT).as_posix()
+        if not place.startswith("planner_service/cli/"):
+            assert not [name for name in imported(path) if f"{name}.".startswith("planner_service.cli.")], place
+
+
+def test_imports_go_round_in_no_circle() -> None:
+    """Neither at the top of modules nor in functions nor for types only: an order can be named in which to read."""
+    assert circles({name_of(path): imports_of(path) for path in modules()}) == []
+
+
+def test_circles_are_found_wherever_they_are() -> None:
+    assert circles({"a": {"b"}, "b": {"c"}, "c": {"d"}, "d": {"b"}, "e": {"a"}}) == [["b", "c", "d"]]
+    assert circles({"a": {"b", "c"}, "b": {"c"}, "c": set()}) == []
+    late = ast.parse(
+        "def f():\n    from motion_backend.motion import Skill\nfrom motion_backend import motion, skeleton"
+    )
+    assert imports_in(late, "planner_service.x") == {
+        "motion_backend", "motion_backend.motion", "motion_backend.skeleton"
+    }  # fmt: skip
+    beside = ast.parse("from motion_backend.motion import Skill")
+    assert imports_in(beside, "motion_backend.walls") == {"motion_backend.motion"}
+
+
+def name_of(path: Path) -> str:
+    """Its dotted name; a package's own for its `__init__`."""
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+
+
+@cache
+def names() -> frozenset[str]:
+    return frozenset(map(name_of, modules()))
+
+
+def imports_of(path: Path) -> set[str]:
+    return imports_in(tree_of(path), name_of(path))
+
+
+def imports_in(tree: ast.Module, name: str) -> set[str]:
+    """Our modules that a module needs, with the packages that are imported on the way to them.
+
+    The packages that it is itself in are there already when it is imported: they count where they are named.
+    """
+    found: set[str] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            targets = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
+            within = [f"{node.module}.{alias.name}" for alias in node.names]
+            targets = [target if target in names() else node.module for target in within]
+        else:
+            continue
+        for target in targets:
+            on_the_way = {target.rsplit(".", up)[0] for up in range(1, target.count(".") + 1)}
+            found |= {target} | {package for package in on_the_way if not f"{name}.".startswith(f"{package}.")}
+    return (found & names()) - {name}
+
+
+def circles(imports: dict[str, set[str]]) -> list[list[str]]:
+    """Modules that need each other, circle by circle."""
+    found = networkx.strongly_connected_components(networkx.DiGraph(imports))
+    return sorted(sorted(together) for together in found if len(together) > 1)
 
 
 def test_there_is_no_drawer_for_odds_and_ends() -> None:

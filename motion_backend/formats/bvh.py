@@ -1,4 +1,4 @@
-"""Motions as BVH, written and read: a hierarchy of offsets, then three Euler angles a joint and frame.
+"""Motions as BVH: a hierarchy of offsets, then three Euler angles a joint and frame.
 
 Lengths are centimetres unless told, as most tools expect; Y up; angles are degrees, R = Rz · Rx · Ry, an order that
 keeps the heading of a standing body clear of gimbal lock.
@@ -11,10 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from motion_backend import rotations
-from motion_backend.mocap.readers.bvh_reader import bvh_bones, bvh_channels, parse_bvh
 from motion_backend.motion import Motion
 from motion_backend.rotations import Array
-from motion_backend.skeleton import JOINTS, Skeleton
+from motion_backend.skeleton import Skeleton
 
 CENTIMETRE = 0.01
 _END_SITES = {
@@ -82,35 +81,3 @@ def quats_to_zxy(q: Array) -> Array:
     z = np.where(locked, np.arctan2(m[..., 1, 0], m[..., 0, 0]), np.arctan2(-m[..., 0, 1], m[..., 1, 1]))
     y = np.where(locked, 0.0, np.arctan2(-m[..., 2, 0], m[..., 2, 2]))
     return np.stack([z, x, y], axis=-1)
-
-
-def read_bvh(text: str, unit: float = CENTIMETRE) -> Motion:
-    """A motion from BVH text in any channel order; `unit` is its length unit in metres, its axes are ours.
-
-    Joints with our names come back in our order, others as the file has them. Contacts and keyframes, which BVH does
-    not hold, are zero. ValueError tells what is wrong with the text.
-    """
-    read = parse_bvh(text)
-    bones, places = bvh_bones(read.hierarchy)
-    roots, turns, _ = bvh_channels(read, bones, places)
-    order = _our_order(list(bones.names))
-    place = {old: new for new, old in enumerate(order)}
-    skeleton = Skeleton(
-        tuple(bones.names[joint] for joint in order),
-        tuple(place[bones.parents[joint]] if bones.parents[joint] >= 0 else -1 for joint in order),
-        bones.offsets[order] * unit,
-    )
-    return Motion(
-        root_positions=(roots * unit).astype(np.float32),
-        local_rotations=rotations.continuous(turns[:, order]).astype(np.float32),
-        contacts=np.zeros((len(roots), 4), dtype=np.float32),
-        skeleton=skeleton,
-        actions=np.zeros(len(roots), dtype=np.int32),
-        fps=round(1.0 / read.step),
-    )
-
-
-def _our_order(names: list[str]) -> list[int]:
-    if sorted(names) == sorted(JOINTS):
-        return [names.index(name) for name in JOINTS]
-    return list(range(len(names)))

@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from scene_graphs.errors import UserError
+
 if TYPE_CHECKING:
     from torch import Tensor
 
@@ -29,7 +31,7 @@ _BATCH = 32
 _MAX_WORD_LENGTH = 100
 
 
-class WeightsError(ValueError):
+class WeightsError(UserError):
     """The weights are missing or are not the ones this code was written for."""
 
 

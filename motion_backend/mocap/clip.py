@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.rotations import Array
+from scene_graphs.errors import UserError
 
 MAX_FRAMES = 200_000
 MAX_JOINTS = 512
@@ -29,7 +30,7 @@ _OFF_UNIT = 0.01
 """By which a quaternion's length may be off without a word."""
 
 
-class ClipError(ValueError):
+class ClipError(UserError):
     """A motion file cannot be read or used; the message says what is wrong with it and what to do."""
 
 

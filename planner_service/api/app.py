@@ -15,7 +15,7 @@ from starlette.middleware import Middleware
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from planner_service.api.authentication import Access, Cors, Gate
-from planner_service.api.dependencies import Parts, only_known_parameters
+from planner_service.api.dependencies import only_known_parameters
 from planner_service.api.error_handlers import Unforeseen, register_handlers
 from planner_service.api.extractions.endpoints import EXTRACT, extract_router, extractions_router
 from planner_service.api.layouts.endpoints import layouts_router
@@ -29,6 +29,7 @@ from planner_service.api.stories.event_stream import events_router
 from planner_service.api.task_plans.endpoints import task_plans_router
 from planner_service.api.telemetry import Figures, Telemetry
 from planner_service.api.web_page import assets, page_router, service_router
+from planner_service.components import Parts
 from planner_service.store.job_statistics import StoreFigures
 
 ROUTERS: Final = (

@@ -34,12 +34,13 @@ from planner_service.api.errors import (  # fmt: skip
     Unprocessable,
     WrongMedia,
 )
-from planner_service.cli.console import USER_ERRORS, explain
 from planner_service.llm.protocol import ModelError
 from planner_service.output.story_files import OutputError
 from planner_service.settings import SettingsError
 from planner_service.store.story_store import StoryGone
 from planner_service.themes.beats import ThemeError
+from planner_service.user_errors import explain
+from scene_graphs.errors import UserError
 
 METHODS: Final = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
 OURS: Final = (OutputError, SettingsError, WeightsError)
@@ -70,8 +71,7 @@ def register_handlers(app: FastAPI) -> None:
     app.add_exception_handler(SQLAlchemyError, _database)
     app.add_exception_handler(OSError, _database)
     app.add_exception_handler(sqlite3.Error, _database)
-    for kind in USER_ERRORS:
-        app.add_exception_handler(kind, _engine)
+    app.add_exception_handler(UserError, _engine)
 
 
 class Unforeseen:
@@ -152,7 +152,7 @@ async def _engine(request: Request, error: Exception) -> Response:
 
 
 def engine_problem(error: Exception, method: str = "POST") -> Problem:
-    """An error of `USER_ERRORS` as a problem; the field that its text begins with becomes a pointer."""
+    """A `UserError` as a problem; the field that its text begins with becomes a pointer."""
     if isinstance(error, ModelError):
         return ModelFailed(f"the language model gave no usable answer: {error}")
     if isinstance(error, OURS):

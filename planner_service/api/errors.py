@@ -29,6 +29,8 @@ from typing import ClassVar, Final
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.responses import Response
 
+from planner_service.user_errors import printable
+
 PROBLEM_MEDIA: Final = "application/problem+json"
 
 
@@ -111,13 +113,6 @@ class Problem(Exception):  # noqa: N818 - the word of RFC 9457
         """The answer to a request for `path`."""
         content = json.dumps(self.details(path).model_dump(exclude_none=True), ensure_ascii=False)
         return Response(content, self.status, {"Cache-Control": "no-store", **self.headers}, PROBLEM_MEDIA)
-
-
-def printable(text: str, most: int) -> str:
-    """At most that many letters on one line, control characters and broken ones written as escapes."""
-    line = " ".join(text[: 2 * most].split())
-    safe = "".join(one if one.isprintable() else one.encode("unicode_escape").decode() for one in line)
-    return safe if len(safe) <= most and len(text) <= 2 * most else safe[: most - 1] + "…"
 
 
 class Malformed(Problem):

@@ -9,8 +9,8 @@ from typing import Final, Literal
 from sqlalchemy import Connection, func, select
 from sqlalchemy.exc import IntegrityError
 
-from planner_service.api.dependencies import Parts
 from planner_service.api.errors import TooMany, Unprocessable
+from planner_service.components import Parts
 from planner_service.extraction.extraction_result import Extraction
 from planner_service.jobs.extraction_stages import STAGES, Gathered, keep_all, made_at_once
 from planner_service.jobs.queue import EXTRACT, EXTRACTIONS

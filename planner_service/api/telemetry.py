@@ -16,7 +16,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from structlog.contextvars import bound_contextvars
 from structlog.types import EventDict, WrappedLogger
 
-from planner_service.api.errors import printable
+from planner_service.user_errors import printable
 
 REQUEST_ID: Final = re.compile(r"[A-Za-z0-9._:-]{1,64}\Z")
 """Ids of the caller's own that are taken over; anything else could forge log lines."""

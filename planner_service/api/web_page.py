@@ -26,11 +26,12 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp, Scope
 
 from planner_service.api.authentication import COOKIE, COOKIE_SECONDS, Gate
-from planner_service.api.dependencies import Parts, PartsDep
+from planner_service.api.dependencies import PartsDep
 from planner_service.api.error_handlers import database_problem
 from planner_service.api.errors import Unprocessable
 from planner_service.api.telemetry import Figures
-from planner_service.cli.console import explain
+from planner_service.components import Parts
+from planner_service.user_errors import explain
 
 PAGE: Final = Path(__file__).resolve().parents[1] / "page"
 POLICY: Final = "; ".join(

@@ -10,7 +10,8 @@ from typing import Annotated
 import typer
 
 from planner_service.cli import clips, evaluate, extract, layouts, scripts, service, story, tasks
-from planner_service.cli.console import USER_ERRORS, explain
+from planner_service.user_errors import explain
+from scene_graphs.errors import UserError
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 app.command("story")(story.story)
@@ -47,6 +48,6 @@ def main() -> None:
         sys.stdout.reconfigure(errors="backslashreplace")
     try:
         app(standalone_mode=True)
-    except USER_ERRORS as error:
+    except UserError as error:
         print(f"sims: {explain(error)}", file=sys.stderr)  # noqa: T201
         sys.exit(2)

@@ -15,9 +15,10 @@ from rich.console import Console
 from rich.table import Table
 
 from motion_backend.motion import Skill
-from planner_service.cli.console import plain_table, shown
+from planner_service.cli.console import plain_table
 from planner_service.output.story_files import OutputError, check_writable, write_files
 from planner_service.pipeline import RequestError
+from planner_service.user_errors import printable
 
 if TYPE_CHECKING:
     from motion_backend.mocap.dataset_builder import Kept, Unread
@@ -70,7 +71,7 @@ def _of_clips(file: Path, names: list[str] | None) -> Image:
     chosen = [dataset.named(name) for name in names] if names else dataset.of_every_skill()
     if len(chosen) > MAX_SHOWN:
         raise ClipError(f"--clip: a sheet shows at most {MAX_SHOWN} clips, these are {len(chosen)}; name fewer")
-    return drawn([(shown(f"{entry.name}: {entry.captions[0]}"), entry.motion) for entry in chosen])
+    return drawn([(printable(f"{entry.name}: {entry.captions[0]}"), entry.motion) for entry in chosen])
 
 
 def _of_caption(caption: str, skill: Skill | None, room: str | None, seed: int) -> Image:
@@ -146,16 +147,16 @@ def build(
     lost = [one for one in found if not isinstance(one, Kept)]
     for unread in lost:
         why = unread.why if unread.why.startswith(unread.name) else f"{unread.name}: {unread.why}"
-        console.print(f"not read: {shown(why, MAX_LINE_LENGTH)}", soft_wrap=True)
+        console.print(f"not read: {printable(why, MAX_LINE_LENGTH)}", soft_wrap=True)
     for clip in kept:
         if not clip.report.accepted:
             why = f"{clip.entry.name}: {'; '.join(clip.report.refused)}"
-            console.print(f"refused: {shown(why, MAX_LINE_LENGTH)}", soft_wrap=True)
+            console.print(f"refused: {printable(why, MAX_LINE_LENGTH)}", soft_wrap=True)
     accepted = [one.entry for one in kept if one.report.accepted]
     copies = near_copies(accepted)
     for copy in copies:
         alike = f"{copy.clip} is nearly in {copy.of} ({copy.degrees:.1f}°)"
-        console.print(f"kept on one side of the split: {shown(alike, MAX_LINE_LENGTH)}", soft_wrap=True)
+        console.print(f"kept on one side of the split: {printable(alike, MAX_LINE_LENGTH)}", soft_wrap=True)
     dataset = collect(accepted, mirror, reverse, rates, copies)
     told = {
         "clips": [one.report.to_dict() for one in kept],
@@ -241,8 +242,8 @@ def _report(kept: list[Kept]) -> Table:
     for one in kept:
         figures = one.report
         table.add_row(
-            shown(one.entry.name),
-            shown(one.entry.skill),
+            printable(one.entry.name),
+            printable(one.entry.skill),
             str(figures.frames),
             f"{figures.skate:.1f}",
             _figure(figures.source_skate),
@@ -268,5 +269,5 @@ def _contents(dataset: Dataset) -> Table:
     for entry in dataset.entries:
         seconds = f"{entry.motion.duration:.1f}"
         words = (entry.name, entry.skill, entry.emotion, entry.style, entry.subject, entry.split)
-        table.add_row(*map(shown, words), seconds, shown(entry.captions[0]))
+        table.add_row(*map(printable, words), seconds, printable(entry.captions[0]))
     return table

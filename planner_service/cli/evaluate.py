@@ -209,8 +209,9 @@ def planning(
     """
     from planner_service.evaluation.planning_evaluation import evaluate_planning
     from planner_service.evaluation.story_evaluation import RememberingEncoder
+    from planner_service.scripts.built_in_scripts import built_in
     from planner_service.scripts.script_embeddings import load_by_heart
-    from planner_service.scripts.script_library import Features, ScriptLibrary, built_in
+    from planner_service.scripts.script_library import Features, ScriptLibrary
     from scene_graphs.layout_library import built_in_index
 
     cache = read_settings().cache_dir

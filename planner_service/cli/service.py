@@ -59,7 +59,7 @@ def worker(
 @jobs.command("list")
 def list_jobs() -> None:
     """Show the stories that have not ended, and which worker has them."""
-    from planner_service.api.dependencies import open_parts
+    from planner_service.components import open_parts
 
     parts = open_parts(read_settings())
     table = plain_table("story", "state", "worker")
@@ -77,7 +77,7 @@ def resume(
     worker: Annotated[str, typer.Option(help="The id of a worker that is dead and will not start again.")],
 ) -> None:
     """Hand the stories of a dead worker to the living. If it still lives, its story would be made twice at once."""
-    from planner_service.api.dependencies import open_parts
+    from planner_service.components import open_parts
 
     parts = open_parts(read_settings())
     found = parts.jobs.unfinished(worker)

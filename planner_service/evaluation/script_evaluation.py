@@ -21,11 +21,11 @@ from motion_backend.motion import Action, Character, Skill
 from motion_backend.state_machine import ENDS
 from planner_service.evaluation.trials import FLOOR, Setting, places_for, setting
 from planner_service.grounding.keyframes_to_actions import Place, UnreachableError, act
+from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_actions import look_of
 from planner_service.scripts.caption_fallbacks import WALKS
 from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.script import Keyframe
-from planner_service.scripts.script_library import built_in
 from planner_service.scripts.script_repair import RISES
 from scene_graphs import furniture
 from scene_graphs.layout_library import built_in_index

@@ -17,6 +17,7 @@ from typing import Final
 from planner_service.extraction.text_files import decode
 from planner_service.extraction.video import Film, text_tracks
 from planner_service.extraction.video_container import load_av, opened, said
+from scene_graphs.errors import UserError
 
 _TAG: Final = re.compile(r"</?(?![vV][.\s])[a-zA-Z0-9:.][^<>]{0,200}>|<\d[\d:.]{3,15}>|</[a-zA-Z]>")
 _VOICE: Final = re.compile(r"<[vV](?:\.[^\s<>]{0,60})?\s+([^<>]{1,60})>")
@@ -97,7 +98,7 @@ _CONTROL: Final = re.compile(r"[\x00-\x08\x0b\x0e-\x1f]")
 _LINES: Final = re.compile(r"\r\n?|\n")
 
 
-class SubtitleError(ValueError):
+class SubtitleError(UserError):
     """Bytes that are no subtitles we read."""
 
 

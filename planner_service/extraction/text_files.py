@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, Final
 
+from scene_graphs.errors import UserError
+
 _BOMS: Final = (
     (codecs.BOM_UTF8, "utf-8"),
     (codecs.BOM_UTF32_LE, "utf-32-le"),
@@ -165,7 +167,7 @@ _MIN_ENGLISH: Final = 0.1
 """English prose has every third of its words among ours."""
 
 
-class ExtractionError(ValueError):
+class ExtractionError(UserError):
     """A film, text or subtitle file that nothing can be extracted from; the text says why, and what would help."""
 
 

@@ -25,12 +25,13 @@ from planner_service.extraction.deed_parser import (
 )
 from planner_service.extraction.script_writer import Draft, Maker
 from planner_service.extraction.text_scenes import TextScene
+from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_fallbacks import WALKS
 from planner_service.scripts.captions import captions
 from planner_service.scripts.emotion_classifier import clear_moods
 from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.script import Keyframe
-from planner_service.scripts.script_library import ScriptLibrary, built_in
+from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import hand_of
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import rooms_in

@@ -11,15 +11,13 @@ from typing import Any, Final, Protocol
 
 from planner_service.extraction.audio import SoundPiece, sound_of
 from planner_service.extraction.shot_detection import Progress
-from planner_service.extraction.subtitles import MAX_CUES, Cue, Subtitles, cues_of, ordered
+from planner_service.extraction.subtitles import MAX_CUES, Cue, Subtitles, ordered
+from planner_service.extraction.transcription_result import SpeechError, heard
+from planner_service.extraction.transcription_server import served_transcriber
 from planner_service.extraction.video import Film
 from planner_service.settings import Settings, SettingsError
 
 INSTALL: Final = 'pip install "sims-stories[asr]"'
-
-
-class SpeechError(RuntimeError):
-    """Speech could not be turned into words; says what would help."""
 
 
 class Transcriber(Protocol):
@@ -47,12 +45,6 @@ def hear(transcriber: Transcriber, film: Film, progress: Progress | None = None)
     if progress is not None:
         progress("listening", 1.0)
     return Subtitles(ordered(cues), "speech", "utf-8", (f"what is said was heard by {transcriber.name}",))
-
-
-def heard(piece: SoundPiece, start: float, end: float, text: str) -> list[Cue]:
-    """A cue from times within a piece, moved to those of the film and kept inside the piece."""
-    begin, stop = (round(min(max(piece.start + time, piece.start), piece.end), 3) for time in (start, end))
-    return cues_of(begin, stop, text) if begin < stop else []
 
 
 @dataclass(frozen=True)
@@ -94,6 +86,4 @@ def load_transcriber(settings: Settings) -> Transcriber | None:
         return LocalTranscriber(settings.asr_folder)
     if not settings.asr_model and not settings.asr_base_url:
         return None
-    from planner_service.extraction.transcription_server import served_transcriber
-
     return served_transcriber(settings)

@@ -10,6 +10,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, Final, NoReturn
 
+from scene_graphs.errors import UserError
+
 if TYPE_CHECKING:
     from av.container import InputContainer
 
@@ -49,7 +51,7 @@ _OTHERS: Final = (
 )
 
 
-class FilmError(ValueError):
+class FilmError(UserError):
     """A file that cannot be read as a film; says what it is and what would be right."""
 
 

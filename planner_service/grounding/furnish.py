@@ -12,6 +12,7 @@ from planner_service.grounding.room_assignment import housed
 from planner_service.grounding.seat_access import pull_to_dict, seat, seat_with_pulls
 from planner_service.scripts.script import LongScript, PlannedKeyframe
 from scene_graphs.affordances.usable_furniture import Pull
+from scene_graphs.errors import UserError
 from scene_graphs.furniture import ROOM_TYPES, canonical_room, display_name
 from scene_graphs.graph.edit_distance import MAX_NODES, exact_distance
 from scene_graphs.graph.furniture_graph import FurnitureGraph, graph_from_layout, graph_from_uses
@@ -23,7 +24,7 @@ from scene_graphs.retrieval.layout_index import LayoutIndex, retrieve_rooms
 from scene_graphs.retrieval.match_explanation import Explanation, explain
 
 
-class FurnishError(ValueError):
+class FurnishError(UserError):
     """No home can be found for a script; the text names what is missing."""
 
 

@@ -27,6 +27,7 @@ from planner_service.scripts.caption_fallbacks import Words, hashed_words, perfo
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_repair import free_hand, hand_of
 from scene_graphs.affordances.affordances import Spot, floor_spot, spots
+from scene_graphs.errors import UserError
 from scene_graphs.home import Home
 from scene_graphs.layout import Placed
 from scene_graphs.navigation.path_planner import Walkable
@@ -102,7 +103,7 @@ KNEELING = (-0.7, 0.0, 0.4)
 """How far before the standing point feet, body and hands are of who gets down on the knees (metres)."""
 
 
-class UnreachableError(ValueError):
+class UnreachableError(UserError):
     """A keyframe has nothing it can be done at: no object, or none with a spot that can be walked to."""
 
 

@@ -13,50 +13,16 @@ from typing import Any
 
 import numpy as np
 
-from motion_backend.motion import Action, BodyState, Character, Posture, Skill
+from motion_backend.motion import Action, BodyState, Posture, Skill
 from planner_service.grounding.furnish import Furnished, RoomMatch
 from planner_service.grounding.keyframes_to_actions import Place, action_to_dict
 from planner_service.grounding.seat_access import pull_from_dict, pull_to_dict
 from planner_service.narration.narrator import Span, Told
-from planner_service.pipeline import StoryRequest
-from planner_service.scripts.script import Keyframe, LongScript
+from planner_service.scripts.script import LongScript
 from scene_graphs.affordances.affordances import Spot
 from scene_graphs.graph.furniture_graph import graph_from_dict, graph_to_dict
 from scene_graphs.home import home_from_dict, home_to_dict
 from scene_graphs.json_fields import Json
-from scene_graphs.layout import layout_from_dict, layout_to_dict
-
-
-def request_to_dict(request: StoryRequest) -> Json:
-    """All that was asked for, own rooms whole: what a library holds later changes nothing."""
-    return {
-        "theme": request.theme,
-        "rooms": list(request.rooms),
-        "layouts": [layout_to_dict(layout) for layout in request.layouts],
-        "home": home_to_dict(request.home) if request.home else None,
-        "keyframes": [keyframe.model_dump(mode="json") for keyframe in request.keyframes],
-        "short_scripts": request.short_scripts,
-        "method": request.method,
-        "backend": request.backend,
-        "seed": request.seed,
-        "character": vars(request.character),
-    }
-
-
-def request_from_dict(row: Json) -> StoryRequest:
-    """The inverse of `request_to_dict`."""
-    return StoryRequest(
-        theme=row["theme"],
-        rooms=tuple(row["rooms"]),
-        layouts=tuple(layout_from_dict(layout) for layout in row["layouts"]),
-        home=home_from_dict(row["home"]) if row["home"] else None,
-        keyframes=tuple(Keyframe.model_validate(keyframe) for keyframe in row["keyframes"]),
-        short_scripts=row["short_scripts"],
-        method=row["method"],
-        backend=row["backend"],
-        seed=row["seed"],
-        character=Character(**row["character"]),
-    )
 
 
 def furnished_to_dict(stage: Furnished) -> Json:
@@ -133,8 +99,6 @@ __all__ = [
     "action_to_dict",
     "furnished_from_dict",
     "furnished_to_dict",
-    "request_from_dict",
-    "request_to_dict",
     "state_from_dict",
     "state_to_dict",
     "told_from_dict",

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final
 
+from motion_backend.backends import load_backend
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.formats.glb_film import film_glb
 from motion_backend.formats.npz import npz_bytes, read_npz
@@ -24,7 +25,7 @@ from planner_service.jobs import serialization
 from planner_service.jobs.serialization import summary_of_home, summary_of_script
 from planner_service.narration.narrator import Told
 from planner_service.output.story_files import report_to_dict
-from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, judge, load_backend
+from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, judge
 from planner_service.scripts.script import LongScript
 from planner_service.store.story_store import Made, Stories
 from scene_graphs.json_fields import Json

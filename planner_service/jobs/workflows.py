@@ -16,11 +16,12 @@ import structlog
 from dbos import DBOS
 from sqlalchemy.exc import InterfaceError, OperationalError
 
-from planner_service.cli.console import USER_ERRORS, explain
 from planner_service.jobs.extraction_stages import Reader
 from planner_service.jobs.queue import EXTRACT, WORKFLOW
 from planner_service.jobs.story_stages import Maker
 from planner_service.store.story_store import Stories, StoryGone
+from planner_service.user_errors import explain
+from scene_graphs.errors import UserError
 
 MAX_ATTEMPTS: Final = 10
 """How often a story may take its worker down with it before it is given up."""
@@ -81,7 +82,7 @@ def told(store: Stories, story_id: str, title: str) -> Iterator[None]:
         yield
     except StoryGone:
         log.info("story deleted or cancelled while it was made")
-    except USER_ERRORS as error:
+    except UserError as error:
         step("fail", store.fail, story_id, title, explain(error))
         raise
     except Exception as error:

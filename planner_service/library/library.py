@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Final
 
 from planner_service.grounding.room_report import survey
 from planner_service.library.script_versions import Added, body_of, changing, replacing
+from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.script import ShortScript
-from planner_service.scripts.script_library import Features, LibraryError, ScriptLibrary, built_in
+from planner_service.scripts.script_library import Features, LibraryError, ScriptLibrary
 from planner_service.scripts.script_repair import check
 from planner_service.scripts.script_words import Problem
 from planner_service.store.library_store import (

@@ -19,8 +19,8 @@ from typing import Final
 
 import httpx2
 
-from planner_service.api.errors import printable
 from planner_service.llm.protocol import ModelError
+from planner_service.user_errors import printable
 
 ATTEMPTS: Final = 4
 BUSY: Final = frozenset({408, 425, 429, 500, 502, 503, 504, 529})

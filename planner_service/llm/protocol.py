@@ -7,10 +7,12 @@ from typing import Protocol, TypeVar, runtime_checkable
 
 from pydantic import BaseModel
 
+from scene_graphs.errors import UserError
+
 T = TypeVar("T", bound=BaseModel)
 
 
-class ModelError(RuntimeError):
+class ModelError(UserError):
     """No usable answer came from a language model.
 
     ModelError

@@ -16,13 +16,14 @@ from planner_service.grounding.keyframes_to_actions import action_to_dict
 from planner_service.output.storyboard import storyboard
 from planner_service.pipeline import Planned, Story
 from planner_service.scripts.caption_actions import look_of
+from scene_graphs.errors import UserError
 from scene_graphs.home import home_to_dict
 
 Writer = Callable[[Path], object]
 FILES = ("story.md", "story.json", "report.json", "motion.npz", "motion.bvh", "film.glb", "storyboard.png")
 
 
-class OutputError(OSError):
+class OutputError(UserError):
     """The folder for a story's files cannot be written."""
 
 
@@ -66,7 +67,7 @@ def _writing(folder: Path) -> Iterator[Path]:
         for path in made:
             with suppress(OSError):
                 path.rmdir()
-        if isinstance(error, OSError) and not isinstance(error, OutputError):
+        if isinstance(error, OSError):
             why = "a file is in the way" if isinstance(error, FileExistsError) else error.strerror or error
             raise OutputError(f"--out: {folder} cannot be written: {why}; choose another place") from error
         raise

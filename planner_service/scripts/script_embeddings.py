@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 
 from motion_backend.language.sentence_encoder import SentenceEncoder, Vectors, load_encoder
+from planner_service.scripts.built_in_scripts import built_in, texts_of
 from planner_service.scripts.captions import captions, synonyms
 from planner_service.scripts.emotion_classifier import moments
 
@@ -70,8 +71,6 @@ def shipped(encoder: str) -> Mapping[bytes, Vectors]:
 
 def ours() -> list[str]:
     """Every text that is shipped, in order: what scripts are found by, captions, their other words, and moments."""
-    from planner_service.scripts.script_library import built_in, texts_of
-
     words = [other for of_skill in synonyms().values() for others in of_skill.values() for other in others]
     known = [caption for of_skill in captions().values() for caption in of_skill]
     found_by = [text for script in built_in() for text in texts_of(script)]

@@ -10,7 +10,6 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from importlib import resources
 from math import log
 from pathlib import Path
 from threading import RLock
@@ -20,11 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend.language.sentence_encoder import CachedEncoder, SentenceEncoder, Vectors
+from planner_service.scripts.built_in_scripts import texts_of
 from planner_service.scripts.emotion_classifier import MoodReader, lessons
 from planner_service.scripts.script import EMOTIONS, ShortScript
 from planner_service.scripts.script_embeddings import load_by_heart
 from planner_service.scripts.suitability import Demand, Limits, Scores, Traits, raises
 from planner_service.themes.beats import Clause, ThemeError, clauses_of
+from scene_graphs.errors import UserError
 from scene_graphs.furniture import ROOM_TYPES, canonical_room, categories_of, is_known
 
 _EVENTS: Final = 0.5
@@ -65,9 +66,6 @@ def _clauses(query: str) -> tuple[Clause, ...]:
         return ()
 
 
-BUILT_IN: Final = "short_scripts.jsonl"
-CAPTION_WEIGHT: Final = 0.7
-_SENTENCE: Final = re.compile(r"(?<=[.!?])\s+")
 _WORD: Final = re.compile(r"[^\W\d_]{3,}")
 _ENDING: Final = re.compile(r"(?:ing|ed|es|s|ly)$")
 _COMMON_WORDS: Final = """about all and are but character for from had has have her him his into its not out over she
@@ -75,7 +73,7 @@ than that the their them then they this too very was were what when who with"""
 _COMMON: Final = frozenset(_COMMON_WORDS.split())
 
 
-class LibraryError(ValueError):
+class LibraryError(UserError):
     """A short script cannot be read, kept or found; the text names the field."""
 
 
@@ -257,26 +255,10 @@ class ScriptLibrary:
         return rows, np.array(places, np.intp), np.array(weights, np.float32), np.array(owners, np.intp)
 
 
-def texts_of(script: ShortScript) -> dict[str, float]:
-    """What a script is found by, with weights: its summary, the sentences of it, its cues and its captions.
-
-    Captions are shared by many scripts, so that at full weight they drown the summaries: hit@1 on 54 phrases of ours
-    fell from 50 to 45.
-    """
-    captions = dict.fromkeys((keyframe.caption for keyframe in script.keyframes), CAPTION_WEIGHT)
-    return captions | dict.fromkeys((script.summary, *_SENTENCE.split(script.summary), *script.cues), 1.0)
-
-
 def _words(text: str) -> set[str]:
     """The words of three letters and more that tell something, without their endings."""
     found = set(_WORD.findall(text.lower())) - _COMMON
     return {_ENDING.sub("", word) if len(word) > 4 else word for word in found}
-
-
-def built_in() -> tuple[ShortScript, ...]:
-    """The short scripts shipped with the package."""
-    lines = resources.files("planner_service").joinpath("data", BUILT_IN).read_text(encoding="utf-8").splitlines()
-    return tuple(ShortScript.model_validate_json(line) for line in lines if line)
 
 
 UNKNOWN: Final = "unknown"

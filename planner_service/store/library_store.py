@@ -16,6 +16,7 @@ from sqlalchemy import Connection, Engine, Table, delete, func, insert, select, 
 from sqlalchemy.dialects import postgresql, sqlite
 
 from planner_service.store.tables import layouts, revisions, script_versions, short_scripts
+from scene_graphs.errors import UserError
 
 if TYPE_CHECKING:
     from sqlalchemy import Connection, Engine
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
-class ShelfError(ValueError):
+class ShelfError(UserError):
     """Something cannot be put on a shelf or taken from it; the text says why.
 
     TakenError    there is something of that id already

@@ -15,8 +15,7 @@ from pydantic_core import from_json
 from sqlalchemy import Connection, Engine, Row, Select, bindparam, delete, func, select, update
 from sqlalchemy.exc import IntegrityError
 
-from planner_service.jobs.serialization import request_from_dict, request_to_dict
-from planner_service.pipeline import StoryRequest
+from planner_service.pipeline import StoryRequest, request_from_dict, request_to_dict
 from planner_service.store.tables import CANCELLED, artifacts, idempotency_keys, stage_times, stories, workflow_status
 from scene_graphs.json_fields import Json
 

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from motion_backend.planners.markov_planner import Category, Hand
 from planner_service.scripts.script import Keyframe
+from scene_graphs.errors import UserError
 
 MAX_STEPS: Final = 24
 MAX_KEYFRAMES: Final = 60
@@ -19,7 +20,7 @@ MAX_ACTION_LENGTH: Final = 300
 """Letters of an instruction."""
 
 
-class TaskError(ValueError):
+class TaskError(UserError):
     """An instruction that cannot be planned; the text names the field and what would be right."""
 
 

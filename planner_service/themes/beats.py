@@ -19,6 +19,7 @@ from planner_service.themes.sentence_parser import (
     state_words,
     without_subject,
 )
+from scene_graphs.errors import UserError
 
 MAX_THEME_LENGTH: Final = 2000
 """Letters of a theme."""
@@ -42,7 +43,7 @@ _ROOMS: Final = {
 }
 
 
-class ThemeError(ValueError):
+class ThemeError(UserError):
     """A theme that no story can be made of; the text says what was not understood and what would be."""
 
     def __init__(self, reason: str) -> None:

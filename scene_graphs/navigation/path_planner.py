@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse import csgraph
 
+from scene_graphs.errors import UserError
 from scene_graphs.home import Home
 from scene_graphs.layout import Array, Point2
 from scene_graphs.navigation.clearance import BODY_RADIUS, edges_of, measure_clearance, obstacles, rectangles_of
@@ -154,7 +155,7 @@ _SHARES: Final = np.arange(1, 8) / 8
 Cells = NDArray[np.int64]
 
 
-class NoPath(ValueError):  # noqa: N818
+class NoPath(UserError):  # noqa: N818
     """There is no way to walk from a start to a goal: names both and why."""
 
 

@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from scene_graphs.errors import UserError
 from scene_graphs.furniture import Furniture, canonical_room, display_name, is_minor
 from scene_graphs.graph.branch_and_bound import NODE_LIMIT, UNMAPPED, CodedQuery, Hunt, Ranked
 from scene_graphs.graph.count_table import Counts
@@ -27,7 +28,7 @@ FIRST_STAGE: Final = 256
 """Rooms that are put in order by their bounds at first; the others only if there may be nearer ones among them."""
 
 
-class NoSuitableRoom(ValueError):  # noqa: N818
+class NoSuitableRoom(UserError):  # noqa: N818
     """No room has what a script needs; `missing` names the pieces, empty if there is no room of the kind at all."""
 
     def __init__(self, message: str, missing: tuple[Furniture, ...] = ()) -> None:

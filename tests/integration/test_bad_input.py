@@ -17,11 +17,11 @@ import pytest
 from encoded import encoded, lend
 from forking import Forked
 
-from planner_service.cli.console import USER_ERRORS
 from planner_service.library.library import Shelves, open_shelves
 from planner_service.pipeline import Pipeline, StoryRequest
 from planner_service.scripts.script import ShortScript
 from planner_service.settings import read_settings
+from scene_graphs.errors import UserError
 from scene_graphs.generation.room_generator import generate_room
 from scene_graphs.layout import layout_from_dict, layout_to_dict
 
@@ -430,7 +430,7 @@ def test_a_mistake_changes_no_file_of_the_user(answers: dict[str, Answer], place
 
 def test_a_fault_of_ours_is_not_taken_for_a_mistake_of_the_user() -> None:
     for fault in (ValueError, TypeError, KeyError, OSError, RuntimeError, AssertionError, UnicodeError, IndexError):
-        assert not issubclass(fault, USER_ERRORS)
+        assert not issubclass(fault, UserError)
 
 
 @pytest.mark.parametrize(
@@ -446,7 +446,7 @@ def test_a_fault_of_ours_is_not_taken_for_a_mistake_of_the_user() -> None:
     ],
 )
 def test_a_request_names_the_field_that_is_out_of_bounds(field: str, changed: dict[str, object]) -> None:
-    with pytest.raises(USER_ERRORS, match=f"^{field}: "):
+    with pytest.raises(UserError, match=f"^{field}: "):
         StoryRequest(THEME, **changed)  # type: ignore[arg-type]
 
 

@@ -17,13 +17,13 @@ from encoded import lend
 from forking import Forked
 
 from motion_backend.body.scene_collision import Obstacles
-from motion_backend.formats.bvh import read_bvh
 from motion_backend.formats.gltf_document import read_glb
 from motion_backend.formats.npz import read_npz
 from motion_backend.metrics.foot_skate import skate_ratio
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.penetration import penetration
 from motion_backend.metrics.smoothness import seam_jump
+from motion_backend.mocap.readers.bvh_reader import read_bvh
 from motion_backend.motion import Action, Skill
 from planner_service.output.story_files import FILES
 from scene_graphs.home import home_from_dict, home_to_dict

@@ -15,7 +15,7 @@ from encoded import lend
 from fastapi import FastAPI
 
 from planner_service.api.app import create_app
-from planner_service.api.dependencies import Parts, open_parts
+from planner_service.components import Parts, open_parts
 from planner_service.settings import Settings
 
 KEY = "0123456789abcdef-first-key"

@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 
 from motion_backend import rotations
+from motion_backend.formats.bvh import CENTIMETRE
 from motion_backend.mocap.axes_and_units import to_our_axes, unit_of
 from motion_backend.mocap.clip import (
     MAX_FRAMES,
@@ -28,7 +29,9 @@ from motion_backend.mocap.clip import (
 from motion_backend.mocap.joint_map import JointMap
 from motion_backend.mocap.resampling import without_stray_frames
 from motion_backend.mocap.rest_pose import t_posed
+from motion_backend.motion import Motion
 from motion_backend.rotations import Array
+from motion_backend.skeleton import JOINTS, Skeleton
 
 SLIGHT = 0.005
 """Metres by which a bone may seem to stretch without a word."""
@@ -86,6 +89,38 @@ def read_bvh_clip(text: str, name: str, joints: JointMap | None = None) -> Clip:
     notes += pose.notes
     clip = make_clip(name, pose.bones, pose.root_positions, pose.local_rotations, tpose, 1.0 / read.step, "bvh", notes)
     return without_stray_frames(clip, joints)
+
+
+def read_bvh(text: str, unit: float = CENTIMETRE) -> Motion:
+    """A motion from BVH text in any channel order; `unit` is its length unit in metres, its axes are ours.
+
+    Joints with our names come back in our order, others as the file has them. Contacts and keyframes, which BVH does
+    not hold, are zero. ValueError tells what is wrong with the text.
+    """
+    read = parse_bvh(text)
+    bones, places = bvh_bones(read.hierarchy)
+    roots, turns, _ = bvh_channels(read, bones, places)
+    order = _our_order(list(bones.names))
+    place = {old: new for new, old in enumerate(order)}
+    skeleton = Skeleton(
+        tuple(bones.names[joint] for joint in order),
+        tuple(place[bones.parents[joint]] if bones.parents[joint] >= 0 else -1 for joint in order),
+        bones.offsets[order] * unit,
+    )
+    return Motion(
+        root_positions=(roots * unit).astype(np.float32),
+        local_rotations=rotations.continuous(turns[:, order]).astype(np.float32),
+        contacts=np.zeros((len(roots), 4), dtype=np.float32),
+        skeleton=skeleton,
+        actions=np.zeros(len(roots), dtype=np.int32),
+        fps=round(1.0 / read.step),
+    )
+
+
+def _our_order(names: list[str]) -> list[int]:
+    if sorted(names) == sorted(JOINTS):
+        return [names.index(name) for name in JOINTS]
+    return list(range(len(names)))
 
 
 def bvh_bones(hierarchy: Hierarchy) -> tuple[Bones, list[int]]:

@@ -18,7 +18,7 @@ from fastapi.sse import EventSourceResponse, ServerSentEvent
 from pydantic import ValidationError
 from starlette.concurrency import run_in_threadpool
 
-from planner_service.api.dependencies import Parts, PartsDep, parsed
+from planner_service.api.dependencies import PartsDep, parsed
 from planner_service.api.errors import Conflict, NotFound, TooLarge, Unavailable, Unprocessable, WrongMedia
 from planner_service.api.extractions.schemas import ExtractAsk, ExtractFields, ExtractionPage, ExtractionShown
 from planner_service.api.extractions.views import extraction_events, extraction_shown, extraction_summary, state_now
@@ -28,6 +28,7 @@ from planner_service.api.rate_limit import MAX_BYTES
 from planner_service.api.scripts.endpoints import waiting_for_model
 from planner_service.api.stories.endpoints import Key, StoriesDep, check_cursor
 from planner_service.api.stories.event_stream import LastEvent, Watch, followed
+from planner_service.components import Parts
 from planner_service.extraction.extract import Words, is_film, words_in
 from planner_service.extraction.extraction_result import Means, Source
 from planner_service.extraction.from_film import mute

@@ -15,7 +15,7 @@ from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.concurrency import run_in_threadpool
 
 from motion_backend.formats.glb_film import scene_glb
-from planner_service.api.dependencies import Parts, PartsDep, parsed
+from planner_service.api.dependencies import PartsDep, parsed
 from planner_service.api.errors import Conflict, NotFound, TooLarge, Unavailable, Unprocessable
 from planner_service.api.layouts.graph_endpoints import graph_of, nodes_of
 from planner_service.api.layouts.schemas import (
@@ -36,6 +36,7 @@ from planner_service.api.layouts.views import (
 )
 from planner_service.api.rate_limit import MAX_BYTES
 from planner_service.api.web_page import Cursor, Limit, page_of, unchanging
+from planner_service.components import Parts
 from planner_service.library.import_layouts import take_in
 from planner_service.library.library import AbsentError, FixedError, FullError, TakenError
 from planner_service.output.room_pictures import Shown, picture

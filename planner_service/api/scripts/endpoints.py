@@ -14,7 +14,7 @@ from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from pydantic import Field
 
-from planner_service.api.dependencies import Parts, PartsDep
+from planner_service.api.dependencies import PartsDep
 from planner_service.api.errors import Conflict, Fault, NotFound, Problem, Unavailable, Unprocessable
 from planner_service.api.scripts.schemas import (
     EmotionName,
@@ -26,6 +26,7 @@ from planner_service.api.scripts.schemas import (
     ShortScriptVersions,
 )
 from planner_service.api.web_page import Cursor, Limit, page_of, unchanging
+from planner_service.components import Parts
 from planner_service.library.library import AbsentError, ChangedError, FixedError, FullError, TakenError, UnfitError
 from planner_service.pipeline import Pipeline, StoryRequest
 from planner_service.scripts.script import MAX_PIECES, MAX_VERSIONS, LongScript, ShortScript, Source

@@ -14,13 +14,14 @@ from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
 from motion_backend.formats import FORMATS, encode
 from motion_backend.formats.glb_film import scene_glb
 from motion_backend.motion import Character
-from planner_service.api.dependencies import Parts, PartsDep
+from planner_service.api.dependencies import PartsDep
 from planner_service.api.errors import Conflict, NotFound, NotReady, Unprocessable
 from planner_service.api.idempotent_submission import accept, repeated
 from planner_service.api.layouts import views
 from planner_service.api.stories.schemas import CharacterAsk, MotionAsk, StoryAsk, StoryPage, StoryShown
 from planner_service.api.stories.views import Footage, story_shown, story_summary
 from planner_service.api.web_page import unchanging
+from planner_service.components import Parts
 from planner_service.jobs.story_stages import HOME
 from planner_service.pipeline import StoryRequest, given_script
 from planner_service.store.story_store import EXTRACTION, Record, Stories, StoryGone

@@ -14,9 +14,10 @@ from sqlalchemy.exc import SQLAlchemyError
 from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
-from planner_service.api.dependencies import Parts, PartsDep
+from planner_service.api.dependencies import PartsDep
 from planner_service.api.stories.endpoints import RecordDep
 from planner_service.api.stories.views import StoryEvent, events_of
+from planner_service.components import Parts
 from planner_service.store.story_store import Record, Stories, StoryGone
 from planner_service.store.tables import State, state_of
 

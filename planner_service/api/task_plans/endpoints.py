@@ -6,11 +6,12 @@ from contextlib import nullcontext
 
 from fastapi import APIRouter
 
-from planner_service.api.dependencies import Parts, PartsDep
+from planner_service.api.dependencies import PartsDep
 from planner_service.api.errors import Unprocessable
 from planner_service.api.scripts.endpoints import waiting_for_model
 from planner_service.api.stories.endpoints import home_given, layout_named
 from planner_service.api.task_plans.schemas import TaskAsk
+from planner_service.components import Parts
 from planner_service.tasks.task_plan import TaskPlan
 from planner_service.tasks.task_planner import plan_task
 from scene_graphs.home import Home, home_from_layouts

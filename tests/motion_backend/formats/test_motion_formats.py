@@ -13,9 +13,10 @@ from sample_motions import tumbling
 
 from motion_backend import rotations
 from motion_backend.formats import FORMATS, encode, write_motion
-from motion_backend.formats.bvh import bvh_text, quats_to_zxy, read_bvh
+from motion_backend.formats.bvh import bvh_text, quats_to_zxy
 from motion_backend.formats.motion_json import json_bytes, read_json
 from motion_backend.formats.npz import npz_bytes, raw_bytes, read_npz, read_raw
+from motion_backend.mocap.readers.bvh_reader import read_bvh
 
 ANGLES = st.floats(-np.pi, np.pi)
 AXES = np.eye(3)

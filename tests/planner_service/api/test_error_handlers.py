@@ -23,7 +23,7 @@ from sqlalchemy.exc import TimeoutError as PoolTimeout
 
 from planner_service.api import errors
 from planner_service.api.error_handlers import database_problem, engine_problem, is_hang_up
-from planner_service.api.errors import Problem, printable
+from planner_service.api.errors import Problem
 from planner_service.api.rate_limit import MAX_BYTES
 from planner_service.llm.protocol import ModelError
 from planner_service.pipeline import RequestError
@@ -357,14 +357,6 @@ def test_a_really_locked_and_a_really_full_database_are_known(tmp_path: Path) ->
             connection.execute(text("INSERT INTO t VALUES (:x)"), {"x": "a" * 400_000})
     assert database_problem(full.value).status == 507  # type: ignore[union-attr]
     engine.dispose()
-
-
-@given(st.text(max_size=2000), st.integers(2, 50))
-def test_a_printable_text_is_one_short_line_of_utf_8(words: str, most: int) -> None:
-    line = printable(words, most)
-    assert len(line) <= most
-    assert line.isprintable()
-    line.encode("utf-8")
 
 
 ANYTHING = st.recursive(

@@ -8,8 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from typer.testing import CliRunner, Result
 
 from motion_backend import rotations
@@ -19,7 +17,6 @@ from motion_backend.mocap.dataset_file import read_dataset
 from motion_backend.motion import Motion
 from motion_backend.skeleton import INDEX, build_skeleton
 from planner_service.cli import app
-from planner_service.cli.console import shown
 from planner_service.output.story_files import OutputError
 
 SECONDS = 2
@@ -133,11 +130,3 @@ def test_names_and_words_of_others_reach_the_terminal_as_printable_letters(folde
     assert all(letter.isprintable() or letter == "\n" for letter in told)
     assert len(json.loads(run("list", out, "--json").output)["clips"]) == 2
     assert len(json.loads(Path(f"{out}.report.json").read_text(encoding="utf-8"))["clips"]) == 2
-
-
-@given(st.text(), st.integers(2, 50))
-def test_what_is_shown_is_one_printable_line_of_bounded_length(text: str, most: int) -> None:
-    line = shown(text, most)
-    assert line.isprintable()
-    assert len(line) <= most
-    assert shown(line, most) == line

@@ -12,9 +12,10 @@ from typer.testing import CliRunner
 from motion_backend.language.sentence_encoder import HashingEncoder
 from planner_service.cli.scripts import app
 from planner_service.library.library import ShelfError
+from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_paraphrases import read_synonyms
 from planner_service.scripts.script import ShortScript
-from planner_service.scripts.script_library import LibraryError, built_in
+from planner_service.scripts.script_library import LibraryError
 from planner_service.settings import SettingsError
 
 NAP = {

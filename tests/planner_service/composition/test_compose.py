@@ -14,9 +14,10 @@ from motion_backend.language.sentence_encoder import HashingEncoder, SentenceEnc
 from planner_service.composition.compose import Request, compose
 from planner_service.llm.protocol import ModelError
 from planner_service.llm.scripted_model import ScriptedModel
+from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.script import LongScript
 from planner_service.scripts.script_embeddings import load_by_heart
-from planner_service.scripts.script_library import Features, ScriptLibrary, built_in
+from planner_service.scripts.script_library import Features, ScriptLibrary
 from planner_service.scripts.script_repair import check
 from planner_service.themes.beats import ThemeError
 

@@ -16,10 +16,11 @@ from planner_service.composition.script_imitation import MAX_QUESTIONS, MAX_WANT
 from planner_service.llm.protocol import ModelError
 from planner_service.llm.scripted_model import Answer, ScriptedModel
 from planner_service.llm.structured_output import ModelAnswerError
+from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.captions import captions
 from planner_service.scripts.script import ShortScript
 from planner_service.scripts.script_duplicates import Likeness
-from planner_service.scripts.script_library import Features, LibraryError, ScriptLibrary, built_in
+from planner_service.scripts.script_library import Features, LibraryError, ScriptLibrary
 from planner_service.scripts.script_repair import check
 
 LIBRARY = ScriptLibrary(built_in(), Features(HashingEncoder()))

@@ -37,8 +37,9 @@ from planner_service.evaluation.story_evaluation import (
     tell_themes,
     told_in,
 )
+from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.script import Event, LongScript, Retrieved, ShortScript
-from planner_service.scripts.script_library import Features, ScriptLibrary, built_in
+from planner_service.scripts.script_library import Features, ScriptLibrary
 from scene_graphs.layout_library import built_in_index
 
 

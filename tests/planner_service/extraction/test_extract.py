@@ -26,9 +26,10 @@ from planner_service.llm.protocol import ModelError
 from planner_service.llm.scripted_model import Answer, ScriptedModel
 from planner_service.llm.structured_output import ModelAnswerError
 from planner_service.narration.narrative_voice import Voice, retell
+from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.captions import captions
 from planner_service.scripts.script import EMOTIONS
-from planner_service.scripts.script_library import Features, ScriptLibrary, built_in
+from planner_service.scripts.script_library import Features, ScriptLibrary
 from planner_service.scripts.script_repair import check
 
 LIBRARY = ScriptLibrary(built_in(), Features(HashingEncoder()))

@@ -19,7 +19,8 @@ from planner_service.extraction.vision_model import watch, watch_film
 from planner_service.llm.protocol import ModelError
 from planner_service.llm.scripted_model import ScriptedModel
 from planner_service.llm.structured_output import ModelAnswerError
-from planner_service.scripts.script_library import Features, ScriptLibrary, built_in
+from planner_service.scripts.built_in_scripts import built_in
+from planner_service.scripts.script_library import Features, ScriptLibrary
 from planner_service.scripts.script_repair import check
 
 Json = dict[str, Any]

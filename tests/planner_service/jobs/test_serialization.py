@@ -7,11 +7,12 @@ from typing import Any
 import pytest
 from encoded import encoded
 
+from motion_backend.backends import load_backend
 from motion_backend.motion import Character
 from planner_service.grounding.keyframes_to_actions import act
 from planner_service.jobs import serialization
 from planner_service.library.library import Shelves
-from planner_service.pipeline import Pipeline, Planned, StoryRequest, load_backend
+from planner_service.pipeline import Pipeline, Planned, StoryRequest, request_from_dict, request_to_dict
 
 REQUEST = StoryRequest(
     "A woman comes home tired, reads a book on the sofa and falls asleep.",
@@ -38,7 +39,7 @@ def test_a_request_comes_back_as_it_was(planned: Planned) -> None:
         replace(REQUEST, rooms=(), layouts=layouts),
         replace(REQUEST, home=planned.home, keyframes=planned.script.short_scripts[0].script.keyframes),
     ):
-        assert serialization.request_from_dict(through_json(serialization.request_to_dict(request))) == request
+        assert request_from_dict(through_json(request_to_dict(request))) == request
 
 
 def test_a_furnished_script_comes_back_as_it_was(planned: Planned) -> None:

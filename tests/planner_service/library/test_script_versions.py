@@ -19,8 +19,9 @@ from planner_service.library.library import (
     Shelves,
     UnfitError,
 )
+from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.script import MAX_VERSIONS, ShortScript
-from planner_service.scripts.script_library import LibraryError, built_in
+from planner_service.scripts.script_library import LibraryError
 from planner_service.settings import Settings
 from planner_service.store.database import database_url, open_engine
 from planner_service.store.library_store import MAX_KEPT, ShelfFull, renew

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from motion_backend.language.sentence_encoder import HashingEncoder, Vectors
+from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.script import ShortScript
-from planner_service.scripts.script_library import Features, LibraryError, ScriptLibrary, built_in
+from planner_service.scripts.script_library import Features, LibraryError, ScriptLibrary
 
 NAP = {
     "id": "my-nap",

@@ -12,10 +12,10 @@ from pydantic import ValidationError
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Posture, Skill
+from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_fallbacks import WALKS
 from planner_service.scripts.captions import Vocabulary
 from planner_service.scripts.script import Keyframe, PlannedKeyframe
-from planner_service.scripts.script_library import built_in
 from planner_service.scripts.script_repair import (
     check,
     free_hand,

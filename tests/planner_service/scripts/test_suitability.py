@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Skill
 from planner_service.composition.sequence_search import Row, succession
+from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.emotion_classifier import MoodReader, clear_moods, lessons, moments
 from planner_service.scripts.script import EMOTIONS, Keyframe, ShortScript
-from planner_service.scripts.script_library import Features, LibraryError, ScriptLibrary, built_in
+from planner_service.scripts.script_library import Features, LibraryError, ScriptLibrary
 from planner_service.scripts.suitability import After, Before, Traits, after_of, before_of
 from scene_graphs.furniture import categories_of
 

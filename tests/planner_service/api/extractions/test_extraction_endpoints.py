@@ -28,11 +28,11 @@ from starlette.requests import Request
 from stories import GERMAN, NARRATIVE, SUBTITLES
 
 from planner_service.api import multipart
-from planner_service.api.dependencies import MAX_UPLOADS, Parts
 from planner_service.api.errors import Problem
 from planner_service.api.extractions.endpoints import LETTERS_AT_ONCE
 from planner_service.api.extractions.views import extraction_events
 from planner_service.api.multipart import FormReader, title_of
+from planner_service.components import MAX_UPLOADS, Parts
 from planner_service.extraction.text_files import ExtractionError
 from planner_service.jobs.extraction_stages import Reader
 from planner_service.jobs.uploads import KEPT, Receiving, Uploads

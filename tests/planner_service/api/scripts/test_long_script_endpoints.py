@@ -13,8 +13,8 @@ from fastapi import FastAPI
 from model_server import ModelServer, failing
 from service_app import calling, check_problem, warm_app_on
 
-from planner_service.api.dependencies import MAX_PLANNED
 from planner_service.api.scripts.schemas import EXAMPLE
+from planner_service.components import MAX_PLANNED
 from planner_service.pipeline import Pipeline, StoryRequest
 from planner_service.scripts.script import LongScript
 from planner_service.scripts.script_repair import check

@@ -23,8 +23,8 @@ from planner_service.api.scripts.schemas import (
     ShortScriptShown,
     ShortScriptVersions,
 )
+from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.script import ShortScript
-from planner_service.scripts.script_library import built_in
 
 pytestmark = pytest.mark.anyio
 OURS = built_in()[0]

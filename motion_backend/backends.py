@@ -1,0 +1,78 @@
+"""The motion backends there are, by name: ours, and those that other packages register.
+
+A package registers one by an entry point of the group `sims.backends`: its name, and what makes it (a class, or a
+function without arguments). Nothing of a backend is imported before it is asked for.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.metadata import EntryPoint, entry_points
+from typing import Final
+
+from motion_backend.motion import MotionBackend
+from scene_graphs.errors import UserError
+
+GROUP: Final = "sims.backends"
+DEFAULT_BACKEND: Final = "procedural"
+_OURS: Final = {"procedural": "motion_backend.procedural.backend:ProceduralBackend"}
+"""Our backends: name, and where what makes it is defined."""
+_ABOUT: Final = {"procedural": "kinematic, not learned"}
+"""What a reader of figures must know of them."""
+
+
+class UnknownBackendError(UserError):
+    """There is no backend of that name; says which there are."""
+
+
+class BrokenBackendError(UserError):
+    """There is a backend of that name, but it cannot be loaded here; says why."""
+
+
+def backend_names() -> tuple[str, ...]:
+    """The names of all backends: ours, then those of other packages in alphabetical order."""
+    return tuple(_registered())
+
+
+def about(name: str) -> str:
+    """A backend by its name and, of ours, what kind of motion it makes."""
+    return f"{name} ({_ABOUT[name]})" if name in _ABOUT else name
+
+
+def load_backend(name: str) -> MotionBackend:
+    """A new backend of that name. UnknownBackendError, BrokenBackendError."""
+    entry = _registered().get(name)
+    if entry is None:
+        raise UnknownBackendError(f"backend: {name!r:.60} is none of {', '.join(backend_names())}")
+    try:
+        made = entry.load()()
+    except Exception as error:  # whatever somebody else's code may raise
+        raise _broken(entry, f"{type(error).__name__}: {error}") from error
+    if lacking := [part for part in ("begin", "advance") if not callable(getattr(made, part, None))]:
+        raise _broken(entry, f"it has no {' and no '.join(lacking)}")
+    backend: MotionBackend = made
+    return backend
+
+
+@cache
+def check_backend(name: str) -> None:
+    """Load a backend once a process and throw it away, so that what is wrong with it is known before it is needed.
+
+    UnknownBackendError, BrokenBackendError; one that could not be loaded is tried again.
+    """
+    load_backend(name)
+
+
+@cache
+def _registered() -> dict[str, EntryPoint]:
+    """Every backend by name. Nobody takes the name of one of ours; of two others the first that is found has it."""
+    found = {name: EntryPoint(name, where, GROUP) for name, where in _OURS.items()}
+    for entry in sorted(entry_points(group=GROUP), key=lambda entry: entry.name):
+        found.setdefault(entry.name, entry)
+    return found
+
+
+def _broken(entry: EntryPoint, why: str) -> BrokenBackendError:
+    return BrokenBackendError(
+        f"backend: {entry.name!r} cannot be loaded from {entry.value} ({why:.200}); mend or remove what registers it"
+    )
