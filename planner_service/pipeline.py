@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from motion_backend.backends import DEFAULT_BACKEND, backend_names, load_backend
+from motion_backend.backends import DEFAULT_BACKEND, load_backend, require_backend
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.smoothness import seam_jump, seam_speed_jump
@@ -46,7 +46,10 @@ class RequestError(UserError):
 
 @dataclass(frozen=True)
 class StoryRequest:
-    """What a user may ask for; empty means: choose for me. RequestError names the first field that is out of bounds."""
+    """What a user may ask for; empty means: choose for me.
+
+    RequestError names the first field that is out of bounds, UnknownBackendError the backends there are.
+    """
 
     theme: str
     rooms: tuple[str, ...] = ()
@@ -67,7 +70,7 @@ class StoryRequest:
     def __post_init__(self) -> None:
         for room in self.rooms:
             _one_of("rooms", canonical_room(room), ROOM_TYPES, room)
-        _one_of("backend", self.backend, backend_names())
+        require_backend(self.backend)
         _one_of("method", self.method, METHODS)
         if max(len(set(self.rooms)), len(self.layouts)) > MAX_ROOMS:
             field, count = ("rooms", len(self.rooms)) if len(self.rooms) > MAX_ROOMS else ("layout", len(self.layouts))

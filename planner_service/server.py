@@ -114,14 +114,18 @@ def environment(settings: Settings, worker_id: str) -> dict[str, str]:
 
 
 def serve(settings: Settings) -> None:
-    """Answer until SIGTERM or SIGINT. SettingsError names what cannot be used, before anything is started."""
+    """Answer until SIGTERM or SIGINT. SettingsError and BrokenBackendError name what cannot be used, before anything
+    is started.
+    """
     import uvicorn
 
+    from motion_backend.backends import check_backend
     from planner_service.api.app import create_app
     from planner_service.api.authentication import check_exposure
     from planner_service.components import open_parts
 
     check_exposure(settings)
+    check_backend(settings.backend)
     parts = open_parts(settings)
     supervisor = Supervisor(settings)
 

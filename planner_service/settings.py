@@ -31,6 +31,7 @@ class Settings(BaseSettings):
     database_url: str = ""
     """PostgreSQL, as postgresql://user:password@host/name; empty for the SQLite file in `data_dir`."""
     backend: str = "procedural"
+    """What moves the body where a request names nothing else."""
     layouts: Path | None = None
     """An extra layout file, read beside the built-in library."""
     llm_model: str = ""
@@ -90,6 +91,14 @@ class Settings(BaseSettings):
         if any(len(key) < MIN_KEY for key in keys):
             raise ValueError(f"a key has at least {MIN_KEY} letters; `openssl rand -hex 24` makes a good one")
         return keys
+
+    @field_validator("backend")
+    @classmethod
+    def _registered(cls, name: str) -> str:
+        from motion_backend.backends import require_backend
+
+        require_backend(name)
+        return name
 
     @field_validator("log_level", mode="before")
     @classmethod

@@ -21,6 +21,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from motion_backend.backends import BrokenBackendError
 from motion_backend.language.minilm import WeightsError
 from planner_service.api.errors import (  # fmt: skip
     MAX_FAULTS,
@@ -59,6 +60,8 @@ STATUS_TEXTS: Final = {
 DISK_FULL: Final = ("database or disk is full", "no space left", "disk quota exceeded", "could not extend file")
 BUSY: Final = ("locked", "busy", "disk i/o error", "unable to open database file")
 """What SQLite says when it is not the statement that is wrong."""
+BROKEN: Final = 300
+"""Seconds after which somebody may have mended a backend."""
 log = structlog.get_logger("sims.errors")
 
 
@@ -155,6 +158,8 @@ def engine_problem(error: Exception, method: str = "POST") -> Problem:
     """A `UserError` as a problem; the field that its text begins with becomes a pointer."""
     if isinstance(error, ModelError):
         return ModelFailed(f"the language model gave no usable answer: {error}")
+    if isinstance(error, BrokenBackendError):
+        return Unavailable(str(error), retry_after=BROKEN)
     if isinstance(error, OURS):
         log.error("installation", reason=str(error))
         return Problem("the service is not set up rightly; its log says what is wrong")

@@ -9,6 +9,7 @@ from typing import Final, Literal
 from sqlalchemy import Connection, func, select
 from sqlalchemy.exc import IntegrityError
 
+from motion_backend.backends import check_backend
 from planner_service.api.errors import TooMany, Unprocessable
 from planner_service.components import Parts
 from planner_service.extraction.extraction_result import Extraction
@@ -39,7 +40,11 @@ def repeated(parts: Parts, caller: str, kind: Kind, body: str, key: str | None) 
 
 
 def accept(parts: Parts, caller: str, wanted: StoryRequest, body: str, key: str | None) -> Record:
-    """Store and queue in one transaction. Unprocessable where the key came with another body, TooMany at the limit."""
+    """Store and queue in one transaction. Unprocessable where the key came with another body, TooMany at the limit.
+
+    BrokenBackendError where nothing here can move the body as it is asked for.
+    """
+    check_backend(wanted.backend)
     table = Stories(parts.engine)
 
     def make(connection: Connection) -> str:

@@ -33,7 +33,8 @@ TAGS: Final = [
 ALWAYS: Final = {
     429: "More requests than one caller may send; wait `Retry-After` seconds.",
     500: "A fault of ours; the detail names the request id under which it was written down.",
-    503: "The database is busy or away; ask again after `Retry-After` seconds.",
+    503: "The database is busy or away, or what is to move the body cannot be loaded; ask again after `Retry-After` "
+    "seconds.",
 }
 REFUSED: Final = {
     401: "A key is needed, or the one sent is wrong.",

@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
+from motion_backend.backends import about
 from motion_backend.motion import Character
 from planner_service.cli.console import plain_table
 from planner_service.library.library import open_shelves
@@ -46,7 +47,7 @@ def story(
         list[str] | None,
         typer.Option(help="A layout file, or the id of a built-in layout; may be given up to 4 times."),
     ] = None,
-    backend: Annotated[str | None, typer.Option(help="What moves the body: procedural.")] = None,
+    backend: Annotated[str | None, typer.Option(help="What moves the body (SIMS_BACKEND; procedural).")] = None,
     name: Annotated[str, typer.Option(help="The character's name; left out: the theme's own, else Sam.")] = "Sam",
     pronouns: Annotated[str, typer.Option(help="he, she or they; left out: as in the theme.")] = "they",
     height: Annotated[float, typer.Option(help="The character's height in metres, 1.2 to 2.2.")] = 1.70,
@@ -142,7 +143,7 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
         f"\n{report['reached']} of {report['keyframes']} keyframes reached · contact error {contact} · "
         f"inside furniture {100 * report['pen_mean']:.1f} cm mean, {100 * report['pen_share']:.1f} % of frames · "
         f"skating {100 * report['skate_ratio_loco']:.1f} % of walking · {report['seconds']:.0f} s of motion\n"
-        f"planner: {made.planned.script.planner} · motion: {made.planned.request.backend} (kinematic, not learned) · "
+        f"planner: {made.planned.script.planner} · motion: {about(made.planned.request.backend)} · "
         f"encoder: {made.planned.script.encoder}",
         highlight=False,
     )

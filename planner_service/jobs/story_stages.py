@@ -12,14 +12,14 @@ from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Final
+from typing import Final
 
 from motion_backend.backends import load_backend
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.formats.glb_film import film_glb
 from motion_backend.formats.npz import npz_bytes, read_npz
 from motion_backend.metrics import story_metrics
-from motion_backend.motion import Action, Motion
+from motion_backend.motion import Action, Motion, MotionBackend
 from planner_service.grounding.furnish import Furnished
 from planner_service.jobs import serialization
 from planner_service.jobs.serialization import summary_of_home, summary_of_script
@@ -109,7 +109,7 @@ class Maker:
     pipeline: Pipeline
     worker: str
     open: OrderedDict[str, OpenStory] = field(default_factory=OrderedDict)
-    backends: dict[str, Any] = field(default_factory=dict)
+    backends: dict[str, MotionBackend] = field(default_factory=dict)
 
     def plan(self, story_id: str) -> None:
         """Theme to long script."""
@@ -227,7 +227,7 @@ class Maker:
             self.open.popitem(last=False)
         return self.open[story_id]
 
-    def _backend(self, name: str) -> Any:
+    def _backend(self, name: str) -> MotionBackend:
         if name not in self.backends:
             self.backends[name] = load_backend(name)
         return self.backends[name]

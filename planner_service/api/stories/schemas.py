@@ -5,8 +5,11 @@ from __future__ import annotations
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, GetJsonSchemaHandler, StringConstraints
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, PydanticKnownError
 
+from motion_backend.backends import UnknownBackendError, backend_names, require_backend
 from motion_backend.motion import Skill
 from planner_service.composition.compose import MAX_SHORT_SCRIPTS
 from planner_service.pipeline import MAX_HEIGHT, MAX_NAME_LENGTH, MAX_SEED, MIN_HEIGHT
@@ -23,6 +26,27 @@ Seed = Annotated[int, Field(ge=0, le=MAX_SEED, description="The same seed gives 
 LayoutId = Annotated[str, StringConstraints(min_length=1, max_length=200)]
 MAX_KEYFRAMES = 60
 """Keyframes of one motion."""
+
+
+def _known(name: str) -> str:
+    """The name of a backend; refused as any word is that is not one of several."""
+    try:
+        require_backend(name)
+    except UnknownBackendError as error:
+        *others, last = map(repr, backend_names())
+        expected = f"{', '.join(others)} or {last}" if others else last
+        raise PydanticKnownError("literal_error", {"expected": expected}) from error
+    return name
+
+
+class _NamesThereAre:
+    """Those that are registered when the schema is asked for, as its enum."""
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        return handler(schema) | {"enum": list(backend_names())}
+
+
+BackendName = Annotated[str, AfterValidator(_known), _NamesThereAre()]
 
 
 class Ask(BaseModel):
@@ -67,7 +91,7 @@ class StoryAsk(Ask):
     method: Literal["matching", "direct"] = Field(
         "matching", description="Woven from the library's short scripts, or written at once (SIMS 10's baseline)."
     )
-    backend: Literal["procedural"] | None = Field(None, description="What moves the body; null: as the service is set.")
+    backend: BackendName | None = Field(None, description="What moves the body; null: as the service is set.")
     seed: Seed = 0
     character: CharacterAsk | None = None
 
@@ -92,7 +116,7 @@ class MotionAsk(Ask):
     layout_id: LayoutId | None = Field(None, description="The room; or give `home`.")
     home: Json | None = Field(None, description="A whole home, as GET /v1/stories/{id}/home gives it; or `layout_id`.")
     keyframes: list[Keyframe] = Field(min_length=1, max_length=MAX_KEYFRAMES)
-    backend: Literal["procedural"] | None = None
+    backend: BackendName | None = None
     seed: Seed = 0
     character: CharacterAsk | None = None
 
