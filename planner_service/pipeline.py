@@ -10,7 +10,7 @@ from motion_backend.backends import DEFAULT_BACKEND, load_backend, require_backe
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.smoothness import seam_jump, seam_speed_jump
-from motion_backend.motion import Action, BodyState, Character, Motion, join
+from motion_backend.motion import Action, BodyState, Character, Motion, MotionBackend, join
 from planner_service.composition.compose import MAX_SHORT_SCRIPTS, Request, compose, script_of
 from planner_service.grounding.furnish import Furnished, furnish
 from planner_service.grounding.keyframes_to_actions import act
@@ -223,10 +223,11 @@ class Pipeline:
 
     def make(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Story:
         """Theme to acted story."""
+        backend = load_backend(request.backend)
         planned = self.plan(request, progress)
         progress("act", 0.0)
         actions = self.act(request, planned.stage)
-        motions = move(planned.home, actions, request, progress)
+        motions = move(backend, planned.home, actions, request, progress)
         return judge(planned, actions, motions, progress)
 
 
@@ -250,9 +251,10 @@ def types_of(layouts: Sequence[Layout]) -> tuple[str, ...]:
     return tuple(room for room in dict.fromkeys(own) if room in ROOM_TYPES)[:MAX_ROOMS]
 
 
-def move(home: Home, actions: Sequence[Action], request: StoryRequest, progress: Progress) -> list[Motion]:
+def move(
+    backend: MotionBackend, home: Home, actions: Sequence[Action], request: StoryRequest, progress: Progress
+) -> list[Motion]:
     """One segment an action, each from the state the one before left."""
-    backend = load_backend(request.backend)
     state: BodyState = backend.begin(home, request.character, request.seed)
     motions = []
     for index, action in enumerate(actions):

@@ -61,7 +61,7 @@ def test_nobody_takes_the_name_of_one_of_ours(installed: Path) -> None:
 
 
 def test_an_unknown_name_is_refused_with_the_names_there_are(installed: Path) -> None:  # noqa: ARG001
-    with pytest.raises(UnknownBackendError, match="^backend: 'magic' is none of procedural, broken, ghost$"):
+    with pytest.raises(UnknownBackendError, match=r"^backend: 'magic' is none of procedural, broken, ghost$"):
         load_backend("magic")
     with pytest.raises(SettingsError, match=r"^SIMS_BACKEND: .*'magic' is none of procedural, broken, ghost"):
         read_settings(backend="magic")
@@ -101,7 +101,9 @@ def test_any_backend_can_be_stopped_between_two_actions_and_repeats_itself(insta
 
 
 def test_the_guide_to_backends_is_true(
-    installed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch  # noqa: ARG001
+    installed: Path,  # noqa: ARG001
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
