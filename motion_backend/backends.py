@@ -43,7 +43,7 @@ def require_backend(name: str) -> None:
     """UnknownBackendError where there is no backend of that name; none is loaded."""
     # Ours first: to look through all packages that are installed takes longer than all else of a request.
     if name not in _OURS and name not in _registered():
-        raise UnknownBackendError(f"backend: {name!r:.60} is none of {', '.join(backend_names())}")
+        raise UnknownBackendError(f"{name!r:.60} is none of {', '.join(backend_names())}", at="backend")
 
 
 def load_backend(name: str) -> MotionBackend:
@@ -80,5 +80,7 @@ def _registered() -> dict[str, EntryPoint]:
 
 def _broken(entry: EntryPoint, why: str) -> BrokenBackendError:
     return BrokenBackendError(
-        f"backend: {entry.name!r} cannot be loaded from {entry.value} ({why:.200}); mend or remove what registers it"
+        f"{entry.name!r} cannot be loaded from {entry.value} ({why:.200})",
+        "mend or remove what registers it",
+        at="backend",
     )

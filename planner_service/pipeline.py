@@ -74,19 +74,21 @@ class StoryRequest:
         _one_of("method", self.method, METHODS)
         if max(len(set(self.rooms)), len(self.layouts)) > MAX_ROOMS:
             field, count = ("rooms", len(self.rooms)) if len(self.rooms) > MAX_ROOMS else ("layout", len(self.layouts))
-            raise RequestError(f"{field}: a home has one to {MAX_ROOMS} rooms, {count} were asked for; leave some out")
+            raise RequestError(
+                f"a home has one to {MAX_ROOMS} rooms, {count} were asked for", "leave some out", at=field
+            )
         ids = [layout.id for layout in self.layouts]
         for number, layout_id in enumerate(ids):
             if layout_id in ids[:number]:
-                raise RequestError(f"layout: two rooms are called {layout_id!r}; give every room its own id")
+                raise RequestError(f"two rooms are called {layout_id!r}", "give every room its own id", at="layout")
         if self.short_scripts is not None and not 1 <= self.short_scripts <= MAX_SHORT_SCRIPTS:
             raise RequestError(
-                f"short_scripts: must be a number from 1 to {MAX_SHORT_SCRIPTS}, got {self.short_scripts}"
+                f"must be a number from 1 to {MAX_SHORT_SCRIPTS}, got {self.short_scripts}", at="short_scripts"
             )
         if self.home is not None and self.layouts:
-            raise RequestError("home: give a whole home or layouts to join to one, not both")
+            raise RequestError("give a whole home or layouts to join to one, not both", at="home")
         if not 0 <= self.seed <= MAX_SEED:
-            raise RequestError(f"seed: must be a whole number from 0 to {MAX_SEED}, got {self.seed}")
+            raise RequestError(f"must be a whole number from 0 to {MAX_SEED}, got {self.seed}", at="seed")
         _check_character(self.character)
         object.__setattr__(self, "character", cast_by(self.theme, self.character))
 
@@ -94,15 +96,17 @@ class StoryRequest:
 def _check_character(character: Character) -> None:
     name = character.name.strip()
     if not name or len(name) > MAX_NAME_LENGTH or not name.isprintable():
-        raise RequestError(f"name: must be 1 to {MAX_NAME_LENGTH} printable letters, got {name[:MAX_NAME_LENGTH]!r}")
+        raise RequestError(
+            f"must be 1 to {MAX_NAME_LENGTH} printable letters, got {name[:MAX_NAME_LENGTH]!r}", at="name"
+        )
     _one_of("pronouns", character.pronouns.strip().lower().split("/")[0], PRONOUNS, character.pronouns)
     if not MIN_HEIGHT <= character.height <= MAX_HEIGHT:
-        raise RequestError(f"height: must be {MIN_HEIGHT} to {MAX_HEIGHT} metres, got {character.height:g}")
+        raise RequestError(f"must be {MIN_HEIGHT} to {MAX_HEIGHT} metres, got {character.height:g}", at="height")
 
 
 def _one_of(field: str, value: str, known: Sequence[str], shown: str | None = None) -> None:
     if value not in known:
-        raise RequestError(f"{field}: {shown or value!r:.60} is none of {', '.join(known)}")
+        raise RequestError(f"{shown or value!r:.60} is none of {', '.join(known)}", at=field)
 
 
 def request_to_dict(request: StoryRequest) -> Json:
@@ -235,7 +239,7 @@ def given_script(request: StoryRequest) -> LongScript:
     """The script of a user's own keyframes. RequestError when there is nothing in it that a body can do."""
     script = script_of(request.keyframes, request.theme, request.seed)
     if not script.keyframes:
-        raise RequestError(f"keyframes: nothing is left of them: {'; '.join(script.repairs)}")
+        raise RequestError(f"nothing is left of them: {'; '.join(script.repairs)}", at="keyframes")
     return script
 
 

@@ -177,7 +177,9 @@ def listen(settings: Settings) -> socket.socket:
     except OSError as error:
         listening.close()
         where = f"{settings.host}:{settings.port}"
-        raise SettingsError(f"SIMS_PORT: {where} cannot be had: {error.strerror or error}; try another port") from error
+        raise SettingsError(
+            f"{where} cannot be had: {error.strerror or error}", "try another port", at="SIMS_PORT"
+        ) from error
     return listening
 
 

@@ -95,9 +95,12 @@ class Settings(BaseSettings):
     @field_validator("backend")
     @classmethod
     def _registered(cls, name: str) -> str:
-        from motion_backend.backends import require_backend
+        from motion_backend.backends import UnknownBackendError, require_backend
 
-        require_backend(name)
+        try:
+            require_backend(name)
+        except UnknownBackendError as error:
+            raise ValueError(error.said) from error
         return name
 
     @field_validator("log_level", mode="before")
@@ -132,4 +135,4 @@ def read_settings(**options: object) -> Settings:
         faults = [f"SIMS_{'.'.join(map(str, fault['loc'])).upper()}: {fault['msg']}" for fault in error.errors()]
         raise SettingsError("; ".join(faults)) from error
     except (OSError, UnicodeDecodeError) as error:
-        raise SettingsError(f".env cannot be read: {error}; it must be UTF-8 text") from error
+        raise SettingsError(f".env cannot be read: {error}", "it must be UTF-8 text") from error

@@ -126,8 +126,9 @@ def doorway_sites(layout: Layout) -> tuple[Site, ...]:
                 found.append(Site(center, inward, width, top, penalty + 4 * max(CLEAR - clear, 0.0)))
     if not found:
         raise HomeError(
-            f"room {layout.id!r} has no stretch of wall {DOOR_WIDTH} m wide that is free of furniture and leads to its "
-            "floor; take another room or move furniture off the walls"
+            f"room {layout.id!r} has no stretch of wall {DOOR_WIDTH} m wide that is free of furniture and "
+            "leads to its floor",
+            "take another room or move furniture off the walls",
         )
     return tuple(found)
 
@@ -189,8 +190,9 @@ def _arrange(layouts: Sequence[Layout], sites: Sequence[Sequence[Site]], rng: np
         if best is None:
             others = ", ".join(repr(layout.id) for layout in layouts[:index])
             raise HomeError(
-                f"room {layouts[index].id!r} fits nowhere beside {others}: wherever two free walls meet, rooms would "
-                "overlap; take another room or fewer"
+                f"room {layouts[index].id!r} fits nowhere beside {others}: wherever two free walls meet, rooms "
+                "would overlap",
+                "take another room or fewer",
             )
         poses.append(best[0])
         doorways.append(best[1])

@@ -15,6 +15,7 @@ import numpy as np
 import shapely
 
 from scene_graphs.doorways import WALL_GAP, HomeError, Pose, arrangements, span_on
+from scene_graphs.errors import FieldPath
 from scene_graphs.json_fields import MAX_COORDINATE, LayoutError, Row, read_number, read_point3, read_rows
 from scene_graphs.layout import (
     MAX_SIZE,
@@ -144,7 +145,7 @@ def home_from_layouts(layouts: Sequence[Layout], seed: int) -> Home:
         if cut_off is None:
             return home
     name = "" if cut_off is None else layouts[cut_off].id
-    raise HomeError(f"room {name!r} cannot be walked to from the others: furniture is in the way; take another room")
+    raise HomeError(f"room {name!r} cannot be walked to from the others: furniture is in the way", "take another room")
 
 
 def random_home(layouts: Sequence[Layout], room_types: Sequence[str], seed: int) -> Home:
@@ -159,7 +160,7 @@ def random_home(layouts: Sequence[Layout], room_types: Sequence[str], seed: int)
         for room_type in room_types:
             fitting = [one for one in layouts if room_type in (one.room_type, *one.tags) and one not in chosen]
             if not fitting:
-                raise HomeError(f"there is no room of type {room_type!r} left among {len(layouts)}; give more rooms")
+                raise HomeError(f"there is no room of type {room_type!r} left among {len(layouts)}", "give more rooms")
             chosen.append(fitting[int(rng.integers(len(fitting)))])
         try:
             return home_from_layouts(chosen, seed)
@@ -265,15 +266,18 @@ def home_to_dict(home: Home) -> dict[str, Any]:
     }
 
 
-def home_from_dict(row: Row, where: str = "home") -> Home:
+_HOME: Final = FieldPath(("home",))
+
+
+def home_from_dict(row: Row, where: FieldPath = _HOME) -> Home:
     """Read a home. LayoutError naming the field that is missing, out of bounds or of another type."""
     rooms = tuple(_room(item, place) for item, place in read_rows(row, "rooms", where, MAX_ROOMS))
     if not rooms:
-        raise LayoutError(f"{where}.rooms must hold 1 to {MAX_ROOMS} rooms, each with layout, offset and yaw")
+        raise LayoutError(f"must hold 1 to {MAX_ROOMS} rooms, each with layout, offset and yaw", at=where / "rooms")
     walls = tuple(
         Wall(
             segment_from_row(item, place),
-            read_number(item.get("height"), f"{place}.height", 0.0, MAX_SIZE),
+            read_number(item.get("height"), place / "height", 0.0, MAX_SIZE),
             tuple(opening_from_row(inner, at) for inner, at in read_rows(item, "openings", place, MAX_OPENINGS)),
         )
         for item, place in read_rows(row, "walls", where, MAX_WALLS)
@@ -282,12 +286,12 @@ def home_from_dict(row: Row, where: str = "home") -> Home:
     return Home(rooms, walls, doorways)
 
 
-def _room(row: Row, where: str) -> Room:
+def _room(row: Row, where: FieldPath) -> Room:
     layout = row.get("layout")
     if not isinstance(layout, dict):
-        raise LayoutError(f"{where}.layout must be an object, got {type(layout).__name__}")
+        raise LayoutError(f"must be an object, got {type(layout).__name__}", at=where / "layout")
     return Room(
-        layout_from_dict(layout, f"{where}.layout"),
-        read_point3(row.get("offset"), f"{where}.offset", -MAX_COORDINATE, MAX_COORDINATE),
-        read_number(row.get("yaw", 0.0), f"{where}.yaw", -100.0, 100.0),
+        layout_from_dict(layout, where / "layout"),
+        read_point3(row.get("offset"), where / "offset", -MAX_COORDINATE, MAX_COORDINATE),
+        read_number(row.get("yaw", 0.0), where / "yaw", -100.0, 100.0),
     )

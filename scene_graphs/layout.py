@@ -16,13 +16,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from math import pi
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
 from scene_graphs.boxes import MAX_PARTS, ROLES, THINNEST, Part, Point3
+from scene_graphs.errors import FieldPath
 from scene_graphs.furniture import canonical
 from scene_graphs.json_fields import (
     MAX_COORDINATE,
@@ -140,33 +141,33 @@ def opening_to_row(opening: Opening) -> dict[str, Any]:
     return {"segment": [list(end) for end in opening.segment], "bottom": opening.bottom, "top": opening.top}
 
 
-def placed_from_row(row: Row, where: str) -> Placed:
+def placed_from_row(row: Row, where: FieldPath) -> Placed:
     """A piece of furniture; `pos` is read as `position` and its category is made canonical."""
     position = row.get("position", row.get("pos"))
-    size = read_point3(row.get("size"), f"{where}.size", MIN_SIZE, MAX_SIZE)
+    size = read_point3(row.get("size"), where / "size", MIN_SIZE, MAX_SIZE)
     return Placed(
         id=read_text(row, "id", where),
         category=canonical(read_text(row, "category", where)),
-        position=read_point3(position, f"{where}.position", -MAX_COORDINATE, MAX_COORDINATE),
+        position=read_point3(position, where / "position", -MAX_COORDINATE, MAX_COORDINATE),
         size=size,
-        yaw=read_number(row.get("yaw", 0.0), f"{where}.yaw", -100.0, 100.0),
+        yaw=read_number(row.get("yaw", 0.0), where / "yaw", -100.0, 100.0),
         parent=None if row.get("parent") is None else read_text(row, "parent", where),
         mesh=None if row.get("mesh") is None else read_text(row, "mesh", where),
-        shape=_shape(row.get("shape"), f"{where}.shape", size),
+        shape=_shape(row.get("shape"), where / "shape", size),
     )
 
 
-def _shape(value: Any, where: str, size: Point3) -> tuple[Part, ...]:
+def _shape(value: Any, where: FieldPath, size: Point3) -> tuple[Part, ...]:
     if value is None:
         return ()
     if not isinstance(value, list) or len(value) > MAX_PARTS:
-        raise LayoutError(f"{where} must be a list of at most {MAX_PARTS} boxes [role, low, high]")
-    return tuple(_part(item, f"{where}[{index}]", size) for index, item in enumerate(value))
+        raise LayoutError(f"must be a list of at most {MAX_PARTS} boxes [role, low, high]", at=where)
+    return tuple(_part(item, where / index, size) for index, item in enumerate(value))
 
 
-def _part(value: Any, where: str, size: Point3) -> Part:
+def _part(value: Any, where: FieldPath, size: Point3) -> Part:
     if not isinstance(value, list) or len(value) != 3 or not (isinstance(value[0], str) and value[0] in ROLES):
-        raise LayoutError(f"{where} must be [role, low, high] with a role of {', '.join(sorted(ROLES))}")
+        raise LayoutError(f"must be [role, low, high] with a role of {', '.join(sorted(ROLES))}", at=where)
     low, high = (read_point3(corner, where, -MAX_SIZE, MAX_SIZE) for corner in value[1:])
     (w, h, d), s = size, _SLACK
     inside = all(
@@ -174,21 +175,23 @@ def _part(value: Any, where: str, size: Point3) -> Part:
         for start, end, least, most in zip(low, high, (-w / 2, 0.0, -d / 2), (w / 2, h, d / 2), strict=True)
     )
     if not inside:
-        raise LayoutError(f"{where} must lie in its piece's box, x and z centred on 0 and y from 0, low before high")
+        raise LayoutError("must lie in its piece's box, x and z centred on 0 and y from 0, low before high", at=where)
     return Part(value[0], low, high)
 
 
-def check_ids(objects: list[Placed], where: str) -> None:
+def check_ids(objects: list[Placed], where: FieldPath) -> None:
     """Refuse ids that occur twice and parents that are not there."""
     ids = [placed.id for placed in objects]
     for index, placed in enumerate(objects):
         if placed.id in ids[:index]:
-            raise LayoutError(f"{where}.objects[{index}].id {placed.id!r} occurs twice; give every object its own id")
+            raise LayoutError(
+                f"{placed.id!r} occurs twice", "give every object its own id", at=where / "objects" / index / "id"
+            )
         if placed.parent is not None and (placed.parent == placed.id or placed.parent not in ids):
-            raise LayoutError(f"{where}.objects[{index}].parent {placed.parent!r} is no other object's id")
+            raise LayoutError(f"{placed.parent!r} is no other object's id", at=where / "objects" / index / "parent")
 
 
-def check_crowd(objects: list[Placed], where: str) -> None:
+def check_crowd(objects: list[Placed], where: FieldPath) -> None:
     """Refuse a heap of things: what stands near what would take minutes to find."""
     if len(objects) * len(objects) * (len(objects) - 1) / 2 <= MAX_CROWDED:
         return
@@ -196,43 +199,47 @@ def check_crowd(objects: list[Placed], where: str) -> None:
     pairs = len(shapely.STRtree(outlines).query(outlines, "dwithin", NEAR)[0]) // 2
     if pairs * len(objects) > MAX_CROWDED:
         raise LayoutError(
-            f"{where}.objects are a heap: {pairs} pairs of {len(objects)} stand within {NEAR} m; is it metres?"
+            f"are a heap: {pairs} pairs of {len(objects)} stand within {NEAR} m", "is it metres?", at=where / "objects"
         )
 
 
-def segment_from_row(row: Row, where: str) -> Segment:
+def segment_from_row(row: Row, where: FieldPath) -> Segment:
     """Two points on the floor."""
     ends = row.get("segment")
     if not isinstance(ends, list) or len(ends) != 2:
-        raise LayoutError(f"{where}.segment must be two [x, z] points, got {ends!r:.60}")
-    start, end = (read_point2(point, f"{where}.segment[{index}]") for index, point in enumerate(ends))
+        raise LayoutError(f"must be two [x, z] points, got {ends!r:.60}", at=where / "segment")
+    start, end = (read_point2(point, where / "segment" / index) for index, point in enumerate(ends))
     return start, end
 
 
-def opening_from_row(row: Row, where: str) -> Opening:
+def opening_from_row(row: Row, where: FieldPath) -> Opening:
     """A door or window."""
     segment = segment_from_row(row, where)
-    bottom = read_number(row.get("bottom", 0.0), f"{where}.bottom", 0.0, MAX_SIZE)
-    top = read_number(row.get("top", 2.1), f"{where}.top", 0.0, MAX_SIZE)
+    bottom = read_number(row.get("bottom", 0.0), where / "bottom", 0.0, MAX_SIZE)
+    top = read_number(row.get("top", 2.1), where / "top", 0.0, MAX_SIZE)
     if top <= bottom:
-        raise LayoutError(f"{where}.top must be above bottom, got {top} and {bottom}")
+        raise LayoutError(f"must be above bottom, got {top} and {bottom}", at=where / "top")
     return Opening(segment, bottom, top)
 
 
-def read_outline(row: Row, where: str) -> tuple[Point2, ...]:
+def read_outline(row: Row, where: FieldPath) -> tuple[Point2, ...]:
     """The corners of the floor, turned counter-clockwise as seen from above."""
-    corners, place = row.get("floor_polygon"), f"{where}.floor_polygon"
+    corners, place = row.get("floor_polygon"), where / "floor_polygon"
     if not isinstance(corners, list) or not 3 <= len(corners) <= MAX_CORNERS:
-        raise LayoutError(f"{place} must be a list of 3 to {MAX_CORNERS} [x, z] corners in metres")
-    points = [read_point2(corner, f"{place}[{index}]") for index, corner in enumerate(corners)]
+        raise LayoutError(f"must be a list of 3 to {MAX_CORNERS} [x, z] corners in metres", at=place)
+    points = [read_point2(corner, place / index) for index, corner in enumerate(corners)]
     while len(points) > 1 and points[0] == points[-1]:
         points.pop()
     polygon = shapely.Polygon(points) if len(points) >= 3 else None
     if polygon is None or not polygon.is_valid or polygon.area < 0.5:
-        raise LayoutError(f"{place} must be a simple polygon of at least 0.5 square metres; order its corners around")
+        raise LayoutError(
+            "must be a simple polygon of at least 0.5 square metres", "order its corners around", at=place
+        )
     low_x, low_z, high_x, high_z = polygon.bounds
     if max(high_x - low_x, high_z - low_z) > MAX_ROOM_WIDTH:
-        raise LayoutError(f"{place} must fit in {MAX_ROOM_WIDTH:g} by {MAX_ROOM_WIDTH:g} metres; is it in centimetres?")
+        raise LayoutError(
+            f"must fit in {MAX_ROOM_WIDTH:g} by {MAX_ROOM_WIDTH:g} metres", "is it in centimetres?", at=place
+        )
     # Seen from above [x, z] is a left-handed pair: counter-clockwise there is clockwise to shapely.
     return tuple(reversed(points)) if polygon.exterior.is_ccw else tuple(points)
 
@@ -312,7 +319,10 @@ def layout_to_dict(layout: Layout) -> dict[str, Any]:
     }
 
 
-def layout_from_dict(row: Row, where: str = "layout") -> Layout:
+_LAYOUT: Final = FieldPath(("layout",))
+
+
+def layout_from_dict(row: Row, where: FieldPath = _LAYOUT) -> Layout:
     """Read one native row; `pos` is read as `position`, categories are made canonical, the outline's winding is set.
 
     `where` names the row in errors. LayoutError if a field is missing, out of bounds or of another type.
@@ -325,7 +335,7 @@ def layout_from_dict(row: Row, where: str = "layout") -> Layout:
         id=read_text(row, "id", where),
         room_type=room_type,
         floor_polygon=read_outline(row, where),
-        height=read_number(row.get("height", 2.7), f"{where}.height", MIN_ROOM_HEIGHT, MAX_SIZE),
+        height=read_number(row.get("height", 2.7), where / "height", MIN_ROOM_HEIGHT, MAX_SIZE),
         doors=tuple(opening_from_row(item, place) for item, place in read_rows(row, "doors", where, 100)),
         windows=tuple(opening_from_row(item, place) for item, place in read_rows(row, "windows", where, 100)),
         objects=tuple(objects),
@@ -346,14 +356,14 @@ def read_layouts(path: str | Path, most_bytes: int = _MAX_BYTES) -> list[Layout]
     seen: set[str] = set()
     for where, row in _read_rows(file, most_bytes):
         if not isinstance(row, dict):
-            raise LayoutError(f"{where} must be an object with id, room_type, floor_polygon and objects")
+            raise LayoutError("must be an object with id, room_type, floor_polygon and objects", at=where)
         layout = layout_from_dict(row, where)
         if layout.id in seen:
-            raise LayoutError(f"{where}.id {layout.id!r} occurs twice; give every room its own id")
+            raise LayoutError(f"{layout.id!r} occurs twice", "give every room its own id", at=where / "id")
         seen.add(layout.id)
         layouts.append(layout)
         if len(layouts) > MAX_LAYOUTS:
-            raise LayoutError(f"{file.name} holds more than {MAX_LAYOUTS} rooms; split it")
+            raise LayoutError(f"{file.name} holds more than {MAX_LAYOUTS} rooms", "split it")
     return layouts
 
 
@@ -373,14 +383,14 @@ def write_layouts(path: str | Path, layouts: Iterable[Layout]) -> None:
             stream.writelines(f"{text}\n".encode() for text in texts)
 
 
-def _read_rows(file: Path, most_bytes: int) -> Iterator[tuple[str, Any]]:
+def _read_rows(file: Path, most_bytes: int) -> Iterator[tuple[FieldPath, Any]]:
     if not {".json", ".jsonl"} & set(file.suffixes):
         raise LayoutError(f"{file.name}: rooms are read from .json, .jsonl, .json.gz or .jsonl.gz")
     try:
         with gzip.open(file) if file.suffix == ".gz" else file.open("rb") as stream:
             data = stream.read(most_bytes + 1)
         if len(data) > most_bytes:
-            raise LayoutError(f"{file.name} is larger than {most_bytes >> 20} MiB; split it")
+            raise LayoutError(f"{file.name} is larger than {most_bytes >> 20} MiB", "split it")
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise LayoutError(f"{file.name} is not UTF-8 text ({error.reason} at byte {error.start})") from error
@@ -389,15 +399,16 @@ def _read_rows(file: Path, most_bytes: int) -> Iterator[tuple[str, Any]]:
     if ".jsonl" in file.suffixes:
         for number, line in enumerate(text.split("\n"), start=1):
             if line.strip():
-                yield f"{file.name} line {number}", _parse(line, f"{file.name} line {number}")
+                where = FieldPath((f"{file.name} line {number}",))
+                yield where, _parse(line, where)
         return
-    parsed = _parse(text, file.name)
+    parsed = _parse(text, FieldPath((file.name,)))
     for index, row in enumerate(parsed if isinstance(parsed, list) else [parsed]):
-        yield f"{file.name} [{index}]", row
+        yield FieldPath((f"{file.name} [{index}]",)), row
 
 
-def _parse(text: str, where: str) -> Any:
+def _parse(text: str, where: FieldPath) -> Any:
     try:
         return json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise LayoutError(f"{where} is not JSON: {error}") from error
+        raise LayoutError(f"is not JSON: {error}", at=where) from error

@@ -171,6 +171,16 @@ def test_importing_the_planner_loads_nothing_heavy() -> None:
     assert done.stdout.strip() == "[]"
 
 
+def test_no_error_is_taken_apart_by_its_text() -> None:
+    """Errors carry facts (`scene_graphs/errors.py`): whoever needs the place or the remedy asks for it."""
+    apart = {"split", "rsplit", "partition", "rpartition", "removeprefix", "removesuffix", "startswith", "match"}
+    for path in modules():
+        for node in ast.walk(tree_of(path)):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in apart:
+                taken = [node.func.value, *node.args]
+                assert not {"str(error)", "str(fault)", "explain(error)"} & set(map(ast.unparse, taken)), path
+
+
 def test_nothing_of_ours_is_pickled_or_evaluated() -> None:
     for path in modules():
         for node in ast.walk(tree_of(path)):

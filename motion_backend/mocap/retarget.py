@@ -175,7 +175,7 @@ def _timelines(clip: Clip, places: dict[str, int], ratio: float, notes: list[str
     """The source at our size and rate, its pelvis starting above the origin: as it is, and smoothed."""
     if clip.duration * FPS > MAX_FRAMES or clip.duration * FPS * len(clip.bones.names) > MAX_TURNS:
         raise ClipError(
-            f"it lasts {clip.duration / 60:.0f} minutes, too long for {len(clip.bones.names)} joints; cut it"
+            f"it lasts {clip.duration / 60:.0f} minutes, too long for {len(clip.bones.names)} joints", "cut it"
         )
     times = sample_times(len(clip), clip.fps, FPS)
     if len(times) < 2:

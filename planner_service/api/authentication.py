@@ -40,18 +40,19 @@ def check_exposure(settings: Settings) -> None:
     """SettingsError where strangers could get in: no keys beyond loopback, weak keys, origins that are none."""
     if not settings.api_keys and not is_loopback(settings.host):
         raise SettingsError(
-            f"SIMS_API_KEYS: without keys the service is bound to this machine only, not to {settings.host}; "
-            "set SIMS_API_KEYS (`openssl rand -hex 24` makes a good key) or SIMS_HOST=127.0.0.1"
+            f"without keys the service is bound to this machine only, not to {settings.host}",
+            "set SIMS_API_KEYS (`openssl rand -hex 24` makes a good key) or SIMS_HOST=127.0.0.1",
+            at="SIMS_API_KEYS",
         )
     for key in settings.api_keys:
         if len(key) < MIN_KEY or len(set(key)) < MIN_KEY // 4:
-            raise SettingsError(f"SIMS_API_KEYS: a key can be guessed; use {MIN_KEY} or more random letters")
+            raise SettingsError("a key can be guessed", f"use {MIN_KEY} or more random letters", at="SIMS_API_KEYS")
         if not key.isascii() or not key.isprintable() or " " in key:
-            raise SettingsError("SIMS_API_KEYS: a key travels in a header: printable ASCII letters without spaces")
+            raise SettingsError("a key travels in a header: printable ASCII letters without spaces", at="SIMS_API_KEYS")
     for origin in settings.cors_origins:
         parts = urlsplit(origin)
         if origin != f"{parts.scheme}://{parts.netloc}" or parts.scheme not in ("http", "https") or "*" in origin:
-            raise SettingsError(f"SIMS_CORS_ORIGINS: {origin!r:.80} is no origin; write https://studio.example")
+            raise SettingsError(f"{origin!r:.80} is no origin", "write https://studio.example", at="SIMS_CORS_ORIGINS")
 
 
 def is_loopback(host: str) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import re
 import sqlite3
 from collections.abc import Mapping, Sequence
 from http import HTTPStatus
@@ -39,15 +38,13 @@ from planner_service.llm.protocol import ModelError
 from planner_service.output.story_files import OutputError
 from planner_service.settings import SettingsError
 from planner_service.store.story_store import StoryGone
-from planner_service.themes.beats import ThemeError
-from planner_service.user_errors import explain
+from planner_service.user_errors import one_line
 from scene_graphs.errors import UserError
+from scene_graphs.json_fields import LayoutError
 
 METHODS: Final = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
 OURS: Final = (OutputError, SettingsError, WeightsError)
 """Faults of the installation, not of a request."""
-FIELD: Final = re.compile(r"^(?P<field>[a-z_]+(?:[./\[][\w./\[\]-]*)?): (?P<fault>.+)$", re.DOTALL)
-"""How the engine's errors begin: the field, a colon, what is wrong."""
 NAMES: Final = {
     "name": "character/name", "pronouns": "character/pronouns", "height": "character/height", "layout": "layouts",
     "query": "q",
@@ -151,11 +148,12 @@ def allowed_methods(request: Request) -> list[str]:
 
 async def _engine(request: Request, error: Exception) -> Response:
     """What the engine says about a request: mostly the request's fault."""
+    assert isinstance(error, UserError)
     return engine_problem(error, request.method).response(request.url.path)
 
 
-def engine_problem(error: Exception, method: str = "POST") -> Problem:
-    """A `UserError` as a problem; the field that its text begins with becomes a pointer."""
+def engine_problem(error: UserError, method: str = "POST") -> Problem:
+    """What a user did wrong as a problem; the field that it is about becomes a pointer."""
     if isinstance(error, ModelError):
         return ModelFailed(f"the language model gave no usable answer: {error}")
     if isinstance(error, BrokenBackendError):
@@ -163,14 +161,16 @@ def engine_problem(error: Exception, method: str = "POST") -> Problem:
     if isinstance(error, OURS):
         log.error("installation", reason=str(error))
         return Problem("the service is not set up rightly; its log says what is wrong")
-    text = explain(error).replace("--", "")  # options of the command line are fields here
-    if isinstance(error, ThemeError) and not text.startswith("theme:"):
-        text = f"theme: {text}"
-    match = FIELD.match(text)
-    if match is None:
-        return Unprocessable("", text)
-    field = NAMES.get(match["field"], match["field"])
-    return Unprocessable(f"?{field}" if method in ("GET", "DELETE") else f"/{field.replace('.', '/')}", match["fault"])
+    if not error.at or isinstance(error, LayoutError):  # a place in a file is none in the request
+        return Unprocessable("", _words(str(error)))
+    field = _words(str(error.at))
+    place = f"/{NAMES[field]}" if field in NAMES else f"/{field}"
+    return Unprocessable(f"?{place[1:]}" if method in ("GET", "DELETE") else place, _words(error.said))
+
+
+def _words(text: str) -> str:
+    """One printable line; options of the command line are fields here."""
+    return one_line(text).replace("--", "")
 
 
 async def _gone(request: Request, _error: Exception) -> Response:

@@ -50,12 +50,12 @@ def sheet(
     from motion_backend.rendering.motion_figures import save_png
 
     if sum(one is not None for one in (file, caption, every)) != 1:
-        raise RequestError("sheet: give one of FILE, --caption and --all; it says what to draw")
+        raise RequestError("give one of FILE, --caption and --all; it says what to draw", at="sheet")
     if every is not None:
         _draw_all(every, skill, room, seed)
         return
     if out is None:
-        raise RequestError("--out: say where the picture goes, such as --out sheet.png")
+        raise RequestError("say where the picture goes, such as --out sheet.png", at="--out")
     check_writable(out.parent, [out.name])
     picture = _of_clips(file, clip) if file is not None else _of_caption(str(caption), skill, room, seed)
     write_files(out.parent, {out.name: lambda path: save_png(picture, path)})
@@ -70,7 +70,7 @@ def _of_clips(file: Path, names: list[str] | None) -> Image:
     dataset = read_dataset(file)
     chosen = [dataset.named(name) for name in names] if names else dataset.of_every_skill()
     if len(chosen) > MAX_SHOWN:
-        raise ClipError(f"--clip: a sheet shows at most {MAX_SHOWN} clips, these are {len(chosen)}; name fewer")
+        raise ClipError(f"--clip: a sheet shows at most {MAX_SHOWN} clips, these are {len(chosen)}", "name fewer")
     return drawn([(printable(f"{entry.name}: {entry.captions[0]}"), entry.motion) for entry in chosen])
 
 
@@ -227,7 +227,9 @@ def _check_no_source(folder: Path, out: Path) -> None:
 
     inside = out.is_file() and folder.resolve() in out.resolve().parents
     if inside and not is_dataset(out):
-        raise OutputError(f"--out: {out} lies among the files to be read and is no collection; choose another name")
+        raise OutputError(
+            f"{out} lies among the files to be read and is no collection", "choose another name", at="--out"
+        )
 
 
 def _wanted(one: Kept | Unread, kinds: set[str]) -> bool:

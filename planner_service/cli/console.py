@@ -19,7 +19,7 @@ def writing_database() -> Iterator[None]:
         yield
     except SQLAlchemyError as error:
         reason = str(getattr(error, "orig", error)).splitlines()[0]
-        raise SettingsError(f"the database cannot be written: {reason}; see SIMS_DATA_DIR") from error
+        raise SettingsError(f"the database cannot be written: {reason}", "see SIMS_DATA_DIR") from error
 
 
 def plain_table(*columns: str, right: Collection[str] = (), fold: bool = False) -> Table:

@@ -116,18 +116,20 @@ def _chosen(captions: str, skills: Sequence[Skill] | None, only: str | None) -> 
     """The captions to be acted, by skill."""
     known = {Skill(name): some for name, some in known_captions().items() if not skills or Skill(name) in skills}
     if only is not None and not (0 < len(only) <= MAX_CAPTION_LENGTH and only.isprintable()):
-        raise RequestError(f"--only: a caption is 1 to {MAX_CAPTION_LENGTH} printable letters, got {only!r:.80}")
+        raise RequestError(f"a caption is 1 to {MAX_CAPTION_LENGTH} printable letters, got {only!r:.80}", at="--only")
     if only is not None:
         found = {skill: [only] for skill, some in known.items() if only in some}
         if not found and skills:
             return {skill: [only] for skill in skills}
         if not found:
-            raise RequestError(f"--only: no caption is called {only!r:.120}; for words of your own give --skill too")
+            raise RequestError(
+                f"no caption is called {only!r:.120}", "for words of your own give --skill too", at="--only"
+            )
         return found
     if captions == "all":
         return known
     if not captions.isdecimal() or len(captions) > MAX_DIGITS or int(captions) < 1:
-        raise RequestError(f"--captions: {captions!r:.40} must be a number from 1 on, or all")
+        raise RequestError(f"{captions!r:.40} must be a number from 1 on, or all", at="--captions")
     # Spread over the list, which is in the order of the alphabet.
     return {skill: some[:: max(len(some) // int(captions), 1)][: int(captions)] for skill, some in known.items()}
 
@@ -142,9 +144,11 @@ def _one_trial(
 
     pairs = [(skill, caption) for skill, some in chosen.items() for caption in some]
     if len(pairs) != 1:
-        raise RequestError("--room: one trial needs --only with one caption; give --skill where several skills have it")
+        raise RequestError(
+            "one trial needs --only with one caption", "give --skill where several skills have it", at="--room"
+        )
     if all(room != layout.id for layout in built_in_index().layouts):
-        raise RequestError(f"--room: the library has no room {room!r:.80}; sims layouts list names them")
+        raise RequestError(f"the library has no room {room!r:.80}", "sims layouts list names them", at="--room")
     if out is not None:
         check_writable(out, FILMED)
     done = perform(Trial(*pairs[0], room, seed))

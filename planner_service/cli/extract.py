@@ -47,9 +47,9 @@ def extract(
 
     title = " ".join((file.stem if name is None else name).split())
     if not 0 < len(title) <= 200 or not title.isprintable():
-        raise RequestError(f"--name: {title[:60]!r} is no title; give 1 to 200 letters")
+        raise RequestError(f"{title[:60]!r} is no title", "give 1 to 200 letters", at="--name")
     if not 0 < len(licence.strip()) <= 200 or not licence.isprintable():
-        raise RequestError("--licence: give 1 to 200 letters, such as CC-BY-4.0")
+        raise RequestError("give 1 to 200 letters, such as CC-BY-4.0", at="--licence")
     settings = read_settings()
     model = for_story(load_model(settings), 0)
     if out is not None:

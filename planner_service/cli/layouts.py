@@ -57,14 +57,16 @@ def chosen_layouts(
         if _is_file(name):
             rooms = read_layouts(name, MAX_FILE_BYTES)
             if not rooms:
-                raise LayoutError(f"{field}: {name} holds no room; `sims layouts generate` writes such files")
+                raise LayoutError(f"{field}: {name} holds no room", "`sims layouts generate` writes such files")
             found.extend(rooms)
             continue
         if (known := shelves.rooms().get(name)) is None:
-            raise LayoutError(f"{field}: {name!r:.200} is neither a file nor the id of a room; see `sims layouts list`")
+            raise LayoutError(
+                f"{field}: {name!r:.200} is neither a file nor the id of a room", "see `sims layouts list`"
+            )
         found.append(known)
     if len(found) > most:
-        raise LayoutError(f"{field}: at most {most} rooms, {len(found)} were given; leave some out")
+        raise LayoutError(f"{field}: at most {most} rooms, {len(found)} were given", "leave some out")
     return tuple(found)
 
 
@@ -117,13 +119,13 @@ def draw(
     """Draw rooms from above: furniture with names, graph, surfaces, standing points and a path."""
     endings = [word.strip().lower() for word in formats.split(",")]
     if not endings or any(word not in PICTURE_ENDINGS for word in endings):
-        raise RequestError(f"--format: {formats!r:.40} must be png, svg or png,svg")
+        raise RequestError(f"{formats!r:.40} must be png, svg or png,svg", at="--format")
     layouts = chosen_layouts(names, open_shelves(read_settings()), "NAMES", most=MAX_DRAWN)
     drawings: dict[str, Writer] = {}
     for layout in layouts:
         if to is not None and all(placed.id != to for placed in layout.objects):
             known = ", ".join(placed.id for placed in layout.objects)
-            raise RequestError(f"--to: {layout.id} has no object {to!r:.80}; it has {known}")
+            raise RequestError(f"{layout.id} has no object {to!r:.80}", f"it has {known}", at="--to")
         name = file_name(layout.id)
         name += f"-{len(drawings)}" if f"{name}.{endings[0]}" in drawings else ""
         for ending in dict.fromkeys(endings):
@@ -201,7 +203,7 @@ def graph_of_words(words: list[str]) -> FurnitureGraph:
                 edges.append((before, place))
             before = place
     if not places:
-        raise RequestError("WORDS: no furniture is named; try `sims layouts find sofa:sit coffee-table, bed:lie`")
+        raise RequestError("WORDS: no furniture is named", "try `sims layouts find sofa:sit coffee-table, bed:lie`")
     return graph_from_parts(list(places), edges, list(needs.values()))
 
 
@@ -224,10 +226,10 @@ def graph_of_file(path: Path) -> FurnitureGraph:
 def _piece(word: str) -> tuple[Furniture, set[str]]:
     match = _WORD.fullmatch(word)
     if match is None or int(match["number"] or 1) < 1:
-        raise RequestError(f"WORDS: {word!r:.60} is no piece of furniture; write such as chair, chair2 or chair:sit")
+        raise RequestError(f"WORDS: {word!r:.60} is no piece of furniture", "write such as chair, chair2 or chair:sit")
     needs = set((match["needs"] or "").split("+")) - {""}
     if not needs <= set(AFFORDANCES):
-        raise RequestError(f"WORDS: {word!r:.60} needs what no body does; choose of {', '.join(AFFORDANCES)}")
+        raise RequestError(f"WORDS: {word!r:.60} needs what no body does", f"choose of {', '.join(AFFORDANCES)}")
     return Furniture(match["word"].strip("_- "), int(match["number"] or 1)), needs
 
 
@@ -263,7 +265,7 @@ ENDINGS = (".json", ".jsonl", ".json.gz", ".jsonl.gz")
 def list_layouts(room: Annotated[str | None, typer.Option(help="Only rooms of this type.")] = None) -> None:
     """Show the rooms a story can play in."""
     if room is not None and room not in ROOM_TYPES:
-        raise RequestError(f"--room: {room!r} is none of {', '.join(ROOM_TYPES)}")
+        raise RequestError(f"{room!r} is none of {', '.join(ROOM_TYPES)}", at="--room")
     table = plain_table("id", "room type", "objects")
     rooms = open_shelves(read_settings()).rooms()
     chosen = [layout for layout in rooms.values() if room is None or layout.room_type == room]
@@ -356,7 +358,7 @@ def generate(
     from scene_graphs.generation.room_generator import CHUNK, generate_rooms
 
     if not out.name.endswith(ENDINGS):
-        raise RequestError(f"--out: {out} must end in one of {', '.join(ENDINGS)}, or no reader knows what it is")
+        raise RequestError(f"{out} must end in one of {', '.join(ENDINGS)}, or no reader knows what it is", at="--out")
     check_writable(out.parent, [out.name])
     processes = min(cpu_count() or 1, -(-count // CHUNK))
     rooms = track(

@@ -44,16 +44,16 @@ def read_scripts(file: Path) -> list[ShortScript]:
     except OSError as error:
         raise LibraryError(f"FILE: {file} cannot be read: {error.strerror}") from error
     if len(data) > MAX_SCRIPT_FILE_BYTES:
-        raise LibraryError(f"{file.name}: larger than {MAX_SCRIPT_FILE_BYTES // 1_000_000} MB; split it")
+        raise LibraryError(f"{file.name}: larger than {MAX_SCRIPT_FILE_BYTES // 1000000} MB", "split it")
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise LibraryError(
-            f"{file.name}: not UTF-8 text ({error.reason} at byte {error.start}); save it as UTF-8"
+            f"{file.name}: not UTF-8 text ({error.reason} at byte {error.start})", "save it as UTF-8"
         ) from error
     rows = _rows(text, file.name)
     if not rows:
-        raise LibraryError(f"{file.name}: no short script in it; one is an object with id, summary and keyframes")
+        raise LibraryError(f"{file.name}: no short script in it", "one is an object with id, summary and keyframes")
     return [_script(row, f"{file.name} [{number}]") for number, row in enumerate(rows)]
 
 
@@ -169,7 +169,7 @@ def rephrase_captions(
     model = _model(settings, seed, "rephrasing")
     known = captions()
     if skill is not None and skill not in known:
-        raise SettingsError(f"--skill: {skill!r:.80} is none of {', '.join(known)}")
+        raise SettingsError(f"{skill!r:.80} is none of {', '.join(known)}", at="--skill")
     file = settings.data_dir / FILE
     check_writable(file.parent, [file.name])
     console = Console(markup=False, highlight=False, soft_wrap=True)
@@ -196,7 +196,9 @@ def words_of(listed: str) -> tuple[str, ...]:
 def _model(settings: Settings, seed: int, deed: str) -> LanguageModel:
     model = for_story(load_model(settings), seed)
     if model is None:
-        raise SettingsError(f"SIMS_LLM_MODEL: {deed} needs a language model, rules do not imagine; set it to {KINDS}")
+        raise SettingsError(
+            f"{deed} needs a language model, rules do not imagine", f"set it to {KINDS}", at="SIMS_LLM_MODEL"
+        )
     return model
 
 
@@ -361,7 +363,7 @@ def check(
 
 def _choice(emotion: str | None, room: str | None, furniture: str, source: str | None, licence: str | None) -> Choice:
     if source is not None and source not in get_args(Source):
-        raise LibraryError(f"--source: {source!r:.80} is none of {', '.join(get_args(Source))}")
+        raise LibraryError(f"{source!r:.80} is none of {', '.join(get_args(Source))}", at="--source")
     return Choice(emotion, room, words_of(furniture), source, licence)
 
 

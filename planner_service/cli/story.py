@@ -92,21 +92,21 @@ def read_theme(argument: str) -> str:
             data = file.read(MAX_FILE_LINES + 1)
     except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
         why = f"{getattr(error, 'strerror', None) or error}; after @ comes the path of a file"
-        raise RequestError(f"theme: {path or '@'} cannot be read: {why}") from error
+        raise RequestError(f"{path or '@'} cannot be read: {why}", at="theme") from error
     if len(data) > MAX_FILE_LINES:
-        raise RequestError(f"theme: {path} has more than {MAX_FILE_LINES} bytes; a theme is a few sentences")
+        raise RequestError(f"{path} has more than {MAX_FILE_LINES} bytes", "a theme is a few sentences", at="theme")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         why = f"{error.reason} at byte {error.start}"
-        raise RequestError(f"theme: {path} is not UTF-8 text ({why}); save it as UTF-8") from error
+        raise RequestError(f"{path} is not UTF-8 text ({why})", "save it as UTF-8", at="theme") from error
 
 
 def read_rooms(argument: str) -> tuple[str, ...]:
     """The words between commas. RequestError if there are none."""
     rooms = tuple(room.strip() for room in argument.split(",") if room.strip())
     if not rooms:
-        raise RequestError(f"rooms: there is no room in {argument!r}; choose among {', '.join(ROOM_TYPES)}")
+        raise RequestError(f"there is no room in {argument!r}", f"choose among {', '.join(ROOM_TYPES)}", at="rooms")
     return rooms
 
 

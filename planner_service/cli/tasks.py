@@ -33,7 +33,7 @@ def task(
 ) -> None:
     """Break an instruction into steps, and act it out if a folder is given."""
     if method not in (None, "rules", "model"):
-        raise TaskError(f'method: {method!r:.40} is neither "rules" nor "model"')
+        raise TaskError(f'{method!r:.40} is neither "rules" nor "model"', at="method")
     settings = read_settings()
     shelves = open_shelves(settings)
     room = _room(layout, shelves)
@@ -74,7 +74,7 @@ def _finish(plan: TaskPlan, room: Layout | None, out: Path | None, shelves: Shel
     if out is None:
         return
     if not plan.keyframes:
-        raise TaskError("action: a body can act none of its steps, so nothing is written; see why above")
+        raise TaskError("a body can act none of its steps, so nothing is written", "see why above", at="action")
     layouts = () if room is None else (room,)
     request = StoryRequest(plan.action, layouts=layouts, keyframes=tuple(plan.keyframes), seed=plan.seed)
     made = Pipeline(shelves).make(request)

@@ -47,15 +47,15 @@ class Wish:
 
     def __post_init__(self) -> None:
         if self.emotion not in EMOTIONS:
-            raise LibraryError(f"emotion: {self.emotion!r:.80} is none of {', '.join(EMOTIONS)}")
+            raise LibraryError(f"{self.emotion!r:.80} is none of {', '.join(EMOTIONS)}", at="emotion")
         if self.room not in ROOM_TYPES:
-            raise LibraryError(f"room: {self.room!r:.80} is none of {', '.join(ROOM_TYPES)}")
+            raise LibraryError(f"{self.room!r:.80} is none of {', '.join(ROOM_TYPES)}", at="room")
         if not 1 <= self.count <= MAX_WANTED:
-            raise LibraryError(f"count: {self.count} cannot be imitated at once; ask for 1 to {MAX_WANTED}")
+            raise LibraryError(f"{self.count} cannot be imitated at once", f"ask for 1 to {MAX_WANTED}", at="count")
         strange = [word for word in self.furniture if not is_known(word)]
         if strange or not self.furniture:
             said = f"{strange[0]!r:.80} is not known" if strange else "nothing to play with"
-            raise LibraryError(f"furniture: {said}; name pieces such as bed, sofa, desk or wardrobe")
+            raise LibraryError(f"{said}", "name pieces such as bed, sofa, desk or wardrobe", at="furniture")
 
     @property
     def categories(self) -> frozenset[str]:
@@ -73,7 +73,7 @@ def examples(library: ScriptLibrary, wish: Wish, seed: int) -> tuple[ShortScript
         if len(found) < _MIN_EXAMPLES:
             found |= {script.id: script for script in choice.of(library)}
     if not found:
-        raise LibraryError("library: there is no short script to imitate; add one first")
+        raise LibraryError("there is no short script to imitate", "add one first", at="library")
     draw = Random(seed)
     ids = sorted(found)
     pool = [found[one] for one in (draw.sample(ids, _FROM) if len(ids) > _FROM else ids)]

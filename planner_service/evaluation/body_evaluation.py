@@ -134,7 +134,9 @@ def _each(batches: Sequence[list[Trial]], workers: int) -> Iterator[list[Result]
         for future in as_completed([pool.submit(run_batch, batch) for batch in batches]):
             yield future.result()
     except BrokenProcessPool as error:
-        raise RequestError("--workers: a process was ended from outside, as when memory runs out; use fewer") from error
+        raise RequestError(
+            "a process was ended from outside, as when memory runs out", "use fewer", at="--workers"
+        ) from error
     finally:
         pool.shutdown(cancel_futures=True)
 

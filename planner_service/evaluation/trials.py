@@ -236,7 +236,7 @@ def _actions(
     """The trial as a script, at the first piece, in an order by chance, at which it can be done."""
     candidates = places_for(trial.skill, trial.caption, where)
     if not candidates:
-        raise UnreachableError(f"{trial.room} has nothing for “{trial.caption}” ({trial.skill}); choose another room")
+        raise UnreachableError(f"{trial.room} has nothing for “{trial.caption}” ({trial.skill})", "choose another room")
     error: UnreachableError | None = None
     for index in luck.permutation(len(candidates)):
         keyframes = _script(trial, candidates[index], where.home)

@@ -129,7 +129,7 @@ def evaluate_walks(
     recorded = recorded_walks(dataset, style)
     matched = matched_walks(recorded.of("speed"), caption, dataset.skeleton)
     if len(matched) < 2:
-        raise RequestError(f"--caption: {caption!r:.80} is not walked straight on; try {CAPTION!r}")
+        raise RequestError(f"{caption!r:.80} is not walked straight on", f"try {CAPTION!r}", at="--caption")
     made = [
         matched,
         room_walks(caption, rooms, seeds),
@@ -159,8 +159,8 @@ def recorded_walks(dataset: Dataset, style: str = "") -> Walks:
     if len(set(found.groups)) < MIN_PEOPLE:
         what = f"walks called {style!r:.40}" if style else "plain walks"
         raise ClipError(
-            f"--clips: recorded {what} of {len(set(found.groups))} people hold 2 s of steady walking; at least "
-            f"{MIN_PEOPLE} are needed (sims clips build --kinds 'real mocap')"
+            f"--clips: recorded {what} of {len(set(found.groups))} people hold 2 s of steady walking",
+            f"at least {MIN_PEOPLE} are needed (sims clips build --kinds 'real mocap')",
         )
     kept = np.sort(np.concatenate([_spread(np.flatnonzero(people == name)) for name in np.unique(people)]))
     return _chosen(found, kept)

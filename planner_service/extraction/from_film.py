@@ -70,8 +70,8 @@ def words_of(film: Film, source: Source, means: Means) -> Subtitles | None:
 def mute(name: str) -> ExtractionError:
     """What to say of a film that nobody can watch and in which nothing is said."""
     return ExtractionError(
-        f"{name}: is a film without subtitles, and no language model is set that could watch it; "
-        "give its subtitles (SRT, WebVTT or ASS), or set SIMS_LLM_MODEL to a model that sees"
+        f"{name}: is a film without subtitles, and no language model is set that could watch it",
+        "give its subtitles (SRT, WebVTT or ASS), or set SIMS_LLM_MODEL to a model that sees",
     )
 
 

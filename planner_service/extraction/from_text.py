@@ -86,6 +86,6 @@ def refuse_other_languages(text: str, name: str) -> None:
     language = language_of(text)
     if language != ENGLISH:
         raise ExtractionError(
-            f"{name}: looks like {language}, and without a language model only English is read; "
-            "give an English text, or set SIMS_LLM_MODEL"
+            f"{name}: looks like {language}, and without a language model only English is read",
+            "give an English text, or set SIMS_LLM_MODEL",
         )

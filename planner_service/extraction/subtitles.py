@@ -144,25 +144,27 @@ def read_subtitles(data: bytes) -> Subtitles:
     """The cues of an SRT, WebVTT or ASS file, whatever it is called. SubtitleError."""
     if len(data) > MAX_SUBTITLE_BYTES:
         raise SubtitleError(
-            f"subtitles: {len(data)} bytes, at most {MAX_SUBTITLE_BYTES} are read; give those of one film"
+            f"{len(data)} bytes, at most {MAX_SUBTITLE_BYTES} are read", "give those of one film", at="subtitles"
         )
     if not data.strip():
-        raise SubtitleError("subtitles: the file is empty; give SRT, WebVTT or ASS")
+        raise SubtitleError("the file is empty", "give SRT, WebVTT or ASS", at="subtitles")
     decoded = decode(data)
     if len(_CONTROL.findall(decoded.text, 0, 20_000)) > 20:
-        raise SubtitleError("subtitles: these bytes are no text; give SRT, WebVTT or ASS, best in UTF-8")
+        raise SubtitleError("these bytes are no text", "give SRT, WebVTT or ASS, best in UTF-8", at="subtitles")
     form = form_of(decoded.text)
     if form is None:
-        raise SubtitleError("subtitles: it is neither SRT nor WebVTT nor ASS; a cue needs a line of two times with -->")
+        raise SubtitleError(
+            "it is neither SRT nor WebVTT nor ASS", "a cue needs a line of two times with -->", at="subtitles"
+        )
     faults = _Faults()
     lines = _LINES.split(decoded.text)
     cues: list[Cue] = []
     for cue in _ass_cues(lines) if form == "ass" else _arrow_cues(lines):
         cues.extend(_tidy(cue, faults))
         if len(cues) > MAX_CUES:
-            raise SubtitleError(f"subtitles: there are more than {MAX_CUES} cues; give those of one film")
+            raise SubtitleError(f"there are more than {MAX_CUES} cues", "give those of one film", at="subtitles")
     if not cues:
-        raise SubtitleError("subtitles: there is no cue with words in it")
+        raise SubtitleError("there is no cue with words in it", at="subtitles")
     notes = ([decoded.note] if decoded.note else []) + list(faults.notes)
     return Subtitles(ordered(cues), form, decoded.encoding, tuple(notes))
 

@@ -179,7 +179,7 @@ def read_text(data: bytes, name: str) -> tuple[str, tuple[str, ...]]:
     if len(data) > MAX_BYTES:
         raise too_long(name, f"more than {MAX_BYTES:,} bytes")
     if not data.strip():
-        raise ExtractionError(f"{name}: is empty; give a text, subtitles or a film")
+        raise ExtractionError(f"{name}: is empty", "give a text, subtitles or a film")
     decoded = decode(data)
     return tidy(decoded.text, name), (f"{name}: {decoded.note}",) if decoded.note else ()
 
@@ -190,13 +190,13 @@ def first_bytes(file: Path | BinaryIO, name: str, most: int) -> bytes:
         file.seek(0)
         return file.read(most)
     if file.is_dir():
-        raise ExtractionError(f"{name}: is a folder; give a text, subtitles or a film")
+        raise ExtractionError(f"{name}: is a folder", "give a text, subtitles or a film")
     try:
         with file.open("rb") as stream:
             return stream.read(most)
     except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or error
-        raise ExtractionError(f"{name}: cannot be read: {why}; give a text, subtitles or a film") from error
+        raise ExtractionError(f"{name}: cannot be read: {why}", "give a text, subtitles or a film") from error
 
 
 def tidy(text: str, name: str) -> str:
@@ -206,16 +206,16 @@ def tidy(text: str, name: str) -> str:
         raise too_long(name, f"{len(text):,} letters")
     shown = "".join(letter for letter in text if letter in _KEPT or unicodedata.category(letter) not in _HIDDEN)
     if len(text) - len(shown) > _MAX_HIDDEN * len(text) + 8:
-        raise ExtractionError(f"{name}: is no text (control characters in it); give a text, subtitles or a film")
+        raise ExtractionError(f"{name}: is no text (control characters in it)", "give a text, subtitles or a film")
     if not any(letter.isalpha() for letter in shown):
-        raise ExtractionError(f"{name}: there is no word in it; give a text in which somebody does something")
+        raise ExtractionError(f"{name}: there is no word in it", "give a text in which somebody does something")
     return shown
 
 
 def too_long(name: str, size: str) -> ExtractionError:
     """The error for a text of that size."""
     return ExtractionError(
-        f"{name}: has {size}; at most {MAX_TEXT_LENGTH:,} letters are read at once, so cut it into chapters"
+        f"{name}: has {size}", f"at most {MAX_TEXT_LENGTH:,} letters are read at once, so cut it into chapters"
     )
 
 

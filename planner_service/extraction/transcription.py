@@ -39,7 +39,9 @@ def hear(transcriber: Transcriber, film: Film, progress: Progress | None = None)
     for piece in sound_of(film):
         cues += transcriber.transcribe(piece)
         if len(cues) > MAX_CUES:
-            raise SpeechError(f"speech: {transcriber.name} heard more than {MAX_CUES} cues; give subtitles instead")
+            raise SpeechError(
+                f"{transcriber.name} heard more than {MAX_CUES} cues", "give subtitles instead", at="speech"
+            )
         if progress is not None:
             progress("listening", min(0.99, piece.end / film.claimed) if film.claimed else 0.0)
     if progress is not None:
@@ -64,7 +66,9 @@ class LocalTranscriber:
             segments, _ = self._model.transcribe(io.BytesIO(piece.wav), vad_filter=False)
             found = [(float(one.start), float(one.end), str(one.text)) for one in segments]
         except (RuntimeError, ValueError, OSError) as error:
-            raise SpeechError(f"speech: {self.name} failed: {str(error)[:200]}; check SIMS_ASR_FOLDER") from error
+            raise SpeechError(
+                f"{self.name} failed: {str(error)[:200]}", "check SIMS_ASR_FOLDER", at="speech"
+            ) from error
         return [cue for start, end, text in found for cue in heard(piece, start, end, text)]
 
     @cached_property
@@ -79,10 +83,10 @@ def load_transcriber(settings: Settings) -> Transcriber | None:
     if settings.asr_folder is not None:
         if not (settings.asr_folder / "model.bin").is_file():
             raise SettingsError(
-                "SIMS_ASR_FOLDER: there is no model.bin in it; give the folder of a faster-whisper model"
+                "there is no model.bin in it", "give the folder of a faster-whisper model", at="SIMS_ASR_FOLDER"
             )
         if find_spec("faster_whisper") is None:
-            raise SettingsError(f"SIMS_ASR_FOLDER: it needs a library that is not installed: {INSTALL}")
+            raise SettingsError(f"it needs a library that is not installed: {INSTALL}", at="SIMS_ASR_FOLDER")
         return LocalTranscriber(settings.asr_folder)
     if not settings.asr_model and not settings.asr_base_url:
         return None

@@ -53,7 +53,7 @@ class ServedTranscriber:
         if not isinstance(segments, list) or not segments:
             said = answer.get("text", "")
             if not isinstance(said, str):
-                raise SpeechError(f"speech: {self.name} answered no text; check SIMS_ASR_BASE_URL")
+                raise SpeechError(f"{self.name} answered no text", "check SIMS_ASR_BASE_URL", at="speech")
             return heard(piece, 0.0, piece.end - piece.start, said)
         rows = [(_number(row, "start"), _number(row, "end"), _text(row)) for row in segments[:_MAX_SEGMENTS]]
         return [
@@ -79,14 +79,14 @@ class ServedTranscriber:
                 failure = f"it answered {status} ({phrase}): {self._shown(message_of(body))}"
                 if status not in BUSY:
                     raise SpeechError(
-                        f"speech: {self.name}: {failure}; {_REMEDIES.get(status, 'check SIMS_ASR_MODEL')}"
+                        f"{self.name}: {failure}; {_REMEDIES.get(status, 'check SIMS_ASR_MODEL')}", at="speech"
                     )
                 wait = max(retry_after(headers.get("retry-after", ""), time.time()), wait)
             if time.monotonic() + wait >= deadline:
-                raise SpeechError(f"speech: {self.name}: {failure}; its {self.seconds:g} s are over")
+                raise SpeechError(f"{self.name}: {failure}; its {self.seconds:g} s are over", at="speech")
             if attempt + 1 < ATTEMPTS:
                 time.sleep(wait)
-        raise SpeechError(f"speech: {self.name}: {failure}; tried {ATTEMPTS} times")
+        raise SpeechError(f"{self.name}: {failure}; tried {ATTEMPTS} times", at="speech")
 
     def _once(self, wav: bytes, deadline: float) -> tuple[int, httpx.Headers, bytes]:
         """One exchange; the body is read up to a bound, and not for ever."""
@@ -105,10 +105,10 @@ class ServedTranscriber:
                 body += chunk
                 if len(body) > MAX_ANSWER_BYTES:
                     raise SpeechError(
-                        f"speech: {self.name} sent more than {MAX_ANSWER_BYTES} bytes for a minute of sound"
+                        f"{self.name} sent more than {MAX_ANSWER_BYTES} bytes for a minute of sound", at="speech"
                     )
                 if time.monotonic() > deadline:
-                    raise SpeechError(f"speech: {self.name} was not done after {self.seconds:g} s")
+                    raise SpeechError(f"{self.name} was not done after {self.seconds:g} s", at="speech")
             return response.status_code, response.headers, bytes(body)
 
     def _read(self, body: bytes) -> dict[str, Any]:
@@ -117,7 +117,7 @@ class ServedTranscriber:
         except (ValueError, RecursionError):
             answer = None
         if not isinstance(answer, dict):
-            raise SpeechError(f"speech: {self.name} answered no JSON object; check SIMS_ASR_BASE_URL")
+            raise SpeechError(f"{self.name} answered no JSON object", "check SIMS_ASR_BASE_URL", at="speech")
         return answer
 
     def _shown(self, text: str) -> str:
@@ -128,11 +128,11 @@ def served_transcriber(settings: Settings) -> ServedTranscriber:
     """The server that settings name. SettingsError."""
     key = settings.asr_api_key.get_secret_value().strip()
     if not settings.asr_model:
-        raise SettingsError("SIMS_ASR_MODEL: name the model that SIMS_ASR_BASE_URL serves, such as whisper-1")
+        raise SettingsError("name the model that SIMS_ASR_BASE_URL serves, such as whisper-1", at="SIMS_ASR_MODEL")
     if not all("!" <= letter <= "~" for letter in key):
-        raise SettingsError("SIMS_ASR_API_KEY: a key has no blanks and no letters beyond ASCII")
+        raise SettingsError("a key has no blanks and no letters beyond ASCII", at="SIMS_ASR_API_KEY")
     if not key and not settings.asr_base_url:
-        raise SettingsError("SIMS_ASR_API_KEY: OpenAI needs a key; a server of your own needs SIMS_ASR_BASE_URL")
+        raise SettingsError("OpenAI needs a key", "a server of your own needs SIMS_ASR_BASE_URL", at="SIMS_ASR_API_KEY")
     base_url = base_url_of(settings.asr_base_url, "SIMS_ASR_BASE_URL", "SIMS_ASR_API_KEY")
     return ServedTranscriber(base_url or _VENDOR, settings.asr_model, key)
 

@@ -100,13 +100,15 @@ def open_film(source: Path | BinaryIO, name: str, limits: FilmLimits | None = No
     limits = limits or FilmLimits()
     size = size_of(source)
     if size > limits.bytes:
-        raise FilmError(f"film: it has {size} bytes, at most {limits.bytes} are read; give a smaller copy or a part")
+        raise FilmError(
+            f"it has {size} bytes, at most {limits.bytes} are read", "give a smaller copy or a part", at="film"
+        )
     form = checked_container(_head(source))
     with opened(source, form) as container:
         stream = _track(container, limits)
         first = next(_decoded(container, stream, limits, Counter()), None)
         if first is None:
-            raise FilmError(f"film: there is no picture in it that can be decoded; give a whole {READ}")
+            raise FilmError("there is no picture in it that can be decoded", f"give a whole {READ}", at="film")
         rate, aspect = float(stream.average_rate or 0), float(stream.codec_context.sample_aspect_ratio or 1)
         return Film(
             name=" ".join(name.split())[:200] or "film",
@@ -197,10 +199,10 @@ def _track(container: InputContainer, limits: FilmLimits, options: Mapping[str, 
     tracks = [one for one in container.streams.video if not one.disposition & one.disposition.attached_pic]
     if not tracks:
         only = "only sound" if container.streams.audio else "nothing that moves"
-        raise FilmError(f"film: there is {only} in it, no moving picture; give {READ}")
+        raise FilmError(f"there is {only} in it, no moving picture", f"give {READ}", at="film")
     track = tracks[0]
     if _codec(track) not in CODECS:
-        raise FilmError(f"film: its codec {_codec(track)} is not read; make a copy in H.264")
+        raise FilmError(f"its codec {_codec(track)} is not read", "make a copy in H.264", at="film")
     _measure(track.width, track.height, limits)
     track.codec_context.thread_count = 1
     track.codec_context.options = {"max_pixels": str(limits.pixels), **(options or {})}
@@ -215,8 +217,9 @@ def _codec(track: Stream) -> str:
 def _measure(width: int, height: int, limits: FilmLimits) -> None:
     if width * height > limits.pixels:
         raise FilmError(
-            f"film: its pictures are {width} × {height}, at most {limits.pixels} pixels are read; "
-            "make a smaller copy: ffmpeg -i FILM -vf scale=1280:-2 SMALLER.mp4"
+            f"its pictures are {width} × {height}, at most {limits.pixels} pixels are read",
+            "make a smaller copy: ffmpeg -i FILM -vf scale=1280:-2 SMALLER.mp4",
+            at="film",
         )
 
 
@@ -241,14 +244,14 @@ def _decoded(
             damaged += 1
             faults["damaged pictures, left out"] += 1
             if damaged > _DAMAGED:
-                raise FilmError(f"film: {damaged} damaged pictures follow one another ({said(error)})") from error
+                raise FilmError(f"{damaged} damaged pictures follow one another ({said(error)})", at="film") from error
             continue
         for picture in found:
             damaged = 0
             faults["damaged pictures, shown as they are"] += bool(picture.is_corrupt)
             _measure(picture.width, picture.height, limits)
             yield picture
-    raise FilmError(f"film: there are more than {4 * limits.pictures} packets in it; give a part of it")
+    raise FilmError(f"there are more than {4 * limits.pictures} packets in it", "give a part of it", at="film")
 
 
 def _dated(run: Iterator[VideoFrame], film: Film) -> Generator[tuple[float, VideoFrame]]:
@@ -259,15 +262,19 @@ def _dated(run: Iterator[VideoFrame], film: Film) -> Generator[tuple[float, Vide
         time = undated if picture.time is None else picture.time - film.start
         if time > film.limits.seconds or number > film.limits.pictures:
             raise FilmError(
-                f"film: it goes on after {film.limits.seconds / 3600:g} hours or {film.limits.pictures} pictures, "
-                "which is all that is read of one; give a part, or mend its clock: ffmpeg -i FILM -fps_mode cfr NEW.mp4"
+                f"it goes on after {film.limits.seconds / 3600:g} hours or {film.limits.pictures} pictures, which "
+                "is all that is read of one",
+                "give a part, or mend its clock: ffmpeg -i FILM -fps_mode cfr NEW.mp4",
+                at="film",
             )
         if time <= last or time < 0:
             backwards += 1
             film.faults["pictures dated before the one they follow, left out"] += 1
             if backwards > _BACKWARDS:
                 raise FilmError(
-                    f"film: its clock jumps back at {last:.1f} s; mend it: ffmpeg -fflags +genpts -i FILM MENDED.mp4"
+                    f"its clock jumps back at {last:.1f} s",
+                    "mend it: ffmpeg -fflags +genpts -i FILM MENDED.mp4",
+                    at="film",
                 )
             continue
         last, backwards = time, 0

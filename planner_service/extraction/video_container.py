@@ -74,13 +74,13 @@ def checked_container(head: bytes) -> str:
     if form is not None:
         return form
     if not head:
-        raise FilmError(f"film: the file is empty; give {READ}")
+        raise FilmError("the file is empty", f"give {READ}", at="film")
     text = head.lstrip(b"\xef\xbb\xbf \t\r\n")
     told = next((what for sign, what in _OTHERS if text.startswith(sign)), None)
     if told is None and names_pictures(head):
         told = "a pattern of picture files"
     seems = f"it is {told}" if told else "its first bytes are those of no container that is read"
-    raise FilmError(f"film: {seems}; give the film itself as {READ}")
+    raise FilmError(f"{seems}", f"give the film itself as {READ}", at="film")
 
 
 def names_pictures(head: bytes) -> bool:
@@ -113,7 +113,7 @@ def opened(source: Path | BinaryIO, form: str) -> Iterator[InputContainer]:
                 },
             )
         except (av.FFmpegError, ValueError, OSError) as error:
-            raise FilmError(f"film: it is cut off or damaged ({said(error)}); give a whole {READ}") from error
+            raise FilmError(f"it is cut off or damaged ({said(error)})", f"give a whole {READ}", at="film") from error
         try:
             yield container
         finally:
@@ -127,19 +127,19 @@ def size_of(source: Path | BinaryIO) -> int:
     """Bytes of a file. FilmError for what is no file that can be read and wound back."""
     if isinstance(source, Path):
         if not source.exists():
-            raise FilmError(f"film: there is no file {source.name}")
+            raise FilmError(f"there is no file {source.name}", at="film")
         if not source.is_file():
-            raise FilmError(f"film: {source.name} is no file; give {READ}")
+            raise FilmError(f"{source.name} is no file", f"give {READ}", at="film")
         return source.stat().st_size
     if not source.seekable():
-        raise FilmError("film: it cannot be wound back; give a file, not a stream")
+        raise FilmError("it cannot be wound back", "give a file, not a stream", at="film")
     return source.seek(0, os.SEEK_END)
 
 
 def load_av() -> Any:
     """The library that reads films. FilmError where it is not installed."""
     if find_spec("av") is None:
-        raise FilmError(f"film: reading films needs a library that is not installed: {INSTALL}")
+        raise FilmError(f"reading films needs a library that is not installed: {INSTALL}", at="film")
     import av
 
     return av

@@ -120,7 +120,7 @@ def furnish(
     for room, graph in merged.items():
         if len(graph) > MAX_NODES:
             used = f"{len(graph)} pieces of furniture in the {room.replace('_', ' ')}"
-            raise FurnishError(f"theme: the story uses {used}, at most {MAX_NODES} can be; tell of fewer events")
+            raise FurnishError(f"the story uses {used}, at most {MAX_NODES} can be", "tell of fewer events", at="theme")
     chosen = _given(merged, layouts) if layouts else _retrieved(merged, index, seed)
     unique = list(dict.fromkeys([layout for layout, _ in chosen.values()] + list(layouts)))
     if isinstance(given, Home):
@@ -146,9 +146,9 @@ def _room_types(script: LongScript, rooms: Sequence[str]) -> list[str]:
     asked = [canonical_room(room) for room in rooms]
     unknown = [room for room, name in zip(rooms, asked, strict=True) if name not in ROOM_TYPES]
     if unknown:
-        raise FurnishError(f"rooms: {unknown[0]!r} is none of {', '.join(ROOM_TYPES)}")
+        raise FurnishError(f"{unknown[0]!r} is none of {', '.join(ROOM_TYPES)}", at="rooms")
     if len(asked) > MAX_ROOMS:
-        raise FurnishError(f"rooms: a home has at most {MAX_ROOMS} rooms, {len(asked)} were asked for")
+        raise FurnishError(f"a home has at most {MAX_ROOMS} rooms, {len(asked)} were asked for", at="rooms")
     met = dict.fromkeys(keyframe.room for keyframe in script.keyframes if keyframe.room)
     return list(met) + [room for room in asked if room not in met] or [asked[0] if asked else "living_room"]
 

@@ -173,8 +173,8 @@ class _Stage:
         found = self._reachable(placed, need)
         if not found:
             raise UnreachableError(
-                f"keyframe {index}: no spot to {need} on {place.object_id} ({placed.category}) that can be walked to; "
-                "clear the way to it, or choose another room"
+                f"keyframe {index}: no spot to {need} on {place.object_id} ({placed.category}) that can be walked to",
+                "clear the way to it, or choose another room",
             )
         if need == "touch":
             return self._to_touch(found, keyframe.caption)
@@ -245,7 +245,7 @@ class _Stage:
             if best is not None and best[0] > 0.35:
                 break
         if best is None or best[0] <= 0.0:
-            raise UnreachableError(f"room {room} has no free floor to {need} on; choose another room")
+            raise UnreachableError(f"room {room} has no free floor to {need} on", "choose another room")
         return best[1]
 
     def walks(self, drafts: list[Action], places: Sequence[Place]) -> list[Action]:

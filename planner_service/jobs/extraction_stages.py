@@ -282,8 +282,8 @@ class Reader:
             return read_piece(one.pieces.words[index], one.maker, one.means, before)
         if self.model is None:
             raise ExtractionError(
-                f"{one.request.name}: was begun by a language model, and none is set now; set SIMS_LLM_MODEL, "
-                "or send the film again"
+                f"{one.request.name}: was begun by a language model, and none is set now",
+                "set SIMS_LLM_MODEL, or send the film again",
             )
         return read_film_scene(one.film, one.pieces.scenes[index], one.maker, one.means, before, one.album)
 
@@ -315,8 +315,8 @@ class Reader:
             ]
             if not all(path.is_file() for path in paths):
                 raise ExtractionError(
-                    f"{request.name}: what was sent is not on this machine (worker {self.worker}); "
-                    "SIMS_DATA_DIR must be one folder that the service and all its workers share"
+                    f"{request.name}: what was sent is not on this machine (worker {self.worker})",
+                    "SIMS_DATA_DIR must be one folder that the service and all its workers share",
                 )
             source = Source(request.name, paths[0], paths[1] if len(paths) > 1 else None, request.licence)
             means = Means(self.shelves.scripts(), self.model, self.transcriber, self.strict, RESERVED)

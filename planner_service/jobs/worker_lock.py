@@ -34,7 +34,7 @@ def hold_name(engine: Engine, settings: Settings) -> Hold:
     while not hold.take():
         if time.monotonic() > deadline:
             raise SettingsError(
-                f"SIMS_WORKER_ID: a worker {settings.worker_id!r} is running already; give this one another id"
+                f"a worker {settings.worker_id!r} is running already", "give this one another id", at="SIMS_WORKER_ID"
             )
         time.sleep(0.2)
     return hold
@@ -61,7 +61,7 @@ class FileHold:
             return False
         except OSError as error:
             self.file.close()
-            raise SettingsError(f"{self.path} cannot be locked: {error.strerror}; see SIMS_DATA_DIR") from error
+            raise SettingsError(f"{self.path} cannot be locked: {error.strerror}", "see SIMS_DATA_DIR") from error
         return True
 
     def keep(self) -> bool:

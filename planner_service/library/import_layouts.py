@@ -42,8 +42,8 @@ def take_in(
     known = {} if shelves is None else shelves.rooms()
     if taken := [layout.id for layout in rooms if layout.id in known]:
         raise TakenError(
-            f"{source.name}: there is a room {taken[0]!r} already; remove that one first, or choose another id, or "
-            "another name for a file that has none"
+            f"{source.name}: there is a room {taken[0]!r} already",
+            "remove that one first, or choose another id, or another name for a file that has none",
         )
     problems: dict[str, tuple[str, ...]] = {}
     for number, layout in enumerate(rooms, start=1):

@@ -27,6 +27,7 @@ from planner_service.store.library_store import (
     ShelfError,
     TakenError,
 )
+from scene_graphs.errors import FieldPath
 from scene_graphs.graph.script_objects import Offers
 from scene_graphs.layout import Layout, LayoutError, layout_from_dict, layout_to_dict, read_layouts
 from scene_graphs.layout_library import built_in_index, built_in_layouts
@@ -179,7 +180,7 @@ class Shelves:
         versions = {script.version: script for script in self.script_versions(script_id)}
         if version not in versions:
             told = ", ".join(map(str, versions))
-            raise AbsentError(f"version: there is no version {version} of {script_id!r}; there are {told}")
+            raise AbsentError(f"there is no version {version} of {script_id!r}", f"there are {told}", at="version")
         return versions[version]
 
     def remove_script(self, script_id: str) -> None:
@@ -198,9 +199,11 @@ class Shelves:
                 or layout.id.endswith(_TAKEN_ENDINGS)
             ):
                 like = "letters, digits and _.:- between slashes, such as my-house/kitchen"
-                raise ShelfError(f"id: {layout.id!r:.80} is no id of a room; use at most {MAX_ID_LENGTH} {like}")
+                raise ShelfError(
+                    f"{layout.id!r:.80} is no id of a room", f"use at most {MAX_ID_LENGTH} {like}", at="id"
+                )
             if layout.id in self._rooms.fixed or layout.id in rows:
-                raise TakenError(f"id: there is a room {layout.id!r} already; choose another id")
+                raise TakenError(f"there is a room {layout.id!r} already", "choose another id", at="id")
             usable = {name: sorted(found) for name, found in survey(layout).usable.items()}
             whole = {"layout": layout_to_dict(layout), "usable": usable}
             body = json.dumps(whole, separators=(",", ":"), allow_nan=False)
@@ -227,7 +230,9 @@ class Shelves:
         fixed = dict(self._ours)
         for layout in read_layouts(self.layouts_file) if self.layouts_file else ():
             if layout.id in fixed:
-                raise LayoutError(f"{self.layouts_file}: {layout.id!r} is the id of a built-in room; choose another id")
+                raise LayoutError(
+                    f"{self.layouts_file}: {layout.id!r} is the id of a built-in room", "choose another id"
+                )
             fixed[layout.id] = layout
         return {name: _Room(layout) for name, layout in fixed.items()}
 
@@ -251,7 +256,7 @@ def _fit(scripts: Iterable[ShortScript]) -> None:
     ids: set[str] = set()
     for script in scripts:
         if script.id in RESERVED:
-            raise ShelfError(f"id: {script.id!r} is a path of its own; choose another id")
+            raise ShelfError(f"{script.id!r} is a path of its own", "choose another id", at="id")
         if script.id in ids:
             raise _taken(script.id)
         ids.add(script.id)
@@ -261,17 +266,17 @@ def _fit(scripts: Iterable[ShortScript]) -> None:
 
 
 def _taken(script_id: str) -> TakenError:
-    return TakenError(f"id: there is a short script {script_id!r} already; choose another id")
+    return TakenError(f"there is a short script {script_id!r} already", "choose another id", at="id")
 
 
 def _read_script(script_id: str, body: str) -> ShortScript:
     try:
         return ShortScript.model_validate_json(body)
     except ValueError as error:
-        raise LibraryError(f"database: short script {script_id!r} cannot be read: {error}") from error
+        raise LibraryError(f"short script {script_id!r} cannot be read: {error}", at="database") from error
 
 
 def _read_room(layout_id: str, body: str) -> _Room:
     row = json.loads(body)
     usable = {name: frozenset(found) for name, found in row["usable"].items()}
-    return _Room(layout_from_dict(row["layout"], f"database: room {layout_id!r}"), usable)
+    return _Room(layout_from_dict(row["layout"], FieldPath((f"database: room {layout_id!r}",))), usable)

@@ -63,8 +63,10 @@ def changing(script: ShortScript, ours: Ours, read: Reader) -> Renewal:
             return None
         if kept.version != script.version:
             raise ChangedError(
-                f"version: the short script {script.id!r} is at version {kept.version} by now, this is a change of "
-                f"version {script.version}; read it again and send version {kept.version}"
+                f"the short script {script.id!r} is at version {kept.version} by now, this is a change of version "
+                f"{script.version}",
+                f"read it again and send version {kept.version}",
+                at="version",
             )
         return body_of(following(kept, script))
 
@@ -74,7 +76,7 @@ def changing(script: ShortScript, ours: Ours, read: Reader) -> Renewal:
 def following(kept: ShortScript, script: ShortScript) -> ShortScript:
     """The script as the version after the one that is kept."""
     if kept.version >= MAX_VERSIONS:
-        raise FullError(f"the short script {kept.id!r} has had {MAX_VERSIONS} versions; choose another id")
+        raise FullError(f"the short script {kept.id!r} has had {MAX_VERSIONS} versions", "choose another id")
     return script.model_copy(update={"version": kept.version + 1})
 
 
@@ -89,4 +91,4 @@ def _same(kept: ShortScript, script: ShortScript) -> bool:
 
 def _refuse_ours(script_id: str, ours: Ours) -> None:
     if script_id in ours:
-        raise FixedError(f"id: the short script {script_id!r} is ours and stays as it is; choose another id")
+        raise FixedError(f"the short script {script_id!r} is ours and stays as it is", "choose another id", at="id")

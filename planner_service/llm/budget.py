@@ -57,18 +57,21 @@ class Spending:
             if left <= 0 or tokens < _MIN_ANSWER:
                 raise BudgetError(
                     f"{question.title}: the story has spent {self.dollars:.4f} of {limits.story_dollars:g} dollars on "
-                    "its language model, too little is left for another question; raise SIMS_LLM_STORY_DOLLARS"
+                    "its language model, too little is left for another question",
+                    "raise SIMS_LLM_STORY_DOLLARS",
                 )
         if tokens < _MIN_ANSWER:
             raise BudgetError(
-                f"{question.title}: the story has spent {self.tokens} of {limits.story_tokens} tokens on its language "
-                "model, too few are left for another question; raise SIMS_LLM_STORY_TOKENS"
+                f"{question.title}: the story has spent {self.tokens} of {limits.story_tokens} tokens on its "
+                "language model, too few are left for another question",
+                "raise SIMS_LLM_STORY_TOKENS",
             )
         seconds = min(limits.seconds, limits.story_seconds - self.seconds)
         if seconds <= 0:
             raise BudgetError(
-                f"{question.title}: the story has waited {self.seconds:.0f} of {limits.story_seconds:g} seconds for "
-                "its language model; raise SIMS_LLM_STORY_SECONDS"
+                f"{question.title}: the story has waited {self.seconds:.0f} of {limits.story_seconds:g} seconds "
+                "for its language model",
+                "raise SIMS_LLM_STORY_SECONDS",
             )
         return tokens, seconds
 

@@ -52,11 +52,11 @@ def load_model(settings: Settings) -> LanguageModel | None:
         if kind == "record" and (wanted := _RECORD.match(rest)) is not None:
             return ServedModel(Recorder(Path(wanted["file"]), served(wanted["model"], settings)), spending)
     except ModelError as error:
-        raise SettingsError(f"SIMS_LLM_MODEL: {error}") from error
+        raise SettingsError(f"{error}", at="SIMS_LLM_MODEL") from error
     if kind in LIBRARIES and rest:
         memory = Memory(settings.cache_dir / "answers", settings.llm_cache_mb * 1_000_000)
         return ServedModel(served(name, settings), spending, memory if settings.llm_cache_mb else None)
-    raise SettingsError(f"SIMS_LLM_MODEL: {name!r:.80} is not known; leave it empty for rules, or {KINDS}")
+    raise SettingsError(f"{name!r:.80} is not known", f"leave it empty for rules, or {KINDS}", at="SIMS_LLM_MODEL")
 
 
 class Late:
@@ -91,14 +91,16 @@ def served(name: str, settings: Settings) -> Late:
     """The source of "openai:MODEL" and its like. SettingsError."""
     kind, _, model = name.partition(":")
     if not _NAME.match(model):
-        raise SettingsError(f"SIMS_LLM_MODEL: {model!r:.80} is no name of a model")
+        raise SettingsError(f"{model!r:.80} is no name of a model", at="SIMS_LLM_MODEL")
     if find_spec("pydantic_ai") is None or find_spec(LIBRARIES[kind]) is None:
-        raise SettingsError(f"SIMS_LLM_MODEL: {kind}:… needs libraries that are not installed: {INSTALL}")
+        raise SettingsError(f"{kind}:… needs libraries that are not installed: {INSTALL}", at="SIMS_LLM_MODEL")
     key = settings.llm_api_key.get_secret_value().strip()
     if not all("!" <= letter <= "~" for letter in key):
-        raise SettingsError("SIMS_LLM_API_KEY: a key has no blanks and no letters beyond ASCII")
+        raise SettingsError("a key has no blanks and no letters beyond ASCII", at="SIMS_LLM_API_KEY")
     if not key and not settings.llm_base_url and kind != "ollama":
-        raise SettingsError(f"SIMS_LLM_API_KEY: {kind}:… needs a key; a server of your own needs SIMS_LLM_BASE_URL")
+        raise SettingsError(
+            f"{kind}:… needs a key", "a server of your own needs SIMS_LLM_BASE_URL", at="SIMS_LLM_API_KEY"
+        )
     if not key and kind == "anthropic":
         key = "none"  # the library wants one
     return Late(name, base_url_of(settings.llm_base_url), key)
@@ -118,9 +120,9 @@ def base_url_of(given: str, setting: str = "SIMS_LLM_BASE_URL", key: str = "SIMS
     except ValueError:
         good = False
     if not good:
-        raise SettingsError(f"{setting}: it must be an address such as http://127.0.0.1:11434/v1")
+        raise SettingsError("it must be an address such as http://127.0.0.1:11434/v1", at=setting)
     if parts.username or parts.password:
-        raise SettingsError(f"{setting}: no password belongs into an address; use {key}")
+        raise SettingsError("no password belongs into an address", f"use {key}", at=setting)
     return given.rstrip("/")
 
 
@@ -131,7 +133,9 @@ def limits_of(settings: Settings) -> Limits:
         reading, _, writing = settings.llm_price.partition("/")
         price = float(reading), float(writing)
     if settings.llm_story_dollars is not None and price is None:
-        raise SettingsError("SIMS_LLM_STORY_DOLLARS: it needs SIMS_LLM_PRICE, dollars a million tokens, as 1.25/10")
+        raise SettingsError(
+            "it needs SIMS_LLM_PRICE, dollars a million tokens, as 1.25/10", at="SIMS_LLM_STORY_DOLLARS"
+        )
     return Limits(
         seconds=settings.llm_timeout,
         answer_tokens=settings.llm_answer_tokens,
@@ -146,7 +150,7 @@ def _scripted(file: str) -> dict[str, dict[str, object] | str]:
     try:
         answers = json.loads(Path(file).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise SettingsError(f"SIMS_LLM_MODEL: {file} cannot be read: {error}") from error
+        raise SettingsError(f"{file} cannot be read: {error}", at="SIMS_LLM_MODEL") from error
     if not isinstance(answers, dict) or not all(isinstance(answer, dict | str) for answer in answers.values()):
-        raise SettingsError(f"SIMS_LLM_MODEL: {file} must be a JSON object of prompt words to answers")
+        raise SettingsError(f"{file} must be a JSON object of prompt words to answers", at="SIMS_LLM_MODEL")
     return answers

@@ -73,7 +73,7 @@ class Replay:
         """The recorded answer. RecordingError tells what is missing, and what is there for the same prompt."""
         line = self._lines.get(Key(self.model, question.title, question.digest))
         if line is None:
-            raise RecordingError(f"{self.path}: {self._missing(question)}; record it with record:{self.path}=MODEL")
+            raise RecordingError(f"{self.path}: {self._missing(question)}", f"record it with record:{self.path}=MODEL")
         return Reply(line.answer, *line.tokens)
 
     def close(self) -> None:

@@ -51,7 +51,7 @@ def _trial(skill: Skill, caption: str, room: str | None, seed: int) -> Trial:
     """The trial in the room, or in one of the library that has what it needs: furniture rather than the floor."""
     rooms = [layout.id for layout in built_in_index().layouts]
     if room is not None and room not in rooms:
-        raise RequestError(f"--room: the library has no room {room!r:.80}; sims layouts list names them")
+        raise RequestError(f"the library has no room {room!r:.80}", "sims layouts list names them", at="--room")
     serving = (one for one in ([room] if room else rooms) if places_for(skill, caption, setting(one)))
     on_floor: Trial | None = None
     for trial in islice((Trial(skill, caption, one, seed) for one in serving), TRIED):
@@ -60,12 +60,14 @@ def _trial(skill: Skill, caption: str, room: str | None, seed: int) -> Trial:
         on_floor = on_floor or trial
     if on_floor is None:
         where = room or "no room of the library"
-        raise RequestError(f"--room: {where} has nothing for “{caption:.80}” ({skill}); leave it out or choose another")
+        raise RequestError(
+            f"{where} has nothing for “{caption:.80}” ({skill})", "leave it out or choose another", at="--room"
+        )
     return on_floor
 
 
 def _skill_of(caption: str) -> Skill:
     found = [Skill(skill) for skill, some in captions().items() if caption in some]
     if not found:
-        raise RequestError(f"--caption: {caption!r:.120} is not a known one; give --skill too")
+        raise RequestError(f"{caption!r:.120} is not a known one", "give --skill too", at="--caption")
     return found[0]

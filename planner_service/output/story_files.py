@@ -69,7 +69,7 @@ def _writing(folder: Path) -> Iterator[Path]:
                 path.rmdir()
         if isinstance(error, OSError):
             why = "a file is in the way" if isinstance(error, FileExistsError) else error.strerror or error
-            raise OutputError(f"--out: {folder} cannot be written: {why}; choose another place") from error
+            raise OutputError(f"{folder} cannot be written: {why}", "choose another place", at="--out") from error
         raise
 
 
@@ -97,7 +97,7 @@ def _refuse_folders(folder: Path, names: Iterable[str]) -> None:
     """A file cannot take the place of a folder; seen in time, no earlier file is replaced."""
     for name in names:
         if (folder / name).is_dir():
-            raise OutputError(f"--out: {folder / name} is a folder, a file would be written there; move it away")
+            raise OutputError(f"{folder / name} is a folder, a file would be written there", "move it away", at="--out")
 
 
 def _write_json(path: Path, value: dict[str, Any]) -> None:

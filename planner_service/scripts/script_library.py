@@ -126,7 +126,7 @@ class ScriptLibrary:
         self._by_id = {script.id: script for script in self.scripts}
         if len(self._by_id) < len(self.scripts):
             twice = next(one.id for one in self.scripts if self._by_id[one.id] is not one)
-            raise LibraryError(f"id: two short scripts are called {twice!r}")
+            raise LibraryError(f"two short scripts are called {twice!r}", at="id")
 
     @property
     def encoder(self) -> SentenceEncoder:
@@ -139,7 +139,7 @@ class ScriptLibrary:
     def get(self, script_id: str) -> ShortScript:
         """The script of that id, or LibraryError."""
         if script_id not in self._by_id:
-            raise LibraryError(f"id: there is no short script {script_id!r} among the {len(self)} of the library")
+            raise LibraryError(f"there is no short script {script_id!r} among the {len(self)} of the library", at="id")
         return self._by_id[script_id]
 
     def find(self, script_id: str) -> ShortScript | None:
@@ -164,7 +164,7 @@ class ScriptLibrary:
         Only those of one emotion, in one room and with all of this furniture, where these are given.
         """
         if k < 1 or not query.strip():
-            raise LibraryError("query: ask for at least one script, with at least one word")
+            raise LibraryError("ask for at least one script, with at least one word", at="query")
         fitting = np.flatnonzero(self.fitting(emotion, room, furniture))
         scores = answers(query, self)[fitting]
         order = np.lexsort((self._by_name[fitting], -scores))[:k]
@@ -175,9 +175,9 @@ class ScriptLibrary:
     ) -> NDArray[np.bool_]:
         """Which scripts are of that emotion, in that room and use all of that furniture. (scripts,)."""
         if emotion is not None and emotion not in EMOTIONS:
-            raise LibraryError(f"emotion: {emotion!r} is none of {', '.join(EMOTIONS)}")
+            raise LibraryError(f"{emotion!r} is none of {', '.join(EMOTIONS)}", at="emotion")
         if room is not None and canonical_room(room) not in ROOM_TYPES:
-            raise LibraryError(f"room: {room!r} is none of {', '.join(ROOM_TYPES)}")
+            raise LibraryError(f"{room!r} is none of {', '.join(ROOM_TYPES)}", at="room")
         mask = np.ones(len(self), dtype=np.bool_)
         if emotion is not None:
             mask &= self.traits.of_emotion(emotion)
@@ -185,7 +185,9 @@ class ScriptLibrary:
             mask &= self.traits.in_rooms([canonical_room(room)])
         for word in furniture:
             if not is_known(word):
-                raise LibraryError(f"furniture: {word!r:.80} is not known; say for example bed, sofa, desk or wardrobe")
+                raise LibraryError(
+                    f"{word!r:.80} is not known", "say for example bed, sofa, desk or wardrobe", at="furniture"
+                )
             mask &= self.traits.using(categories_of(word))
         return mask
 

@@ -24,13 +24,14 @@ def database_url(settings: Settings) -> str:
     try:
         url = make_url(settings.database_url)
     except (ArgumentError, ValueError) as error:
-        raise SettingsError("SIMS_DATABASE_URL: write postgresql://user:password@host:5432/name") from error
+        raise SettingsError("write postgresql://user:password@host:5432/name", at="SIMS_DATABASE_URL") from error
     if url.get_backend_name() == "sqlite" and url.database:
         return _sqlite_url(Path(url.database).absolute())
     if url.get_backend_name() != "postgresql":
         raise SettingsError(
-            f"SIMS_DATABASE_URL: {url.drivername} is not read here; write postgresql://user:password@host:5432/name, "
-            "or leave it empty for a file in SIMS_DATA_DIR"
+            f"{url.drivername} is not read here",
+            "write postgresql://user:password@host:5432/name, or leave it empty for a file in SIMS_DATA_DIR",
+            at="SIMS_DATABASE_URL",
         )
     return url.set(drivername="postgresql+psycopg").render_as_string(hide_password=False)
 
@@ -70,7 +71,7 @@ def unopened(url: str, error: Exception) -> SettingsError:
     shown = make_url(url).render_as_string(hide_password=True)
     reason = str(getattr(error, "orig", error)).splitlines()[0]
     return SettingsError(
-        f"SIMS_DATABASE_URL: {shown} cannot be opened: {reason}; see SIMS_DATA_DIR and SIMS_DATABASE_URL"
+        f"{shown} cannot be opened: {reason}", "see SIMS_DATA_DIR and SIMS_DATABASE_URL", at="SIMS_DATABASE_URL"
     )
 
 
@@ -102,6 +103,7 @@ def _make_tables(engine: Engine) -> None:
             connection.execute(schema_version.insert().values(version=SCHEMA_VERSION))
         elif found != SCHEMA_VERSION:
             raise SettingsError(
-                f"SIMS_DATABASE_URL: the database has tables of version {found}, this program reads {SCHEMA_VERSION}; "
-                "use another database or the program that wrote it"
+                f"the database has tables of version {found}, this program reads {SCHEMA_VERSION}",
+                "use another database or the program that wrote it",
+                at="SIMS_DATABASE_URL",
             )

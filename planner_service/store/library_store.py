@@ -118,7 +118,7 @@ class Kept(Generic[T]):
         try:
             put(self.engine, self.shelf, rows, most, within)
         except IdTaken as error:
-            raise TakenError(f"id: there is a {name} {error.row_id!r} already; choose another id") from error
+            raise TakenError(f"there is a {name} {error.row_id!r} already", "choose another id", at="id") from error
         except ShelfFull as error:
             raise _full(most, name) from error
 
@@ -142,7 +142,7 @@ class Kept(Generic[T]):
 
 
 def _full(most: int, name: str) -> FullError:
-    return FullError(f"at most {most} {name}s of users' own are kept; remove some first")
+    return FullError(f"at most {most} {name}s of users' own are kept", "remove some first")
 
 
 Shelf = Literal["short_scripts", "layouts"]

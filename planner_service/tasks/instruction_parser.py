@@ -83,7 +83,7 @@ def clauses(action: str) -> tuple[Clause, ...]:
     """What an instruction asks for, in the order of time. TaskError names what the rules do not know."""
     action = tidy(action)
     if fault := misleading(action):
-        raise TaskError(f"action: {fault}")
+        raise TaskError(f"{fault}", at="action")
     found: list[Clause] = []
     for text in _ordered(action):
         carried = found[-1] if found else None
@@ -94,12 +94,18 @@ def clauses(action: str) -> tuple[Clause, ...]:
             carried = replace(carried, hand=cast(Hand, hand[1].lower()) if hand else None)
             clause = _with_rest(carried, _HAND.sub("", text))
         if clause is None:
-            raise TaskError(f"action: rules know no way to “{text[:60]}”; they know to {', '.join(known_verbs())}")
+            raise TaskError(
+                f"rules know no way to “{text[:60]}”", f"they know to {', '.join(known_verbs())}", at="action"
+            )
         found.append(_resolved(clause, found))
     if not found:
-        raise TaskError("action: there is nothing to do in it; say what is to be done, such as “watch TV on the sofa”")
+        raise TaskError(
+            "there is nothing to do in it", "say what is to be done, such as “watch TV on the sofa”", at="action"
+        )
     if len(found) > MAX_CLAUSES:
-        raise TaskError(f"action: {len(found)} things to do, at most {MAX_CLAUSES} are planned at once; split it up")
+        raise TaskError(
+            f"{len(found)} things to do, at most {MAX_CLAUSES} are planned at once", "split it up", at="action"
+        )
     return tuple(found)
 
 
@@ -107,11 +113,11 @@ def tidy(action: str) -> str:
     """The instruction in one line. TaskError if it is empty, longer than may be, or not text."""
     text = " ".join(action.split())
     if not text:
-        raise TaskError("action: it is empty; say what is to be done, such as “watch TV on the sofa”")
+        raise TaskError("it is empty", "say what is to be done, such as “watch TV on the sofa”", at="action")
     if len(text) > MAX_ACTION_LENGTH:
-        raise TaskError(f"action: it has {len(text)} letters, at most {MAX_ACTION_LENGTH} are read; split it up")
+        raise TaskError(f"it has {len(text)} letters, at most {MAX_ACTION_LENGTH} are read", "split it up", at="action")
     if not text.isprintable():
-        raise TaskError("action: there are control characters in it; write plain text")
+        raise TaskError("there are control characters in it", "write plain text", at="action")
     return text
 
 

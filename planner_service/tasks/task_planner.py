@@ -38,7 +38,7 @@ def plan_task(
     """
     action = tidy(action)
     if method == "model" and model is None:
-        raise TaskError('method: there is no language model; set SIMS_LLM_MODEL, or ask for "rules"')
+        raise TaskError("there is no language model", 'set SIMS_LLM_MODEL, or ask for "rules"', at="method")
     room, notes, planner = Surroundings(home), list[str](), RULES
     tasks = None
     if model is not None and method != "rules":
@@ -64,11 +64,11 @@ def plan_routine(home: Home, count: int, seed: int = 0) -> TaskPlan:
     Raises TaskError for a number that is out of bounds or a home where nothing can be done over and over.
     """
     if not 1 <= count <= MAX_INSTRUCTIONS:
-        raise TaskError(f"count: must be a whole number from 1 to {MAX_INSTRUCTIONS}, got {count}")
+        raise TaskError(f"must be a whole number from 1 to {MAX_INSTRUCTIONS}, got {count}", at="count")
     try:
         planner = Planner(candidates_from_home(home, usable_offers(home)), seed)
     except PlanError as error:
-        raise TaskError(f"layout: no plan without end can be made of it: {error}") from error
+        raise TaskError(f"no plan without end can be made of it: {error}", at="layout") from error
     asked = planner.sequence(count)
     tasks = [
         SubTask(c.name, c.category, c.hand, c.takes or c.lays or c.uses or c.place or None, c.place or None)

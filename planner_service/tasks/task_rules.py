@@ -144,7 +144,9 @@ def plan_by_rules(action: str, room: Surroundings) -> tuple[SubTask, ...]:
         body.do(clause)
     body.put_back_at_end()
     if len(body.steps) > MAX_STEPS:
-        raise TaskError(f"action: it takes {len(body.steps)} steps, at most {MAX_STEPS} are planned; split it up")
+        raise TaskError(
+            f"it takes {len(body.steps)} steps, at most {MAX_STEPS} are planned", "split it up", at="action"
+        )
     return tuple(body.steps)
 
 
@@ -232,7 +234,7 @@ class _Doing(Preparing):
     def _touch(self, clause: Clause) -> None:
         if not clause.furniture:
             raise TaskError(
-                f"action: “{clause.phrase}” names no furniture to {clause.verb}; name some, such as a table"
+                f"“{clause.phrase}” names no furniture to {clause.verb}", "name some, such as a table", at="action"
             )
         word = self.named(clause.furniture, "touch")
         hand = clause.hand or self.free_hand()
@@ -324,7 +326,7 @@ class _Doing(Preparing):
     def _thing(clause: Clause) -> str:
         if clause.thing:
             return clause.thing
-        raise TaskError(f"action: it does not say what to {clause.verb}; name the thing, such as a cup")
+        raise TaskError(f"it does not say what to {clause.verb}", "name the thing, such as a cup", at="action")
 
     def _workplace(self, clause: Clause) -> str:
         """Where an operation is done: at what is operated, where it is told, where the thing is, or the usual place."""

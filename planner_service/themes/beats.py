@@ -47,7 +47,7 @@ class ThemeError(UserError):
     """A theme that no story can be made of; the text says what was not understood and what would be."""
 
     def __init__(self, reason: str) -> None:
-        super().__init__(f"theme: {reason} Try for example: " + " Or: ".join(EXAMPLES))
+        super().__init__(f"{reason} Try for example: " + " Or: ".join(EXAMPLES), at="theme")
         self.reason = reason
 
 

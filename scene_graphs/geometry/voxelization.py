@@ -110,12 +110,12 @@ def _checked(vertices: ArrayLike, faces: ArrayLike) -> tuple[Array, NDArray[np.i
     if not len(corners) or not np.issubdtype(corners.dtype, np.integer):
         raise LayoutError(f"a mesh needs faces of whole numbers, got {len(corners)} of {corners.dtype}")
     if len(corners) > MAX_TRIANGLES:
-        raise LayoutError(f"a mesh of {len(corners)} triangles is too fine; simplify it to {MAX_TRIANGLES} or fewer")
+        raise LayoutError(f"a mesh of {len(corners)} triangles is too fine", f"simplify it to {MAX_TRIANGLES} or fewer")
     if corners.min() < 0 or corners.max() >= len(points):
         raise LayoutError(f"faces must name vertices 0 to {len(points) - 1}, got {corners.min()} to {corners.max()}")
     if not (np.abs(points) <= MAX_COORDINATE).all():
         raise LayoutError(
-            f"vertices must be finite and within {MAX_COORDINATE:g} m of the origin; is the mesh in metres?"
+            f"vertices must be finite and within {MAX_COORDINATE:g} m of the origin", "is the mesh in metres?"
         )
     return points, corners.astype(np.intp)
 
@@ -142,7 +142,7 @@ def _samples(triangles: Array, step: float) -> Iterator[Array]:
     rows = np.stack([np.ceil(height / step), np.ceil(length / step)], axis=1).astype(np.int64) + 1
     total = int(rows.prod(axis=1).sum())
     if total > MAX_SAMPLES:
-        raise LayoutError(f"a mesh whose surface takes {total} samples is no piece of furniture; simplify it")
+        raise LayoutError(f"a mesh whose surface takes {total} samples is no piece of furniture", "simplify it")
     kinds, kind = np.unique(rows, axis=0, return_inverse=True)
     order = np.argsort(kind.ravel(), kind="stable")
     for (down, right), members in zip(kinds, np.split(order, np.cumsum(np.bincount(kind.ravel()))[:-1]), strict=True):

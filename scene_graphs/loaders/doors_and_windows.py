@@ -81,7 +81,7 @@ def gaps_of_rooms(gaps: Sequence[Gap], floors: Sequence[Sequence[Point2] | None]
         for number in np.flatnonzero(shapely.dwithin(lines, walls, ON_WALL)).tolist():
             gap, tries = gaps[number], tries + len(floor)
             if tries > MAX_TRIES:
-                raise LayoutError(f"doors and windows stand at more than {MAX_TRIES} walls; split the house")
+                raise LayoutError(f"doors and windows stand at more than {MAX_TRIES} walls", "split the house")
             on_wall = on_outline(gap.segment, floor)
             if on_wall is not None and _length(on_wall) >= _COVERED * _length(gap.segment):
                 room.append(gap)

@@ -127,7 +127,7 @@ class House:
         """Refuse a house that would take minutes to read."""
         self._read[what] += more
         if self._read[what] > most:
-            raise LayoutError(f"scene.room: more than {most} {what} in one house; split it")
+            raise LayoutError(f"scene.room: more than {most} {what} in one house", "split it")
 
     def _place(self, room: HouseRoom, child: Any) -> None:
         ref = child.get("ref") if isinstance(child, dict) else None

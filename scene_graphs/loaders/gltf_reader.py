@@ -18,6 +18,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from scene_graphs.errors import FieldPath
 from scene_graphs.json_fields import LayoutError
 from scene_graphs.layout import Array
 from scene_graphs.loaders.scene_nodes import (
@@ -58,35 +59,40 @@ class Document:
     def of(cls, data: bytes, name: str) -> Document:
         """A .glb, or a .gltf that holds its own data. LayoutError if it is neither, cut off or compressed."""
         document, binary = _chunks(data, name)
-        required = list_of(document, "extensionsRequired", name)
+        required = list_of(document, "extensionsRequired", FieldPath(file=name))
         if packed := [word for word in required if isinstance(word, str) and word in _COMPRESSED]:
-            raise LayoutError(f"{name} is compressed ({packed[0]}); export it without compression")
+            raise LayoutError(f"is compressed ({packed[0]})", "export it without compression", at=FieldPath(file=name))
         return cls(document, binary, name)
+
+    @property
+    def at(self) -> FieldPath:
+        """The document, for errors."""
+        return FieldPath(file=self.name)
 
     def item(self, key: str, number: Any) -> dict[str, Any]:
         """An item of a top list. LayoutError if the number names none."""
-        items = list_of(self.json, key, self.name)
+        items = list_of(self.json, key, self.at)
         if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < len(items):
-            raise LayoutError(f"{self.name} names {key}[{number!r:.20}], of which there are {len(items)}")
+            raise LayoutError(f"names {key}[{number!r:.20}], of which there are {len(items)}", at=self.at)
         if not isinstance(items[number], dict):
-            raise LayoutError(f"{self.name} {key}[{number}] must be an object")
+            raise LayoutError("must be an object", at=self.at / key / number)
         found: dict[str, Any] = items[number]
         return found
 
-    def accessor(self, number: Any, type_: str, where: str) -> NDArray[Any]:
+    def accessor(self, number: Any, type_: str, where: FieldPath) -> NDArray[Any]:
         """The values of an accessor, one element a row."""
         row = self.item("accessors", number)
         if (number, type_) not in self._accessors:
-            self._accessors[number, type_] = self._values_of(row, type_, f"{where}: accessors[{number}]")
+            self._accessors[number, type_] = self._values_of(row, type_, where / "accessors" / number)
         return self._accessors[number, type_]
 
-    def _values_of(self, row: Mapping[str, Any], type_: str, place: str) -> NDArray[Any]:
+    def _values_of(self, row: Mapping[str, Any], type_: str, place: FieldPath) -> NDArray[Any]:
         kind = row.get("componentType")
         dtype = _TYPES.get(kind) if isinstance(kind, int) else None
         if dtype is None or row.get("type") != type_:
-            raise LayoutError(f"{place} must be of type {type_} with a componentType of glTF 2.0")
+            raise LayoutError(f"must be of type {type_} with a componentType of glTF 2.0", at=place)
         if row.get("sparse") is not None or row.get("bufferView") is None:
-            raise LayoutError(f"{place} is sparse; export the scene without sparse accessors")
+            raise LayoutError("is sparse", "export the scene without sparse accessors", at=place)
         view = self.item("bufferViews", row["bufferView"])
         data = self._buffer(view.get("buffer"))
         width, item = _WIDTHS[type_], np.dtype(dtype).itemsize
@@ -97,10 +103,10 @@ class Document:
         if count == 0:
             return np.zeros((0, width), dtype)
         if stride < width * item or last > min(end, len(data)):
-            raise LayoutError(f"{place} reaches beyond its buffer; the file is cut off or damaged")
+            raise LayoutError("reaches beyond its buffer; the file is cut off or damaged", at=place)
         self._values += count
         if self._values > 2 * MAX_VALUES:
-            raise LayoutError(f"{self.name} has more than {MAX_TRIANGLES} triangles; simplify it")
+            raise LayoutError(f"has more than {MAX_TRIANGLES} triangles", "simplify it", at=self.at)
         values = np.ndarray((count, width), dtype, data, start, (stride, item))
         if row.get("normalized") is True and values.dtype.kind in "iu":
             return np.maximum(values / np.iinfo(values.dtype).max, -1.0)
@@ -113,25 +119,25 @@ class Document:
             if uri is None and number == 0 and self.binary is not None:
                 self._buffers[number] = self.binary
             elif isinstance(uri, str) and uri.startswith("data:") and ";base64," in uri[:200]:
-                self._buffers[number] = _decoded(uri, f"{self.name} buffers[{number}]")
+                self._buffers[number] = _decoded(uri, self.at / "buffers" / number)
             else:
-                raise LayoutError(f"{self.name} keeps its geometry in another file; export it as one .glb")
+                raise LayoutError("keeps its geometry in another file", "export it as one .glb", at=self.at)
         return self._buffers[number]
 
 
-def list_of(row: Mapping[str, Any], key: str, where: str) -> list[Any]:
+def list_of(row: Mapping[str, Any], key: str, where: FieldPath) -> list[Any]:
     """A list field; an absent one is empty."""
     value = row.get(key) or []
     if not isinstance(value, list):
-        raise LayoutError(f"{where}: {key} must be a list")
+        raise LayoutError("must be a list", at=where / key)
     return value
 
 
-def numbers_of(row: Mapping[str, Any], key: str, count: int, where: str) -> Array:
+def numbers_of(row: Mapping[str, Any], key: str, count: int, where: FieldPath) -> Array:
     """A field of that many finite numbers."""
     value = row[key]
     if not isinstance(value, list) or len(value) != count or not all(_is_number(number) for number in value):
-        raise LayoutError(f"{where}.{key} must be {count} numbers, got {value!r:.60}")
+        raise LayoutError(f"must be {count} numbers, got {value!r:.60}", at=where / key)
     return np.array(value, dtype=float)
 
 
@@ -144,47 +150,49 @@ def _chunks(data: bytes, name: str) -> tuple[dict[str, Any], bytes | None]:
     if data[:4] != _MAGIC:
         return _json(data, name), None
     if len(data) < 20:
-        raise LayoutError(f"{name} is cut off: a .glb has a header of 20 bytes")
+        raise LayoutError("is cut off: a .glb has a header of 20 bytes", at=FieldPath(file=name))
     version, length = struct.unpack_from("<II", data, 4)
     if version != 2:
-        raise LayoutError(f"{name} is glTF version {version}; export it as glTF 2.0")
+        raise LayoutError(f"is glTF version {version}", "export it as glTF 2.0", at=FieldPath(file=name))
     if length > len(data):
-        raise LayoutError(f"{name} is cut off: it says it has {length} bytes and has {len(data)}")
+        raise LayoutError(f"is cut off: it says it has {length} bytes and has {len(data)}", at=FieldPath(file=name))
     found: dict[int, bytes] = {}
     place = 12
     while place + 8 <= length:
         size, kind = struct.unpack_from("<II", data, place)
         if place + 8 + size > len(data):
-            raise LayoutError(f"{name} is cut off: a chunk at byte {place} says it has {size} bytes")
+            raise LayoutError(f"is cut off: a chunk at byte {place} says it has {size} bytes", at=FieldPath(file=name))
         found.setdefault(kind, data[place + 8 : place + 8 + size])
         place += 8 + size
     if _JSON not in found:
-        raise LayoutError(f"{name} has no JSON chunk; is it a .glb?")
+        raise LayoutError("has no JSON chunk", "is it a .glb?", at=FieldPath(file=name))
     return _json(found[_JSON], name), found.get(_BIN)
 
 
 def _json(data: bytes, name: str) -> dict[str, Any]:
     try:
-        document = parse_json(data.decode("utf-8-sig"), name)
+        document = parse_json(data.decode("utf-8-sig"), FieldPath((name,)))
     except ValueError as error:
-        raise LayoutError(f"{name} is neither a .glb nor a .gltf that holds its own data: {error}") from error
+        raise LayoutError(
+            f"is neither a .glb nor a .gltf that holds its own data: {error}", at=FieldPath(file=name)
+        ) from error
     if not isinstance(document, dict) or not isinstance(document.get("nodes"), list):
-        raise LayoutError(f"{name} must be a glTF document with nodes")
+        raise LayoutError("must be a glTF document with nodes", at=FieldPath(file=name))
     return document
 
 
-def _whole(row: Mapping[str, Any], key: str, where: str) -> int:
+def _whole(row: Mapping[str, Any], key: str, where: FieldPath) -> int:
     value = row.get(key, 0)
     if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value < 1 << 40:
-        raise LayoutError(f"{where}: {key} must be a whole number, got {value!r:.60}")
+        raise LayoutError(f"must be a whole number, got {value!r:.60}", at=where / key)
     return value
 
 
-def _decoded(uri: str, where: str) -> bytes:
+def _decoded(uri: str, where: FieldPath) -> bytes:
     try:
         return base64.b64decode(uri.partition(",")[2], validate=True)
     except (binascii.Error, ValueError) as error:
-        raise LayoutError(f"{where} is not base64: {error}") from error
+        raise LayoutError(f"is not base64: {error}", at=where) from error
 
 
 _LIST, _STRIP, _FAN = 4, 5, 6
@@ -212,13 +220,13 @@ class _Scene:
 
     def tops(self) -> list[Node]:
         """The nodes of the scene, with all below them."""
-        document, name = self.document, self.document.name
-        nodes = list_of(document.json, "nodes", name)
+        document = self.document
+        nodes = list_of(document.json, "nodes", document.at)
         if len(nodes) > MAX_NODES:
-            raise LayoutError(f"{name} has more than {MAX_NODES} nodes; join what belongs together")
+            raise LayoutError(f"has more than {MAX_NODES} nodes", "join what belongs together", at=document.at)
         if document.json.get("scenes"):
             scene = document.item("scenes", document.json.get("scene", 0))
-            return [self._node(number, np.eye(4), 0) for number in list_of(scene, "nodes", f"{name} scene")]
+            return [self._node(number, np.eye(4), 0) for number in list_of(scene, "nodes", document.at / "scene")]
         below = {
             child
             for node in nodes
@@ -230,15 +238,15 @@ class _Scene:
 
     def _node(self, number: Any, above: Array, depth: int) -> Node:
         row = self.document.item("nodes", number)
-        where = f"{self.document.name} nodes[{number}]"
+        where = self.document.at / "nodes" / number
         if number in self._seen:
-            raise LayoutError(f"{where} has two parents or is its own; the nodes must be a tree")
+            raise LayoutError("has two parents or is its own", "the nodes must be a tree", at=where)
         if depth > MAX_DEPTH:
-            raise LayoutError(f"{where} lies deeper than {MAX_DEPTH} nodes within nodes")
+            raise LayoutError(f"lies deeper than {MAX_DEPTH} nodes within nodes", at=where)
         self._seen.add(number)
         matrix = above @ _matrix(row, where)
         if not np.abs(matrix).max() <= MAX_NUMBER:
-            raise LayoutError(f"{where} is scaled or moved beyond any room")
+            raise LayoutError("is scaled or moved beyond any room", at=where)
         own = NOTHING if row.get("mesh") is None else self._placed(row["mesh"], matrix)
         children = tuple(self._node(child, matrix, depth + 1) for child in list_of(row, "children", where))
         return Node(self._name(row, number), _axes(matrix), own, children, _label(row.get("extras")))
@@ -257,19 +265,19 @@ class _Scene:
     def _mesh(self, number: Any) -> Triangles:
         row = self.document.item("meshes", number)
         if number not in self._meshes:
-            where = f"{self.document.name} meshes[{number}]"
+            where = self.document.at / "meshes" / number
             parts = list_of(row, "primitives", where)
             self._parts += len(parts)
             if self._parts > MAX_NODES:
-                raise LayoutError(f"{where}: more than {MAX_NODES} primitives; join what belongs together")
+                raise LayoutError(f"has more than {MAX_NODES} primitives", "join what belongs together", at=where)
             self._meshes[number] = joined(
-                [self._primitive(part, f"{where}.primitives[{index}]") for index, part in enumerate(parts)]
+                [self._primitive(part, where / "primitives" / index) for index, part in enumerate(parts)]
             )
         return self._meshes[number]
 
-    def _primitive(self, row: Any, where: str) -> Triangles:
+    def _primitive(self, row: Any, where: FieldPath) -> Triangles:
         if not isinstance(row, dict) or not isinstance(row.get("attributes"), dict):
-            raise LayoutError(f"{where} must be an object with attributes")
+            raise LayoutError("must be an object with attributes", at=where)
         mode = row.get("mode", _LIST)
         if mode not in (_LIST, _STRIP, _FAN) or "POSITION" not in row["attributes"]:
             return NOTHING
@@ -279,10 +287,10 @@ class _Scene:
         else:
             indices = self.document.accessor(row["indices"], "SCALAR", where)
             if indices.dtype.kind != "u":
-                raise LayoutError(f"{where}.indices must be whole numbers without sign")
+                raise LayoutError("must be whole numbers without sign", at=where / "indices")
             order = indices[:, 0].astype(np.int64)
         if len(order) and order.max() >= len(points):
-            raise LayoutError(f"{where}.indices name point {order.max()} of {len(points)}")
+            raise LayoutError(f"name point {order.max()} of {len(points)}", at=where / "indices")
         corners = _triples(order, mode)
         self._count(len(corners))
         # Many meshes may share one long list of points; each takes along only its own.
@@ -290,13 +298,13 @@ class _Scene:
         with np.errstate(invalid="ignore"):  # a NaN that signals; it is refused below
             own = points[used].astype(float)
         if not (np.abs(own) <= MAX_NUMBER).all():
-            raise LayoutError(f"{where} has points that are no numbers or lie beyond any room")
+            raise LayoutError("has points that are no numbers or lie beyond any room", at=where)
         return Triangles(own, corners.reshape(-1, 3))
 
     def _count(self, triangles: int) -> None:
         self._triangles += triangles
         if self._triangles > 2 * MAX_TRIANGLES:
-            raise LayoutError(f"{self.document.name} has more than {MAX_TRIANGLES} triangles; simplify it")
+            raise LayoutError(f"has more than {MAX_TRIANGLES} triangles", "simplify it", at=self.document.at)
 
 
 def _label(extras: Any) -> str | None:
@@ -314,7 +322,7 @@ def _triples(order: Indices, mode: int) -> Indices:
     return np.stack([first, order[1:-1], order[2:]], axis=1)
 
 
-def _matrix(row: Mapping[str, Any], where: str) -> Array:
+def _matrix(row: Mapping[str, Any], where: FieldPath) -> Array:
     """A node's own matrix, or the one of its translation, rotation (xyzw) and scale. (4, 4)."""
     if row.get("matrix") is not None:
         return numbers_of(row, "matrix", 16, where).reshape(4, 4).T
@@ -323,7 +331,7 @@ def _matrix(row: Mapping[str, Any], where: str) -> Array:
         turn = numbers_of(row, "rotation", 4, where)
         length = float(np.linalg.norm(turn))
         if length < 1e-6:
-            raise LayoutError(f"{where}.rotation must be a quaternion [x, y, z, w]")
+            raise LayoutError("must be a quaternion [x, y, z, w]", at=where / "rotation")
         matrix[:3, :3] = _turn_from_quaternion(turn / length)
     if row.get("scale") is not None:
         matrix[:3, :3] *= numbers_of(row, "scale", 3, where)

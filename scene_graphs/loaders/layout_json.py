@@ -15,7 +15,7 @@ def read_native(source: Source, intake: Intake) -> list[Layout]:
         intake.count_rooms(1, source.name)
         try:
             if not isinstance(row, dict):
-                raise LayoutError(f"{where} must be an object with id, room_type, floor_polygon and objects")
+                raise LayoutError("must be an object with id, room_type, floor_polygon and objects", at=where)
             layout = layout_from_dict(row, where)
         except LayoutError as error:
             intake.drop("a row that is not a room", str(error))

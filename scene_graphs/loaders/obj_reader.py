@@ -30,10 +30,10 @@ def nodes_of_obj(text: str, name: str) -> list[Node]:
     scene = _Scene(name)
     for number, line in enumerate(io.StringIO(text.replace("\\\n", " "), newline=None), start=1):
         if number > MAX_LINES:
-            raise LayoutError(f"{name} has more than {MAX_LINES} lines; simplify it")
+            raise LayoutError(f"{name} has more than {MAX_LINES} lines", "simplify it")
         scene.read(line, number)
     if not scene.faces:
-        raise LayoutError(f"{name} has no faces; is it an .obj?")
+        raise LayoutError(f"{name} has no faces", "is it an .obj?")
     points = np.array(scene.points).reshape(-1, 3)
     own: dict[str, Triangles] = {}
     groups: dict[str, list[Node]] = {}
@@ -86,10 +86,10 @@ class _Scene:
         corners = [self._corner(word, number) for word in words]
         self._triangles += max(0, len(corners) - 2)
         if self._triangles > MAX_TRIANGLES:
-            raise LayoutError(f"{self.name} has more than {MAX_TRIANGLES} triangles; simplify it")
+            raise LayoutError(f"{self.name} has more than {MAX_TRIANGLES} triangles", "simplify it")
         if self._within not in self.faces:
             if len(self.faces) >= MAX_NODES:
-                raise LayoutError(f"{self.name} has more than {MAX_NODES} groups; join what belongs together")
+                raise LayoutError(f"{self.name} has more than {MAX_NODES} groups", "join what belongs together")
             self.faces[self._within] = array("q")
         for second, third in pairwise(corners[1:]):
             self.faces[self._within].extend((corners[0], second, third))

@@ -15,6 +15,7 @@ import numpy as np
 import shapely
 
 from scene_graphs.boxes import Point3
+from scene_graphs.errors import FieldPath
 from scene_graphs.furniture import is_known, typical_size
 from scene_graphs.json_fields import MAX_COORDINATE, LayoutError, Row, read_number, read_point3, read_rows, read_text
 from scene_graphs.layout import MAX_CORNERS, MAX_SIZE, MIN_SIZE, Layout, Point2, Segment
@@ -57,11 +58,11 @@ def read_assets(source: Source) -> dict[str, Asset]:
     for name, type_, size in _entries(table):
         try:
             if isinstance(name, str) and isinstance(type_, str):
-                assets[name] = Asset(type_, read_point3(size, name[:60], MIN_SIZE, MAX_SIZE))
+                assets[name] = Asset(type_, read_point3(size, FieldPath((name[:60],)), MIN_SIZE, MAX_SIZE))
         except LayoutError:
             continue
     if table and not assets:
-        raise LayoutError(f'{source.name} has no box that can be used; an entry is "Bed_13": ["Bed", [x, y, z]]')
+        raise LayoutError(f"{source.name} has no box that can be used", 'an entry is "Bed_13": ["Bed", [x, y, z]]')
     return assets
 
 
@@ -169,7 +170,7 @@ class _House:
     """One house being read."""
 
     row: Any
-    where: str
+    where: FieldPath
     assets: Mapping[str, Asset]
     intake: Intake
     _rooms: dict[str, RoomIntake] = field(default_factory=dict)
@@ -180,7 +181,7 @@ class _House:
     def rooms(self, house_id: str) -> list[RoomIntake]:
         """Its rooms with everything in them, not finished yet. LayoutError if it is no house."""
         if not isinstance(self.row, dict) or not {"rooms", "objects"} <= self.row.keys():
-            raise LayoutError(f"{self.where} must be a house with rooms, walls, doors, windows and objects")
+            raise LayoutError("must be a house with rooms, walls, doors, windows and objects", at=self.where)
         walls = dict(self._each("walls", _wall, MAX_WALLS))
         for room_id, type_, corners in self._each("rooms", _room, MAX_ROOMS_PER_HOUSE):
             if room_id in self._rooms:
@@ -199,7 +200,7 @@ class _House:
             room.tags = rooms_served(room.tags[0], [p.category for p in room.objects if p.parent is None])
         return list(self._rooms.values())
 
-    def _each(self, key: str, read: Callable[[Row, str], _T], most: int) -> Iterator[_T]:
+    def _each(self, key: str, read: Callable[[Row, FieldPath], _T], most: int) -> Iterator[_T]:
         """The items of a list as `read` reads them; those it cannot read are counted."""
         for item, place in read_rows(self.row, key, self.where, most):
             try:
@@ -215,7 +216,7 @@ class _House:
         for home, (item, place, middle, turn) in zip(homes, objects, strict=True):
             room = home or self._named_room(item)
             if room is None:
-                self.intake.drop("it stands in no room of its house", place)
+                self.intake.drop("it stands in no room of its house", str(place))
                 continue
             self._add(room, item, place, middle, turn)
 
@@ -235,20 +236,20 @@ class _House:
             (room for name, room in self._rooms.items() if name == item.get("roomId") or name == f"room|{number}"), None
         )
 
-    def _add(self, room: RoomIntake, item: Row, place: str, middle: Point3, turn: Point3) -> None:
+    def _add(self, room: RoomIntake, item: Row, place: FieldPath, middle: Point3, turn: Point3) -> None:
         """Add an object and, with it as parent, everything on it: poses of children are the house's too."""
-        waiting: list[tuple[Row, str, Point3, Point3, str | None]] = [(item, place, middle, turn, None)]
+        waiting: list[tuple[Row, FieldPath, Point3, Point3, str | None]] = [(item, place, middle, turn, None)]
         while waiting:
             item, place, middle, turn, parent = waiting.pop()
             self._things += 1
             if self._things > MAX_THINGS:
-                self.intake.drop(f"a house holds at most {MAX_THINGS} objects", place)
+                self.intake.drop(f"a house holds at most {MAX_THINGS} objects", str(place))
                 return
             placed = self._add_one(room, item, place, middle, turn, parent)
             children = read_rows(item, "children", place, MAX_THINGS) if item.get("children") else ()
             for child, child_place in children:
                 if placed is None:
-                    self.intake.drop("what it stands on was dropped", child_place)
+                    self.intake.drop("what it stands on was dropped", str(child_place))
                     continue
                 try:
                     waiting.append((child, child_place, *_pose(child, child_place), placed))
@@ -256,7 +257,7 @@ class _House:
                     self.intake.drop("one of the objects that cannot be read", str(error))
 
     def _add_one(
-        self, room: RoomIntake, item: Row, place: str, middle: Point3, turn: Point3, parent: str | None
+        self, room: RoomIntake, item: Row, place: FieldPath, middle: Point3, turn: Point3, parent: str | None
     ) -> str | None:
         asset_id = str(item.get("assetId", ""))[:MAX_NAME_LENGTH]
         asset = self.assets.get(asset_id)
@@ -271,22 +272,22 @@ class _House:
         return placed.id if placed else None
 
 
-def _room(row: Row, where: str) -> tuple[str, str, list[Point2]]:
+def _room(row: Row, where: FieldPath) -> tuple[str, str, list[Point2]]:
     """Id, type and outline of a room."""
     corners = row.get("floorPolygon")
     if not isinstance(corners, list) or not 3 <= len(corners) <= MAX_CORNERS:
-        raise LayoutError(f"{where}.floorPolygon must be a list of 3 to {MAX_CORNERS} corners")
-    points = [_vector(corner, f"{where}.floorPolygon[{index}]") for index, corner in enumerate(corners)]
+        raise LayoutError(f"must be a list of 3 to {MAX_CORNERS} corners", at=where / "floorPolygon")
+    points = [_vector(corner, where / "floorPolygon" / index) for index, corner in enumerate(corners)]
     type_ = words_of(read_text(row, "roomType", where, "room")) or "room"
     return read_text(row, "id", where), type_, [plan_from_unity(x, z) for x, _, z in points]
 
 
-def _wall(row: Row, where: str) -> tuple[str, tuple[str, list[Point3]]]:
+def _wall(row: Row, where: FieldPath) -> tuple[str, tuple[str, list[Point3]]]:
     """Id of a wall, the room it belongs to, and its corners, in the house's frame."""
     corners = row.get("polygon")
     if not isinstance(corners, list) or not 2 <= len(corners) <= MAX_CORNERS:
-        raise LayoutError(f"{where}.polygon must be a list of corners")
-    points = [_vector(corner, f"{where}.polygon[{index}]") for index, corner in enumerate(corners)]
+        raise LayoutError("must be a list of corners", at=where / "polygon")
+    points = [_vector(corner, where / "polygon" / index) for index, corner in enumerate(corners)]
     return read_text(row, "id", where), (str(row.get("roomId", "")), points)
 
 
@@ -294,7 +295,7 @@ def _highest(corners: list[Point3]) -> float:
     return max(y for _, y, _ in corners)
 
 
-def _hole(row: Row, where: str, walls: Mapping[str, list[Point3]]) -> _Hole:
+def _hole(row: Row, where: FieldPath, walls: Mapping[str, list[Point3]]) -> _Hole:
     """A door or window. Its polygon lies in the plane of wall0: x runs from that wall's first corner to its second.
 
     It does not run as the wall's id is written, which is the other way round in half of all walls.
@@ -302,27 +303,27 @@ def _hole(row: Row, where: str, walls: Mapping[str, list[Point3]]) -> _Hole:
     wall = walls.get(str(row.get("wall0")))
     corners = row.get("holePolygon")
     if wall is None or not isinstance(corners, list) or len(corners) < 2:
-        raise LayoutError(f"{where} must have a wall0 that is one of the walls, and a holePolygon of two corners")
+        raise LayoutError("must have a wall0 that is one of the walls, and a holePolygon of two corners", at=where)
     start, end = np.array(wall[0])[[0, 2]], np.array(wall[1])[[0, 2]]
     length = float(np.hypot(*(end - start)))
     if length < 1e-6:
-        raise LayoutError(f"{where}.wall0 has no length")
-    (ax, ay, _), (bx, by, _) = (_vector(corner, f"{where}.holePolygon[{i}]") for i, corner in enumerate(corners[:2]))
+        raise LayoutError("has no length", at=where / "wall0")
+    (ax, ay, _), (bx, by, _) = (_vector(corner, where / "holePolygon" / i) for i, corner in enumerate(corners[:2]))
     a, b = (start + (end - start) * (along / length) for along in (ax, bx))
     segment = (plan_from_unity(float(a[0]), float(a[1])), plan_from_unity(float(b[0]), float(b[1])))
     rooms = frozenset(str(row.get(key)) for key in ("room0", "room1"))
     return _Hole(segment, max(0.0, min(ay, by)), max(ay, by), rooms)
 
 
-def _pose(row: Row, where: str) -> tuple[Point3, Point3]:
+def _pose(row: Row, where: FieldPath) -> tuple[Point3, Point3]:
     """Where the middle of an object's box is and how it is turned (degrees), in the house's frame."""
     rotation = row.get("rotation")
-    turn = (0.0, 0.0, 0.0) if rotation is None else _vector(rotation, f"{where}.rotation", 1e6)
-    return _vector(row.get("position"), f"{where}.position"), turn
+    turn = (0.0, 0.0, 0.0) if rotation is None else _vector(rotation, where / "rotation", 1e6)
+    return _vector(row.get("position"), where / "position"), turn
 
 
-def _vector(value: Any, where: str, most: float = MAX_COORDINATE) -> Point3:
+def _vector(value: Any, where: FieldPath, most: float = MAX_COORDINATE) -> Point3:
     if not isinstance(value, dict):
-        raise LayoutError(f"{where} must be {{x, y, z}}, got {value!r:.60}")
-    x, y, z = (read_number(value.get(axis), f"{where}.{axis}", -most, most) for axis in ("x", "y", "z"))
+        raise LayoutError(f"must be {{x, y, z}}, got {value!r:.60}", at=where)
+    x, y, z = (read_number(value.get(axis), where / axis, -most, most) for axis in ("x", "y", "z"))
     return (x, y, z)

@@ -11,6 +11,7 @@ from typing import Any, Final
 
 import shapely
 
+from scene_graphs.errors import FieldPath
 from scene_graphs.furniture import canonical, canonical_room
 from scene_graphs.json_fields import MAX_COORDINATE, LayoutError
 from scene_graphs.layout import (
@@ -120,8 +121,8 @@ class Intake:
         self._rooms += more
         if self._rooms > self.options.most_rooms:
             raise LayoutError(
-                f"{name} holds more than {self.options.most_rooms} rooms; split it, or of ProcTHOR's houses name some "
-                "by their numbers (scan 0-99)"
+                f"{name} holds more than {self.options.most_rooms} rooms",
+                "split it, or of ProcTHOR's houses name some by their numbers (scan 0-99)",
             )
 
     def drop(self, why: str, what: str = "") -> None:
@@ -241,7 +242,7 @@ class RoomIntake:
             licence=self.licence,
         )
         try:
-            layout = layout_from_dict(layout_to_dict(layout), self.id)
+            layout = layout_from_dict(layout_to_dict(layout), FieldPath((self.id,)))
         except LayoutError as error:
             self._room_dropped("a room that is not valid", f"{error}")
             return None
@@ -304,7 +305,7 @@ class RoomIntake:
         kept: dict[str, Placed] = {}
         for placed in objects:
             try:
-                placed_from_row(placed_to_row(placed), placed.id)
+                placed_from_row(placed_to_row(placed), FieldPath((placed.id,)))
             except LayoutError as error:
                 self.intake.drop("it is no valid object", str(error))
                 continue

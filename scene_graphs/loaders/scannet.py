@@ -59,7 +59,7 @@ def read_ply_vertices(source: Source) -> Array:
     # A NaN is within no bound.
     if not (np.abs(points) <= MAX_COORDINATE).all():
         raise LayoutError(
-            f"{source.name} has vertices that are not within {MAX_COORDINATE:g} m of its origin; is it metres?"
+            f"{source.name} has vertices that are not within {MAX_COORDINATE:g} m of its origin", "is it metres?"
         )
     return points
 
@@ -94,7 +94,7 @@ def _header(data: bytes, name: str) -> tuple[str, int, list[tuple[str, str]], in
 
 def _ascii_points(body: bytes, count: int, names: list[str], name: str) -> Array:
     if count * len(names) > MAX_WORDS:
-        raise LayoutError(f"{name} has more than {MAX_WORDS} numbers as text; save it as binary")
+        raise LayoutError(f"{name} has more than {MAX_WORDS} numbers as text", "save it as binary")
     words = body.split(maxsplit=count * len(names))[: count * len(names)]
     if len(words) < count * len(names):
         raise LayoutError(f"{name} is cut off: its header promises {count} vertices")
@@ -134,7 +134,8 @@ def read_scannet(source: Source, intake: Intake) -> list[Layout]:
     if len(segments) != len(points):
         raise LayoutError(
             f"{files.segments.name} has {len(segments)} segIndices, {files.mesh.name} {len(points)} vertices: "
-            f"one is of the dense mesh; take {files.name}{SEGMENTS} and {files.name}{MESH}"
+            "one is of the dense mesh",
+            f"take {files.name}{SEGMENTS} and {files.name}{MESH}",
         )
     groups = _groups(files, segments, intake)
     under = [rows for label, _, rows in groups if label == "floor"]
@@ -167,7 +168,7 @@ def _files(source: Source, scan: str | None) -> _Files:
         found = source.beside(inner + AGGREGATION) if inner else None if scan else source.find("*" + AGGREGATION)
         if found is None:
             raise LayoutError(
-                f"{source.name} has no {scan or '<scan>'}{AGGREGATION}; give a scan's folder or name the scan"
+                f"{source.name} has no {scan or '<scan>'}{AGGREGATION}", "give a scan's folder or name the scan"
             )
         stem = inner if inner else found.name.removesuffix(AGGREGATION)
     else:
@@ -189,13 +190,13 @@ def _info(file: Source | None) -> dict[str, str]:
 
 def _segments(files: _Files) -> NDArray[np.int64]:
     """The segment of every vertex. (N,)."""
-    row = read_object(files.segments.json(), files.segments.name, "a JSON object")
+    row = read_object(files.segments.json(), files.segments.at, "a JSON object")
     try:
         segments = np.asarray(row.get("segIndices"), dtype=np.int64)
     except (TypeError, ValueError, OverflowError):
         segments = np.zeros((0, 0), dtype=np.int64)
     if segments.ndim != 1:
-        raise LayoutError(f"{files.segments.name}.segIndices must be a list of whole numbers, one a vertex")
+        raise LayoutError("must be a list of whole numbers, one a vertex", at=files.segments.at / "segIndices")
     return segments
 
 
@@ -206,10 +207,10 @@ def _aligned(points: Array, info: dict[str, str], files: _Files) -> Array:
         try:
             matrix = np.array([float(number) for number in info["axisAlignment"].split()[:17]]).reshape(4, 4)
         except ValueError as error:
-            raise LayoutError(f"{place} must be 16 numbers") from error
+            raise LayoutError("must be 16 numbers", at=place) from error
         turn, move = matrix[:3, :3], matrix[:3, 3]
         if not (np.abs(matrix) <= MAX_COORDINATE).all() or not np.allclose(turn @ turn.T, np.eye(3), atol=1e-3):
-            raise LayoutError(f"{place} must be a rotation and a move within {MAX_COORDINATE:g} m")
+            raise LayoutError(f"must be a rotation and a move within {MAX_COORDINATE:g} m", at=place)
         points = points @ turn.T + move
     upright: Array = np.stack([points[:, 0], points[:, 2], -points[:, 1]], axis=-1)
     return upright
@@ -217,16 +218,16 @@ def _aligned(points: Array, info: dict[str, str], files: _Files) -> Array:
 
 def _groups(files: _Files, segments: NDArray[np.int64], intake: Intake) -> list[tuple[str, str, NDArray[np.intp]]]:
     """Label, id and vertices of every labelled thing."""
-    row = read_object(files.aggregation.json(), files.aggregation.name, "a JSON object")
+    row = read_object(files.aggregation.json(), files.aggregation.at, "a JSON object")
     order = np.argsort(segments, kind="stable")
     names, starts = np.unique(segments[order], return_index=True)
     vertices = dict(zip(names.tolist(), np.split(order, starts[1:]), strict=True)) if len(names) else {}
     asked = missing = 0
     found: list[tuple[str, str, NDArray[np.intp]]] = []
-    for group, place in read_rows(row, "segGroups", files.aggregation.name, MAX_THINGS):
+    for group, place in read_rows(row, "segGroups", files.aggregation.at, MAX_THINGS):
         listed = group.get("segments")
         if not isinstance(listed, list) or not all(isinstance(number, int) for number in listed):
-            raise LayoutError(f"{place}.segments must be a list of whole numbers")
+            raise LayoutError("must be a list of whole numbers", at=place / "segments")
         label = word.strip().lower() if isinstance(word := group.get("label"), str) else ""
         owned = [vertices[number] for number in set(listed) if number in vertices]
         asked, missing = asked + len(set(listed)), missing + len(set(listed)) - len(owned)

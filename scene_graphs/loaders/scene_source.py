@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any, Final
 
+from scene_graphs.errors import FieldPath
 from scene_graphs.json_fields import LayoutError
 
 MAX_BYTES: Final = 256 << 20
@@ -64,7 +65,7 @@ class Source:
             reason = "it is a pipe or a device" if place.exists() else "there is no such file or folder"
         except OSError as error:
             reason = error.strerror or "it cannot be opened"
-        raise LayoutError(f"{name:.100} cannot be read: {reason}; give a scene file, or a folder of files")
+        raise LayoutError(f"{name:.100} cannot be read: {reason}", "give a scene file, or a folder of files")
 
     @classmethod
     def of_bytes(cls, name: str, data: bytes, most_bytes: int = MAX_BYTES) -> Source:
@@ -101,6 +102,11 @@ class Source:
                 return Source(place.name, place, None, self.most_bytes)
         return None
 
+    @property
+    def at(self) -> FieldPath:
+        """The whole of it, as the place of what is wrong."""
+        return FieldPath((self.name,))
+
     def read(self) -> bytes:
         """The bytes, unpacked if they are gzip or a zip of one file.
 
@@ -110,13 +116,13 @@ class Source:
 
     def text(self) -> str:
         """The bytes as UTF-8. LayoutError if they are not, or are more than `MAX_TEXT_BYTES`."""
-        return _decoded(self._read(min(self.most_bytes, MAX_TEXT_BYTES)), self.name)
+        return _decoded(self._read(min(self.most_bytes, MAX_TEXT_BYTES)), self.at)
 
     def json(self) -> Any:
         """The one JSON value in it. LayoutError as `parse_json` has it."""
-        return parse_json(self.text(), self.name)
+        return parse_json(self.text(), self.at)
 
-    def rows(self) -> Iterator[tuple[str, Any]]:
+    def rows(self) -> Iterator[tuple[FieldPath, Any]]:
         """JSON values with the place of each: those of a list, of lines (JSONL), or the one there is.
 
         Lines are read one by one, so that a file of many may be longer than what is held in memory. LayoutError for the
@@ -125,21 +131,21 @@ class Source:
         rows = self._line_rows() if self._is_lines() else self._value_rows()
         for number, row in enumerate(rows):
             if number >= MAX_ROWS:
-                raise LayoutError(f"{self.name} has more than {MAX_ROWS} rows; split it")
+                raise LayoutError(f"{self.name} has more than {MAX_ROWS} rows", "split it")
             yield row
 
-    def _line_rows(self) -> Iterator[tuple[str, Any]]:
+    def _line_rows(self) -> Iterator[tuple[FieldPath, Any]]:
         for number, line in enumerate(self._lines(), start=1):
             if line.strip():
-                where = f"{self.name} line {number}"
+                where = FieldPath((f"{self.name} line {number}",))
                 yield where, parse_json(_decoded(line, where), where)
 
-    def _value_rows(self) -> Iterator[tuple[str, Any]]:
+    def _value_rows(self) -> Iterator[tuple[FieldPath, Any]]:
         value = self.json()
         if isinstance(value, list):
-            yield from ((f"{self.name} [{index}]", row) for index, row in enumerate(value))
+            yield from ((FieldPath((f"{self.name} [{index}]",)), row) for index, row in enumerate(value))
         else:
-            yield self.name, value
+            yield self.at, value
 
     def _is_lines(self) -> bool:
         """Whether every line is a JSON object of its own: the first one is, and there is a second."""
@@ -148,7 +154,7 @@ class Source:
         if not first.lstrip(b"\xef\xbb\xbf \t").startswith(b"{"):
             return False
         try:
-            parse_json(_decoded(first, self.name), self.name)
+            parse_json(_decoded(first, self.at), self.at)
         except LayoutError:
             return False
         return next(lines, None) is not None
@@ -171,14 +177,14 @@ class Source:
         if len(data) > most:
             raise LayoutError(self._too_large(most))
         if data.startswith((_GZIP, _ZIP)):
-            raise LayoutError(f"{self.name} is packed twice; unpack it once")
+            raise LayoutError(f"{self.name} is packed twice", "unpack it once")
         return data
 
     @contextmanager
     def _opened(self) -> Iterator[IO[bytes]]:
         """The unpacked bytes as they come; whatever is wrong with the file is a LayoutError."""
         if self.is_folder:
-            raise LayoutError(f"{self.name} is a folder; name the file in it")
+            raise LayoutError(f"{self.name} is a folder", "name the file in it")
         try:
             with self._raw() as packed:
                 start = packed.read(4)
@@ -207,13 +213,13 @@ class Source:
         if len(data) > self.most_bytes:
             raise LayoutError(self._too_large(self.most_bytes))
         if data.count(_ZIPPED_FILE) > _MAX_ZIPPED:
-            raise LayoutError(f"{self.name} is a zip of many files; send one scene file")
+            raise LayoutError(f"{self.name} is a zip of many files", "send one scene file")
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             files = [info for info in archive.infolist() if not info.is_dir()]
             if len(files) != 1:
-                raise LayoutError(f"{self.name} is a zip of {len(files)} files; send one scene file")
+                raise LayoutError(f"{self.name} is a zip of {len(files)} files", "send one scene file")
             if files[0].compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-                raise LayoutError(f"{self.name} is a zip of an unusual kind; pack it plainly, or as gzip")
+                raise LayoutError(f"{self.name} is a zip of an unusual kind", "pack it plainly, or as gzip")
             with archive.open(files[0]) as stream:
                 yield stream
 
@@ -221,21 +227,21 @@ class Source:
         return f"{self.name} is larger than {most >> 20} MiB; split it, or leave out its textures"
 
 
-def parse_json(text: str, where: str) -> Any:
+def parse_json(text: str, where: FieldPath) -> Any:
     """The value of a JSON text. LayoutError if it is none, is nested too deeply or holds more than `MAX_VALUES`."""
     if sum(text.count(sign) for sign in ",[{") > MAX_VALUES:
-        raise LayoutError(f"{where} holds more than {MAX_VALUES} values; split it")
+        raise LayoutError(f"holds more than {MAX_VALUES} values", "split it", at=where)
     try:
         return json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise LayoutError(f"{where} is not JSON: {error}") from error
+        raise LayoutError(f"is not JSON: {error}", at=where) from error
 
 
-def _decoded(data: bytes, where: str) -> str:
+def _decoded(data: bytes, where: FieldPath) -> str:
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise LayoutError(f"{where} is not UTF-8 text ({error.reason} at byte {error.start})") from error
+        raise LayoutError(f"is not UTF-8 text ({error.reason} at byte {error.start})", at=where) from error
 
 
 def _is_file(place: Path) -> bool:

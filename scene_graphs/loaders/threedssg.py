@@ -12,6 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from scene_graphs.errors import FieldPath
 from scene_graphs.furniture import Furniture, affordances, is_known
 from scene_graphs.graph.furniture_graph import FurnitureGraph, graph_from_parts
 from scene_graphs.json_fields import MAX_COORDINATE, LayoutError, Row, read_object, read_rows, read_text
@@ -50,7 +51,7 @@ def graph_from_3dssg(objects: Any, relationships: Any, scan: str) -> FurnitureGr
         for row, where in read_rows(entry, "objects", place, MAX_THINGS)
     }
     if not labels:
-        raise LayoutError(f"objects.json: scans has no objects of a scan {scan!r:.60}; take one of its scans[].scan")
+        raise LayoutError(f"objects.json: scans has no objects of a scan {scan!r:.60}", "take one of its scans[].scan")
     relations = list(_relations(relationships, scan))
     building = {name for name, label in labels.items() if category_of(label) in STRUCTURE}
     resting = {a for a, b, relation in relations if relation in SUPPORT and b in labels and b not in building}
@@ -88,11 +89,11 @@ def _boxes_files(source: Source, intake: Intake) -> Iterator[tuple[Source, str]]
         found = source.beside(f"{scan}/{BOXES}") if scan else None
         if found is None or scan is None:
             raise LayoutError(
-                f"{source.name} has no {BOXES} and no objects.json; give a scan's folder, or name the scan"
+                f"{source.name} has no {BOXES} and no objects.json", "give a scan's folder, or name the scan"
             )
         yield found, scan
         return
-    row = read_object(listed.json(), listed.name, _FILE)
+    row = read_object(listed.json(), listed.at, _FILE)
     if "segGroups" in row:
         name = row.get("scan_id")
         yield listed, name if isinstance(name, str) and name else scan or listed.name.split(".")[0]
@@ -100,7 +101,7 @@ def _boxes_files(source: Source, intake: Intake) -> Iterator[tuple[Source, str]]
     if "scans" not in row:
         raise LayoutError(f"{listed.name} must be an object with scans or segGroups: 3DSSG's objects.json or a {BOXES}")
     found_any = False
-    for entry, place in read_rows(row, "scans", listed.name, MAX_SCANS):
+    for entry, place in read_rows(row, "scans", listed.at, MAX_SCANS):
         name = read_text(entry, "scan", place)
         if scan in (None, name) and (boxes := source.beside(f"{name}/{BOXES}")) is not None:
             found_any = True
@@ -113,11 +114,11 @@ def _boxes_files(source: Source, intake: Intake) -> Iterator[tuple[Source, str]]
 
 
 def _layout(file: Source, name: str, intake: Intake) -> Layout | None:
-    row = read_object(file.json(), file.name, _FILE)
+    row = read_object(file.json(), file.at, _FILE)
     if "segGroups" not in row:
-        raise LayoutError(f"{file.name}.segGroups is missing: a scan's boxes are in {BOXES}")
+        raise LayoutError(f"is missing: a scan's boxes are in {BOXES}", at=file.at / "segGroups")
     things: list[Thing] = []
-    for group, _ in read_rows(row, "segGroups", file.name, MAX_THINGS):
+    for group, _ in read_rows(row, "segGroups", file.at, MAX_THINGS):
         label, number = group.get("label"), group.get("objectId", group.get("id"))
         box = _box(group.get("obb"))
         if not isinstance(label, str):
@@ -180,18 +181,21 @@ def _relations(relationships: Any, scan: str) -> Iterator[tuple[str, str, str]]:
     for entry, place in _entries(relationships, "relationships.json", scan):
         rows = entry.get("relationships", [])
         if not isinstance(rows, list) or len(rows) > MAX_RELATIONS:
-            raise LayoutError(f"{place}.relationships must be a list of at most {MAX_RELATIONS} relations")
+            raise LayoutError(f"must be a list of at most {MAX_RELATIONS} relations", at=place / "relationships")
         for number, row in enumerate(rows):
             if not isinstance(row, list) or len(row) != 4 or not isinstance(row[3], str):
-                raise LayoutError(f"{place}.relationships[{number}] must be [subject, object, relation id, its name]")
+                raise LayoutError(
+                    "must be [subject, object, relation id, its name]", at=place / "relationships" / number
+                )
             if row[3] in SPATIAL or row[3] in SUPPORT:
-                where = f"{place}.relationships[{number}]"
+                where = place / "relationships" / number
                 yield _id({"subject": row[0]}, "subject", where), _id({"object": row[1]}, "object", where), row[3]
 
 
-def _entries(file: Any, name: str, scan: str) -> Iterator[tuple[Row, str]]:
+def _entries(file: Any, name: str, scan: str) -> Iterator[tuple[Row, FieldPath]]:
     """All entries of a scan: its relations may come in several."""
-    for entry, place in read_rows(read_object(file, name, _FILE), "scans", name, MAX_SCANS):
+    at = FieldPath((name,))
+    for entry, place in read_rows(read_object(file, at, _FILE), "scans", at, MAX_SCANS):
         if entry.get("scan") == scan:
             yield entry, place
 
@@ -205,7 +209,7 @@ def _numbered(categories: list[str]) -> list[Furniture]:
     return nodes
 
 
-def _id(row: Row, key: str, where: str) -> str:
+def _id(row: Row, key: str, where: FieldPath) -> str:
     """An id as text: objects.json has texts where relationships.json has numbers."""
     value = row.get(key)
     if isinstance(value, int) and not isinstance(value, bool) and abs(value) < 1 << 63:

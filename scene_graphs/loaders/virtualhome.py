@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Final, NamedTuple
 
 from scene_graphs.boxes import Point3
+from scene_graphs.errors import FieldPath
 from scene_graphs.json_fields import MAX_COORDINATE, LayoutError, Row, read_point3, read_rows, read_text
 from scene_graphs.layout import Layout, Placed
 from scene_graphs.loaders.doors_and_windows import Gap, gap_around, gaps_of_rooms
@@ -116,7 +117,7 @@ class _Flat:
     def nodes(self) -> dict[str, _Node]:
         """The nodes that have a box, by id."""
         found: dict[str, _Node] = {}
-        for row, where in read_rows(self.graph, "nodes", self.name, MAX_NODES):
+        for row, where in read_rows(self.graph, "nodes", FieldPath((self.name,)), MAX_NODES):
             try:
                 node = _read_node(row, where)
             except LayoutError as error:
@@ -140,7 +141,7 @@ class _Flat:
     def edges(self) -> Mapping[tuple[str, str], list[str]]:
         """The targets by (relation, source)."""
         found: dict[tuple[str, str], list[str]] = defaultdict(list)
-        for row, _ in read_rows(self.graph, "edges", self.name, MAX_EDGES):
+        for row, _ in read_rows(self.graph, "edges", FieldPath((self.name,)), MAX_EDGES):
             relation = row.get("relation_type")
             if relation in ("INSIDE", "ON"):
                 found[relation, str(row.get("from_id"))].append(str(row.get("to_id")))
@@ -223,15 +224,15 @@ class _Flat:
         return min([*on, *within], key=lambda o: abs(o.top - node.bottom), default=None)
 
 
-def _read_node(row: Row, where: str) -> _Node:
+def _read_node(row: Row, where: FieldPath) -> _Node:
     box = row.get("bounding_box")
     if not isinstance(box, dict):
-        raise LayoutError(f"{where}.bounding_box must have center and size; a thing without a box has no place")
+        raise LayoutError("must have center and size", "a thing without a box has no place", at=where / "bounding_box")
     node_id = row.get("id")
     if not isinstance(node_id, int | str) or isinstance(node_id, bool) or not 0 < len(str(node_id)) <= 60:
-        raise LayoutError(f"{where}.id must be a number or a text, got {node_id!r:.60}")
-    middle = read_point3(box.get("center"), f"{where}.bounding_box.center", -MAX_COORDINATE, MAX_COORDINATE)
-    size = read_point3(box.get("size"), f"{where}.bounding_box.size", -MAX_COORDINATE, MAX_COORDINATE)
+        raise LayoutError(f"must be a number or a text, got {node_id!r:.60}", at=where / "id")
+    middle = read_point3(box.get("center"), where / "bounding_box" / "center", -MAX_COORDINATE, MAX_COORDINATE)
+    size = read_point3(box.get("size"), where / "bounding_box" / "size", -MAX_COORDINATE, MAX_COORDINATE)
     class_name = read_text(row, "class_name", where).lower().replace(" ", "")
     prefab = str(row.get("prefab_name") or "")[:200]
     category = read_text(row, "category", where)

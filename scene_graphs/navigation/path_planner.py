@@ -230,7 +230,7 @@ class Walkable:
         inside = np.flatnonzero(shapely.contains_xy(outline, centers[:, 0], centers[:, 1]))
         if not len(inside):
             name = self.home.rooms[room].layout.id
-            raise NoPath(f"room {room} ({name!r}) has no walkable floor: too small or too full; take another")
+            raise NoPath(f"room {room} ({name!r}) has no walkable floor: too small or too full", "take another")
         main = np.bincount(self._regions).argmax()
         candidates = connected if len(connected := inside[self._regions[inside] == main]) else inside
         clear = self.field.distances[tuple(self._cells[candidates].T)]
@@ -304,8 +304,8 @@ class Walkable:
         number = self._enter(start if which == "start" else goal, WITHIN)
         if number is None:
             raise NoPath(
-                f"no way from {_name(start)} to {_name(goal)}: no walkable floor within {WITHIN} m of the {which}; "
-                "move the furniture there or take another place"
+                f"no way from {_name(start)} to {_name(goal)}: no walkable floor within {WITHIN} m of the {which}",
+                "move the furniture there or take another place",
             )
         return number
 

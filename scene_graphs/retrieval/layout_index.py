@@ -31,8 +31,8 @@ FIRST_STAGE: Final = 256
 class NoSuitableRoom(UserError):  # noqa: N818
     """No room has what a script needs; `missing` names the pieces, empty if there is no room of the kind at all."""
 
-    def __init__(self, message: str, missing: tuple[Furniture, ...] = ()) -> None:
-        super().__init__(message)
+    def __init__(self, fault: str, remedy: str = "", missing: tuple[Furniture, ...] = ()) -> None:
+        super().__init__(fault, remedy)
         self.missing = missing
 
 
@@ -139,7 +139,7 @@ class LayoutIndex:
         numbers = np.arange(len(self.rooms)) if wanted is None else self.rooms.of_type(wanted)
         if not len(numbers):
             known = ", ".join(self.rooms.room_types) or "none"
-            raise NoSuitableRoom(f"no room of type {wanted or 'any'} is indexed; there are: {known}")
+            raise NoSuitableRoom(f"no room of type {wanted or 'any'} is indexed", f"there are: {known}")
         among = np.zeros(len(self.rooms), dtype=np.uint8)
         among[numbers] = 1
         self._types[wanted] = numbers, among
@@ -243,7 +243,7 @@ def retrieve_rooms(
         lacking = tuple(node for node in match.missing if not is_minor(node.category))
         if complete and lacking:
             names = ", ".join(display_name(node.category) for node in lacking)
-            raise NoSuitableRoom(f"no {room_type.replace('_', ' ')} has all of: {names}; leave them out", lacking)
+            raise NoSuitableRoom(f"no {room_type.replace('_', ' ')} has all of: {names}", "leave them out", lacking)
         matches[room_type] = match
     return matches
 

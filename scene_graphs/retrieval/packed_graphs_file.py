@@ -82,11 +82,11 @@ def read_packed(path: str | Path, source: bytes | None = None) -> PackedRooms:
     file = Path(path)
     arrays = _read_arrays(file)
     if source is not None and arrays["source"].tobytes() != source:
-        raise LayoutError(f"{file.name} was packed from other rooms; pack them again")
+        raise LayoutError(f"{file.name} was packed from other rooms", "pack them again")
     try:
         return _checked(arrays)
     except _DamageError as damage:
-        raise LayoutError(f"{file.name} is damaged: {damage}; pack the rooms again") from None
+        raise LayoutError(f"{file.name} is damaged: {damage}", "pack the rooms again") from None
 
 
 class _DamageError(ValueError):
@@ -100,12 +100,12 @@ def _read_arrays(file: Path) -> Arrays:
             if set(sizes) != {f"{name}.npy" for name in _KINDS}:
                 raise LayoutError(f"{file.name} holds no packed rooms: its arrays are not those of one")
             if sum(sizes.values()) > MAX_BYTES:
-                raise LayoutError(f"{file.name} is larger than {MAX_BYTES >> 20} MiB when it is unpacked; split it")
+                raise LayoutError(f"{file.name} is larger than {MAX_BYTES >> 20} MiB when it is unpacked", "split it")
             return {name: _array(archive.read(f"{name}.npy"), name, kind) for name, kind in _KINDS.items()}
     except (OSError, zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
         raise LayoutError(f"{file.name} cannot be read, it is missing, cut off or damaged: {error}") from error
     except _DamageError as damage:
-        raise LayoutError(f"{file.name} is damaged: {damage}; pack the rooms again") from None
+        raise LayoutError(f"{file.name} is damaged: {damage}", "pack the rooms again") from None
 
 
 def _array(data: bytes, name: str, kind: type[np.generic]) -> NDArray[Any]:

@@ -59,7 +59,7 @@ class MotionFile(NamedTuple):
     def text(self) -> str:
         """The content as text. ClipError if it is none, or too long."""
         if len(self.data) > MAX_TEXT_BYTES:
-            raise ClipError(f"it has more than {MAX_TEXT_BYTES >> 20} MB of text; cut it into shorter files")
+            raise ClipError(f"it has more than {MAX_TEXT_BYTES >> 20} MB of text", "cut it into shorter files")
         return _text(self.data, "the file")
 
 
@@ -86,7 +86,7 @@ def read_clips(
         with np.errstate(all="ignore"):
             return _READERS[format or _format_of(file)](file)
     except (ClipError, LayoutError) as error:
-        raise ClipError(f"{path.name}: {str(error).removeprefix(f'{path.name} ')}") from error
+        raise ClipError(f"{path.name}: {error.within}") from error
 
 
 def clip_of_motion(motion: Motion, name: str) -> Clip:
@@ -101,7 +101,7 @@ def clip_of_motion(motion: Motion, name: str) -> Clip:
 def _content(path: Path) -> bytes:
     try:
         if path.stat().st_size > MAX_FILE_BYTES:
-            raise ClipError(f"{path.name} is larger than {MAX_FILE_BYTES >> 20} MB; cut it into shorter files")
+            raise ClipError(f"{path.name} is larger than {MAX_FILE_BYTES >> 20} MB", "cut it into shorter files")
         return path.read_bytes()
     except OSError as error:
         raise ClipError(f"{path} cannot be read: {error.strerror or error}") from error
@@ -126,14 +126,14 @@ def _format_of(file: MotionFile) -> str:
             raise ClipError(f"no motion we know is an archive of {', '.join(names) or 'nothing'}")
         return found
     if suffix == ".asf":
-        raise ClipError("a skeleton without motion; read the .amc that goes with it")
+        raise ClipError("a skeleton without motion", "read the .amc that goes with it")
     if suffix in (".txt", ".json"):
         start = file.data[:400].removeprefix(b"\xef\xbb\xbf").lstrip()
         if start.startswith(b"{"):
             return "deepmimic"
         if start.count(b",") >= 10:
             return "expmap"
-    raise ClipError(f"no motion we know looks like this; there are {', '.join(FORMATS)} (give one as the format)")
+    raise ClipError("no motion we know looks like this", f"there are {', '.join(FORMATS)} (give one as the format)")
 
 
 def _asf_of(file: MotionFile) -> Path:

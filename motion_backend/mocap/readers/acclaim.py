@@ -123,7 +123,7 @@ def _parse_amc(text: str, asf: Acclaim) -> tuple[dict[str, Array], float]:
     heads = text[: first.start()].lower().split()
     angle = np.pi / 180 if ":degrees" in heads else 1.0 if ":radians" in heads else asf.angle
     if len(text) > _MAX_MOTION_LENGTH:
-        raise ClipError(f"it has more than {_MAX_MOTION_LENGTH >> 20} MB of text; cut it into shorter files")
+        raise ClipError(f"it has more than {_MAX_MOTION_LENGTH >> 20} MB of text", "cut it into shorter files")
     words = text[first.start() :].split()
     bones = {bone.name: bone for bone in asf.bones}
     spans, place = [], 1
@@ -134,9 +134,9 @@ def _parse_amc(text: str, asf: Acclaim) -> tuple[dict[str, Array], float]:
     if not spans:
         raise ClipError(f"an .amc frame lists bones of its skeleton; {(words[1:2] or ['nothing'])[0][:40]!r} is none")
     if len(words) % place:
-        raise ClipError(f"frames of {place} words do not fill the {len(words)} there are; is the file cut off?")
+        raise ClipError(f"frames of {place} words do not fill the {len(words)} there are", "is the file cut off?")
     if len(words) // place * len(bones) > MAX_TURNS:
-        raise ClipError(f"{len(words) // place} frames of {len(bones)} bones are too many; cut the file")
+        raise ClipError(f"{len(words) // place} frames of {len(bones)} bones are too many", "cut the file")
     if words[::place] != [str(number + 1) for number in range(len(words) // place)]:
         raise ClipError("the frames are not numbered one after the other, or do not list the same bones")
     found = {}
@@ -179,7 +179,7 @@ def _blocks(lines: list[str], where: str) -> list[list[str]]:
             raise ClipError(f"{where} holds {line[:40]!r} outside of begin and end")
         inside = not inside
     if inside:
-        raise ClipError(f"{where} does not end; is the file cut off?")
+        raise ClipError(f"{where} does not end", "is the file cut off?")
     return blocks
 
 

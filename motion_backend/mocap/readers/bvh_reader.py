@@ -141,12 +141,13 @@ def parse_bvh(text: str) -> BvhText:
     if not step > 0.0:
         raise ClipError(f"Frame Time must be above zero seconds, got {counts[2]}")
     if frames > MAX_FRAMES or frames * len(hierarchy.names) > MAX_TURNS:
-        raise ClipError(f"{frames} frames of {len(hierarchy.names)} joints are too many; cut it into shorter files")
+        raise ClipError(f"{frames} frames of {len(hierarchy.names)} joints are too many", "cut it into shorter files")
     values = all_numbers(tail[counts.end() :], "the MOTION section")
     if len(values) != frames * hierarchy.width:
         raise ClipError(
-            f"{frames} frames of {hierarchy.width} channels need {frames * hierarchy.width} numbers, "
-            f"there are {len(values)}; is the file cut off?"
+            f"{frames} frames of {hierarchy.width} channels need {frames * hierarchy.width} numbers, there "
+            f"are {len(values)}",
+            "is the file cut off?",
         )
     return BvhText(hierarchy, step, values.reshape(frames, hierarchy.width))
 

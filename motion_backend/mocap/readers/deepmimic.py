@@ -25,6 +25,7 @@ from motion_backend.mocap.readers.safe_pickle import read_pickled
 from motion_backend.mocap.resampling import resampled_positions, resampled_rotations, uniform_times
 from motion_backend.mocap.rest_pose import t_posed
 from motion_backend.rotations import Array
+from scene_graphs.errors import FieldPath
 from scene_graphs.loaders.scene_source import parse_json
 
 
@@ -67,7 +68,7 @@ def _pickle_in(data: bytes) -> bytes:
     """What follows the header of an .npy file that holds one object."""
     header = npy_header(data)
     if header.descr != "|O" or header.shape != ():
-        raise ClipError("it holds plain numbers; an .npy motion is one dictionary with a skeleton_tree")
+        raise ClipError("it holds plain numbers", "an .npy motion is one dictionary with a skeleton_tree")
     return data[header.start :]
 
 
@@ -150,12 +151,12 @@ def read_deepmimic_clip(text: str, name: str) -> Clip:
 
 
 def _rows(text: str, name: str) -> Array:
-    read = parse_json(text, name)
+    read = parse_json(text, FieldPath((name,)))
     rows = read.get("Frames") if isinstance(read, dict) else None
     if not isinstance(rows, list) or not all(isinstance(row, list) for row in rows):
         raise ClipError('a DeepMimic motion is an object whose "Frames" are lists of numbers')
     if not 2 <= len(rows) <= MAX_FRAMES:
-        raise ClipError(f"it has {len(rows)} frames; a clip has 2 to {MAX_FRAMES}")
+        raise ClipError(f"it has {len(rows)} frames", f"a clip has 2 to {MAX_FRAMES}")
     wrong = next((number for number, row in enumerate(rows) if len(row) != WIDTH), None)
     if wrong is not None:
         raise ClipError(f"Frames[{wrong}] has {len(rows[wrong])} numbers; {WIDTH} are wanted")

@@ -120,7 +120,7 @@ def _bones_of(skeleton: str, wanted: set[str]) -> tuple[Bones, list[int]]:
 def _table(text: str) -> Array:
     """All numbers. (T, 117)."""
     if text.count(",") > MAX_TURNS:
-        raise ClipError("it has too many frames; cut it into shorter files")
+        raise ClipError("it has too many frames", "cut it into shorter files")
     rows = [line for line in text.splitlines() if line.strip()]
     wrong = next((number for number, row in enumerate(rows) if row.count(",") != WIDTH - 1), None)
     if wrong is not None:

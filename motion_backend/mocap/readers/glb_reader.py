@@ -20,6 +20,7 @@ from motion_backend.mocap.joint_map import JointMap
 from motion_backend.mocap.resampling import resampled_positions, resampled_rotations, uniform_times
 from motion_backend.mocap.rest_pose import t_posed
 from motion_backend.rotations import Array
+from scene_graphs.errors import FieldPath
 from scene_graphs.loaders.gltf_reader import Document, list_of, numbers_of
 
 MAX_ANIMATIONS: Final = 1_000
@@ -72,9 +73,9 @@ class Rig:
 def read_glb_clips(data: bytes, name: str, joints: JointMap | None = None) -> tuple[Clip, ...]:
     """One clip an animation, in the file's order. ClipError or LayoutError says what is wrong with the file."""
     document = Document.of(data, name)
-    animations = list_of(document.json, "animations", name)
+    animations = list_of(document.json, "animations", document.at)
     if not 0 < len(animations) <= MAX_ANIMATIONS:
-        raise ClipError(f"{name} has {len(animations)} animations; 1 to {MAX_ANIMATIONS} can be read")
+        raise ClipError(f"has {len(animations)} animations", f"1 to {MAX_ANIMATIONS} can be read", at=document.at)
     rig = _rig(document)
     rest = t_posed(rig.bones, _pose(rig, {}, np.zeros(1))[1][0], joints)
     clips, left = [], MAX_TURNS
@@ -103,7 +104,7 @@ def _clip(rig: Rig, number: int, rest: Array, left: int) -> tuple[Clip, int]:
         notes.append("a pose, held for two frames")
     read = sum(len(times) for times in keys) + len(wanted) * len(rig.bones.names)
     if read > left:
-        raise ClipError(_too_many(rig.document))
+        raise _too_many(rig.document)
     roots, turns, stretched = _moved(rig, tracks, wanted)
     if stretched:
         notes.append(f"translations of {stretched} bones dropped: bones keep their length")
@@ -111,8 +112,8 @@ def _clip(rig: Rig, number: int, rest: Array, left: int) -> tuple[Clip, int]:
     return make_clip(name, rig.bones, roots, turns, rest, fps, "glb", (*rig.notes, *notes)), read
 
 
-def _too_many(document: Document) -> str:
-    return f"{document.name} has more than {MAX_TURNS} keys and rotations; cut it into several files"
+def _too_many(document: Document) -> ClipError:
+    return ClipError(f"has more than {MAX_TURNS} keys and rotations", "cut it into several files", at=document.at)
 
 
 def _moved(rig: Rig, tracks: Tracks, wanted: Array) -> tuple[Array, Array, int]:
@@ -150,8 +151,8 @@ def _values(document: Document, tracks: Tracks, node: int, path: str, wanted: Ar
 def _own(document: Document, node: int, path: str) -> Array:
     row = document.item("nodes", node)
     if row.get("matrix") is not None:
-        raise ClipError(f"{document.name} nodes[{node}] has a matrix; export bones with translation and rotation")
-    where = f"{document.name} nodes[{node}]"
+        raise ClipError("has a matrix", "export bones with translation and rotation", at=document.at / "nodes" / node)
+    where = document.at / "nodes" / node
     value = numbers_of(row, path, len(_REST[path]), where) if path in row else np.array(_REST[path])
     return _unit(value, where) if path == "rotation" else value
 
@@ -161,25 +162,25 @@ def _scale(document: Document, node: int) -> float:
     sizes = _own(document, node, "scale")
     if not (np.abs(sizes - sizes[0]) < 0.01 * np.abs(sizes[0])).all() or not sizes[0] > 0:
         raise ClipError(
-            f"{document.name} nodes[{node}] is scaled by {sizes.tolist()}; bones scale alike along all axes"
+            f"is scaled by {sizes.tolist()}", "bones scale alike along all axes", at=document.at / "nodes" / node
         )
     return float(sizes[0])
 
 
-def _unit(quaternions: Array, where: str) -> Array:
+def _unit(quaternions: Array, where: FieldPath) -> Array:
     lengths = np.linalg.norm(quaternions, axis=-1, keepdims=True)
     if not (np.abs(lengths - 1) < 0.1).all():
-        raise ClipError(f"{where} has a rotation that is no unit quaternion")
+        raise ClipError("has a rotation that is no unit quaternion", at=where)
     return np.asarray(quaternions / lengths)
 
 
 def _rig(document: Document) -> Rig:
     """The first skin's bones."""
     skin = document.item("skins", 0)
-    joints = list_of(skin, "joints", f"{document.name} skins[0]")
+    joints = list_of(skin, "joints", document.at / "skins" / 0)
     rows = [document.item("nodes", joint) for joint in joints]
     if len(set(joints)) < len(joints) or not 0 < len(joints) <= MAX_JOINTS:
-        raise ClipError(f"{document.name} skins[0] must have 1 to {MAX_JOINTS} joints, each once")
+        raise ClipError(f"must have 1 to {MAX_JOINTS} joints, each once", at=document.at / "skins" / 0)
     named = {joint: str(row.get("name") or f"node {joint}") for joint, row in zip(joints, rows, strict=True)}
     bones = [joint for joint in joints if not _STEERS.search(named[joint])]
     parents = _parents(document)
@@ -188,7 +189,7 @@ def _rig(document: Document) -> Rig:
         children.setdefault(parents.get(joint, -1), []).append(joint)
     tops = [joint for joint in bones if parents.get(joint, -1) not in bones]
     if len(tops) != 1:
-        raise ClipError(f"{document.name} skins[0] has {len(tops)} root bones; a body has one")
+        raise ClipError(f"has {len(tops)} root bones", "a body has one", at=document.at / "skins" / 0)
     root = tops[0]
     while len(children.get(root, [])) == 1:
         root = children[root][0]
@@ -210,15 +211,15 @@ def _rig(document: Document) -> Rig:
 
 def _parents(document: Document) -> dict[int, int]:
     """Each node's parent. ClipError if a node has two."""
-    rows = list_of(document.json, "nodes", document.name)
+    rows = list_of(document.json, "nodes", document.at)
     if len(rows) > _MAX_NODES:
-        raise ClipError(f"{document.name} has more than {_MAX_NODES} nodes")
+        raise ClipError(f"has more than {_MAX_NODES} nodes", at=document.at)
     parents: dict[int, int] = {}
     for number in range(len(rows)):
-        for child in list_of(document.item("nodes", number), "children", f"{document.name} nodes[{number}]"):
+        for child in list_of(document.item("nodes", number), "children", document.at / "nodes" / number):
             document.item("nodes", child)
             if child in parents:
-                raise ClipError(f"{document.name} nodes[{child}] has two parents; the nodes must be a tree")
+                raise ClipError("has two parents", "the nodes must be a tree", at=document.at / "nodes" / child)
             parents[child] = number
     return parents
 
@@ -235,20 +236,20 @@ def _chain(parents: dict[int, int], node: int) -> Iterator[int]:
 
 def _tracks(document: Document, row: dict[str, Any], name: str, nodes: set[int], left: int) -> tuple[Tracks, list[str]]:
     """How an animation moves those nodes, and notes; no more keys are read than are left."""
-    where = f"{document.name} animation {name!r}"
+    where = document.at / f"animation {name!r}"
     samplers, tracks, notes = list_of(row, "samplers", where), Tracks(), set()
     timelines: dict[int, Array] = {}
     for channel in list_of(row, "channels", where):
         target = channel.get("target") if isinstance(channel, dict) else None
         if not isinstance(target, dict) or not isinstance(channel.get("sampler"), int):
-            raise ClipError(f"{where} has a channel without target or sampler")
+            raise ClipError("has a channel without target or sampler", at=where)
         path, node = target.get("path"), target.get("node")
         if not isinstance(path, str) or not isinstance(node, int) or path not in _WIDTHS or node not in nodes:
             continue
         if not 0 <= channel["sampler"] < len(samplers) or not isinstance(samplers[channel["sampler"]], dict):
-            raise ClipError(f"{where} names sampler {channel['sampler']}, of which there are {len(samplers)}")
+            raise ClipError(f"names sampler {channel['sampler']}, of which there are {len(samplers)}", at=where)
         if (node, path) in tracks:
-            raise ClipError(f"{where} moves the {path} of nodes[{node}] twice")
+            raise ClipError(f"moves the {path} of nodes[{node}] twice", at=where)
         sampler = samplers[channel["sampler"]]
         keys = document.accessor(sampler.get("input"), "SCALAR", where)
         if sampler["input"] not in timelines:
@@ -260,21 +261,21 @@ def _tracks(document: Document, row: dict[str, Any], name: str, nodes: set[int],
             notes.add("smooth curves between keys taken as straight")
         left -= len(times)
         if left < 0:
-            raise ClipError(_too_many(document))
+            raise _too_many(document)
         tracks[node, path] = _track(times, values, sampler.get("interpolation") == "STEP", where)
     return tracks, sorted(notes)
 
 
-def _key_times(keys: NDArray[Any], where: str) -> Array:
+def _key_times(keys: NDArray[Any], where: FieldPath) -> Array:
     times = keys[:, 0].astype(np.float64)
     if not np.isfinite(times).all() or (times[1:] < times[:-1]).any():
-        raise ClipError(f"{where} has keys that are not finite or not in the order of time")
+        raise ClipError("has keys that are not finite or not in the order of time", at=where)
     return times
 
 
-def _track(times: Array, values: Array, stepped: bool, where: str) -> Track:
+def _track(times: Array, values: Array, stepped: bool, where: FieldPath) -> Track:
     if len(times) != len(values) or not len(times):
-        raise ClipError(f"{where} has {len(times)} key times for {len(values)} values")
+        raise ClipError(f"has {len(times)} key times for {len(values)} values", at=where)
     if not np.isfinite(values).all():
-        raise ClipError(f"{where} has keys that are not finite or not in the order of time")
+        raise ClipError("has keys that are not finite or not in the order of time", at=where)
     return Track(times, _unit(values, where) if values.shape[1] == 4 else values, stepped)

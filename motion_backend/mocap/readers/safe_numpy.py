@@ -103,7 +103,9 @@ def _npy_array(data: bytes) -> NDArray[Any] | None:
         return None
     count = math.prod(header.shape)
     if count * dtype.itemsize != len(data) - header.start:
-        raise ClipError(f"an array of shape {header.shape} has {len(data) - header.start} bytes; is the file cut off?")
+        raise ClipError(
+            f"an array of shape {header.shape} has {len(data) - header.start} bytes", "is the file cut off?"
+        )
     if dtype.itemsize == 0:
         return np.zeros(header.shape, dtype)
     values = np.frombuffer(data, dtype, count, header.start)

@@ -133,7 +133,7 @@ def _poses(arrays: Mapping[str, NDArray[Any]]) -> Array:
     except (TypeError, ValueError) as error:
         raise ClipError(f"poses must be numbers, one row a frame: {error}") from error
     if poses.shape[1] < _BODY or poses.shape[1] % 3:
-        raise ClipError(f"poses need {_BODY} numbers a frame or more, three a joint; there are {poses.shape[1]}")
+        raise ClipError(f"poses need {_BODY} numbers a frame or more, three a joint", f"there are {poses.shape[1]}")
     if not np.isfinite(poses).all():
         wrong = np.argwhere(~np.isfinite(poses))[0][0]
         raise ClipError(f"poses hold a number that is not finite, first in frame {wrong}")

@@ -209,7 +209,7 @@ def _of_words(
     means = Means(parts.shelves.scripts(), parts.model, parts.transcriber, strict, RESERVED)
     with _blaming(pointer):
         if is_film(source):
-            raise ExtractionError("it begins as a film does; send a film as `video` of a form")
+            raise ExtractionError("it begins as a film does", "send a film as `video` of a form")
         words = words_in(source, means)
     if _is_long(words, by_rules=parts.model is None):
         return accept_extraction(parts, caller, wanted, coming, key)
@@ -235,10 +235,8 @@ def _blaming(pointer: str) -> Iterator[None]:
     try:
         yield
     except (FilmError, SubtitleError, ExtractionError) as error:
-        detail = str(error)
-        for named in ("film: ", "subtitles: "):
-            detail = detail.removeprefix(named)
-        raise Unprocessable(pointer, detail) from error
+        named = str(error.at) in ("film", "subtitles")  # the pointer says so
+        raise Unprocessable(pointer, error.said if named else str(error)) from error
 
 
 extractions_router = APIRouter(prefix="/v1/extractions", tags=["extractions"])

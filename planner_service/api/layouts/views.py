@@ -7,7 +7,6 @@ Rooms as HTTP shows them: in a list, or whole with problems, spots and graph.
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
@@ -20,6 +19,7 @@ from planner_service.api.layouts.schemas import LayoutAsk
 from planner_service.grounding.room_report import survey
 from planner_service.library.library import Shelves
 from scene_graphs.affordances.affordances import Spot
+from scene_graphs.errors import FieldPath
 from scene_graphs.furniture import Furniture, canonical_room, display_name
 from scene_graphs.graph.furniture_graph import FurnitureGraph
 from scene_graphs.graph.merge import side_by_side
@@ -127,13 +127,12 @@ def _together(index: LayoutIndex, match: HomeMatch) -> FurnitureGraph:
 
 _BODY: Final = "body"
 """How the reader is told to call what it reads."""
-_PLACE: Final = re.compile(rf"^{_BODY}((?:\.[a-z_]+|\[\d+\])*)[ ,]?\s*(.*)$", re.DOTALL)
 
 
 def layout_given(ask: LayoutAsk) -> Layout:
     """The room that a body holds. Unprocessable names the field that is wrong."""
     try:
-        return layout_from_dict(ask.model_dump(exclude_none=True), _BODY)
+        return layout_from_dict(ask.model_dump(exclude_none=True), FieldPath((_BODY,)))
     except LayoutError as error:
         raise problem_of(error, "") from error
 
@@ -141,17 +140,17 @@ def layout_given(ask: LayoutAsk) -> Layout:
 def home_given(row: Json, pointer: str) -> Home:
     """The home that a field of a body holds. Unprocessable names the field that is wrong."""
     try:
-        return home_from_dict(row, _BODY)
+        return home_from_dict(row, FieldPath((_BODY,)))
     except LayoutError as error:
         raise problem_of(error, pointer) from error
 
 
 def problem_of(error: LayoutError, pointer: str) -> Unprocessable:
-    """What the reader said, "body.objects[3].size must …", as "/objects/3/size" and "must …"."""
-    match = _PLACE.match(str(error))
-    if match is None:
+    """What the reader said of `body.objects[3].size`, at "/objects/3/size"; of anything else, at the pointer."""
+    root, *steps = error.at.steps or ("",)
+    if root != _BODY:
         return Unprocessable(pointer, str(error))
-    return Unprocessable(pointer + re.sub(r"[.\[]", "/", match[1]).replace("]", ""), match[2])
+    return Unprocessable(pointer + FieldPath(tuple(steps)).pointer, error.said)
 
 
 def path_of(layout_id: str) -> str:

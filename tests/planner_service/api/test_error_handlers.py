@@ -21,6 +21,7 @@ from sqlalchemy import create_engine, text
 from sqlalchemy.exc import DataError, IntegrityError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
 
+from motion_backend.backends import BrokenBackendError
 from planner_service.api import errors
 from planner_service.api.error_handlers import database_problem, engine_problem, is_hang_up
 from planner_service.api.errors import Problem
@@ -29,6 +30,8 @@ from planner_service.llm.protocol import ModelError
 from planner_service.pipeline import RequestError
 from planner_service.settings import SettingsError
 from planner_service.themes.beats import ThemeError
+from scene_graphs.errors import FieldPath, UserError
+from scene_graphs.json_fields import LayoutError
 
 pytestmark = pytest.mark.anyio
 JSON = {"Content-Type": "application/json"}
@@ -275,16 +278,19 @@ async def test_every_problem_can_be_raised_in_a_route(app: FastAPI, problem: Pro
 @pytest.mark.parametrize(
     ("error", "status", "pointer"),
     [
-        (RequestError("rooms: a home has one to 4 rooms"), 422, "/rooms"),
-        (RequestError("height: must be 1.2 to 2.2"), 422, "/character/height"),
-        (RequestError("layout: two rooms are called 'a'"), 422, "/layouts"),
+        (RequestError("a home has one to 4 rooms", at="rooms"), 422, "/rooms"),
+        (RequestError("must be 1.2 to 2.2", at="height"), 422, "/character/height"),
+        (RequestError("two rooms are called 'a'", "rename one", at="layout"), 422, "/layouts"),
         (ThemeError("it is empty."), 422, "/theme"),
         (RequestError("nothing here can be walked to; choose another room (--rooms)"), 422, ""),
+        (LayoutError("must be a number", at=FieldPath(("rooms.json line 3", "size"))), 422, ""),
+        (RequestError("rooms: are named in the text alone"), 422, ""),
+        (BrokenBackendError("it cannot be loaded", at="backend"), 503, None),
         (ModelError("no answer"), 502, None),
         (SettingsError("SIMS_DATA_DIR: secret place"), 500, None),
     ],
 )
-def test_what_the_engine_says_is_pointed_at_its_field(error: Exception, status: int, pointer: str | None) -> None:
+def test_what_the_engine_says_is_pointed_at_its_field(error: UserError, status: int, pointer: str | None) -> None:
     problem = engine_problem(error)
     assert problem.status == status
     assert [fault.pointer for fault in problem.errors] == ([] if pointer is None else [pointer])
@@ -293,7 +299,7 @@ def test_what_the_engine_says_is_pointed_at_its_field(error: Exception, status: 
 
 
 def test_in_a_get_call_a_field_of_the_engine_is_a_query_parameter() -> None:
-    assert engine_problem(RequestError("emotion: 'x' is none of happy"), "GET").errors[0].pointer == "?emotion"
+    assert engine_problem(RequestError("'x' is none of happy", at="emotion"), "GET").errors[0].pointer == "?emotion"
 
 
 async def test_what_nobody_foresaw_is_a_500_without_its_reasons(app: FastAPI) -> None:
