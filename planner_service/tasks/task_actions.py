@@ -75,9 +75,7 @@ class Surroundings:
 
 def furniture_words() -> tuple[str, ...]:
     """Every kind of furniture we know."""
-    from scene_graphs.furniture import CATALOGUE, KINDS
-
-    return tuple(sorted({*CATALOGUE, *KINDS}))
+    return tuple(sorted(furniture.catalogue().class_of))
 
 
 _RISES_FOR_IT: Final = "it rises for it: a hand reaches things standing"
