@@ -20,9 +20,9 @@ import numpy as np
 
 from motion_backend.motion import Skill
 from planner_service.narration.narrative_voice import Voice
-from planner_service.narration.tense import gerund, past
 from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.script import Keyframe, PlannedKeyframe
+from planner_service.themes.lexicon import gerund, past
 from scene_graphs.furniture import class_of, display_name
 
 

@@ -16,8 +16,8 @@ from planner_service.narration import keyframe_phrases, openings_and_endings
 from planner_service.narration.keyframe_phrases import Variety, mood_of, touches
 from planner_service.narration.llm_narrator import narrate_with_model
 from planner_service.narration.narrator import Told, narrate
-from planner_service.narration.tense import BASES, past, third_person
 from planner_service.scripts.script import Event, Keyframe, LongScript, PlannedKeyframe, Retrieved, ShortScript
+from planner_service.themes.lexicon import english_verbs, past, third_person
 
 LIBRARY = tuple(
     ShortScript.model_validate_json(line)
@@ -50,7 +50,8 @@ SLIPS = {
 }
 _SUBJECT = re.compile(r"(\w+ )?\b(?:[Hh]e|[Ss]he|[Tt]hey|Sam|Emily|James) (\w+)")
 _HELPERS = {"did", "could", "would", "might", "let", "make", "made", "had", "kept", "found", "left", "woke"}
-_PRESENT = ({third_person(base) for base in BASES} | BASES) - {past(base) for base in BASES} | {"is", "has", "does"}
+_BASES = english_verbs().bases
+_PRESENT = ({third_person(base) for base in _BASES} | _BASES) - {past(base) for base in _BASES} | {"is", "has", "does"}
 
 
 def long_script(
@@ -290,7 +291,7 @@ def test_every_caption_has_its_own_words_and_every_phrase_starts_with_a_verb() -
     ):
         templates += [t for ways in table.values() for t in ways]
     verbs = {verb for t in templates for verb in re.findall(r"(?:^|~)(\w+)", t)}
-    assert verbs - BASES == set()
+    assert verbs - _BASES == set()
 
 
 def test_variety_uses_every_option_before_any_again() -> None:
