@@ -173,7 +173,8 @@ class DeedPatterns:
         for place, words in {"stands_on": self.stands_on, "seats_at": self.seats_at}.items():
             if unknown := next((word for pair in words.items() for word in pair if not furniture.is_known(word)), None):
                 raise ValueError(f"{place}: {unknown!r} is no furniture we know")
-        self.kinds, self.things  # noqa: B018 - so that a wrong pattern is refused when the table is read
+        if not (self.kinds and self.things and self.lead and self.no_furniture):
+            raise ValueError("kind, kept: there is none")
 
     @cached_property
     def whole_parts(self) -> dict[str, str]:

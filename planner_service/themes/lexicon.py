@@ -176,7 +176,8 @@ class Idioms:
     idiom: tuple[Idiom, ...]
 
     def __post_init__(self) -> None:
-        self.patterns  # noqa: B018 - so that a wrong one is refused when the table is read
+        if not self.patterns:
+            raise ValueError("idiom: there is none")
 
     @cached_property
     def patterns(self) -> tuple[tuple[re.Pattern[str], Idiom], ...]:

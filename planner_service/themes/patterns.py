@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import Final
 
-MAX_PATTERN_LENGTH: Final = 6000
+MAX_PATTERN_LENGTH: Final = 3000
 """Letters of a pattern with its parts put in."""
 _PART: Final = re.compile(r"(?<!\?P)<([a-z_]+)>")
 
@@ -21,8 +21,8 @@ def expanded(parts: Mapping[str, str]) -> dict[str, str]:
 
 
 def with_parts(place: str, pattern: str, parts: Mapping[str, str]) -> str:
-    """A pattern with the parts put in; breaks between lines count for nothing. ValueError says at which place in the data
-    a part is unknown, or what is wrong."""
+    """A pattern with the parts put in; breaks between lines count for nothing. ValueError says at which place in the
+    data a part is unknown, or what is wrong."""
     unknown = [name for name in _PART.findall(pattern) if name not in parts]
     if unknown:
         raise ValueError(f"{place}: there is no part <{unknown[0]}> before it")
