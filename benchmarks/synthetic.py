@@ -8,9 +8,9 @@ import networkx as nx
 import numpy as np
 from numpy.typing import NDArray
 
-from scene_graphs.furniture import KINDS, Furniture, affordances
+from scene_graphs.furniture import Furniture, affordances, catalogue
 from scene_graphs.graph.furniture_graph import FurnitureGraph, graph_from_parts
-from scene_graphs.graph.packed_graphs import KNOWN, NUMBER, PackedRooms, Texts, flags, offsets
+from scene_graphs.graph.packed_graphs import PackedRooms, Texts, flags, offsets, vocabulary
 
 LIKELY: Final = {
     "bedroom": "double_bed 4 nightstand 8 wardrobe 5 pendant_lamp 5 desk 2 dressing_table 2 dressing_chair 2 "
@@ -30,8 +30,6 @@ SPREAD: Final = 0.78
 """Side of the square that one piece has to itself; pieces nearer than 1 are joined."""
 GENERAL: Final = 0.4
 """Of the words in queries that name a kind."""
-_ALPHABETICAL: Final = np.argsort(np.argsort(KNOWN))
-_KIND_OF: Final = {category: kind for kind, members in KINDS.items() for category in members}
 
 
 def rooms_at_random(count: int, seed: int) -> PackedRooms:
@@ -40,10 +38,11 @@ def rooms_at_random(count: int, seed: int) -> PackedRooms:
     sizes = np.minimum(MIN_NODES + rng.poisson(rng.gamma(2.0, 3.15, count)), MAX_NODES)
     categories, kinds = _categories(rng, sizes)
     starts, rooms = offsets(sizes), np.repeat(np.arange(count), sizes)
-    order = np.lexsort((_ALPHABETICAL[categories], rooms))
+    known = vocabulary().words
+    order = np.lexsort((np.argsort(np.argsort(known))[categories], rooms))
     categories = categories[order]
     neighbours, degrees = _neighbours(rng, sizes)
-    offered = np.array([flags(affordances(word)) for word in KNOWN], dtype=np.uint8)
+    offered = np.array([flags(affordances(word)) for word in known], dtype=np.uint8)
     width = len(str(count))
     return PackedRooms(
         ids=Texts.of(f"room-{number:0{width}}" for number in range(count)),
@@ -69,6 +68,7 @@ def queries_at_random(count: int, seed: int) -> list[FurnitureGraph]:
 
 def _query(rng: np.random.Generator, room: FurnitureGraph) -> FurnitureGraph:
     names = sorted(room)
+    kind_of = {category: kind for kind, members in catalogue().kinds.items() for category in members}
     size = min(len(names), int(rng.integers(3, 11)))
     start = names[int(rng.integers(len(names)))]
     near = sorted(nx.single_source_shortest_path_length(room, start).items(), key=lambda item: item[1])
@@ -76,8 +76,8 @@ def _query(rng: np.random.Generator, room: FurnitureGraph) -> FurnitureGraph:
     chosen += [name for name in names if name not in chosen][: size - len(chosen)]
     nodes, counts, needs = [], dict[str, int](), []
     for name in chosen:
-        general = name.category in _KIND_OF and rng.random() < GENERAL
-        word = _KIND_OF[name.category] if general else name.category
+        general = name.category in kind_of and rng.random() < GENERAL
+        word = kind_of[name.category] if general else name.category
         counts[word] = counts.get(word, 0) + 1
         nodes.append(Furniture(word, counts[word]))
         offered = sorted(affordances(word) & affordances(name.category))
@@ -96,7 +96,7 @@ def _categories(rng: np.random.Generator, sizes: NDArray[np.int64]) -> tuple[NDA
     for place, name in enumerate(sorted(LIKELY)):
         words, weights = LIKELY[name].split()[::2], np.array(LIKELY[name].split()[1::2], dtype=float)
         inside = of_piece == place
-        numbers = np.array([NUMBER[word] for word in words], dtype=np.uint32)
+        numbers = np.array([vocabulary().number[word] for word in words], dtype=np.uint32)
         categories[inside] = rng.choice(numbers, int(inside.sum()), p=weights / weights.sum())
     return categories, kinds
 

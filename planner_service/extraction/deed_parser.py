@@ -1,10 +1,6 @@
 """What a clause has a body do: the skill its verb means, the furniture it names, and what is no deed at all.
 
 The clauses of a scene: who does what, in the order it is told, and in which mood.
-
-English for what a body does: how a clause begins that tells of sitting, lying, rising, touching or going.
-
-Each constant is a regular expression for the beginning of a clause without its subject; each line of it is one way.
 """
 
 from __future__ import annotations
@@ -13,7 +9,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from typing import Final
 
 from motion_backend.motion import Skill
@@ -21,8 +17,11 @@ from planner_service.extraction.text_scenes import Line, TextScene
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import MAX_THEME_LENGTH, Clause, ThemeError, clauses_of, moods_of
-from planner_service.themes.sentence_parser import is_verb, moments_of, sentences_of
+from planner_service.themes.lexicon import is_verb
+from planner_service.themes.patterns import compiled, either, expanded, with_parts
+from planner_service.themes.sentence_parser import moments_of, sentences_of
 from scene_graphs import furniture
+from scene_graphs.data_tables import read_table, require_known, table
 
 _NAMED: Final = re.compile(
     r"^(?:(?:then|and|but|so|now|later|meanwhile|slowly|quietly|suddenly)[ ,]+)?"
@@ -46,15 +45,7 @@ _ADVERBIAL: Final = re.compile(
 )  # fmt: skip
 _WHILE: Final = re.compile(r",?\s*\b(?:for|after|in|once in) a (?:little |long |short |good )?while\b,?", re.IGNORECASE)
 _TOSSES: Final = re.compile(r"\b(toss\w*) and turn\w*", re.IGNORECASE)
-_NAME_WORDS: Final = "James Thomas Charles Chris Nicholas Lucas Jonas Agnes Frances Iris Doris Louis Marcus Jess Tess"
-_NAMES_IN_S: Final = frozenset(_NAME_WORDS.split())
 _I: Final = re.compile(r"^(?:I|we)\s+(?=\w)")
-_OTHER_WORDS: Final = """
-The This That These Those There Then When While After Before Once Soon Now Later Outside Inside Nobody Everything
-Nothing Something It He She They His Her Their Someone Somebody Everyone And But So Still At In On As If Finally
-Suddenly Slowly Quietly Music Night Morning Evening Rain Silence Darkness Somehow Perhaps Maybe Not Only Just
-"""
-_NOT_NAMES: Final = frozenset(_OTHER_WORDS.split())
 _PERSON: Final = re.compile(
     r"^(?:the|an?|this|our|one)\s+(?:\w+\s+)?(?:character|person|protagonist|hero|heroine)\b", re.IGNORECASE
 )
@@ -128,203 +119,101 @@ def _without_name(moment: str) -> str:
 
 def _is_name(match: re.Match[str]) -> bool:
     name = match["name"]
-    if name.endswith("s") and name not in _NAMES_IN_S:
+    if name.endswith("s") and name not in deed_patterns().names_in_s.split():
         return False  # "Clouds hung over the town"
-    return name not in _NOT_NAMES and (is_verb(match["verb"]) or match["verb"].endswith("ly"))
+    return name not in deed_patterns().not_names.split() and (is_verb(match["verb"]) or match["verb"].endswith("ly"))
 
 
-OWN: Final = "(?:the|a|an|his|her|their|my|our|its)"
-_SELF: Final = r"(?:(?:him|her|them|my|it)sel(?:f|ves) )?"
-_WAY: Final = r"(?:\w+ly )?"
-_ONTO: Final = rf"{_SELF}{_WAY}(?:back |down |out |up |over )*(?:on|onto|in|into|to|across|against|down|back|at|by)\b"
-
-
-def _either(lines: str) -> str:
-    """One expression for all the lines."""
-    return f"(?:{'|'.join(line.strip() for line in lines.splitlines() if line.strip())})"
-
-
-_RISING: Final = (
-    r"(?:gets?|got|getting|stands?|stood|standing|jump\w*|leap\w*|leapt|springs?|sprang|struggl\w*|heav\w*)"
-)
-_SEAT: Final = "(?:bed|chair|armchair|sofa|couch|seat)"
-WAKES: Final = r"(?:wake|woke|waking|awake|awoke|awaken)\w*\b(?! by)"
-RISES: Final = _either(rf"""
-    {_RISING} {_SELF}{_WAY}(?:back )?(?:up\b(?! to)|to {OWN} feet|out of (?:{OWN} )?{_SEAT}|from )
-    (?:scrambl\w*) (?:up\b|to {OWN} feet|out of )
-    rises?\b|rose\b|rising\b
-    (?:leaves?|left|leaving) (?:{OWN} )?(?:bed|seat|chair|sofa|couch|armchair)\b
-""")
-_FLAT: Final = (
-    "down|back|awake|in|on|across|there|flat|still|face|curled|motionless|asleep|beside|under|sick|ill|with|for|until"
-)
-_TO_BED: Final = rf"(?:back |straight |off )?(?:to|into|in) (?:{OWN} )?(?:\w+ )?bed\b"
-LIES: Final = _either(rf"""
-    (?:lies|lie|lay|lying|lays|laid|laying)(?: {_SELF}{_WAY}(?:{_FLAT})\b|$)
-    (?:sleep|slept|nap|doz|snooz|snor)\w*
-    (?:falls?|fell|falling|drift\w*|nod\w*|doz\w*) (?:\w+ )?(?:asleep|off)\b
-    toss\w*(?: about| in bed)?$|toss\w* about\b
-    (?:goes|went|going|go|gets?|got|retir\w*|crawl\w*|climb\w*|slip\w*) {_TO_BED}
-    (?:goes|went|going|go) (?:back )?to sleep
-    pass\w* out|(?:asleep|awake)\b|(?:takes?|took|taking|has|had) a nap
-    turns? in for|hits? the (?:sack|hay)|hid\w* under
-    (?:can(?:no|')t|cannot|can not|could(?:n't| not)|tr(?:y|ies|ied|ying) to) (?:fall asleep|get to sleep|sleep)
-""")
-LETS_DOWN: Final = _either(rf"""
-    (?:slump|sink|sank|sunk|flop|drop|settle|settling|plop|plump|perch|slouch|slid|slide|nestle|huddle)\w* {_ONTO}
-    lower\w* {_SELF}{_ONTO}
-""")
-FALLS: Final = _either(rf"""
-    (?:collaps|sprawl|fall|fell|throw|threw|stretch|curl|snuggle|rest|loung|reclin|tumbl|cuddle|slip|roll)\w* {_ONTO}
-    (?:div(?:e|es|ed|ing)|dove|crawl\w*|climb\w*|crash\w*) {_ONTO}
-""")
-SITS: Final = _either(rf"""
-    (?:sit|sits|sat|sitting|seat(?:s|ed)?)\b
-    (?:takes?|took|taking) (?:{OWN} )?seat\b
-    lean\w* back
-""")
-DOES_SITTING: Final = _either(rf"""
-    (?:read|reads|reading|writ\w+|wrote|stud(?:y|ies|ied|ying)|typ(?:e|es|ed|ing)|knit\w*|sew\w*|meditat\w*)\b
-    (?:dine|dines|dined|dining)\b|(?:eat|ate)\w*\b|(?:drink|drank|sip)\w*\b
-    (?:has|had|having|finish\w*|enjoy\w*) (?:{OWN} )?(?:\w+ )?(?:breakfast|lunch|dinner|supper|meal|snack)
-    work\w*\b(?! out)
-    watch\w* (?:.{{0,20}} )?(?:tv|television|film|movie|series|show|news|game|match|screen)\b
-    play\w* (?:.{{0,20}} )?(?:piano|cards|chess|games?|guitar|console|violin)\b
-    listen\w* to\b|relax\w*\b|scroll\w*\b|paints?\b|draws?\b|drew\b
-    (?:weep|wept|cry|cries|cried|crying|sob)\w*\b
-    (?:think|thought|ponder|brood|mull|reflect|daydream)\w*\b|wait\w*\b
-    (?:bur(?:y|ies|ied|ying)|holds?|held|holding|puts?|putting|hides?|hid) {OWN} (?:face|head) in\b
-""")
-ON_THE_PHONE: Final = _either(r"""
-    (?:talk|speak|spoke|chat|argu|shout|whisper|is|was)\w*\b.{0,40}\bon the (?:tele)?phone\b
-    (?:makes?|made) a (?:phone )?call
-""")
-_NOT_TAKEN: Final = "seat|nap|breath|step|walk|look|bath|shower|break|place|care"
-_HANDLED: Final = """grab|snatch|seiz|fetch|retriev|rummag|search|dust|polish|wip|scrub|wash|rins|clean|tid|pour|cook|
-bak|boil|stir|chop|fry|unpack|pack|fold|water|dial|unplug|touch|strok|
-pat|caress|knock|bang|pound|slam|brush|press|iron|vacuum|sweep|swept|sort|arrang|unlock|toast|clear|straighten|feed|fed|reheat|uncork|refill""".replace(
-    "\n", ""
-)
-_PUT: Final = r"puts?|putting|plac(?:e|es|ed|ing)|sets?|setting|lays|laid|laying|drops?|dropped|leav(?:es|ing)|left"
-_GIVES_WAY: Final = (
-    r"(?:eyes?|mouth|lips|breath|nose|head|face|hair|door|window|gate|gaze|voice|tears?|doors|windows|curtains?)\b"
-)
-_FETCHED: Final = (
-    "beer|water|milk|wine|drink|book|coat|plate|glass|cup|bottle|blanket|pillow|knife|towel|phone|keys?|snack|sandwich"
-)
-_MADE: Final = "tea|coffee|breakfast|lunch|dinner|supper|sandwich|meal|drink|bed|cocoa|soup|cake|toast"
-TOUCHES: Final = _either(rf"""
-    (?:tak(?:e|es|ing)|took)\b(?! (?:an? )?(?:\w+ )?(?:{_NOT_TAKEN})\b)
-    (?:{_HANDLED})\w*\b
-    pick\w* (?:.{{0,30}} )?(?:up|out)\b|pick\w* {OWN}\b
-    (?:hang|hung)\w* (?:up|{OWN})\b|(?:hides?|hid|hiding) {OWN} (?!face|head)
-    (?:{_PUT}) (?:{OWN} )?.{{0,40}}\b(?:on|onto|in|into|down|away|back|under|inside|beside|upon|table)\b
-    put\w* on\b
-    (?:open|clos|shut|push|pull)\w*\b(?! {OWN} {_GIVES_WAY})
-    (?:turn|switch|click|flick)\w* (?:\w+ )*(?:on|off)\b
-    (?:look|hunt|feel|felt|grop)\w* (?:\w+ )?(?:for|into|under|behind|inside)\b
-    reach\w* (?:\w+ )?(?:for|into|in|up|out|under|behind|inside|toward|towards|to|across)\b
-    (?:light|lights|lit) {OWN}\b
-    (?:call|phone|telephon|ring)\w*\b|answer\w*\b
-    (?:mak(?:e|es|ing)|made|prepar\w*|fix\w*|brew\w*) {_SELF}(?:{OWN} |some )?(?:\w+ )?(?:{_MADE})\b
-    (?:gets?|got|getting) (?:{OWN}|some) .{{0,40}}(?:\bfrom\b|\bout of\b)
-    (?:gets?|got|getting) (?:{OWN}|some) (?:\w+ )?(?:{_FETCHED})\b
-    (?:choos|chose|dress|undress|chang)\w*\b
-    (?:kick|punch|hit|smash|throw|threw|toss|hurl)\w* (?:{OWN}|it)\b
-    (?:drain|empt)\w* {OWN}\b|check\w* {OWN}\b
-    lean\w* (?:on|against|over)\b|plugs?\b
-""")
-_WALKED: Final = """walk|pac(?:e|es|ed|ing)\\b|wander|stroll|run|ran\\b|rush|hurr|dash|sprint|storm|stomp|march|strid|
-strode|shuffl|trudg|plod|limp|hobbl|stagger|stumbl|lurch|reel|tiptoe|creep|crept|sneak|hop\\b|hops\\b|
-hopp|danc|twirl|spin|spun|whirl|swirl|circl|enter|approach|roam|prowl|drift|bustl|sway|wobbl|ambl|saunter|bounc|
-skip|stalk|scurr|scuttl|rac(?:e|es|ed|ing)\\b|follow|wad(?:e|es|ed|ing)\\b|waltz|barg(?:e|es|ed|ing)\\b|burst|sidestep|jog|steal|
-stole|weav|wov|flit|glid|jump|leap""".replace("\n", "")
-_ROOMS: Final = "room|kitchen|bedroom|study|house|table|home|living room|dining room|office"
-GOES: Final = _either(rf"""
-    (?:{_WALKED})\w*
-    (?:go|goes|went|going|come|comes|came|coming|move|moves|moved|moving|head|heads|headed|heading|exit\w*|return\w*)\b
-    (?:step|steps|stepped|stepping|retreat\w*|arriv\w*)\b|back(?:s|ed|ing)? away|turns? back
-    (?:makes?|made) (?:for|\w+ way)\b
-    cross\w* (?:the|into|to|over|his|her|their) (?!arm|leg)
-    (?:leav(?:es|ing|e)|left) (?:{OWN} )?(?:{_ROOMS})\b
-    (?:carr|bring|brought|drag)\w* .{{1,60}}\b(?:to|into|across|over|through)\b
-""")
-STANDS: Final = r"(?:stands?|stood|standing|freez\w*|froze)\b"
-_BEFORE: Final = (
-    r"\w+ly|then|just|still|also|finally|again|now|soon|even|too|once|always|often|there|here|all|is|are|was|were|has"
-    r"|had|have|been|being|at last|at once|almost"
-)
-_BEGINS: Final = r"starts?|started|begins?|began|continu(?:es|ed)"
-LEAD: Final = (
-    rf"(?:(?:{_BEFORE})\s+)*"
-    rf"(?:(?:{_BEGINS}|decid(?:es|ed)|manag(?:es|ed)|proceeds?|proceeded|gets?|got) to\s+"
-    rf"|(?:{_BEGINS}|keeps?|kept|goes|went|comes|came|spends? .{{1,30}}|spent .{{1,30}}|ends? up|ended up)\s+"
-    r"(?=\w+ing\b)"
-    r"|(?:goes|went|comes|came|sits?|sat) (?:down )?to\s+(?=(?:read|write|eat|study)\b))?"
-    r"(?:\w+ly\s+)?"
-)
-"""What may stand before the verb that says what is done."""
-
-
-@dataclass(frozen=True)
+@table
 class Kind:
     """A way a clause is acted out."""
 
     skill: Skill
-    words: str
-    """How the clause begins."""
+    begins: tuple[str, ...]
+    """How the clause begins, one way or another."""
     falls: bool = False
     """Whether one lies where one can, and else sits ("collapses onto …")."""
+    lowers: bool = False
+    """Whether one lies where that is a bed ("sinks onto …")."""
     wakes: bool = False
     """Whether one must have been asleep before."""
     done: bool = False
     """Whether it is done while sitting or lying, and no going to a seat by itself ("reads")."""
 
 
-KINDS: Final = (
-    Kind(Skill.GETUP, WAKES, wakes=True),
-    Kind(Skill.STANDUP, RISES),
-    Kind(Skill.LOCO, ON_THE_PHONE),
-    Kind(Skill.LIEDOWN, LIES),
-    Kind(Skill.SITDOWN, LETS_DOWN),
-    Kind(Skill.LIEDOWN, FALLS, falls=True),
-    Kind(Skill.SITDOWN, SITS),
-    Kind(Skill.SITDOWN, DOES_SITTING, done=True),
-    Kind(Skill.TOUCH, TOUCHES),
-    Kind(Skill.LOCO, GOES),
-    Kind(Skill.LOCO, STANDS),
-)
-"""The first that fits."""
+@table
+class KeptThings:
+    """A pattern for things, and the furniture where they are kept."""
 
-_NO_FURNITURE: Final = re.compile(
-    rf"^\W*(?:\w+\s+){{0,4}}?{OWN}?\s*(?:\w+\s+)?(?:doors?|windows?|gate)\b", re.IGNORECASE
-)
-_NOT_PIECES: Final = frozenset(
-    ("bar", "chest", "trunk", "picture", "book", "pillow", "clock", "statue", "console", "seat", "bin")
-)
-"""Furniture words that mean something else more often."""
-_STANDS_ON: Final = {"tv": "tv stand", "monitor": "desk", "table lamp": "nightstand"}
-"""Where one goes for what stands on other furniture."""
-_SEATS_AT: Final = {
-    "desk": "chair", "dining_table": "dining chair", "table": "chair", "kitchen_counter": "barstool",
-    "dressing_table": "dressing chair", "console_table": "chair",
-}  # fmt: skip
-"""Where one sits at what nobody sits on."""
-_CLOTHES: Final = (
-    "cloth\\w*|suit|shirt|dress\\w*|coat|jacket|jeans|sweater|socks|changes?|changed|outfit|p[yj]+amas|tie"
-)
-_PAPERS: Final = "laptop|computer|keyboard|printer|papers|documents|files?|pens?|notebook|email\\w*"
-_MEALS: Final = """water|milk|beer|wine|whisk\\w+|bottle|glass|glasses|cups?|mug|plates?|dishes|bowl|pan|pot|food|
-breakfast|lunch|dinner|supper|snack|coffee|tea|kettle|cereal|soup|cake|bread|sandwich|medicine|pills?"""
-_THINGS: Final = (
-    (_CLOTHES, "wardrobe"),
-    ("books?|novel|album|diary|dictionary|photos?|photographs?|letters?", "bookshelf"),
-    ("tv|television|remote|channel|radio|music|stereo|record", "tv stand"),
-    (_PAPERS, "desk"),
-    ("light|lights|lamp", "floor lamp"),
-    (_MEALS.replace("\n", ""), "cabinet"),
-)
-"""Where things are kept."""
+    things: str
+    piece: str
+
+
+@table
+class DeedPatterns:
+    """data/deed_patterns.toml: patterns for the beginning of a clause without its subject."""
+
+    names_in_s: str
+    """First names that end in s."""
+    not_names: str
+    """Words with a capital that begin sentences and are nobody's name."""
+    not_pieces: frozenset[str]
+    """Furniture words that mean something else more often."""
+    stands_on: dict[str, str]
+    """Where one goes for what stands on other furniture."""
+    seats_at: dict[str, str]
+    """Where one sits at what nobody sits on."""
+    parts: dict[str, str]
+    kept: tuple[KeptThings, ...]
+    kind: tuple[Kind, ...]
+    """The first that fits is taken."""
+
+    def __post_init__(self) -> None:
+        require_known("parts", ("own", "lead"), self.parts)
+        for place, words in {"stands_on": self.stands_on, "seats_at": self.seats_at}.items():
+            if unknown := next((word for pair in words.items() for word in pair if not furniture.is_known(word)), None):
+                raise ValueError(f"{place}: {unknown!r} is no furniture we know")
+        if not (self.kinds and self.things and self.lead and self.no_furniture):
+            raise ValueError("kind, kept: there is none")
+
+    @cached_property
+    def whole_parts(self) -> dict[str, str]:
+        """Every part with the parts in it put in."""
+        return expanded(self.parts)
+
+    @cached_property
+    def kinds(self) -> tuple[tuple[Kind, re.Pattern[str]], ...]:
+        """How a clause of every kind begins."""
+        return tuple((kind, self._compiled(f"kind.{at}.begins", kind.begins)) for at, kind in enumerate(self.kind))
+
+    @cached_property
+    def things(self) -> tuple[tuple[re.Pattern[str], str], ...]:
+        """What is kept somewhere, and where."""
+        patterns = (with_parts(f"kept.{at}.things", kept.things, {}) for at, kept in enumerate(self.kept))
+        return tuple(
+            (compiled(rf"\b(?:{pattern})\b"), kept.piece) for pattern, kept in zip(patterns, self.kept, strict=True)
+        )
+
+    @cached_property
+    def lead(self) -> re.Pattern[str]:
+        """What may stand before the verb that says what is done."""
+        return compiled(f"^{self.whole_parts['lead']}")
+
+    @cached_property
+    def no_furniture(self) -> re.Pattern[str]:
+        """What is touched where it belongs to the house."""
+        own = self.whole_parts["own"]
+        return compiled(rf"^\W*(?:\w+\s+){{0,4}}?{own}?\s*(?:\w+\s+)?(?:doors?|windows?|gate)\b")
+
+    def _compiled(self, place: str, begins: tuple[str, ...]) -> re.Pattern[str]:
+        ways = [with_parts(place, way, self.whole_parts) for way in begins]
+        return compiled(either(ways))
+
+
+@cache
+def deed_patterns() -> DeedPatterns:
+    """How clauses begin that have a body do something, from data/deed_patterns.toml."""
+    return read_table("planner_service", "deed_patterns.toml", DeedPatterns)
 
 
 @dataclass(frozen=True)
@@ -352,22 +241,23 @@ def deed_of(clause: str) -> Deed | None:
     if skill in (Skill.STANDUP, Skill.GETUP):
         piece = next((one for one in pieces_in(rest) if furniture.affordances(one) & {"sit", "lie"}), "")
         return Deed(kind, skill, piece, bool(piece))
-    if skill is Skill.TOUCH and _NO_FURNITURE.match(rest) and not pieces_in(rest):
+    if skill is Skill.TOUCH and deed_patterns().no_furniture.match(rest) and not pieces_in(rest):
         return None
     named = pieces_in(rest)
     if kind.falls and not any(affords(piece, "lie") for piece in named):
         skill = Skill.SITDOWN
     elif kind.skill is Skill.SITDOWN and not kind.done and any(furniture.group_of(piece) == "bed" for piece in named):
-        skill = Skill.LIEDOWN if re.match(LETS_DOWN, _bare(clause), re.IGNORECASE) else skill
+        skill = Skill.LIEDOWN if _lowers(_bare(clause)) else skill
     if kind.falls and not named:
         return None  # "rests in peace", "falls into a rage"
     fitting = ""
     if skill is Skill.SITDOWN and not re.search(r"\bon (?:\w+ ){0,3}(?:table|desk|counter)\b", rest):
-        fitting = next((_SEATS_AT[at] for piece in named if (at := furniture.canonical(piece)) in _SEATS_AT), "")
+        seats_at = deed_patterns().seats_at
+        fitting = next((seats_at[at] for piece in named if (at := furniture.canonical(piece)) in seats_at), "")
     fitting = fitting or next((piece for piece in named if affords(piece, NEEDS[skill])), "")
     if fitting:
         return Deed(kind, skill, fitting, True)
-    kept = next((piece for words, piece in _THINGS if re.search(rf"\b(?:{words})\b", rest, re.IGNORECASE)), "")
+    kept = next((piece for things, piece in deed_patterns().things if things.search(rest)), "")
     return Deed(kind, skill, kept if skill is Skill.TOUCH else "")
 
 
@@ -378,27 +268,26 @@ def pieces_in(text: str) -> list[str]:
     at = 0
     while at < len(words):
         size = next((size for size in (3, 2, 1) if _names(tuple(words[at : at + size]), size)), 0)
-        if size and words[at] not in _NOT_PIECES:
+        if size and words[at] not in deed_patterns().not_pieces:
             piece = furniture.canonical(" ".join(words[at : at + size])).replace("_", " ")
-            found.append(_STANDS_ON.get(piece, piece))
+            found.append(deed_patterns().stands_on.get(piece, piece))
         at += size or 1
     return found
 
 
-@cache
-def _known() -> tuple[tuple[Kind, re.Pattern[str]], ...]:
-    return tuple((kind, re.compile(rf"(?:{kind.words})", re.IGNORECASE)) for kind in KINDS)
-
-
 def _bare(clause: str) -> str:
     """The clause from its main verb on."""
-    return re.sub(rf"^{LEAD}", "", clause.strip(), count=1, flags=re.IGNORECASE)
+    return deed_patterns().lead.sub("", clause.strip(), count=1)
+
+
+def _lowers(clause: str) -> bool:
+    return any(kind.lowers and pattern.match(clause) for kind, pattern in deed_patterns().kinds)
 
 
 def _kinds(clause: str) -> tuple[Kind, str] | None:
     """The first kind that the clause, or the clause from its main verb on, begins with; and what follows."""
     for start in dict.fromkeys((clause.strip(), _bare(clause))):
-        for kind, pattern in _known():
+        for kind, pattern in deed_patterns().kinds:
             if (match := pattern.match(start)) is not None:
                 return kind, start[min(match.end(), _after_verb(start)) :]
     return None

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from itertools import groupby
 from typing import Final, NamedTuple
 
-from planner_service.themes.sentence_parser import has_verb, is_verb
+from planner_service.themes.lexicon import is_verb
+from planner_service.themes.sentence_parser import has_verb
 from scene_graphs import furniture
 
 _SLUG: Final = re.compile(

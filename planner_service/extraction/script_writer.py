@@ -14,12 +14,12 @@ from typing import Final
 from motion_backend.language.sentence_encoder import SentenceEncoder
 from motion_backend.motion import Skill
 from planner_service.narration.narrative_voice import Voice, retell
-from planner_service.narration.tense import BASES, gerund, is_verb_form, past, third_person
 from planner_service.scripts.captions import Vocabulary
 from planner_service.scripts.script import MAX_PIECES, Keyframe, ShortScript, Source
 from planner_service.scripts.script_duplicates import Likeness, slug_of
 from planner_service.scripts.script_library import UNKNOWN, ScriptLibrary
 from planner_service.scripts.script_repair import repair
+from planner_service.themes.lexicon import english_verbs, gerund, is_verb_form, past, third_person
 
 _MAX_CLAUSE_LENGTH: Final = 110
 """Letters of one clause in a summary."""
@@ -129,19 +129,19 @@ def _present(word: str) -> str | None:
         return word
     if word.endswith("ied"):
         return f"{word[:-1]}s"
-    return _gerunds().get(word) or (third_person(word) if word in BASES else None)
+    return _gerunds().get(word) or (third_person(word) if word in english_verbs().bases else None)
 
 
 @cache
 def _pasts() -> dict[str, str]:
     """The present of every simple past; "lay" and "found" are those of "lie" and "find"."""
-    forms = {past(base): third_person(base) for base in sorted(BASES) if past(base) != base}
+    forms = {past(base): third_person(base) for base in sorted(english_verbs().bases) if past(base) != base}
     return forms | {"lay": "lies", "found": "finds", "fell": "falls", "left": "leaves", "saw": "sees", "wound": "winds"}
 
 
 @cache
 def _gerunds() -> dict[str, str]:
-    return {gerund(base): third_person(base) for base in sorted(BASES)}
+    return {gerund(base): third_person(base) for base in sorted(english_verbs().bases)}
 
 
 RULES: Final = "rules"

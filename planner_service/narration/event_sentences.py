@@ -9,8 +9,9 @@ from typing import Final
 
 from motion_backend.motion import Character
 from planner_service.narration.narrative_voice import Voice, retell
-from planner_service.narration.tense import BASES, base_of, base_of_gerund, is_past, is_verb_form, past, third_person
+from planner_service.narration.tense import base_of, base_of_gerund, is_past
 from planner_service.scripts.emotions import feelings
+from planner_service.themes.lexicon import english_verbs, is_verb_form, past, third_person
 from planner_service.themes.protagonist import cast_by, name_in
 
 _MAX_QUOTED_WORDS: Final = 24
@@ -73,15 +74,15 @@ def happening(event: str, theme: str, voice: Voice, named: bool = False) -> str 
     lost = _LOST_SUBJECT.search(theme[:start]) if start > 0 else None
     others = _OTHERS.get(hero.pronouns, frozenset()) & set(re.findall(r"\w+", theme.lower()))
     first = text.split()[0].lower() if text.split() else ""
-    if lost and (is_verb_form(first) or first in BASES):
+    if lost and (is_verb_form(first) or first in english_verbs().bases):
         who = lost["who"].lower()
         if " " in who or who in others or (who == "they" and hero.pronouns in _OTHERS):
-            verb = third_person(first) if first in BASES and not is_verb_form(first) else first
+            verb = third_person(first) if first in english_verbs().bases and not is_verb_form(first) else first
             text = f"{lost['who']} {verb}{text[len(first) :]}"
             others |= {"they"} if who == "they" else frozenset()
         else:
             text = _agreeing(first) + text[len(first) :]
-    elif first in BASES and re.search(r"\b(?:they|we|I)\b", theme, re.IGNORECASE):
+    elif first in english_verbs().bases and re.search(r"\b(?:they|we|I)\b", theme, re.IGNORECASE):
         text = _agreeing(first) + text[len(first) :]
     text = _with_noun(text, theme[: max(start, 0)], hero.pronouns)
     return event_retold(told_of_hero(text, theme), voice, named, others)
@@ -191,7 +192,7 @@ def told_of_hero(event: str, theme: str) -> str:
     if hero:
         text = re.sub(rf"^(?:the|an?) (?:\w+ )?{hero['kind']}\b(?!['’])", "The character", text, flags=re.IGNORECASE)
         text = re.sub(r"^The character (\w+)", lambda m: f"The character {_agreeing(m[1])}", text)
-    text = _BASE_VERB.sub(lambda m: f"and {third_person(m[1])} " if m[1] in BASES else m[0], text)
+    text = _BASE_VERB.sub(lambda m: f"and {third_person(m[1])} " if m[1] in english_verbs().bases else m[0], text)
     if text.lower().startswith(("his ", "her ", "their ", "the ", "a ", "an ")) and not text.startswith(
         "The character"
     ):
@@ -215,7 +216,7 @@ def _listed(text: str) -> str:
 
 def _agreeing(verb: str) -> str:
     """A base form as he, she and it have it: run → runs; any other word as it is."""
-    return third_person(verb) if verb in BASES and not is_past(verb) else verb
+    return third_person(verb) if verb in english_verbs().bases and not is_past(verb) else verb
 
 
 _UNKNOWN_VERB: Final = re.compile(
@@ -244,7 +245,7 @@ def event_retold(event: str, voice: Voice, named: bool = False, others: frozense
         base_of(verb)
         and len(words) > 1
         and words[1] not in ("and", "of")
-        and words[1] not in BASES
+        and words[1] not in english_verbs().bases
         and not is_verb_form(words[1])
     )
     if is_verb_form(verb) or is_past(verb) or guessed:

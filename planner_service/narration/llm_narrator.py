@@ -18,7 +18,7 @@ from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.narrator import Told
 from planner_service.narration.story_scenes import Span
 from planner_service.scripts.script import LongScript, PlannedKeyframe, legible
-from scene_graphs.furniture import CATALOGUE, display_name, is_minor
+from scene_graphs.furniture import catalogue, display_name, is_minor
 
 _SHOWN: Final = 8
 """Problems that the model is told of at once."""
@@ -110,7 +110,7 @@ def _disorder(text: str, pieces: Sequence[tuple[str, str]]) -> list[str]:
 
 def _furniture_in(text: str) -> list[str]:
     """The furniture that a text names, each once; small things and words of many meanings left out."""
-    words = {display_name(category).lower() for category in CATALOGUE if not is_minor(category)} - _COMMON
+    words = {display_name(category).lower() for category in catalogue().categories if not is_minor(category)} - _COMMON
     return [word for word in sorted(words) if re.search(rf"\b{re.escape(word)}s?\b", text, re.IGNORECASE)]
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from dataclasses import dataclass
+from string import Formatter
 from typing import Final
 
 from motion_backend.motion import Character
@@ -67,6 +69,20 @@ class Voice:
     def owner(self) -> str:
         """Emily's; James's."""
         return self.name + "'s"
+
+
+def require_blanks(place: str, templates: object, blanks: Collection[str]) -> None:
+    """ValueError, with the place in a table, for a template with a blank that is neither these nor a voice's."""
+    if isinstance(templates, str):
+        found = {name for _, name, _, _ in Formatter().parse(templates) if name is not None}
+        if wrong := found - {*blanks, *_BLANKS, "name"}:
+            raise ValueError(f"{place}: there is no blank {{{min(wrong)}}} to fill in {templates!r}")
+    elif isinstance(templates, tuple):
+        for template in templates:
+            require_blanks(place, template, blanks)
+    else:
+        for key, inside in (templates if isinstance(templates, dict) else vars(templates)).items():
+            require_blanks(f"{place}.{key}".strip("."), inside, blanks)
 
 
 def retell(text: str, voice: Voice, named: bool = False, others: frozenset[str] = frozenset()) -> str | None:

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from motion_backend.motion import Character, Skill
-from planner_service.narration import openings_and_endings
 from planner_service.narration.event_sentences import fragment, happening, link_before, told_together
 from planner_service.narration.keyframe_phrases import (
     Phrase,
@@ -21,6 +20,15 @@ from planner_service.narration.keyframe_phrases import (
     without_room,
 )
 from planner_service.narration.narrative_voice import Voice, retell
+from planner_service.narration.openings_and_endings import (
+    ANY_OTHER,
+    STANDS_ALONE,
+    gainsaid,
+    story_texts,
+    tells_time,
+    time_of,
+    title_of,
+)
 from planner_service.narration.sentence_frames import Ear, Manner, Sentence, framed, said
 from planner_service.narration.story_scenes import (
     RESTS,
@@ -98,7 +106,7 @@ class _Narrator:
         self.wording = Wording(voice, self.variety, places, brief=len(script.keyframes) > _MANY)
         events = script.events
         self.first, self.last = (events[0], events[-1]) if events else (Event(text=script.theme),) * 2
-        self.time = openings_and_endings.time_of(self.first.text, *(r.script.summary for r in script.short_scripts[:1]))
+        self.time = time_of(self.first.text, *(r.script.summary for r in script.short_scripts[:1]))
         self.rooms: list[str] = []
         self.arrival = ""
         """The room that the next sentence about the body names."""
@@ -134,7 +142,7 @@ class _Narrator:
         if told and len(self.scene) == 1:
             self.scene = told.pop() + self.scene
         text, spans = laid_out(balanced([*told, self.scene]))
-        title = openings_and_endings.title_of(self.script.theme, emotion_of(self.last.emotion) or "neutral", self.time)
+        title = title_of(self.script.theme, emotion_of(self.last.emotion) or "neutral", self.time)
         return Told(title, text, spans)
 
     def _tell_scene(self, scene: Scene, head: Lead, final: bool) -> None:
@@ -190,26 +198,25 @@ class _Narrator:
         """Ways to begin with an event, none where it is not short and plain."""
         if not event.endswith(".") or re.search(_UNFIT, event[:-1]) or len(event.split()) > _BEGINS:
             return []
-        shapes = openings_and_endings.BEGINNINGS + (
-            () if re.search(r"\b(?:was|were|had)\b", event) else openings_and_endings.SUDDEN_BEGINNINGS
-        )
-        fitting = [shape for shape in shapes if "{time}" not in shape or not openings_and_endings.tells_time(event)]
+        is_state = re.search(r"\b(?:was|were|had)\b", event)
+        shapes = story_texts().beginnings + (() if is_state else story_texts().sudden_beginnings)
+        fitting = [shape for shape in shapes if "{time}" not in shape or not tells_time(event)]
         told = [self.voice.fill(shape, time=self.time, event=self._inner(event)) for shape in fitting]
         return [said(_AN.sub("an ", text)) for text in told]
 
     def _opening(self) -> list[Sentence]:
         """First sentences that the first event does not gainsay."""
-        openings = openings_and_endings.OPENINGS[emotion_of(self.first.emotion) or "neutral"]
-        fitting = [text for text in openings if not openings_and_endings.gainsaid(text, self.first.text)]
-        return self._framed(fitting or openings_and_endings.OPENINGS["neutral"][3:4])
+        openings = story_texts().openings[emotion_of(self.first.emotion) or "neutral"]
+        fitting = [text for text in openings if not gainsaid(text, self.first.text)]
+        return self._framed(fitting or story_texts().openings["neutral"][3:4])
 
     def _turn_to(self, scene: Scene) -> None:
         """A sentence that leads from the mood of the scene before to that of this one."""
         emotion = self._emotion(scene)
-        turns = openings_and_endings.MOOD_CHANGES.get(emotion, {})
+        turns = story_texts().mood_changes.get(emotion, {})
         fits = scene.event is None or emotion_of(self.script.events[scene.event].emotion) in (emotion, None)
         if self.mood and emotion != self.mood and fits and self.variety.chance(0.75):
-            options = self._framed(turns.get(self.mood, turns.get("", ())))
+            options = self._framed(turns.get(self.mood, turns.get(ANY_OTHER, ())))
             if options and not self.ear.heard(options):
                 self.scene.append(self.ear.choose(options))
                 self.turned = True
@@ -266,11 +273,7 @@ class _Narrator:
                 continue
             who = self.voice["they"] if self._named() and self.voice.pronouns != "they" else self.voice.name
             inner = self._inner(re.sub(rf"^{re.escape(self.voice.name)} ", f"{who} ", sentence))
-            words = (
-                openings_and_endings.THERE
-                if skills == RESTS and not re.search(r" to bed\b", inner)
-                else openings_and_endings.SO
-            )
+            words = story_texts().there if skills == RESTS and not re.search(r" to bed\b", inner) else story_texts().so
             options = [said(f"{word} {inner}", f"{word} {{who}}", "there") for word in words]
             self.scene.append(self.ear.choose(options, first=True))
 
@@ -284,7 +287,7 @@ class _Narrator:
         who = self.voice["they"] if name else self.voice.name
         options = [
             Sentence(((shape.format(event=event[:-1], who=who), ()), *joined(sentence), (".", ())), shape, "joint")
-            for shape in openings_and_endings.JOINTS
+            for shape in story_texts().joints
         ]
         if self.ear.heard(options):
             return False
@@ -340,24 +343,20 @@ class _Narrator:
         if link and sentence.startswith((self.voice.name, "The ", "A ", "An ", "He ", "She ", "They ")):
             options = [said(f"{link} {inner}")]
         else:
-            turns = (
-                openings_and_endings.NOTES
-                if openings_and_endings.STANDS_ALONE.match(sentence)
-                else openings_and_endings.TURNS
-            )
-            turns = openings_and_endings.CRIES if sentence.endswith("!") else turns
+            turns = story_texts().notes if STANDS_ALONE.match(sentence) else story_texts().turns
+            turns = story_texts().cries if sentence.endswith("!") else turns
             options = [said(sentence), *(said(f"{turn} {inner}", turn, "after") for turn in turns)]
         self.scene.append(self.ear.choose(options, first=not (link or timed)))
 
     def _closings(self, told: Sequence[Sequence[Sentence]]) -> tuple[str, ...]:
         if not self.script.keyframes:
-            return openings_and_endings.CLOSINGS["neutral"]
+            return story_texts().closings["neutral"]
         last = self.script.keyframes[-1]
         mood = mood_of(last)
         asleep = re.search(r"sleep|awake", " ".join(sentence.text for part in told for sentence in part))
-        lying = openings_and_endings.LYING_CLOSINGS.get(mood) if last.skill == Skill.LIEDOWN and not asleep else None
-        turned = openings_and_endings.TURNED_CLOSINGS.get((emotion_of(self.first.emotion) or "neutral", mood))
-        return lying or turned or openings_and_endings.CLOSINGS[mood]
+        lying = story_texts().lying_closings.get(mood) if last.skill == Skill.LIEDOWN and not asleep else None
+        turned = story_texts().turned_closings.get(emotion_of(self.first.emotion) or "neutral", {}).get(mood)
+        return lying or turned or story_texts().closings[mood]
 
     def _framed(self, templates: Sequence[str]) -> list[Sentence]:
         they, their = self.voice["they"].capitalize(), self.voice["their"].capitalize()

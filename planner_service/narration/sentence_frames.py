@@ -10,9 +10,9 @@ from functools import cached_property, partial
 from typing import Final
 
 from motion_backend.motion import Skill
-from planner_service.narration import openings_and_endings
 from planner_service.narration.keyframe_phrases import Phrase, Piece, Variety, joined
 from planner_service.narration.narrative_voice import Voice
+from planner_service.narration.openings_and_endings import story_texts
 
 PLAIN: Final = ("{who} {did}.",)
 TIMES: Final = tuple(
@@ -240,8 +240,8 @@ def _fitting(sentence: Sequence[Phrase], manner: Manner) -> dict[str, tuple[str,
     first = sentence[0]
     shapes["time"] += SLOW_TIMES if first.mood in _SLOW else QUICK_TIMES if first.mood in _QUICK else ()
     if not first.rises:
-        shapes["mood"] = tuple(f"{words}, {{who}} {{did}}." for words in openings_and_endings.MOODS.get(first.mood, ()))
-        shapes["reason"] = openings_and_endings.REASONS.get((first.mood, _kind(sentence)), ())
+        shapes["mood"] = tuple(f"{words}, {{who}} {{did}}." for words in story_texts().moods.get(first.mood, ()))
+        shapes["reason"] = story_texts().reasons.get(first.mood, {}).get(_kind(sentence), ())
     return shapes | (_of_several(sentence) if len(sentence) > 1 else {})
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from motion_backend.language.sentence_encoder import SentenceEncoder, Vectors
 from motion_backend.motion import Skill
-from scene_graphs.furniture import CATALOGUE, KINDS, display_name
+from scene_graphs.furniture import catalogue, display_name
 
 NEAR: Final = {"hashing": 0.4}
 """By encoder, where it is not `USUALLY_NEAR`: hashed words score lower."""
@@ -116,7 +116,7 @@ def _read(name: str) -> Any:
 
 def furniture_offered() -> str:
     """Every furniture word there is, between commas."""
-    return ", ".join(sorted({display_name(word) for word in (*KINDS, *CATALOGUE)}))
+    return ", ".join(sorted({display_name(word) for word in catalogue().class_of}))
 
 
 def captions_offered(most: int | None = None) -> str:

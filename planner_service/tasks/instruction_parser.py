@@ -9,7 +9,7 @@ from functools import cache
 from typing import Final, cast
 
 from motion_backend.planners.markov_planner import Hand
-from planner_service.tasks.household_knowledge import DEEDS, Deed
+from planner_service.tasks.household_knowledge import Deed, deeds
 from planner_service.tasks.task_plan import MAX_ACTION_LENGTH, TaskError
 from scene_graphs import furniture
 
@@ -146,7 +146,7 @@ def clause_of(text: str) -> Clause | None:
 
 def known_verbs() -> tuple[str, ...]:
     """The first verb of every row the rules know and a body can do something of."""
-    return tuple(deed.verbs.split("|")[0] for deed in DEEDS if deed.kind != "never")
+    return tuple(deed.verbs[0] for deed in deeds() if deed.kind != "never")
 
 
 def is_furniture(word: str) -> bool:
@@ -237,7 +237,7 @@ _MAX_VERB_WORDS: Final = 4
 
 @cache
 def _verbs() -> dict[str, Deed]:
-    return {verb: deed for deed in DEEDS for verb in deed.verbs.split("|")}
+    return {verb: deed for deed in deeds() for verb in deed.verbs}
 
 
 @cache

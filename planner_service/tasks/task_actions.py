@@ -16,7 +16,7 @@ from planner_service.grounding.seat_access import pullable_seats
 from planner_service.scripts.caption_actions import MAX_CAPTION_LENGTH, caption_of
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_repair import RISES
-from planner_service.tasks.household_knowledge import FIXED, LIE, LYING, PHONE, SIT, TOUCH, WALK, WALKS, is_one, kept_at
+from planner_service.tasks.household_knowledge import household, is_fixed, kept_at
 from planner_service.tasks.instruction_parser import Clause, clause_of, is_furniture
 from planner_service.tasks.task_plan import MAX_KEYFRAMES, Step, SubTask
 from scene_graphs import furniture
@@ -75,9 +75,7 @@ class Surroundings:
 
 def furniture_words() -> tuple[str, ...]:
     """Every kind of furniture we know."""
-    from scene_graphs.furniture import CATALOGUE, KINDS
-
-    return tuple(sorted({*CATALOGUE, *KINDS}))
+    return tuple(sorted(furniture.catalogue().class_of))
 
 
 _RISES_FOR_IT: Final = "it rises for it: a hand reaches things standing"
@@ -158,7 +156,7 @@ class _Actor:
                 return self._operate(task, clause, word)
             case "stand":
                 self._stand()
-                self.at, how = "", clause.deed.how
+                self.at, how = "", clause.deed.how[0]
                 return self._add(Skill.LOCO, caption_of([task.text], how), "floor"), clause.deed.why
             case _:
                 return self._use(task, clause, word)
@@ -169,33 +167,35 @@ class _Actor:
         if task.category == "locomotion":
             raise _CannotError("no such movement is known; the body walks, sits, lies, rises and reaches")
         if self.seat is not None and task.category == "interaction":
-            return self._while_resting(task.text, "", "the pose is held: the body knows no such movement")
+            return self._while_resting(task.text, (), "the pose is held: the body knows no such movement")
         where = self.room.find(word) if word else self._near()
         if not where:
             raise _CannotError(self.room.missing(word) if word else "there is no furniture near to do it at")
-        return self._touch(task, where, TOUCH), "the body only lays a hand there: it knows no such movement"
+        return self._touch(
+            task, where, household().captions.touch
+        ), "the body only lays a hand there: it knows no such movement"
 
     # Moving.
 
     def _walk(self, clause: Clause, word: str) -> tuple[list[int], str]:
         self.seat = None
         self._stand()
-        caption = WALKS.get(clause.verb.split()[0], WALK)
+        caption = household().captions.walk_by_verb.get(clause.verb.split()[0])
         if word:
             return self._go(self._found(word, "touch"), caption), ""
         named = [noun for preposition, noun in clause.places if preposition not in ("for", "with")]
         if named:
             raise _CannotError(f"“{named[0]}” is no furniture we know, so there is no place to walk to")
         self.at = ""
-        return self._add(Skill.LOCO, caption, "floor"), ""
+        return self._add(Skill.LOCO, caption or household().captions.walk, "floor"), ""
 
-    def _go(self, word: str, caption: str = WALK) -> list[int]:
+    def _go(self, word: str, caption: str | None = None) -> list[int]:
         """Walk to a piece of furniture, unless the body is there."""
         if self.at == word and self.keyframes:
             return [len(self.keyframes) - 1]
         self._stand()
         self.at = word
-        return self._add(Skill.LOCO, caption, word)
+        return self._add(Skill.LOCO, caption or household().captions.walk, word)
 
     def _rest(self, skill: Skill, word: str) -> tuple[list[int], str]:
         """Sit or lie down, or stay as one is."""
@@ -207,7 +207,8 @@ class _Actor:
             self._go(word)
         else:
             self._stand()
-        self._add(skill, self._one_of(SIT if skill is Skill.SITDOWN else LIE), word)
+        captions = household().captions
+        self._add(skill, self._one_of(captions.sit if skill is Skill.SITDOWN else captions.lie), word)
         self.posture, self.at = posture, word
         return [], ""
 
@@ -232,7 +233,7 @@ class _Actor:
         thing = task.object if task.object and not is_furniture(task.object) else clause.thing
         rises = self.posture is not Posture.STANDING
         where = self._found(word, "touch") if word else self._keeper(thing)
-        how = clause.deed.how or "pick up with the {hand} hand"
+        how = clause.deed.how[0] if clause.deed.how else "pick up with the {hand} hand"
         used = self._touch(task, where, how)
         (self.held.discard if clause.deed.kind == "put" else self.held.add)(thing)
         return used, "; ".join(filter(None, (_RISES_FOR_IT if rises else "", clause.deed.why)))
@@ -250,18 +251,18 @@ class _Actor:
     def _operate(self, task: SubTask, clause: Clause, word: str) -> tuple[list[int], str]:
         """An interaction with something that stands there: a hand is laid on it, unless it is done from one's seat."""
         if self.posture is not Posture.STANDING and (not word or word == self.at or "remote" in self.held):
-            return self._while_resting(task.text, "", _FROM_THERE)
+            return self._while_resting(task.text, (), _FROM_THERE)
         if self.seat is not None and "remote" in self.held:
             self._rest(*self.seat)
-            return self._while_resting(task.text, "", _FROM_THERE)
+            return self._while_resting(task.text, (), _FROM_THERE)
         thing = clause.thing
         where = self._found(word, "touch") if word else self._near()
-        if not where or is_one(thing, FIXED):
+        if not where or is_fixed(thing):
             raise _CannotError(f"“{thing or task.text}” is no furniture with a surface that a hand could be laid on")
         rises = self.posture is not Posture.STANDING
-        how = clause.deed.how
+        how = clause.deed.how[0]
         if "{hand}" not in how and task.hand not in (None, "right", "both"):
-            how = TOUCH
+            how = household().captions.touch
         used = self._touch(task, where, how)
         return used, "; ".join(filter(None, (_RISES_FOR_IT if rises else "", clause.deed.why)))
 
@@ -281,26 +282,28 @@ class _Actor:
             need = "touch" if self.room.find(word) and not self.room.find(word, "sit") else "sit"
             where = self._found(word, need)
             if need == "touch":
-                return self._touch(task, where, TOUCH), _UNDRAWN
+                return self._touch(task, where, household().captions.touch), _UNDRAWN
             self._rest(Skill.SITDOWN, where)
         elif self.seat is not None and self.posture is Posture.STANDING:
             self._rest(*self.seat)
         if self.posture is not Posture.STANDING:
-            how = PHONE["left" if task.hand == "left" else "right"] if on_the_phone else deed.how
+            captions = household().captions
+            how = (captions.phone_by_hand["left" if task.hand == "left" else "right"],) if on_the_phone else deed.how
             if self.posture is Posture.LYING:
-                how = LYING.get(clause.verb, "")
-            other = "it is shown with the right hand" if task.hand == "left" and "right hand" in how else ""
+                how = tuple(filter(None, [captions.lie_by_verb.get(clause.verb)]))
+            right = any("right hand" in one for one in how)
+            other = "it is shown with the right hand" if task.hand == "left" and right else ""
             return self._while_resting(task.text, how, "; ".join(filter(None, (deed.why, other))))
         if on_the_phone:
             hand = "left" if task.hand == "left" else "right"
             self.at = ""
-            return self._add(Skill.LOCO, caption_of([task.text], deed.how.format(hand=hand)), "floor"), deed.why
+            return self._add(Skill.LOCO, caption_of([task.text], deed.how[0].format(hand=hand)), "floor"), deed.why
         where = self._near()
         if not where:
             raise _CannotError("there is no seat and no furniture near to do it at")
-        return self._touch(task, where, TOUCH), _UNDRAWN
+        return self._touch(task, where, household().captions.touch), _UNDRAWN
 
-    def _while_resting(self, text: str, how: str, why: str) -> tuple[list[int], str]:
+    def _while_resting(self, text: str, how: Sequence[str], why: str) -> tuple[list[int], str]:
         """Do it in the rest the body is in; the caption names it, and a pose of its own shows it."""
         if self.posture is Posture.STANDING and self.seat is not None:
             self._rest(*self.seat)
@@ -332,9 +335,8 @@ class _Actor:
         """What the body stands at, if it can be touched."""
         return self.room.find(self.at) if self.at else ""
 
-    def _one_of(self, captions: str) -> str:
-        options = captions.split("|")
-        return options[int(self.rng.integers(len(options)))]
+    def _one_of(self, captions: Sequence[str]) -> str:
+        return captions[int(self.rng.integers(len(captions)))]
 
 
 def _furniture_of(task: SubTask) -> str:

@@ -11,15 +11,13 @@ from typing import Final, Literal
 from motion_backend.motion import Posture
 from motion_backend.planners.markov_planner import Category, Hand
 from planner_service.tasks.household_knowledge import (
-    ANYWHERE,
-    FIXED,
-    SEATS,
-    TABLES,
     Deed,
-    is_one,
+    any_of,
+    anywhere,
+    household,
+    is_fixed,
     kept_at,
     vessel_of,
-    words,
 )
 from planner_service.tasks.instruction_parser import Clause, clauses, is_furniture
 from planner_service.tasks.task_actions import Surroundings
@@ -102,7 +100,7 @@ class Preparing:
         """A hand that holds nothing, the right one if it can be; one is emptied if need be."""
         taken = set(self.held.values())
         if "both" in taken or {"left", "right"} <= taken:
-            self.put(next(iter(self.held)), self.at or self.room.first(words(ANYWHERE)) or "table")
+            self.put(next(iter(self.held)), self.at or self.room.first(anywhere()) or "table")
             taken = set(self.held.values())
         return "left" if "right" in taken or "both" in taken else "right"
 
@@ -121,7 +119,7 @@ class Preparing:
         """Lay down what a hand holds that is to take something else."""
         for thing, holding in list(self.held.items()):
             if hand == "both" or holding in (hand, "both"):
-                self.put(thing, self.at or self.room.first(words(ANYWHERE)) or "table")
+                self.put(thing, self.at or self.room.first(anywhere()) or "table")
 
 
 def with_hand(hand: str) -> str:
@@ -129,9 +127,6 @@ def with_hand(hand: str) -> str:
     return "with both hands" if hand == "both" else f"with the {hand} hand"
 
 
-BESIDE: Final = {"desk": "office chair, chair, stool, armchair", "coffee table": "sofa, armchair, stool, chair"}
-"""Seats at a table; at any other, `CHAIRS`."""
-CHAIRS: Final = "dining chair, chair, stool, bench, office chair, armchair, sofa"
 _GAMES: Final = ("game", "video game", "computer game", "console")
 
 
@@ -252,9 +247,10 @@ class _Doing(Preparing):
             if fresh:
                 self.fetched[tool] = self.at
         hand = hand or ("both" if clause.deed.hands == "both" and not self.held else self.free_hand())
-        if not (is_fixed := is_one(clause.thing, FIXED)):
+        fixed = is_fixed(clause.thing)
+        if not fixed:
             self.walk(self._workplace(clause))
-        where = None if is_fixed else self.at
+        where = None if fixed else self.at
         self.add(f"{clause.phrase} {with_hand(hand)}", "interaction", hand, clause.thing or tool or None, where)
 
     def _use(self, clause: Clause) -> None:
@@ -303,8 +299,7 @@ class _Doing(Preparing):
     # Where it is done.
 
     def _first(self, deed: Deed, need: str) -> str:
-        known = words(deed.where)
-        return self.room.first(known, need) or known[0]
+        return self.room.first(deed.where, need) or deed.where[0]
 
     def _settle(self, clause: Clause, place: str) -> None:
         """Sit where it is done; where there is a table and no seat to it, stand there."""
@@ -319,7 +314,9 @@ class _Doing(Preparing):
         if place and "sit" in furniture.affordances(place) and furniture.class_of(place) != "table":
             return self.named(place, "sit")
         at_table = place and furniture.group_of(place) == "surface"
-        options = words(BESIDE.get(furniture.display_name(place), CHAIRS) if at_table else clause.deed.where or SEATS)
+        home = household().home
+        at_tables = home.seats_beside.get(furniture.display_name(place), home.seats_at_a_table)
+        options = at_tables if at_table else clause.deed.where or any_of("seat")
         return self.room.first(options, "sit") or options[0]
 
     @staticmethod
@@ -336,7 +333,7 @@ class _Doing(Preparing):
             return self._first(clause.deed, "touch")
         if self.posture is Posture.STANDING and self.at:
             return self.at
-        options = kept_at(clause.thing) if clause.thing else words(TABLES)
+        options = kept_at(clause.thing) if clause.thing else any_of("table")
         return self.room.first(options) or options[0]
 
 

@@ -7,8 +7,7 @@ from dataclasses import replace
 from typing import Final
 
 from motion_backend.motion import Character
-from planner_service.narration.tense import is_verb_form
-from planner_service.themes.sentence_parser import is_verb
+from planner_service.themes.lexicon import is_verb, is_verb_form
 
 _NAMES: Final = {
     "she": """

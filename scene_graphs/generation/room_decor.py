@@ -7,14 +7,12 @@ from shapely import Polygon
 from scene_graphs.furniture import group_of
 from scene_graphs.generation.furniture_placement import Arrangement, Item
 from scene_graphs.generation.random_choices import Luck, size_of
+from scene_graphs.generation.room_recipes import recipe_of
 from scene_graphs.generation.room_shell import Rectangle, rectangle
 from scene_graphs.layout import Placed, Point2
 
 PICTURE_HEIGHT = 1.35
 """Height of a picture's lower edge, and the height above which furniture hides it."""
-CEILING_LAMPS = {"bedroom": 0.75, "living_room": 0.86, "living_dining": 0.76, "dining_room": 0.42, "study": 0.47}
-"""Share of the rooms without a lamp over a table that have one under the ceiling."""
-
 RUGS = {
     "double_bed": (1.1, 1.6, 0.35),
     "single_bed": (1.1, 1.6, 0.35),
@@ -29,7 +27,8 @@ def finish(room: Arrangement, luck: Luck) -> None:
     _rug(room)
     _pictures(room)
     hangs = any(placed.category == "pendant_lamp" for placed in room.placed)
-    if luck.has("ceiling lamp", CEILING_LAMPS[luck.kind]) and (luck.kind == "living_dining" or not hangs):
+    lit = luck.has("ceiling lamp", recipe_of(luck.kind).ceiling_lamp_share)
+    if lit and (luck.kind == "living_dining" or not hangs):
         size = size_of(room.rng, "ceiling_lamp")
         room.add(Item("ceiling_lamp", 0.0, 0.0, size, 0.0, round(room.shell.height - size[1], 3)), _middle(room), 0.0)
 

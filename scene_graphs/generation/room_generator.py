@@ -14,7 +14,7 @@ from scene_graphs.furniture import ROOM_TYPES, categories_of
 from scene_graphs.generation.furniture_placement import Arrangement
 from scene_graphs.generation.random_choices import Luck
 from scene_graphs.generation.room_decor import finish
-from scene_graphs.generation.room_recipes import FLOOR, L_SHAPED, RECIPES
+from scene_graphs.generation.room_recipes import furnished, recipe_of
 from scene_graphs.generation.room_shell import build_shell
 from scene_graphs.layout import Layout
 
@@ -30,9 +30,9 @@ DINERS = 4
 def generate_room(room_type: str, seed: int) -> Layout:
     """A furnished room of one of `ROOM_TYPES`, some of them L-shaped; the same type and seed give the same room.
 
-    Living rooms of odd seeds are living-dining rooms. What falls to a room follows real rooms (`arranging.recipes`)
-    within every `arranging.luck.BLOCK` seeds. Nothing overlaps or blocks a door, and everything to sit, lie or touch
-    can be walked to from the door (`room_validation.validate` finds nothing). ValueError for another room type.
+    Living rooms of odd seeds are living-dining rooms. What falls to a room follows real rooms (`room_recipes`)
+    within every `random_choices.BLOCK` seeds. Nothing overlaps or blocks a door, and everything to sit, lie or touch
+    can be walked to from the door (`RoomCheck.problems` finds nothing). ValueError for another room type.
     """
     if room_type not in ROOM_TYPES:
         raise ValueError(f"room_type must be one of {', '.join(ROOM_TYPES)}, got {room_type!r}")
@@ -75,10 +75,9 @@ def _library_room(seed: int, index: int) -> Layout:
 
 def _try_room(rng: np.random.Generator, room_type: str, luck: Luck, growth: float) -> Layout | None:
     """One attempt to find a place for everything that falls to the room, where it can be used."""
-    steps = RECIPES[luck.kind](luck)
-    least, more = FLOOR[luck.kind]
-    area = growth * (least + more * len(steps)) * float(rng.uniform(0.9, 1.15))
-    shell = build_shell(rng, area, luck.has("L shape", L_SHAPED[luck.kind]))
+    steps, recipe = furnished(luck), recipe_of(luck.kind)
+    area = growth * (recipe.floor_m2 + recipe.floor_per_extra_m2 * len(steps)) * float(rng.uniform(0.9, 1.15))
+    shell = build_shell(rng, area, luck.has("L shape", recipe.l_shaped_share))
     room = Arrangement(shell, rng)
     if not all(step(room) for step in steps):
         return None

@@ -6,9 +6,13 @@ A recipe says what falls to a room; where it goes is tried until all of it fits.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
+from scene_graphs.data_tables import read_table, require_known, table
+from scene_graphs.furniture import catalogue
 from scene_graphs.generation import furniture_groups
 from scene_graphs.generation.furniture_placement import Arrangement, Group, Item
 from scene_graphs.generation.random_choices import Luck, size_of
@@ -16,27 +20,129 @@ from scene_graphs.generation.random_choices import Luck, size_of
 Step = Callable[[Arrangement], bool]
 """Puts something into a room; False if it found no place."""
 Build = Callable[[np.random.Generator], Group]
-Extras = tuple[tuple[str, float, Step], ...]
-"""What it is, the share of rooms that have it, and how it is put there."""
+NOTHING = "nothing"
+"""A choice that puts nothing in."""
 
-OVERSAMPLED = {
-    ("bedroom", "nightstand"): 0.88,
-    ("bedroom", "wardrobe"): 0.80,
-    ("living_room", "coffee_table"): 0.97,
-    ("living_dining", "coffee_table"): 0.97,
-}
-"""Share of rooms with what stories ask for more often than real rooms have it. Studies are a quarter of all rooms."""
 
-FLOOR = {
-    "bedroom": (11.0, 1.3),
-    "living_room": (16.5, 1.25),
-    "living_dining": (27.0, 1.2),
-    "dining_room": (14.0, 0.9),
-    "study": (7.8, 1.3),
-}
-"""Square metres of a room with the least in it, and for every extra."""
-L_SHAPED = {"bedroom": 0.16, "living_room": 0.24, "living_dining": 0.5, "dining_room": 0.16, "study": 0.12}
-"""Share of rooms with six corners instead of four."""
+@table
+class Extra:
+    """What stands in some rooms beside the main piece: one piece by itself, or a group of pieces."""
+
+    share: float
+    """Of the rooms that have it."""
+    piece: str = ""
+    front_m: float = 0.6
+    """Floor that is kept free before the piece."""
+    in_corner: bool = False
+    """Whether the piece stands in a corner where one is free."""
+    group: Literal["", "work place", "dressing place", "watching place", "reading place", "sofa corner"] = ""
+    seat: str = ""
+    """Of a group: a category, or the choice among some."""
+    lamp: str = ""
+    """Of a group: the detail that it is."""
+    table: str = ""
+    """Of a group: the detail that it is, or the choice among some."""
+
+    def __post_init__(self) -> None:
+        if bool(self.piece) == bool(self.group):
+            raise ValueError("it is either a piece or a group")
+        require_known("piece", [self.piece] if self.piece else [], catalogue().categories)
+
+
+@table
+class Recipe:
+    """What a kind of room is furnished with."""
+
+    floor_m2: float
+    """Of a room with the least in it."""
+    floor_per_extra_m2: float
+    l_shaped_share: float
+    """Share of rooms with six corners instead of four."""
+    ceiling_lamp_share: float
+    """Share of the rooms without a lamp over a table that have one under the ceiling."""
+    oversampled_shares: dict[str, float]
+    """Share of rooms with what stories ask for more often than real rooms have it. Studies are a quarter of all
+    rooms."""
+    shares: dict[str, float]
+    """Of the rooms that have a detail of a group."""
+    choices: dict[str, dict[str, float]]
+    """What is one of several, with their shares."""
+    extras: dict[str, Extra]
+
+    def __post_init__(self) -> None:
+        extras = {f"extras.{name}": extra.share for name, extra in self.extras.items()}
+        choices = {f"choices.{name}.{one}": part for name, parts in self.choices.items() for one, part in parts.items()}
+        for place, share in {**self.oversampled_shares, **self.shares, **extras, **choices}.items():
+            if not 0 < share <= 1:
+                raise ValueError(f"{place}: {share} is no share")
+        for name, extra in self.extras.items():
+            if self.oversampled_shares.get(name, extra.share) != extra.share:
+                raise ValueError(f"extras.{name}.share: {extra.share} is not what oversampled_shares says")
+            named = [word for word in (extra.seat, extra.lamp, extra.table) if word]
+            require_known(f"extras.{name}", named, {*catalogue().categories, *self.choices, *self.shares})
+        for name, parts in self.choices.items():
+            if abs(sum(parts.values()) - 1) > 1e-9:
+                raise ValueError(f"choices.{name}: the shares add up to {sum(parts.values()):g}, not to 1")
+
+
+@table
+class Recipes:
+    """By kind of room."""
+
+    bedroom: Recipe
+    living_room: Recipe
+    living_dining: Recipe
+    dining_room: Recipe
+    study: Recipe
+
+
+def recipe_of(kind: str) -> Recipe:
+    """What a kind of room is furnished with, from data/room_recipes.toml."""
+    recipe: Recipe = getattr(read_table("scene_graphs", "room_recipes.toml", Recipes), kind)
+    return recipe
+
+
+@dataclass(frozen=True)
+class Fate:
+    """What falls to one room."""
+
+    luck: Luck
+    recipe: Recipe
+
+    def has(self, word: str) -> bool:
+        """Whether it has a detail."""
+        return self.luck.has(word, self.recipe.shares[word])
+
+    def choose(self, word: str) -> str:
+        """What it has of several, "" for nothing."""
+        chosen = self.luck.choose(word, self.recipe.choices[word])
+        return "" if chosen == NOTHING else chosen
+
+    def extras(self, *without: str) -> list[Step]:
+        """The steps of what it has beside the main piece."""
+        extras = self.recipe.extras.items()
+        return [self.step(word) for word, extra in extras if word not in without and self.luck.has(word, extra.share)]
+
+    def step(self, word: str) -> Step:
+        """How an extra is put into a room."""
+        extra = self.recipe.extras[word]
+        if extra.piece:
+            return in_corner(extra.piece) if extra.in_corner else alone(extra.piece, extra.front_m)
+        seat = self.choose(extra.seat) if extra.seat in self.recipe.choices else extra.seat
+        lamp = bool(extra.lamp) and self.has(extra.lamp)
+        match extra.group:
+            case "work place":
+                return at_wall(lambda rng: furniture_groups.work_place(rng, seat, lamp))
+            case "dressing place":
+                return at_wall(lambda rng: furniture_groups.dressing_place(rng, seat))
+            case "reading place":
+                small = self.choose(extra.table) if extra.table else ""
+                return at_wall(lambda rng: furniture_groups.reading_place(rng, seat, lamp, small or None))
+            case "sofa corner":
+                table = self.has(extra.table)
+                return at_wall(lambda rng: furniture_groups.sofa_corner(rng, seat, table))
+            case _:
+                return at_wall(furniture_groups.watching_place)
 
 
 def at_wall(build: Build, tries: int = 8) -> Step:
@@ -61,160 +167,48 @@ def in_corner(category: str) -> Step:
     return put
 
 
-def bedroom(luck: Luck) -> list[Step]:
-    """A bed with nightstands, then storage, a place to dress, work or rest."""
-    dresser_seat = luck.choose("dressing seat", {"dressing_chair": 0.5, "stool": 0.5})
-    extras: Extras = (
-        ("wardrobe", OVERSAMPLED["bedroom", "wardrobe"], alone("wardrobe")),
-        (
-            "desk",
-            0.17,
-            at_wall(lambda rng: furniture_groups.work_place(rng, "dining_chair", luck.has("desk lamp", 0.3))),
-        ),
-        ("dressing table", 0.17, at_wall(lambda rng: furniture_groups.dressing_place(rng, dresser_seat))),
-        ("tv stand", 0.22, at_wall(furniture_groups.watching_place)),
-        (
-            "armchair",
-            0.12,
-            at_wall(lambda rng: furniture_groups.reading_place(rng, "armchair", luck.has("reading lamp", 0.4))),
-        ),
-        ("loveseat", 0.04, alone("loveseat_sofa")),
-        ("dresser", 0.12, alone("dresser")),
-        ("cabinet", 0.14, alone("cabinet")),
-        ("bookshelf", 0.10, alone("bookshelf")),
-        ("shelf", 0.06, alone("shelf")),
-        ("mirror", 0.15, alone("mirror")),
-        ("plant", 0.14, in_corner("plant")),
-    )
-    return [_bed(luck), *wanted(luck, extras)]
+def furnished(luck: Luck) -> list[Step]:
+    """The steps that furnish the room with that luck, in order."""
+    fate = Fate(luck, recipe_of(luck.kind))
+    match luck.kind:
+        case "bedroom":
+            return [_bed(fate), *fate.extras()]
+        case "study":
+            return _study(fate)
+        case "dining_room":
+            return [_dining(fate, spread=0.25), *fate.extras()]
+        case "living_dining":
+            return [_lounge(fate), _dining(fate), *fate.extras()]
+        case _:
+            eats = [_dining(fate)] if fate.choose("dining seats") else []
+            return [_lounge(fate), *eats, *fate.extras()]
 
 
-def living_room(luck: Luck) -> list[Step]:
-    """A sofa with its coffee table, mostly before a tv, sometimes a small table to eat at, storage along the walls."""
-    eats = {"": 0.46, "2": 0.16, "3": 0.14, "4": 0.24}
-    seats = luck.choose("dining seats", eats)
-    table = [_dining(int(seats))] if seats else []
-    return [_lounge(luck), *table, *wanted(luck, _living_extras(luck, books=0.34, storage=1.15))]
-
-
-def living_dining(luck: Luck) -> list[Step]:
-    """A lounge and a table to dine at in one large room."""
-    seats = luck.choose("dining seats", {"4": 0.58, "5": 0.1, "6": 0.26, "benches": 0.04, "2": 0.02})
-    table = _dining(0 if seats == "benches" else int(seats), luck.has("lamp over the table", 0.5))
-    return [_lounge(luck), table, *wanted(luck, _living_extras(luck, books=0.2, storage=1.3))]
-
-
-def dining_room(luck: Luck) -> list[Step]:
-    """A table with chairs pulled out, under a lamp; sideboards and cabinets along the walls."""
-    seats = luck.choose("dining seats", {"4": 0.56, "5": 0.1, "6": 0.28, "benches": 0.06})
-    table = _dining(0 if seats == "benches" else int(seats), luck.has("lamp over the table", 0.72), spread=0.25)
-    small = _one_of(luck, "small table", "side_table", "round_end_table")
-    extras: Extras = (
-        ("sofa", 0.09, alone("multi_seat_sofa")),
-        ("refrigerator", 0.10, alone("refrigerator")),
-        ("sideboard", 0.38, alone("console_table", 0.5)),
-        ("cabinet", 0.18, alone("cabinet", 0.5)),
-        ("wine cabinet", 0.22, alone("wine_cabinet", 0.5)),
-        (
-            "armchair",
-            0.12,
-            at_wall(lambda rng: furniture_groups.reading_place(rng, "armchair", luck.has("lamp", 0.5), small)),
-        ),
-        ("bookshelf", 0.14, alone("bookshelf", 0.5)),
-        ("shelf", 0.15, alone("shelf", 0.45)),
-        ("stool", 0.15, alone("stool", 0.35)),
-        ("floor lamp", 0.12, alone("floor_lamp", 0.3)),
-        ("plant", 0.24, in_corner("plant")),
-    )
-    return [table, *wanted(luck, extras)]
-
-
-def study(luck: Luck) -> list[Step]:
+def _study(fate: Fate) -> list[Step]:
     """A desk with its chair and books, or books and a place to read them; often somewhere softer to sit."""
-    seat = luck.choose("desk seat", {"office_chair": 0.6, "dining_chair": 0.25, "stool": 0.15})
-    lamp = luck.has("desk lamp", 0.3)
-    has_desk, is_grand = luck.has("desk", 0.80), luck.has("grand desk", 0.3)
+    seat, lamp, is_grand = fate.choose("desk seat"), fate.has("desk lamp"), fate.has("grand desk")
+    if not fate.has("desk"):
+        return [alone("bookshelf"), fate.step("reading place"), *fate.extras("reading place")]
 
     def work(room: Arrangement) -> bool:
         if is_grand and room.against_wall(furniture_groups.free_desk(room.rng, seat, lamp), tries=6) is not None:
             return True
         return room.against_wall(furniture_groups.work_place(room.rng, seat, lamp)) is not None
 
-    reads = at_wall(lambda rng: furniture_groups.reading_place(rng, reader, luck.has("floor lamp", 0.6), small))
-    reader = luck.choose("reading seat", {"armchair": 0.7, "lounge_chair": 0.15, "lazy_sofa": 0.15})
-    small = _one_of(luck, "small table", "side_table", "round_end_table")
-    first = [work] if has_desk else [alone("bookshelf"), reads]
-    extras: Extras = (
-        (
-            "sofa",
-            0.08,
-            at_wall(lambda rng: furniture_groups.sofa_corner(rng, "multi_seat_sofa", luck.has("coffee table", 0.5))),
-        ),
-        ("chaise longue", 0.02, alone("chaise_longue_sofa")),
-        ("wardrobe", 0.12, alone("wardrobe")),
-        ("books", 0.34, alone("bookshelf")),
-        ("more books", 0.2, alone("bookshelf")),
-        ("cabinet", 0.14, alone("cabinet")),
-        ("shelf", 0.10, alone("shelf")),
-        ("visitor's chair", 0.07, alone("dining_chair")),
-        ("plant", 0.40, in_corner("plant")),
-    )
-    reading: Extras = (("reading place", 0.30, reads),) if has_desk else ()
-    return [*first, *wanted(luck, reading + extras)]
+    return [work, *fate.extras()]
 
 
-RECIPES: dict[str, Callable[[Luck], list[Step]]] = {
-    "bedroom": bedroom,
-    "living_room": living_room,
-    "living_dining": living_dining,
-    "dining_room": dining_room,
-    "study": study,
-}
-
-
-def wanted(luck: Luck, extras: Extras) -> list[Step]:
-    """The steps of what falls to a room."""
-    return [step for word, share, step in extras if luck.has(word, share)]
-
-
-def _living_extras(luck: Luck, books: float, storage: float) -> Extras:
-    """What stands in living rooms beside the lounge, with the share of bookshelves and how much other storage."""
-    reader = luck.choose("reading seat", {"armchair": 0.85, "lounge_chair": 0.1, "lazy_sofa": 0.05})
-    small = _one_of(luck, "small table", "side_table", "round_end_table")
-    lamp = luck.has("reading lamp", 0.75)
-    return (
-        ("loveseat", 0.08, alone("loveseat_sofa")),
-        (
-            "desk",
-            0.10,
-            at_wall(lambda rng: furniture_groups.work_place(rng, "office_chair", luck.has("desk lamp", 0.3))),
-        ),
-        ("reading place", 0.28, at_wall(lambda rng: furniture_groups.reading_place(rng, reader, lamp, small))),
-        ("sideboard", 0.3 * storage, alone("console_table")),
-        ("cabinet", 0.28 * storage, alone("cabinet")),
-        ("bookshelf", books, alone("bookshelf")),
-        ("wine cabinet", 0.14 * storage, alone("wine_cabinet")),
-        ("shelf", 0.20 * storage, alone("shelf")),
-        ("end table", 0.36 * storage, alone("round_end_table", 0.45)),
-        ("ottoman", 0.18, alone("ottoman", 0.4)),
-        ("stool", 0.20, alone("stool", 0.4)),
-        ("floor lamp", 0.28, alone("floor_lamp", 0.3)),
-        ("plant", 0.36, in_corner("plant")),
-    )
-
-
-def _bed(luck: Luck) -> Step:
+def _bed(fate: Fate) -> Step:
     """A double bed free at both sides, a narrow one with its far side in a corner, or a sofa to sleep on."""
-    category = luck.choose(
-        "bed", {"double_bed": 0.74, "single_bed": 0.17, "kids_bed": 0.03, "bunk_bed": 0.02, "sofa_bed": 0.04}
-    )
+    category, oversampled = fate.choose("bed"), fate.recipe.oversampled_shares
     # A sofa bed has none, so that the others have a little more.
-    stands = int(luck.has("nightstand", OVERSAMPLED["bedroom", "nightstand"] / 0.96))
-    lamps = luck.has("bedside lamps", 0.15)
+    others = 1 - fate.recipe.choices["bed"]["sofa_bed"]
+    stands = int(fate.luck.has("nightstand", oversampled["nightstand"] / others))
+    lamps = fate.has("bedside lamps")
     if category == "sofa_bed":
         return at_wall(furniture_groups.sofa_bed, 12)
     if category == "double_bed":
-        stands *= 1 + int(luck.has("second nightstand", 0.85))
+        stands *= 1 + int(fate.has("second nightstand"))
 
         def wide(room: Arrangement) -> bool:
             sides = (-1, 1) if room.rng.random() < 0.5 else (1, -1)
@@ -232,16 +226,12 @@ def _bed(luck: Luck) -> Step:
     return narrow
 
 
-def _lounge(luck: Luck) -> Step:
+def _lounge(fate: Fate) -> Step:
     """A sofa before a tv or at a wall, or two armchairs; a coffee table before them."""
-    sofa = luck.choose(
-        "sofa", {"multi_seat_sofa": 0.62, "l_shaped_sofa": 0.28, "loveseat_sofa": 0.07, "armchairs": 0.03}
-    )
-    tv = luck.has("tv stand", 0.76)
-    table = luck.has("coffee table", OVERSAMPLED["living_room", "coffee_table"])
-    chair = luck.choose("lounge seat", {"armchair": 0.85, "lounge_chair": 0.1, "lazy_sofa": 0.05})
-    seats = (chair,) * (int(luck.has("lounge seats", 0.2)) * (1 + int(luck.has("two of them", 0.5))))
-    end = luck.choose("sofa end", {"": 0.5, "side_table": 0.25, "round_end_table": 0.25})
+    sofa, tv = fate.choose("sofa"), fate.has("tv stand")
+    table = fate.luck.has("coffee table", fate.recipe.oversampled_shares["coffee_table"])
+    seats = (fate.choose("lounge seat"),) * (int(fate.has("lounge seats")) * (1 + int(fate.has("two of them"))))
+    end = fate.choose("sofa end")
 
     def before_tv(room: Arrangement) -> bool:
         for side in (int(index) for index in room.rng.permutation(len(room.shell.sides))):
@@ -259,12 +249,15 @@ def _lounge(luck: Luck) -> Step:
     return before_tv if tv else at_a_wall
 
 
-def _dining(seats: int, lamp: bool = False, spread: float = 0.85) -> Step:
-    """A table with that many chairs (0: with benches) in the room, perhaps under a lamp."""
+def _dining(fate: Fate, spread: float = 0.85) -> Step:
+    """A table with chairs or benches in the room, perhaps under a lamp."""
+    chosen = fate.choose("dining seats")
+    lamp = "lamp over the table" in fate.recipe.shares and fate.has("lamp over the table")
 
     def put(room: Arrangement) -> bool:
         rng = room.rng
-        group = furniture_groups.dining(rng, seats) if seats else furniture_groups.dining_on_benches(rng)
+        on_benches = chosen == "benches"
+        group = furniture_groups.dining_on_benches(rng) if on_benches else furniture_groups.dining(rng, int(chosen))
         if not room.in_the_room(group, spread, tries=60):
             return False
         table = next(placed for placed in room.placed if placed.category == "dining_table")
@@ -275,8 +268,3 @@ def _dining(seats: int, lamp: bool = False, spread: float = 0.85) -> Step:
         return True
 
     return put
-
-
-def _one_of(luck: Luck, word: str, first: str, second: str) -> str | None:
-    """One of two categories to half of the rooms, neither to the other half."""
-    return luck.choose(word, {first: 0.25, second: 0.25, "": 0.5}) or None

@@ -17,17 +17,14 @@ from scene_graphs.furniture import Furniture, canonical
 from scene_graphs.graph.count_table import Counts
 from scene_graphs.graph.furniture_graph import FurnitureGraph
 from scene_graphs.graph.packed_graphs import (
-    COUNTED,
-    COUNTS,
     FAR,
-    KNOWN,
     LEVELS,
-    NUMBER,
     Ints,
     PackedRooms,
     flags,
     levels,
     refuse_loops,
+    vocabulary,
 )
 from scene_graphs.graph.substitution_costs import CostTable, Key, Term, edge_terms, node_terms
 
@@ -181,27 +178,29 @@ def _laid_out(
     from scene_graphs.graph import branch_and_bound_kernel
 
     size, costs, terms = len(query.nodes), query.costs, query.node_terms
+    number, counts_of = vocabulary().number, vocabulary().counts
+    known = len(number)
     parts = [part for term in terms for part in term.parts]
     keys: list[Key] = [term.key for term in terms] + [key for key, _ in parts]
-    rare = {word: number for word in query.words if (number := rooms.number_of(word)) >= len(KNOWN)}
-    code_of = {word: len(KNOWN) + 1 + place for place, word in enumerate(rare)}
-    level = np.full((size, len(KNOWN) + 1 + len(rare)), FAR, dtype=np.uint8)
+    rare = {word: place for word in query.words if (place := rooms.number_of(word)) >= known}
+    code_of = {word: known + 1 + place for place, word in enumerate(rare)}
+    level = np.full((size, known + 1 + len(rare)), FAR, dtype=np.uint8)
     for place, word in enumerate(query.words):
-        if word in NUMBER:
-            level[place, : len(KNOWN)] = levels()[NUMBER[word]]
+        if word in number:
+            level[place, :known] = levels()[number[word]]
         elif word in rare:
             level[place, code_of[word]] = 0
     counters = np.full((level.shape[1], 1 + max(_SLOTS.values())), -1, dtype=np.int64)
     for counter, key in enumerate(keys):
         slot = _SLOTS[key[0]] if counter < len(terms) else _SLOTS["part"]
-        counters[code_of[key[1]] if key[1] in rare else COUNTS.get(key, _NOTHING), slot] = counter
+        counters[code_of[key[1]] if key[1] in rare else counts_of.get(key, _NOTHING), slot] = counter
     rows, rare_counts = _rows([*keys, *(term.key for term in query.edge_terms)], counts)
     last = [term.last for term in terms]
     own = [costs.of(word) for word in query.words]
     seconds = [b for _, b in query.edges]
     asked = branch_and_bound_kernel.Asked(
         rare=_ints(rare.values()),
-        known=len(KNOWN),
+        known=known,
         level=level,
         change=_ints(cost - c.insert for c in own for cost in (0, c.sub_class, c.sub_group)).reshape(size, len(LEVELS)),
         most_level=1 if query.strict else len(LEVELS),
@@ -232,9 +231,10 @@ def _ints(values: Iterable[int]) -> Ints:
 
 def _rows(keys: Sequence[Key], counts: Counts) -> tuple[Ints, NDArray[np.uint8]]:
     """The row of each key: in the table of counts, or after it in one that is made here."""
-    rare = list(dict.fromkeys(key for key in keys if key not in COUNTED))
-    row_of = {key: len(COUNTED) + place for place, key in enumerate(rare)}
-    rows = np.array([row_of[key] if key in row_of else COUNTED[key] for key in keys], dtype=np.int64)
+    counted = vocabulary().counted
+    rare = list(dict.fromkeys(key for key in keys if key not in counted))
+    row_of = {key: len(counted) + place for place, key in enumerate(rare)}
+    rows = np.array([row_of[key] if key in row_of else counted[key] for key in keys], dtype=np.int64)
     made = np.zeros((len(rare), counts.table.shape[1]), dtype=np.uint8)
     for place, key in enumerate(rare):
         made[place] = counts.rare(key)

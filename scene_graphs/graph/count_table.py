@@ -5,31 +5,19 @@ Words that we do not know are counted when they are asked for: each would need a
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from scene_graphs.graph.packed_graphs import (
-    CLASS_STARTS,
-    COUNTED,
-    COUNTS,
-    GROUP_OF,
-    GROUP_STARTS,
-    GROUPS,
-    KNOWN,
-    PAIRS,
-    Ints,
-    PackedRooms,
-)
+from scene_graphs.graph.packed_graphs import Ints, PackedRooms, vocabulary
 from scene_graphs.graph.substitution_costs import Key
 
 MAX_COUNT: Final = 255
 """A count stops there: it may stand for more."""
 ANY_NUMBER: Final = 1 << 16
 _BLOCK: Final = 4096
-_PAIR: Final = np.array([[PAIRS.index((min(a, b), max(a, b))) for b in GROUPS] for a in GROUPS])
-_CLASS_OF_GROUP: Final = np.searchsorted(CLASS_STARTS, GROUP_STARTS)
 
 
 class Counts:
@@ -37,15 +25,17 @@ class Counts:
 
     def __init__(self, rooms: PackedRooms) -> None:
         self.rooms = rooms
-        self.table = np.empty((len(COUNTED), len(rooms)), dtype=np.uint8)
-        """(len(COUNTED), rooms)."""
-        known, rare_nodes, rare_edges = len(KNOWN), [], []
+        known, of_group = len(vocabulary()), vocabulary().group_of
+        count_of_groups = len(vocabulary().groups)
+        self.table = np.empty((len(vocabulary().counted), len(rooms)), dtype=np.uint8)
+        """(len(vocabulary().counted), rooms)."""
+        rare_nodes, rare_edges = [], []
         for start in range(0, len(rooms), _BLOCK):
             stop = min(start + _BLOCK, len(rooms))
             words, ends, room_of, room_of_edge = _unpacked(rooms, start, stop)
-            groups = np.where(words < known, GROUP_OF[np.minimum(words, known - 1)], words - known + len(GROUPS))
+            groups = np.where(words < known, of_group[np.minimum(words, known - 1)], words - known + count_of_groups)
             pairs = np.sort(groups[ends], axis=1)
-            rare = (words >= known, pairs[:, 1] >= len(GROUPS))
+            rare = (words >= known, pairs[:, 1] >= count_of_groups)
             self._count(start, stop, words[~rare[0]], room_of[~rare[0]], pairs[~rare[1]], room_of_edge[~rare[1]])
             rare_nodes.append((words[rare[0]], room_of[rare[0]] + start))
             rare_edges.append((_coded(pairs[rare[1]], rooms.words), room_of_edge[rare[1]] + start))
@@ -53,7 +43,7 @@ class Counts:
 
     def column(self, key: Key) -> NDArray[np.int32]:
         """How often each room has one thing, or `ANY_NUMBER` where the count may stand for more. (rooms,)."""
-        row = COUNTED.get(key)
+        row = vocabulary().counted.get(key)
         counts = (self.rare(key) if row is None else self.table[row]).astype(np.int32)
         return np.where(counts == MAX_COUNT, ANY_NUMBER, counts)
 
@@ -75,21 +65,30 @@ class Counts:
 
     def _number(self, name: str, of_group: bool) -> int:
         """The number of a word or, for edges, of a group: words that are not known are groups of their own; or -1."""
-        if of_group and name in GROUPS:
-            return GROUPS.index(name)
+        groups = vocabulary().groups
+        if of_group and name in groups:
+            return groups.index(name)
         number = self.rooms.number_of(name)
-        return number + (len(GROUPS) - len(KNOWN)) * of_group if number >= 0 else -1
+        return number + (len(groups) - len(vocabulary())) * of_group if number >= 0 else -1
 
     def _count(self, start: int, stop: int, words: Ints, room_of: Ints, pairs: Ints, room_of_edge: Ints) -> None:
         """Fill the table for some rooms."""
-        size = stop - start
-        of_word = np.bincount(words * size + room_of, minlength=len(KNOWN) * size).reshape(len(KNOWN), size)
-        of_class = np.add.reduceat(of_word, CLASS_STARTS)
-        of_group = np.add.reduceat(of_class, _CLASS_OF_GROUP)
-        of_kind = [of_word[inside].sum(axis=0) for key, inside in COUNTS.items() if key[0] == "kind"]
-        rows = _PAIR[pairs[:, 0], pairs[:, 1]]
-        of_pair = np.bincount(rows * size + room_of_edge, minlength=len(PAIRS) * size).reshape(len(PAIRS), size)
+        size, known = stop - start, vocabulary()
+        of_word = np.bincount(words * size + room_of, minlength=len(known) * size).reshape(len(known), size)
+        of_class = np.add.reduceat(of_word, known.class_starts)
+        of_group = np.add.reduceat(of_class, np.searchsorted(known.class_starts, known.group_starts))
+        of_kind = [of_word[inside].sum(axis=0) for key, inside in known.counts.items() if key[0] == "kind"]
+        rows = _pair_numbers()[pairs[:, 0], pairs[:, 1]]
+        of_pair = np.bincount(rows * size + room_of_edge, minlength=len(known.pairs) * size)
+        of_pair = of_pair.reshape(len(known.pairs), size)
         self.table[:, start:stop] = _clipped(np.concatenate([of_word, of_class, of_group, of_kind, of_pair]))
+
+
+@cache
+def _pair_numbers() -> Ints:
+    """The number of the pair of every two groups. (groups, groups)."""
+    known = vocabulary()
+    return np.array([[known.pairs.index((min(a, b), max(a, b))) for b in known.groups] for a in known.groups])
 
 
 def _unpacked(rooms: PackedRooms, start: int, stop: int) -> tuple[Ints, Ints, Ints, Ints]:
@@ -106,7 +105,7 @@ def _unpacked(rooms: PackedRooms, start: int, stop: int) -> tuple[Ints, Ints, In
 
 def _coded(pairs: Ints, words: tuple[str, ...]) -> Ints:
     """One number a pair of groups."""
-    codes: Ints = pairs[:, 0] * (len(GROUPS) + len(words)) + pairs[:, 1]
+    codes: Ints = pairs[:, 0] * (len(vocabulary().groups) + len(words)) + pairs[:, 1]
     return codes
 
 

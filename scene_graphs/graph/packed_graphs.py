@@ -4,7 +4,8 @@ Many short texts as one run of bytes: a tenth of the memory that as many Python 
 
 The furniture words as numbers, and the rows in which a room's furniture is counted.
 
-A number below `len(KNOWN)` is a known word; higher ones are words that only one set of rooms knows, in its own order.
+A number below `len(vocabulary())` is a known word; higher ones are words that only one set of rooms knows, in its own
+order.
 """
 
 from __future__ import annotations
@@ -22,11 +23,9 @@ from numpy.typing import NDArray
 
 from scene_graphs.furniture import (
     AFFORDANCES,
-    CATALOGUE,
-    GROUP_OF_CLASS,
-    KINDS,
     Furniture,
     canonical,
+    catalogue,
     categories_of,
     class_of,
     group_of,
@@ -106,46 +105,78 @@ class Texts(Sequence[str]):
         return self.letters.nbytes + self.starts.nbytes
 
 
-_NAMES: Final = {canonical(name) for name in (*GROUP_OF_CLASS, *GROUP_OF_CLASS.values())}
-KNOWN: Final = tuple(sorted({*CATALOGUE, *KINDS, *_NAMES}, key=lambda word: (group_of(word), class_of(word), word)))
-"""Every category and generic kind, and the names of classes and groups where somebody calls a thing so, in such an
-order that classes and groups are runs of numbers."""
-NUMBER: Final = {word: number for number, word in enumerate(KNOWN)}
-CLASSES: Final = tuple(dict.fromkeys(class_of(word) for word in KNOWN))
-GROUPS: Final = tuple(dict.fromkeys(group_of(word) for word in KNOWN))
 LEVELS: Final = ("same", "class", "group")
 """How near two words are, by number; `FAR` is across groups."""
 FAR: Final = len(LEVELS)
-
-
-CLASS_STARTS: Final = np.array([[class_of(word) for word in KNOWN].index(name) for name in CLASSES])
-"""The first word of every class."""
-GROUP_STARTS: Final = np.array([[group_of(word) for word in KNOWN].index(name) for name in GROUPS])
-"""The first word of every group."""
-GROUP_OF: Final = np.array([GROUPS.index(group_of(word)) for word in KNOWN], dtype=np.int64)
-MINOR: Final = np.array([is_minor(word) for word in KNOWN])
 EVERYTHING: Final = (1 << len(AFFORDANCES)) - 1
 """All affordances, as bits."""
-COUNTS: Final[dict[Key, Ints]] = {
-    **{("category", word): np.array([number]) for word, number in NUMBER.items()},
-    **{("class", name): np.array([n for n, w in enumerate(KNOWN) if class_of(w) == name]) for name in CLASSES},
-    **{("group", name): np.array([n for n, w in enumerate(KNOWN) if group_of(w) == name]) for name in GROUPS},
-    **{("kind", kind): np.array(sorted(NUMBER[w] for w in {*categories_of(kind), kind})) for kind in sorted(KINDS)},
-}
-"""The words that count as each category, class, group and generic kind; a kind names its categories and itself."""
-PAIRS: Final = tuple((a, b) for index, a in enumerate(GROUPS) for b in GROUPS[index:])
-"""Unordered pairs of groups, in alphabetical order."""
 
-COUNTED: Final[dict[Key, int]] = {key: row for row, key in enumerate([*COUNTS, *(("edge", *pair) for pair in PAIRS)])}
-"""The row of everything known that is counted."""
+
+class Vocabulary:
+    """The furniture words we know as numbers."""
+
+    def __init__(self) -> None:
+        known = catalogue()
+        names = {canonical(name) for name in (*known.group_of_class, *known.group_of_class.values())}
+        self.words: Final = tuple(
+            sorted({*known.class_of, *names}, key=lambda word: (group_of(word), class_of(word), word))
+        )
+        """Every category and generic kind, and the names of classes and groups where somebody calls a thing so, in such
+        an order that classes and groups are runs of numbers."""
+        self.number: Final = {word: number for number, word in enumerate(self.words)}
+        classes, groups = [class_of(word) for word in self.words], [group_of(word) for word in self.words]
+        self.groups: Final = tuple(dict.fromkeys(groups))
+        self.class_starts: Final = np.array([classes.index(name) for name in dict.fromkeys(classes)])
+        """The first word of every class."""
+        self.group_starts: Final = np.array([groups.index(name) for name in self.groups])
+        """The first word of every group."""
+        self.group_of: Final = np.array([self.groups.index(name) for name in groups], dtype=np.int64)
+        self.minor: Final = np.array([is_minor(word) for word in self.words])
+        self.counts: Final[dict[Key, Ints]] = {
+            **{("category", word): np.array([number]) for word, number in self.number.items()},
+            **{("class", name): _places(classes, name) for name in dict.fromkeys(classes)},
+            **{("group", name): _places(groups, name) for name in self.groups},
+            **{
+                ("kind", kind): np.array(sorted(self.number[word] for word in {*categories_of(kind), kind}))
+                for kind in sorted(known.kinds)
+            },
+        }
+        """The words that count as each category, class, group and generic kind; a kind names its categories and
+        itself."""
+        self.pairs: Final = tuple((a, b) for index, a in enumerate(self.groups) for b in self.groups[index:])
+        """Unordered pairs of groups, in alphabetical order."""
+        counted: list[Key] = [*self.counts, *(("edge", *pair) for pair in self.pairs)]
+        self.counted: Final = {key: row for row, key in enumerate(counted)}
+        """The row of everything known that is counted."""
+
+    def __len__(self) -> int:
+        return len(self.words)
+
+
+@cache
+def vocabulary() -> Vocabulary:
+    """The words of the catalogue, numbered."""
+    return Vocabulary()
+
+
+def _places(names: Sequence[str], name: str) -> Ints:
+    return np.flatnonzero(np.array(names) == name)
+
+
+def numbered(names: Iterable[str]) -> tuple[tuple[str, ...], dict[str, int]]:
+    """The names that are not known, in order, and the number of every word, theirs after the known ones'."""
+    known = vocabulary().number
+    words = tuple(sorted({name for name in names if name not in known}))
+    return words, known | {word: len(known) + place for place, word in enumerate(words)}
 
 
 @cache
 def levels() -> NDArray[np.uint8]:
     """How near a room's known word is to a query's: a place in `LEVELS`, or `FAR`. (query's word, room's word)."""
-    table = np.full((len(KNOWN), len(KNOWN)), FAR, dtype=np.uint8)
-    for row, word in enumerate(KNOWN):
-        for column, category in enumerate(KNOWN):
+    words = vocabulary().words
+    table = np.full((len(words), len(words)), FAR, dtype=np.uint8)
+    for row, word in enumerate(words):
+        for column, category in enumerate(words):
             if (level := level_between(word, category)) is not None:
                 table[row, column] = LEVELS.index(level)
     return table
@@ -177,7 +208,7 @@ class PackedRooms:
 
     ids: Texts
     words: tuple[str, ...]
-    """The furniture words that are not `KNOWN`, in order; their numbers follow on the known ones'."""
+    """The furniture words that `vocabulary` does not know, in order; their numbers follow on the known ones'."""
     categories: NDArray[np.uint32]
     """Of every node the number of its word. (nodes,)."""
     offers: NDArray[np.uint8]
@@ -219,8 +250,7 @@ class PackedRooms:
         for graph, nodes in zip(graphs, rooms, strict=True):
             _check(graph, nodes)
         names = [canonical(node[0]) for nodes in rooms for node in nodes]
-        words = tuple(sorted({name for name in names if name not in NUMBER}))
-        numbers = NUMBER | {word: len(KNOWN) + place for place, word in enumerate(words)}
+        words, numbers = numbered(names)
         data = [graph.nodes[node] for graph, nodes in zip(graphs, rooms, strict=True) for node in nodes]
         around = [_around(graph, nodes) for graph, nodes in zip(graphs, rooms, strict=True)]
         types = [list(dict.fromkeys(one)) for one in serves or [()] * len(graphs)]
@@ -262,12 +292,12 @@ class PackedRooms:
     @staticmethod
     def join(several: Sequence[PackedRooms]) -> PackedRooms:
         """One set of rooms after the other."""
-        words = tuple(sorted({word for rooms in several for word in rooms.words}))
+        known, words = len(vocabulary()), tuple(sorted({word for rooms in several for word in rooms.words}))
         serves = tuple(sorted({kind for rooms in several for kind in rooms.serves}))
         return PackedRooms(
             Texts.join([rooms.ids for rooms in several]),
             words,
-            np.concatenate([renumbered(rooms.categories, rooms.words, words, len(KNOWN)) for rooms in several]),
+            np.concatenate([renumbered(rooms.categories, rooms.words, words, known) for rooms in several]),
             np.concatenate([rooms.offers for rooms in several]),
             Texts.join([rooms.object_ids for rooms in several]),
             offsets(np.concatenate([np.diff(rooms.node_starts) for rooms in several])),
@@ -280,14 +310,16 @@ class PackedRooms:
 
     def number_of(self, word: str) -> int:
         """The number of a word, or -1 where no room can have it."""
-        if word in NUMBER:
-            return NUMBER[word]
+        known = vocabulary().number
+        if word in known:
+            return known[word]
         place = bisect_left(self.words, word)
-        return len(KNOWN) + place if place < len(self.words) and self.words[place] == word else -1
+        return len(known) + place if place < len(self.words) and self.words[place] == word else -1
 
     def word(self, number: int) -> str:
         """The word of that number."""
-        return KNOWN[number] if number < len(KNOWN) else self.words[number - len(KNOWN)]
+        known = vocabulary().words
+        return known[number] if number < len(known) else self.words[number - len(known)]
 
     def nodes(self, number: int) -> range:
         """The places of a room's nodes."""
@@ -334,7 +366,8 @@ class PackedRooms:
 
     def bases(self, costs: CostTable) -> NDArray[np.int32]:
         """The cost of every room if nothing of it is used. (rooms,). ValueError if one is beyond all bounds."""
-        minor = MINOR[np.minimum(self.categories, len(KNOWN) - 1)] & (self.categories < len(KNOWN))
+        known = len(vocabulary())
+        minor = vocabulary().minor[np.minimum(self.categories, known - 1)] & (self.categories < known)
         cost = offsets(np.where(minor, costs.minor.insert, costs.key.insert))
         edges = self.neighbour_starts[self.node_starts[1:]] - self.neighbour_starts[self.node_starts[:-1]]
         bases = cost[self.node_starts[1:]] - cost[self.node_starts[:-1]] + costs.extra_edge * (edges // 2)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final, Literal, TypeVar
 
-from scene_graphs.furniture import KINDS, categories_of, class_of, group_of, is_minor
+from scene_graphs.furniture import catalogue, categories_of, class_of, group_of, is_minor
 
 Level = Literal["same", "class", "group"]
 Key = tuple[str, ...]
@@ -146,7 +146,7 @@ def _places(names: Iterable[_Name]) -> dict[_Name, list[int]]:
 
 def _label_terms(inside: dict[str, list[int]], coefficient: int) -> list[Term]:
     """A term for every generic kind that is used, with the categories inside it, and for every other category."""
-    kinds = [word for word in inside if word in KINDS]
+    kinds = [word for word in inside if word in catalogue().kinds]
     terms = [
         Term(
             coefficient,

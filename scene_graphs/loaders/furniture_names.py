@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection
+from functools import cache
 from typing import Final
 
 from scene_graphs.boxes import Point3
-from scene_graphs.furniture import ALIASES, CATALOGUE, KINDS, ROOM_TYPES, canonical, class_of, group_of, is_known
+from scene_graphs.furniture import ROOM_TYPES, canonical, catalogue, class_of, group_of, is_known
 
 MAX_NAME_LENGTH: Final = 200
 _HUMPS: Final = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
@@ -39,8 +40,6 @@ _NOT_WHAT_THEY_END_IN: Final = {
     "laundry_hamper": "hamper",
 }
 """Compounds that are no kind of what their last word names, or whose last word says nothing."""
-_UNBROKEN: Final = {name.replace("_", ""): canonical(name) for name in (*CATALOGUE, *KINDS, *ALIASES)}
-"""What we know, written as one word: "armchair", "coffeetable"."""
 _KITCHEN: Final = frozenset({"refrigerator", "stove", "kitchen_counter", "kitchen_cabinet", "dishwasher"})
 _BATHROOM: Final = frozenset({"toilet", "bathtub", "shower"})
 _NOT_AT_A_TABLE: Final = frozenset({"armchair", "lounge_chair", "lazy_sofa", "barstool", "ottoman"})
@@ -62,10 +61,18 @@ def meaning(name: str) -> str:
     """
     words = words_of(name).split("_")
     for start in range(len(words)):
-        compound = _NOT_WHAT_THEY_END_IN.get("_".join(words[start:])) or _UNBROKEN.get("".join(words[start:]))
+        compound = _NOT_WHAT_THEY_END_IN.get("_".join(words[start:])) or _unbroken().get("".join(words[start:]))
         if compound is not None:
             return compound
     return canonical("_".join(words))
+
+
+@cache
+def _unbroken() -> dict[str, str]:
+    """What we know, written as one word: "armchair", "coffeetable"."""
+    known = catalogue()
+    names = (*known.categories, *known.kinds, *known.aliases)
+    return {name.replace("_", ""): canonical(name) for name in names}
 
 
 def furniture_named(name: str) -> str | None:

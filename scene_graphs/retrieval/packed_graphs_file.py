@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 from scene_graphs.furniture import canonical
 from scene_graphs.graph.packed_graphs import (
     EVERYTHING,
-    KNOWN,
     MAX_OBJECTS_IN_ROOM,
-    NUMBER,
     Ints,
     PackedRooms,
     Texts,
+    numbered,
     offsets,
     renumbered,
+    vocabulary,
 )
 from scene_graphs.json_fields import LayoutError
 
@@ -50,7 +50,7 @@ Arrays = Mapping[str, NDArray[Any]]
 
 def write_packed(path: str | Path, rooms: PackedRooms, source: bytes = b"") -> None:
     """Write packed rooms; the same rooms give the same bytes. `source` says what they were made of."""
-    words = [*KNOWN, *rooms.words]
+    words = [*vocabulary().words, *rooms.words]
     used = np.unique(rooms.categories)
     names = {"ids": rooms.ids, "object_ids": rooms.object_ids, "serves": Texts.of(rooms.serves)}
     names["words"] = Texts.of(words[number] for number in used)
@@ -144,8 +144,7 @@ def _checked(arrays: Arrays) -> PackedRooms:
     _demand(_names(arrays["types"], texts["serves"]), "types name room types there are not")
     _demand(bool((arrays["offers"] <= EVERYTHING).all()), "offers are none of the affordances")
     names = [canonical(word) for word in texts["words"]]
-    words = tuple(sorted({name for name in names if name not in NUMBER}))
-    numbers = NUMBER | {word: len(KNOWN) + place for place, word in enumerate(words)}
+    words, numbers = numbered(names)
     neighbours, neighbour_starts = _neighbours(arrays, sizes)
     serves = tuple(sorted(set(texts["serves"])))
     return PackedRooms(

@@ -7,7 +7,7 @@ from itertools import combinations, product
 import networkx as nx
 from hypothesis import strategies as st
 
-from scene_graphs.furniture import GROUP_OF_CLASS, KINDS, Furniture, categories_of, class_of
+from scene_graphs.furniture import Furniture, catalogue, categories_of, class_of
 from scene_graphs.graph.furniture_graph import FurnitureGraph
 
 CATEGORIES: tuple[str, ...] = (
@@ -69,7 +69,7 @@ def _step(query: FurnitureGraph, room: FurnitureGraph, q: Furniture, r: Furnitur
         return 25 if _minor(q) else 100
     if not query.nodes[q].get("needs", frozenset()) <= room.nodes[r].get("offers", NEEDS[4] | {"lie"}):
         return None
-    if r.category == q.category or (q.category in KINDS and r.category in categories_of(q.category)):
+    if r.category == q.category or (q.category in catalogue().kinds and r.category in categories_of(q.category)):
         return 0
     if strict:
         return None
@@ -81,7 +81,7 @@ def _step(query: FurnitureGraph, room: FurnitureGraph, q: Furniture, r: Furnitur
 
 
 def _group(node: Furniture) -> str:
-    return GROUP_OF_CLASS.get(class_of(node.category), node.category)
+    return catalogue().group_of_class.get(class_of(node.category), node.category)
 
 
 def _minor(node: Furniture) -> bool:

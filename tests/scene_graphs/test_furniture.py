@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from itertools import combinations
+from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scene_graphs.furniture import (
-    AFFORDANCES,
-    ALIASES,
-    CATALOGUE,
-    GROUP_OF_CLASS,
-    KINDS,
     Furniture,
     affordances,
     canonical,
     canonical_room,
+    catalogue,
     categories_of,
     class_of,
     display_name,
@@ -27,29 +23,39 @@ from scene_graphs.furniture import (
     typical_size,
 )
 
-WORDS = (*CATALOGUE, *KINDS)
+WORDS = tuple(catalogue().class_of)
 
 
-@pytest.mark.parametrize("category", CATALOGUE)
-def test_every_category_has_a_class_a_group_a_size_and_known_affordances(category: str) -> None:
-    entry = CATALOGUE[category]
-    assert entry.class_ in GROUP_OF_CLASS
-    assert entry.affordances <= set(AFFORDANCES)
-    assert min(entry.size) > 0
+def wrong(**sections: object) -> str:
+    with pytest.raises(ValueError, match=r"^\w+") as refused:
+        replace(catalogue(), **sections)
+    return str(refused.value)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_kind_lies_inside_one_class(kind: str) -> None:
-    assert {class_of(member) for member in categories_of(kind)} == {class_of(kind)}
+def test_a_catalogue_that_does_not_hold_together_is_refused_by_its_place() -> None:
+    """Every category has a class, a group and a size; a kind lies inside one class and shares no category; every other
+    word leads to one thing known."""
+    known = catalogue()
+    chair, pillow = known.categories["dining_chair"], known.categories["pillow"]
+    assert "categories.pillow.of_class: cushions is" in wrong(
+        categories=known.categories | {"pillow": replace(pillow, of_class="cushions")}
+    )
+    assert "categories.dining_chair.size_m: (0.4, 0.0, 0.5)" in wrong(
+        categories=known.categories | {"dining_chair": replace(chair, size_m=(0.4, 0.0, 0.5))}
+    )
+    assert "kinds.chair: diner is" in wrong(kinds=known.kinds | {"chair": ("dining_chair", "diner")})
+    assert "kinds.chair: its categories are not of one class" in wrong(
+        kinds=known.kinds | {"chair": ("dining_chair", "desk")}
+    )
+    assert "kinds: dining_chair stands there twice" in wrong(kinds=known.kinds | {"throne": ("dining_chair",)})
+    assert "other_words: throne is" in wrong(other_words=known.other_words | {"throne": ("royal_seat",)})
+    assert "other_words: couch stands there twice" in wrong(other_words=known.other_words | {"bed": ("couch",)})
+    assert "minor_groups: lights is" in wrong(minor_groups=frozenset({"lights"}))
+    assert "room_words: den is" in wrong(room_words={"cellar": "den"})
 
 
-def test_kinds_do_not_share_categories() -> None:
-    for first, second in combinations(KINDS, 2):
-        assert not categories_of(first) & categories_of(second)
-
-
-def test_every_alias_leads_to_something_known() -> None:
-    assert all(is_known(alias) and canonical(alias) in WORDS for alias in ALIASES)
+def test_every_other_word_leads_to_something_known() -> None:
+    assert {canonical(word) for word in catalogue().aliases} <= set(WORDS)
 
 
 @given(st.text(max_size=30))

@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from motion_backend.motion import Character, Skill
 from planner_service.llm.scripted_model import ScriptedModel
 from planner_service.llm.structured_output import ModelAnswerError
-from planner_service.narration import keyframe_phrases, openings_and_endings
-from planner_service.narration.keyframe_phrases import Variety, mood_of, touches
+from planner_service.narration.keyframe_phrases import Variety, mood_of, templates, touches
 from planner_service.narration.llm_narrator import narrate_with_model
 from planner_service.narration.narrator import Told, narrate
-from planner_service.narration.tense import BASES, past, third_person
+from planner_service.narration.openings_and_endings import title_of
 from planner_service.scripts.script import Event, Keyframe, LongScript, PlannedKeyframe, Retrieved, ShortScript
+from planner_service.themes.lexicon import english_verbs, past, third_person
 
 LIBRARY = tuple(
     ShortScript.model_validate_json(line)
@@ -50,7 +50,8 @@ SLIPS = {
 }
 _SUBJECT = re.compile(r"(\w+ )?\b(?:[Hh]e|[Ss]he|[Tt]hey|Sam|Emily|James) (\w+)")
 _HELPERS = {"did", "could", "would", "might", "let", "make", "made", "had", "kept", "found", "left", "woke"}
-_PRESENT = ({third_person(base) for base in BASES} | BASES) - {past(base) for base in BASES} | {"is", "has", "does"}
+_BASES = english_verbs().bases
+_PRESENT = ({third_person(base) for base in _BASES} | _BASES) - {past(base) for base in _BASES} | {"is", "has", "does"}
 
 
 def long_script(
@@ -272,25 +273,16 @@ def test_unknown_captions_are_told_by_their_mood(skill: Skill, caption: str) -> 
 
 def test_every_caption_has_its_own_words_and_every_phrase_starts_with_a_verb() -> None:
     captions = {(k.skill, k.caption) for script in LIBRARY for k in script.keyframes}
-    tables = {
-        Skill.LOCO: keyframe_phrases.WALKS,
-        Skill.SITDOWN: keyframe_phrases.SITS,
-        Skill.LIEDOWN: keyframe_phrases.LIES,
-    }
+    known = templates()
+    tables = {Skill.LOCO: known.walks, Skill.SITDOWN: known.sits, Skill.LIEDOWN: known.lies}
     for skill, table in tables.items():
         assert {caption for of, caption in captions if of == skill} == set(table)
-    walks = [*keyframe_phrases.WALKS.values(), *keyframe_phrases.WALKS_IN_MOOD.values()]
-    templates = [t for walk in walks for t in (*walk.to, *walk.about)]
-    for table in (
-        keyframe_phrases.SITS_IN_MOOD,
-        keyframe_phrases.LIES_IN_MOOD,
-        keyframe_phrases.RISES,
-        keyframe_phrases.TOUCHES,
-        keyframe_phrases.TOUCHES_AT,
-    ):
-        templates += [t for ways in table.values() for t in ways]
-    verbs = {verb for t in templates for verb in re.findall(r"(?:^|~)(\w+)", t)}
-    assert verbs - BASES == set()
+    walks = [*known.walks.values(), *known.walks_in_mood.values()]
+    phrases = [t for walk in walks for t in (*walk.to, *walk.about)]
+    for by_word in (known.sits_in_mood, known.lies_in_mood, known.rises, known.touches, *known.touches_at.values()):
+        phrases += [t for ways in by_word.values() for t in ways]
+    verbs = {verb for t in phrases for verb in re.findall(r"(?:^|~)(\w+)", t)}
+    assert verbs - _BASES == set()
 
 
 def test_variety_uses_every_option_before_any_again() -> None:
@@ -322,7 +314,7 @@ def test_the_mood_of_a_keyframe_is_one_emotion(emotion: str, mood: str) -> None:
     ],
 )
 def test_a_title_comes_from_the_theme(theme: str, title: str) -> None:
-    assert openings_and_endings.title_of(theme, "relaxed") == title
+    assert title_of(theme, "relaxed") == title
 
 
 def test_a_models_story_is_tied_to_the_keyframes_by_its_furniture() -> None:

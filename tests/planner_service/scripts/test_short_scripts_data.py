@@ -15,10 +15,9 @@ from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Skill
 from planner_service.narration.keyframe_phrases import mood_of
 from planner_service.narration.narrative_voice import Voice, retell
-from planner_service.narration.tense import BASES, is_verb_form
 from planner_service.scripts.script import EMOTIONS, ShortScript
 from planner_service.scripts.script_repair import check, repair
-from planner_service.themes.sentence_parser import is_verb
+from planner_service.themes.lexicon import english_verbs, is_verb, is_verb_form
 from scene_graphs.furniture import (
     ROOM_TYPES,
     affordances,
@@ -239,5 +238,5 @@ def test_no_past_is_spelt_with_too_few_letters() -> None:
     for script in SCRIPTS:
         told = set(re.findall(r"\w+", retell(script.summary, Voice("John", "he")) or ""))
         verbs = {word[:-1] for word in re.findall(r"\w+s\b", script.summary)}
-        wrong = {verb for verb in verbs - BASES if SHORT_STEM.fullmatch(verb[-3:]) and len(verb) < 6}
+        wrong = {verb for verb in verbs - english_verbs().bases if SHORT_STEM.fullmatch(verb[-3:]) and len(verb) < 6}
         assert not {verb + "ed" for verb in wrong} & told, script.id

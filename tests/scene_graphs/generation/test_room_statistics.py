@@ -10,7 +10,7 @@ import pytest
 from scene_graphs.furniture import categories_of
 from scene_graphs.generation.random_choices import BLOCK, Luck
 from scene_graphs.generation.room_generator import luck_of
-from scene_graphs.generation.room_recipes import OVERSAMPLED
+from scene_graphs.generation.room_recipes import recipe_of
 from scene_graphs.layout import Layout
 from scene_graphs.layout_library import built_in_layouts
 
@@ -83,7 +83,7 @@ def counts(kind: str, word: str) -> list[int]:
 @pytest.mark.parametrize(("kind", "word"), [(kind, word) for kind, shares in SHARES.items() for word in shares])
 def test_as_many_rooms_hold_a_thing_as_in_the_real_world_or_as_is_stated(kind: str, word: str) -> None:
     share = np.mean(np.array(counts(kind, word)) > 0)
-    wanted = OVERSAMPLED.get((kind, word))
+    wanted = recipe_of(kind).oversampled_shares.get(word)
     if wanted is None:
         assert abs(share - SHARES[kind][word] / 100) < 0.10
     else:
@@ -94,7 +94,7 @@ def test_as_many_rooms_hold_a_thing_as_in_the_real_world_or_as_is_stated(kind: s
 @pytest.mark.parametrize("kind", ["living_room", "living_dining"])
 def test_lounges_have_as_many_coffee_tables_as_is_stated(kind: str) -> None:
     share = np.mean(np.array(counts(kind, "coffee_table")) > 0)
-    assert share == pytest.approx(OVERSAMPLED[kind, "coffee_table"], abs=0.04)
+    assert share == pytest.approx(recipe_of(kind).oversampled_shares["coffee_table"], abs=0.04)
 
 
 def test_studies_are_a_quarter_of_all_rooms() -> None:

@@ -22,7 +22,7 @@ from rooms_at_random import strewn
 from scene_graphs.furniture import AFFORDANCES, Furniture, canonical, categories_of, class_of, group_of
 from scene_graphs.graph.count_table import ANY_NUMBER, Counts
 from scene_graphs.graph.furniture_graph import FurnitureGraph, graph_from_layout
-from scene_graphs.graph.packed_graphs import COUNTED, COUNTS, KNOWN, LEVELS, PackedRooms, Texts, levels
+from scene_graphs.graph.packed_graphs import LEVELS, PackedRooms, Texts, levels, vocabulary
 from scene_graphs.layout import Layout, LayoutError
 from scene_graphs.layout_library import built_in_index, index_from, packed_library
 from scene_graphs.retrieval.layout_index import LayoutIndex, pack
@@ -103,11 +103,13 @@ def test_counts_are_what_counting_finds(rooms: list[FurnitureGraph]) -> None:
             word = canonical(node.category)
             found.update([("category", word), ("class", class_of(word)), ("group", group_of(word))])
             found.update(
-                ("kind", key[1]) for key in COUNTS if key[0] == "kind" and word in {key[1], *categories_of(key[1])}
+                ("kind", key[1])
+                for key in vocabulary().counts
+                if key[0] == "kind" and word in {key[1], *categories_of(key[1])}
             )
         for a, b in graph.edges:
             found["edge", *sorted((group_of(a.category), group_of(b.category)))] += 1
-        for key in {*COUNTED, *found, ("category", "nothing"), ("edge", "bed", "nothing")}:
+        for key in {*vocabulary().counted, *found, ("category", "nothing"), ("edge", "bed", "nothing")}:
             assert counts.column(key)[number] == found[key]
 
 
@@ -123,8 +125,8 @@ def test_a_count_that_a_byte_does_not_hold_may_stand_for_any_number() -> None:
 def test_levels_of_numbers_are_those_of_words() -> None:
     from scene_graphs.graph.substitution_costs import level_between
 
-    for row, word in enumerate(KNOWN):
-        for column, category in enumerate(KNOWN):
+    for row, word in enumerate(vocabulary().words):
+        for column, category in enumerate(vocabulary().words):
             level = level_between(word, category)
             assert levels()[row, column] == (len(LEVELS) if level is None else LEVELS.index(level))
 

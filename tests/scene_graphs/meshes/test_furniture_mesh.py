@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scene_graphs.furniture import CATALOGUE, typical_size
+from scene_graphs.furniture import catalogue, typical_size
 from scene_graphs.layout import Point3
 from scene_graphs.meshes.furniture_mesh import SOFT_ROLES, Part, parts
 
@@ -22,7 +22,7 @@ def by_role(category: str, size: Point3) -> dict[str, list[Part]]:
 
 
 @settings(max_examples=60, deadline=None)
-@given(st.sampled_from(sorted(CATALOGUE)), sizes)
+@given(st.sampled_from(sorted(catalogue().categories)), sizes)
 def test_every_part_lies_within_its_piece(category: str, size: Point3) -> None:
     w, h, d = size
     built = parts(category, size)
@@ -32,7 +32,7 @@ def test_every_part_lies_within_its_piece(category: str, size: Point3) -> None:
         assert all(high <= bound + 1e-9 for high, bound in zip(part.high, (w / 2, h, d / 2), strict=True))
 
 
-@pytest.mark.parametrize("category", sorted(CATALOGUE))
+@pytest.mark.parametrize("category", sorted(catalogue().categories))
 def test_solid_parts_of_a_piece_of_usual_size_reach_its_full_box(category: str) -> None:
     size = typical_size(category)
     built = parts(category, size)
