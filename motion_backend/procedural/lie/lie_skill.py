@@ -15,8 +15,10 @@ from motion_backend.procedural.lie.lie_on_floor import Mat, kneel_down, kneel_up
 from motion_backend.procedural.lie.lie_pose import Bed
 from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.lie.lie_transition import edge_seat, lie_down, rise_to_edge
+from motion_backend.procedural.sit.sit_keys import sit_keys
 from motion_backend.procedural.sit.sit_skill import at_standing_point, leave_seat
-from motion_backend.procedural.sit.sit_transition import lower_onto
+from motion_backend.procedural.sit.sit_styles import Seated
+from motion_backend.procedural.sit.sit_transition import NOTHING, lower_onto
 from motion_backend.procedural.walk.walk_skill import go
 from motion_backend.rotations import Array
 from scene_graphs.affordances.affordances import Spot
@@ -40,7 +42,8 @@ def liedown(body: Body, action: Action) -> None:
         seat = _edge_of(body, spot)
         at_standing_point(body, action, seat)
         body.enter(Part.EDGE)
-        body.add(lower_onto(body.pose, seat, style.bearing, body.skeleton))
+        sat = Seated(bearing=style.bearing)
+        body.add(lower_onto(body.pose, seat, sat, NOTHING, body.skeleton, sit_keys().down))
         body.enter(Part.LIEDOWN)
         body.add(lie_down(body.pose, seat, _made(body, spot), style, body.skeleton))
     body.add(idle(body.pose, action.hold, 0.6 * style.bearing.restless, body.rng, FPS))
