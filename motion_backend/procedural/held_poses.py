@@ -30,6 +30,10 @@ FLOOR_REACH, LOW = 0.56, 0.30
 UP = np.array([0.0, 1.0, 0.0])
 
 
+MIRROR = np.array([-1.0, 1.0, 1.0])
+"""What makes a left vector, in the body's own frame, a right one."""
+
+
 def upright(yaw: float, pitch: Array | float = 0.0) -> Array:
     """Pelvis rotation heading `yaw`, bent forward by `pitch` (...) radians. (..., 4)."""
     return rotations.compose(rotations.yaw_to_quat(yaw), rotations.axis_to_quat("x", np.asarray(pitch)))
@@ -38,6 +42,18 @@ def upright(yaw: float, pitch: Array | float = 0.0) -> Array:
 def bend(forward: float, side: float = 0.0, turn: float = 0.0) -> Array:
     """A rotation vector of spine or head: forward bend, turn to the left, side bend. (3,)."""
     return np.array([forward, turn, side])
+
+
+def both_sides(left: ArrayLike) -> Array:
+    """A vector of the left side (outwards to the left first), and its mirror image for the right. (2, 3)."""
+    vector = np.asarray(left, dtype=np.float64)
+    return np.stack([vector, vector * MIRROR])
+
+
+def part_way(start: Array, end: Array, share: ArrayLike) -> Array:
+    """So large a share of the way from start to end; at 1 the end itself, to the last bit."""
+    shares = np.asarray(share, dtype=np.float64)
+    return np.where(shares == 1.0, end, start + shares * (end - start))
 
 
 def standing(position: tuple[float, float], yaw: float, bearing: Bearing, skeleton: Skeleton) -> Pose:

@@ -11,7 +11,20 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays
-from motion_backend.procedural.held_poses import UP, bend, shoulders, standing, upright
+from motion_backend.procedural.held_poses import UP, bend, both_sides, shoulders, standing, upright
+from motion_backend.procedural.lie.lie_keys import (
+    BothKnees,
+    HandsAndKnees,
+    LieKeys,
+    LieOnFloor,
+    LiePose,
+    OneKnee,
+    OnHip,
+    Pushing,
+    RiseFromFloor,
+    Step,
+    Stood,
+)
 from motion_backend.procedural.lie.lie_legs import HIP, SHANK, THIGH
 from motion_backend.procedural.lie.lie_pose import Bed, lying
 from motion_backend.procedural.lie.lie_styles import Lying
@@ -35,6 +48,12 @@ The right one goes past the knee that is down.
 """
 TURNED: Final = 0.85
 """In which share of its step a foot turns, while it is nearer to the toes it stands on behind."""
+KNEES_DOWN, KNEES_OUT = 0.34, 0.30
+"""From where the pelvis will lie to the middle of the knees: towards the feet, and out (metres at 1.70 m)."""
+SHIN_OUT, SHIN_UP = 0.30, 0.16
+"""How far out and up the left shin points from its knee when the body is down beside it, against down the mat."""
+HOLDS: Final = -0.9
+"""From so long before hands and knees on (against the time from there to the hip) the left knee keeps its place."""
 ON_SIDE: Final = Lying(side="left", legs="gathered", arms=("tucked", "before"))
 """How one comes onto the floor, and leaves it: with the left side down."""
 
@@ -62,7 +81,7 @@ class Mat:
         scale = self.skeleton.scale
         # A body that looks to its head's end with its back up has its left where one on the back has the right.
         ways = np.array([[-HIP], [HIP]]) * scale * self.out
-        middle = self.bed.pelvis + scale * (-0.34 * self.up + 0.30 * self.out)
+        middle = self.bed.pelvis + scale * (-KNEES_DOWN * self.up + KNEES_OUT * self.out)
         middle[1] = KNEE * scale
         return np.asarray(middle + ways)
 
@@ -76,7 +95,7 @@ class Mat:
     @property
     def ankle_aside(self) -> Array:
         """Where the left ankle is when the body has gone down beside that knee. (3,)."""
-        away = rotations.normalize(-self.up - 0.30 * self.out + 0.16 * UP)
+        away = rotations.normalize(-self.up - SHIN_OUT * self.out + SHIN_UP * UP)
         return np.asarray(self.knees[0] + SHANK * self.skeleton.scale * away)
 
     @property
@@ -86,62 +105,74 @@ class Mat:
         return float(x), float(z)
 
 
-def kneel_down(start: Pose, mat: Mat, bearing: Bearing) -> Pose:
+def kneel_down(start: Pose, mat: Mat, bearing: Bearing, keys: LieOnFloor) -> Pose:
     """From standing to both knees: the left foot steps back and that knee goes down, then the other."""
-    pace = 1 / bearing.tempo
-    both = _on_both_knees(start, mat)
-    half = _on_one_knee(start, both, mat)
-    down = interpolate([0.0, 1.20 * pace, 2.05 * pace], [start, half, both], FPS)
-    down = _step(down, 0, (0.05 * pace, 1.00 * pace), half, mat)
-    return _step(down, 1, (1.20 * pace, 2.05 * pace), both, mat)
+    pace, (one, two, *_) = 1 / bearing.tempo, keys.pose
+    both = _on_both_knees(two, start, mat)
+    half = _on_one_knee(one, start, both, mat)
+    down = interpolate(_times(keys.pose[:2], pace), [start, half, both], FPS)
+    down = _step(down, 0, _seconds(keys.left_step, pace), half, mat)
+    return _step(down, 1, _seconds(keys.right_step, pace), both, mat)
 
 
-def kneel_up(knelt: Pose, mat: Mat, bearing: Bearing) -> Pose:
+def kneel_up(knelt: Pose, mat: Mat, bearing: Bearing, keys: RiseFromFloor) -> Pose:
     """From both knees to standing: the right foot is put forward, the left one follows as the body rises."""
-    pace = 1 / bearing.tempo
+    pace, (*_, one, push, _stood) = 1 / bearing.tempo, keys.pose
     end = standing(mat.standing_point, mat.bed.head_yaw, bearing, mat.skeleton)
-    half = _on_one_knee(end, knelt, mat)
-    times = [0.0, 0.90 * pace, 1.50 * pace, 2.35 * pace]
-    up = interpolate(times, [knelt, half, _pushing(half, mat), end], FPS)
-    up = _step(up, 1, (0.0, 0.85 * pace), half, mat)
-    return _step(up, 0, (1.45 * pace, 2.30 * pace), end, mat)
+    half = _on_one_knee(one, end, knelt, mat)
+    up = interpolate(_times(keys.pose[3:], pace), [knelt, half, _pushing(push, half, mat), end], FPS)
+    up = _step(up, 1, _seconds(keys.right_step, pace), half, mat)
+    return _step(up, 0, _seconds(keys.left_step, pace), end, mat)
 
 
-def lie_down_from_knees(knelt: Pose, mat: Mat, style: Lying) -> Pose:
+def _times(rows: tuple[OneKnee | BothKnees | Pushing | Stood, ...], pace: float) -> list[float]:
+    """When each pose is reached from the one before the first (seconds)."""
+    return [0.0, *(np.cumsum([row.wait_s for row in rows]) * pace).tolist()]
+
+
+def _seconds(step: Step, pace: float) -> tuple[float, float]:
+    return step.begins_s * pace, step.ends_s * pace
+
+
+def lie_down_from_knees(knelt: Pose, mat: Mat, style: Lying, keys: LieKeys) -> Pose:
     """From both knees to lying: hands down, the left hip and side, then over into the way of lying."""
-    bed, skeleton = mat.bed, mat.skeleton
-    hands = _on_hands_and_knees(knelt, mat)
-    side = _on_the_side(knelt, mat)
-    end = lying(knelt, bed, style, skeleton)
-    hip = _on_the_hip(hands, side, mat)
-    keys, waits = [replace(side, reach=hip.reach)], [0.7, 0.8, 0.8]
+    (_, _, third, fourth), settle = keys.floor_down.pose, keys.floor_down.settle
+    hands = _on_hands_and_knees(third, knelt, mat)
+    side = _on_the_side(knelt, mat, keys.pose)
+    end = lying(knelt, mat.bed, style, mat.skeleton, keys.pose)
+    hip = _on_the_hip(fourth, hands, side, mat)
+    poses, waits = [side], [third.wait_s, fourth.wait_s, settle.side_wait_s]
     if style.side != "left":
-        keys.append(replace(_on_the_back(knelt, mat), palms=end.palms, reach=hip.reach))
-        waits.append(0.8)
-    keys += [replace(key, reach=hip.reach) for key in (*freed(end, bed), end)]
-    waits += [0.6] * (len(keys) + 2 - len(waits) - 1) + [0.75]
-    keys = [replace(knelt, reach=hands.reach, palms=hands.palms), hands, hip, *keys]
+        poses.append(replace(_on_the_back(knelt, mat, keys.pose), palms=end.palms))
+        waits.append(settle.back_wait_s)
+    lifted = freed(end, mat.bed)
+    waits += [settle.lifted_wait_s] * len(lifted) + [settle.end_wait_s]
+    poses = [replace(pose, reach=hip.reach) for pose in (*poses, *lifted, end)]
+    poses = [replace(knelt, reach=hands.reach, palms=hands.palms), hands, hip, *poses]
     times = np.cumsum([0.0, *waits]) / style.bearing.tempo
-    return _on_the_knee(interpolate(times.tolist(), keys, FPS), times[1:4], mat)
+    return _on_the_knee(interpolate(times.tolist(), poses, FPS), times[1:4], mat)
 
 
-def rise_to_knees(start: Pose, mat: Mat, bearing: Bearing) -> Pose:
+def rise_to_knees(start: Pose, mat: Mat, bearing: Bearing, keys: LieKeys) -> Pose:
     """From lying to both knees: over the left side onto hands and knees, and the trunk up."""
+    (first, second, third, *_), leave = keys.floor_up.pose, keys.floor_up.leave
     if rotations.rotate(start.hips, np.array([0.0, 0.0, 1.0])) @ mat.out < -0.5:
-        over = interpolate([0.0, 0.9 / bearing.tempo], [start, _on_the_back(start, mat)], FPS)
-        return concatenate([over, rise_to_knees(over.at(len(over) - 1), mat, bearing)])
-    knelt = _on_both_knees(start, mat)
-    hands = _on_hands_and_knees(knelt, mat)
-    side = replace(_on_the_side(start, mat), palms=start.palms)
-    hip = _on_the_hip(hands, side, mat)
-    before = [replace(key, reach=hip.reach) for key in (start, *freed(start, mat.bed), side)]
-    keys = [*before, hip, hands, replace(knelt, reach=hands.reach, palms=hands.palms)]
-    waits = [0.5] * (len(keys) - 5) + [0.9, 0.75, 0.75, 0.65]
+        back = _on_the_back(start, mat, keys.pose)
+        over = interpolate([0.0, leave.back_wait_s / bearing.tempo], [start, back], FPS)
+        return concatenate([over, rise_to_knees(over.at(len(over) - 1), mat, bearing, keys)])
+    knelt = _on_both_knees(third, start, mat)
+    hands = _on_hands_and_knees(second, knelt, mat)
+    side = replace(_on_the_side(start, mat, keys.pose), palms=start.palms)
+    hip = _on_the_hip(first, hands, side, mat)
+    lifted = freed(start, mat.bed)
+    before = [replace(pose, reach=hip.reach) for pose in (start, *lifted, side)]
+    poses = [*before, hip, hands, replace(knelt, reach=hands.reach, palms=hands.palms)]
+    waits = [leave.lifted_wait_s] * len(lifted) + [leave.side_wait_s, first.wait_s, second.wait_s, third.wait_s]
     times = np.cumsum([0.0, *waits]) / bearing.tempo
-    return _on_the_knee(interpolate(times.tolist(), keys, FPS), times[-2:-5:-1], mat)
+    return _on_the_knee(interpolate(times.tolist(), poses, FPS), times[-2:-5:-1], mat)
 
 
-def _on_both_knees(pose: Pose, mat: Mat) -> Pose:
+def _on_both_knees(row: BothKnees, pose: Pose, mat: Mat) -> Pose:
     """Upright on both knees."""
     arms, elbows = arm_arrays("hang", "hang")
     yaw, scale = mat.bed.head_yaw, mat.skeleton.scale
@@ -149,14 +180,14 @@ def _on_both_knees(pose: Pose, mat: Mat) -> Pose:
     return replace(
         pose,
         pelvis=mat.knees.mean(axis=0) + THIGH * scale * UP,
-        hips=upright(yaw, 0.15),
-        spine=bend(0.25),
-        head=bend(0.15),
+        hips=upright(yaw, row.hip_pitch_rad),
+        spine=bend(row.spine_pitch_rad),
+        head=bend(row.head_pitch_rad),
         ankles=mat.ankles,
         feet=np.stack([toes_down, toes_down]),
         toes=np.full(2, CURLED),
-        knees=np.repeat((mat.up - 0.6 * UP)[None], 2, axis=0),
-        arms=arms * [1.0, 0.86, 1.0] + [0.0, 0.0, 0.30],
+        knees=np.repeat((mat.up - row.knee_down_ratio * UP)[None], 2, axis=0),
+        arms=arms * [1.0, row.arms_down_share, 1.0] + [0.0, 0.0, row.arms_ahead_ratio],
         elbows=elbows,
         reaching=np.zeros(2),
         pressing=np.zeros(2),
@@ -164,70 +195,72 @@ def _on_both_knees(pose: Pose, mat: Mat) -> Pose:
     )
 
 
-def _on_one_knee(stood: Pose, both: Pose, mat: Mat) -> Pose:
+def _on_one_knee(row: OneKnee, stood: Pose, both: Pose, mat: Mat) -> Pose:
     """The left knee down, the right foot where it stands."""
     return replace(
         both,
-        hips=upright(mat.bed.head_yaw, 0.18),
-        spine=bend(0.30),
+        hips=upright(mat.bed.head_yaw, row.hip_pitch_rad),
+        spine=bend(row.spine_pitch_rad),
         ankles=np.stack([both.ankles[0], stood.ankles[1]]),
         feet=np.stack([both.feet[0], stood.feet[1]]),
         toes=np.array([CURLED, 0.0]),
-        knees=np.stack([both.knees[0], mat.up + 0.25 * UP]),
+        knees=np.stack([both.knees[0], mat.up + row.knee_up_ratio * UP]),
     )
 
 
-def _pushing(half: Pose, mat: Mat) -> Pose:
+def _pushing(row: Pushing, half: Pose, mat: Mat) -> Pose:
     """Over the right foot, the left one pushing off on its toes."""
-    scale, forward = mat.skeleton.scale, upright(mat.bed.head_yaw, 0.45)
-    pelvis = half.pelvis + scale * (0.20 * mat.up + 0.22 * UP)
-    return replace(half, pelvis=pelvis, hips=forward, spine=bend(0.4), head=bend(0.0))
+    scale, forward = mat.skeleton.scale, upright(mat.bed.head_yaw, row.hip_pitch_rad)
+    pelvis = half.pelvis + scale * (row.pelvis_ahead_m * mat.up + row.pelvis_up_m * UP)
+    return replace(half, pelvis=pelvis, hips=forward, spine=bend(row.spine_pitch_rad), head=bend(0.0))
 
 
-def _on_hands_and_knees(knelt: Pose, mat: Mat) -> Pose:
+def _on_hands_and_knees(row: HandsAndKnees, knelt: Pose, mat: Mat) -> Pose:
     """Hands under the shoulders."""
-    scale = mat.skeleton.scale
-    pose = replace(knelt, hips=upright(mat.bed.head_yaw, 1.25), spine=bend(0.15), head=bend(-0.45))
+    hips = upright(mat.bed.head_yaw, row.hip_pitch_rad)
+    pose = replace(knelt, hips=hips, spine=bend(row.spine_pitch_rad), head=bend(row.head_pitch_rad))
     places = shoulders(pose.repeat(1), mat.skeleton)[0] * [1.0, 0.0, 1.0] + HAND_REST * UP
-    return _on_palms(pose, places + 0.06 * scale * mat.up, mat)
+    places = places + row.hands_ahead_m * mat.skeleton.scale * mat.up
+    return replace(_on_palms(pose, places, mat), elbows=both_sides(row.elbow_direction))
 
 
-def _on_the_hip(hands: Pose, side: Pose, mat: Mat) -> Pose:
+def _on_the_hip(row: OnHip, hands: Pose, side: Pose, mat: Mat) -> Pose:
     """Half-way between hands and knees and lying on the side: the left hip nearly down, both hands bearing."""
     scale, floor = mat.skeleton.scale, mat.bed.pelvis * [1.0, 0.0, 1.0]
+    right_ankle = 0.5 * (hands.ankles[1] + side.ankles[1]) + row.right_ankle_up_m * UP
     pose = replace(
         hands,
-        pelvis=floor + scale * (0.06 * mat.out + 0.17 * UP),
+        pelvis=floor + scale * (row.pelvis_out_m * mat.out + row.pelvis_up_m * UP),
         hips=rotations.slerp(hands.hips, side.hips, 0.5),
-        spine=bend(0.2, side=0.65),
-        head=bend(-0.1),
-        ankles=np.stack([mat.ankle_aside, 0.5 * (hands.ankles[1] + side.ankles[1]) + 0.05 * UP]),
+        spine=bend(row.spine_pitch_rad, side=row.spine_side_rad),
+        head=bend(row.head_pitch_rad),
+        ankles=np.stack([mat.ankle_aside, right_ankle]),
         feet=rotations.slerp(hands.feet, side.feet, 0.5),
-        toes=np.full(2, 0.4),
+        toes=np.full(2, row.toes_bend_rad),
         knees=0.5 * (hands.knees + side.knees),
+        elbows=np.array([row.left_elbow_direction, row.right_elbow_direction]),
         planted=np.zeros(2),
     )
-    places = scale * np.array([0.58 * mat.up + 0.36 * mat.out, 0.22 * mat.up + 0.45 * mat.out])
-    laid = _on_palms(pose, floor + places + HAND_REST * UP, mat)
-    return replace(laid, elbows=np.stack([np.array([0.7, 0.4, 0.5]), laid.elbows[1]]))
+    left = row.left_hand_headwards_m * mat.up + row.left_hand_out_m * mat.out
+    right = row.right_hand_headwards_m * mat.up + row.right_hand_out_m * mat.out
+    return _on_palms(pose, floor + scale * np.array([left, right]) + HAND_REST * UP, mat)
 
 
 def _on_palms(pose: Pose, places: Array, mat: Mat) -> Pose:
     """Both hands flat on the floor."""
     palms = np.stack([palm_on(UP, mat.bed.head_yaw, side) for side in ("left", "right")])
-    elbows = np.array([[0.8, -0.6, -0.5], [-0.8, -0.6, -0.5]])
-    return replace(pose, reach=places, reaching=np.ones(2), palms=palms, pressing=np.ones(2), elbows=elbows)
+    return replace(pose, reach=places, reaching=np.ones(2), palms=palms, pressing=np.ones(2))
 
 
-def _on_the_side(pose: Pose, mat: Mat) -> Pose:
+def _on_the_side(pose: Pose, mat: Mat, keys: LiePose) -> Pose:
     """Lying on the left side, knees bent, hands before the chest."""
-    return replace(lying(pose, mat.bed, ON_SIDE, mat.skeleton), pressing=np.zeros(2))
+    return replace(lying(pose, mat.bed, ON_SIDE, mat.skeleton, keys), pressing=np.zeros(2))
 
 
-def _on_the_back(pose: Pose, mat: Mat) -> Pose:
+def _on_the_back(pose: Pose, mat: Mat, keys: LiePose) -> Pose:
     """On the back with the knees up, arms over the trunk."""
     way = Lying(legs="bent", arms=("chest", "belly"))
-    return replace(lying(pose, mat.bed, way, mat.skeleton), pressing=np.zeros(2))
+    return replace(lying(pose, mat.bed, way, mat.skeleton, keys), pressing=np.zeros(2))
 
 
 def _step(pose: Pose, index: int, seconds: tuple[float, float], end: Pose, mat: Mat) -> Pose:
@@ -254,7 +287,7 @@ def _on_the_knee(pose: Pose, times: Array, mat: Mat) -> Pose:
     """
     hands, hip, side = times
     at = np.arange(1, len(pose) + 1) / FPS
-    share = smooth((at - side) / (hip - side))[:, None] * ((at - hands) / (hip - hands) > -0.9)[:, None]
+    share = smooth((at - side) / (hip - side))[:, None] * ((at - hands) / (hip - hands) > HOLDS)[:, None]
     joint = pose.pelvis + HIP * mat.skeleton.scale * rotations.rotate(pose.hips, np.array([1.0, 0.0, 0.0]))
     thigh = joint - mat.knees[0]
     length = np.linalg.norm(thigh, axis=1, keepdims=True)

@@ -11,48 +11,68 @@ from motion_backend.motion import FPS, Action, Part, Posture
 from motion_backend.procedural.body_state import Body, spot_of, spot_under
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import UP, Seat, idle
+from motion_backend.procedural.lie.lie_keys import lie_keys
 from motion_backend.procedural.lie.lie_on_floor import Mat, kneel_down, kneel_up, lie_down_from_knees, rise_to_knees
 from motion_backend.procedural.lie.lie_pose import Bed
 from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.lie.lie_transition import edge_seat, lie_down, rise_to_edge
+from motion_backend.procedural.sit.sit_keys import sit_keys
 from motion_backend.procedural.sit.sit_skill import at_standing_point, leave_seat
-from motion_backend.procedural.sit.sit_transition import lower_onto
+from motion_backend.procedural.sit.sit_styles import Seated
+from motion_backend.procedural.sit.sit_transition import NOTHING, lower_onto
 from motion_backend.procedural.walk.walk_skill import go
 from motion_backend.rotations import Array
 from scene_graphs.affordances.affordances import Spot
 
 FLOOR = 0.02
 """What is lain on is the floor if it is no higher than this (metres)."""
+CALM = 0.6
+"""How restless one is that lies, against the same mood on the feet."""
+TO_HEAD = 0.68
+"""From the pelvis to the middle of the head (metres at 1.70 m)."""
+MAX_PILLOW = 0.20
+"""What is higher under a head is not lain on (metres)."""
+HIGH, HIGH_STEP = 0.60, 0.01
+"""How high over a mattress it is looked what lies on it, and how finely (metres)."""
+BESIDE, ARM_HEIGHT = np.arange(0.20, 0.90, 0.03), 0.02
+"""Where it is looked for room beside the body (metres at 1.70 m), and how high over the pelvis (metres)."""
+ARM = (0.10, 0.30, 0.48, 0.68)
+"""How far towards the head from the pelvis arms are that lie beside the body or above it (metres at 1.70 m)."""
+NEARLY = 0.03
+"""Points that are so near to something are as good as in it, and a mattress may be as uneven (metres)."""
+FEET = np.arange(0.45, 0.97, 0.03)
+"""Where it is looked for what ends a bed at the feet, from the pelvis (metres at 1.70 m)."""
 
 
 def liedown(body: Body, action: Action) -> None:
     """From standing: to the bed and onto its edge, or onto the knees on the floor; down, and the pose held there."""
-    style = lie_style(action.emotion, action.caption)
+    style, keys = lie_style(action.emotion, action.caption), lie_keys()
     spot = spot_of(action)
     if _on_floor(spot):
         mat = Mat(_made(body, spot), body.skeleton)
         go(body, mat.standing_point, spot.facing, action)
         body.enter(Part.EDGE)
-        body.add(kneel_down(body.pose, mat, style.bearing))
+        body.add(kneel_down(body.pose, mat, style.bearing, keys.floor_down))
         body.enter(Part.LIEDOWN)
-        body.add(lie_down_from_knees(body.pose, mat, style))
+        body.add(lie_down_from_knees(body.pose, mat, style, keys))
     else:
         seat = _edge_of(body, spot)
         at_standing_point(body, action, seat)
         body.enter(Part.EDGE)
-        body.add(lower_onto(body.pose, seat, style.bearing, body.skeleton))
+        sat = Seated(bearing=style.bearing)
+        body.add(lower_onto(body.pose, seat, sat, NOTHING, body.skeleton, sit_keys().down))
         body.enter(Part.LIEDOWN)
-        body.add(lie_down(body.pose, seat, _made(body, spot), style, body.skeleton))
-    body.add(idle(body.pose, action.hold, 0.6 * style.bearing.restless, body.rng, FPS))
+        body.add(lie_down(body.pose, seat, _made(body, spot), style, body.skeleton, keys))
+    body.add(idle(body.pose, action.hold, CALM * style.bearing.restless, body.rng, FPS))
 
 
 def get_up(body: Body, bearing: Bearing) -> None:
     """From lying to the edge of the bed, or from the floor to the knees."""
     spot = spot_under(body)
     if _on_floor(spot):
-        body.add(rise_to_knees(body.pose, Mat(Bed.of(spot), body.skeleton), bearing))
+        body.add(rise_to_knees(body.pose, Mat(Bed.of(spot), body.skeleton), bearing, lie_keys()))
     else:
-        body.add(rise_to_edge(body.pose, _edge_of(body, spot), Bed.of(spot), bearing, body.skeleton))
+        body.add(rise_to_edge(body.pose, _edge_of(body, spot), Bed.of(spot), bearing, body.skeleton, lie_keys()))
 
 
 def leave_bed(body: Body, bearing: Bearing) -> None:
@@ -61,7 +81,7 @@ def leave_bed(body: Body, bearing: Bearing) -> None:
     if not _on_floor(spot):
         leave_seat(body, _edge_of(body, spot), bearing)
         return
-    body.add(kneel_up(body.pose, Mat(Bed.of(spot), body.skeleton), bearing))
+    body.add(kneel_up(body.pose, Mat(Bed.of(spot), body.skeleton), bearing, lie_keys().floor_up))
     body.posture, body.rest = Posture.STANDING, None
 
 
@@ -80,10 +100,10 @@ def _made(body: Body, spot: Spot) -> Bed:
     up = np.array([np.sin(bed.head_yaw), 0.0, np.cos(bed.head_yaw)])
     left = np.array([-up[2], 0.0, up[0]])
     solid = body.scene.obstacles.solid()
-    head = np.asarray(spot.point) + 0.68 * scale * up
+    head = np.asarray(spot.point) + TO_HEAD * scale * up
     return replace(
         bed,
-        pillow=_height_above(body.scene.obstacles, head, 0.20),
+        pillow=_height_above(body.scene.obstacles, head, MAX_PILLOW),
         end=_foot_end(solid, spot, -up, scale),
         beside=(_room_beside(solid, bed, left, up, scale), _room_beside(solid, bed, -left, up, scale)),
     )
@@ -91,24 +111,24 @@ def _made(body: Body, spot: Spot) -> Bed:
 
 def _room_beside(solid: Obstacles, bed: Bed, aside: Array, up: Array, scale: float) -> float:
     """Distance from the body's middle to what would be in the way of its arm on one side (metres)."""
-    for distance in np.arange(0.20, 0.90, 0.03) * scale:
-        points = [bed.pelvis + along * scale * up + distance * aside + 0.02 * UP for along in (0.10, 0.30, 0.48, 0.68)]
-        if solid.depth(np.stack(points)).max() > -0.03:
+    for distance in BESIDE * scale:
+        points = [bed.pelvis + along * scale * up + distance * aside + ARM_HEIGHT * UP for along in ARM]
+        if solid.depth(np.stack(points)).max() > -NEARLY:
             return float(distance)
     return np.inf
 
 
 def _height_above(obstacles: Obstacles, point: Array, most: float) -> float:
     """How much higher than a point of the mattress the thing on it is (metres), up to `most`."""
-    column = point + np.arange(0.60, 0.0, -0.01)[:, None] * [0.0, 1.0, 0.0]
+    column = point + np.arange(HIGH, 0.0, -HIGH_STEP)[:, None] * [0.0, 1.0, 0.0]
     inside = obstacles.depth(column) > 0
-    return float(np.clip(0.60 - 0.01 * np.argmax(inside), 0.0, most)) if inside.any() else 0.0
+    return float(np.clip(HIGH - HIGH_STEP * np.argmax(inside), 0.0, most)) if inside.any() else 0.0
 
 
 def _foot_end(solid: Obstacles, spot: Spot, down: Array, scale: float) -> tuple[float, float]:
     """Distance along the bed to what would be in the way of stretched legs, and its height above the mattress."""
-    for distance in np.arange(0.45, 0.97, 0.03) * scale:
-        height = _height_above(solid, np.asarray(spot.point) + distance * down, 0.60)
-        if height > 0.03:
+    for distance in FEET * scale:
+        height = _height_above(solid, np.asarray(spot.point) + distance * down, HIGH)
+        if height > NEARLY:
             return float(distance), height
     return np.inf, 0.0

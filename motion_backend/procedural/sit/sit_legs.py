@@ -10,6 +10,7 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.inverse_kinematics import leg_rotations, two_bone
 from motion_backend.procedural.held_poses import FLOOR_REACH, FOOT_SPLAY, SHIN_REACH, UP, Seat, upright
+from motion_backend.procedural.sit.sit_keys import SeatedLeg, SeatedLegs
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, Skeleton
 
@@ -19,11 +20,21 @@ HEEL: Final = 0.055
 """Ankle to heel along the sole (metres at 1.70 m)."""
 EASY_ANKLE: Final = 0.45
 """A foot that rests on its heel points so far down from square to the shin (radians)."""
-AHEAD: Final = 0.60
-"""Seated pelvis to the ankle of a leg that carries the other on its knee (metres at 1.70 m): the lower that knee is,
-the less the hip of the other has to turn outwards."""
+MAX_TOES_UP: Final = 1.25
+"""How far a foot on its heel is pitched up at most (radians)."""
 ON_KNEE: Final = 0.09
 """Ankle over the knee it is laid on (metres at 1.70 m)."""
+PAST_EDGE: Final = 0.08
+"""How far past the front of the seat the ankle of a leg is that hands hold (metres)."""
+THIGH: Final = 0.4165
+SHANK: Final = 0.418
+"""Lengths of the bones of a leg (metres at 1.70 m)."""
+MIN_STRETCH: Final = 0.2
+MAX_STRETCH: Final = 0.80
+STRETCH_STEP: Final = 0.01
+"""How far ahead of the pelvis a stretched foot is tried, from afar (metres at 1.70 m); a leg is no longer either."""
+MAX_SINK: Final = 0.055
+"""How far a thigh's middle line comes down to the seat's front edge at most, from the hip (metres at 1.70 m)."""
 WAYS: Final[dict[str, tuple[str, str]]] = {
     "rest": ("rest", "rest"),
     "together": ("together", "together"),
@@ -34,10 +45,11 @@ WAYS: Final[dict[str, tuple[str, str]]] = {
     "right_straight": ("rest", "straight"),
     "feet_crossed": ("over", "under"),
     "crossed": ("ahead", "on_knee"),
+    "folded": ("folded_near", "folded_far"),
     "held": ("straight", "held"),
     "drawn": ("drawn", "drawn"),
 }
-"""What the left and the right leg do in each way of sitting."""
+"""What the left and the right leg do in each way of sitting: rows of the table."""
 
 
 @dataclass(frozen=True)
@@ -59,68 +71,85 @@ class Room(NamedTuple):
 
 
 class _Leg(NamedTuple):
-    """One leg: its ankle to the side (outwards), up from the floor and ahead of the pelvis, and where its knee goes."""
+    """One leg here: its ankle to the side (outwards), up from the floor and ahead of the pelvis (m), and the rest."""
 
     outwards: float
     up: float
     ahead: float
-    knee_out: float = 0.10
+    knee_out: float
     """Yaw of the knee outwards (radians)."""
-    knee_up: float = 0.25
-    foot: str = "flat"
+    knee_up: float
+    foot: str
     """flat, heel (toes up as the shin leans) or free (square to the shin, a little pointed)."""
+    on_knee: bool
+    """Whether the ankle lies on the other knee, wherever that is."""
 
 
-def seated_legs(seat: Seat, legs: str, skeleton: Skeleton, room: tuple[Room, Room]) -> Legs:
+def seated_legs(seat: Seat, legs: str, skeleton: Skeleton, room: tuple[Room, Room], keys: SeatedLegs) -> Legs:
     """Both legs on a seat, where the left and the right foot have that much room."""
-    ways = ("tailor", "tailor") if legs == "crossed" and seat.is_low(skeleton.scale) else WAYS[legs]
+    ways = WAYS["folded" if legs == "crossed" and seat.is_low(skeleton.scale) else legs]
     hung = seat.pelvis[1] - skeleton.ankle_height > HANGING * skeleton.scale
     solved: list[tuple[Array, Array, Array, float]] = []
     for index, way in enumerate(ways):
-        leg = _leg(way, index, seat, skeleton, room[index].ahead)
+        leg = _leg(keys.of(way), seat, skeleton, room[index].ahead)
         if leg.outwards > room[index].aside:
             share = (room[index].aside / leg.outwards) ** 2
             leg = leg._replace(outwards=room[index].aside, knee_out=share * leg.knee_out)
         if hung and leg.foot != "free":
-            leg = leg._replace(up=seat.pelvis[1] - 0.36 * skeleton.scale, foot="free", knee_up=0.4)
+            up = seat.pelvis[1] - keys.hanging.below_seat_m * skeleton.scale
+            leg = leg._replace(up=up, foot="free", knee_up=keys.hanging.knee_up_ratio)
         solved.append(_placed(leg, index, seat, skeleton, solved))
     ankles, feet, knees, planted = (np.stack(values) for values in zip(*solved, strict=True))
     return Legs(ankles, feet, knees, planted)
 
 
-def _leg(way: str, index: int, seat: Seat, skeleton: Skeleton, room: float) -> _Leg:
-    scale, floor = skeleton.scale, skeleton.ankle_height
-    low = seat.is_low(skeleton.scale)
+def _leg(row: SeatedLeg, seat: Seat, skeleton: Skeleton, room: float) -> _Leg:
+    """A leg as its row has it, for a body of that size on that seat."""
+    scale, low = skeleton.scale, seat.is_low(skeleton.scale)
+    outwards = row.low_outwards_m if low and row.low_outwards_m is not None else row.outwards_m
+    up, foot = _height(row, seat, skeleton)
+    return _Leg(
+        outwards * scale,
+        up,
+        _ahead(row, seat, skeleton, room),
+        row.knee_out_rad,
+        row.knee_up_ratio,
+        foot,
+        on_knee=row.name == "on_knee",
+    )
+
+
+def _height(row: SeatedLeg, seat: Seat, skeleton: Skeleton) -> tuple[float, str]:
+    """Height of an ankle over the floor (metres), and how the foot is on it; on a low seat held legs stand."""
+    scale = skeleton.scale
+    if row.ankle_height_m is not None:
+        return row.ankle_height_m * scale, row.foot
+    if row.below_seat_m is None:
+        return skeleton.ankle_height + row.lifted_m * scale, row.foot
+    return (
+        (skeleton.ankle_height, "flat") if seat.is_low(scale) else (seat.pelvis[1] - row.below_seat_m * scale, "free")
+    )
+
+
+def _ahead(row: SeatedLeg, seat: Seat, skeleton: Skeleton, room: float) -> float:
+    """How far an ankle is ahead of the pelvis (metres), with so much room for it."""
+    scale, low = skeleton.scale, seat.is_low(skeleton.scale)
     shin = (FLOOR_REACH if low else SHIN_REACH) * scale
-    far = float(np.clip(_stretch(seat, seat.pelvis[1] - floor, scale), 0.2, max(room, SHIN_REACH * scale)))
-    match way:
-        case "straight":
-            return _Leg(0.10 * scale, floor, far, foot="heel")
+    if row.ahead_m is not None:
+        ahead = (row.low_ahead_m if low and row.low_ahead_m is not None else row.ahead_m) * scale
+    else:
+        stretched = _stretch(seat, seat.pelvis[1] - skeleton.ankle_height, scale)
+        far = float(np.clip(stretched, MIN_STRETCH, max(room, SHIN_REACH * scale)))
+        ahead = (1 - row.stretched_share) * shin + row.stretched_share * far + row.beyond_m * scale
+    match row.name:
         case "slouched":
-            return _Leg(0.13 * scale, floor, min(0.5 * (shin + far), room), foot="heel", knee_out=0.2)
-        case "under":
-            return _Leg(-0.02 * scale, floor, far - 0.05 * scale, foot="heel")
-        case "over":
-            return _Leg(-0.06 * scale, floor + 0.12 * scale, far + 0.05 * scale, knee_up=0.4, foot="heel")
-        case "open":
-            return _Leg((0.34 if low else 0.28) * scale, floor, shin, knee_out=0.6)
+            return min(ahead, room)
         case "ahead":
-            return _Leg(0.10 * scale, floor, float(np.clip(AHEAD * scale, shin, max(room, shin))))
-        case "together":
-            return _Leg(0.06 * scale, floor, shin, knee_out=0.0)
-        case "drawn":
-            return _Leg(0.09 * scale, floor, (0.34 if low else 0.30) * scale)
-        case "tailor":
-            near = 0.24 if index == 0 else 0.33
-            return _Leg(-0.09 * scale, 0.055 * scale, near * scale, knee_out=1.0, knee_up=0.6, foot="free")
+            return float(np.clip(ahead, shin, max(room, shin)))
         case "held":
-            ahead = max(seat.edge + 0.08, 0.38 * scale)
-            up, foot = (floor, "flat") if low else (seat.pelvis[1] - 0.14 * scale, "free")
-            return _Leg(0.06 * scale, up, ahead, knee_out=0.0, knee_up=1.0, foot=foot)
-        case "on_knee":
-            return _Leg(-0.14 * scale, 0.0, 0.33 * scale, knee_out=1.1, knee_up=0.7, foot="free")
+            return max(seat.edge + PAST_EDGE, ahead)
         case _:
-            return _Leg((0.12 if low else 0.10) * scale, floor, shin)
+            return ahead
 
 
 def _placed(
@@ -134,7 +163,7 @@ def _placed(
     way = seat.yaw + side * leg.knee_out
     pole = np.array([np.sin(way), 0.0, np.cos(way)]) + leg.knee_up * UP
     ankle = seat.to_world((side * leg.outwards, leg.up, leg.ahead))
-    if leg.up == 0.0:
+    if leg.on_knee:
         ankle = _on_the_knee(other[0], hip, lengths, skeleton, seat)
     limb = two_bone(hip, ankle, pole, lengths)
     if leg.foot == "free":
@@ -142,7 +171,7 @@ def _placed(
         pointed = rotations.rotvec_to_quat(np.array([0.5 * EASY_ANKLE, 0.0, 0.0]))
         return ankle, rotations.compose(shin, pointed), pole, 0.0
     lean = float(np.arctan2(np.hypot(limb.lower[0], limb.lower[2]), -limb.lower[1]))
-    pitch = float(np.clip(lean - EASY_ANKLE, 0.0, 1.25)) if leg.foot == "heel" else 0.0
+    pitch = float(np.clip(lean - EASY_ANKLE, 0.0, MAX_TOES_UP)) if leg.foot == "heel" else 0.0
     # The ankle of a foot on its heel: the lowest point of the sole is the heel's corner.
     over_floor = skeleton.ankle_height * np.cos(pitch) + HEEL * skeleton.scale * np.sin(pitch)
     ankle = ankle + (over_floor - skeleton.ankle_height) * UP
@@ -160,14 +189,14 @@ def _on_the_knee(
 
 def _stretch(seat: Seat, drop: float, scale: float) -> float:
     """How far ahead a stretched foot goes: as far as the thigh clears the seat's front edge (metres)."""
-    thigh, shank = 0.4165 * scale, 0.418 * scale
-    for ahead in np.arange(0.80, SHIN_REACH, -0.01) * scale:
+    thigh, shank = THIGH * scale, SHANK * scale
+    for ahead in np.arange(MAX_STRETCH, SHIN_REACH, -STRETCH_STEP) * scale:
         reach = float(np.hypot(ahead, drop))
-        if reach > 0.80 * scale:
+        if reach > MAX_STRETCH * scale:
             continue
         # The knee lies above the line from hip to ankle: the thigh's slope follows from the triangle they make.
         inner = np.arccos(np.clip((thigh**2 + reach**2 - shank**2) / (2 * thigh * reach), -1.0, 1.0))
         sinks = np.tan(np.arctan2(drop, ahead) - inner) * seat.edge
-        if sinks < 0.055 * scale:
+        if sinks < MAX_SINK * scale:
             return float(ahead)
     return SHIN_REACH * scale

@@ -11,10 +11,10 @@ from motion_backend.procedural.emotion_style import arm_arrays
 from motion_backend.procedural.held_poses import Seat, bend, upright
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.pose_solver import solve
+from motion_backend.procedural.sit.sit_keys import SitPose, Surface, Trunk
 from motion_backend.procedural.sit.sit_legs import Room, seated_legs
 from motion_backend.procedural.sit.sit_styles import Seated
 from motion_backend.procedural.touch.hand_rests import (
-    BACK,
     HOLDS,
     Handholds,
     Hold,
@@ -36,6 +36,14 @@ NEAR_TABLE, FARTHER = 0.28, 70.0
 """Beyond this distance of a table's edge one leans towards it, so many degrees a metre."""
 LEANS = np.radians(np.arange(8.0, 62.0, 1.0))
 """Leans of the trunk that are tried until the elbows lie."""
+BEHIND_PELVIS = 0.12
+"""From the pelvis joint to the skin of the back (metres)."""
+BACKREST = 0.42
+"""Above the seat, how high a trunk that leans back meets its backrest, measured along the trunk (metres)."""
+MAX_SINE = 0.9
+"""Sine of the lean that a backrest allows at most, however far behind it is."""
+GIVES = 0.03
+"""How far a backrest gives way (radians)."""
 
 
 @dataclass(frozen=True)
@@ -50,33 +58,49 @@ class Place:
     """How far to the left and to the right of the middle there is room for elbows (metres)."""
 
 
-def holds_of(style: Seated, place: Place, skeleton: Skeleton) -> Holds:
+def holds_of(style: Seated, place: Place, skeleton: Skeleton, keys: SitPose) -> Holds:
     """What the hands of a way of sitting lie on here; a surface that is not there is replaced by the thighs."""
-    left, right = (_hold(name, index, place, skeleton.scale) for index, name in enumerate(style.arms))
+    left, right = (_hold(name, index, place, skeleton.scale, keys) for index, name in enumerate(style.arms))
     return left, right
 
 
-def _hold(name: str, index: int, place: Place, scale: float) -> Hold | None:
+def _hold(name: str, index: int, place: Place, scale: float, keys: SitPose) -> Hold | None:
     if name in SURFACES:
-        return _on_surface(name, index, place, scale) or HOLDS[INSTEAD.get(name, "thighs")]
+        return _on_surface(keys.surface_of(name), index, place, scale) or HOLDS[INSTEAD.get(name, "thighs")]
     return hold_of(name)
 
 
-def _on_surface(name: str, index: int, place: Place, scale: float) -> Hold | None:
+def _on_surface(row: Surface, index: int, place: Place, scale: float) -> Hold | None:
     """A hand on a surface that belongs to no body; None where it is not there."""
-    around, side, yaw = place.around, (1, -1)[index], place.seat.yaw
-    beside, inwards = around.beside, np.clip(0.78 * scale - (around.table or 0.0), 0.12, 0.26)
-    surfaces: dict[str, tuple[Pair, float, tuple[float, float, float]]] = {
-        "armrest": (around.armrests, 0.0, (0.9, -0.3, -0.7)),
-        "beside": (beside, 0.2, BACK),
-        "behind": (around.behind if around.behind[index] is not None else beside, 0.6, (0.7, 0.1, -0.8)),
-        "edge": (around.edge if around.edge[index] is not None else beside, 0.3, BACK),
-        "table": (around.on_table(place.seat, 0.12 * scale, 0.30 * scale), -0.15, (0.7, -0.6, -0.3)),
-        "desk": (around.on_table(place.seat, float(inwards), 0.20 * scale), -0.5, (0.9, -0.5, 0.0)),
-    }
-    points, turned, elbow = surfaces[name]
+    if row.name in ON_TABLE:
+        points = place.around.on_table(place.seat, _inwards(row, place, scale), row.apart_m * scale)
+    else:
+        points = _palms(row.name, index, place.around)
     point = points[index]
-    return None if point is None else on_thing(point, yaw, side * turned, elbow)
+    if point is None:
+        return None
+    return on_thing(point, place.seat.yaw, (1, -1)[index] * row.fingers_out_rad, row.elbow_direction)
+
+
+def _palms(name: str, index: int, around: Handholds) -> Pair:
+    """Where palms lie but on a table; beside the hips if that hand has no room behind them or at the edge."""
+    match name:
+        case "armrest":
+            return around.armrests
+        case "behind" if around.behind[index] is not None:
+            return around.behind
+        case "edge" if around.edge[index] is not None:
+            return around.edge
+        case _:
+            return around.beside
+
+
+def _inwards(row: Surface, place: Place, scale: float) -> float:
+    """From a table's edge to the palm (metres)."""
+    inwards = row.inwards_m * scale
+    if row.min_inwards_m is None:
+        return inwards
+    return float(np.clip(inwards - (place.around.table or 0.0), row.min_inwards_m, row.max_inwards_m))
 
 
 def lacking(style: Seated, place: Place, skeleton: Skeleton) -> tuple[str, ...]:
@@ -94,7 +118,9 @@ def _lost(name: str, index: int, place: Place, scale: float) -> tuple[str, str] 
         return LACKED[name], "in the air"
     if name not in SURFACES:
         return None
-    low, there = place.seat.is_low(scale), _on_surface(name, index, place, scale) is not None
+    on_table, around = name in ON_TABLE, place.around
+    there = around.table is not None if on_table else _palms(name, index, around)[index] is not None
+    low = place.seat.is_low(scale)
     if name == "behind" and there and not low:
         return LACKED[name], "on the seat"
     if low and name in ON_THE_FLOOR:
@@ -102,12 +128,12 @@ def _lost(name: str, index: int, place: Place, scale: float) -> tuple[str, str] 
     return None if there else (LACKED[name], WHERE[INSTEAD.get(name, "thighs")])
 
 
-def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton) -> tuple[Pose, Holds]:
+def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton, keys: SitPose) -> tuple[Pose, Holds]:
     """Settled in a way of sitting, and what the hands lie on."""
     seat = place.seat
     if seat.is_low(skeleton.scale):
         style = _on_the_floor(style)
-    legs = seated_legs(seat, style.legs, skeleton, place.room)
+    legs = seated_legs(seat, style.legs, skeleton, place.room, keys.legs)
     wrists, elbows = arm_arrays(*style.arms)
     pose = replace(
         start,
@@ -124,16 +150,18 @@ def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton) -> tupl
         pressing=np.zeros(2),
         planted=legs.planted,
     )
-    holds = holds_of(style, place, skeleton)
+    holds = holds_of(style, place, skeleton, keys)
     if style.on_elbows:
-        return _on_elbows(_leaning(pose, seat, -LEANS), place, holds, skeleton), holds
-    rested = at_rest(_leaning(pose, seat, np.array([_recline(style, place)])).at(0), holds, skeleton)
+        return _on_elbows(_leaning(pose, seat, -LEANS, keys.trunk), place, holds, skeleton), holds
+    back = np.array([_recline(style, place, keys.trunk)])
+    rested = at_rest(_leaning(pose, seat, back, keys.trunk).at(0), holds, skeleton)
     inside = arms_inside(rested.repeat(1), seat, place.elbows, skeleton, np.ones(1))
     return lay_hands(inside, holds, skeleton).at(0), holds
 
 
 SURFACES = ("armrest", "beside", "behind", "edge", "table", "desk")
 """What hands may lie on besides the body: of `Handholds`, "desk" being the table with the forearms on it."""
+ON_TABLE = ("table", "desk")
 INSTEAD = {"desk": "knees", "table": "lap"}
 """Where hands lie if a surface is not there; on the thighs otherwise."""
 LACKED = {
@@ -178,25 +206,26 @@ def _on_the_floor(style: Seated) -> Seated:
     return replace(style, arms=(left, right), legs=legs, recline=recline, on_elbows=style.on_elbows and not shins)
 
 
-def _recline(style: Seated, place: Place) -> float:
+def _recline(style: Seated, place: Place, trunk: Trunk) -> float:
     """Backward lean of the trunk, as far as there is a back to lean against, or arms (radians)."""
     seat = place.seat
-    limit = np.pi if np.isinf(seat.back) else np.arcsin(np.clip((seat.back - 0.12) / 0.42, 0.0, 0.9))
+    limit = np.pi if np.isinf(seat.back) else np.arcsin(np.clip((seat.back - BEHIND_PELVIS) / BACKREST, 0.0, MAX_SINE))
     propped = {"behind", "beside"} & set(style.arms)
-    free = np.radians(24 if propped else 10)
+    free = trunk.max_propped_deg if propped else trunk.max_free_deg
+    most = np.radians(free if np.isinf(seat.back) else trunk.max_back_deg)
     lean = style.recline
     if place.around.table is not None and "table" in style.arms:
         lean = min(lean, -FARTHER * (place.around.table - NEAR_TABLE))
-    return float(min(np.radians(lean), float(limit) + 0.03, free if np.isinf(seat.back) else np.radians(40)))
+    return float(min(np.radians(lean), float(limit) + GIVES, most))
 
 
-def _leaning(pose: Pose, seat: Seat, back: Array) -> Pose:
+def _leaning(pose: Pose, seat: Seat, back: Array, trunk: Trunk) -> Pose:
     """The same pose with its trunk leaned back by each of N angles (radians, forwards negative)."""
     many = pose.repeat(len(back))
-    hips = upright(seat.yaw, -np.where(back > 0, 0.6, 0.45) * back)
-    spine = np.stack([bend(-(0.4 if lean > 0 else 0.55) * lean) for lean in back])
-    # Who leans back still looks ahead, for the most part.
-    head = many.head + np.stack([bend(0.5 * max(lean, 0.0)) for lean in back])
+    hips = upright(seat.yaw, -np.where(back > 0, trunk.hips_back_share, trunk.hips_forward_share) * back)
+    spine_shares = np.where(back > 0, trunk.spine_back_share, trunk.spine_forward_share)
+    spine = np.stack([bend(-share * lean) for share, lean in zip(spine_shares, back, strict=True)])
+    head = many.head + np.stack([bend(trunk.head_ahead_share * max(lean, 0.0)) for lean in back])
     return replace(many, hips=hips, spine=spine, head=head)
 
 

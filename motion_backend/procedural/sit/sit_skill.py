@@ -15,6 +15,7 @@ from motion_backend.motion import FPS, Action, Posture
 from motion_backend.procedural.body_state import Body, spot_of
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import SHIN_REACH, Seat, idle
+from motion_backend.procedural.sit.sit_keys import sit_keys
 from motion_backend.procedural.sit.sit_legs import Room
 from motion_backend.procedural.sit.sit_pose import Place, lacking
 from motion_backend.procedural.sit.sit_styles import sit_style
@@ -39,6 +40,18 @@ from scene_graphs.affordances.affordances import Spot
 
 SHIN = 0.05
 """Half as wide as a shin is (metres)."""
+LEG, TOES = 0.12, 0.16
+"""From the middle to a foot on either side, and from an ankle on to where toes end (metres)."""
+AHEAD, ASIDE, STEP = (0.44, 0.86), (0.12, 0.40), 0.02
+"""Where room for feet is looked for, ahead of the pelvis and to the side, and how finely (metres)."""
+OF_FOOT, OF_SHIN = (0.06, 0.22), (0.06, 0.22, 0.36)
+"""Heights at which something is in the way of a foot, and of a shin (metres)."""
+NEARLY = 0.03
+"""Points that are so near to something are as good as in it (metres)."""
+GRIP_OUT = 0.2
+"""How far the fingers of a hand that takes hold are turned outwards (radians)."""
+GRIP_ELBOW = (1.0, 0.0, -0.5)
+"""Where its elbow points, on an armrest."""
 SLOW, QUICK = 0.76, 1.25
 """Tempos below and above which one rises with the hands on the knees, and with none."""
 
@@ -59,7 +72,7 @@ def sitdown(body: Body, action: Action) -> None:
     place = Place(seat, around, _leg_room(body, seat), elbows)
     under = around.behind if seat.is_low(body.skeleton.scale) else around.beside
     felt = _grips(around.armrests, under, seat, style.manner.hands)
-    down, holds = sit_down(body.pose, place, style, felt, body.skeleton)
+    down, holds = sit_down(body.pose, place, style, felt, body.skeleton, sit_keys())
     body.add(down)
     body.note(*lacking(style, place, body.skeleton))
     held = idle(body.pose, action.hold, style.bearing.restless, body.rng, FPS)
@@ -75,7 +88,7 @@ def leave_seat(body: Body, seat: Seat, bearing: Bearing) -> None:
     elif bearing.tempo < QUICK:
         around = handholds(seat, body.scene.obstacles, body.skeleton.scale)
         push = _grips(around.armrests, around.beside, seat, (True, True))
-    body.add(stand_up(body.pose, seat, seat.standing_point(body.skeleton.scale), bearing, body.skeleton, push))
+    body.add(stand_up(body.pose, seat, bearing, push, body.skeleton, sit_keys().up))
     body.posture, body.rest = Posture.STANDING, None
 
 
@@ -85,9 +98,9 @@ def _grips(armrests: Pair, under: Pair, seat: Seat, hands: tuple[bool, bool]) ->
     for index, side in enumerate((1, -1)):
         armrest, beside = armrests[index], under[index]
         if armrest is not None and hands[index]:
-            found.append(on_thing(armrest, seat.yaw, side * 0.2, (1.0, 0.0, -0.5)))
+            found.append(on_thing(armrest, seat.yaw, side * GRIP_OUT, GRIP_ELBOW))
         elif beside is not None and hands[index]:
-            found.append(on_thing(beside, seat.yaw, side * 0.2, BACK))
+            found.append(on_thing(beside, seat.yaw, side * GRIP_OUT, BACK))
         else:
             found.append(None)
     return found[0], found[1]
@@ -96,20 +109,20 @@ def _grips(armrests: Pair, under: Pair, seat: Seat, hands: tuple[bool, bool]) ->
 def _leg_room(body: Body, seat: Seat) -> tuple[Room, Room]:
     """How far each foot may go before it meets something."""
     near, scale = body.scene.obstacles.solid(), body.skeleton.scale
-    ahead, aside = np.arange(0.44, 0.86, 0.02), np.arange(0.12, 0.40, 0.02) * scale
+    ahead, aside = np.arange(*AHEAD, STEP), np.arange(*ASIDE, STEP) * scale
     # Before the seat's own front, where shins and feet of a sitter are.
     front = max(SHIN_REACH * scale, seat.edge) + SHIN
     room = []
     for side in (1, -1):
-        points = np.array([seat.to_world((side * 0.12, up, a + 0.16)) for a in ahead for up in (0.06, 0.22)])
-        beside = np.array([seat.to_world((side * a, up, front)) for a in aside for up in (0.06, 0.22, 0.36)])
-        room.append(Room(_before(ahead, near.depth(points), 0.02), _before(aside, near.depth(beside), SHIN)))
+        points = np.array([seat.to_world((side * LEG, up, a + TOES)) for a in ahead for up in OF_FOOT])
+        beside = np.array([seat.to_world((side * a, up, front)) for a in aside for up in OF_SHIN])
+        room.append(Room(_before(ahead, near.depth(points), STEP), _before(aside, near.depth(beside), SHIN)))
     return room[0], room[1]
 
 
 def _before(places: Array, depth: Array, clear: float) -> float:
     """The last of the distances, so much before the first at which one of its points is in something, or nearly."""
-    hit = depth.reshape(len(places), -1).max(axis=1) > -0.03
+    hit = depth.reshape(len(places), -1).max(axis=1) > -NEARLY
     return float(places[np.argmax(hit)] - clear) if hit.any() else float(places[-1])
 
 

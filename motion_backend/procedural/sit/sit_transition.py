@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,9 +11,21 @@ from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.collision_avoidance.body_collision import arms_inside, hands_round_body
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays
-from motion_backend.procedural.held_poses import UP, Seat, bend, standing, upright
+from motion_backend.procedural.held_poses import UP, Seat, bend, both_sides, part_way, standing, upright
 from motion_backend.procedural.pose import Pose, concatenate, interpolate, smooth
 from motion_backend.procedural.pose_solver import released
+from motion_backend.procedural.sit.sit_keys import (
+    Look,
+    Lower,
+    Lowered,
+    Move,
+    Ready,
+    Risen,
+    Settling,
+    SitDown,
+    SitKeys,
+    StandUp,
+)
 from motion_backend.procedural.sit.sit_pose import Place, seated
 from motion_backend.procedural.sit.sit_styles import Manner, Seated
 from motion_backend.procedural.touch.hand_rests import Holds, at_rest, follow
@@ -25,40 +38,70 @@ ARM = 0.54
 NOTHING: Holds = (None, None)
 AROUND, ROUND, OVER_KNEES = 0.4, 0.16, 0.5
 """How far hands come out on their way down to the seat, up from it, and over knees that are up (arm lengths)."""
+ROUND_THIGHS, OVER_THIGHS = (1.0, 0.0, -0.5), (1.0, 1.0, 0.0)
+"""Which way the left one does: out and back on the way down, out and up between seat and lap."""
 BEGINS = 7
 """Frames in which arms come in where there is little room beside a seat."""
-OVER = 0.14
-"""How much higher than half-way a foot goes at most that is laid over the other leg (metres)."""
+LEAVES, ARRIVES = 0.3, 0.35
+"""Shares of their way in which hands let go of what they held, and from which on they take hold of the next thing."""
+OVER, RISES = 0.14, 0.6
+"""How much higher than half-way a foot goes at most that is laid over the other leg (metres), and for how much rise."""
+MAX_LIFT, LIFT = 0.08, 0.28
+"""How high a foot is lifted in a step at most (metres), and for how long a step."""
 STEP = 1.8
 """Seconds a foot takes for a metre, where that is longer than a small step."""
+WAITS, WAITS_TO_STAND = 0.5, 0.9
+"""Shares of a step after which the other foot leaves: a foot that leaves the floor waits until the other stands."""
+BEHIND = 0.02
+"""A foot that is so much nearer to the pelvis lies behind the other's shin (metres)."""
 SINK = 0.014
 """How deep one who plumps down sinks into the seat before it gives back (metres)."""
+MIN_GLANCE = 0.2
+"""Who would look back less than this (see `Manner`) does not look."""
+SEAT_DROP, MIN_DEPTH, MAX_DEPTH = 0.4, 0.6, 2.0
+"""How far a pelvis comes down to an ordinary seat (metres at 1.70 m), and the bounds of other depths against that."""
+ANY_DEPTH, EACH_DEPTH = 0.7, 0.3
+"""Shares of the time down and up that every seat takes, and that grows with its depth."""
+KNEES_UP = 0.25
+"""How far bent knees point up, against ahead."""
 
 
-def sit_down(start: Pose, place: Place, style: Seated, felt: Holds, skeleton: Skeleton) -> tuple[Pose, Holds]:
+def sit_down(
+    start: Pose, place: Place, style: Seated, felt: Holds, skeleton: Skeleton, keys: SitKeys
+) -> tuple[Pose, Holds]:
     """From standing with the back to a seat: look, hips back, lower, touch down, settle; then the way of sitting.
 
     `felt` is what the hands feel for on the way down. Returned with it is what they lie on in the end.
     """
-    pace = 1 / style.bearing.tempo
-    ready = _looking_back(start, style.manner, pace)
+    pace, take = 1 / style.bearing.tempo, keys.down.take
+    ready = _looking_back(start, style.manner, pace, keys.down.look)
     before = start if ready is None else ready.at(len(ready) - 1)
-    down = lower_onto(before, place.seat, style.bearing, skeleton, style.manner, felt)
+    down = lower_onto(before, place.seat, style, felt, skeleton, keys.down)
     landed = down.at(len(down) - 1)
-    settle = _settling(landed, place.seat, style, pace)
+    settle = _settling(landed, place.seat, style, pace, keys.down.settle)
     touched = settle.at(len(settle) - 1)
     landed = released(touched, skeleton)
-    settled, holds = seated(landed, place, style, skeleton)
-    travel = float(np.linalg.norm(settled.arms - landed.arms, axis=1).max()) * ARM * skeleton.scale
-    keys = [landed, replace(settled, ankles=landed.ankles, feet=landed.feet)]
-    moved = interpolate([0.0, max(0.75, 1.1 * travel) * pace], keys, FPS)
-    moved = follow(_place_feet(moved, landed, settled, first=0.15, each=0.42), settled, holds, skeleton)
+    settled, holds = seated(landed, place, style, skeleton, keys.pose)
+    poses = [landed, replace(settled, ankles=landed.ankles, feet=landed.feet)]
+    moved = interpolate([0.0, _hands_take(landed, settled, take, skeleton) * pace], poses, FPS)
+    moved = follow(_place_feet(moved, landed, settled, take), settled, holds, skeleton)
     moved = _taken(moved, landed, holds)
     moved = _round_the_thighs(moved, touched.reaching, place.seat.is_low(skeleton.scale))
     share = smooth(np.arange(len(moved)) / BEGINS)
     moved = arms_inside(moved, place.seat, place.elbows, skeleton, share)
     whole = concatenate([part for part in (ready, down, settle, moved) if part is not None])
     return hands_round_body(whole, skeleton), holds
+
+
+def _hands_take(start: Pose, end: Pose, move: Move, skeleton: Skeleton) -> float:
+    """Seconds that hands take from pose to pose at tempo 1: from the head longer than from the lap."""
+    travel = float(np.linalg.norm(end.arms - start.arms, axis=1).max()) * ARM * skeleton.scale
+    return max(move.min_time_s, move.time_per_m_s * travel)
+
+
+def _depth(stood: Pose, seat: Seat, scale: float) -> float:
+    """How deep a seat is below a standing body, against an ordinary one."""
+    return float(np.clip((stood.pelvis[1] - seat.pelvis[1]) / (SEAT_DROP * scale), MIN_DEPTH, MAX_DEPTH))
 
 
 def _round_the_thighs(moved: Pose, hands: Array, low: bool) -> Pose:
@@ -68,206 +111,209 @@ def _round_the_thighs(moved: Pose, hands: Array, low: bool) -> Pose:
     """
     size = OVER_KNEES if low else ROUND * hands[:, None]
     out = size * np.sin(np.pi * smooth(np.linspace(0.0, 1.0, len(moved))))[:, None, None]
-    return replace(moved, arms=moved.arms + out * np.array([[1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]))
+    return replace(moved, arms=moved.arms + out * both_sides(OVER_THIGHS))
 
 
 def _taken(moved: Pose, start: Pose, holds: Holds) -> Pose:
     """Hands that leave what they held and turn to what they go to; late on the way they hold on to it."""
     share = np.linspace(0.0, 1.0, len(moved))
-    turned, late = smooth(share)[:, None], smooth((share - 0.35) / 0.65)[:, None]
+    turned, late = smooth(share)[:, None], smooth((share - ARRIVES) / (1 - ARRIVES))[:, None]
     wanted = np.array([0.0 if hold is None else 1.0 for hold in holds])
     return replace(
         moved,
         palms=rotations.slerp(start.palms[None], moved.palms, turned),
         reaching=late * wanted,
-        pressing=(1 - smooth(share / 0.3)[:, None]) * start.pressing + late * wanted,
+        pressing=(1 - smooth(share / LEAVES)[:, None]) * start.pressing + late * wanted,
     )
 
 
-def _looking_back(start: Pose, manner: Manner, pace: float) -> Pose | None:
+def _looking_back(start: Pose, manner: Manner, pace: float, look: Look) -> Pose | None:
     """A look over the shoulder at the seat; None for who does not look."""
-    if manner.glance < 0.2:
+    if manner.glance < MIN_GLANCE:
         return None
     turned = replace(
         start,
-        head=start.head + bend(0.18 * manner.glance, -0.75 * manner.glance),
-        spine=start.spine + bend(0.06, -0.20 * manner.glance),
+        head=start.head + bend(look.head_pitch_rad * manner.glance, look.head_side_rad * manner.glance),
+        spine=start.spine + bend(look.spine_pitch_rad, look.spine_side_rad * manner.glance),
     )
-    return interpolate([0.0, 0.55 * pace], [start, turned], FPS)
+    return interpolate([0.0, look.time_s * pace], [start, turned], FPS)
 
 
-def lower_onto(
-    start: Pose,
-    seat: Seat,
-    bearing: Bearing,
-    skeleton: Skeleton,
-    manner: Manner | None = None,
-    felt: Holds = NOTHING,
-) -> Pose:
+class _WayDown(NamedTuple):
+    """What the key poses down to one seat have in common, for one body."""
+
+    seat: Seat
+    aside: Array
+    """Sway to the side (metres). (3,)."""
+    lean: float
+    """Forwards (radians)."""
+    tuck: float
+    """The share of it that hips do not take for being folded."""
+    arms: Array
+    """Wrists where they balance, as `Pose.arms`. (2, 3)."""
+    elbows: Array
+
+
+def lower_onto(start: Pose, seat: Seat, style: Seated, felt: Holds, skeleton: Skeleton, keys: SitDown) -> Pose:
     """Standing to first contact with the seat, a hand or two feeling for it."""
-    pace, scale = 1 / bearing.tempo, skeleton.scale
-    depth = float(np.clip((start.pelvis[1] - seat.pelvis[1]) / (0.4 * scale), 0.6, 2.0))
-    drop, back = seat.pelvis[1] - start.pelvis[1], seat.pelvis - start.pelvis
-    aside = (manner.sway if manner else 0.0) * rotations.rotate(rotations.yaw_to_quat(seat.yaw), np.array([1.0, 0, 0]))
-    # Whatever the arms were doing, they come forward for balance.
-    arms, elbows = arm_arrays("hang", "hang")
-    arms = arms * [1.0, 0.86, 1.0] + [0.0, 0.0, 0.35]
-    forward = 0.30 + 0.16 * depth
-    # Hips that fold no further let the back do it, and arms go round the knees.
-    tucked = 0.45 if seat.is_low(scale) else 0.0
-    arms = arms + (tucked > 0) * np.array([[0.35, 0.1, 0.0], [-0.35, 0.1, 0.0]])
-    hinge = replace(
-        start,
-        pelvis=start.pelvis + back * [0.42, 0.0, 0.42] + [0, 0.22 * drop, 0] + aside,
-        hips=upright(seat.yaw, 0.55 * forward),
-        spine=bend(0.5 * forward),
-        head=bend(0.1),
-        arms=0.5 * (start.arms + arms),
-        elbows=elbows,
-        reaching=np.zeros(2),
-        pressing=np.zeros(2),
-    )
-    low = replace(
-        hinge,
-        pelvis=start.pelvis + back * [0.86, 0.0, 0.86] + [0, 0.74 * drop, 0] - 0.5 * aside,
-        hips=upright(seat.yaw, (0.75 - tucked) * forward),
-        spine=bend((0.75 + 0.6 * tucked) * forward),
-        arms=arms,
-    )
-    contact = replace(
-        low,
-        pelvis=seat.pelvis,
-        hips=upright(seat.yaw, (0.45 - 1.6 * tucked) * forward),
-        spine=bend((0.55 + 0.9 * tucked) * forward),
-    )
-    contact = at_rest(contact, felt, skeleton)
-    hinge, low = _feeling(hinge, contact), _feeling(low, contact)
-    low = replace(low, arms=at_rest(low, felt, skeleton).arms, reaching=0.7 * contact.reaching)
-    seconds = 1.35 * pace * (0.7 + 0.3 * depth)
-    down = interpolate([0.0, 0.42 * seconds, 0.8 * seconds, seconds], [start, hinge, low, contact], FPS)
+    depth = _depth(start, seat, skeleton.scale)
+    way = _way_down(seat, style, depth, keys.lower, seat.is_low(skeleton.scale))
+    poses = [_lowered(row, start, way) for row in keys.pose]
+    contact = at_rest(poses[-1], felt, skeleton)
+    before = [
+        _feeling(pose, contact, row.felt_share, felt, skeleton)
+        for pose, row in zip(poses[:-1], keys.pose[:-1], strict=True)
+    ]
+    seconds = keys.lower.time_s * (1 / style.bearing.tempo) * (ANY_DEPTH + EACH_DEPTH * depth)
+    times = [0.0, *(row.time_share * seconds for row in keys.pose)]
+    down = interpolate(times, [start, *before, contact], FPS)
     return replace(down, knees=knees_over_feet(down))
 
 
-def _feeling(pose: Pose, contact: Pose) -> Pose:
-    """Hands that will hold on come out to the side on their way round the thighs."""
-    outwards = AROUND * contact.reaching[:, None] * np.array([[1.0, 0.0, -0.5], [-1.0, 0.0, -0.5]])
-    return replace(pose, arms=pose.arms + outwards, reach=contact.reach, palms=contact.palms)
+def _way_down(seat: Seat, style: Seated, depth: float, lower: Lower, low: bool) -> _WayDown:
+    arms, elbows = arm_arrays("hang", "hang")
+    arms = arms * [1.0, lower.arms_down_share, 1.0] + [0.0, 0.0, lower.arms_ahead_ratio]
+    if low:
+        arms = arms + both_sides((lower.low_arms_out_ratio, lower.low_arms_up_ratio, 0.0))
+    aside = style.manner.sway * rotations.rotate(rotations.yaw_to_quat(seat.yaw), np.array([1.0, 0.0, 0.0]))
+    lean = lower.lean_rad + lower.lean_per_depth_rad * depth
+    return _WayDown(seat, aside, lean, lower.low_tuck_share if low else 0.0, arms, elbows)
 
 
-def _settling(landed: Pose, seat: Seat, style: Seated, pace: float) -> Pose:
+def _lowered(row: Lowered, start: Pose, way: _WayDown) -> Pose:
+    """A key pose on the way down, hands not yet on what they feel for."""
+    level = row.pelvis_back_share
+    pelvis = part_way(start.pelvis, way.seat.pelvis, [level, row.pelvis_down_share, level])
+    return replace(
+        start,
+        pelvis=pelvis + row.sway_ratio * way.aside,
+        hips=upright(way.seat.yaw, (row.hip_pitch_share - row.hip_tuck_ratio * way.tuck) * way.lean),
+        spine=bend((row.spine_pitch_share + row.spine_tuck_ratio * way.tuck) * way.lean),
+        head=bend(row.head_pitch_rad),
+        arms=(1 - row.arms_share) * start.arms + row.arms_share * way.arms,
+        elbows=way.elbows,
+        reaching=np.zeros(2),
+        pressing=np.zeros(2),
+    )
+
+
+def _feeling(pose: Pose, contact: Pose, share: float, felt: Holds, skeleton: Skeleton) -> Pose:
+    """Hands that will hold on come out to the side on their way round the thighs, and are there so far already."""
+    outwards = AROUND * contact.reaching[:, None] * both_sides(ROUND_THIGHS)
+    pose = replace(pose, arms=pose.arms + outwards, reach=contact.reach, palms=contact.palms)
+    if share == 0.0:
+        return pose
+    return replace(pose, arms=at_rest(pose, felt, skeleton).arms, reaching=share * contact.reaching)
+
+
+def _settling(landed: Pose, seat: Seat, style: Seated, pace: float, rows: tuple[Settling, ...]) -> Pose:
     """The weight comes down: the seat gives and gives back, the trunk comes up over it."""
-    sink = SINK * style.manner.plump
-    deep = replace(landed, pelvis=seat.pelvis - sink * UP, head=landed.head + bend(0.12 * style.manner.plump))
-    up = replace(deep, pelvis=seat.pelvis + 0.3 * sink * UP, spine=0.75 * landed.spine)
-    still = replace(up, pelvis=seat.pelvis, spine=0.6 * landed.spine, head=landed.head)
-    return interpolate([0.0, 0.14, 0.30, 0.30 + 0.18 * pace], [landed, deep, up, still], FPS)
+    plump = style.manner.plump
+    poses = [
+        replace(
+            landed,
+            pelvis=seat.pelvis - row.sink_ratio * (SINK * plump) * UP,
+            spine=row.spine_share * landed.spine,
+            head=landed.head + bend(row.head_pitch_rad * plump),
+        )
+        for row in rows
+    ]
+    times = [row.time_s + row.tempo_time_s * pace for row in rows]
+    return interpolate([0.0, *times], [landed, *poses], FPS)
 
 
 def knees_over_feet(pose: Pose) -> Array:
     """Knees point where their feet point, a little up, so that deep bends stay in plane. (T, 2, 3)."""
     forward = rotations.rotate(rotations.yaw_to_quat(yaw_of(pose.feet)), np.array([0.0, 0.0, 1.0]))
-    return np.asarray(forward + 0.25 * UP)
+    return np.asarray(forward + KNEES_UP * UP)
 
 
-def _place_feet(pose: Pose, before: Pose, after: Pose, first: float, each: float) -> Pose:
+def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move) -> Pose:
     """Move the feet one after the other in small lifted steps from where they were to where they go."""
     ankles, feet, planted, knees = pose.ankles.copy(), pose.feet.copy(), pose.planted.copy(), pose.knees.copy()
-    time = np.arange(1, len(pose) + 1) / FPS
-    # A foot that leaves the floor waits until the other stands.
-    wait = 0.5 * each if after.planted.all() else 0.9 * each
+    time, each = np.arange(1, len(pose) + 1) / FPS, move.foot_time_s
+    wait = (WAITS if after.planted.all() else WAITS_TO_STAND) * each
     for order, index in enumerate(_first_foot(after)):
         gap = float(np.linalg.norm(after.ankles[index] - before.ankles[index]))
-        share = np.clip((time - first - order * wait) / max(each, STEP * gap), 0.0, 1.0)
+        share = np.clip((time - move.first_foot_s - order * wait) / max(each, STEP * gap), 0.0, 1.0)
         way = smooth(share)[:, None]
         ankles[:, index] = before.ankles[index] + way * (after.ankles[index] - before.ankles[index])
         rise = float(after.ankles[index, 1] - before.ankles[index, 1])
         # A foot that goes onto the other knee goes over it.
-        ankles[:, index, 1] += max(min(0.08, 0.28 * gap), min(0.6 * rise, OVER)) * np.sin(np.pi * share)
+        ankles[:, index, 1] += max(min(MAX_LIFT, LIFT * gap), min(RISES * rise, OVER)) * np.sin(np.pi * share)
         feet[:, index] = rotations.slerp(before.feet[index], after.feet[index], way[:, 0])
         knees[:, index] = before.knees[index] + way * (after.knees[index] - before.knees[index])
         stands = np.where(share <= 0, before.planted[index], np.where(share >= 1, after.planted[index], 0.0))
         planted[:, index] = stands
-    last = {"ankles": ankles, "feet": feet, "planted": planted, "knees": knees}
     far = float(np.linalg.norm(after.ankles - before.ankles, axis=1).max())
-    short = max(round((first + wait + max(each, STEP * far)) * FPS) - len(pose), 0)
+    short = max(round((move.first_foot_s + wait + max(each, STEP * far)) * FPS) - len(pose), 0)
     if short:
         # The feet take longer than the trunk: hold the trunk until both are placed.
         held = pose.at(slice(len(pose) - 1, len(pose)))
-        longer = concatenate([pose, *([held] * short)])
-        return _place_feet(longer, before, after, first, each)
-    return replace(pose, **last)
+        return _place_feet(concatenate([pose, *([held] * short)]), before, after, move)
+    return replace(pose, ankles=ankles, feet=feet, planted=planted, knees=knees)
 
 
 def _first_foot(after: Pose) -> tuple[int, int]:
     """Which foot goes first: one that will stand, else one that comes to lie behind the other's shin."""
     away = np.linalg.norm((after.ankles - after.pelvis)[:, [0, 2]], axis=1)
-    left = after.planted[0] > after.planted[1] or (not after.planted.any() and away[0] < away[1] - 0.02)
+    left = after.planted[0] > after.planted[1] or (not after.planted.any() and away[0] < away[1] - BEHIND)
     return (0, 1) if left else (1, 0)
 
 
-def stand_up(
-    start: Pose,
-    seat: Seat,
-    where: tuple[float, float],
-    bearing: Bearing,
-    skeleton: Skeleton,
-    push: Holds = NOTHING,
-) -> Pose:
-    """From a seat to standing at [x, z]: feet under, lean forward, push off with the hands, rise over the feet."""
-    end = standing(where, seat.yaw, bearing, skeleton)
-    under = replace(start, ankles=end.ankles, feet=end.feet, knees=end.knees + 0.25 * UP, planted=np.ones(2))
-    pace = 1 / bearing.tempo
-    depth = float(np.clip((end.pelvis[1] - seat.pelvis[1]) / (0.4 * skeleton.scale), 0.6, 2.0))
-    forward = 0.34 + 0.20 * depth
-    folded = 0.55 if seat.is_low(skeleton.scale) else 0.0
-    ready = replace(
-        under,
-        hips=upright(seat.yaw, (0.5 - folded) * forward),
-        spine=bend((0.75 + folded) * forward),
-        head=bend(0.0),
-        pelvis=seat.pelvis,
-        toes=np.zeros(2),
-        arms=end.arms + np.array([0.0, 0.16, 0.34]),
-        elbows=end.elbows,
-        reaching=np.zeros(2),
-        pressing=np.zeros(2),
-    )
-    ready = at_rest(ready, push, skeleton)
-    # Hands that come down from the head need longer than hands on the lap.
-    travel = float(np.linalg.norm(ready.arms - start.arms, axis=1).max()) * ARM * skeleton.scale
-    seconds = max(0.62, 1.1 * travel) * pace
-    gather = interpolate([0.0, seconds], [start, replace(ready, ankles=start.ankles, feet=start.feet)], FPS)
-    gather = follow(_place_feet(gather, start, ready, first=0.0, each=0.36), ready, push, skeleton)
-    gather = _round_the_thighs(_taken(gather, start, push), ready.reaching, seat.is_low(skeleton.scale))
-    ready = gather.at(len(gather) - 1)
-    up = _rising(ready, end, seat, (forward, 1.25 * pace * (0.7 + 0.3 * depth)))
-    up = follow(replace(up, knees=knees_over_feet(up)), ready, push, skeleton)
+def stand_up(start: Pose, seat: Seat, bearing: Bearing, push: Holds, skeleton: Skeleton, keys: StandUp) -> Pose:
+    """From a seat to standing before it: feet under, lean forward, push off with the hands, rise over the feet."""
+    low, pace = seat.is_low(skeleton.scale), 1 / bearing.tempo
+    end = standing(seat.standing_point(skeleton.scale), seat.yaw, bearing, skeleton)
+    depth = _depth(end, seat, skeleton.scale)
+    lean = keys.rise.lean_rad + keys.rise.lean_per_depth_rad * depth
+    ready, *rows = keys.pose
+    over = _over_the_feet(start, end, seat, lean, keys.rise.low_fold_share if low else 0.0, ready)
+    over = at_rest(over, push, skeleton)
+    seconds = _hands_take(start, over, keys.gather, skeleton) * pace
+    gather = interpolate([0.0, seconds], [start, replace(over, ankles=start.ankles, feet=start.feet)], FPS)
+    gather = follow(_place_feet(gather, start, over, keys.gather), over, push, skeleton)
+    gather = _round_the_thighs(_taken(gather, start, push), over.reaching, low)
+    over = gather.at(len(gather) - 1)
+    seconds = keys.rise.time_s * pace * (ANY_DEPTH + EACH_DEPTH * depth)
+    times = [*(row.time_share * seconds for row in keys.pose), seconds]
+    risen = [_risen(row, over, end, seat, lean) for row in rows]
+    up = interpolate(times, [over, *risen, replace(end, reach=over.reach, palms=over.palms)], FPS)
+    up = follow(replace(up, knees=knees_over_feet(up)), over, push, skeleton)
     return hands_round_body(concatenate([gather, up]), skeleton)
 
 
-def _rising(ready: Pose, end: Pose, seat: Seat, way: tuple[float, float]) -> Pose:
-    """From leaning over the feet to standing: how far the trunk leans, and the seconds it takes."""
-    forward, seconds = way
-    rise, ahead = end.pelvis[1] - seat.pelvis[1], end.pelvis - seat.pelvis
-    # Hands that pushed off let go and come forward as the weight goes over the feet.
-    forwards = 0.5 * (ready.arms + end.arms + [0.0, 0.12, 0.34])
-    lift = replace(
-        ready,
-        pelvis=seat.pelvis + ahead * [0.45, 0.0, 0.45] + [0, 0.24 * rise, 0],
-        hips=upright(seat.yaw, 0.7 * forward),
-        spine=bend(0.8 * forward),
-        arms=forwards,
-        reaching=0.35 * ready.reaching,
-        pressing=0.35 * ready.pressing,
-    )
-    straighten = replace(
-        lift,
-        pelvis=seat.pelvis + ahead * [0.88, 0.0, 0.88] + [0, 0.78 * rise, 0],
-        hips=upright(seat.yaw, 0.3 * forward),
-        spine=bend(0.35 * forward),
+def _over_the_feet(start: Pose, end: Pose, seat: Seat, lean: float, fold: float, row: Ready) -> Pose:
+    """Still on the seat, feet under it and the trunk over them; `fold` is what the spine takes from the hips."""
+    return replace(
+        start,
+        pelvis=seat.pelvis,
+        hips=upright(seat.yaw, (row.hip_pitch_share - fold) * lean),
+        spine=bend((row.spine_pitch_share + fold) * lean),
+        head=bend(0.0),
+        ankles=end.ankles,
+        feet=end.feet,
+        toes=np.zeros(2),
+        knees=end.knees + KNEES_UP * UP,
+        arms=end.arms + np.array([0.0, row.arms_up_ratio, row.arms_ahead_ratio]),
+        elbows=end.elbows,
         reaching=np.zeros(2),
         pressing=np.zeros(2),
-        arms=end.arms + 0.5 * (forwards - end.arms),
+        planted=np.ones(2),
     )
-    end = replace(end, reach=ready.reach, palms=ready.palms)
-    return interpolate([0.0, 0.34 * seconds, 0.72 * seconds, seconds], [ready, lift, straighten, end], FPS)
+
+
+def _risen(row: Risen, ready: Pose, end: Pose, seat: Seat, lean: float) -> Pose:
+    """A key pose between leaning over the feet and standing."""
+    # Hands that pushed off let go and come forward as the weight goes over the feet.
+    forwards = 0.5 * (ready.arms + end.arms + [0.0, row.arms_up_ratio, row.arms_ahead_ratio])
+    level = row.pelvis_ahead_share
+    return replace(
+        ready,
+        pelvis=part_way(seat.pelvis, end.pelvis, [level, row.pelvis_up_share, level]),
+        hips=upright(seat.yaw, row.hip_pitch_share * lean),
+        spine=bend(row.spine_pitch_share * lean),
+        arms=part_way(end.arms, forwards, row.arms_away_share),
+        reaching=row.held_share * ready.reaching,
+        pressing=row.held_share * ready.pressing,
+    )

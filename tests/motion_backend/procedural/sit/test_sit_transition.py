@@ -23,6 +23,7 @@ from motion_backend.procedural.emotion_style import ARMS, Bearing
 from motion_backend.procedural.held_poses import Seat, standing
 from motion_backend.procedural.pose import Pose, interpolate
 from motion_backend.procedural.pose_solver import hips_within, solve
+from motion_backend.procedural.sit.sit_keys import sit_keys
 from motion_backend.procedural.sit.sit_legs import WAYS, Room, seated_legs
 from motion_backend.procedural.sit.sit_pose import SURFACES, Place
 from motion_backend.procedural.sit.sit_pose import seated as settled
@@ -152,7 +153,7 @@ def test_feet_of_a_sitter_stay_where_they_stand_and_hang_where_a_stool_is_high()
     feet = joints[-HELD:, [INDEX["left_ankle"], INDEX["right_ankle"]]]
     assert np.ptp(feet, axis=0).max() < 0.002
     high = Seat(np.array([0.0, 0.92, 0.0]), 0.0, np.inf, 0.2)
-    legs = seated_legs(high, "rest", SKELETON, (Room(0.8, 0.3), Room(0.8, 0.3)))
+    legs = seated_legs(high, "rest", SKELETON, (Room(0.8, 0.3), Room(0.8, 0.3)), sit_keys().pose.legs)
     assert (legs.ankles[:, 1] > 0.3).all()
     assert not legs.planted.any()
 
@@ -165,7 +166,8 @@ HEIGHTS = st.floats(0.38, 0.62)
 def test_no_way_of_sitting_bends_a_joint_beyond_its_range(caption: str, height: float, ahead: float) -> None:
     seat = Seat(np.array([0.0, height + 0.09, 0.0]), 0.0, 0.2, 0.33)
     place = Place(seat, Handholds(), (Room(ahead, 0.4), Room(ahead, 0.4)))
-    pose, _ = settled(standing((0.0, 0.42), 0.0, Bearing(), SKELETON), place, sit_style("neutral", caption), SKELETON)
+    stood, style = standing((0.0, 0.42), 0.0, Bearing(), SKELETON), sit_style("neutral", caption)
+    pose, _ = settled(stood, place, style, SKELETON, sit_keys().pose)
     _, local = solve(hips_within(pose.repeat(1), SKELETON), SKELETON)
     assert beyond_limits(local).max() < CLEARLY
 
