@@ -26,3 +26,18 @@ def tumbling(frames: int = 40, seed: int = 0, height: float = 1.70) -> Motion:
         completed=False,
         reason="only a test",
     )
+
+
+def standing_still(frames: int = 60, root: np.ndarray | None = None, height: float = 1.70) -> Motion:
+    """A T-pose on its feet; `root` (T, 3) moves it."""
+    skeleton = build_skeleton(height)
+    place = np.zeros((frames, 3)) if root is None else root
+    frames = len(place)
+    up = np.array([0.0, skeleton.standing_height, 0.0])
+    return Motion(
+        (place + up).astype(np.float32),
+        np.tile(rotations.IDENTITY, (frames, 22, 1)).astype(np.float32),
+        np.ones((frames, 4), np.float32),
+        skeleton,
+        np.zeros(frames, np.int32),
+    )

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from sample_motions import standing_still
 
 from motion_backend import rotations
 from motion_backend.body.scene_collision import Obstacles
@@ -19,20 +20,6 @@ from scene_graphs.layout import Layout, Opening
 
 SKELETON = build_skeleton()
 NOTHING = Obstacles(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), (), np.zeros(0, dtype=bool))
-
-
-def standing_still(frames: int = 60, root: np.ndarray | None = None) -> Motion:
-    """A T-pose on its feet; `root` (T, 3) moves it."""
-    place = np.zeros((frames, 3)) if root is None else root
-    frames = len(place)
-    height = np.array([0.0, SKELETON.standing_height, 0.0])
-    return Motion(
-        (place + height).astype(np.float32),
-        np.tile(rotations.IDENTITY, (frames, 22, 1)).astype(np.float32),
-        np.ones((frames, 4), np.float32),
-        SKELETON,
-        np.zeros(frames, np.int32),
-    )
 
 
 def box(center: tuple[float, float, float], size: tuple[float, float, float], owner: str = "0/box") -> Obstacles:

@@ -1,0 +1,103 @@
+"""How people lie: level, on the side that is said, on the surface and not in it, head where the pillow is."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+from acted import Body, lain
+
+from motion_backend.motion import FPS, Part
+from motion_backend.skeleton import LYING_REST
+
+BACK = ("hands on belly", "lying down, legs straight", "lying on the back, arms spread wide", "lying still")
+SIDE = {"side-lie on left, legs bent": 1, "curled up on the left side, knees drawn up": 1, "side-lie on right": -1}
+PLACES = [("bed", "small"), ("sofa", "small"), ("floor", "small"), ("bed", "hall")]
+UP = np.array([0.0, 1.0, 0.0])
+
+
+def lying(captions: tuple[str, ...]) -> list[tuple[tuple[str, ...], Body]]:
+    return [
+        ((place, home, caption), lain(place, caption, home=home))
+        for (place, home), caption in product(PLACES, captions)
+        if home == "small" or caption in (BACK[0], "side-lie on right")
+    ]
+
+
+def above(body: Body, joint: str) -> np.ndarray:
+    """How far a joint is above the surface in the last second. (30,)."""
+    assert body.action.spot is not None
+    return body.at(joint)[-FPS:, 1] - body.action.spot.point[1]
+
+
+def test_a_lying_body_is_level_and_rests_on_the_surface() -> None:
+    for name, body in lying(BACK):
+        trunk = body.at("neck") - body.at("pelvis")
+        assert abs(np.degrees(np.arcsin(trunk[-1, 1] / np.linalg.norm(trunk[-1])))) < 8, name
+        assert np.abs(above(body, "pelvis") - LYING_REST).max() < 0.03, name
+        for joint in ("spine3", "neck", "left_shoulder", "right_shoulder", "left_hip", "right_hip"):
+            assert 0.02 < above(body, joint).min() <= above(body, joint).max() < 0.2, (name, joint)
+        low = np.minimum(*(ends[-1, :, 1] for ends in body.kinematics.capsules[:2])) - body.kinematics.capsules[2]
+        assert body.action.spot is not None
+        assert -0.05 < low.min() - body.action.spot.point[1] < 0.03, name
+
+
+def test_who_lies_on_the_back_looks_up_and_who_lies_on_a_side_looks_to_the_other() -> None:
+    for name, body in lying(BACK):
+        for joint in ("pelvis", "spine3"):
+            assert (body.axis(joint, (0.0, 0.0, 1.0))[-FPS:] @ UP).min() > 0.9, (name, joint)
+    for name, body in lying(tuple(SIDE)):
+        # The left of a body that lies on its left points down.
+        down = -SIDE[name[2]] * (body.axis("pelvis", (1.0, 0.0, 0.0))[-FPS:] @ UP)
+        assert down.min() > 0.85, name
+        lower, upper = ("left", "right") if SIDE[name[2]] > 0 else ("right", "left")
+        assert above(body, f"{upper}_shoulder").min() > above(body, f"{lower}_shoulder").max() + 0.1, name
+        assert above(body, f"{upper}_hip").min() > above(body, f"{lower}_hip").max() + 0.1, name
+
+
+def test_straight_legs_are_straight_bent_ones_bent_and_curled_ones_more() -> None:
+    for place, home in PLACES[:3]:
+        straight = lain(place, "lying down, legs straight", home=home)
+        bent = lain(place, "Legs are bent while lying flat", home=home)
+        curled = lain(place, "curled up on the left side, knees drawn up", home=home)
+        for side in ("left", "right"):
+            assert straight.knee(side)[-1] < 25, place
+            assert straight.hip(side)[-1] < 25, place
+            assert bent.knee(side)[-1] > 60, place
+            assert curled.knee(side)[-1] > 60, place
+            assert curled.hip(side)[-1] > 35, place
+    left = lain("bed", "left leg bent")
+    assert left.knee("left")[-1] > left.knee("right")[-1] + 40
+
+
+def test_hands_lie_where_the_caption_says() -> None:
+    for place, home in PLACES[:3]:
+        belly = lain(place, "hands on belly", home=home)
+        for side in ("left", "right"):
+            middle = (belly.at("pelvis") + belly.at("spine3"))[-1] / 2
+            assert np.linalg.norm(belly.at(f"{side}_wrist")[-1] - middle) < 0.3, (place, side)
+            assert above(belly, f"{side}_wrist").min() > 0.1, (place, side)
+    spread = lain("floor", "lying on the back, arms spread wide")
+    wide = np.linalg.norm(spread.at("left_wrist")[-1] - spread.at("right_wrist")[-1])
+    assert wide > 1.0
+
+
+def test_a_body_lies_along_the_bed_with_its_head_away_from_where_its_feet_are() -> None:
+    for name, body in lying(BACK[:1]):
+        trunk = (body.at("head") - body.at("pelvis"))[-1] * [1.0, 0.0, 1.0]
+        legs = (body.at("left_ankle") + body.at("right_ankle") - 2 * body.at("pelvis"))[-1] * [1.0, 0.0, 1.0]
+        along = trunk @ legs / np.linalg.norm(trunk) / np.linalg.norm(legs)
+        assert along < -0.95, name
+        assert np.linalg.norm(legs) / 2 > 0.6, name
+
+
+def test_who_lies_down_sits_on_the_edge_first_and_comes_down_gently() -> None:
+    for name, body in lying((BACK[0], "side-lie on right")):
+        if name[0] == "floor":
+            continue
+        edge, down = body.phase(Part.EDGE), body.phase(Part.LIEDOWN)
+        seated = body.at("neck")[down.start] - body.at("pelvis")[down.start]
+        assert seated[1] / np.linalg.norm(seated) > 0.8, name
+        assert body.at("pelvis")[down.start, 1] < body.at("pelvis")[edge.start, 1] - 0.2, name
+        speed = np.linalg.norm(np.diff(body.at("head"), axis=0), axis=1).max() * FPS
+        assert 0.3 < speed < 2.5, name
