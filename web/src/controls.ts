@@ -22,6 +22,7 @@ export class Controls {
   readonly #time = h("span", { class: "time" });
   readonly #speeds: HTMLInputElement[];
   readonly #cameras: HTMLInputElement[];
+  readonly #cameraChoice: HTMLElement;
   readonly #map: HTMLButtonElement;
 
   constructor(wishes: Wishes) {
@@ -32,23 +33,24 @@ export class Controls {
     this.#map.setAttribute("aria-pressed", "true");
     const speeds = SPEEDS.map((speed) => radio("speed", String(speed), `${speed === 0.5 ? "½" : speed}×`, `${speed} times as fast`, () => wishes.speed(speed)));
     const cameras = ([["follow", "Follow"], ["orbit", "Overview"]] as const).map(([mode, words]) => radio("camera", mode, words, null, () => wishes.camera(mode)));
-    this.#speeds = speeds.map((label) => label.querySelector("input")!);
-    this.#cameras = cameras.map((label) => label.querySelector("input")!);
+    this.#speeds = speeds.map(({ input }) => input);
+    this.#cameras = cameras.map(({ input }) => input);
+    this.#cameraChoice = h("div", { class: "segment cameras", role: "radiogroup", "aria-label": "Camera" }, ...cameras.map(({ label }) => label));
     const keys = button("Keys", "help", () => wishes.help());
     keys.dataset["keys"] = "";
     this.element = h(
       "div",
       { class: "controls", role: "group", "aria-label": "Film" },
       h("div", { class: "transport" }, button("Moment before", "back", () => wishes.step(-1)), this.#play, button("Next moment", "next", () => wishes.step(1)), this.#time),
-      h("div", { class: "segment speeds", role: "radiogroup", "aria-label": "Speed" }, ...speeds),
-      h("div", { class: "segment cameras", role: "radiogroup", "aria-label": "Camera" }, ...cameras),
+      h("div", { class: "segment speeds", role: "radiogroup", "aria-label": "Speed" }, ...speeds.map(({ label }) => label)),
+      this.#cameraChoice,
       h("div", { class: "extras" }, this.#map, button("Full screen", "full", () => wishes.full()), keys),
     );
   }
 
   /** Without WebGL there is no camera to choose. */
   hideCameras(): void {
-    for (const input of this.#cameras) input.closest<HTMLElement>(".segment")!.hidden = true;
+    this.#cameraChoice.hidden = true;
   }
 
   showMode(mode: CameraMode): void {
@@ -76,6 +78,7 @@ export class Controls {
   }
 }
 
-function radio(name: string, value: string, words: string, spoken: string | null, act: () => void): HTMLLabelElement {
-  return h("label", {}, h("input", { type: "radio", name, value, "aria-label": spoken, onchange: act }), h("span", {}, words));
+function radio(name: string, value: string, words: string, spoken: string | null, act: () => void): { label: HTMLLabelElement; input: HTMLInputElement } {
+  const input = h("input", { type: "radio", name, value, "aria-label": spoken, onchange: act });
+  return { label: h("label", {}, input, h("span", {}, words)), input };
 }

@@ -28,6 +28,13 @@ function dress(element: Element, attributes: Attributes): void {
 
 const present = (children: Child[]): (Node | string)[] => children.filter((child) => child !== null && child !== undefined && child !== false);
 
+/** The element of that id in index.html, which holds all that is made here. */
+export function framed(id: string): HTMLElement {
+  const element = document.getElementById(id);
+  if (!element) throw new Error(`index.html has no element #${id}`);
+  return element;
+}
+
 /** Replace what an element holds. */
 export function fill(element: Element, ...children: Child[]): void {
   element.replaceChildren(...present(children));

@@ -27,6 +27,16 @@ interface At {
   readonly progress: number;
 }
 
+/** What comes with each event. */
+interface Said {
+  readonly stage: At;
+  readonly progress: At;
+  readonly segment: Segment;
+  readonly done: unknown;
+  readonly failed: unknown;
+  readonly cancelled: unknown;
+}
+
 const AGAIN_MS = 3000;
 
 /** Listen until the story ends; the answer stops listening. */
@@ -34,8 +44,8 @@ export function follow(id: string, heard: Heard): () => void {
   let source: EventSource | null = null;
   let timer = 0;
 
-  const on = <T>(name: string, act: (data: T) => void): void => {
-    source?.addEventListener(name, (event) => act(JSON.parse((event as MessageEvent<string>).data) as T));
+  const on = <Name extends keyof Said>(name: Name, act: (data: Said[Name]) => void): void => {
+    source?.addEventListener(name, (event) => act(JSON.parse((event as MessageEvent<string>).data) as Said[Name]));
   };
   const stop = (): void => {
     window.clearTimeout(timer);
@@ -45,10 +55,10 @@ export function follow(id: string, heard: Heard): () => void {
   const open = (): void => {
     source = new EventSource(eventsUrl(id));
     source.onopen = () => heard.broken(false);
-    on<At>("stage", ({ stage, progress }) => heard.stage(stage, progress));
-    on<At>("progress", ({ stage, progress }) => heard.progress(stage, progress));
-    on<Segment>("segment", (segment) => heard.segment(segment));
-    for (const end of ["done", "failed", "cancelled"]) {
+    on("stage", ({ stage, progress }) => heard.stage(stage, progress));
+    on("progress", ({ stage, progress }) => heard.progress(stage, progress));
+    on("segment", (segment) => heard.segment(segment));
+    for (const end of ["done", "failed", "cancelled"] as const) {
       on(end, () => {
         // The browser would reconnect to a stream that has said all.
         stop();

@@ -73,14 +73,14 @@ export class Fading {
 }
 
 /** The same look, drawn where it is glass. */
-export function glassOf(solid: Material): Material {
+export function glassOf<Look extends Material>(solid: Look): Look {
   const glass = patchShare(solid.clone(), true);
   glass.transparent = true;
   return glass;
 }
 
 /** Draw either what is solid or what is glass. */
-export function patchShare(material: Material, glass: boolean): Material {
+export function patchShare<Look extends Material>(material: Look, glass: boolean): Look {
   material.onBeforeCompile = (shader) => {
     shader.vertexShader = `attribute float share;\nvarying float vShare;\n${shader.vertexShader}`.replace("#include <begin_vertex>", "#include <begin_vertex>\nvShare = share;");
     shader.fragmentShader = `varying float vShare;\n${shader.fragmentShader}`

@@ -201,7 +201,7 @@ export class Film {
     const { track } = this.reel;
     const story = this.#story;
     const over = story !== null && (story.motion.complete || !["queued", "running"].includes(story.state));
-    this.player.feed(track.readyTime, over && track.ready >= (story?.motion.frames ?? 0));
+    this.player.feed(track.readyTime, over && track.ready >= story.motion.frames);
   }
 
   #open(): void {
@@ -286,6 +286,7 @@ export class Film {
 
   #full(): void {
     if (document.fullscreenElement) void document.exitFullscreen();
-    else void this.element.requestFullscreen?.();
+    // Not every browser can, a telephone's least of all.
+    else if (document.fullscreenEnabled) void this.element.requestFullscreen();
   }
 }

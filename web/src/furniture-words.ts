@@ -22,7 +22,7 @@ export const nameOf = (category: string): string => NAMES[category] ?? plain(cat
 /** "2 bookshelves", "a desk" as "desk". */
 export function several(count: number, name: string): string {
   if (count === 1) return name;
-  const many = /(?:ch|sh|s|x)$/.test(name) ? `${name}es` : /shelf$/.test(name) ? name.replace(/f$/, "ves") : `${name}s`;
+  const many = /(?:ch|sh|s|x)$/.test(name) ? `${name}es` : name.endsWith("shelf") ? name.replace(/f$/, "ves") : `${name}s`;
   return `${count} ${many}`;
 }
 

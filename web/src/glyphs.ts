@@ -37,7 +37,7 @@ export function glyph(piece: Piece): SVGElement[] {
   if (/stool|^plant$|^vase$|lamp|round/.test(category)) return [disc("outline", w, d), ...(kind === "light" || category === "plant" ? [disc("detail", w / 2.2, d / 2.2)] : [])];
   if (kind === "rug") return [box("outline", -w / 2, -d / 2, w, d), box("detail", -w / 2 + 8, -d / 2 + 8, w - 16, d - 16)];
   if (kind === "bed") return bed(w, d);
-  if (/sofa/.test(category)) return sofa(category, w, d);
+  if (category.includes("sofa")) return sofa(category, w, d);
   if (kind === "sit") return chair(category, w, d);
   const outline = box("outline", -w / 2, -d / 2, w, d);
   // Doors and drawers, and the face of a screen, are where the front is.

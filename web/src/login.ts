@@ -16,8 +16,7 @@ export function loginForm(opened: () => void): HTMLElement {
     h("div", { class: "field" }, h("label", { for: "key" }, "Key"), key, wrong),
     enter,
   );
-  form.addEventListener("submit", async (event) => {
-    event.preventDefault();
+  const tryKey = async (): Promise<void> => {
     enter.disabled = true;
     try {
       await logIn(key.value);
@@ -28,6 +27,10 @@ export function loginForm(opened: () => void): HTMLElement {
       key.select();
     }
     enter.disabled = false;
+  };
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    void tryKey();
   });
   queueMicrotask(() => key.focus());
   return form;

@@ -3,14 +3,14 @@
 import "./style/page.css";
 import { ApiError, getSession, logOut, type Point2 } from "./api";
 import { appearanceButton } from "./appearance";
-import { fill, h } from "./dom";
+import { fill, framed, h } from "./dom";
 import { Gallery } from "./gallery";
 import { loginForm } from "./login";
 import type { Point3 } from "./pose";
 import { StoryView } from "./story-view";
 import { ThemeForm } from "./theme-form";
 
-const main = document.querySelector<HTMLElement>("#main")!;
+const main = framed("main");
 let view: StoryView | null = null;
 /** Leaves the rooms, where they are shown. */
 let leaveRooms: (() => void) | null = null;
@@ -66,8 +66,9 @@ function showHome(layouts: readonly string[] = []): void {
   const gallery = new Gallery();
   fill(main, h("div", { class: "front" }, h("section", { class: "arch-panel", "aria-label": "A new story" }, form.element), gallery.element));
   // While a theme is being thought of, the stage is fetched; where it cannot be built, the film will say so.
-  const idle = window.requestIdleCallback ?? ((act: () => void) => window.setTimeout(act, 1500));
-  idle(() => void import("./stage").then(({ warmUp }) => warmUp()).catch(() => undefined), { timeout: 4000 });
+  const warm = (): void => void import("./stage").then(({ warmUp }) => warmUp()).catch(() => undefined);
+  if ("requestIdleCallback" in window) window.requestIdleCallback(warm, { timeout: 4000 });
+  else setTimeout(warm, 1500);
   gallery.load().catch((error: unknown) => {
     if (error instanceof ApiError && error.status === 401) askForKey();
     else throw error;
@@ -81,9 +82,8 @@ function askForKey(): void {
 
 async function start(): Promise<void> {
   const session = await getSession().catch(() => ({ required: false, authenticated: false }));
-  const tools = document.querySelector<HTMLElement>("#tools")!;
   const leave = h("button", { type: "button", class: "plain small", onclick: () => void logOut().then(askForKey) }, "Leave");
-  fill(tools, roomsLink, session.authenticated && session.required ? leave : null, appearance);
+  fill(framed("tools"), roomsLink, session.authenticated && session.required ? leave : null, appearance);
   if (session.required && !session.authenticated) askForKey();
   else route();
 }

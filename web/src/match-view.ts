@@ -41,7 +41,7 @@ export function matchView(query: Query, match: Match, rooms: readonly Room[], ra
   const given = new Map(match.mapping.map((one) => [one.node, one]));
   const places = query.nodes.map((_, node): Point2 => {
     const id = given.get(node)?.object_id;
-    return (id !== undefined && placeOf(hung, match, id)) || below(match, node, wide, high);
+    return (id === undefined ? null : placeOf(hung, match, id)) ?? below(match, node, wide, high);
   });
   const level = (node: number): string => given.get(node)?.level ?? "missing";
   const box: Box = [0, 0, wide, high + (match.reasons.length ? BELOW : 0)];

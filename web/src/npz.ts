@@ -93,7 +93,7 @@ function product(sizes: readonly number[]): number {
 }
 
 function valuesOf(bytes: Uint8Array<ArrayBuffer>, start: number, type: string, count: number): NpyArray["values"] {
-  const width = type[0] === "U" ? 4 * Number(type.slice(1)) : Number(type.slice(1));
+  const width = type.startsWith("U") ? 4 * Number(type.slice(1)) : Number(type.slice(1));
   const stop = start + count * width;
   if (stop > bytes.length) throw new NpzError("npy data are cut off");
   // A copy, since typed arrays must begin at a multiple of their width.
@@ -111,7 +111,7 @@ function valuesOf(bytes: Uint8Array<ArrayBuffer>, start: number, type: string, c
     case "i8":
       return Array.from(new BigInt64Array(data), Number);
     default:
-      if (type[0] === "U") return texts(new Uint32Array(data), width / 4, count);
+      if (type.startsWith("U")) return texts(new Uint32Array(data), width / 4, count);
       throw new NpzError(`npy type ${type} is not read`);
   }
 }

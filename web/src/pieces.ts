@@ -8,11 +8,14 @@ export function own(mesh: Mesh): Material {
   return (mesh.material = (mesh.material as Material).clone());
 }
 
+/** Whether it is drawn as triangles; `instanceof` alone would not know of what. */
+export const isMesh = (object: Object3D): object is Mesh => object instanceof Mesh;
+
 /** All meshes of the node of that name; several looks make it a group. */
 export function meshesOf(scene: Object3D, name: string): Mesh[] {
   const found: Mesh[] = [];
   scene.getObjectByName(name)?.traverse((object) => {
-    if (object instanceof Mesh) found.push(object);
+    if (isMesh(object)) found.push(object);
   });
   return found;
 }

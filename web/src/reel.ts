@@ -32,10 +32,14 @@ export class Reel {
     this.#stop.abort();
   }
 
+  #stopped(): boolean {
+    return this.#stop.signal.aborted;
+  }
+
   async #fetch(): Promise<void> {
     this.#busy = true;
     const { track } = this;
-    while (track.ready < this.#wanted && !this.#stop.signal.aborted) {
+    while (track.ready < this.#wanted && !this.#stopped()) {
       const from = track.ready;
       const to = Math.min(from + (from === 0 ? FIRST : PIECE), this.#wanted);
       try {
@@ -43,7 +47,7 @@ export class Reel {
         if (track.ready === from) break;
         this.#grown();
       } catch (error) {
-        if (this.#stop.signal.aborted) break;
+        if (this.#stopped()) break;
         if (!(error instanceof ApiError) || !error.passing) throw error;
         await new Promise((resolve) => setTimeout(resolve, AGAIN_MS));
       }

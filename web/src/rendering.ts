@@ -36,7 +36,7 @@ export function warmUp(): void {
   patchWall(wall);
   patchWall(pane);
   patchShare(solid, false);
-  const glass = glassOf(solid) as MeshStandardMaterial;
+  const glass = glassOf(solid);
   for (const material of [wall, pane, solid, glass, new MeshStandardMaterial({ flatShading: true }), new MeshStandardMaterial()]) {
     const mesh = new Mesh(box(), material);
     // Homes come without normals, and programs differ by that.

@@ -49,8 +49,8 @@ export class RoomCards {
   }
 
   #fetch(): void {
-    while (this.#fetching < AT_ONCE && this.#wanted.size) {
-      const [frame, id] = this.#wanted.entries().next().value!;
+    for (const [frame, id] of this.#wanted) {
+      if (this.#fetching === AT_ONCE) return;
       this.#wanted.delete(frame);
       this.#eye.unobserve(frame);
       this.#fetching++;

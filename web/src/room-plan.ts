@@ -81,7 +81,7 @@ export class RoomPlan {
 
   /** In the room's order, which is that of the list beside the plan. */
   get #ordered(): SVGGElement[] {
-    return this.#room.objects.map(({ id }) => this.#pieces.get(id)!);
+    return this.#room.objects.map(({ id }) => this.#pieces.get(id)).filter((piece) => piece !== undefined);
   }
 
   #mark(): void {
@@ -89,13 +89,13 @@ export class RoomPlan {
     this.#svg.classList.toggle("marking", id !== null);
     const near = new Set([id]);
     for (const line of this.#svg.querySelectorAll<SVGElement>("[data-ends]")) {
-      const ends = JSON.parse(line.dataset["ends"]!) as string[];
+      const ends = JSON.parse(line.dataset["ends"] ?? "[]") as string[];
       const touches = id !== null && ends.includes(id);
       line.classList.toggle("marked", touches);
       if (touches) for (const end of ends) near.add(end);
     }
     for (const element of this.#svg.querySelectorAll<SVGElement>("[data-object]")) {
-      const name = element.dataset["object"]!;
+      const name = element.dataset["object"] ?? "";
       element.classList.toggle("marked", name === id);
       element.classList.toggle("near", name !== id && near.has(name));
     }

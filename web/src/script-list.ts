@@ -9,7 +9,7 @@ import { placeWords, SKILL_WORDS } from "./words";
 export class ScriptList {
   readonly element = h("ol", { class: "cues" });
   readonly #seek: (keyframe: number) => void;
-  #rows: { button: HTMLButtonElement; words: HTMLElement; time: HTMLElement }[] = [];
+  #rows: { item: HTMLElement; button: HTMLButtonElement; words: HTMLElement; time: HTMLElement }[] = [];
   #current: number | null = null;
 
   constructor(seek: (keyframe: number) => void) {
@@ -17,7 +17,7 @@ export class ScriptList {
   }
 
   update(keyframes: readonly Keyframe[], fps: number, written: boolean): void {
-    while (this.#rows.length > keyframes.length) this.#rows.pop()?.button.parentElement?.remove();
+    while (this.#rows.length > keyframes.length) this.#rows.pop()?.item.remove();
     const fresh = this.#rows.length;
     for (const [index, keyframe] of keyframes.entries()) {
       if (!this.#rows[index]) this.#add(index, written ? (index - fresh) * 45 : 0);
@@ -29,16 +29,17 @@ export class ScriptList {
     const words = h("span", { class: "cue-words" });
     const time = h("span", { class: "cue-time" });
     const button = h("button", { type: "button", onclick: () => this.#seek(index) }, h("span", { class: "cue-number" }, String(index + 1)), words, time);
-    this.#rows.push({ button, words, time });
-    this.element.append(h("li", { class: "cue", style: `animation-delay: ${delay}ms` }, button));
+    const item = h("li", { class: "cue", style: `animation-delay: ${delay}ms` }, button);
+    this.#rows.push({ item, button, words, time });
+    this.element.append(item);
   }
 
   #show(index: number, keyframe: Keyframe, fps: number): void {
-    const { button, words, time } = this.#rows[index]!;
+    const { item, button, words, time } = this.#rows[index]!;
     const made = keyframe.start !== null;
     button.disabled = !made;
-    button.parentElement!.dataset["emotion"] = emotionOf(keyframe.emotion);
-    button.parentElement!.classList.toggle("missed", keyframe.reached === false);
+    item.dataset["emotion"] = emotionOf(keyframe.emotion);
+    item.classList.toggle("missed", keyframe.reached === false);
     const missed = keyframe.reached === false ? " · not reached" : "";
     words.replaceChildren(
       h("b", {}, keyframe.caption),

@@ -37,7 +37,7 @@ export function paragraphs(text: string, spans: readonly Span[]): Piece[][] {
     const parts = text.slice(points(from), points(to)).split(/\n\s*\n/);
     for (const [number, part] of parts.entries()) {
       if (number > 0) result.push([]);
-      if (part) result.at(-1)!.push({ text: part, span });
+      if (part) result.at(-1)?.push({ text: part, span });
     }
   };
   let at = 0;

@@ -9,6 +9,7 @@ import { Fading } from "./fading";
 import { groundDisc, shade, subfloors } from "./ground";
 import { Lighting } from "./lighting";
 import { heading, JOINT_NAMES, type Point3, type Pose } from "./pose";
+import { isMesh } from "./pieces";
 import { renderer, warmUp } from "./rendering";
 import { boxesOf, Lookout } from "./sight";
 import { wallSides } from "./walls";
@@ -60,7 +61,7 @@ export class Stage {
   async setHome(glb: ArrayBuffer, home: Home): Promise<void> {
     const { scene } = await new GLTFLoader().parseAsync(glb, "");
     scene.traverse((object) => {
-      if (!(object instanceof Mesh)) return;
+      if (!isMesh(object)) return;
       const group = object.parent?.name && object.parent !== scene ? object.parent.name : object.name;
       // Walls throw no shadow: they come and go, and there is no ceiling to let light in below.
       object.castShadow = group.startsWith("furniture");
@@ -189,7 +190,7 @@ export class Stage {
     this.cameraMan.controls.dispose();
     this.canvas.removeEventListener("webglcontextrestored", this.#stale);
     this.#scene.traverse((object) => {
-      if (!(object instanceof Mesh)) return;
+      if (!isMesh(object)) return;
       object.geometry.dispose();
       for (const material of [object.material].flat()) material.dispose();
     });

@@ -99,7 +99,7 @@ export class StoryView {
     this.film.update(story);
     const seek = (keyframe: number): void => this.film.seekKeyframe(keyframe);
     this.#sections.script.hidden = story.keyframes.length === 0;
-    if (!making || before === null || before.stage !== story.stage) {
+    if (!making || before?.stage !== story.stage) {
       this.#sections.report.hidden = !showReport(this.#sections.report, story, seek);
       this.#sections.making.hidden = !showMaking(this.#sections.making, story);
       this.#sections.files.hidden = making || !showDownloads(this.#sections.files, story);

@@ -130,7 +130,10 @@ export class ThemeForm {
 
   #request(): NewStory {
     const data = new FormData(this.element);
-    const text = (name: string): string => String(data.get(name) ?? "");
+    const text = (name: string): string => {
+      const value = data.get(name);
+      return typeof value === "string" ? value : "";
+    };
     const rooms = data.getAll("rooms").map(String);
     return {
       theme: text("theme").trim(),
@@ -178,8 +181,8 @@ export class ThemeForm {
     const folded = control.closest("details");
     if (folded) folded.open = true;
     const focus = control.matches("input, textarea") ? control : control.querySelector("input");
-    (focus as HTMLElement | null)?.focus();
-    announce(`${sentence(detail)}`);
+    focus?.focus();
+    announce(sentence(detail));
     return true;
   }
 

@@ -18,6 +18,7 @@ export class Timeline {
   readonly #fps: number;
   #keyframes: readonly Keyframe[] = [];
   #laid: Block[] = [];
+  #items: HTMLElement[] = [];
   #buttons: HTMLButtonElement[] = [];
   #current: number | null = null;
 
@@ -37,7 +38,8 @@ export class Timeline {
     this.#keyframes = keyframes;
     this.#laid = blocks(keyframes);
     this.element.classList.toggle("blank", keyframes.length === 0);
-    while (this.#buttons.length > keyframes.length) this.#buttons.pop()?.parentElement?.remove();
+    for (const item of this.#items.splice(keyframes.length)) item.remove();
+    this.#buttons.splice(keyframes.length);
     for (const [index, keyframe] of keyframes.entries()) this.#block(index, keyframe);
     const felt = EMOTIONS.filter((emotion) => keyframes.some((keyframe) => emotionOf(keyframe.emotion) === emotion));
     if (felt.length !== this.#legend.children.length) {
@@ -48,14 +50,10 @@ export class Timeline {
   }
 
   #block(index: number, keyframe: Keyframe): void {
-    let button = this.#buttons[index];
-    if (!button) {
-      button = h("button", { type: "button", tabindex: -1 });
-      this.#buttons.push(button);
-      this.#line.append(h("li", { style: `--n: ${index}` }, button));
-    }
+    const button = (this.#buttons[index] ??= h("button", { type: "button", tabindex: -1 }));
+    const item = (this.#items[index] ??= h("li", { style: `--n: ${index}` }, button));
+    if (!item.parentElement) this.#line.append(item);
     const { width, made } = this.#laid[index]!;
-    const item = button.parentElement!;
     item.style.flexGrow = String(width * 1000);
     item.dataset["emotion"] = emotionOf(keyframe.emotion);
     item.classList.toggle("made", made);

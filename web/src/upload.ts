@@ -80,7 +80,10 @@ export class Upload {
     const format = this.#format.value;
     const most = LARGEST[format] ?? LARGEST_OTHER;
     if (!file) return;
-    if (file.size > most) return this.#fail("The file is too large", [`It has ${Math.ceil(file.size / (1 << 20))} MB; of this format ${most >> 20} MB are taken.`]);
+    if (file.size > most) {
+      this.#fail("The file is too large", [`It has ${Math.ceil(file.size / (1 << 20))} MB; of this format ${most >> 20} MB are taken.`]);
+      return;
+    }
     const said = this.#axes.hidden ? [] : [...new FormData(this.#form)].filter(([name, value]) => ["up", "front", "unit", "room"].includes(name) && value !== "");
     this.#send.disabled = true;
     this.#send.textContent = "Being read …";
@@ -111,7 +114,7 @@ export class Upload {
 export function formatOf(name: string, start: string): string {
   if (/\.glb$/i.test(name) || start.startsWith("glTF")) return "glb";
   if (/\.obj$/i.test(name)) return "obj";
-  if (/"floor_polygon"/.test(start)) return "native";
+  if (start.includes('"floor_polygon"')) return "native";
   if (/"(?:class_name|nodes)"/.test(start)) return "virtualhome";
   if (/"(?:furniture|jid|uid)"/.test(start)) return "3d-front";
   return /"(?:assetId|roomSpec|proceduralParameters|doors)"/.test(start) || /\.jsonl/i.test(name) ? "procthor" : "native";

@@ -59,9 +59,9 @@ export function hides(wall: WallSide, eye: Point2, body: Point2): boolean {
   const sight = Math.hypot(body[0] - eye[0], body[1] - eye[1]) || 1;
   const aside: Point2 = [(-ELBOW * (body[1] - eye[1])) / sight, (ELBOW * (body[0] - eye[0])) / sight];
   // A wall that the body stands close to stays, so beside the body only what is well before it counts.
-  return [[0, 1], [1, BEFORE], [-1, BEFORE]].some(([side, share]) => {
-    const aim: Point2 = [body[0] + side! * aside[0], body[1] + side! * aside[1]];
-    return meeting(eye, aim, wall.a, wall.b) < share!;
+  return ([[0, 1], [1, BEFORE], [-1, BEFORE]] as const).some(([side, share]) => {
+    const aim: Point2 = [body[0] + side * aside[0], body[1] + side * aside[1]];
+    return meeting(eye, aim, wall.a, wall.b) < share;
   });
 }
 

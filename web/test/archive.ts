@@ -12,6 +12,9 @@ export function npy(descr: string, shape: number[], data: ArrayBufferView<ArrayB
   return bytes;
 }
 
+/** Its letters, as NumPy keeps them. */
+export const codesOf = (text: string): number[] => Array.from(text, (letter) => letter.codePointAt(0) ?? 0);
+
 /** A zip of those files, deflated or stored; sizes only in the directory when `streamed`. */
 export async function zip(files: Record<string, Uint8Array<ArrayBuffer>>, deflated: boolean, streamed = false): Promise<ArrayBuffer> {
   const out: number[] = [];

@@ -1,6 +1,6 @@
 import { describe, expect, test } from "vitest";
 import { NpzError, readNpy, readNpz } from "../src/npz";
-import { npy, zip } from "./archive";
+import { codesOf, npy, zip } from "./archive";
 
 const floats = npy("<f4", [2, 3], new Float32Array([1, 2, 3, 4, 5, 6.5]));
 
@@ -10,7 +10,7 @@ describe("npz", () => {
     async (_how, deflated, streamed) => {
       const array = (await readNpz(await zip({ "root_positions.npy": floats }, deflated, streamed))).get("root_positions");
       expect(array?.shape).toEqual([2, 3]);
-      expect([...array!.values]).toEqual([1, 2, 3, 4, 5, 6.5]);
+      expect([...(array?.values ?? [])]).toEqual([1, 2, 3, 4, 5, 6.5]);
     },
   );
 
@@ -21,8 +21,8 @@ describe("npz", () => {
 
   test("text loses its padding", () => {
     const codes = new Uint32Array(12);
-    codes.set([..."head"].map((c) => c.codePointAt(0)!));
-    codes.set([..."pelvis"].map((c) => c.codePointAt(0)!), 6);
+    codes.set(codesOf("head"));
+    codes.set(codesOf("pelvis"), 6);
     expect(readNpy(npy("<U6", [2], codes)).values).toEqual(["head", "pelvis"]);
   });
 
@@ -31,7 +31,7 @@ describe("npz", () => {
   });
 
   test("what is not an npz is refused with a reason", async () => {
-    await expect(readNpz(new TextEncoder().encode("{\"title\": \"Not found\", \"status\": 404}").buffer as ArrayBuffer)).rejects.toThrow(NpzError);
+    await expect(readNpz(new TextEncoder().encode("{\"title\": \"Not found\", \"status\": 404}").buffer)).rejects.toThrow(NpzError);
     expect(() => readNpy(npy("<c8", [1], new Float32Array(2)))).toThrow(/c8/);
     expect(() => readNpy(npy("<f4", [9], new Float32Array(2)))).toThrow(/cut off/);
     expect(() => readNpy(npy(">f4", [1], new Float32Array(1)))).toThrow(NpzError);

