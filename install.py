@@ -29,7 +29,7 @@ CPU_INDEX = "https://download.pytorch.org/whl/cpu"
 PROBE_SECONDS = 5.0
 NOTE_SECONDS = 15.0
 """From line to line about one step, in a log."""
-COMPILE = "from scene_graphs.packed_library import compile_search; compile_search()"
+COMPILE = "from scene_graphs.layout_library import compile_search; compile_search()"
 OFFLINE = r"Connection|timed out|Name or service|Proxy|SSLError|HTTP error|Retrying|No matching distribution"
 REMEDIES = {
     r"No space left|Errno 28": "free some disk: 3 GB are enough with the CPU build of torch, its CUDA build wants 10",
