@@ -40,6 +40,8 @@ _OFFSETS = {
 }
 SEATED_REST, LYING_REST, HAND_REST = 0.09, 0.10, 0.06
 """Rest offsets: pelvis above a seat, pelvis above a mattress, wrist off what its hand lies on (metres, any body)."""
+ARM_LENGTH = 0.54
+"""Shoulder to wrist of a stretched arm (metres at 1.70 m)."""
 ANKLE_HEIGHT = 0.066
 """Ankle above the sole, at the reference height."""
 

@@ -1,32 +1,144 @@
-"""What is done once a hand is at a thing: rest, press, wipe, turn, pick up, put down; and the way there and back."""
+"""What is done once a hand is at a thing: rest, press, wipe, turn, pick up, put down; and the way there and back.
+
+Key poses and the way through them are rows of data/transitions/touch_*.toml, what a hand does that stays of
+data/held_touches.toml.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 
 from motion_backend import rotations
 from motion_backend.motion import FPS
-from motion_backend.procedural.emotion_style import arm_arrays
 from motion_backend.procedural.pose import Pose, concatenate, interpolate, smooth
-from motion_backend.procedural.touch.hand_captions import Laid, carrying, empty
+from motion_backend.procedural.touch.hand_captions import Laid, with_arms
+from motion_backend.procedural.touch.hand_contacts import is_top
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
+from scene_graphs.data_tables import read_table, table
 
 Keys = list[tuple[Pose, float]]
 """Key poses, each with the seconds it takes to get to it."""
-OVER: Final = 0.12
-"""How far from a surface a hand comes down on it and leaves it (metres)."""
-GRIP, POINTED = 0.26, 0.95
-"""Fingers turned into a surface by a hand that holds something there, and by one that presses with their tips."""
-WIDE: Final = 0.09
-"""How far hands go to either side in wiping, where there is room for it (metres)."""
-WASHED, TURNED = 2.4, 2.0
-"""What wiping and turning take at least (seconds)."""
-_SLIDE, _TURN, _ELBOW, _GRIPPED, _SWING = 0.012, 0.75, 1.0, 0.09, 0.30
+STAGES: Final = ("come", "do", "leave", "after")
+"""What a touch consists of; motion comes to rest at the end of each."""
+
+
+@table
+class TouchPose:
+    """A key pose of a touch."""
+
+    name: str
+    body: Literal["standing", "looking", "at it"]
+    """Where the body is: away from the thing, the same with the eyes on it, or bent to it."""
+    off_m: float = 0.0
+    """At the thing: how far its hand is off the surface."""
+    fingers_rad: float = 0.0
+    """How far the fingers are turned into the surface."""
+    drawn_out_m: float = 0.0
+    """How far the hand has then been drawn out from the surface."""
+    drawn_back_m: float = 0.0
+    """The same over a top, towards the body."""
+    arms: str = ""
+    """Away from it: the arm pose of the hands that touch; as they were where that is empty."""
+    arms_up_arms: float = 0.0
+    """How much higher these hands are held (arm lengths)."""
+    spine_forward_rad: float = 0.0
+    head_forward_rad: float = 0.0
+    head_pitch_rad: float | None = None
+    """The bend of the head in place of what it was."""
+
+
+@table
+class TouchKey:
+    """One step of the way through the poses."""
+
+    stage: Literal["come", "do", "leave", "after"]
+    pose: str
+    takes_s: float
+    """To get to it from the one before; the least it takes at the pace "hold"."""
+    pace: Literal["body", "hands", "clock", "hold"]
+    """Of the bending body, of the hands, the same in any mood, or what is left of the seconds to stay."""
+
+
+@table
+class TouchTable:
+    """A file of data/transitions/touch_*.toml."""
+
+    key: tuple[TouchKey, ...]
+    pose: tuple[TouchPose, ...]
+    hold_min_s: float = 0.0
+    """What a hand that stays there does takes at least this long."""
+    busy_s: float = 0.0
+    """How much of the seconds to stay is over where the stage "after" begins."""
+
+
+@table
+class Rest:
+    """A hand that rests: it slides, the trunk breathes, eyes wander."""
+
+    slide_m: float
+    slide_hz: float
+    breath_rad: float
+    breath_hz: float
+    nod_ratio: float
+    """Of the breath, in the head."""
+    glance_rad: float
+    glance_hz: float
+    glance_ease_s: float
+
+
+@table
+class Wash:
+    """Strokes from side to side."""
+
+    stroke_hz: float
+    forth_hz: float
+    forth_share: float
+    """How far to and fro, of the stroke's width."""
+    palm_rad: float
+    """How far the hand turns on the surface at the end of a stroke."""
+    usual_m: float
+    """A stroke to either side for which trunk and head go as far as said."""
+    pelvis_share: float
+    """Of the stroke."""
+    spine_forth_rad: float
+    spine_lean_rad: float
+    spine_turn_rad: float
+    head_lean_rad: float
+    head_turn_rad: float
+
+
+@table
+class Rotate:
+    """A grip turned to and fro."""
+
+    turn_rad: float
+    turn_hz: float
+    grip_m: float
+    """From the wrist to the middle of what it turns about."""
+    elbow_left_ratio: float
+    """How the elbow's direction changes for every radian of the turn."""
+    elbow_up_ratio: float
+    pelvis_m: float
+    spine_turn_rad: float
+    spine_side_rad: float
+    head_turn_rad: float
+    head_side_rad: float
+
+
+@table
+class HeldTouches:
+    """data/held_touches.toml."""
+
+    ease_s: float
+    """They grow out of the pose at the thing, and back into it, over this long."""
+    rest: Rest
+    wash: Wash
+    rotate: Rotate
 
 
 @dataclass(frozen=True)
@@ -61,23 +173,42 @@ class Way:
         times = np.concatenate([[0.0], np.cumsum([wait for _, wait in keys])]) / self.tempo
         return interpolate([float(time) for time in times], [start, *(key for key, _ in keys)], FPS)
 
-    def coming(self, keys: Keys) -> Keys:
-        """From standing to the thing, the first of these keys being the bent body's: the eyes go first."""
-        (bent, wait), *hand = keys
-        return [*self.bent([(self.lead, 0.35), *((key, self.step) for key in self.down), (bent, wait)]), *hand]
+    def pose(self, row: TouchPose) -> Pose:
+        """The body in a key pose."""
+        if row.body == "at it":
+            return _drawn(self, _bent(self.hand(row.off_m, row.fingers_rad), row), row)
+        pose = self.away if row.body == "standing" else self.lead
+        if row.arms:
+            pose = with_arms(pose, self.hands, row.arms)
+        if row.arms_up_arms:
+            arms = pose.arms.copy()
+            arms[self.hands, 1] += row.arms_up_arms
+            pose = replace(pose, arms=arms)
+        return _bent(pose, row)
 
-    def leaving(self, keys: Keys, end: Pose) -> Keys:
-        """Away from the thing, the last of these keys being the bent body's, and back to standing."""
-        return [*keys, *self.bent([*((key, self.step) for key in self.down[::-1]), (end, 0.75)])]
+    def seconds(self, key: TouchKey, busy: float) -> float:
+        """What a key takes, in the hands' own seconds."""
+        match key.pace:
+            case "hands":
+                return key.takes_s
+            case "body":
+                return key.takes_s * self.bending * self.tempo
+            case "clock":
+                return key.takes_s * self.tempo
+            case "hold":
+                return max(self.hold - busy, key.takes_s) * self.tempo
 
-    def bent(self, keys: Keys) -> Keys:
-        """The keys at the pace of the whole body."""
-        return [(key, wait * self.bending * self.tempo) for key, wait in keys]
-
-    def around(self, over: Pose, there: Pose, held: Pose) -> Pose:
-        """What is held at the thing, with the way to it and back."""
-        come = self.through(self.away, self.coming([(over, 0.55), (there, 0.35)]))
-        return concatenate([come, held, self.through(there, self.leaving([(over, 0.3)], self.away))])
+    def keys(self, rows: TouchTable, stage: str, poses: dict[str, Pose]) -> Keys:
+        """The key poses of a stage; who kneels gets down before being at the thing, and up again after it."""
+        found: Keys = []
+        bodies = {row.name: row.body for row in rows.pose}
+        there, step = stage in ("do", "leave"), self.step * self.bending * self.tempo
+        for key in (key for key in rows.key if key.stage == stage):
+            if there != (bodies[key.pose] == "at it"):
+                found += [(knelt, step) for knelt in (self.down[::-1] if there else self.down)]
+                there = not there
+            found.append((poses[key.pose], self.seconds(key, rows.busy_s)))
+        return found
 
     def turned(self) -> tuple[Array, Array]:
         """World directions to the body's left and ahead, along the surface. (3,), (3,)."""
@@ -87,162 +218,129 @@ class Way:
         return left, rotations.cross(left, self.laid.normal)
 
 
+def touch_table(doing: str) -> TouchTable:
+    """The key poses of what is done at a thing (a word of `hand_captions.HANDLINGS`, or "")."""
+    return read_table("motion_backend", f"transitions/touch_{doing or 'rest'}.toml", TouchTable)
+
+
 def deed(way: Way, doing: str) -> Pose:
-    """A touch from standing to standing, with what is done there (a word of `handling.HANDLINGS`, or "")."""
-    return _DEEDS[doing](way)
+    """A touch from standing to standing, with what is done there (a word of `hand_captions.HANDLINGS`, or "")."""
+    rows = touch_table(doing)
+    poses = {row.name: way.pose(row) for row in rows.pose}
+    frames, last = [], way.away
+    for stage in STAGES:
+        if stage == "do" and doing in _HELD:
+            frames.append(_HELD[doing](way, last, max(way.hold, rows.hold_min_s)))
+        elif keys := way.keys(rows, stage, poses):
+            frames.append(way.through(last, keys))
+            last, _ = keys[-1]
+    return concatenate(frames)
 
 
-def _rest(way: Way) -> Pose:
-    """The hand is laid on the thing and stays, alive: it breathes, slides a little, and the eyes wander about it."""
-    over, there = way.hand(OVER, 0.0), way.hand(0.0, 0.0)
-    time, ease, held = _held(there, way.hold)
+def _bent(pose: Pose, row: TouchPose) -> Pose:
+    """Trunk and head bent as a row says."""
+    if row.spine_forward_rad:
+        pose = replace(pose, spine=pose.spine + np.array([row.spine_forward_rad, 0.0, 0.0]))
+    if row.head_forward_rad:
+        pose = replace(pose, head=pose.head + np.array([row.head_forward_rad, 0.0, 0.0]))
+    if row.head_pitch_rad is not None:
+        pose = replace(pose, head=np.array([row.head_pitch_rad, 0.0, 0.0]))
+    return pose
+
+
+def _drawn(way: Way, pose: Pose, row: TouchPose) -> Pose:
+    """The hands out from the surface and back over it, as a row says."""
+    if not row.drawn_out_m and not row.drawn_back_m:
+        return pose
+    _, ahead = way.turned()
+    reach = pose.reach.copy()
+    back = row.drawn_back_m * ahead * float(is_top(way.laid.normal))
+    reach[way.hands] += row.drawn_out_m * way.laid.normal - back
+    return replace(pose, reach=reach)
+
+
+def _rest(way: Way, there: Pose, seconds: float) -> Pose:
+    """The hand stays, alive: it breathes, slides a little, and the eyes wander about it."""
+    row = _held_table().rest
+    time, ease, held = _held(there, seconds)
     left, _ = way.turned()
     reach = held.reach.copy()
-    reach[:, way.hands[0]] += (_SLIDE * ease * _wave(0.4, time))[:, None] * left
-    held = replace(_breathing(held, time), reach=reach)
-    return way.around(over, there, held)
+    reach[:, way.hands[0]] += (row.slide_m * ease * _wave(row.slide_hz, time))[:, None] * left
+    still = np.zeros_like(time)
+    breath = row.breath_rad * _wave(row.breath_hz, time)
+    glance = row.glance_rad * _wave(row.glance_hz, time)
+    look = smooth(time / row.glance_ease_s)[:, None] * np.stack([row.nod_ratio * breath, glance, still], axis=1)
+    spine = held.spine + np.stack([breath, still, still], axis=1)
+    return replace(held, reach=reach, spine=spine, head=held.head + look)
 
 
-def _press(way: Way) -> Pose:
-    """Fingertips forward, one short push from a cocked wrist, and the hand leaves; then one looks whether it is on."""
-    over, aimed, pushed = way.hand(0.10, POINTED), way.hand(0.0, POINTED), way.hand(0.0, GRIP)
-    pushed = replace(pushed, spine=pushed.spine + np.array([0.05, 0.0, 0.0]))
-    # As quick in any mood.
-    push = [(key, wait * way.tempo) for key, wait in ((aimed, 0.45), (pushed, 0.22), (pushed, 0.22), (aimed, 0.22))]
-    wrists, poles = arm_arrays("bent", "bent")
-    arms, elbows = way.away.arms.copy(), way.away.elbows.copy()
-    for index in way.hands:
-        arms[index], elbows[index] = wrists[index], poles[index]
-    looking = replace(way.away, arms=arms, elbows=elbows, head=np.array([-0.28, 0.0, 0.0]))
-    stays = max(way.hold - sum(wait for _, wait in push) / way.tempo, 0.3)
-    return concatenate([
-        way.through(way.away, way.coming([(over, 0.6), (aimed, 0.3)])),
-        way.through(aimed, push),
-        way.through(aimed, way.leaving([(over, 0.2 * way.tempo)], looking)),
-        way.through(looking, [(looking, stays * way.tempo), (way.away, 0.5)]),
-    ])  # fmt: skip
-
-
-def _wash(way: Way) -> Pose:
+def _wash(way: Way, there: Pose, seconds: float) -> Pose:
     """Wide strokes from side to side, a little to and fro; trunk, hips and eyes go along."""
-    over, there = way.hand(OVER, 0.0), way.hand(0.0, 0.0)
-    time, ease, held = _held(there, max(way.hold, WASHED))
-    aside, forth = ease * _wave(0.6, time), ease * _wave(1.2, time)
+    row = _held_table().wash
+    time, ease, held = _held(there, seconds)
+    aside, forth = ease * _wave(row.stroke_hz, time), ease * _wave(row.forth_hz, time)
     along = way.laid.stroke
     across = rotations.cross(along, way.laid.normal)
     reach, palms = held.reach.copy(), held.palms.copy()
-    swing = rotations.rotvec_to_quat((_SWING * aside)[:, None] * way.laid.normal)
+    swing = rotations.rotvec_to_quat((row.palm_rad * aside)[:, None] * way.laid.normal)
     for index in way.hands:
-        reach[:, index] += aside[:, None] * along + 0.3 * forth[:, None] * across
+        reach[:, index] += aside[:, None] * along + row.forth_share * forth[:, None] * across
         palms[:, index] = rotations.compose(swing, held.palms[:, index])
     left, ahead = way.turned()
-    still, far = np.zeros_like(aside), 1 / WIDE
+    still, far = np.zeros_like(aside), 1 / row.usual_m
     turn, lean = far * float(along @ left) * aside, far * float(along @ ahead) * aside
-    held = replace(
+    bend = np.stack([row.spine_forth_rad * forth + row.spine_lean_rad * lean, row.spine_turn_rad * turn, still], axis=1)
+    look = np.stack([row.head_lean_rad * lean, row.head_turn_rad * turn, still], axis=1)
+    return replace(
         held,
         reach=reach,
         palms=palms,
-        pelvis=held.pelvis + 0.35 * aside[:, None] * np.array([along[0], 0.0, along[2]]),
-        spine=held.spine + np.stack([0.03 * forth + 0.10 * lean, 0.18 * turn, still], axis=1),
-        head=held.head + np.stack([0.10 * lean, 0.22 * turn, still], axis=1),
+        pelvis=held.pelvis + row.pelvis_share * aside[:, None] * np.array([along[0], 0.0, along[2]]),
+        spine=held.spine + bend,
+        head=held.head + look,
     )
-    return way.around(over, there, held)
 
 
-def _rotate(way: Way) -> Pose:
+def _rotate(way: Way, there: Pose, seconds: float) -> Pose:
     """A grip that is turned to and fro about what it holds; the elbow goes up and down with it, and the trunk along."""
-    over, there = way.hand(OVER, 0.5), way.hand(0.0, GRIP)
-    time, ease, held = _held(there, max(way.hold, TURNED))
+    row = _held_table().rotate
+    time, ease, held = _held(there, seconds)
     index, normal = way.hands[0], way.laid.normal
-    angle = _TURN * ease * _wave(0.65, time)
+    angle = row.turn_rad * ease * _wave(row.turn_hz, time)
     turn = rotations.rotvec_to_quat(angle[:, None] * normal)
     side = 1.0 if index == 0 else -1.0
-    middle = rotations.rotate(there.palms[index], np.array([side * _GRIPPED, 0.0, 0.0]))
+    middle = rotations.rotate(there.palms[index], np.array([side * row.grip_m, 0.0, 0.0]))
     reach, palms, elbows = held.reach.copy(), held.palms.copy(), held.elbows.copy()
     reach[:, index] += middle - rotations.rotate(turn, middle)
     palms[:, index] = rotations.compose(turn, held.palms[:, index])
-    elbows[:, index] += _ELBOW * angle[:, None] * np.array([-1.0, -0.6 * side, 0.0])
+    elbows[:, index] += angle[:, None] * np.array([row.elbow_left_ratio, row.elbow_up_ratio * side, 0.0])
     left, _ = way.turned()
-    along = angle / _TURN
+    along = angle / row.turn_rad
     still = np.zeros_like(along)
-    held = replace(
+    return replace(
         held,
         reach=reach,
         palms=palms,
         elbows=elbows,
-        pelvis=held.pelvis + 0.02 * along[:, None] * np.array([left[0], 0.0, left[2]]),
-        spine=held.spine + np.stack([still, 0.10 * along, -0.06 * along], axis=1),
-        head=held.head + np.stack([still, -0.06 * along, -0.10 * along], axis=1),
+        pelvis=held.pelvis + row.pelvis_m * along[:, None] * np.array([left[0], 0.0, left[2]]),
+        spine=held.spine + np.stack([still, row.spine_turn_rad * along, row.spine_side_rad * along], axis=1),
+        head=held.head + np.stack([still, row.head_turn_rad * along, row.head_side_rad * along], axis=1),
     )
-    return way.around(over, there, held)
 
 
-def _pick(way: Way) -> Pose:
-    """Fingers close round it, it comes up to the belly with its weight, the eyes on it, and is kept there."""
-    over, laid, gripped, lifted = (way.hand(*at) for at in ((OVER, 0.8), (0.0, 0.0), (0.0, GRIP), (0.17, 0.7)))
-    grip: Keys = [(gripped, 0.3), (gripped, 0.5 * way.tempo)]
-    carried = carrying(way.away, way.hands)
-    heavy = replace(
-        carried,
-        arms=carried.arms - np.where(np.isin([0, 1], way.hands), 0.10, 0.0)[:, None] * np.array([0.0, 1.0, 0.0]),
-        spine=carried.spine - np.array([0.06, 0.0, 0.0]),
-        head=carried.head + np.array([0.45, 0.0, 0.0]),
-    )
-    watched = replace(carried, head=heavy.head)
-    stays = max(way.hold - 1.0, 0.5)
-    return concatenate([
-        way.through(way.away, way.coming([(over, 0.5), (laid, 0.35)])),
-        way.through(laid, grip),
-        way.through(gripped, way.leaving([(lifted, 0.4 * way.tempo)], heavy)),
-        way.through(heavy, [(watched, 0.35), (watched, stays * way.tempo), (carried, 0.4)]),
-    ])  # fmt: skip
+_HELD: Final[dict[str, Callable[[Way, Pose, float], Pose]]] = {"": _rest, "wash": _wash, "rotate": _rotate}
+"""What a hand does for some seconds that stays on a thing in a pose."""
 
 
-def _put(way: Way) -> Pose:
-    """The forearm comes up, lowers slowly, the hand opens and draws back over the surface; arms hang again."""
-    high, gripped, opened = way.hand(0.17, 0.15), way.hand(0.0, GRIP), way.hand(0.0, -0.15)
-    _, ahead = way.turned()
-    reach = opened.reach.copy()
-    reach[way.hands] += 0.03 * way.laid.normal - 0.08 * ahead * float(way.laid.normal[1] > 0.7)
-    drawn = replace(opened, reach=reach)
-    carried = carrying(way.away, way.hands)
-    up = replace(carried, head=carried.head + np.array([0.3, 0.0, 0.0]))
-    lead = replace(way.lead, arms=carried.arms, elbows=carried.elbows)
-    come = [(up, 0.7), *replace(way, lead=lead).coming([(high, 0.6), (gripped, 0.7)])]
-    let_go: Keys = [(gripped, 0.25 * way.tempo), (opened, 0.25), (opened, 0.15 * way.tempo)]
-    end = empty(way.away, way.hands)
-    stays = max(way.hold - 0.65, 0.3)
-    return concatenate([
-        way.through(way.away, come),
-        way.through(gripped, let_go),
-        way.through(opened, way.leaving([(drawn, 0.3)], end)),
-        way.through(end, [(end, stays * way.tempo)]),
-    ])  # fmt: skip
-
-
-_DEEDS: Final[dict[str, Callable[[Way], Pose]]] = {
-    "": _rest,
-    "press": _press,
-    "wash": _wash,
-    "rotate": _rotate,
-    "pick": _pick,
-    "put": _put,
-}
+def _held_table() -> HeldTouches:
+    return read_table("motion_backend", "held_touches.toml", HeldTouches)
 
 
 def _held(pose: Pose, seconds: float) -> tuple[Array, Array, Pose]:
     """Times (T,), an ease that is 0 at both ends (T,), and the pose held so long."""
-    time = np.arange(1, max(round(seconds * FPS), 1) + 1) / FPS
-    return time, smooth(time / 0.3) * smooth((time[-1] - time) / 0.3), pose.repeat(len(time))
+    time, grows = np.arange(1, max(round(seconds * FPS), 1) + 1) / FPS, _held_table().ease_s
+    return time, smooth(time / grows) * smooth((time[-1] - time) / grows), pose.repeat(len(time))
 
 
 def _wave(rate: float, time: Array) -> Array:
     return np.asarray(np.sin(2 * np.pi * rate * time))
-
-
-def _breathing(held: Pose, time: Array) -> Pose:
-    """A breath in the trunk, and eyes that wander."""
-    still = np.zeros_like(time)
-    breath = 0.02 * _wave(0.35, time)
-    look = smooth(time / 0.4)[:, None] * np.stack([1.5 * breath, 0.08 * _wave(0.3, time), still], axis=1)
-    return replace(held, spine=held.spine + np.stack([breath, still, still], axis=1), head=held.head + look)

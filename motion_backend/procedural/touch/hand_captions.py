@@ -79,16 +79,6 @@ def steadies(caption: str) -> bool:
     return handling_of(caption) == "rotate"
 
 
-def carrying(pose: Pose, hands: Iterable[int]) -> Pose:
-    """A standing pose with something held in these hands (0 left, 1 right) before the body."""
-    return _with_arms(pose, hands, "carry")
-
-
-def empty(pose: Pose, hands: Iterable[int]) -> Pose:
-    """A standing pose with these hands (0 left, 1 right) hanging, since they have put down what they held."""
-    return _with_arms(pose, hands, "hang")
-
-
 def arms_on_the_way(pose: Pose, arms: tuple[str, str]) -> tuple[str, str]:
     """How arms are held in walking: a hand that carries something keeps it before the body, if it would only hang."""
     left, right = ("carry" if holds and arm in FREE else arm for holds, arm in zip(holding(pose), arms, strict=True))
@@ -102,7 +92,8 @@ def holding(pose: Pose) -> tuple[bool, bool]:
     return bool(left), bool(right)
 
 
-def _with_arms(pose: Pose, hands: Iterable[int], name: str) -> Pose:
+def with_arms(pose: Pose, hands: Iterable[int], name: str) -> Pose:
+    """A pose whose hands (0 left, 1 right) lie nowhere, their arms held in the pose of that name."""
     wrists, poles = arm_arrays(name, name)
     arms, elbows = pose.arms.copy(), pose.elbows.copy()
     for index in hands:

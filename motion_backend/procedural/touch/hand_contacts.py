@@ -12,11 +12,22 @@ from motion_backend.procedural.touch.hand_captions import Laid, handling_of, ste
 from motion_backend.rotations import Array
 from motion_backend.skeleton import HAND_REST
 from scene_graphs.affordances.affordances import Spot
+from scene_graphs.data_tables import table
 
 FINGER: Final = 0.02
 """Half a finger's thickness (metres)."""
+FINGER_POINTS: Final = (0.05, 0.10, 0.14)
+"""Where along the fingers, before the wrist, it is looked whether they are in something (metres)."""
 APART: Final = 0.24
 """Between two hands laid side by side (metres at 1.70 m)."""
+NARROWER: Final = (1.0, 0.85, 0.7)
+"""Shares of `APART` that are tried where a surface is narrow."""
+TWO_HANDS: Final = 0.8
+"""A surface for two hands goes on to either side by this share of `APART`."""
+TOP: Final = 0.7
+"""A surface is a top where its normal has more of up in it than this, else a front (cosine)."""
+UP_FRONT, INTO_FRONT = 0.8, 0.2
+"""How much fingers laid on a front point up it, or down, and how much into it before they are laid flat."""
 ELBOW: Final = 0.11
 """From the middle of a forearm to what is beside it (metres)."""
 TURNS: Final = (0.0, 0.5, -0.5, 1.0, -1.0, 1.5, -1.5)
@@ -25,16 +36,34 @@ STROKES: Final = (0.09, 0.07, 0.05, 0.03)
 """How far hands go to either side in wiping, the first that there is room for (metres)."""
 
 
+@table
+class ElbowPole:
+    """Where an elbow points in the chest frame: out to its own side, up and ahead."""
+
+    out: float
+    up: float
+    ahead: float
+
+    def of(self, index: int) -> Array:
+        """For the left (0) or the right (1) elbow. (3,)."""
+        return np.array([self.out if index == 0 else -self.out, self.up, self.ahead])
+
+
 def suits(spot: Spot, caption: str, solid: Obstacles) -> bool:
     """Whether a caption is done at such a spot: things lie on tops, a low front has no switch, two hands need width."""
-    doing, front = handling_of(caption), spot.normal[1] < 0.7
+    doing, front = handling_of(caption), not is_top(spot.normal)
     if front and (doing in ("pick", "put") or (doing and spot.height == "low")):
         return False
     if not (with_both_hands(caption) or steadies(caption)):
         return True
     left, _ = along_surface(spot)
     under = np.asarray(spot.point) - FINGER * np.asarray(spot.normal)
-    return bool((solid.depth(under + APART * np.array([[0.8], [-0.8]]) * left) > 0).any())
+    return bool((solid.depth(under + APART * np.array([[TWO_HANDS], [-TWO_HANDS]]) * left) > 0).any())
+
+
+def is_top(normal: Array | tuple[float, float, float]) -> bool:
+    """Whether a surface with that normal is one that things lie on, not a front."""
+    return bool(normal[1] > TOP)
 
 
 def other_hand(
@@ -48,7 +77,7 @@ def other_hand(
     normal = np.asarray(spot.normal, dtype=np.float64)
     left, _ = along_surface(spot)
     along, other = (-left, "right") if hand == "left" else (left, "left")
-    for apart in APART * scale * np.array([1.0, 0.85, 0.7]):
+    for apart in APART * scale * np.array(NARROWER):
         beside = wrist + apart * along
         inside = float(obstacles.depth((beside - (HAND_REST + FINGER) * normal)[None])[0])
         over = float(obstacles.solid().depth((beside + ELBOW * normal)[None])[0])
@@ -61,7 +90,7 @@ def free_palm(obstacles: Obstacles, spot: Spot, wrist: Array, hand: str, down: b
     """The hand laid straight ahead, or turned aside where its fingers would be in something else."""
     others = obstacles.solid()
     others = others.only(np.array([owner != spot.object_id for owner in others.owners], dtype=bool))
-    fingers = np.array([[0.05, 0.0, 0.0], [0.10, 0.0, 0.0], [0.14, 0.0, 0.0]]) * (1.0 if hand == "left" else -1.0)
+    fingers = np.array([[along, 0.0, 0.0] for along in FINGER_POINTS]) * (1.0 if hand == "left" else -1.0)
     inward = (-1.0 if hand == "left" else 1.0) * (-1.0 if down else 1.0)
     normal = np.asarray(spot.normal, dtype=np.float64)
     straight = palm_on(normal, spot.facing, hand, down)
@@ -98,7 +127,8 @@ def palm_on(normal: Array, facing: float, hand: str, down: bool = False) -> Arra
     """World rotation of a hand laid flat on a surface: palm against it, fingers forwards, or up or down it. (4,)."""
     side = 1.0 if hand == "left" else -1.0
     ahead = np.array([np.sin(facing), 0.0, np.cos(facing)])
-    fingers = ahead if normal[1] > 0.7 else np.array([0.0, -0.8 if down else 0.8, 0.0]) + 0.2 * ahead
+    up = np.array([0.0, -UP_FRONT if down else UP_FRONT, 0.0])
+    fingers = ahead if is_top(normal) else up + INTO_FRONT * ahead
     fingers = rotations.normalize(fingers - (fingers @ normal) * normal)
     x, y = side * fingers, normal
     return rotations.basis_to_quat(x, y, rotations.cross(x, y))

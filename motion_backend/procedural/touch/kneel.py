@@ -1,9 +1,12 @@
-"""Getting down on both knees with the trunk prone, one hand on the floor: how low things are touched lying forwards."""
+"""Getting down on both knees with the trunk prone, one hand on the floor: how low things are touched lying forwards.
+
+Key poses are rows of data/transitions/kneel_to_touch.toml.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 
@@ -12,20 +15,15 @@ from motion_backend.procedural.body_state import Scene
 from motion_backend.procedural.held_poses import UP, bend, shoulders, upright
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.touch.hand_captions import Laid
-from motion_backend.procedural.touch.hand_contacts import palm_on
+from motion_backend.procedural.touch.hand_contacts import ElbowPole, is_top, palm_on
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
-from motion_backend.skeleton import HAND_REST, Skeleton
+from motion_backend.skeleton import ARM_LENGTH, HAND_REST, Skeleton
 from scene_graphs.affordances.affordances import Spot
+from scene_graphs.data_tables import read_table, table
 from scene_graphs.layout import Point2
 from scene_graphs.navigation.path_planner import Walkable
 
-BEHIND: Final = 0.48
-"""How far behind where they stood the ankles of a kneeling body are (metres at 1.70 m)."""
-KNEES_APART: Final = 0.10
-"""From the middle to either ankle of a kneeling body (metres at 1.70 m)."""
-ANKLE: Final = 0.14
-"""Their height on curled toes."""
 HAND: Final = 0.20
 """A hand before its wrist, and a little (metres at 1.70 m)."""
 TURNS: Final = (0.0, 0.35, -0.35, 0.7, -0.7, 1.05, -1.05)
@@ -42,18 +40,98 @@ FOOT, ELBOW = 0.05, 0.06
 """The room that feet need, and that elbows should have (metres)."""
 STAND, WALLED = 0.12, 0.08
 """The room to stand, and how far a thing may stand in its wall (metres)."""
-OUT_TOP, OUT_FRONT = 0.2, 1.7
-ON_TOES, CURLED = 1.30, 1.10
-"""How far the feet of a kneeling body stand upright, and how far their toes bend (radians)."""
+TURN_COST, MOVE_COST = 0.05, 0.1
+"""What a radian aside, and a metre nearer or farther, count for in choosing where to kneel (metres of elbow room)."""
+Foot = Literal["standing", "lifted", "back"]
+"""Where it stood, half-way back and off the floor, or back on its curled toes."""
+
+
+@table
+class KneelPose:
+    """A key pose on the way down."""
+
+    name: str
+    pelvis_back_m: float
+    """Behind the standing feet."""
+    pelvis_up_m: float
+    lean_rad: float
+    """Of the trunk, forwards."""
+    left: Foot = "standing"
+    right: Foot = "standing"
+
+
+@table
+class KneelingBody:
+    """What the key poses share."""
+
+    hips_share: float
+    """Of the lean."""
+    spine_share: float
+    head_forward_rad: float
+    lifted_m: float
+    """Off the floor, a foot half-way back."""
+    behind_m: float
+    """How far behind where they stood the ankles of a kneeling body are."""
+    apart_m: float
+    """From the middle to either of them."""
+    ankle_up_m: float
+    foot_pitch_rad: float
+    """How far the feet stand upright."""
+    toes_rad: float
+    knee_down_ratio: float
+    """How much knees point down for what they point ahead."""
+
+
+@table
+class Prone:
+    """A body on its knees, sat back and bent forwards, one hand on the floor."""
+
+    lean_min_deg: float
+    """Leans that are tried."""
+    lean_below_deg: float
+    lean_step_deg: float
+    usual_lean_deg: float
+    pelvis_ahead_m: float
+    """Of the ankles."""
+    pelvis_up_m: float
+    hips_share: float
+    """Of the lean."""
+    spine_share: float
+    arm_max_share: float
+    """Of its length, that an arm is stretched to."""
+    arm_min_share: float
+    unusual_m: float
+    """A radian off the usual lean is worth such a miss."""
+    head_pitch_rad: float
+    bearing_ahead_m: float
+    """Of its shoulder, the hand that bears."""
+    bearing_elbow: ElbowPole
+    top_elbow: ElbowPole
+    """Of the hand on a top."""
+    front_elbow: ElbowPole
+
+
+@table
+class KneelTable:
+    """data/transitions/kneel_to_touch.toml: poses in their order, metres at 1.70 m."""
+
+    pose: tuple[KneelPose, ...]
+    body: KneelingBody
+    prone: Prone
+
+
+def kneel_table() -> KneelTable:
+    """The numbers of getting down on one's knees."""
+    return read_table("motion_backend", "transitions/kneel_to_touch.toml", KneelTable)
 
 
 def _feet_behind(start: Pose, skeleton: Skeleton) -> Array:
     """Where the ankles of a body that stands in a pose are when it kneels there. (2, 3)."""
-    ahead = _ahead(start)
+    body, ahead = kneel_table().body, _ahead(start)
     aside = np.array([ahead[2], 0.0, -ahead[0]])
-    sides = np.array([[KNEES_APART], [-KNEES_APART]]) * aside
-    places = start.ankles.mean(axis=0) + skeleton.scale * (sides - BEHIND * ahead)
-    places[:, 1] = ANKLE * skeleton.scale
+    sides = np.array([[body.apart_m], [-body.apart_m]]) * aside
+    places = start.ankles.mean(axis=0) + skeleton.scale * (sides - body.behind_m * ahead)
+    places[:, 1] = body.ankle_up_m * skeleton.scale
     return np.asarray(places)
 
 
@@ -77,7 +155,7 @@ def place_to_kneel(spot: Spot, start: Point2, scene: Scene, scale: float) -> Spo
             )
             if float(depth(legs).max()) > -FOOT:
                 continue
-            tight = max(float(depth(arms).max()) + ELBOW, 0.0) + 0.05 * abs(turn) + 0.1 * abs(away - AWAY[0])
+            tight = max(float(depth(arms).max()) + ELBOW, 0.0) + TURN_COST * abs(turn) + MOVE_COST * abs(away - AWAY[0])
             better = best is None or tight < best[0]
             if better and _can_stand(at, spot, start, scene.walkable):
                 best = (tight, replace(spot, standing=at, facing=facing, approach=facing))
@@ -95,50 +173,60 @@ def _can_stand(at: Point2, spot: Spot, start: Point2, walkable: Walkable) -> boo
 
 def down_on_knees(start: Pose, skeleton: Skeleton) -> list[Pose]:
     """From standing to both knees, as keys: one foot lifted back, that knee down, then the other."""
-    behind = _feet_behind(start, skeleton)
-    first = _crouched(start, 0.20, 0.72, 0.35, skeleton)
-    half = _crouched(_foot_back(start, 1, behind), 0.16, 0.475, 0.30, skeleton)
-    both = _crouched(_foot_back(_foot_back(start, 1, behind), 0, behind), 0.18, 0.45, 0.45, skeleton)
-    return [_in_the_air(first, 1, behind), half, _in_the_air(half, 0, behind), both]
+    rows, behind = kneel_table(), _feet_behind(start, skeleton)
+    return [_kneeling(start, row, rows.body, behind, skeleton) for row in rows.pose]
+
+
+def _kneeling(start: Pose, row: KneelPose, body: KneelingBody, behind: Array, skeleton: Skeleton) -> Pose:
+    """A body that stood in a pose, in one on the way down; `behind` (2, 3) is where its ankles go."""
+    feet: tuple[Foot, Foot] = (row.left, row.right)
+    pose = start
+    for index, foot in enumerate(feet):
+        if foot == "back":
+            pose = _foot_back(pose, index, behind, body)
+    pose = _crouched(pose, row, body, skeleton)
+    for index, foot in enumerate(feet):
+        if foot == "lifted":
+            pose = _in_the_air(pose, index, behind, body)
+    return pose
 
 
 def prone(knees: Pose, goal: Array, index: int, skeleton: Skeleton) -> Pose:
     """From both knees: sat back and bent forwards until a hand (0 left, 1 right) reaches the goal, the other bears."""
-    yaw = float(yaw_of(knees.hips))
-    leans = np.radians(np.arange(50, 100, 5))
+    row, yaw = kneel_table().prone, float(yaw_of(knees.hips))
+    leans = np.radians(np.arange(row.lean_min_deg, row.lean_below_deg, row.lean_step_deg))
     tries = knees.repeat(len(leans))
     ahead = _ahead(knees)
-    middle = knees.ankles.mean(axis=0) + 0.18 * skeleton.scale * ahead
-    pelvis = np.array([middle[0], 0.40 * skeleton.scale, middle[2]])
+    middle = knees.ankles.mean(axis=0) + row.pelvis_ahead_m * skeleton.scale * ahead
+    pelvis = np.array([middle[0], row.pelvis_up_m * skeleton.scale, middle[2]])
     tries = replace(
         tries,
         pelvis=np.tile(pelvis, (len(leans), 1)),
-        hips=upright(yaw, 0.55 * leans),
-        spine=np.stack([bend(0.5 * float(lean)) for lean in leans]),
+        hips=upright(yaw, row.hips_share * leans),
+        spine=np.stack([bend(row.spine_share * float(lean)) for lean in leans]),
     )
     places = shoulders(tries, skeleton)
     gap = np.linalg.norm(places[:, index] - goal, axis=1)
-    arm = 0.54 * skeleton.scale
-    miss = np.maximum(gap - 0.93 * arm, 0.0) + np.maximum(0.7 * arm - gap, 0.0)
-    best = int(np.argmin(miss + 0.02 * np.abs(leans - np.radians(80))))
-    pose = replace(tries.at(best), head=bend(-0.45))
+    arm = ARM_LENGTH * skeleton.scale
+    miss = np.maximum(gap - row.arm_max_share * arm, 0.0) + np.maximum(row.arm_min_share * arm - gap, 0.0)
+    best = int(np.argmin(miss + row.unusual_m * np.abs(leans - np.radians(row.usual_lean_deg))))
+    pose = replace(tries.at(best), head=bend(row.head_pitch_rad))
     bearing = 1 - index
     room = float((goal - places[best, bearing]) @ ahead) - HAND * skeleton.scale
-    palm = places[best, bearing] + min(0.12 * skeleton.scale, room) * ahead
+    palm = places[best, bearing] + min(row.bearing_ahead_m * skeleton.scale, room) * ahead
     palm[1] = HAND_REST
     reach, reaching, palms, elbows = pose.reach.copy(), np.zeros(2), pose.palms.copy(), pose.elbows.copy()
     reach[bearing], reaching[bearing] = palm, 1.0
-    elbows[bearing] = np.array([0.35 * (1 - 2 * bearing), -1.0, 0.0])
+    elbows[bearing] = row.bearing_elbow.of(bearing)
     palms[bearing] = palm_on(UP, yaw, ("left", "right")[bearing])
     return replace(pose, reach=reach, reaching=reaching, palms=palms, elbows=elbows, pressing=reaching.copy())
 
 
 def elbows_out(pose: Pose, laid: Laid) -> Pose:
     """A prone pose with the elbow of a hand on the thing out to its side, and below a hand on a front."""
-    elbows = pose.elbows.copy()
+    row, elbows = kneel_table().prone, pose.elbows.copy()
     for index, *_ in laid.hands:
-        side = 1.0 if index == 0 else -1.0
-        elbows[index] = np.array([side, 0.0, OUT_TOP] if laid.normal[1] > 0.7 else [side, 0.0, OUT_FRONT])
+        elbows[index] = (row.top_elbow if is_top(laid.normal) else row.front_elbow).of(index)
     return replace(pose, elbows=elbows)
 
 
@@ -147,29 +235,31 @@ def _ahead(pose: Pose) -> Array:
     return np.array([np.sin(yaw), 0.0, np.cos(yaw)])
 
 
-def _crouched(pose: Pose, back: float, height: float, lean: float, skeleton: Skeleton) -> Pose:
-    """The pelvis so far behind the standing feet and so high (metres at 1.70 m), the trunk bent forwards."""
+def _crouched(pose: Pose, row: KneelPose, body: KneelingBody, skeleton: Skeleton) -> Pose:
+    """The pelvis behind the standing feet and lowered, the trunk bent forwards, as a row says."""
     yaw = float(yaw_of(pose.hips))
-    pelvis = pose.pelvis - back * skeleton.scale * _ahead(pose)
-    pelvis[1] = height * skeleton.scale
-    return replace(pose, pelvis=pelvis, hips=upright(yaw, 0.4 * lean), spine=bend(0.6 * lean), head=bend(0.15))
+    pelvis = pose.pelvis - row.pelvis_back_m * skeleton.scale * _ahead(pose)
+    pelvis[1] = row.pelvis_up_m * skeleton.scale
+    hips, spine = upright(yaw, body.hips_share * row.lean_rad), bend(body.spine_share * row.lean_rad)
+    return replace(pose, pelvis=pelvis, hips=hips, spine=spine, head=bend(body.head_forward_rad))
 
 
-def _foot_back(pose: Pose, index: int, behind: Array) -> Pose:
+def _foot_back(pose: Pose, index: int, behind: Array, body: KneelingBody) -> Pose:
     """One foot on its curled toes behind."""
     ankles, feet, toes, knees = pose.ankles.copy(), pose.feet.copy(), pose.toes.copy(), pose.knees.copy()
     ankles[index] = behind[index]
-    feet[index] = rotations.compose(pose.feet[index], rotations.rotvec_to_quat(np.array([ON_TOES, 0.0, 0.0])))
-    toes[index] = CURLED
-    knees[index] = _ahead(pose) - 0.6 * UP
+    pitched = rotations.rotvec_to_quat(np.array([body.foot_pitch_rad, 0.0, 0.0]))
+    feet[index] = rotations.compose(pose.feet[index], pitched)
+    toes[index] = body.toes_rad
+    knees[index] = _ahead(pose) - body.knee_down_ratio * UP
     return replace(pose, ankles=ankles, feet=feet, toes=toes, knees=knees)
 
 
-def _in_the_air(pose: Pose, index: int, behind: Array) -> Pose:
+def _in_the_air(pose: Pose, index: int, behind: Array, body: KneelingBody) -> Pose:
     """A foot half-way back, off the floor."""
-    lifted = _foot_back(pose, index, behind)
+    lifted = _foot_back(pose, index, behind, body)
     ankles, planted = pose.ankles.copy(), pose.planted.copy()
-    ankles[index] = 0.5 * (pose.ankles[index] + behind[index]) + 0.10 * UP
+    ankles[index] = 0.5 * (pose.ankles[index] + behind[index]) + body.lifted_m * UP
     planted[index] = 0.0
     feet = lifted.feet.copy()
     feet[index] = rotations.slerp(pose.feet[index], lifted.feet[index], 0.5)

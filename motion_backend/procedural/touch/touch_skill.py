@@ -12,7 +12,7 @@ from motion_backend.motion import Action
 from motion_backend.procedural.body_state import Body, spot_of
 from motion_backend.procedural.emotion_style import bearing_of
 from motion_backend.procedural.touch.hand_captions import Laid, handling_of, holding, steadies, with_both_hands
-from motion_backend.procedural.touch.hand_contacts import free_palm, free_stroke, other_hand
+from motion_backend.procedural.touch.hand_contacts import free_palm, free_stroke, is_top, other_hand
 from motion_backend.procedural.touch.kneel import place_to_kneel
 from motion_backend.procedural.touch.reach import Manner, touch
 from motion_backend.procedural.walk.walk_skill import go
@@ -20,6 +20,8 @@ from motion_backend.skeleton import HAND_REST
 
 REACHED_DOWN = 1.12
 """An arm goes down to what is lower than this (metres at 1.70 m), so that its fingers point down a front."""
+MIN_HOLD: Final = 1.2
+"""A hand stays at least so long (seconds)."""
 _HEIGHT: Final = re.compile(r"\b(?:low|medium|high)\b", re.IGNORECASE)
 
 
@@ -39,7 +41,7 @@ def touch_spot(body: Body, action: Action) -> None:
     goal = np.asarray(spot.point) + HAND_REST * normal
     obstacles, scale = body.scene.obstacles, body.skeleton.scale
     depth = obstacles.solid().depth
-    down = bool(normal[1] < 0.7 and goal[1] < REACHED_DOWN * scale and not prone)
+    down = bool(not is_top(normal) and goal[1] < REACHED_DOWN * scale and not prone)
     palm = free_palm(obstacles, spot, goal, action.hand, down)
     doing = handling_of(action.caption)
     both = with_both_hands(action.caption) or (steadies(action.caption) and not any(holding(body.pose)))
@@ -48,5 +50,5 @@ def touch_spot(body: Body, action: Action) -> None:
         body.note("no room for both hands: one hand")
     laid = Laid(goal, palm, normal, action.hand, down, other)
     laid = replace(laid, stroke=free_stroke(obstacles, spot, laid))
-    hold = max(action.hold, 1.2)
+    hold = max(action.hold, MIN_HOLD)
     body.add(touch(body.pose, laid, Manner(bearing, hold, doing, prone), body.skeleton, depth))
