@@ -15,6 +15,9 @@ from motion_backend.procedural.touch.touch_skill import touch_spot
 from motion_backend.procedural.walk.walk_skill import loco
 from motion_backend.state_machine import ENDS, LEAVING, OWN
 
+STAYS, COMES_TO = 0.3, 0.8
+"""How long a body stays on the feet it has got up on, and takes to come to where it stood already (seconds)."""
+
 
 def perform(body: Body, action: Action) -> None:
     """Leave what the body rests on, then do the skill."""
@@ -40,9 +43,9 @@ def _stand(body: Body, action: Action) -> None:
     """Stay on the feet one has come to."""
     restless = bearing_of(action.emotion, action.caption).restless
     if body.frames:
-        body.add(idle(body.pose, 0.3, restless, body.rng, FPS))
+        body.add(idle(body.pose, STAYS, restless, body.rng, FPS))
     else:
-        body.add(settle_from(body.pose, idle(body.pose, 0.8, restless, body.rng, FPS), FPS))
+        body.add(settle_from(body.pose, idle(body.pose, COMES_TO, restless, body.rng, FPS), FPS))
 
 
 RISES: dict[Part, Callable[[Body, Bearing], None]] = {Part.GETUP: get_up, Part.STANDUP: _stand_up}

@@ -1,4 +1,7 @@
-"""Poses that hold: standing and seated, from a style and the place they are held at, and the life in a held pose."""
+"""Poses that hold: standing and seated, from a style and the place they are held at, and the life in a held pose.
+
+The numbers of what lives are in data/idle.toml.
+"""
 
 from __future__ import annotations
 
@@ -15,23 +18,74 @@ from motion_backend.procedural.walk.footsteps import drift, home_ankle
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, SEATED_REST, Skeleton
 from scene_graphs.affordances.affordances import Spot
+from scene_graphs.data_tables import read_table, table
 
 SHIN_REACH = 0.42
 """Seated pelvis to ankle on the floor with upright shins, at the reference height."""
-
-
-FOOT_SPLAY = 0.10
-
-
+STANCE = 0.085
+"""Half as far as the feet of a standing body are apart (metres at 1.70 m)."""
+UNLOCKED, SUNK = 0.998, 0.004
+"""How high a standing pelvis is: this share of the standing height, less so much (metres at 1.70 m)."""
+FOOT_SPLAY, KNEE_SPLAY = 0.10, 0.06
+"""How far outwards the feet and the knees of a standing body point (radians)."""
+HIPS_LEAN, SPINE_LEAN = 0.3, 0.7
+"""Shares of a standing body's lean in its hips and its spine."""
 FLOOR_REACH, LOW = 0.56, 0.30
 """The same where the pelvis comes to rest lower than `LOW`: hips do not fold any further (metres at 1.70 m)."""
-
-
 UP = np.array([0.0, 1.0, 0.0])
-
-
 MIRROR = np.array([-1.0, 1.0, 1.0])
 """What makes a left vector, in the body's own frame, a right one."""
+
+
+@table
+class Glance:
+    """Looks at something aside, now and then, and back: bounds that chance keeps."""
+
+    first_min_s: float
+    first_max_s: float
+    stay_min_s: float
+    stay_max_s: float
+    turn_s: float
+    wait_min_s: float
+    wait_max_s: float
+    last_s: float
+    """None begins later than this before the end."""
+    aside_min_rad: float
+    aside_max_rad: float
+    down_min_rad: float
+    down_max_rad: float
+    size_max_ratio: float
+    """The most restless look aside no farther than this."""
+
+
+@table
+class Idle:
+    """data/idle.toml: the life in a held pose, of a body of usual restlessness."""
+
+    ease_s: float
+    breath_hz: float
+    breath_rad: float
+    """Of the chest."""
+    breath_arms: float
+    """How far free hands come forward with it."""
+    drift_hz: float
+    spine_forward_rad: float
+    spine_turn_rad: float
+    head_forward_rad: float
+    head_turn_rad: float
+    head_side_rad: float
+    on_feet_above_m: float
+    """A planted body with its pelvis above this stands."""
+    sway_standing_m: float
+    sway_m: float
+    sway_down_share: float
+    """Of the sway: the weight on one leg."""
+    glance: Glance
+
+
+def idle_table() -> Idle:
+    """The numbers of holding still."""
+    return read_table("motion_backend", "idle.toml", Idle)
 
 
 def upright(yaw: float, pitch: Array | float = 0.0) -> Array:
@@ -59,19 +113,19 @@ def part_way(start: Array, end: Array, share: ArrayLike) -> Array:
 def standing(position: tuple[float, float], yaw: float, bearing: Bearing, skeleton: Skeleton) -> Pose:
     """Standing on both feet at [x, z]."""
     ground = np.asarray(position, dtype=np.float64)
-    ankles = np.stack([home_ankle(ground, yaw, index, 0.085, skeleton) for index in (0, 1)])
+    ankles = np.stack([home_ankle(ground, yaw, index, STANCE, skeleton) for index in (0, 1)])
     wrists, elbows = arm_arrays(*bearing.arms)
     lean = np.radians(bearing.lean)
-    height = skeleton.standing_height * 0.998 - 0.004 * skeleton.scale
+    height = skeleton.standing_height * UNLOCKED - SUNK * skeleton.scale
     return Pose(
         pelvis=np.array([ground[0], height, ground[1]]),
-        hips=upright(yaw, 0.3 * lean),
-        spine=bend(0.7 * lean),
+        hips=upright(yaw, HIPS_LEAN * lean),
+        spine=bend(SPINE_LEAN * lean),
         head=bend(np.radians(bearing.head)),
         ankles=ankles,
         feet=np.stack([rotations.yaw_to_quat(yaw + side * FOOT_SPLAY) for side in (1, -1)]),
         toes=np.zeros(2),
-        knees=np.stack([_ahead(yaw + side * 0.06) for side in (1, -1)]),
+        knees=np.stack([_ahead(yaw + side * KNEE_SPLAY) for side in (1, -1)]),
         arms=wrists,
         elbows=elbows,
         reach=ankles + UP,
@@ -124,33 +178,36 @@ class Seat:
 
 def idle(pose: Pose, seconds: float, size: float, rng: np.random.Generator, fps: int) -> Pose:
     """Hold a single pose for a while, alive: breath, a slow shift of weight, a wandering gaze."""
-    frames = max(round(seconds * fps), 1)
-    held = pose.repeat(frames)
-    ease = (1 - np.exp(-np.arange(1, frames + 1) / (0.4 * fps)))[:, None]
-    breath = np.sin(2 * np.pi * 0.27 * np.arange(1, frames + 1) / fps)
-    slow = [drift(frames, 0.16, fps, rng) for _ in range(4)]
-    aside, up = _glances(frames, size, rng, fps)
-    on_feet = bool(pose.planted.min() > 0 and pose.pelvis[1] > 0.7)
-    spine = held.spine + ease * np.stack([0.018 * breath, 0.020 * size * slow[0], 0.016 * size * slow[1]], axis=1)
-    gaze = [0.04 * size * slow[2] + up, 0.16 * size * slow[3] + aside, 0.015 * slow[0]]
-    head = held.head + ease * np.stack(gaze, axis=1)
-    sway = (0.006 if on_feet else 0.003) * size * ease * np.stack([slow[0], -0.25 * np.abs(slow[0]), slow[1]], axis=1)
+    row, frames = idle_table(), max(round(seconds * fps), 1)
+    held, time = pose.repeat(frames), np.arange(1, frames + 1)
+    ease = (1 - np.exp(-time / (row.ease_s * fps)))[:, None]
+    breath = np.sin(2 * np.pi * row.breath_hz * time / fps)
+    slow = [drift(frames, row.drift_hz, fps, rng) for _ in range(4)]
+    aside, down = _glances(frames, size, rng, fps)
+    bends = [row.breath_rad * breath, row.spine_forward_rad * size * slow[0], row.spine_turn_rad * size * slow[1]]
+    spine = held.spine + ease * np.stack(bends, axis=1)
+    nod, turn = row.head_forward_rad * size * slow[2] + down, row.head_turn_rad * size * slow[3] + aside
+    head = held.head + ease * np.stack([nod, turn, row.head_side_rad * slow[0]], axis=1)
+    on_feet = bool(pose.planted.min() > 0 and pose.pelvis[1] > row.on_feet_above_m)
+    way = np.stack([slow[0], -row.sway_down_share * np.abs(slow[0]), slow[1]], axis=1)
+    sway = (row.sway_standing_m if on_feet else row.sway_m) * size * ease * way
     arms = held.arms.copy()
-    arms[:, :, 2] += (0.02 * ease[:, 0] * breath)[:, None] * (1 - held.reaching)
+    arms[:, :, 2] += (row.breath_arms * ease[:, 0] * breath)[:, None] * (1 - held.reaching)
     return replace(held, spine=spine, head=head, pelvis=held.pelvis + sway, arms=arms)
 
 
 def _glances(frames: int, size: float, rng: np.random.Generator, fps: int) -> tuple[Array, Array]:
     """Looks at something aside, now and then, and back: turns of the head to the left and down, radians. (T,) twice."""
-    aside, down = np.zeros(frames), np.zeros(frames)
-    at = int(rng.uniform(0.8, 2.0) * fps)
-    while at + 2 * fps < frames:
-        stay, turn = int(rng.uniform(0.9, 1.6) * fps), int(0.4 * fps)
+    row, aside, down = idle_table().glance, np.zeros(frames), np.zeros(frames)
+    size = min(size, row.size_max_ratio)
+    at = int(rng.uniform(row.first_min_s, row.first_max_s) * fps)
+    while at + row.last_s * fps < frames:
+        stay, turn = int(rng.uniform(row.stay_min_s, row.stay_max_s) * fps), int(row.turn_s * fps)
         time = np.arange(frames) - at
         look = smooth(time / turn) * smooth((stay + turn - time) / turn)
-        aside += look * float(rng.choice([-1.0, 1.0]) * rng.uniform(0.15, 0.40)) * min(size, 1.3)
-        down += look * float(rng.uniform(-0.06, 0.10)) * min(size, 1.3)
-        at += stay + turn + int(rng.uniform(1.2, 3.0) * fps)
+        aside += look * float(rng.choice([-1.0, 1.0]) * rng.uniform(row.aside_min_rad, row.aside_max_rad)) * size
+        down += look * float(rng.uniform(row.down_min_rad, row.down_max_rad)) * size
+        at += stay + turn + int(rng.uniform(row.wait_min_s, row.wait_max_s) * fps)
     return aside, down
 
 

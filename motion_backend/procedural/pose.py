@@ -16,6 +16,14 @@ from motion_backend import rotations
 from motion_backend.rotations import Array
 
 ROTATIONS = ("hips", "feet", "palms")
+OPPOSITE, NO_SIZE = 1e-3, 1e-12
+"""Arms that are turned right round have no shortest turn, vectors of no size no direction: kept from dividing by 0."""
+BOWED_FROM, BOWED_WITHIN = 0.2, 0.25
+"""A swing of an arm goes round the shoulder from so far apart on (0 together, 1 opposite), wholly from so much more."""
+OUTWARD, BOW = np.array([[0.75, 0.0, 0.66], [-0.75, 0.0, 0.66]]), 2.4
+"""Where arms swing past the shoulder, left and right in the chest frame, and how far for how far apart they are."""
+ARMS_SETTLE = 1.5
+"""Arms take so much longer than the rest to come into a motion."""
 
 
 @dataclass(frozen=True)
@@ -159,14 +167,14 @@ def _led_along(pole: list[float], start: list[float], way: list[list[float]]) ->
     found = []
     for x, y, z in way:
         ax, ay, az = ly * z - lz * y, lz * x - lx * z, lx * y - ly * x
-        scale = 1.0 / max(1.0 + (lx * x + ly * y + lz * z), 1e-3)
+        scale = 1.0 / max(1.0 + (lx * x + ly * y + lz * z), OPPOSITE)
         cx, cy, cz = ay * pz - az * py, az * px - ax * pz, ax * py - ay * px
         tx = px + cx + scale * (ay * cz - az * cy)
         ty = py + cy + scale * (az * cx - ax * cz)
         tz = pz + cz + scale * (ax * cy - ay * cx)
         along = tx * x + ty * y + tz * z
         tx, ty, tz = tx - along * x, ty - along * y, tz - along * z
-        size = max(sqrt(tx * tx + ty * ty + tz * tz), 1e-12)
+        size = max(sqrt(tx * tx + ty * ty + tz * tz), NO_SIZE)
         px, py, pz = tx / size, ty / size, tz / size
         lx, ly, lz = x, y, z
         found.append((px, py, pz))
@@ -181,7 +189,7 @@ def _square(vectors: Array, axes: Array) -> Array:
 def _turned_with(vectors: Array, start: Array, end: Array) -> Array:
     """Vectors turned by the shortest rotation that takes unit vectors `start` to `end`."""
     axis = rotations.cross(start, end)
-    scale = 1.0 / np.maximum(1.0 + rotations.dot(start, end), 1e-3)
+    scale = 1.0 / np.maximum(1.0 + rotations.dot(start, end), OPPOSITE)
     crossed = rotations.cross(axis, vectors)
     return np.asarray(vectors + crossed + scale * rotations.cross(axis, crossed))
 
@@ -195,17 +203,16 @@ def _around_the_shoulder(knots: Array, keys: Array, at: Array, straight: Array) 
     share = smooth((at - knots[before]) / (knots[before + 1] - knots[before]))[:, None, None]
     start, end = keys[before], keys[before + 1]
     apart = (1 - rotations.dot(rotations.normalize(start), rotations.normalize(end))) / 2
-    wide = smooth((apart - 0.2) / 0.25)
+    wide = smooth((apart - BOWED_FROM) / BOWED_WITHIN)
     return np.asarray(straight + wide * (_swing(start, end, share) - straight))
 
 
 def _swing(start: Array, end: Array, share: Array) -> Array:
     """Wrists on an arc from start to end about the shoulder, bowed outwards and forwards the wider it is. (T, 2, 3)."""
-    outward = np.array([[0.75, 0.0, 0.66], [-0.75, 0.0, 0.66]])
     lengths = [rotations.length(v) for v in (start, end)]
     first, last = rotations.normalize(start), rotations.normalize(end)
     apart = (1 - rotations.dot(first, last)) / 2  # 0 together, 1 opposite
-    middle = rotations.normalize(first + last + 2.4 * apart * outward)
+    middle = rotations.normalize(first + last + BOW * apart * OUTWARD)
     way = rotations.normalize((1 - share) ** 2 * first + 2 * share * (1 - share) * middle + share**2 * last)
     return np.asarray(way * (lengths[0] + share * (lengths[1] - lengths[0])))
 
@@ -239,7 +246,7 @@ def settle_from(start: Pose, motion: Pose, fps: int, seconds: float = 0.45) -> P
         offset = getattr(start, name) - getattr(first, name)
         values = getattr(motion, name)
         changed[name] = values + fade.reshape(-1, *([1] * (values.ndim - 1))) * offset
-    changed |= _settle_arms(start, motion, 1.5 * seconds * fps)
+    changed |= _settle_arms(start, motion, ARMS_SETTLE * seconds * fps)
     for name in ("hips", "palms"):
         offset = rotations.quat_to_rotvec(
             rotations.compose(getattr(start, name), rotations.inverse(getattr(first, name)))

@@ -23,6 +23,8 @@ WRIST_ASIDE, WRIST_BEND, FOREARM_ROLL = (-0.25, 0.25), (-1.30, 1.15), 1.32
 """How far a left hand turns and bends against the forearm, and either rolls about it (radians)."""
 
 
+SHRUG = 0.45
+"""How far a raised arm lifts the collar bone (radians)."""
 EASED = 6
 """Frames before and after in which a pelvis tips back (see `hips_within`)."""
 
@@ -162,7 +164,7 @@ def limb_of_arm(
     target = wanted + weight * (pose.reach[:, index] - wanted)
     # Raising the arm lifts the collar bone with it, as a shoulder does.
     up = rotations.rotate(rotations.inverse(chest), target - rest)[:, 1] / span
-    collar = rotations.axis_to_quat("z", side * 0.45 * np.clip(up, 0.0, 1.0))
+    collar = rotations.axis_to_quat("z", side * SHRUG * np.clip(up, 0.0, 1.0))
     clavicle = rotations.compose(chest, collar)
     joint = chest_position + rotations.rotate(chest, offsets[INDEX[f"{name}_collar"]])
     shoulder = joint + rotations.rotate(clavicle, offsets[INDEX[f"{name}_shoulder"]])

@@ -26,6 +26,16 @@ ELBOW: Final = 0.05
 """Half as wide as an elbow is, with some room (metres at 1.70 m)."""
 FROM_BEHIND: Final = 0.2
 """An elbow so far behind where it is farthest aside comes in backwards (radians)."""
+HIP: Final = 0.055
+"""From the middle of the pelvis to the ends of the bar that hips are (metres at 1.70 m)."""
+HEAD_BAR, THIGH_BAR = (0.03, 0.09), (0.06, 0.37)
+"""Ends of the bars that a head and a thigh are: above the head's joint, and down from the hip (metres at 1.70 m)."""
+MOVED: Final = 1e-4
+"""A hand pushed by less than this (metres) stays."""
+NO_SWING: Final = 1e-6
+"""An elbow nearer to the line from shoulder to wrist than its root cannot swing (metres²)."""
+SMOOTHED: Final = 2.0
+"""Width of the bell that the turn of an elbow is smoothed by (frames)."""
 LED: Final = 7
 """Frames in which a way round grows out of where a hand begins, and comes to where it is to be."""
 
@@ -69,7 +79,7 @@ def hands_round_body(pose: Pose, skeleton: Skeleton) -> Pose:
     sideways, ahead = (rotations.rotate(pose.hips, np.array(axis)) for axis in ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]))
     scale, wide = skeleton.scale, skeleton.scale * WIDE
     thick = scale * (THIGH - GIVES)
-    hips = (pose.pelvis - 0.055 * scale * sideways, pose.pelvis + 0.055 * scale * sideways)
+    hips = (pose.pelvis - HIP * scale * sideways, pose.pelvis + HIP * scale * sideways)
     head = _head(pose, skeleton, frame)
     thighs = [_thigh(pose, skeleton, index, name) for index, (name, _) in enumerate(SIDES)]
     ends = smooth(np.minimum(np.arange(len(pose)), np.arange(len(pose))[::-1]) / LED)[:, None]
@@ -88,7 +98,7 @@ def hands_round_body(pose: Pose, skeleton: Skeleton) -> Pose:
         if not push.any():
             continue
         push = eased(push) * ends
-        moved = np.linalg.norm(push, axis=1) > 1e-4
+        moved = np.linalg.norm(push, axis=1) > MOVED
         reach[moved, index] = (arm.wrist + push)[moved]
         reaching[moved, index] = 1.0
     return replace(pose, reach=reach, reaching=reaching)
@@ -100,7 +110,8 @@ def _head(pose: Pose, skeleton: Skeleton, frame: tuple[Array, Array]) -> tuple[A
     joint = frame[1] + rotations.rotate(frame[0], skeleton.offsets[INDEX["neck"]])
     joint = joint + rotations.rotate(neck, skeleton.offsets[INDEX["head"]])
     up = rotations.rotate(frame[0], UP)
-    return joint + 0.03 * skeleton.scale * up, joint + 0.09 * skeleton.scale * up
+    low, high = HEAD_BAR
+    return joint + low * skeleton.scale * up, joint + high * skeleton.scale * up
 
 
 def _thigh(pose: Pose, skeleton: Skeleton, index: int, name: str) -> tuple[Array, Array, Array]:
@@ -109,7 +120,8 @@ def _thigh(pose: Pose, skeleton: Skeleton, index: int, name: str) -> tuple[Array
     hip = pose.pelvis + rotations.rotate(pose.hips, offsets[INDEX[f"{name}_hip"]])
     lengths = (-float(offsets[INDEX[f"{name}_knee"], 1]), -float(offsets[INDEX[f"{name}_ankle"], 1]))
     leg = two_bone(hip, pose.ankles[:, index], pose.knees[:, index], lengths)
-    return hip + 0.06 * scale * leg.upper, hip + 0.37 * scale * leg.upper, rotations.cross(leg.upper, leg.hinge)
+    start, end = THIGH_BAR
+    return hip + start * scale * leg.upper, hip + end * scale * leg.upper, rotations.cross(leg.upper, leg.hinge)
 
 
 def _way_out(points: Array, wide: Array, bar: tuple[Array, Array], towards: Array, radius: float) -> Array:
@@ -171,10 +183,10 @@ def _elbow_inside(pose: Pose, index: int, arm: _Arm, wall: tuple[Array, float], 
     aside = rotations.normalize(aside)
     ahead = rotations.cross(aside, axis)
     ahead = ahead * np.where(ahead @ (forwards - UP) < 0, -1.0, 1.0)[:, None]
-    least = np.arccos(np.clip((wall[1] - (arm.elbow - pole) @ wall[0]) / np.maximum(swing, 1e-6), -1.0, 1.0))
+    least = np.arccos(np.clip((wall[1] - (arm.elbow - pole) @ wall[0]) / np.maximum(swing, NO_SWING), -1.0, 1.0))
     angle = np.arctan2(np.sum(pole * ahead, axis=1), np.sum(pole * aside, axis=1))
     turn = np.where(angle < -FROM_BEHIND, np.minimum(-least - angle, 0.0), np.maximum(least - angle, 0.0))
-    turn = gaussian_filter1d(turn * share, 2.0, mode="nearest")
+    turn = gaussian_filter1d(turn * share, SMOOTHED, mode="nearest")
     turned = (angle + turn)[:, None]
     elbows = pose.elbows.copy()
     elbows[:, index] = arm.in_chest(np.cos(turned) * aside + np.sin(turned) * ahead)

@@ -21,6 +21,8 @@ SWINGS: Final = np.radians(np.arange(-105.0, 106.0, 15.0))
 """Angles that an elbow may be swung by (radians)."""
 SKIN: Final = np.array([0.042, 0.042, 0.042, 0.034, 0.034, 0.024, 0.024])
 """Radii of an arm and its hand where they are looked at (metres at 1.70 m)."""
+UPPER, FORE = (0.35, 0.7, 1.0), (0.4, 0.75)
+"""Where the first of them are: shares of the upper arm, and of the forearm beyond the elbow."""
 HAND: Final = (0.08, 0.13)
 """Middle and fingertips of a hand from its wrist (metres at 1.70 m)."""
 TRUNK: Final = np.array([[0.0, -0.18, 0.0], [0.0, 0.10, 0.0]])
@@ -31,6 +33,8 @@ SEEN: Final = 0.01
 """An arm this deep in something is swung out (metres)."""
 STRAINED: Final = float(np.radians(3))
 """An arm whose shoulder is so far beyond its range is swung back (radians)."""
+SMOOTHED: Final = 3.0
+"""Width of the bell that swings are smoothed by (frames)."""
 LEAD: Final = 20
 """Frames in which an elbow swings out, and back."""
 DEEP, BEYOND, FAR, FAST = 60.0, 40.0, 0.5, 30.0
@@ -73,7 +77,7 @@ class _Arm(NamedTuple):
         upper, lower = self.lengths[0] * limb.upper, self.lengths[1] * limb.lower
         shoulder = self.shoulder if limb.upper.ndim == 2 else self.shoulder[:, None]
         hand = self._hand(limb) * scale
-        along = [0.35 * upper, 0.7 * upper, upper, upper + 0.4 * lower, upper + 0.75 * lower]
+        along = [*(share * upper for share in UPPER), *(upper + share * lower for share in FORE)]
         return np.asarray(shoulder + np.stack([*along, *(upper + lower + reach * hand for reach in HAND)]))
 
     def _hand(self, limb: Limb) -> Array:
@@ -190,4 +194,4 @@ def _steady(cost: Array) -> Array:
     best[-1] = int(cost[-1].argmin())
     for frame in range(len(cost) - 1, 0, -1):
         best[frame - 1] = before[frame, best[frame]]
-    return np.asarray(gaussian_filter1d(SWINGS[best], 3.0, mode="nearest"))
+    return np.asarray(gaussian_filter1d(SWINGS[best], SMOOTHED, mode="nearest"))

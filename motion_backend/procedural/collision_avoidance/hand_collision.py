@@ -25,6 +25,17 @@ ALL_IN = 0.56
 UPWARDS = 0.12
 """A way out upwards may be this much longer than the nearest way out sideways: hands rest on things."""
 
+MOVED, NOWHERE = 1e-4, 1e-6
+"""A hand pushed by less than this stays, and one this near to its shoulder has no direction (metres)."""
+ALONG = 1e-9
+"""A line that goes less than this along an axis is square to it (metres)."""
+SPREAD_FROM, SPREAD_WITHIN = 0.9, 0.5
+"""Arms are spread that point this far from hanging (cosine), wholly so from so much more."""
+WIDEST, NARROWEST, ROOM_SMOOTHED = 7, 17, 4.0
+"""Frames about each of which the widest push, and the narrowest place, counts; width of the bell for the latter."""
+PUSH_SMOOTHED, SIZE_SMOOTHED, MAX_GROWTH = 2.5, 2.0, 4.0
+"""Widths of the bells that a push and its size are smoothed by (frames), and how much it is made up for at the most."""
+
 
 def hands_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles, touching: str | None = None) -> Pose:
     """The same motion with hands moved out of what is solid; those that touch ("left", "right", "both") stay there."""
@@ -40,12 +51,12 @@ def hands_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles, touching: 
         push = _way_out(np.stack([tip, wrist, 0.5 * (elbow + wrist)], axis=1), shoulder, obstacles)
         if touching in (name, "both"):
             push = push * (1 - pose.pressing[:, index, None])
-        moved = np.linalg.norm(push, axis=1) > 1e-4
+        moved = np.linalg.norm(push, axis=1) > MOVED
         if not moved.any():
             continue
         # A segment begins in the pose the one before left, which was cleared already.
         led = eased(push) * smooth(np.arange(len(push)) / 8)[:, None]
-        used = np.linalg.norm(led, axis=1) > 1e-4
+        used = np.linalg.norm(led, axis=1) > MOVED
         reach[used, index] = _unfolded(wrist + led, shoulder, upper, lower)[used]
         reaching[used, index] = 1.0
     return replace(pose, reach=reach, reaching=reaching)
@@ -56,7 +67,7 @@ def _unfolded(wrists: Array, shoulder: Array, upper: float, lower: float) -> Arr
     away = wrists - shoulder
     length = np.linalg.norm(away, axis=1, keepdims=True)
     least = np.sqrt(upper**2 + lower**2 + 2 * upper * lower * np.cos(FOLDED))
-    return np.asarray(shoulder + away * np.maximum(least / np.maximum(length, 1e-6), 1.0))
+    return np.asarray(shoulder + away * np.maximum(least / np.maximum(length, NOWHERE), 1.0))
 
 
 def arms_in(pose: Pose, room: Array, narrow: str, wide: float) -> Pose:
@@ -66,7 +77,7 @@ def arms_in(pose: Pose, room: Array, narrow: str, wide: float) -> Pose:
     """
     from scipy.ndimage import gaussian_filter1d, minimum_filter1d
 
-    least = gaussian_filter1d(minimum_filter1d(room, 17, mode="nearest"), 4.0, mode="nearest")
+    least = gaussian_filter1d(minimum_filter1d(room, NARROWEST, mode="nearest"), ROOM_SMOOTHED, mode="nearest")
     share = smooth((wide - least) / (wide - ALL_IN * wide))
     # A segment begins in the pose the one before left.
     share = (share * smooth(np.arange(len(room)) / 15))[:, None, None]
@@ -75,7 +86,7 @@ def arms_in(pose: Pose, room: Array, narrow: str, wide: float) -> Pose:
         # Only as far as they are spread: arms that have come down at the end of the way stay down.
         hang, _ = arm_arrays("hang", "hang")
         down = np.sum(rotations.normalize(pose.arms) * rotations.normalize(hang), axis=-1, keepdims=True)
-        share = share * smooth((0.9 - down) / 0.5)
+        share = share * smooth((SPREAD_FROM - down) / SPREAD_WITHIN)
     lengths = np.linalg.norm(pose.arms, axis=-1, keepdims=True)
     along = rotations.normalize(pose.arms + share * (wrists - pose.arms))
     return replace(
@@ -132,7 +143,7 @@ def _out_of_box(points: Array, origin: Array, boxes: Obstacles, index: int) -> A
 def _crosses(start: Array, end: Array, half: Array) -> NDArray[np.bool_]:
     """Whether the line from shoulder to point passes through a box about the origin: a thin wall is no gap. (N,)."""
     way = end - start
-    way = np.where(np.abs(way) < 1e-9, 1e-9, way)
+    way = np.where(np.abs(way) < ALONG, ALONG, way)
     first, second = (-half - start) / way, (half - start) / way
     enters = np.minimum(first, second).max(axis=1)
     leaves = np.maximum(first, second).min(axis=1)
@@ -144,9 +155,9 @@ def eased(push: Array) -> Array:
     from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 
     size = np.linalg.norm(push, axis=1)
-    wide = maximum_filter1d(size, 7, mode="nearest")
-    smoothed = gaussian_filter1d(push, 2.5, axis=0, mode="nearest")
+    wide = maximum_filter1d(size, WIDEST, mode="nearest")
+    smoothed = gaussian_filter1d(push, PUSH_SMOOTHED, axis=0, mode="nearest")
     length = np.linalg.norm(smoothed, axis=1)
-    wanted = np.maximum(gaussian_filter1d(wide, 2.0, mode="nearest"), 0.0)
-    grow = np.where(length > 1e-6, wanted / np.maximum(length, 1e-6), 0.0)
-    return np.asarray(smoothed * np.minimum(grow, 4.0)[:, None])
+    wanted = np.maximum(gaussian_filter1d(wide, SIZE_SMOOTHED, mode="nearest"), 0.0)
+    grow = np.where(length > NOWHERE, wanted / np.maximum(length, NOWHERE), 0.0)
+    return np.asarray(smoothed * np.minimum(grow, MAX_GROWTH)[:, None])

@@ -27,6 +27,11 @@ ASIDE, BEND = np.radians(20), np.radians(65)
 """How far a hand is turned aside against its forearm, and bent to or fro, at most."""
 PASSES = 4
 """Where the hand is turns the forearm, which turns the hand: so often."""
+FREE_FROM, FREE_WITHIN = 0.3, 0.3
+"""A forearm with less of itself along the skin leaves the hand free to turn; one with so much more does not (sines)."""
+STEEP_FROM, STEEP_WITHIN = 0.75, 0.2
+"""The back of a hand turns with a forearm that stands steeper on the skin than this, wholly with one so much steeper
+(cosines)."""
 TIP = 0.16
 """Wrist to the tips of the fingers (metres at 1.70 m)."""
 ON_SKIN, ON_THINGS = 0.030, 0.042
@@ -168,7 +173,7 @@ def _along_forearm(fingers: Array, normal: Array, forearm: Array) -> Array:
     turned = np.arctan2(np.sum(rotations.cross(flat, fingers) * normal, axis=1), np.sum(flat * fingers, axis=1))
     kept = np.clip(turned, -ASIDE, ASIDE)
     # A forearm that stands upright on the skin leaves the hand free to lie any way.
-    angle = (kept + (1 - smooth((size - 0.3) / 0.3)) * (turned - kept))[:, None]
+    angle = (kept + (1 - smooth((size - FREE_FROM) / FREE_WITHIN)) * (turned - kept))[:, None]
     return np.asarray(flat * np.cos(angle) + rotations.cross(normal, flat) * np.sin(angle))
 
 
@@ -181,7 +186,7 @@ def _tipped(fingers: Array, normal: Array, forearm: Array) -> tuple[Array, Array
     hand = np.cos(bent) * forearm + np.sin(bent) * aside
     into = np.sum(forearm * normal, axis=1, keepdims=True)
     over = np.sign(into) * rotations.normalize(forearm - np.sum(forearm * hand, axis=1, keepdims=True) * hand)
-    upright = smooth((np.abs(into) - 0.75) / 0.2)
+    upright = smooth((np.abs(into) - STEEP_FROM) / STEEP_WITHIN)
     back = upright * over + (1 - upright) * normal
     return hand, rotations.normalize(back - np.sum(back * hand, axis=1, keepdims=True) * hand)
 
@@ -214,6 +219,37 @@ INSET = 0.01
 """A hand lies at least so far within the edge of a surface (metres)."""
 ARMREST, TABLE = (0.08, 0.36), (0.14, 0.58)
 """Heights above the seat that armrests and tables have (metres)."""
+ABOUT = (1.2, 1.0, 1.2)
+"""Half the box about the pelvis in which things are looked at (metres)."""
+LEVEL = 0.05
+"""Above and below its seat what a sitter's hands lie on beside it (metres)."""
+OVER = 0.1
+"""What stands this much higher than that is above the hands (metres)."""
+Grid = tuple[float, float, float]
+"""From, up to and in steps of (metres)."""
+WIDE: Grid = (0.26, 0.16, -0.02)
+"""How far to either side of the middle hands lie beside a sitter, the widest first (at 1.70 m)."""
+BEHIND, BACKREST, BEHIND_STEP, BEHIND_END = 0.24, 0.07, 0.03, -0.03
+"""How far behind the pelvis (at 1.70 m), how far before the backrest, in which steps, and up to where hands lie behind
+a sitter (metres)."""
+EDGE, MIN_EDGE = 0.07, 0.12
+"""How far within the seat's front edge hands lie, and how far before the pelvis that must be for it (metres)."""
+ARMREST_AHEAD = (0.24, 0.18, 0.12, 0.06)
+"""How far ahead of the pelvis a hand lies on an armrest, the farthest first (metres)."""
+ARMREST_ASIDE: Grid = (0.22, 0.44, 0.02)
+"""How far to the side armrests are (at 1.70 m)."""
+ARMREST_STEPS = 5
+"""How many such steps an armrest is wide at the most, from its inner edge."""
+ELBOW_ASIDE: Grid = (0.26, 0.62, 0.02)
+"""How far to the side it is looked for what elbows would be in (at 1.70 m)."""
+TABLE_FROM, TABLE_STEP = 0.20, 0.02
+"""How far ahead of the pelvis tables are looked for from, and in which steps (metres)."""
+FOREARMS = (0.17, 0.0, -0.17)
+"""To the left, where a table must be for two forearms (metres)."""
+HALF_DEPTH = 5
+"""Steps of half the depth that they need."""
+UNEVEN = 0.01
+"""A table is level whose heights differ by less (metres)."""
 
 
 @dataclass(frozen=True)
@@ -241,16 +277,16 @@ class Handholds:
 
 def handholds(seat: Seat, obstacles: Obstacles, scale: float) -> Handholds:
     """What there is about a seat for a body of that size."""
-    about = np.array([1.2, 1.0, 1.2])
+    about = np.array(ABOUT)
     near = obstacles.solid().near(seat.pelvis - about, seat.pelvis + about)
     top = float(seat.pelvis[1]) - SEATED_REST
-    level = (top - 0.05, top + 0.05)
+    level = (top - LEVEL, top + LEVEL)
     rests = (top + ARMREST[0] * scale, top + ARMREST[1] * scale)
-    back = -min(0.24 * scale, max(seat.back - 0.07, 0.0))
-    wide = np.arange(0.26, 0.16, -0.02) * scale
-    behind = [(side, ahead) for ahead in np.arange(back, -0.03, 0.03) for side in wide]
-    edge = [(side, seat.edge - 0.07) for side in wide] if seat.edge > 0.12 else []
-    armrest = [(side, ahead) for ahead in (0.24, 0.18, 0.12, 0.06) for side in np.arange(0.22, 0.44, 0.02) * scale]
+    back = -min(BEHIND * scale, max(seat.back - BACKREST, 0.0))
+    wide = np.arange(*WIDE) * scale
+    behind = [(side, ahead) for ahead in np.arange(back, BEHIND_END, BEHIND_STEP) for side in wide]
+    edge = [(side, seat.edge - EDGE) for side in wide] if seat.edge > MIN_EDGE else []
+    armrest = [(side, ahead) for ahead in ARMREST_AHEAD for side in np.arange(*ARMREST_ASIDE) * scale]
     table = table_before(seat, near, scale)
     return Handholds(
         armrests=_pair(seat, near, _middles(seat, near, armrest, rests), rests),
@@ -264,7 +300,7 @@ def handholds(seat: Seat, obstacles: Obstacles, scale: float) -> Handholds:
 
 def elbow_room(seat: Seat, near: Obstacles, scale: float) -> tuple[float, float]:
     """How far to either side of the middle something begins that is as high as elbows; infinite beyond their reach."""
-    aside = np.arange(0.26, 0.62, 0.02) * scale
+    aside = np.arange(*ELBOW_ASIDE) * scale
     found = []
     for side in (1, -1):
         places = [(side * a, seat.pelvis[1] + up * scale, ahead) for a in aside for up, ahead in ELBOWS]
@@ -278,7 +314,7 @@ def _pair(seat: Seat, near: Obstacles, places: list[list[tuple[float, float]]], 
     found: list[Array | None] = []
     for side, wanted in zip((1, -1), places, strict=True):
         points = seat.to_world(np.array([(side * lateral, 0.0, ahead) for lateral, ahead in wanted]).reshape(-1, 3))
-        tops = _tops(near, points, level[1] + 0.1)
+        tops = _tops(near, points, level[1] + OVER)
         good = np.flatnonzero((tops >= level[0]) & (tops <= level[1]))
         found.append(np.array([*points[good[0], :1], tops[good[0]], *points[good[0], 2:]]) if len(good) else None)
     return found[0], found[1]
@@ -291,12 +327,12 @@ def _middles(
     chosen: list[list[tuple[float, float]]] = []
     for side in (1, -1):
         points = seat.to_world([(side * lateral, 0.0, ahead) for lateral, ahead in places])
-        tops = _tops(near, points, level[1] + 0.1)
+        tops = _tops(near, points, level[1] + OVER)
         good = (tops >= level[0]) & (tops <= level[1])
         rows = [[place for place, fits in zip(places, good, strict=True) if fits and place[1] == ahead]
                 for ahead in dict.fromkeys(ahead for _, ahead in places)]  # fmt: skip
         row = next((row for row in rows if row), [])
-        chosen.append([(float(np.mean([lateral for lateral, _ in row[:5]])), row[0][1])] if row else [])
+        chosen.append([(float(np.mean([lateral for lateral, _ in row[:ARMREST_STEPS]])), row[0][1])] if row else [])
     return chosen
 
 
@@ -304,14 +340,15 @@ def table_before(seat: Seat, near: Obstacles, scale: float, reach: float = TABLE
     """How far ahead a table's edge is, and its height; a table is level under both forearms."""
     top = float(seat.pelvis[1]) - SEATED_REST
     level = (top + TABLE[0] * scale, top + TABLE[1] * scale)
-    ahead = np.arange(0.20, reach * scale + 0.22, 0.02)
-    points = seat.to_world([(side, 0.0, a) for a in ahead for side in (0.17, 0.0, -0.17)])
-    tops = _tops(near, points, level[1] + 0.1).reshape(-1, 3)
-    flat = (np.ptp(tops, axis=1) < 0.01) & (tops[:, 0] >= level[0]) & (tops[:, 0] <= level[1])
-    deep = flat[:-10] & flat[5:-5] & flat[10:]
-    if not deep.any():
+    deep = 2 * HALF_DEPTH
+    ahead = np.arange(TABLE_FROM, reach * scale + (deep + 1) * TABLE_STEP, TABLE_STEP)
+    points = seat.to_world([(side, 0.0, a) for a in ahead for side in FOREARMS])
+    tops = _tops(near, points, level[1] + OVER).reshape(-1, len(FOREARMS))
+    flat = (np.ptp(tops, axis=1) < UNEVEN) & (tops[:, 0] >= level[0]) & (tops[:, 0] <= level[1])
+    fits = flat[:-deep] & flat[HALF_DEPTH:-HALF_DEPTH] & flat[deep:]
+    if not fits.any():
         return None
-    first = int(np.argmax(deep))
+    first = int(np.argmax(fits))
     return float(ahead[first]), float(tops[first, 0])
 
 

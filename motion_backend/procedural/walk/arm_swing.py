@@ -1,4 +1,7 @@
-"""Arms of a walking body: those that hang swing against the legs, others keep the pose they are held in."""
+"""Arms of a walking body: those that hang swing against the legs, others keep the pose they are held in.
+
+The numbers are in data/gait/arm_swing.toml.
+"""
 
 from __future__ import annotations
 
@@ -11,33 +14,113 @@ from motion_backend.procedural.pose import smooth
 from motion_backend.procedural.walk.footsteps import Steps
 from motion_backend.procedural.walk.walk_styles import Walk
 from motion_backend.rotations import Array
+from scene_graphs.data_tables import read_table, table
 
-UPPER, LOWER = 0.541, 0.459
-"""Upper arm and forearm in arm lengths."""
-USUAL = 1.25
-"""Speed at which arms swing as far as the style says (metres a second)."""
-FOLDS = 0.6
-"""How much the elbow bends for every radian that the arm is forward of where it is farthest back."""
-HANGS, FREE = 6.0, 0.6
-"""How far forward of an upright trunk an arm hangs (degrees), and the share of the trunk's bend it does not follow."""
-TAPS = 1.6
-"""Taps on the chest a second, of each hand."""
-SWINGING = ("hang", "bent", "fists")
+CARRIED = "carry"
+"""The arm pose of a hand that holds something: it stays as it is where something is begun."""
+
+
+@table
+class ArmSwing:
+    """Arms that hang."""
+
+    early_phase: float
+    """So much earlier than half-way through the other side's step an arm is farthest forward."""
+    usual_mps: float
+    """Arms swing as far as the style says."""
+    min_ratio: float
+    max_ratio: float
+    hangs_deg: float
+    """How far forward of an upright trunk an arm hangs."""
+    free_share: float
+    """Of the trunk's bend, that it does not follow."""
+    elbow_deg: dict[str, float]
+    """How much more than the style's an elbow is bent in each of the arm poses that swing."""
+    straight_deg: float
+    """The elbow of an arm that hangs still."""
+    still_share: float
+    """Of the style's bend, standing,"""
+    moving_share: float
+    """and this much more in full stride."""
+    folds_ratio: float
+    """How much the elbow bends for every radian forward of where the arm is farthest back."""
+    shoulder_share: float
+    """Of the elbow's bend, that the upper arm goes back for,"""
+    forearm_share: float
+    """and the forearm forward."""
+    upper_arms: float
+    lower_arms: float
+    aside_arms: float
+    inwards_arms: float
+    """How much a hand comes in before the body."""
+    stretched_max_arms: float
+    held_arms: float
+    """How far wrists of arms that are held swing."""
+
+
+@table
+class ArmSpread:
+    """Arms that take room wait until the body is under way."""
+
+    takes_room: tuple[str, ...]
+    after_s: float
+    within_s: float
+    down_s: float
+    """They come down again over the last of the way."""
+
+
+@table
+class ArmDance:
+    """Both swing together from side to side before the body."""
+
+    aside_arms: float
+    over_arms: float
+    up_arms: float
+    up_outwards_arms: float
+    ahead_arms: float
+    back_sideways_arms: float
+
+
+@table
+class ChestTap:
+    """Hands leave the chest in turn and come back to it."""
+
+    hz: float
+    aside_arms: float
+    up_arms: float
+    """The left one higher, the right one lower."""
+    ahead_arms: float
+    away_arms: float
+
+
+@table
+class ArmTable:
+    """data/gait/arm_swing.toml: arm lengths."""
+
+    swing: ArmSwing
+    spread: ArmSpread
+    dance: ArmDance
+    tap: ChestTap
+
+
+def arm_table() -> ArmTable:
+    """The numbers of walking arms."""
+    return read_table("motion_backend", "gait/arm_swing.toml", ArmTable)
 
 
 def swing_arms(style: Walk, steps: Steps, speed: Array) -> tuple[Array, Array]:
     """Wrists and elbow directions of T frames walked at `speed` (T,). (T, 2, 3) each."""
-    frames = len(steps.phase)
+    row, frames = arm_table().swing, len(steps.phase)
     fixed, poles = arm_arrays(*style.bearing.arms)
     wrists, elbows = np.repeat(fixed[None], frames, axis=0), np.repeat(poles[None], frames, axis=0)
     # An arm is farthest forward as the heel of the other side comes down, before that foot is flat.
-    cycle = steps.first * np.cos(np.pi * (steps.phase + 0.05)) * steps.moving
+    cycle = steps.first * np.cos(np.pi * (steps.phase + row.early_phase)) * steps.moving
     for index, side in ((0, 1), (1, -1)):
-        if style.bearing.arms[index] in SWINGING:
+        if style.bearing.arms[index] in row.elbow_deg:
             wrists[:, index] = _hanging(style, index, side * cycle, steps.moving, speed)
         else:
             wrists[:, index] = _held(style, index, wrists[:, index], frames)
-            wrists[:, index, 2] += 0.015 * side * cycle
+            wrists[:, index, 2] += row.held_arms * side * cycle
         if style.across:
             wrists[:, index] = _across(style, side, steps, wrists[:, index])
         if style.tap:
@@ -47,22 +130,23 @@ def swing_arms(style: Walk, steps: Steps, speed: Array) -> tuple[Array, Array]:
 
 def _hanging(style: Walk, index: int, beat: Array, moving: Array, speed: Array) -> Array:
     """A wrist that swings: shoulder and elbow turn forward together, and further forward than back. (T, 3)."""
-    side = 1 if index == 0 else -1
-    bent = style.elbow + {"bent": 25, "fists": 4}.get(style.bearing.arms[index], 0)
-    reach = np.radians(style.swing) * np.clip(speed / USUAL, 0.35, 1.3)
+    row, side = arm_table().swing, 1 if index == 0 else -1
+    bent = style.elbow + row.elbow_deg[style.bearing.arms[index]]
+    reach = np.radians(style.swing) * np.clip(speed / row.usual_mps, row.min_ratio, row.max_ratio)
     # Arms hang down from a bent trunk.
-    swing = reach * beat + np.radians(HANGS + FREE * style.bearing.lean)
-    bend = np.radians(8 + (bent - 8) * (0.35 + 0.65 * moving)) + FOLDS * (swing + reach * moving)
-    shoulder, fore = swing - 0.25 * bend, swing + 0.75 * bend
+    swing = reach * beat + np.radians(row.hangs_deg + row.free_share * style.bearing.lean)
+    more = (bent - row.straight_deg) * (row.still_share + row.moving_share * moving)
+    bend = np.radians(row.straight_deg + more) + row.folds_ratio * (swing + reach * moving)
+    shoulder, fore = swing - row.shoulder_share * bend, swing + row.forearm_share * bend
     wrist = np.stack(
         [
-            side * (0.15 - 0.10 * np.maximum(np.sin(swing), 0) + style.splay),
-            -UPPER * np.cos(shoulder) - LOWER * np.cos(fore),
-            UPPER * np.sin(shoulder) + LOWER * np.sin(fore),
+            side * (row.aside_arms - row.inwards_arms * np.maximum(np.sin(swing), 0) + style.splay),
+            -row.upper_arms * np.cos(shoulder) - row.lower_arms * np.cos(fore),
+            row.upper_arms * np.sin(shoulder) + row.lower_arms * np.sin(fore),
         ],
         axis=1,
     )
-    return np.asarray(wrist * np.minimum(1, 0.985 / np.linalg.norm(wrist, axis=1))[:, None])
+    return np.asarray(wrist * np.minimum(1, row.stretched_max_arms / np.linalg.norm(wrist, axis=1))[:, None])
 
 
 def _held(style: Walk, index: int, wrist: Array, frames: int) -> Array:
@@ -77,26 +161,30 @@ def _held(style: Walk, index: int, wrist: Array, frames: int) -> Array:
 def _spread(frames: int, arms: str, release: bool) -> Array:
     """Share of an arm pose: open arms wait until the body is under way, and all but those that carry something
     come down where something is begun."""
-    at = np.arange(frames) / FPS
-    takes_room = arms in ("open", "balance")
-    begun = smooth((at - 0.25) / 0.8) if takes_room else np.ones(frames)
-    comes_down = takes_room or (release and arms != "carry")
-    return begun * smooth((at[-1] - at) / 0.7) if comes_down else begun
+    row, at = arm_table().spread, np.arange(frames) / FPS
+    takes_room = arms in row.takes_room
+    begun = smooth((at - row.after_s) / row.within_s) if takes_room else np.ones(frames)
+    comes_down = takes_room or (release and arms != CARRIED)
+    return begun * smooth((at[-1] - at) / row.down_s) if comes_down else begun
 
 
 def _across(style: Walk, side: int, steps: Steps, wrist: Array) -> Array:
     """Arms that swing together from side to side before the body, as in a dance. (T, 3)."""
+    row = arm_table().dance
     over = steps.first * np.sin(np.pi * steps.phase) * steps.moving
     outward = side * over
-    danced = np.stack(
-        [side * 0.28 + 0.36 * over, -0.52 + 0.24 * np.maximum(outward, 0), 0.44 - 0.16 * np.abs(over)], axis=1
+    aside, up = (
+        side * row.aside_arms + row.over_arms * over,
+        row.up_arms + row.up_outwards_arms * np.maximum(outward, 0),
     )
+    danced = np.stack([aside, up, row.ahead_arms - row.back_sideways_arms * np.abs(over)], axis=1)
     return np.asarray(wrist + (style.across * steps.moving)[:, None] * (danced - wrist))
 
 
 def _tapping(side: int, frames: int) -> Array:
     """Hands leave the chest in turn and come back to it. (T, 3)."""
-    beating = np.maximum(np.sin(2 * np.pi * TAPS * np.arange(frames) / FPS + (0 if side > 0 else np.pi)), 0)
-    away = np.tile([0.14 * side, 0.06 * side, 0.02], (frames, 1))
-    away[:, 2] += 0.16 * beating
+    row = arm_table().tap
+    beating = np.maximum(np.sin(2 * np.pi * row.hz * np.arange(frames) / FPS + (0 if side > 0 else np.pi)), 0)
+    away = np.tile([row.aside_arms * side, row.up_arms * side, row.ahead_arms], (frames, 1))
+    away[:, 2] += row.away_arms * beating
     return away

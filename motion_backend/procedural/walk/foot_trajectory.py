@@ -2,12 +2,12 @@
 
 The curves are our own, drawn by hand beside the mean step of recorded people (`sims evaluate walks`): ball of the foot
 6 cm up in the middle of the swing, foot pitched 60 degrees after toe off and 20 the other way at heel strike. Backwards
-it is the same, played backwards.
+it is the same, played backwards. Curves and numbers are in data/gait/foot_trajectory.toml.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import cache
 
 import numpy as np
@@ -16,44 +16,117 @@ from motion_backend import rotations
 from motion_backend.procedural.pose import smooth
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, Skeleton
+from scene_graphs.data_tables import read_table, table
 
 HEEL = np.array([0.0, -0.066, -0.055])
 """Heel from the ankle at the reference height."""
 TIP = np.array([0.0, -0.031, 0.068])
 """Tip of the toes from the ball of the foot, likewise."""
-TOE_BEND = np.radians(38)
-"""Toes bend so far while the heel rises; beyond that the foot tips over their ends."""
 HEEL_RISE, SETTLE = 0.40, 0.30
 """Phase from the first rise of the heel to the lift, and from heel strike to the flat foot."""
-USUAL = 0.058
-"""How high the ball of a walking foot swings (metres)."""
-HANGS, DROOP = 0.035, 2.15
-"""A foot that is lifted higher than this (metres) hangs down by so many radians for every metre more."""
+SAMPLES = 600
+"""Of a curve."""
 TIP_UP = np.radians(24)
 """How far the tip of a foot points up at the heel strike of a full step."""
-LEAVING, ARRIVING = 0.12, 0.4
-"""Speed of the foot as it lifts and as it lands against its mean speed in the air."""
 
-_HEEL_OFF = ((-1.0, 0.0), (-0.5, 0.13), (0.0, 0.61), (0.12, 0.91), (0.21, 1.0), (0.33, 0.85), (0.45, 0.58),
-             (0.57, 0.28), (0.7, 0.07), (1.0, 0.0), (2.0, 0.0))  # fmt: skip
-_HEEL_STRIKE = ((-1.0, 0.0), (0.45, 0.0), (0.68, 0.38), (0.82, 0.85), (1.0, 1.0), (1.35, 0.5), (1.7, 0.15), (2.0, 0.0))
-_SCUFF = ((-1.0, 0.0), (0.0, 0.0), (0.12, 1.0), (0.88, 1.0), (1.0, 0.85), (1.5, 0.1), (2.0, 0.0))
-_HEIGHT = ((0.0, 0.0), (0.07, 0.7), (0.18, 0.98), (0.35, 1.0), (0.5, 1.0), (0.64, 0.9), (0.71, 0.64), (0.78, 0.38),
-           (0.87, 0.2), (0.94, 0.09), (1.0, 0.0))  # fmt: skip
-_LIFTED = ((0.0, 0.0), (0.07, 0.7), (0.18, 0.98), (0.35, 1.0), (0.5, 1.0), (0.65, 0.9), (0.77, 0.64), (0.87, 0.34),
-           (0.94, 0.14), (1.0, 0.0))  # fmt: skip
-"""How high the ball of the foot is in a usual step, and in what it is lifted higher (shares of the middle)."""
-_LEVEL = ((0.0, 0.0), (0.5, 0.0), (0.65, 0.008), (0.77, 0.032), (0.87, 0.032), (0.94, 0.018), (1.0, 0.0))
-"""How much higher a foot comes that does not point its tip up (metres)."""
+
+@table
+class CurvePoint:
+    """A share of something at a phase of a step."""
+
+    at: float
+    """-1 to 0 the heel rises, 0 to 1 the foot is in the air, 1 to 2 it comes down flat."""
+    share: float
+
+
+@table
+class HeightPoint:
+    """A height at a share of the way through the air."""
+
+    at: float
+    up_m: float
+
+
+@table
+class FootCurves:
+    """What feet go through in a step."""
+
+    heel_off: tuple[CurvePoint, ...]
+    """How far the heel has risen."""
+    heel_strike: tuple[CurvePoint, ...]
+    """How far the tip of the foot points up."""
+    scuff: tuple[CurvePoint, ...]
+    """The same of a foot that scuffs."""
+    usual: tuple[CurvePoint, ...]
+    """How high the ball of the foot is in a usual step,"""
+    lifted: tuple[CurvePoint, ...]
+    """and in what it is lifted higher."""
+    level: tuple[HeightPoint, ...]
+    """How much higher a foot comes that does not point its tip up."""
+
+
+@table
+class FootWay:
+    """Its way over the floor."""
+
+    bow_m: float
+    """The arc aside in the middle of the way, straight ahead,"""
+    bow_turn_m: float
+    """and in a turn of"""
+    bow_turn_rad: float
+    """or more."""
+    full_m: float
+    """A full step goes so far,"""
+    full_rad: float
+    """or turns so far."""
+    size_min: float
+    """Of a full step: a foot that would go less stays."""
+    rise_min_phase: float
+    """The least a heel takes to rise, where a step begins at once."""
+    leaving_ratio: float
+    """Speed of the foot as it lifts, and"""
+    arriving_ratio: float
+    """as it lands, against its mean speed in the air."""
+    toes_lift_share: float
+    """Of the time in the air, in which toes that were bent stretch,"""
+    toes_land_share: float
+    """and in which they can bend again."""
+    toe_bend_deg: float
+    """So far toes bend while the heel rises; beyond that the foot tips over their ends."""
+
+
+@table
+class FootInAir:
+    """How high it swings."""
+
+    usual_m: float
+    """Of the ball of a walking foot."""
+    hangs_from_m: float
+    """A foot that is lifted higher than this hangs down by"""
+    droop_rad_per_m: float
+
+
+@table
+class FootTable:
+    """data/gait/foot_trajectory.toml: metres at 1.70 m."""
+
+    way: FootWay
+    air: FootInAir
+    curve: FootCurves
+
+
+def foot_table() -> FootTable:
+    """How a foot moves in a step."""
+    return read_table("motion_backend", "gait/foot_trajectory.toml", FootTable)
 
 
 @cache
-def _curve(points: tuple[tuple[float, float], ...]) -> tuple[Array, Array]:
-    """A smooth curve through points that keeps their shape, finely sampled."""
+def _curve(name: str) -> tuple[Array, Array]:
+    """A smooth curve through the points of that name that keeps their shape, finely sampled."""
     from scipy.interpolate import PchipInterpolator
 
-    x, y = np.array(points).T
-    fine = np.linspace(x[0], x[-1], 600)
+    x, y = np.array([astuple(point) for point in getattr(foot_table().curve, name)]).T
+    fine = np.linspace(x[0], x[-1], SAMPLES)
     return fine, np.asarray(PchipInterpolator(x, y)(fine))
 
 
@@ -91,28 +164,30 @@ class Swing:
     @property
     def bow(self) -> Array:
         """The arc aside in the middle of the way: a little straight ahead, more in a turn. (3,)."""
-        yaw = self.start_yaw + 0.5 * self.turn
+        row, yaw = foot_table().way, self.start_yaw + 0.5 * self.turn
         outward = self.side * np.array([np.cos(yaw), 0.0, -np.sin(yaw)])
-        return np.asarray((0.012 + max(self.round, 0.073 * min(abs(self.turn) / 0.5, 1.0))) * outward)
+        turning = row.bow_turn_m * min(abs(self.turn) / row.bow_turn_rad, 1.0)
+        return np.asarray((row.bow_m + max(self.round, turning)) * outward)
 
     @property
     def size(self) -> float:
         """0 for a foot that is already there, 1 for a full step."""
-        distance = float(np.linalg.norm(self.end - self.start))
-        return float(np.clip(max(distance / 0.5, abs(self.turn) / 1.2), 0.0, 1.0))
+        row, distance = foot_table().way, float(np.linalg.norm(self.end - self.start))
+        return float(np.clip(max(distance / row.full_m, abs(self.turn) / row.full_rad), 0.0, 1.0))
 
     def height(self, u: Array) -> Array:
         """How high the ball of the foot is at shares of its way through the air. (T,)."""
-        level = (1 - min(self.heel_strike / TIP_UP, 1.0)) * min(self.clearance / USUAL, 1.0)
-        usual = min(self.clearance, USUAL)
-        lifted = usual * np.interp(u, *_curve(_HEIGHT)) + (self.clearance - usual) * np.interp(u, *_curve(_LIFTED))
-        return np.asarray(lifted + level * np.interp(u, *_curve(_LEVEL)))
+        usual_m = foot_table().air.usual_m
+        level = (1 - min(self.heel_strike / TIP_UP, 1.0)) * min(self.clearance / usual_m, 1.0)
+        usual = min(self.clearance, usual_m)
+        lifted = usual * np.interp(u, *_curve("usual")) + (self.clearance - usual) * np.interp(u, *_curve("lifted"))
+        return np.asarray(lifted + level * np.interp(u, *_curve("level")))
 
     def pitch(self, phase: Array) -> Array:
         """How far the foot is pitched about the floor, heel up positive. (T,)."""
-        lift, land = self.window
+        (lift, land), row = self.window, foot_table()
         # The first heel rises from the first frame on, not before.
-        rise = min(HEEL_RISE, max(lift - float(phase[0]), 0.05))
+        rise = min(HEEL_RISE, max(lift - float(phase[0]), row.way.rise_min_phase))
         x = np.where(
             phase < lift,
             np.maximum((phase - lift) / rise, -1.0),
@@ -120,10 +195,11 @@ class Swing:
         )
         if self.backwards:
             x = 1 - x
-        rising = self.heel_off * np.interp(x, *_curve(_HEEL_OFF))
+        rising = self.heel_off * np.interp(x, *_curve("heel_off"))
         # A foot that is lifted high hangs.
-        rising += DROOP * max(self.clearance - HANGS, 0.0) * np.sin(np.pi * np.clip(x, 0.0, 1.0)) ** 2
-        falling = self.heel_strike * np.interp(x, *_curve(_HEEL_STRIKE)) + self.scuff * np.interp(x, *_curve(_SCUFF))
+        high = max(self.clearance - row.air.hangs_from_m, 0.0)
+        rising += row.air.droop_rad_per_m * high * np.sin(np.pi * np.clip(x, 0.0, 1.0)) ** 2
+        falling = self.heel_strike * np.interp(x, *_curve("heel_strike")) + self.scuff * np.interp(x, *_curve("scuff"))
         return np.asarray(rising - falling)
 
 
@@ -151,7 +227,8 @@ class Feet:
 
     def add(self, swing: Swing, phase: Array, index: int) -> None:
         """Write one step of a foot."""
-        if swing.size < 0.04:
+        row = foot_table().way
+        if swing.size < row.size_min:
             return
         lift, land = swing.window
         share = (phase - lift) / (land - lift)
@@ -164,7 +241,7 @@ class Feet:
         self.yaw[after, index] = swing.start_yaw + smooth(u) * swing.turn
         self.planted[inside, index] = 0.0
         air = share[inside]
-        self.bend[inside, index] = 1 - smooth(air / 0.4) * smooth((1 - air) / 0.3)
+        self.bend[inside, index] = 1 - smooth(air / row.toes_lift_share) * smooth((1 - air) / row.toes_land_share)
         self.pitch[:, index] += swing.pitch(phase)
 
     def rolled(self, tiptoe: Array, skeleton: Skeleton) -> tuple[Array, Array]:
@@ -172,7 +249,7 @@ class Feet:
 
         `tiptoe` (T,) raises both heels throughout (radians).
         """
-        pitch = self.pitch + tiptoe[:, None]
+        pitch, toe_bend = self.pitch + tiptoe[:, None], np.radians(foot_table().way.toe_bend_deg)
         flat = rotations.yaw_to_quat(self.yaw)
         feet = rotations.compose(flat, rotations.axis_to_quat("x", pitch))
         ball = skeleton.offsets[INDEX["left_foot"]]
@@ -180,15 +257,17 @@ class Feet:
         for pivot, chosen in ((ball, pitch > 0), (heel, pitch < 0)):
             moved = rotations.rotate(flat, pivot) - rotations.rotate(feet, pivot)
             self.ankles += np.where(chosen[..., None], moved, 0.0)
-        over = rotations.compose(flat, rotations.axis_to_quat("x", np.maximum(pitch - TOE_BEND, 0.0)))
+        over = rotations.compose(flat, rotations.axis_to_quat("x", np.maximum(pitch - toe_bend, 0.0)))
         self.ankles += rotations.rotate(flat, tip) - rotations.rotate(over, tip)
-        return feet, np.clip(pitch, 0.0, TOE_BEND) * self.bend
+        return feet, np.clip(pitch, 0.0, toe_bend) * self.bend
 
 
 def _on_its_way(u: Array) -> Array:
     """Share of the way of a swinging foot: moving as it lifts, and still moving as it lands."""
 
+    row = foot_table().way
+
     def at_its_end(u: Array) -> Array:
         return u**3 * (-4 + 7 * u - 3 * u * u)
 
-    return np.asarray(smooth(u) - LEAVING * at_its_end(1 - u) + ARRIVING * at_its_end(u))
+    return np.asarray(smooth(u) - row.leaving_ratio * at_its_end(1 - u) + row.arriving_ratio * at_its_end(u))

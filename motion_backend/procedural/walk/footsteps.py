@@ -1,8 +1,8 @@
 """Footsteps along a route: which foot lifts when, and where it lands.
 
 A foot lands where the root will pass at the middle of its stance, so one rule serves walking, turning in place,
-stepping aside or back, starting and stopping. Phase grows by one with every step; how the foot itself moves from lift
-to landing is in swinging.py.
+stepping aside or back, starting and stopping. Phase grows by one with every step (cadence.py); how the foot itself
+moves from lift to landing is in foot_trajectory.py. The numbers are in data/gait/footsteps.toml.
 """
 
 from __future__ import annotations
@@ -18,21 +18,119 @@ from motion_backend.procedural.walk.root_path import Route
 from motion_backend.procedural.walk.walk_styles import Walk
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
+from scene_graphs.data_tables import read_table, table
 
 LEAD = 0.35
 """Phase before the first step."""
-NARROWER = 0.36
-"""How much nearer to each other feet land in full stride than where the body stands (share of the width)."""
-TURNING = 0.5
-"""Who turns by this much within half a second (radians) steps no narrower than usual where they stand."""
 SIDEWAYS = 90.0
 """How far from its way a body faces that steps sideways (degrees)."""
-SKIPPING = 0.7
-"""Slower than this (metres a second) nobody skips."""
-APART = 0.095
-"""How near to each other the ankles may pass (metres)."""
-FULL_STRIDE = 1.1
-"""How far a foot travels in a step that rolls fully from heel to toe (metres)."""
+DRIFT_RATES, DRIFT_SIZE = (0.61, 1.0, 1.43), 2.1
+"""Rates of a drift's sines against the one asked for, in no whole ratio to each other; what their sum is divided by."""
+NO_WAY = 1e-9
+"""Square of a way that has no direction (metres²)."""
+SOFT_FRAMES = 5.0
+"""Width of the bell that what steps scale is smoothed by (frames)."""
+
+
+@table
+class FirstFoot:
+    """Which foot steps first."""
+
+    soon_frames: int
+    """So much later it is looked where the way goes."""
+    turn_from_rad: float
+    """A turn, or a step aside, of less does not count."""
+    aside_from_m: float
+    turn_rad: float
+    """Such a turn counts as much as"""
+    aside_m: float
+    """so far aside."""
+    level_m: float
+    """Feet are side by side up to here."""
+
+
+@table
+class BeatPhases:
+    """Phases of lift, landing and the middle of the next stance."""
+
+    middle: float
+    slow_double: float
+    """Slow steps stand longer on both feet by this much for every metre a second below `slow_mps`."""
+    slow_mps: float
+    tiptoe_last_steps: float
+    skip_from_mps: float
+    """Slower than this nobody skips."""
+    hop_lift: float
+    hop_land: float
+    hop_middle: float
+    skip_lift: float
+    skip_land: float
+    skip_middle: float
+
+
+@table
+class LandingPlace:
+    """Where a foot lands."""
+
+    under_way_mps: float
+    back_s: float
+    """How far behind the middle of its stance, for its speed."""
+    back_max_mps: float
+    scatter_m: float
+    uneven_m: float
+    turn_frames: int
+    """It is looked so much before and after for a turn."""
+    turn_rad: float
+    """Who turns by this much steps no narrower than usual where they stand."""
+    narrower_share: float
+    """How much nearer to each other feet land in full stride than where the body stands."""
+    apart_m: float
+    """How near to each other the ankles may pass,"""
+    apart_ratio: float
+    """but no more than this of the width."""
+    beside_m: float
+    """A foot that lands so near along the way must not come too near to the other."""
+    aside_max_m: float
+    round_max_m: float
+    """How far a foot swings round the other one,"""
+    round_from_share: float
+    """where that is between these shares of its way."""
+    round_to_share: float
+
+
+@table
+class SwingShape:
+    """How a foot gets there."""
+
+    full_stride_m: float
+    """A step that rolls fully from heel to toe."""
+    splay_rad: float
+    drag_clearance_share: float
+    """Of the usual clearance, of a foot that is dragged."""
+    hop_clearance_share: float
+    heel_off_deg: float
+    heel_off_power: float
+    """Of the stride."""
+    hop_heel_off_share: float
+    scuff_stride_share: float
+    """Of a full stride, from which on a scuffing foot does so altogether."""
+    backwards_share: float
+    """Of a full stride backwards, from which on a step is played backwards."""
+
+
+@table
+class FootstepTable:
+    """data/gait/footsteps.toml: metres at 1.70 m."""
+
+    first_foot: FirstFoot
+    beat: BeatPhases
+    place: LandingPlace
+    swing: SwingShape
+
+
+def footstep_table() -> FootstepTable:
+    """The numbers of stepping."""
+    return read_table("motion_backend", "gait/footsteps.toml", FootstepTable)
 
 
 @dataclass(frozen=True)
@@ -58,6 +156,10 @@ class Steps:
     hopping: Array
     """(T,) 1 over the steps of a skip, else 0."""
 
+    def wave(self, at: float) -> Array:
+        """A wave of unit size, highest at that phase of every step. (T,)."""
+        return np.asarray(np.cos(2 * np.pi * (self.phase - at)))
+
 
 def yaw_of(rotation: Array) -> Array:
     """Heading of a body or foot: where its +Z points on the floor. (...)."""
@@ -68,57 +170,25 @@ def yaw_of(rotation: Array) -> Array:
 def drift(frames: int, hertz: float, fps: int, rng: np.random.Generator) -> Array:
     """Smooth wandering about zero with unit size: a few slow sines of random phase. (frames,)."""
     time = np.arange(frames) / fps
-    rates = hertz * np.array([0.61, 1.0, 1.43])
-    phases = rng.uniform(0, 2 * np.pi, 3)
-    return np.asarray(np.sin(2 * np.pi * np.outer(time, rates) + phases).sum(axis=1) / 2.1)
-
-
-def plan_phase(
-    route: Route, style: Walk, skeleton: Skeleton, fps: int, rng: np.random.Generator
-) -> tuple[Route, Array]:
-    """Cadence from speed and turning, then enough standing frames for both feet to come home."""
-    turning = np.abs(np.gradient(route.heading)) * fps
-    usual = np.sqrt(np.maximum(route.speed, 0.05) / (0.385 * skeleton.scale**1.5)) / style.stride
-    usual = usual * (1 + (0.02 + style.uneven) * drift(len(usual), 0.8, fps, rng))
-    longest = route.speed / (min(0.76 * style.stride, 0.86) * skeleton.scale)
-    if style.aside == SIDEWAYS:
-        # Feet that are brought together and apart again must not cross.
-        longest = route.speed / (1.5 * style.width * skeleton.scale)
-    # A turn takes a step every half right angle or so, a spin fewer: nobody trips along at five steps a second.
-    rate = np.maximum.reduce([usual, np.minimum(turning / 0.85, 2.6), longest, np.full_like(usual, 1.25)])
-    if style.skips:
-        rate = np.where(route.speed > SKIPPING, np.minimum(rate, 1.75), rate)
-    # The first steps are short: the foot that stays behind must not be left too far.
-    walked = np.cumsum(route.speed) / fps
-    starting = np.clip((0.55 * skeleton.scale - walked) / 0.25, 0.0, 1.0)
-    rate = np.maximum(rate, np.minimum(route.speed / (0.30 * skeleton.scale), 3.2) * starting)
-    # A third of a step goes by before the first foot lifts: the weight shifts and the heel rises.
-    phase = np.cumsum(rate) / fps - LEAD
-    # Both feet step at least once, and a last step in flight comes down before the end.
-    total = max(np.ceil(phase[-1] + 0.5), 2.0) + max(0.0, -style.double / 2) + 0.2
-    extra = max(int(np.ceil((total - phase[-1]) / 1.7 * fps)), 1)
-    tail = phase[-1] + (total - phase[-1]) * np.arange(1, extra + 1) / extra
-    longer = Route(
-        np.concatenate([route.position, np.repeat(route.position[-1:], extra, axis=0)]),
-        np.concatenate([route.heading, np.repeat(route.heading[-1:], extra)]),
-        np.concatenate([route.speed, np.zeros(extra)]),
-    )
-    return longer, np.concatenate([phase, tail])
+    rates = hertz * np.array(DRIFT_RATES)
+    phases = rng.uniform(0, 2 * np.pi, len(DRIFT_RATES))
+    return np.asarray(np.sin(2 * np.pi * np.outer(time, rates) + phases).sum(axis=1) / DRIFT_SIZE)
 
 
 def _first_foot(start: Pose, route: Route, style: Walk) -> int:
     """The foot that has further to go steps first; in a turn the inner one, and sideways the leading one."""
-    soon = min(20, len(route.heading) - 1)
+    row = footstep_table().first_foot
+    soon = min(row.soon_frames, len(route.heading) - 1)
     turn = float(route.heading[soon] - route.heading[0])
     left = np.array([np.cos(route.heading[0]), -np.sin(route.heading[0])])
     if style.aside == SIDEWAYS:
         return 1 if (route.position[-1] - route.position[0]) @ left >= 0 else -1
     outwards = float((route.position[soon] - route.position[0]) @ left)
-    if abs(turn) > 0.15 or abs(outwards) > 0.05:
-        return 1 if turn / 0.5 + outwards / 0.1 > 0 else -1
+    if abs(turn) > row.turn_from_rad or abs(outwards) > row.aside_from_m:
+        return 1 if turn / row.turn_rad + outwards / row.aside_m > 0 else -1
     ahead = np.array([np.sin(route.heading[0]), np.cos(route.heading[0])])
     near, far = (start.ankles[index][[0, 2]] @ ahead for index in (0, 1))
-    return 1 if near <= far + 0.01 else -1
+    return 1 if near <= far + row.level_m else -1
 
 
 def home_ankle(position: Array, heading: Array | float, index: int, width: float, skeleton: Skeleton) -> Array:
@@ -145,16 +215,17 @@ class _Beat:
 
 def _beats(route: Route, phase: Array, first: int, style: Walk) -> list[_Beat]:
     """Left, right, left, right; in a skip the foot that stands hops on before the other one lands."""
-    steps, beats = round(phase[-1]), []
+    row, steps, beats = footstep_table().beat, round(phase[-1]), []
     for k in range(steps):
         index = 0 if (k % 2 == 0) == (first > 0) else 1
-        if style.skips and k < steps - 2 and _speed_at(route, phase, k + 0.5) > SKIPPING:
-            beats.append(_Beat(1 - index, (k + 0.40, k + 0.72), k + 0.92, hop=True))
-            beats.append(_Beat(index, (k + 0.10, k + 0.98), k + 1.25))
+        speed = _speed_at(route, phase, k + 0.5)
+        if style.skips and k < steps - 2 and speed > row.skip_from_mps:
+            beats.append(_Beat(1 - index, (k + row.hop_lift, k + row.hop_land), k + row.hop_middle, hop=True))
+            beats.append(_Beat(index, (k + row.skip_lift, k + row.skip_land), k + row.skip_middle))
         else:
             # Slow steps stand longer on both feet than quick ones.
-            double = style.double + (0.10 * max(0.9 - _speed_at(route, phase, k + 0.5), 0) if style.double > 0 else 0)
-            beats.append(_Beat(index, (k + double / 2, k + 1 - double / 2), k + 1.5))
+            double = style.double + (row.slow_double * max(row.slow_mps - speed, 0) if style.double > 0 else 0)
+            beats.append(_Beat(index, (k + double / 2, k + 1 - double / 2), k + row.middle))
     return beats
 
 
@@ -177,7 +248,7 @@ def plan_steps(
             amount = np.maximum(amount, swing.size * ((phase > np.floor(lift)) & (phase <= np.ceil(land))))
         hopping[(phase > np.floor(lift)) & (phase <= np.ceil(land))] = beat.hop
         feet.add(swing, phase, beat.index)
-    ease = smooth(phase + LEAD) * smooth((phase[-1] - phase) / 1.5)
+    ease = smooth(phase + LEAD) * smooth((phase[-1] - phase) / footstep_table().beat.tiptoe_last_steps)
     turned, toes = feet.rolled(np.radians(style.tiptoe) * ease, skeleton)
     return Steps(phase, _soften(amount), first, feet.ankles, turned, feet.yaw, toes, feet.planted, _soften(hopping))
 
@@ -186,63 +257,83 @@ def _swing_of(
     beat: _Beat, feet: Feet, route: Route, phase: Array, style: Walk, skeleton: Skeleton, rng: np.random.Generator
 ) -> Swing:
     """The step from where the foot stands to where the root will pass over it."""
-    side = 1 if beat.index == 0 else -1
+    rows, side = footstep_table(), 1 if beat.index == 0 else -1
+    place, shape = rows.place, rows.swing
     at = min(int(np.searchsorted(phase, beat.middle)), len(phase) - 1)
-    speed, heading = float(route.speed[at]), float(route.heading[at])
-    ahead = np.array([np.sin(heading), np.cos(heading)])
-    under_way = min(speed / 0.9, 1.0)
-    # A little behind the middle of its stance: the rising heel carries the ankle forward at the end of it.
-    middle = route.position[at] - 0.065 * min(speed, 1.6) * np.cos(np.radians(style.aside)) * ahead
-    middle = middle - style.drag * under_way * (beat.index == 1) * ahead
-    middle = middle + under_way * (0.006 + 2 * style.uneven * 0.1) * rng.standard_normal(2)
-    last = len(phase) - 1
-    turned = abs(float(route.heading[min(at + 8, last)] - route.heading[max(at - 8, 0)]))
-    turning = min(turned / TURNING, 1.0)
-    stance = max(style.width, turning * Walk.width)
-    width = stance * (1 - (0.0 if style.aside == SIDEWAYS else NARROWER) * under_way * (1 - turning))
-    target = home_ankle(middle, heading, beat.index, width, skeleton)
+    heading = float(route.heading[at])
     before = max(int(np.searchsorted(phase, beat.window[0])) - 1, 0)
     origin, yaw = feet.ankles[before, beat.index].copy(), float(feet.yaw[before, beat.index])
     beside = feet.ankles[before, 1 - beat.index]
-    target = _clear_of(beside, target, heading, side, min(APART, 1.2 * stance) * skeleton.scale)
-    forward = float((target - origin)[[0, 2]] @ ahead) / (FULL_STRIDE * skeleton.scale)
+    middle = _stance(beat, route, at, style, place, rng)
+    stance, width = _widths(route, at, style, place)
+    target = home_ankle(middle, heading, beat.index, width, skeleton)
+    apart = min(place.apart_m, place.apart_ratio * stance) * skeleton.scale
+    target = _clear_of(beside, target, heading, side, apart)
+    ahead = np.array([np.sin(heading), np.cos(heading)])
+    forward = float((target - origin)[[0, 2]] @ ahead) / (shape.full_stride_m * skeleton.scale)
     stride = float(np.clip(forward, -1.0, 1.0))
-    dragged = 0.6 if style.drag and beat.index == 1 else 1.0
+    dragged = shape.drag_clearance_share if style.drag and beat.index == 1 else 1.0
+    rolled = np.radians(shape.heel_off_deg) * style.roll * abs(stride) ** shape.heel_off_power
     return Swing(
         origin,
         target,
         yaw,
-        heading + side * 0.10,
+        heading + side * shape.splay_rad,
         side,
         beat.window,
-        clearance=style.clearance * (0.25 if beat.hop else dragged),
-        heel_off=np.radians(66) * style.roll * abs(stride) ** 0.7 * (0.3 if beat.hop else 1.0),
+        clearance=style.clearance * (shape.hop_clearance_share if beat.hop else dragged),
+        heel_off=rolled * (shape.hop_heel_off_share if beat.hop else 1.0),
         heel_strike=TIP_UP * style.strike * abs(stride) * (0.0 if beat.hop else 1.0),
-        scuff=np.radians(style.scuff) * float(np.clip(stride / 0.3, 0.0, 1.0)),
+        scuff=np.radians(style.scuff) * float(np.clip(stride / shape.scuff_stride_share, 0.0, 1.0)),
         round=_way_round(origin, target, beside, heading, side) * skeleton.scale,
-        backwards=stride < -0.05,
+        backwards=stride < -shape.backwards_share,
     )
+
+
+def _stance(beat: _Beat, route: Route, at: int, style: Walk, place: LandingPlace, rng: np.random.Generator) -> Array:
+    """Where the root will be in the middle of a stance, at frame `at`, as the foot that lands for it takes it. (2,)."""
+    speed, heading = float(route.speed[at]), float(route.heading[at])
+    ahead, under_way = np.array([np.sin(heading), np.cos(heading)]), min(speed / place.under_way_mps, 1.0)
+    # A little behind the middle of its stance: the rising heel carries the ankle forward at the end of it.
+    behind = place.back_s * min(speed, place.back_max_mps) * np.cos(np.radians(style.aside))
+    middle = route.position[at] - behind * ahead
+    middle = middle - style.drag * under_way * (beat.index == 1) * ahead
+    scatter = under_way * (place.scatter_m + style.uneven * place.uneven_m)
+    return np.asarray(middle + scatter * rng.standard_normal(2))
+
+
+def _widths(route: Route, at: int, style: Walk, place: LandingPlace) -> tuple[float, float]:
+    """Half as far as feet are apart where the body stands, and where it walks, at frame `at` (metres at 1.70 m)."""
+    last = len(route.heading) - 1
+    after, before = min(at + place.turn_frames, last), max(at - place.turn_frames, 0)
+    turning = min(abs(float(route.heading[after] - route.heading[before])) / place.turn_rad, 1.0)
+    stance = max(style.width, turning * Walk.width)
+    under_way = min(float(route.speed[at]) / place.under_way_mps, 1.0)
+    narrower = 0.0 if style.aside == SIDEWAYS else place.narrower_share
+    return stance, stance * (1 - narrower * under_way * (1 - turning))
 
 
 def _clear_of(beside: Array, target: Array, heading: float, side: int, apart: float) -> Array:
     """A landing place moved outwards where it would be too near to the other foot, or across it. (3,)."""
-    outward = side * np.array([np.cos(heading), 0.0, -np.sin(heading)])
+    row, outward = footstep_table().place, side * np.array([np.cos(heading), 0.0, -np.sin(heading)])
     along = np.array([np.sin(heading), 0.0, np.cos(heading)])
     gap = target - beside
     lack = apart - float(gap @ outward)
-    return np.asarray(target + np.clip(lack, 0.0, 0.12) * (abs(float(gap @ along)) < 0.45) * outward)
+    near = abs(float(gap @ along)) < row.beside_m
+    return np.asarray(target + np.clip(lack, 0.0, row.aside_max_m) * near * outward)
 
 
 def _way_round(start: Array, end: Array, beside: Array, heading: float, side: int) -> float:
     """How much further outwards a foot must swing to pass the other one (metres)."""
-    outward = side * np.array([np.cos(heading), 0.0, -np.sin(heading)])
+    row, outward = footstep_table().place, side * np.array([np.cos(heading), 0.0, -np.sin(heading)])
     way = end - start
-    share = float(np.clip((beside - start) @ way / max(float(way @ way), 1e-9), 0.0, 1.0))
+    share = float(np.clip((beside - start) @ way / max(float(way @ way), NO_WAY), 0.0, 1.0))
     gap = float((start + share * way - beside) @ outward)
-    return float(np.clip(APART - gap, 0.0, 0.24)) if 0.05 < share < 0.95 else 0.0
+    passes = row.round_from_share < share < row.round_to_share
+    return float(np.clip(row.apart_m - gap, 0.0, row.round_max_m)) if passes else 0.0
 
 
 def _soften(values: Array) -> Array:
     from scipy.ndimage import gaussian_filter1d
 
-    return np.asarray(gaussian_filter1d(values, 5.0, mode="constant"))
+    return np.asarray(gaussian_filter1d(values, SOFT_FRAMES, mode="constant"))

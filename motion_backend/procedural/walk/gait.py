@@ -1,7 +1,8 @@
 """Walking: footsteps planned along a route, stance feet that do not move, and a body carried over them.
 
-The route comes first (route.py), then the feet (footsteps.py, swinging.py); here is what rides on them: pelvis over its
-support, hips and chest turning against each other, gaze; arms are in arm_swing.py.
+The route comes first (root_path.py), then the feet (footsteps.py, foot_trajectory.py); here is what rides on them:
+pelvis over its support, hips and chest turning against each other, gaze (numbers in data/gait/carriage.toml). How high
+the pelvis is, is in pelvis_height.py, arms are in arm_swing.py.
 """
 
 from __future__ import annotations
@@ -14,33 +15,158 @@ from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.pose import Pose, settle_from, smooth
 from motion_backend.procedural.walk.arm_swing import swing_arms
-from motion_backend.procedural.walk.footsteps import LEAD, Steps, drift, plan_phase, plan_steps, yaw_of
+from motion_backend.procedural.walk.cadence import plan_phase
+from motion_backend.procedural.walk.footsteps import Steps, drift, plan_steps, yaw_of
+from motion_backend.procedural.walk.pelvis_height import landing, lifted
 from motion_backend.procedural.walk.root_path import Route, evenly, plan_route
 from motion_backend.procedural.walk.walk_styles import Walk
 from motion_backend.rotations import Array
-from motion_backend.skeleton import INDEX, Skeleton
+from motion_backend.skeleton import Skeleton
+from scene_graphs.data_tables import read_table, table
 
-SPIN_RATE = 2.8
-"""How fast a body spins about itself (radians a second)."""
-PACE_SPREAD = 0.03
-"""Two walks of one style differ in speed by about this share."""
-SURGE = 0.013
-"""How far the pelvis runs ahead of its mean way after each heel strike, and behind before it (metres)."""
-LEANING = 0.045
-"""How much further forward the trunk is carried in walking than in standing (radians)."""
-LATE, DROPS_LATE = 0.06, 0.2
-"""How much later than half-way through a stance the body is farthest over the foot, and the other side of the pelvis
-lowest (share of a step)."""
-HOP = 0.07
-"""How far the pelvis goes up and down in a skip (metres)."""
+
+@table
+class GaitWay:
+    """How a way is gone."""
+
+    pace_spread_share: float
+    """Two walks of one style differ in speed by about this."""
+    pace_spread_max_sigmas: float
+    spin_rad_per_s: float
+    spin_eases_s: float
+    """How much longer a spin takes."""
+    stagger_aside_m: float
+    """Of a drunk body of unit size."""
+    stagger_aside_hz: float
+    stagger_turn_deg: float
+    stagger_turn_hz: float
+    stagger_ease_frames: float
+
+
+@table
+class Sway:
+    """Over each foot that bears."""
+
+    late_share: float
+    """Of a step, later than half-way through a stance, the body is farthest over the foot,"""
+    drops_late_share: float
+    """and the other side of the pelvis lowest."""
+    standing_ratio: float
+    """Of the style's sway, the less the faster."""
+    less_per_mps: float
+    min_ratio: float
+    max_ratio: float
+    last_steps: float
+    """All that swings fades over the last of this many steps."""
+
+
+@table
+class Surge:
+    """Ahead of the mean way after each heel strike, behind before it."""
+
+    ahead_m: float
+    at_phase: float
+    """Phase at which it is farthest ahead (share of a step)."""
+    brisk_max_mps: float
+    """Surge, lean and jolts grow with the speed up to here."""
+
+
+@table
+class Lean:
+    """Trunk and pelvis, bent forwards and turned."""
+
+    walking_rad: float
+    """How much further forward the trunk is carried in walking than in standing,"""
+    fast_rad_per_mps: float
+    """and how much more in walking faster than"""
+    fast_from_mps: float
+    fast_within_mps: float
+    straightens_share: float
+    """A bowed body straightens up so much where it arrives."""
+    straightens_frames: float
+    bowed_from_deg: float
+    hips_share: float
+    spine_share: float
+    hips_wave_rad: float
+    hips_wave_at_phase: float
+    jolt_rad: float
+    """Of the chest, as a heel comes down."""
+    jolt_at_phase: float
+    stamp_rad_per_m: float
+    looks_share: float
+    """Of the gaze's turn to where a way curves."""
+    counter_ratio: float
+    """Of the hips' turn, that the chest turns against it."""
+
+
+@table
+class Drunk:
+    """A stagger of unit size."""
+
+    hz: float
+    aside_m: float
+    lean_rad: float
+    side_rad: float
+    nod_rad: float
+    tilt_rad: float
+
+
+@table
+class Gaze:
+    """The head."""
+
+    ahead_frames: int
+    """It turns to where the body will head so much later."""
+    turn_max_rad: float
+    counter_ratio: float
+    """Of the hips' turn, that the head turns back."""
+    start_frames: float
+    end_frames: float
+    glance_hz: float
+    nod_hz: float
+    veer_start_s: float
+    veer_end_s: float
+    level_share: float
+    """Of the walking lean, that the head is kept level against."""
+    fast_rad_per_mps: float
+    fast_from_mps: float
+    fast_within_mps: float
+    jolt_share: float
+
+
+@table
+class Knees:
+    """Where knees point."""
+
+    foot_ratio: float
+    """As the foot does, so much more than as the pelvis does."""
+
+
+@table
+class Carriage:
+    """data/gait/carriage.toml: metres at 1.70 m."""
+
+    way: GaitWay
+    sway: Sway
+    surge: Surge
+    lean: Lean
+    drunk: Drunk
+    gaze: Gaze
+    knees: Knees
+
+
+def carriage() -> Carriage:
+    """How a walking body is carried over its feet."""
+    return read_table("motion_backend", "gait/carriage.toml", Carriage)
 
 
 def walk(
     start: Pose, path: Array, end_yaw: float | None, style: Walk, skeleton: Skeleton, rng: np.random.Generator
 ) -> Pose:
     """Walk from a standing pose along a path (N, 2), ending on both feet at its end, facing `end_yaw` if given."""
-    fps = FPS
-    pace = 1 + PACE_SPREAD * float(np.clip(rng.standard_normal(), -2, 2))
+    fps, row = FPS, carriage().way
+    luck = float(np.clip(rng.standard_normal(), -row.pace_spread_max_sigmas, row.pace_spread_max_sigmas))
+    pace = 1 + row.pace_spread_share * luck
     style = replace(style, release=end_yaw is not None, speed=style.speed * pace)
     speed, aside = style.speed * skeleton.scale, float(np.radians(style.aside))
     route = plan_route(path, float(yaw_of(start.hips)), end_yaw, speed, fps, aside)
@@ -56,7 +182,8 @@ def walk(
 
 def _with_spin(route: Route, turns: float, fps: int) -> Route:
     """Whole turns on the spot, half-way along where the body is fastest or at the end of a short way."""
-    frames = int((turns * 2 * np.pi / SPIN_RATE + 0.4) * fps)
+    row = carriage().way
+    frames = int((turns * 2 * np.pi / row.spin_rad_per_s + row.spin_eases_s) * fps)
     at = len(route.heading) - 1
     angle = 2 * np.pi * turns * evenly(frames, fps)
     return Route(
@@ -67,43 +194,37 @@ def _with_spin(route: Route, turns: float, fps: int) -> Route:
 
 
 def _staggering(route: Route, size: float, rng: np.random.Generator, fps: int) -> Route:
-    frames = len(route.heading)
-    ease = smooth(np.arange(frames) / 20) * smooth((frames - 1 - np.arange(frames)) / 20)
-    aside = 0.07 * size * ease * drift(frames, 0.45, fps, rng)
+    row, frames = carriage().way, len(route.heading)
+    at = np.arange(frames)
+    ease = smooth(at / row.stagger_ease_frames) * smooth((frames - 1 - at) / row.stagger_ease_frames)
+    aside = row.stagger_aside_m * size * ease * drift(frames, row.stagger_aside_hz, fps, rng)
     left = np.stack([np.cos(route.heading), -np.sin(route.heading)], axis=1)
-    yaw = route.heading + np.radians(9) * size * ease * drift(frames, 0.4, fps, rng)
+    turned = np.radians(row.stagger_turn_deg) * size * ease * drift(frames, row.stagger_turn_hz, fps, rng)
+    yaw = route.heading + turned
     return Route(route.position + aside[:, None] * left, yaw, route.speed)
 
 
 def _carry(start: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skeleton, rng: np.random.Generator) -> Pose:
     """Everything above the feet: pelvis over its support, hips and chest turning against each other, arms, gaze."""
-    frames = len(steps.phase)
-    bearing, first = style.bearing, steps.first
-    moving = steps.moving * smooth((steps.phase[-1] - steps.phase) / 0.8)
-    cycle, wave = np.cos(np.pi * steps.phase), np.sin(np.pi * (steps.phase - LATE))
-    drop = np.sin(np.pi * (steps.phase - DROPS_LATE))
-    left = np.stack([np.cos(route.heading), -np.sin(route.heading)], axis=1)
-    ahead = np.stack([np.sin(route.heading), np.cos(route.heading)], axis=1)
-    unsteady = style.wobble * drift(frames, 0.5, FPS, rng)
-    # The slower the steps, the further the body goes over to each foot.
-    aside = -first * style.sway * np.clip(1.35 - 0.45 * route.speed, 0.5, 1.2) * wave * moving + 0.03 * unsteady
-    brisk = np.clip(route.speed, 0.0, 1.2) * moving * np.cos(np.radians(style.aside))
-    surge = SURGE * brisk * np.cos(2 * np.pi * (steps.phase - 0.24))
-    ground = route.position + aside[:, None] * left + surge[:, None] * ahead
-    hip_turn = np.radians(style.twist) * first * cycle * moving
-    roll = -np.radians(style.hips) * first * drop * moving
-    # A bowed body straightens up a little where it arrives, so as not to bump its head.
-    arriving = smooth((np.arange(frames) - frames + 30) / 30)
-    lean = np.radians(bearing.lean) * (1 - 0.55 * arriving * (bearing.lean > 8))
-    lean = lean + LEANING * brisk + 0.03 * np.clip(route.speed - 1.0, 0, 1)
-    tilt = 0.3 * lean + 0.014 * brisk * np.cos(2 * np.pi * (steps.phase + 0.2))
+    row, frames = carriage(), len(steps.phase)
+    moving = steps.moving * smooth((steps.phase[-1] - steps.phase) / row.sway.last_steps)
+    unsteady = style.wobble * drift(frames, row.drunk.hz, FPS, rng)
+    brisk = np.clip(route.speed, 0.0, row.surge.brisk_max_mps) * moving * np.cos(np.radians(style.aside))
+    ground = _support(route, steps, style, (moving, brisk, unsteady))
+    hip_turn = np.radians(style.twist) * steps.first * np.cos(np.pi * steps.phase) * moving
+    drop = np.sin(np.pi * (steps.phase - row.sway.drops_late_share))
+    roll = -np.radians(style.hips) * steps.first * drop * moving
+    lean = _leaning(route, style, brisk)
+    tilt = row.lean.hips_share * lean + row.lean.hips_wave_rad * brisk * steps.wave(row.lean.hips_wave_at_phase)
     hips = rotations.compose(
         rotations.yaw_to_quat(route.heading + hip_turn),
         rotations.rotvec_to_quat(np.stack([tilt, np.zeros(frames), roll], axis=1)),
     )
-    jolt = 0.014 * brisk * np.cos(2 * np.pi * (steps.phase + 0.14)) + 3 * style.stamp * _landing(steps)
-    looking = 0.25 * np.radians(style.veer) * moving
-    spine = np.stack([0.7 * lean + 0.10 * unsteady + jolt, looking - 1.7 * hip_turn, -roll + 0.12 * unsteady], axis=1)
+    jolt = row.lean.jolt_rad * brisk * steps.wave(row.lean.jolt_at_phase)
+    jolt = jolt + row.lean.stamp_rad_per_m * style.stamp * landing(steps)
+    forward = row.lean.spine_share * lean + row.drunk.lean_rad * unsteady + jolt
+    turned = row.lean.looks_share * np.radians(style.veer) * moving - row.lean.counter_ratio * hip_turn
+    spine = np.stack([forward, turned, -roll + row.drunk.side_rad * unsteady], axis=1)
     arms, elbows = swing_arms(style, steps, route.speed)
     pose = Pose(
         pelvis=np.stack([ground[:, 0], np.zeros(frames), ground[:, 1]], axis=1),
@@ -122,29 +243,55 @@ def _carry(start: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skele
         pressing=np.zeros((frames, 2)),
         planted=steps.planted,
     )
-    return replace(pose, pelvis=_height(pose, route, steps, style, skeleton))
+    return replace(pose, pelvis=lifted(pose, route, steps, style, skeleton))
+
+
+def _support(route: Route, steps: Steps, style: Walk, moved: tuple[Array, Array, Array]) -> Array:
+    """Where the pelvis is on the floor: over the foot that bears, ahead of its mean way after it came down. (T, 2).
+
+    `moved` is how much the body moves, how briskly, and how unsteadily, (T,) each.
+    """
+    (moving, brisk, unsteady), row = moved, carriage()
+    wave = np.sin(np.pi * (steps.phase - row.sway.late_share))
+    slow = np.clip(
+        row.sway.standing_ratio - row.sway.less_per_mps * route.speed, row.sway.min_ratio, row.sway.max_ratio
+    )
+    aside = -steps.first * style.sway * slow * wave * moving + row.drunk.aside_m * unsteady
+    surge = row.surge.ahead_m * brisk * steps.wave(row.surge.at_phase)
+    left = np.stack([np.cos(route.heading), -np.sin(route.heading)], axis=1)
+    ahead = np.stack([np.sin(route.heading), np.cos(route.heading)], axis=1)
+    return np.asarray(route.position + aside[:, None] * left + surge[:, None] * ahead)
+
+
+def _leaning(route: Route, style: Walk, brisk: Array) -> Array:
+    """How far trunk and pelvis together bend forwards. (T,)."""
+    row, frames = carriage().lean, len(route.heading)
+    # A bowed body straightens up a little where it arrives, so as not to bump its head.
+    arriving = smooth((np.arange(frames) - frames + row.straightens_frames) / row.straightens_frames)
+    bowed = style.bearing.lean > row.bowed_from_deg
+    lean = np.radians(style.bearing.lean) * (1 - row.straightens_share * arriving * bowed)
+    fast = np.clip(route.speed - row.fast_from_mps, 0, row.fast_within_mps)
+    return np.asarray(lean + row.walking_rad * brisk + row.fast_rad_per_mps * fast)
 
 
 def _gaze(route: Route, style: Walk, hip_turn: Array, moved: tuple[Array, Array], rng: np.random.Generator) -> Array:
     """The head: it looks where the way goes, keeps level over the steps, and does what the mood does. (T, 3)."""
-    frames = len(route.heading)
-    unsteady, jolt = moved
-    coming = np.concatenate([route.heading[12:], np.full(min(12, frames), route.heading[-1])])[:frames]
-    ease = smooth(np.arange(frames) / 20) * smooth((frames - 1 - np.arange(frames)) / 15)
-    turn = np.clip(coming - route.heading, -0.6, 0.6) + 0.7 * hip_turn
-    turn = turn + np.radians(style.glance) * ease * drift(frames, 0.4, FPS, rng)
-    seconds = np.arange(frames) / FPS
-    turn = turn + np.radians(style.veer) * smooth(seconds / 0.5) * smooth((seconds[-1] - seconds) / 0.9)
-    upright = 0.6 * LEANING * np.clip(route.speed, 0.0, 1.2) + 0.1 * np.clip(route.speed - 1.2, 0, 1)
-    nod = np.radians(style.bearing.head) - upright + 0.12 * unsteady - 0.7 * jolt
-    nod = nod + np.radians(style.nod) * ease * drift(frames, 0.35, FPS, rng)
-    return np.stack([nod, turn, np.radians(style.tilt) * ease + 0.08 * unsteady], axis=1)
-
-
-def _landing(steps: Steps) -> Array:
-    """1 just after each foot comes down, 0 otherwise. (T,)."""
-    since = (steps.phase + 0.02) % 1.0
-    return np.asarray(np.exp(-(((since - 0.12) / 0.10) ** 2)) * steps.moving)
+    table, frames = carriage(), len(route.heading)
+    (unsteady, jolt), row = moved, table.gaze
+    late = route.heading[row.ahead_frames :]
+    coming = np.concatenate([late, np.full(min(row.ahead_frames, frames), route.heading[-1])])[:frames]
+    at = np.arange(frames)
+    ease = smooth(at / row.start_frames) * smooth((frames - 1 - at) / row.end_frames)
+    turn = np.clip(coming - route.heading, -row.turn_max_rad, row.turn_max_rad) + row.counter_ratio * hip_turn
+    turn = turn + np.radians(style.glance) * ease * drift(frames, row.glance_hz, FPS, rng)
+    seconds = at / FPS
+    veering = smooth(seconds / row.veer_start_s) * smooth((seconds[-1] - seconds) / row.veer_end_s)
+    turn = turn + np.radians(style.veer) * veering
+    level = row.level_share * table.lean.walking_rad * np.clip(route.speed, 0.0, table.surge.brisk_max_mps)
+    upright = level + row.fast_rad_per_mps * np.clip(route.speed - row.fast_from_mps, 0, row.fast_within_mps)
+    nod = np.radians(style.bearing.head) - upright + table.drunk.nod_rad * unsteady - row.jolt_share * jolt
+    nod = nod + np.radians(style.nod) * ease * drift(frames, row.nod_hz, FPS, rng)
+    return np.stack([nod, turn, np.radians(style.tilt) * ease + table.drunk.tilt_rad * unsteady], axis=1)
 
 
 def _knees(hips: Array, feet: Array) -> Array:
@@ -152,48 +299,4 @@ def _knees(hips: Array, feet: Array) -> Array:
     forward = np.array([0.0, 0.0, 1.0])
     pelvis = rotations.rotate(rotations.yaw_to_quat(yaw_of(hips)), forward)
     foot = rotations.rotate(rotations.yaw_to_quat(feet), forward)
-    return rotations.normalize(pelvis[:, None] + 2.0 * foot)
-
-
-def _height(pose: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skeleton) -> Array:
-    """Pelvis positions with the height that the bounce asks for and the legs allow. (T, 3)."""
-    from scipy.ndimage import gaussian_filter1d, minimum_filter1d
-
-    pelvis = pose.pelvis.copy()
-    at_rest = skeleton.standing_height * 0.998 - (0.004 + 0.3 * style.crouch) * skeleton.scale
-    # Long steps need bent knees, or the body would fall into each of them.
-    lower = 0.004 + (0.014 * np.clip(route.speed / 0.8, 0.0, 1.0) + 0.025 * np.clip(route.speed - 1.1, 0.0, 0.7)) * (
-        style.double > 0
-    )
-    walking = skeleton.standing_height * 0.996 - (style.crouch + lower) * skeleton.scale
-    # The last step ends upright: legs straighten as the feet come together.
-    ending = smooth((steps.phase[-1] - steps.phase) / 0.8)
-    under_way = np.clip(1.6 * steps.moving, 0.0, 1.0) * ending * smooth((steps.phase - steps.phase[0]) / 0.7)
-    carried = at_rest + under_way * (walking - at_rest)
-    lifted = 0.05 * skeleton.scale * np.sin(np.radians(style.tiptoe)) + 0.01 * (style.tiptoe > 0)
-    carried = carried + lifted * smooth(steps.phase + LEAD) * smooth((steps.phase[-1] - steps.phase) / 1.5)
-    wanted = carried + skeleton.scale * ending * _bounce(route, steps, style)
-    leg = -float(skeleton.offsets[INDEX["left_knee"], 1] + skeleton.offsets[INDEX["left_ankle"], 1]) * 0.998
-    limits = []
-    for index, name in enumerate(("left", "right")):
-        hip = rotations.rotate(pose.hips, skeleton.offsets[INDEX[f"{name}_hip"]])
-        gap = np.hypot(*(pelvis + hip - pose.ankles[:, index])[:, [0, 2]].T)
-        top = pose.ankles[:, index, 1] + np.sqrt(np.maximum(leg**2 - gap**2, 0.04)) - hip[:, 1]
-        # Feet in the air do not hold the body down.
-        limits.append(np.where(pose.planted[:, index] > 0, top, np.maximum(top, carried - 0.04)))
-    # The least of a few frames, then smoothed over no more than these: never above what the legs allow, and no corner.
-    low = minimum_filter1d(np.minimum(wanted, np.minimum(*limits)), 5, mode="nearest")
-    pelvis[:, 1] = gaussian_filter1d(low, 1.0, radius=2, mode="nearest")
-    return pelvis
-
-
-def _bounce(route: Route, steps: Steps, style: Walk) -> Array:
-    """Up and down with the steps: highest over the standing leg, in running and skipping in the air. (T,)."""
-    quick = np.clip(route.speed / 1.1, 0.25, 1.4)
-    if style.double > 0:
-        beat = -np.cos(2 * np.pi * (steps.phase + 0.05))
-        walked = style.bounce * quick * beat - style.stamp * _landing(steps)
-    else:
-        walked = style.bounce * np.minimum(quick, 1.0) * (np.cos(2 * np.pi * steps.phase) - 0.9)
-    skipped = HOP * (np.cos(2 * np.pi * (steps.phase - 0.56)) - 0.75) * 0.5
-    return np.asarray(steps.moving * (walked + steps.hopping * (skipped - walked)))
+    return rotations.normalize(pelvis[:, None] + carriage().knees.foot_ratio * foot)

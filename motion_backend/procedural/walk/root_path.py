@@ -1,4 +1,7 @@
-"""Where the root of a walking body is at every frame: along a path, turning in place before and after."""
+"""Where the root of a walking body is at every frame: along a path, turning in place before and after.
+
+The numbers are in data/gait/root_path.toml.
+"""
 
 from __future__ import annotations
 
@@ -9,18 +12,75 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.procedural.pose import smooth
 from motion_backend.rotations import Array
+from scene_graphs.data_tables import read_table, table
 
 SPACING = 0.03
 """Metres between the samples of a path."""
-TURN_IN_PLACE = 0.9
-"""A body turns on the spot before it walks off in a direction further away than this (radians)."""
-MIN_WALK_LENGTH = 0.35
-"""Over less than this (metres) a body shuffles without turning into the direction of travel."""
+SAME_PLACE, STRAIGHT = 1e-9, 1e-6
+"""Points nearer to each other than this are one (metres); a way that bends less is straight (radians a metre)."""
 
-TURN_ON_THE_WAY = 1.2
-"""A body that shuffles turns by less than this (radians) as it goes, by more when it is there."""
-EASE = 0.4
-"""How long a turn takes to get going and to end (seconds)."""
+
+@table
+class TurningInPlace:
+    """Turns on the spot."""
+
+    in_place_from_rad: float
+    """A body turns on the spot before it walks off in a direction further away,"""
+    left_to_steps_rad: float
+    """but leaves this much of the turn to its first steps."""
+    rad_per_s: float
+    more_s: float
+    """How much longer a turn takes."""
+    ease_s: float
+    """How long it takes to get going and to end,"""
+    ease_before_s: float
+    """of which this is over at the first frame."""
+
+
+@table
+class Shuffle:
+    """Short ways, over which a body does not turn into the direction of travel."""
+
+    below_m: float
+    turn_max_rad: float
+    """It turns by less than this as it goes, by more when it is there."""
+    rad_per_s: float
+    mps: float
+    min_s: float
+
+
+@table
+class PathSpeed:
+    """How fast a way is gone."""
+
+    bends_m: float
+    """A way's direction is averaged over about three times this."""
+    aside_max_mps2: float
+    turn_max_rad_per_s: float
+    end_mps: float
+    """At both ends."""
+    push_per_s: float
+    """How fast it quickens, for its speed, and"""
+    brake_per_s: float
+    """slows down,"""
+    push_from_mps: float
+    """as if it were no slower."""
+    turn_m: float
+    """Over which it comes to face its way, and what it goes to."""
+
+
+@table
+class RootPathTable:
+    """data/gait/root_path.toml."""
+
+    turn: TurningInPlace
+    shuffle: Shuffle
+    speed: PathSpeed
+
+
+def root_path_table() -> RootPathTable:
+    """The numbers of going along a way."""
+    return read_table("motion_backend", "gait/root_path.toml", RootPathTable)
 
 
 @dataclass(frozen=True)
@@ -42,12 +102,12 @@ def plan_route(
 
     The body faces along the path, or `aside` of it (radians) to the side that takes less turning.
     """
-    points = resample(path)
+    rows, points = root_path_table(), resample(path)
     length = SPACING * (len(points) - 1)
     end = start_yaw if end_yaw is None else end_yaw
-    if length < MIN_WALK_LENGTH:
+    if length < rows.shuffle.below_m:
         turn = float(rotations.wrap(end - start_yaw))
-        if length < SPACING or abs(turn) < TURN_ON_THE_WAY:
+        if length < SPACING or abs(turn) < rows.shuffle.turn_max_rad:
             return _shuffle(points, start_yaw, turn, fps)
         return _joined([_shuffle(points, start_yaw, 0.0, fps), _turn(points[-1], start_yaw, start_yaw + turn, fps)])
     tangent = _tangents(points)
@@ -55,14 +115,16 @@ def plan_route(
     pieces: list[Route] = []
     first_turn = float(rotations.wrap(tangent[0] - start_yaw))
     yaw = start_yaw
-    if abs(first_turn) > TURN_IN_PLACE:
+    if abs(first_turn) > rows.turn.in_place_from_rad:
         # The last third of the turn is left to the first steps, as people do.
-        yaw = start_yaw + first_turn - np.sign(first_turn) * 0.5
+        yaw = start_yaw + first_turn - np.sign(first_turn) * rows.turn.left_to_steps_rad
         pieces.append(_turn(points[0], start_yaw, yaw, fps))
     last_turn = 0.0 if end_yaw is None else float(rotations.wrap(end_yaw - tangent[-1]))
-    walked = _walk(points, tangent, yaw, last_turn if abs(last_turn) <= TURN_IN_PLACE else 0.0, (speed, fps))
+    walked = _walk(
+        points, tangent, yaw, last_turn if abs(last_turn) <= rows.turn.in_place_from_rad else 0.0, (speed, fps)
+    )
     pieces.append(walked)
-    if abs(last_turn) > TURN_IN_PLACE:
+    if abs(last_turn) > rows.turn.in_place_from_rad:
         pieces.append(_turn(points[-1], float(walked.heading[-1]), float(walked.heading[-1]) + last_turn, fps))
     return _joined(pieces)
 
@@ -88,7 +150,7 @@ def resample(path: Array) -> Array:
     path = np.asarray(path, dtype=np.float64).reshape(-1, 2)
     steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
     arc = np.concatenate([[0.0], np.cumsum(steps)])
-    keep = np.concatenate([[True], steps > 1e-9])
+    keep = np.concatenate([[True], steps > SAME_PLACE])
     count = max(round(arc[-1] / SPACING), 1) + 1
     at = np.linspace(0.0, arc[-1], count)
     return np.stack([np.interp(at, arc[keep], path[keep, axis]) for axis in (0, 1)], axis=1)
@@ -101,31 +163,37 @@ def _tangents(points: Array) -> Array:
     step = np.diff(points, axis=0)
     yaw = np.unwrap(np.arctan2(step[:, 0], step[:, 1]))
     yaw = np.concatenate([yaw, yaw[-1:]])
-    return np.asarray(gaussian_filter1d(yaw, 0.12 / SPACING, mode="nearest"))
+    return np.asarray(gaussian_filter1d(yaw, root_path_table().speed.bends_m / SPACING, mode="nearest"))
 
 
 def _walk(points: Array, tangent: Array, yaw: float, last_turn: float, pace: tuple[float, int]) -> Route:
-    speed, fps = pace
+    (speed, fps), row = pace, root_path_table().speed
     arc = SPACING * np.arange(len(points))
-    bend = np.abs(np.gradient(tangent, SPACING))
-    limit = np.minimum(speed, 1.0 / np.maximum(bend, 1e-6) ** 0.5)
-    limit = np.minimum(limit, 2.2 / np.maximum(bend, 1e-6))
-    limit[0] = limit[-1] = 0.12
-    push, brake = 0.8 * max(speed, 0.8), 1.1 * max(speed, 0.8)
-    for i in range(1, len(limit)):
-        limit[i] = min(limit[i], np.sqrt(limit[i - 1] ** 2 + 2 * push * SPACING))
-    for i in range(len(limit) - 2, -1, -1):
-        limit[i] = min(limit[i], np.sqrt(limit[i + 1] ** 2 + 2 * brake * SPACING))
+    limit = _speed_limits(tangent, speed, row)
     time = np.concatenate([[0.0], np.cumsum(2 * SPACING / (limit[1:] + limit[:-1]))])
     at = np.arange(1, int(np.ceil(time[-1] * fps)) + 1) / fps
     along = np.interp(at, time, arc)
     position = np.stack([np.interp(along, arc, points[:, axis]) for axis in (0, 1)], axis=1)
     heading = np.interp(along, arc, tangent)
-    heading = heading + float(rotations.wrap(yaw - tangent[0])) * (1 - smooth(along / 0.7))
-    heading = heading + last_turn * smooth((along - (arc[-1] - 0.7)) / 0.7)
+    heading = heading + float(rotations.wrap(yaw - tangent[0])) * (1 - smooth(along / row.turn_m))
+    heading = heading + last_turn * smooth((along - (arc[-1] - row.turn_m)) / row.turn_m)
     # Start from the yaw as given, not wrapped, so that headings of neighbouring pieces join.
     heading = heading + (yaw - float(rotations.wrap(yaw - tangent[0])) - tangent[0])
     return Route(position, heading, np.interp(at, time, limit))
+
+
+def _speed_limits(tangent: Array, speed: float, row: PathSpeed) -> Array:
+    """How fast each point of a path is passed: slowly in bends, quickening and slowing down as bodies can. (M,)."""
+    bend = np.abs(np.gradient(tangent, SPACING))
+    limit = np.minimum(speed, row.aside_max_mps2**0.5 / np.maximum(bend, STRAIGHT) ** 0.5)
+    limit = np.minimum(limit, row.turn_max_rad_per_s / np.maximum(bend, STRAIGHT))
+    limit[0] = limit[-1] = row.end_mps
+    push, brake = (rate * max(speed, row.push_from_mps) for rate in (row.push_per_s, row.brake_per_s))
+    for i in range(1, len(limit)):
+        limit[i] = min(limit[i], np.sqrt(limit[i - 1] ** 2 + 2 * push * SPACING))
+    for i in range(len(limit) - 2, -1, -1):
+        limit[i] = min(limit[i], np.sqrt(limit[i + 1] ** 2 + 2 * brake * SPACING))
+    return np.asarray(limit)
 
 
 def evenly(frames: int, fps: int) -> Array:
@@ -133,20 +201,23 @@ def evenly(frames: int, fps: int) -> Array:
 
     With a peak, single steps would have to turn further than feet can.
     """
-    at = (np.arange(frames) + 0.5) / fps
-    done = np.cumsum(smooth((at + 0.02) / EASE) * smooth((frames / fps - at + 0.02) / EASE))
+    row, at = root_path_table().turn, (np.arange(frames) + 0.5) / fps
+    left = frames / fps - at
+    starting, ending = smooth((at + row.ease_before_s) / row.ease_s), smooth((left + row.ease_before_s) / row.ease_s)
+    done = np.cumsum(starting * ending)
     return np.asarray(done / done[-1])
 
 
 def _turn(point: Array, start: float, end: float, fps: int) -> Route:
-    frames = max(int(np.ceil((abs(end - start) / 2.1 + 0.15) * fps)), 1)
+    row = root_path_table().turn
+    frames = max(int(np.ceil((abs(end - start) / row.rad_per_s + row.more_s) * fps)), 1)
     share = evenly(frames, fps)
     return Route(np.repeat(point[None], frames, axis=0), start + share * (end - start), np.zeros(frames))
 
 
 def _shuffle(points: Array, start: float, turn: float, fps: int) -> Route:
-    length = SPACING * (len(points) - 1)
-    frames = max(int(np.ceil(max(abs(turn) / 2.0, length / 0.35, 0.1) * fps)), 1)
+    row, length = root_path_table().shuffle, SPACING * (len(points) - 1)
+    frames = max(int(np.ceil(max(abs(turn) / row.rad_per_s, length / row.mps, row.min_s) * fps)), 1)
     share = evenly(frames, fps)
     position = points[0] + share[:, None] * (points[-1] - points[0])
     return Route(position, start + share * turn, np.full(frames, length / frames * fps))

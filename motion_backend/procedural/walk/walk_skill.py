@@ -15,7 +15,7 @@ from motion_backend.motion import FPS, Action, Part, Skill
 from motion_backend.procedural.body_state import Body, Point
 from motion_backend.procedural.collision_avoidance.hand_collision import arms_in
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays, bearing_of
-from motion_backend.procedural.held_poses import bend, idle
+from motion_backend.procedural.held_poses import SPINE_LEAN, bend, idle
 from motion_backend.procedural.pose import interpolate
 from motion_backend.procedural.touch.gestures import gesture
 from motion_backend.procedural.touch.hand_captions import arms_on_the_way
@@ -33,7 +33,9 @@ ROOM = 0.02
 LONG_ENOUGH = 1.0
 """Ways shorter than this (metres) are gone straight and once."""
 BEAT = 2.4
-"""How far somebody who paces goes before turning round (metres)."""
+"""How far somebody who paces goes before turning round (metres),"""
+BEAT_SHARE = 0.9
+"""but no more than this of the way."""
 
 
 def curved(path: Array, left: bool, walkable: Walkable) -> Array:
@@ -60,7 +62,7 @@ def to_and_fro(path: Array, walkable: Walkable) -> list[Array]:
     if steps.sum() < LONG_ENOUGH:
         return [path]
     to_end = np.concatenate([np.cumsum(steps[::-1])[::-1], [0.0]])
-    turn = int(np.argmax(to_end <= min(BEAT, 0.9 * float(steps.sum()))))
+    turn = int(np.argmax(to_end <= min(BEAT, BEAT_SHARE * float(steps.sum()))))
     back = points[turn:][::-1]
     return [points, back, points[turn:]] if _is_free(back, walkable) else [path]
 
@@ -89,6 +91,10 @@ STAYING = 0.7
 """How long arms take into the pose they are held in where the body stays, and out of it (seconds)."""
 ELBOW_ROOM = 0.26
 """Clearance beyond which there is no better place to turn on the spot (metres)."""
+TURNING_PLACES = (0.32, 0.26, 0.20, 0.14)
+"""How far ahead of a seat it is turned round before backing up to it, the roomiest (metres),"""
+ROOMIER = 0.04
+"""where that has so much more room than the seat (metres)."""
 
 
 def go(body: Body, goal: Point, facing: float | None, action: Action) -> None:
@@ -151,10 +157,10 @@ def _turning_place(body: Body, path: Array, goal: Point, facing: float | None) -
     if float(np.abs(rotations.wrap(np.arctan2(step[0], step[1]) - facing))) < TURNING_ROUND:
         return None
     ahead = np.array([np.sin(facing), np.cos(facing)])
-    places = [(float(goal[0] + d * ahead[0]), float(goal[1] + d * ahead[1])) for d in (0.32, 0.26, 0.20, 0.14)]
+    places = [(float(goal[0] + d * ahead[0]), float(goal[1] + d * ahead[1])) for d in TURNING_PLACES]
     room = [min(body.scene.walkable.clearance(place), ELBOW_ROOM) for place in places]
     best = int(np.argmax(room))
-    return places[best] if room[best] > body.scene.walkable.clearance(goal) + 0.04 else None
+    return places[best] if room[best] > body.scene.walkable.clearance(goal) + ROOMIER else None
 
 
 def loco(body: Body, action: Action) -> None:
@@ -186,4 +192,4 @@ def _carriage(bearing: Bearing) -> dict[str, Array]:
     """How a standing body holds trunk, head and arms."""
     wrists, elbows = arm_arrays(*bearing.arms)
     lean, head = np.radians(bearing.lean), np.radians(bearing.head)
-    return {"spine": bend(0.7 * lean), "head": bend(head), "arms": wrists, "elbows": elbows}
+    return {"spine": bend(SPINE_LEAN * lean), "head": bend(head), "arms": wrists, "elbows": elbows}
