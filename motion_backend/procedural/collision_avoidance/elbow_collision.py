@@ -35,6 +35,8 @@ STRAINED: Final = float(np.radians(3))
 """An arm whose shoulder is so far beyond its range is swung back (radians)."""
 SMOOTHED: Final = 3.0
 """Width of the bell that swings are smoothed by (frames)."""
+BEGINS: Final = 8
+"""Frames in which a segment's swings grow from none: it begins in the pose that the one before left."""
 LEAD: Final = 20
 """Frames in which an elbow swings out, and back."""
 DEEP, BEYOND, FAR, FAST = 60.0, 40.0, 0.5, 30.0
@@ -146,7 +148,7 @@ def _swing(arm: _Arm, chest: tuple[Array, Array], obstacles: Obstacles, scale: f
     if ends:
         cost[-1, SWINGS != 0.0] = np.inf
     swing = _steady(cost)
-    still = smooth(np.arange(len(swing)) / 8)
+    still = smooth(np.arange(len(swing)) / BEGINS)
     return np.asarray(swing * (still * still[::-1] if ends else still))
 
 

@@ -33,6 +33,8 @@ SPREAD_FROM, SPREAD_WITHIN = 0.9, 0.5
 """Arms are spread that point this far from hanging (cosine), wholly so from so much more."""
 WIDEST, NARROWEST, ROOM_SMOOTHED = 7, 17, 4.0
 """Frames about each of which the widest push, and the narrowest place, counts; width of the bell for the latter."""
+BEGINS, NARROWING = 8, 15
+"""Frames in which a segment's pushes, and its narrowed arms, grow from none: it begins in what the one before left."""
 PUSH_SMOOTHED, SIZE_SMOOTHED, MAX_GROWTH = 2.5, 2.0, 4.0
 """Widths of the bells that a push and its size are smoothed by (frames), and how much it is made up for at the most."""
 
@@ -55,7 +57,7 @@ def hands_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles, touching: 
         if not moved.any():
             continue
         # A segment begins in the pose the one before left, which was cleared already.
-        led = eased(push) * smooth(np.arange(len(push)) / 8)[:, None]
+        led = eased(push) * smooth(np.arange(len(push)) / BEGINS)[:, None]
         used = np.linalg.norm(led, axis=1) > MOVED
         reach[used, index] = _unfolded(wrist + led, shoulder, upper, lower)[used]
         reaching[used, index] = 1.0
@@ -80,7 +82,7 @@ def arms_in(pose: Pose, room: Array, narrow: str, wide: float) -> Pose:
     least = gaussian_filter1d(minimum_filter1d(room, NARROWEST, mode="nearest"), ROOM_SMOOTHED, mode="nearest")
     share = smooth((wide - least) / (wide - ALL_IN * wide))
     # A segment begins in the pose the one before left.
-    share = (share * smooth(np.arange(len(room)) / 15))[:, None, None]
+    share = (share * smooth(np.arange(len(room)) / NARROWING))[:, None, None]
     wrists, elbows = arm_arrays(narrow, narrow)
     if narrow != "hang":
         # Only as far as they are spread: arms that have come down at the end of the way stay down.

@@ -58,7 +58,7 @@ class TouchKey:
 
     stage: Literal["come", "do", "leave", "after"]
     pose: str
-    takes_s: float
+    wait_s: float
     """To get to it from the one before; the least it takes at the pace "hold"."""
     pace: Literal["body", "hands", "clock", "hold"]
     """Of the bending body, of the hands, the same in any mood, or what is left of the seconds to stay."""
@@ -190,13 +190,13 @@ class Way:
         """What a key takes, in the hands' own seconds."""
         match key.pace:
             case "hands":
-                return key.takes_s
+                return key.wait_s
             case "body":
-                return key.takes_s * self.bending * self.tempo
+                return key.wait_s * self.bending * self.tempo
             case "clock":
-                return key.takes_s * self.tempo
+                return key.wait_s * self.tempo
             case "hold":
-                return max(self.hold - busy, key.takes_s) * self.tempo
+                return max(self.hold - busy, key.wait_s) * self.tempo
 
     def keys(self, rows: TouchTable, stage: str, poses: dict[str, Pose]) -> Keys:
         """The key poses of a stage; who kneels gets down before being at the thing, and up again after it."""
