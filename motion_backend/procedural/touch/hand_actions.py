@@ -1,14 +1,14 @@
 """What is done once a hand is at a thing: rest, press, wipe, turn, pick up, put down; and the way there and back.
 
 Key poses and the way through them are rows of data/transitions/touch_*.toml, what a hand does that stays of
-data/held_touches.toml.
+touch_held.toml.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 
@@ -17,128 +17,14 @@ from motion_backend.motion import FPS
 from motion_backend.procedural.pose import Pose, concatenate, interpolate, smooth
 from motion_backend.procedural.touch.hand_captions import Laid, with_arms
 from motion_backend.procedural.touch.hand_contacts import is_top
+from motion_backend.procedural.touch.touch_keys import HeldTouches, TouchKey, TouchKeys, TouchPose, TouchTable
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
-from scene_graphs.data_tables import read_table, table
 
 Keys = list[tuple[Pose, float]]
 """Key poses, each with the seconds it takes to get to it."""
 STAGES: Final = ("come", "do", "leave", "after")
 """What a touch consists of; motion comes to rest at the end of each."""
-
-
-@table
-class TouchPose:
-    """A key pose of a touch."""
-
-    name: str
-    body: Literal["standing", "looking", "at it"]
-    """Where the body is: away from the thing, the same with the eyes on it, or bent to it."""
-    off_m: float = 0.0
-    """At the thing: how far its hand is off the surface."""
-    fingers_rad: float = 0.0
-    """How far the fingers are turned into the surface."""
-    drawn_out_m: float = 0.0
-    """How far the hand has then been drawn out from the surface."""
-    drawn_back_m: float = 0.0
-    """The same over a top, towards the body."""
-    arms: str = ""
-    """Away from it: the arm pose of the hands that touch; as they were where that is empty."""
-    arms_up_arms: float = 0.0
-    """How much higher these hands are held (arm lengths)."""
-    spine_forward_rad: float = 0.0
-    head_forward_rad: float = 0.0
-    head_pitch_rad: float | None = None
-    """The bend of the head in place of what it was."""
-
-
-@table
-class TouchKey:
-    """One step of the way through the poses."""
-
-    stage: Literal["come", "do", "leave", "after"]
-    pose: str
-    wait_s: float
-    """To get to it from the one before; the least it takes at the pace "hold"."""
-    pace: Literal["body", "hands", "clock", "hold"]
-    """Of the bending body, of the hands, the same in any mood, or what is left of the seconds to stay."""
-
-
-@table
-class TouchTable:
-    """A file of data/transitions/touch_*.toml."""
-
-    key: tuple[TouchKey, ...]
-    pose: tuple[TouchPose, ...]
-    hold_min_s: float = 0.0
-    """What a hand that stays there does takes at least this long."""
-    busy_s: float = 0.0
-    """How much of the seconds to stay is over where the stage "after" begins."""
-
-
-@table
-class Rest:
-    """A hand that rests: it slides, the trunk breathes, eyes wander."""
-
-    slide_m: float
-    slide_hz: float
-    breath_rad: float
-    breath_hz: float
-    nod_ratio: float
-    """Of the breath, in the head."""
-    glance_rad: float
-    glance_hz: float
-    glance_ease_s: float
-
-
-@table
-class Wash:
-    """Strokes from side to side."""
-
-    stroke_hz: float
-    forth_hz: float
-    forth_share: float
-    """How far to and fro, of the stroke's width."""
-    palm_rad: float
-    """How far the hand turns on the surface at the end of a stroke."""
-    usual_m: float
-    """A stroke to either side for which trunk and head go as far as said."""
-    pelvis_share: float
-    """Of the stroke."""
-    spine_forth_rad: float
-    spine_lean_rad: float
-    spine_turn_rad: float
-    head_lean_rad: float
-    head_turn_rad: float
-
-
-@table
-class Rotate:
-    """A grip turned to and fro."""
-
-    turn_rad: float
-    turn_hz: float
-    grip_m: float
-    """From the wrist to the middle of what it turns about."""
-    elbow_left_ratio: float
-    """How the elbow's direction changes for every radian of the turn."""
-    elbow_up_ratio: float
-    pelvis_m: float
-    spine_turn_rad: float
-    spine_side_rad: float
-    head_turn_rad: float
-    head_side_rad: float
-
-
-@table
-class HeldTouches:
-    """data/held_touches.toml."""
-
-    ease_s: float
-    """They grow out of the pose at the thing, and back into it, over this long."""
-    rest: Rest
-    wash: Wash
-    rotate: Rotate
 
 
 @dataclass(frozen=True)
@@ -218,22 +104,17 @@ class Way:
         return left, rotations.cross(left, self.laid.normal)
 
 
-def touch_table(doing: str) -> TouchTable:
-    """The key poses of what is done at a thing (a word of `hand_captions.HANDLINGS`, or "")."""
-    return read_table("motion_backend", f"transitions/touch_{doing or 'rest'}.toml", TouchTable)
-
-
-def deed(way: Way, doing: str) -> Pose:
+def deed(way: Way, doing: str, keys: TouchKeys) -> Pose:
     """A touch from standing to standing, with what is done there (a word of `hand_captions.HANDLINGS`, or "")."""
-    rows = touch_table(doing)
+    rows = keys.of(doing)
     poses = {row.name: way.pose(row) for row in rows.pose}
     frames, last = [], way.away
     for stage in STAGES:
         if stage == "do" and doing in _HELD:
-            frames.append(_HELD[doing](way, last, max(way.hold, rows.hold_min_s)))
-        elif keys := way.keys(rows, stage, poses):
-            frames.append(way.through(last, keys))
-            last, _ = keys[-1]
+            frames.append(_HELD[doing](way, last, max(way.hold, rows.hold_min_s), keys.held))
+        elif following := way.keys(rows, stage, poses):
+            frames.append(way.through(last, following))
+            last, _ = following[-1]
     return concatenate(frames)
 
 
@@ -259,10 +140,10 @@ def _drawn(way: Way, pose: Pose, row: TouchPose) -> Pose:
     return replace(pose, reach=reach)
 
 
-def _rest(way: Way, there: Pose, seconds: float) -> Pose:
+def _rest(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
     """The hand stays, alive: it breathes, slides a little, and the eyes wander about it."""
-    row = _held_table().rest
-    time, ease, held = _held(there, seconds)
+    row = keys.rest
+    time, ease, held = _held(there, seconds, keys.ease_s)
     left, _ = way.turned()
     reach = held.reach.copy()
     reach[:, way.hands[0]] += (row.slide_m * ease * _wave(row.slide_hz, time))[:, None] * left
@@ -274,10 +155,10 @@ def _rest(way: Way, there: Pose, seconds: float) -> Pose:
     return replace(held, reach=reach, spine=spine, head=held.head + look)
 
 
-def _wash(way: Way, there: Pose, seconds: float) -> Pose:
+def _wash(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
     """Wide strokes from side to side, a little to and fro; trunk, hips and eyes go along."""
-    row = _held_table().wash
-    time, ease, held = _held(there, seconds)
+    row = keys.wash
+    time, ease, held = _held(there, seconds, keys.ease_s)
     aside, forth = ease * _wave(row.stroke_hz, time), ease * _wave(row.forth_hz, time)
     along = way.laid.stroke
     across = rotations.cross(along, way.laid.normal)
@@ -301,10 +182,10 @@ def _wash(way: Way, there: Pose, seconds: float) -> Pose:
     )
 
 
-def _rotate(way: Way, there: Pose, seconds: float) -> Pose:
+def _rotate(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
     """A grip that is turned to and fro about what it holds; the elbow goes up and down with it, and the trunk along."""
-    row = _held_table().rotate
-    time, ease, held = _held(there, seconds)
+    row = keys.rotate
+    time, ease, held = _held(there, seconds, keys.ease_s)
     index, normal = way.hands[0], way.laid.normal
     angle = row.turn_rad * ease * _wave(row.turn_hz, time)
     turn = rotations.rotvec_to_quat(angle[:, None] * normal)
@@ -328,17 +209,13 @@ def _rotate(way: Way, there: Pose, seconds: float) -> Pose:
     )
 
 
-_HELD: Final[dict[str, Callable[[Way, Pose, float], Pose]]] = {"": _rest, "wash": _wash, "rotate": _rotate}
+_HELD: Final[dict[str, Callable[[Way, Pose, float, HeldTouches], Pose]]] = {"": _rest, "wash": _wash, "rotate": _rotate}
 """What a hand does for some seconds that stays on a thing in a pose."""
 
 
-def _held_table() -> HeldTouches:
-    return read_table("motion_backend", "held_touches.toml", HeldTouches)
-
-
-def _held(pose: Pose, seconds: float) -> tuple[Array, Array, Pose]:
-    """Times (T,), an ease that is 0 at both ends (T,), and the pose held so long."""
-    time, grows = np.arange(1, max(round(seconds * FPS), 1) + 1) / FPS, _held_table().ease_s
+def _held(pose: Pose, seconds: float, grows: float) -> tuple[Array, Array, Pose]:
+    """Times (T,), an ease that is 0 at both ends and grows so long (T,), and the pose held for all those seconds."""
+    time = np.arange(1, max(round(seconds * FPS), 1) + 1) / FPS
     return time, smooth(time / grows) * smooth((time[-1] - time) / grows), pose.repeat(len(time))
 
 

@@ -12,7 +12,6 @@ from motion_backend.procedural.touch.hand_captions import Laid, handling_of, ste
 from motion_backend.rotations import Array
 from motion_backend.skeleton import HAND_REST
 from scene_graphs.affordances.affordances import Spot
-from scene_graphs.data_tables import table
 
 FINGER: Final = 0.02
 """Half a finger's thickness (metres)."""
@@ -34,19 +33,6 @@ TURNS: Final = (0.0, 0.5, -0.5, 1.0, -1.0, 1.5, -1.5)
 """How far a hand is turned inwards on the surface where its fingers would be in something else (radians)."""
 STROKES: Final = (0.09, 0.07, 0.05, 0.03)
 """How far hands go to either side in wiping, the first that there is room for (metres)."""
-
-
-@table
-class ElbowPole:
-    """Where an elbow points in the chest frame: out to its own side, up and ahead."""
-
-    out: float
-    up: float
-    ahead: float
-
-    def of(self, index: int) -> Array:
-        """For the left (0) or the right (1) elbow. (3,)."""
-        return np.array([self.out if index == 0 else -self.out, self.up, self.ahead])
 
 
 def suits(spot: Spot, caption: str, solid: Obstacles) -> bool:

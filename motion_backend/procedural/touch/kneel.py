@@ -6,7 +6,7 @@ Key poses are rows of data/transitions/kneel_to_touch.toml.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 
@@ -15,12 +15,12 @@ from motion_backend.procedural.body_state import Scene
 from motion_backend.procedural.held_poses import UP, bend, shoulders, upright
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.touch.hand_captions import Laid
-from motion_backend.procedural.touch.hand_contacts import ElbowPole, is_top, palm_on
+from motion_backend.procedural.touch.hand_contacts import is_top, palm_on
+from motion_backend.procedural.touch.touch_keys import Foot, KneelingBody, KneelPose, KneelTable, Prone
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
 from motion_backend.skeleton import ARM_LENGTH, HAND_REST, Skeleton
 from scene_graphs.affordances.affordances import Spot
-from scene_graphs.data_tables import read_table, table
 from scene_graphs.layout import Point2
 from scene_graphs.navigation.path_planner import Walkable
 
@@ -42,92 +42,11 @@ STAND, WALLED = 0.12, 0.08
 """The room to stand, and how far a thing may stand in its wall (metres)."""
 TURN_COST, MOVE_COST = 0.05, 0.1
 """What a radian aside, and a metre nearer or farther, count for in choosing where to kneel (metres of elbow room)."""
-Foot = Literal["standing", "lifted", "back"]
-"""Where it stood, half-way back and off the floor, or back on its curled toes."""
 
 
-@table
-class KneelPose:
-    """A key pose on the way down."""
-
-    name: str
-    pelvis_back_m: float
-    """Behind the standing feet."""
-    pelvis_up_m: float
-    lean_rad: float
-    """Of the trunk, forwards."""
-    left: Foot = "standing"
-    right: Foot = "standing"
-
-
-@table
-class KneelingBody:
-    """What the key poses share."""
-
-    hips_share: float
-    """Of the lean."""
-    spine_share: float
-    head_forward_rad: float
-    lifted_m: float
-    """Off the floor, a foot half-way back."""
-    behind_m: float
-    """How far behind where they stood the ankles of a kneeling body are."""
-    apart_m: float
-    """From the middle to either of them."""
-    ankle_up_m: float
-    foot_pitch_rad: float
-    """How far the feet stand upright."""
-    toes_rad: float
-    knee_down_ratio: float
-    """How much knees point down for what they point ahead."""
-
-
-@table
-class Prone:
-    """A body on its knees, sat back and bent forwards, one hand on the floor."""
-
-    lean_min_deg: float
-    """Leans that are tried."""
-    lean_below_deg: float
-    lean_step_deg: float
-    usual_lean_deg: float
-    pelvis_ahead_m: float
-    """Of the ankles."""
-    pelvis_up_m: float
-    hips_share: float
-    """Of the lean."""
-    spine_share: float
-    arm_max_share: float
-    """Of its length, that an arm is stretched to."""
-    arm_min_share: float
-    unusual_m: float
-    """A radian off the usual lean is worth such a miss."""
-    head_pitch_rad: float
-    bearing_ahead_m: float
-    """Of its shoulder, the hand that bears."""
-    bearing_elbow: ElbowPole
-    top_elbow: ElbowPole
-    """Of the hand on a top."""
-    front_elbow: ElbowPole
-
-
-@table
-class KneelTable:
-    """data/transitions/kneel_to_touch.toml: poses in their order, metres at 1.70 m."""
-
-    pose: tuple[KneelPose, ...]
-    body: KneelingBody
-    prone: Prone
-
-
-def kneel_table() -> KneelTable:
-    """The numbers of getting down on one's knees."""
-    return read_table("motion_backend", "transitions/kneel_to_touch.toml", KneelTable)
-
-
-def _feet_behind(start: Pose, skeleton: Skeleton) -> Array:
+def _feet_behind(start: Pose, body: KneelingBody, skeleton: Skeleton) -> Array:
     """Where the ankles of a body that stands in a pose are when it kneels there. (2, 3)."""
-    body, ahead = kneel_table().body, _ahead(start)
+    ahead = _ahead(start)
     aside = np.array([ahead[2], 0.0, -ahead[0]])
     sides = np.array([[body.apart_m], [-body.apart_m]]) * aside
     places = start.ankles.mean(axis=0) + skeleton.scale * (sides - body.behind_m * ahead)
@@ -171,10 +90,10 @@ def _can_stand(at: Point2, spot: Spot, start: Point2, walkable: Walkable) -> boo
     return walkable.sees(at, (float(end[0]), float(end[1])))
 
 
-def down_on_knees(start: Pose, skeleton: Skeleton) -> list[Pose]:
+def down_on_knees(start: Pose, skeleton: Skeleton, keys: KneelTable) -> list[Pose]:
     """From standing to both knees, as keys: one foot lifted back, that knee down, then the other."""
-    rows, behind = kneel_table(), _feet_behind(start, skeleton)
-    return [_kneeling(start, row, rows.body, behind, skeleton) for row in rows.pose]
+    behind = _feet_behind(start, keys.body, skeleton)
+    return [_kneeling(start, row, keys.body, behind, skeleton) for row in keys.pose]
 
 
 def _kneeling(start: Pose, row: KneelPose, body: KneelingBody, behind: Array, skeleton: Skeleton) -> Pose:
@@ -191,9 +110,9 @@ def _kneeling(start: Pose, row: KneelPose, body: KneelingBody, behind: Array, sk
     return pose
 
 
-def prone(knees: Pose, goal: Array, index: int, skeleton: Skeleton) -> Pose:
+def prone(knees: Pose, goal: Array, index: int, skeleton: Skeleton, row: Prone) -> Pose:
     """From both knees: sat back and bent forwards until a hand (0 left, 1 right) reaches the goal, the other bears."""
-    row, yaw = kneel_table().prone, float(yaw_of(knees.hips))
+    yaw = float(yaw_of(knees.hips))
     leans = np.radians(np.arange(row.lean_min_deg, row.lean_below_deg, row.lean_step_deg))
     tries = knees.repeat(len(leans))
     ahead = _ahead(knees)
@@ -222,9 +141,9 @@ def prone(knees: Pose, goal: Array, index: int, skeleton: Skeleton) -> Pose:
     return replace(pose, reach=reach, reaching=reaching, palms=palms, elbows=elbows, pressing=reaching.copy())
 
 
-def elbows_out(pose: Pose, laid: Laid) -> Pose:
+def elbows_out(pose: Pose, laid: Laid, row: Prone) -> Pose:
     """A prone pose with the elbow of a hand on the thing out to its side, and below a hand on a front."""
-    row, elbows = kneel_table().prone, pose.elbows.copy()
+    elbows = pose.elbows.copy()
     for index, *_ in laid.hands:
         elbows[index] = (row.top_elbow if is_top(laid.normal) else row.front_elbow).of(index)
     return replace(pose, elbows=elbows)

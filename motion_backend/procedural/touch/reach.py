@@ -1,6 +1,6 @@
 """Bringing a hand onto a surface: the least bent posture that gets there, and the way to it and back.
 
-The numbers are rows of data/reach.toml.
+The numbers are rows of data/transitions/reach.toml.
 """
 
 from __future__ import annotations
@@ -20,184 +20,26 @@ from motion_backend.procedural.pose_solver import chest_frame, released
 from motion_backend.procedural.sit.sit_transition import knees_over_feet
 from motion_backend.procedural.touch.hand_actions import Way, deed
 from motion_backend.procedural.touch.hand_captions import Laid
-from motion_backend.procedural.touch.hand_contacts import ElbowPole, is_top
+from motion_backend.procedural.touch.hand_contacts import is_top
 from motion_backend.procedural.touch.kneel import down_on_knees, elbows_out, prone
+from motion_backend.procedural.touch.touch_keys import (
+    Approach,
+    ReachEffort,
+    ReachGaze,
+    ReachSearch,
+    ReachTable,
+    ThighHand,
+    TouchKeys,
+)
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
 from motion_backend.skeleton import ARM_LENGTH, INDEX, Skeleton
-from scene_graphs.data_tables import read_table, table
 
 Depth = Callable[[Array], Array]
 
 
 LIFTED = 1e-6
 """A pelvis that rises by less than this (metres) stays on flat feet."""
-
-
-@table
-class Approach:
-    """The way to the thing."""
-
-    over_m: float
-    """How far from a surface a hand comes down on it."""
-    eyes_there_share: float
-    """How far the head is bent as it will be at the thing before anything else moves."""
-    eyes_kept_share: float
-    """And how far as it was."""
-    settle_s: float
-    kneeling_ratio: float
-    """Who kneels down takes so much longer."""
-    kneeling_step_s: float
-    """For each step of getting down on the knees."""
-    deep_m: float
-    """Lowering the pelvis by more than this slows a reach down."""
-    tiptoe_ratio: float
-    """How far feet tip against what the ankles' rise asks for."""
-    tiptoe_max_share: float
-    """Of the foot's length, that ankles rise."""
-
-
-@table
-class FreeArm:
-    """What the other arm does meanwhile: names of arm poses, by what the hand does."""
-
-    low_share: float
-    """Below this share of the standing height of its pelvis a body lays the free hand on a thigh."""
-    bent_over_cos: float
-    """And beyond this tilt of its chest."""
-    high_m: float
-    """A hand above this is balanced by the arm pose `high`."""
-    high: str
-    doing: dict[str, str]
-
-
-@table
-class ThighHand:
-    """The free hand on a thigh."""
-
-    along_share: float
-    """Of the way to the knee."""
-    over_m: float
-    """The wrist above the middle of the thigh."""
-    elbow: ElbowPole
-
-
-@table
-class ReachingHand:
-    """A hand on its way onto a surface."""
-
-    raised_from_m: float
-    """From this height on it is raised,"""
-    raised_within_m: float
-    """and altogether so much higher."""
-    behind_share: float
-    """Onto a top it comes from the body's side by this share of its height over it,"""
-    behind_raised_share: float
-    """and this much more where it is raised."""
-    pressing_share: float
-    """How far the palm lies as the surface does while it is still off it."""
-    low_m: float
-    points_down: float
-    """Fingers whose direction has this much of down in it point down."""
-
-
-@table
-class ReachingElbow:
-    """Where the elbow of a reaching arm points."""
-
-    behind: ElbowPole
-    """Of a lowered hand;"""
-    raised_by: ElbowPole
-    """how that changes as the hand is raised."""
-    low: ElbowPole
-    pointing_down: ElbowPole
-    over_edge: ElbowPole
-    """Onto a high top."""
-
-
-@table
-class ReachSearch:
-    """The postures that are tried."""
-
-    lean_below_deg: float
-    lean_step_deg: float
-    rise_max_m: float
-    """Of the pelvis, on tiptoes."""
-    crouch_below_m: float
-    crouch_step_m: float
-    back_lean_m: float
-    """How far the pelvis goes back with the sine of the lean,"""
-    back_crouch_share: float
-    """and with the crouch."""
-    hips_share: float
-    """Of the lean."""
-    spine_share: float
-    spine_rad: float
-    turn_rad: float
-    """How far the shoulder of the one hand comes forward,"""
-    turn_within_rad: float
-    """from this lean on altogether."""
-    arm_max_share: float
-    """Of its length, that an arm is stretched to."""
-    arm_min_share: float
-    head_up_m: float
-    """The middle of the head from the chest."""
-    head_ahead_m: float
-    head_room_m: float
-    """That it keeps to furniture."""
-
-
-@table
-class ReachEffort:
-    """What counts in choosing among them."""
-
-    miss_per_m: float
-    lean_per_rad: float
-    lean_per_rad2: float
-    tiptoe: float
-    tiptoe_per_m: float
-    crouch_per_m: float
-    """To what is low."""
-    crouch_more_per_m: float
-    """And so much more to what is higher than"""
-    squat_below_m: float
-    squat_within_m: float
-    """by this."""
-    crouch_top_per_m: float
-    """The least to a top above `top_above_m`."""
-    top_above_m: float
-
-
-@table
-class ReachGaze:
-    """Where the head looks."""
-
-    eyes_up_m: float
-    """Above the shoulders."""
-    leant_share: float
-    """Of the lean, that the gaze has gone down already."""
-    nod_min_rad: float
-    nod_max_rad: float
-    turn_max_rad: float
-
-
-@table
-class ReachTable:
-    """data/reach.toml: metres at 1.70 m."""
-
-    approach: Approach
-    free_arm: FreeArm
-    thigh: ThighHand
-    hand: ReachingHand
-    elbow: ReachingElbow
-    search: ReachSearch
-    effort: ReachEffort
-    gaze: ReachGaze
-
-
-def reach_table() -> ReachTable:
-    """The numbers of reaching."""
-    return read_table("motion_backend", "reach.toml", ReachTable)
 
 
 @dataclass(frozen=True)
@@ -213,24 +55,25 @@ class Manner:
     """Whether one kneels down and bends forwards to it."""
 
 
-def touch(start: Pose, laid: Laid, manner: Manner, skeleton: Skeleton, depth: Depth) -> Pose:
+def touch(start: Pose, laid: Laid, manner: Manner, skeleton: Skeleton, depth: Depth, keys: TouchKeys) -> Pose:
     """Bring a hand from outside onto a surface, keep it there, and come back to standing.
 
     `depth` says how deep points (N, 3) are in furniture.
     """
-    way, pace = reach_table().approach, 1 / manner.bearing.tempo
-    down = down_on_knees(start, skeleton) if manner.prone else []
+    way, pace = keys.reach.approach, 1 / manner.bearing.tempo
+    yaw, down = float(yaw_of(start.hips)), down_on_knees(start, skeleton, keys.kneel) if manner.prone else []
     if manner.prone:
-        bent = prone(down[-1], laid.wrist, laid.hands[0][0], skeleton)
+        bent = prone(down[-1], laid.wrist, laid.hands[0][0], skeleton, keys.kneel.prone)
         pace *= way.kneeling_ratio
     else:
-        bent = _free_arm(_reaching(start, laid, skeleton, depth), laid, manner.doing, skeleton)
+        bent = _reaching(start, laid, skeleton, depth, keys.reach)
+        bent = _free_arm(bent, laid, manner.doing, skeleton, keys.reach)
         # A deep bend takes its time, however hurried.
         pace *= max(1.0, float(start.pelvis[1] - bent.pelvis[1]) / (way.deep_m * skeleton.scale))
 
     def hand(off: float, tilt: float) -> Pose:
-        posed = _hand_at(start, bent, laid.tilted(tilt), off, skeleton)
-        return elbows_out(posed, laid) if manner.prone else posed
+        posed = _hand_at(bent, laid.tilted(tilt), off, yaw, skeleton, keys.reach)
+        return elbows_out(posed, laid, keys.kneel.prone) if manner.prone else posed
 
     over, reached = hand(way.over_m, 0.0), hand(0.0, 0.0)
     away = replace(start, reach=over.reach, palms=over.palms)
@@ -238,19 +81,19 @@ def touch(start: Pose, laid: Laid, manner: Manner, skeleton: Skeleton, depth: De
     lead = replace(away, head=way.eyes_there_share * reached.head + way.eyes_kept_share * start.head)
     kneeling = tuple(replace(key, reach=over.reach, palms=over.palms) for key in down)
     times = manner.hold, manner.bearing.tempo, pace, way.kneeling_step_s
-    whole = deed(Way(away, lead, kneeling, hand, laid, *times), manner.doing)
+    whole = deed(Way(away, lead, kneeling, hand, laid, *times), manner.doing, keys)
     knees = whole.knees if manner.prone else knees_over_feet(whole)
     return settle_from(start, replace(whole, knees=knees), FPS, seconds=way.settle_s)
 
 
-def _free_arm(bent: Pose, laid: Laid, doing: str, skeleton: Skeleton) -> Pose:
+def _free_arm(bent: Pose, laid: Laid, doing: str, skeleton: Skeleton, keys: ReachTable) -> Pose:
     """The other hand lives: it steadies itself on a thigh, balances a high reach, or waits before the body."""
     if laid.other is not None:
         return bent
-    row, index = reach_table().free_arm, 1 - laid.hands[0][0]
+    row, index = keys.free_arm, 1 - laid.hands[0][0]
     tilt = float(rotations.rotate(chest_frame(bent.repeat(1), skeleton)[0][0], UP)[1])
     if float(bent.pelvis[1]) < row.low_share * skeleton.standing_height or tilt < row.bent_over_cos:
-        return _hand_on_thigh(bent, index, skeleton)
+        return _hand_on_thigh(bent, index, skeleton, keys.thigh)
     name = row.high if float(laid.wrist[1]) > row.high_m * skeleton.scale else row.doing[doing]
     wrists, poles = arm_arrays(name, name)
     arms, elbows = bent.arms.copy(), bent.elbows.copy()
@@ -258,9 +101,9 @@ def _free_arm(bent: Pose, laid: Laid, doing: str, skeleton: Skeleton) -> Pose:
     return replace(bent, arms=arms, elbows=elbows)
 
 
-def _hand_on_thigh(bent: Pose, index: int, skeleton: Skeleton) -> Pose:
+def _hand_on_thigh(bent: Pose, index: int, skeleton: Skeleton, row: ThighHand) -> Pose:
     """A hand (0 left, 1 right) laid on the thigh of its side, fingers towards the knee."""
-    row, side = reach_table().thigh, ("left", "right")[index]
+    side = ("left", "right")[index]
     hip = bent.pelvis + rotations.rotate(bent.hips, skeleton.offsets[INDEX[f"{side}_hip"]])
     lengths = (-float(skeleton.offsets[INDEX[f"{side}_knee"], 1]), -float(skeleton.offsets[INDEX[f"{side}_ankle"], 1]))
     along = two_bone(hip, bent.ankles[index], bent.knees[index], lengths).upper
@@ -275,12 +118,11 @@ def _hand_on_thigh(bent: Pose, index: int, skeleton: Skeleton) -> Pose:
     return replace(bent, reach=reach, reaching=reaching, palms=palms, elbows=elbows, pressing=reaching.copy())
 
 
-def _hand_at(start: Pose, bent: Pose, laid: Laid, off: float, skeleton: Skeleton) -> Pose:
+def _hand_at(bent: Pose, laid: Laid, off: float, yaw: float, skeleton: Skeleton, keys: ReachTable) -> Pose:
     """A bent posture with the hands on the surface, or `off` metres out from it."""
-    row = reach_table().hand
+    row = keys.hand
     reaching, pressing = bent.reaching.copy(), bent.pressing.copy()
     reach, palms, elbows = bent.reach.copy(), bent.palms.copy(), bent.elbows.copy()
-    yaw = float(yaw_of(start.hips))
     raised = float(np.clip((laid.wrist[1] / skeleton.scale - row.raised_from_m) / row.raised_within_m, 0.0, 1.0))
     # Onto a top the hand comes over its edge from the body's side.
     behind = row.behind_share + row.behind_raised_share * raised
@@ -288,32 +130,32 @@ def _hand_at(start: Pose, bent: Pose, laid: Laid, off: float, skeleton: Skeleton
     for index, wrist, palm in laid.hands:
         reaching[index], reach[index], palms[index] = 1.0, wrist + off * laid.normal - back, palm
         pressing[index] = 1.0 if off == 0.0 else row.pressing_share
-        elbows[index] = _elbow(laid, (index, wrist, palm), raised, skeleton)
+        elbows[index] = _elbow(laid, (index, wrist, palm), raised, skeleton, keys)
     posed = replace(bent, reach=reach, reaching=reaching, palms=palms, pressing=pressing, elbows=elbows)
     # The same place held from the chest, so that the arm swings there round its shoulder.
     return replace(posed, arms=released(posed, skeleton).arms)
 
 
-def _elbow(laid: Laid, hand: tuple[int, Array, Array], raised: float, skeleton: Skeleton) -> Array:
+def _elbow(laid: Laid, hand: tuple[int, Array, Array], raised: float, skeleton: Skeleton, keys: ReachTable) -> Array:
     """Where the elbow of a hand on a surface points: a raised hand hangs it below, a lowered one keeps it behind. (3,).
 
     `hand` is its index, wrist and palm.
     """
-    table, (index, wrist, palm) = reach_table(), hand
-    poles, fingers = table.elbow, np.array([1.0 if index == 0 else -1.0, 0.0, 0.0])
+    index, wrist, palm = hand
+    poles, fingers = keys.elbow, np.array([1.0 if index == 0 else -1.0, 0.0, 0.0])
     if is_top(laid.normal) and raised > 0:
         return poles.over_edge.of(index)
     # The palm of a hand that points down a front looks forwards only with the elbow below.
-    if float(rotations.rotate(palm, fingers)[1]) < -table.hand.points_down:
+    if float(rotations.rotate(palm, fingers)[1]) < -keys.hand.points_down:
         return poles.pointing_down.of(index)
-    if wrist[1] < table.hand.low_m * skeleton.scale:
+    if wrist[1] < keys.hand.low_m * skeleton.scale:
         return poles.low.of(index)
     return poles.behind.of(index) + raised * poles.raised_by.of(index)
 
 
-def _reaching(start: Pose, laid: Laid, skeleton: Skeleton, depth: Depth) -> Pose:
+def _reaching(start: Pose, laid: Laid, skeleton: Skeleton, depth: Depth, keys: ReachTable) -> Pose:
     """The least bent posture from which the hands get to their goals: a search over lean and crouch."""
-    row, yaw = reach_table().search, float(yaw_of(start.hips))
+    row, yaw = keys.search, float(yaw_of(start.hips))
     leans = np.radians(np.arange(0, row.lean_below_deg, row.lean_step_deg))
     crouches = np.arange(-row.rise_max_m, row.crouch_below_m, row.crouch_step_m)
     lean, crouch = (grid.reshape(-1, 1) for grid in np.meshgrid(leans, crouches))
@@ -328,15 +170,15 @@ def _reaching(start: Pose, laid: Laid, skeleton: Skeleton, depth: Depth) -> Pose
         hips=upright(yaw, row.hips_share * lean[:, 0]),
         spine=np.concatenate([bent, turned, 0 * lean], axis=1),
     )
-    effort = _effort(_misses(tries, laid, skeleton, depth), lean[:, 0], crouch[:, 0], laid, skeleton)
+    miss = _misses(tries, laid, skeleton, depth, row)
+    effort = _effort(miss, (lean[:, 0], crouch[:, 0]), laid, skeleton, keys.effort)
     chosen = int(np.argmin(effort))
-    best = _on_toes(tries.at(chosen), -float(crouch[chosen, 0]), skeleton)
-    return replace(best, head=_looking(best, laid.wrist, float(lean[chosen, 0]), yaw, skeleton))
+    best = _on_toes(tries.at(chosen), -float(crouch[chosen, 0]), skeleton, keys.approach)
+    return replace(best, head=_looking(best, laid.wrist, float(lean[chosen, 0]), yaw, skeleton, keys.gaze))
 
 
-def _misses(tries: Pose, laid: Laid, skeleton: Skeleton, depth: Depth) -> Array:
+def _misses(tries: Pose, laid: Laid, skeleton: Skeleton, depth: Depth, row: ReachSearch) -> Array:
     """How far hands are from their goals in T postures, and heads in what is touched. (T,) metres."""
-    row = reach_table().search
     arm = ARM_LENGTH * skeleton.scale
     miss = np.zeros(len(tries))
     for index, wrist, _ in laid.hands:
@@ -348,10 +190,10 @@ def _misses(tries: Pose, laid: Laid, skeleton: Skeleton, depth: Depth) -> Array:
     return np.asarray(miss + np.maximum(depth(head) + row.head_room_m, 0.0))
 
 
-def _effort(miss: Array, lean: Array, crouch: Array, laid: Laid, skeleton: Skeleton) -> Array:
-    """What leans (radians) and crouches (metres) cost that miss by so much: one bends over to a table and squats to a
-    drawer. (T,) each."""
-    row, height = reach_table().effort, float(laid.wrist[1])
+def _effort(miss: Array, bent: tuple[Array, Array], laid: Laid, skeleton: Skeleton, row: ReachEffort) -> Array:
+    """What postures cost that miss by so much, `bent` by leans (radians) and crouches (metres): one bends over to a
+    table and squats to a drawer. (T,) each."""
+    (lean, crouch), height = bent, float(laid.wrist[1])
     higher = float(np.clip((height / skeleton.scale - row.squat_below_m) / row.squat_within_m, 0.0, 1.0))
     squat = row.crouch_per_m + row.crouch_more_per_m * higher
     if is_top(laid.normal) and height > row.top_above_m * skeleton.scale:
@@ -361,9 +203,8 @@ def _effort(miss: Array, lean: Array, crouch: Array, laid: Laid, skeleton: Skele
     return np.asarray(effort + np.where(crouch < -LIFTED, row.tiptoe - row.tiptoe_per_m * crouch, squat * crouch))
 
 
-def _looking(pose: Pose, goal: Array, lean: float, yaw: float, skeleton: Skeleton) -> Array:
+def _looking(pose: Pose, goal: Array, lean: float, yaw: float, skeleton: Skeleton, row: ReachGaze) -> Array:
     """The head of a body that leans so far (radians), its eyes on the goal. (3,)."""
-    row = reach_table().gaze
     eyes = shoulders(pose.repeat(1), skeleton)[0].mean(axis=0) + row.eyes_up_m * UP
     look = goal - eyes
     down = np.arctan2(-look[1], np.hypot(look[0], look[2]))
@@ -372,11 +213,10 @@ def _looking(pose: Pose, goal: Array, lean: float, yaw: float, skeleton: Skeleto
     return bend(nod, turn=float(np.clip(sideways, -row.turn_max_rad, row.turn_max_rad)))
 
 
-def _on_toes(pose: Pose, rise: float, skeleton: Skeleton) -> Pose:
+def _on_toes(pose: Pose, rise: float, skeleton: Skeleton, way: Approach) -> Pose:
     """Heels lifted so that the ankles rise by so much (metres) about the balls of the feet; as it is from 0 down."""
     if rise < LIFTED:
         return pose
-    way = reach_table().approach
     ball = skeleton.offsets[INDEX["left_foot"]]
     angle = way.tiptoe_ratio * float(np.arcsin(min(rise / ball[2], way.tiptoe_max_share)))
     feet = rotations.compose(pose.feet, rotations.rotvec_to_quat(np.array([angle, 0.0, 0.0])))

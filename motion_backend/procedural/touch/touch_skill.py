@@ -15,6 +15,7 @@ from motion_backend.procedural.touch.hand_captions import Laid, handling_of, hol
 from motion_backend.procedural.touch.hand_contacts import free_palm, free_stroke, is_top, other_hand
 from motion_backend.procedural.touch.kneel import place_to_kneel
 from motion_backend.procedural.touch.reach import Manner, touch
+from motion_backend.procedural.touch.touch_keys import touch_keys
 from motion_backend.procedural.walk.walk_skill import go
 from motion_backend.skeleton import HAND_REST
 
@@ -51,4 +52,4 @@ def touch_spot(body: Body, action: Action) -> None:
     laid = Laid(goal, palm, normal, action.hand, down, other)
     laid = replace(laid, stroke=free_stroke(obstacles, spot, laid))
     hold = max(action.hold, MIN_HOLD)
-    body.add(touch(body.pose, laid, Manner(bearing, hold, doing, prone), body.skeleton, depth))
+    body.add(touch(body.pose, laid, Manner(bearing, hold, doing, prone), body.skeleton, depth, touch_keys()))

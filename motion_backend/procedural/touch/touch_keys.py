@@ -1,0 +1,415 @@
+"""Tables of touching: the search for a reach, key poses down to the knees, and those of what is done at a thing.
+
+The files in `data/transitions` say how their columns are to be read. Whoever gives a character poses of its own hands
+in tables with other rows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from motion_backend.rotations import Array
+from scene_graphs.data_tables import read_table, table
+
+
+@table
+class ElbowPole:
+    """Where an elbow points in the chest frame: out to its own side, up and ahead."""
+
+    out: float
+    up: float
+    ahead: float
+
+    def of(self, index: int) -> Array:
+        """For the left (0) or the right (1) elbow. (3,)."""
+        return np.array([self.out if index == 0 else -self.out, self.up, self.ahead])
+
+
+@table
+class Approach:
+    """The way to the thing."""
+
+    over_m: float
+    """How far from a surface a hand comes down on it."""
+    eyes_there_share: float
+    """How far the head is bent as it will be at the thing before anything else moves."""
+    eyes_kept_share: float
+    """And how far as it was."""
+    settle_s: float
+    kneeling_ratio: float
+    """Who kneels down takes so much longer."""
+    kneeling_step_s: float
+    """For each step of getting down on the knees."""
+    deep_m: float
+    """Lowering the pelvis by more than this slows a reach down."""
+    tiptoe_ratio: float
+    """How far feet tip against what the ankles' rise asks for."""
+    tiptoe_max_share: float
+    """Of the foot's length, that ankles rise."""
+
+
+@table
+class FreeArm:
+    """What the other arm does meanwhile: names of arm poses, by what the hand does."""
+
+    low_share: float
+    """Below this share of the standing height of its pelvis a body lays the free hand on a thigh."""
+    bent_over_cos: float
+    """And beyond this tilt of its chest."""
+    high_m: float
+    """A hand above this is balanced by the arm pose `high`."""
+    high: str
+    doing: dict[str, str]
+
+
+@table
+class ThighHand:
+    """The free hand on a thigh."""
+
+    along_share: float
+    """Of the way to the knee."""
+    over_m: float
+    """The wrist above the middle of the thigh."""
+    elbow: ElbowPole
+
+
+@table
+class ReachingHand:
+    """A hand on its way onto a surface."""
+
+    raised_from_m: float
+    """From this height on it is raised,"""
+    raised_within_m: float
+    """and altogether so much higher."""
+    behind_share: float
+    """Onto a top it comes from the body's side by this share of its height over it,"""
+    behind_raised_share: float
+    """and this much more where it is raised."""
+    pressing_share: float
+    """How far the palm lies as the surface does while it is still off it."""
+    low_m: float
+    points_down: float
+    """Fingers whose direction has this much of down in it point down."""
+
+
+@table
+class ReachingElbow:
+    """Where the elbow of a reaching arm points."""
+
+    behind: ElbowPole
+    """Of a lowered hand;"""
+    raised_by: ElbowPole
+    """how that changes as the hand is raised."""
+    low: ElbowPole
+    pointing_down: ElbowPole
+    over_edge: ElbowPole
+    """Onto a high top."""
+
+
+@table
+class ReachSearch:
+    """The postures that are tried."""
+
+    lean_below_deg: float
+    lean_step_deg: float
+    rise_max_m: float
+    """Of the pelvis, on tiptoes."""
+    crouch_below_m: float
+    crouch_step_m: float
+    back_lean_m: float
+    """How far the pelvis goes back with the sine of the lean,"""
+    back_crouch_share: float
+    """and with the crouch."""
+    hips_share: float
+    """Of the lean."""
+    spine_share: float
+    spine_rad: float
+    turn_rad: float
+    """How far the shoulder of the one hand comes forward,"""
+    turn_within_rad: float
+    """from this lean on altogether."""
+    arm_max_share: float
+    """Of its length, that an arm is stretched to."""
+    arm_min_share: float
+    head_up_m: float
+    """The middle of the head from the chest."""
+    head_ahead_m: float
+    head_room_m: float
+    """That it keeps to furniture."""
+
+
+@table
+class ReachEffort:
+    """What counts in choosing among them."""
+
+    miss_per_m: float
+    lean_per_rad: float
+    lean_per_rad2: float
+    tiptoe: float
+    tiptoe_per_m: float
+    crouch_per_m: float
+    """To what is low."""
+    crouch_more_per_m: float
+    """And so much more to what is higher than"""
+    squat_below_m: float
+    squat_within_m: float
+    """by this."""
+    crouch_top_per_m: float
+    """The least to a top above `top_above_m`."""
+    top_above_m: float
+
+
+@table
+class ReachGaze:
+    """Where the head looks."""
+
+    eyes_up_m: float
+    """Above the shoulders."""
+    leant_share: float
+    """Of the lean, that the gaze has gone down already."""
+    nod_min_rad: float
+    nod_max_rad: float
+    turn_max_rad: float
+
+
+@table
+class ReachTable:
+    """Bringing a hand onto a surface: `reach.toml`."""
+
+    approach: Approach
+    free_arm: FreeArm
+    thigh: ThighHand
+    hand: ReachingHand
+    elbow: ReachingElbow
+    search: ReachSearch
+    effort: ReachEffort
+    gaze: ReachGaze
+
+
+Foot = Literal["standing", "lifted", "back"]
+"""Where it stood, half-way back and off the floor, or back on its curled toes."""
+
+
+@table
+class KneelPose:
+    """A key pose on the way down."""
+
+    name: str
+    pelvis_back_m: float
+    """Behind the standing feet."""
+    pelvis_up_m: float
+    lean_rad: float
+    """Of the trunk, forwards."""
+    left: Foot = "standing"
+    right: Foot = "standing"
+
+
+@table
+class KneelingBody:
+    """What the key poses share."""
+
+    hips_share: float
+    """Of the lean."""
+    spine_share: float
+    head_forward_rad: float
+    lifted_m: float
+    """Off the floor, a foot half-way back."""
+    behind_m: float
+    """How far behind where they stood the ankles of a kneeling body are."""
+    apart_m: float
+    """From the middle to either of them."""
+    ankle_up_m: float
+    foot_pitch_rad: float
+    """How far the feet stand upright."""
+    toes_rad: float
+    knee_down_ratio: float
+    """How much knees point down for what they point ahead."""
+
+
+@table
+class Prone:
+    """A body on its knees, sat back and bent forwards, one hand on the floor."""
+
+    lean_min_deg: float
+    """Leans that are tried."""
+    lean_below_deg: float
+    lean_step_deg: float
+    usual_lean_deg: float
+    pelvis_ahead_m: float
+    """Of the ankles."""
+    pelvis_up_m: float
+    hips_share: float
+    """Of the lean."""
+    spine_share: float
+    arm_max_share: float
+    """Of its length, that an arm is stretched to."""
+    arm_min_share: float
+    unusual_m: float
+    """A radian off the usual lean is worth such a miss."""
+    head_pitch_rad: float
+    bearing_ahead_m: float
+    """Of its shoulder, the hand that bears."""
+    bearing_elbow: ElbowPole
+    top_elbow: ElbowPole
+    """Of the hand on a top."""
+    front_elbow: ElbowPole
+
+
+@table
+class KneelTable:
+    """Down to both knees, and prone from there: `kneel_to_touch.toml`."""
+
+    pose: tuple[KneelPose, ...]
+    body: KneelingBody
+    prone: Prone
+
+
+@table
+class TouchPose:
+    """A key pose of a touch."""
+
+    name: str
+    body: Literal["standing", "looking", "at it"]
+    """Where the body is: away from the thing, the same with the eyes on it, or bent to it."""
+    off_m: float = 0.0
+    """At the thing: how far its hand is off the surface."""
+    fingers_rad: float = 0.0
+    """How far the fingers are turned into the surface."""
+    drawn_out_m: float = 0.0
+    """How far the hand has then been drawn out from the surface."""
+    drawn_back_m: float = 0.0
+    """The same over a top, towards the body."""
+    arms: str = ""
+    """Away from it: the arm pose of the hands that touch; as they were where that is empty."""
+    arms_up_arms: float = 0.0
+    """How much higher these hands are held (arm lengths)."""
+    spine_forward_rad: float = 0.0
+    head_forward_rad: float = 0.0
+    head_pitch_rad: float | None = None
+    """The bend of the head in place of what it was."""
+
+
+@table
+class TouchKey:
+    """One step of the way through the poses."""
+
+    stage: Literal["come", "do", "leave", "after"]
+    pose: str
+    wait_s: float
+    """To get to it from the one before; the least it takes at the pace "hold"."""
+    pace: Literal["body", "hands", "clock", "hold"]
+    """Of the bending body, of the hands, the same in any mood, or what is left of the seconds to stay."""
+
+
+@table
+class TouchTable:
+    """What is done at a thing: a file of `touch_*.toml`."""
+
+    key: tuple[TouchKey, ...]
+    pose: tuple[TouchPose, ...]
+    hold_min_s: float = 0.0
+    """What a hand that stays there does takes at least this long."""
+    busy_s: float = 0.0
+    """How much of the seconds to stay is over where the stage "after" begins."""
+
+
+@table
+class Rest:
+    """A hand that rests: it slides, the trunk breathes, eyes wander."""
+
+    slide_m: float
+    slide_hz: float
+    breath_rad: float
+    breath_hz: float
+    nod_ratio: float
+    """Of the breath, in the head."""
+    glance_rad: float
+    glance_hz: float
+    glance_ease_s: float
+
+
+@table
+class Wash:
+    """Strokes from side to side."""
+
+    stroke_hz: float
+    forth_hz: float
+    forth_share: float
+    """How far to and fro, of the stroke's width."""
+    palm_rad: float
+    """How far the hand turns on the surface at the end of a stroke."""
+    usual_m: float
+    """A stroke to either side for which trunk and head go as far as said."""
+    pelvis_share: float
+    """Of the stroke."""
+    spine_forth_rad: float
+    spine_lean_rad: float
+    spine_turn_rad: float
+    head_lean_rad: float
+    head_turn_rad: float
+
+
+@table
+class Rotate:
+    """A grip turned to and fro."""
+
+    turn_rad: float
+    turn_hz: float
+    grip_m: float
+    """From the wrist to the middle of what it turns about."""
+    elbow_left_ratio: float
+    """How the elbow's direction changes for every radian of the turn."""
+    elbow_up_ratio: float
+    pelvis_m: float
+    spine_turn_rad: float
+    spine_side_rad: float
+    head_turn_rad: float
+    head_side_rad: float
+
+
+@table
+class HeldTouches:
+    """touch_held.toml."""
+
+    ease_s: float
+    """They grow out of the pose at the thing, and back into it, over this long."""
+    rest: Rest
+    wash: Wash
+    rotate: Rotate
+
+
+@dataclass(frozen=True)
+class TouchKeys:
+    """The tables of touching, for those who vary them."""
+
+    reach: ReachTable
+    kneel: KneelTable
+    held: HeldTouches
+    rest: TouchTable
+    press: TouchTable
+    wash: TouchTable
+    rotate: TouchTable
+    pick: TouchTable
+    put: TouchTable
+
+    def of(self, doing: str) -> TouchTable:
+        """The key poses of what is done (a word of `hand_captions.HANDLINGS`, or "" for a plain touch)."""
+        deeds = {"": self.rest, "press": self.press, "wash": self.wash, "rotate": self.rotate, "pick": self.pick}
+        return (deeds | {"put": self.put})[doing]
+
+
+def touch_keys() -> TouchKeys:
+    """The tables that are shipped."""
+    deeds = {
+        name: read_table("motion_backend", f"transitions/touch_{name}.toml", TouchTable)
+        for name in ("rest", "press", "wash", "rotate", "pick", "put")
+    }
+    return TouchKeys(
+        read_table("motion_backend", "transitions/reach.toml", ReachTable),
+        read_table("motion_backend", "transitions/kneel_to_touch.toml", KneelTable),
+        read_table("motion_backend", "transitions/touch_held.toml", HeldTouches),
+        **deeds,
+    )
