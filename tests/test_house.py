@@ -188,3 +188,38 @@ def test_nothing_of_ours_is_pickled_or_evaluated() -> None:
                 assert node.func.id not in {"eval", "exec"}, path
             if isinstance(node, ast.keyword) and node.arg == "allow_pickle":
                 assert ast.unparse(node.value) == "False", path
+
+
+MAX_NUMBERS = 40
+"""A thousand lines of `procedural/` may have so many numbers inside functions."""
+MAX_NUMBERS_OF_A_FUNCTION = 8
+"""A function with more is a table in disguise."""
+
+
+def test_numbers_of_the_body_have_names() -> None:
+    """Key poses are rows of tables (decision 0030), and other numbers constants that say what they are."""
+    paths = sorted((ROOT / "motion_backend" / "procedural").rglob("*.py"))
+    lines = sum(path.read_text(encoding="utf-8").count("\n") for path in paths)
+    found = {f"{path.name}: {name}": count for path in paths for name, count in numbers_in(tree_of(path)).items()}
+    assert not [f"{where} {count}" for where, count in found.items() if count > MAX_NUMBERS_OF_A_FUNCTION]
+    assert 1000 * sum(found.values()) / lines <= MAX_NUMBERS, found
+
+
+def test_numbers_are_counted_where_functions_hide_them() -> None:
+    code = "WIDE = 0.4\ndef f(x, y=0.3):\n    g = lambda u: 0.7 * u\n    return [x * 0.25 + 0.5, g(2.0)] + [1.5]\n"
+    assert numbers_in(ast.parse(code)) == {"f": 3}
+
+
+def numbers_in(tree: ast.Module) -> dict[str, int]:
+    """How many numbers with a point stand in the body of each function, but for 0, ½, 1 and 2; in the outermost of
+    those that stand in each other."""
+    found: dict[str, int] = {}
+    seen: set[ast.Constant] = set()
+    for function in (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.Lambda)):
+        body = function.body if isinstance(function.body, list) else [function.body]
+        for node in (inner for part in body for inner in ast.walk(part) if isinstance(inner, ast.Constant)):
+            if isinstance(node.value, float) and node.value not in (0.0, 0.5, 1.0, 2.0) and node not in seen:
+                seen.add(node)
+                name = getattr(function, "name", "lambda")
+                found[name] = found.get(name, 0) + 1
+    return found
