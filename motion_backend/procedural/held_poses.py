@@ -85,7 +85,8 @@ class Idle:
 
 def idle_table() -> Idle:
     """The numbers of holding still."""
-    return read_table("motion_backend", "idle.toml", Idle)
+    rows: Idle = read_table("motion_backend", "idle.toml", Idle)
+    return rows
 
 
 def upright(yaw: float, pitch: Array | float = 0.0) -> Array:

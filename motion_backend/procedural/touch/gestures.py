@@ -136,7 +136,8 @@ class Gestures:
 
 def gesture_table() -> Gestures:
     """The numbers of every gesture."""
-    return read_table("motion_backend", "gestures.toml", Gestures)
+    rows: Gestures = read_table("motion_backend", "gestures.toml", Gestures)
+    return rows
 
 
 def gesture(held: Pose, doing: str) -> Pose:
@@ -170,7 +171,7 @@ def _in_waves(held: Pose, time: Array, ease: Array, waves: str) -> Pose:
                 offsets[index] += row.offsets(time)
             elif row.hand == "raised":
                 offsets[index] += raised[:, index, None] * row.offsets(time)
-    moved = _moved(held, *offsets, ease)
+    moved = _moved(held, offsets[0], offsets[1], ease)
     for bend in rows.trunk:
         part = getattr(moved, bend.part) + ease[:, None] * bend.bends(time)
         moved = replace(moved, spine=part) if bend.part == "spine" else replace(moved, head=part)

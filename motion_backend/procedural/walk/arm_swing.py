@@ -105,7 +105,8 @@ class ArmTable:
 
 def arm_table() -> ArmTable:
     """The numbers of walking arms."""
-    return read_table("motion_backend", "gait/arm_swing.toml", ArmTable)
+    rows: ArmTable = read_table("motion_backend", "gait/arm_swing.toml", ArmTable)
+    return rows
 
 
 def swing_arms(style: Walk, steps: Steps, speed: Array) -> tuple[Array, Array]:

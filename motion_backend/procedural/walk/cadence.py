@@ -50,7 +50,8 @@ class Cadence:
 
 def cadence() -> Cadence:
     """When steps are made."""
-    return read_table("motion_backend", "gait/cadence.toml", Cadence)
+    rows: Cadence = read_table("motion_backend", "gait/cadence.toml", Cadence)
+    return rows
 
 
 def plan_phase(

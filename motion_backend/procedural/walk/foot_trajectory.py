@@ -87,9 +87,9 @@ class FootWay:
     """Speed of the foot as it lifts, and"""
     arriving_ratio: float
     """as it lands, against its mean speed in the air."""
-    toes_lift_share: float
+    toes_stretch_share: float
     """Of the time in the air, in which toes that were bent stretch,"""
-    toes_land_share: float
+    toes_bend_share: float
     """and in which they can bend again."""
     toe_bend_deg: float
     """So far toes bend while the heel rises; beyond that the foot tips over their ends."""
@@ -117,7 +117,8 @@ class FootTable:
 
 def foot_table() -> FootTable:
     """How a foot moves in a step."""
-    return read_table("motion_backend", "gait/foot_trajectory.toml", FootTable)
+    rows: FootTable = read_table("motion_backend", "gait/foot_trajectory.toml", FootTable)
+    return rows
 
 
 @cache
@@ -241,7 +242,7 @@ class Feet:
         self.yaw[after, index] = swing.start_yaw + smooth(u) * swing.turn
         self.planted[inside, index] = 0.0
         air = share[inside]
-        self.bend[inside, index] = 1 - smooth(air / row.toes_lift_share) * smooth((1 - air) / row.toes_land_share)
+        self.bend[inside, index] = 1 - smooth(air / row.toes_stretch_share) * smooth((1 - air) / row.toes_bend_share)
         self.pitch[:, index] += swing.pitch(phase)
 
     def rolled(self, tiptoe: Array, skeleton: Skeleton) -> tuple[Array, Array]:

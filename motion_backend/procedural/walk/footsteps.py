@@ -130,7 +130,8 @@ class FootstepTable:
 
 def footstep_table() -> FootstepTable:
     """The numbers of stepping."""
-    return read_table("motion_backend", "gait/footsteps.toml", FootstepTable)
+    rows: FootstepTable = read_table("motion_backend", "gait/footsteps.toml", FootstepTable)
+    return rows
 
 
 @dataclass(frozen=True)

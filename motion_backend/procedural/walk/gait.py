@@ -157,7 +157,8 @@ class Carriage:
 
 def carriage() -> Carriage:
     """How a walking body is carried over its feet."""
-    return read_table("motion_backend", "gait/carriage.toml", Carriage)
+    rows: Carriage = read_table("motion_backend", "gait/carriage.toml", Carriage)
+    return rows
 
 
 def walk(
@@ -267,7 +268,8 @@ def _leaning(route: Route, style: Walk, brisk: Array) -> Array:
     """How far trunk and pelvis together bend forwards. (T,)."""
     row, frames = carriage().lean, len(route.heading)
     # A bowed body straightens up a little where it arrives, so as not to bump its head.
-    arriving = smooth((np.arange(frames) - frames + row.straightens_frames) / row.straightens_frames)
+    since = np.arange(frames) - frames + row.straightens_frames
+    arriving = smooth(np.asarray(since / row.straightens_frames))
     bowed = style.bearing.lean > row.bowed_from_deg
     lean = np.radians(style.bearing.lean) * (1 - row.straightens_share * arriving * bowed)
     fast = np.clip(route.speed - row.fast_from_mps, 0, row.fast_within_mps)

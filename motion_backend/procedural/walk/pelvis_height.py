@@ -90,7 +90,8 @@ class PelvisTable:
 
 def pelvis_table() -> PelvisTable:
     """How high a walking body is carried."""
-    return read_table("motion_backend", "gait/pelvis_height.toml", PelvisTable)
+    rows: PelvisTable = read_table("motion_backend", "gait/pelvis_height.toml", PelvisTable)
+    return rows
 
 
 def lifted(pose: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skeleton) -> Array:

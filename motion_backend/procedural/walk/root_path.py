@@ -80,7 +80,8 @@ class RootPathTable:
 
 def root_path_table() -> RootPathTable:
     """The numbers of going along a way."""
-    return read_table("motion_backend", "gait/root_path.toml", RootPathTable)
+    rows: RootPathTable = read_table("motion_backend", "gait/root_path.toml", RootPathTable)
+    return rows
 
 
 @dataclass(frozen=True)
