@@ -82,7 +82,8 @@ class Catalogue:
 @cache
 def catalogue() -> Catalogue:
     """The furniture we know, from data/furniture.toml."""
-    return read_table("scene_graphs", "furniture.toml", Catalogue)
+    known: Catalogue = read_table("scene_graphs", "furniture.toml", Catalogue)
+    return known
 
 
 class Furniture(NamedTuple):

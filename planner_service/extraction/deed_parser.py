@@ -213,7 +213,8 @@ class DeedPatterns:
 @cache
 def deed_patterns() -> DeedPatterns:
     """How clauses begin that have a body do something, from data/deed_patterns.toml."""
-    return read_table("planner_service", "deed_patterns.toml", DeedPatterns)
+    known: DeedPatterns = read_table("planner_service", "deed_patterns.toml", DeedPatterns)
+    return known
 
 
 @dataclass(frozen=True)

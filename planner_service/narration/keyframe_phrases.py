@@ -76,7 +76,8 @@ class Phrases:
 @cache
 def templates() -> Phrases:
     """How keyframes are worded, from data/keyframe_phrases.toml."""
-    return read_table("planner_service", "keyframe_phrases.toml", Phrases)
+    known: Phrases = read_table("planner_service", "keyframe_phrases.toml", Phrases)
+    return known
 
 
 Piece = tuple[str, tuple[int, ...]]

@@ -100,7 +100,8 @@ class StoryTexts:
 @cache
 def story_texts() -> StoryTexts:
     """How stories begin, go on and end, from data/openings_and_endings.toml."""
-    return read_table("planner_service", "openings_and_endings.toml", StoryTexts)
+    known: StoryTexts = read_table("planner_service", "openings_and_endings.toml", StoryTexts)
+    return known
 
 
 def time_of(*texts: str) -> str:

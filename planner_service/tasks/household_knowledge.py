@@ -121,7 +121,8 @@ def _check_furniture(place: str, words: Iterable[str]) -> None:
 @cache
 def household() -> Household:
     """What people do at home, from data/household.toml."""
-    return read_table("planner_service", "household.toml", Household)
+    known: Household = read_table("planner_service", "household.toml", Household)
+    return known
 
 
 @cache

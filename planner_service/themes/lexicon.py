@@ -72,7 +72,7 @@ class EnglishVerbs:
     @cached_property
     def bases(self) -> frozenset[str]:
         """Base forms of the verbs that stories are told with."""
-        return ({*self.regular.split(), *self.pasts} - {"be", "am"}) - frozenset(self.read_only.split())
+        return frozenset({*self.regular.split(), *self.pasts} - {"be", "am", *self.read_only.split()})
 
     @cached_property
     def presents(self) -> dict[str, str]:
@@ -93,7 +93,8 @@ class EnglishVerbs:
 @cache
 def english_verbs() -> EnglishVerbs:
     """The verbs we know, from data/english_verbs.toml."""
-    return read_table("planner_service", "english_verbs.toml", EnglishVerbs)
+    known: EnglishVerbs = read_table("planner_service", "english_verbs.toml", EnglishVerbs)
+    return known
 
 
 def is_verb(word: str) -> bool:
@@ -189,5 +190,5 @@ class Idioms:
 
 def idiom_in(text: str) -> Idiom | None:
     """The first saying found in the text."""
-    idioms = read_table("planner_service", "idioms.toml", Idioms)
+    idioms: Idioms = read_table("planner_service", "idioms.toml", Idioms)
     return next((idiom for pattern, idiom in idioms.patterns if pattern.search(text)), None)

@@ -43,7 +43,8 @@ class FurnitureSizes:
 @cache
 def sizes() -> dict[str, SizeRange]:
     """The sizes that our rooms use by category, from data/furniture_sizes.toml."""
-    return read_table("scene_graphs", "furniture_sizes.toml", FurnitureSizes).sizes
+    known: FurnitureSizes = read_table("scene_graphs", "furniture_sizes.toml", FurnitureSizes)
+    return known.sizes
 
 
 def size_of(rng: np.random.Generator, category: str) -> Point3:
