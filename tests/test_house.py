@@ -160,6 +160,7 @@ def test_there_is_no_drawer_for_odds_and_ends() -> None:
         assert path.stem not in {"common", "utils", "util", "helpers", "types", "misc"}, path
 
 
+@pytest.mark.service
 def test_importing_the_planner_loads_nothing_heavy() -> None:
     """Neither command line nor service."""
     modules = (

@@ -404,6 +404,7 @@ def answers(place: Path, before: dict[object, object]) -> dict[str, Answer]:
         return {name: answer for half in asked for name, answer in half.items()}
 
 
+@pytest.mark.service
 @pytest.mark.parametrize("name", CASES)
 def test_a_mistake_is_answered_by_one_line_that_names_it(name: str, answers: dict[str, Answer]) -> None:
     answer = answers[name]
@@ -418,11 +419,13 @@ def test_a_mistake_is_answered_by_one_line_that_names_it(name: str, answers: dic
     assert len(said) < 700
 
 
+@pytest.mark.service
 @pytest.mark.parametrize("name", CASES)
 def test_a_mistake_leaves_no_file_behind(name: str, answers: dict[str, Answer]) -> None:
     assert answers[name].left == ()
 
 
+@pytest.mark.service
 def test_a_mistake_changes_no_file_of_the_user(answers: dict[str, Answer], place: Path, before) -> None:
     assert len(answers) == len(CASES)
     assert contents(place) == before

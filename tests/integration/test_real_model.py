@@ -295,6 +295,7 @@ def test_a_worker_that_starts_again_asks_nothing_again(shelves: Shelves, tmp_pat
         parts.close()
 
 
+@pytest.mark.service
 def test_models_check_says_what_works(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("SIMS_DATA_DIR", str(tmp_path))

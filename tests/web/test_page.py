@@ -41,7 +41,7 @@ def missing() -> str | None:
 
 
 REASON = missing()
-pytestmark = pytest.mark.skipif(REASON is not None, reason=str(REASON))
+pytestmark = [pytest.mark.service, pytest.mark.skipif(REASON is not None, reason=str(REASON))]
 
 
 class Visit:

@@ -231,12 +231,14 @@ def test_words_that_nobody_knows_are_found_by_their_own_name_only() -> None:
     assert {match.missing for match in strange} == {(Furniture("zither", 1),)}
 
 
+@pytest.mark.service
 def test_importing_retrieval_does_not_wait_for_the_compiler() -> None:
     code = "import sys, scene_graphs.retrieval.layout_index; print([name for name in sys.modules if 'numba' in name])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
 
 
+@pytest.mark.service
 def test_where_no_folder_takes_compiled_code_it_is_compiled_all_the_same() -> None:
     """As in a container whose every folder is read-only: the compiler then refuses to be asked to keep anything."""
     code = (

@@ -253,6 +253,7 @@ async def test_a_damaged_script_never_breaks_the_service(
         assert answer.status_code in (400, 409, 422)
 
 
+@pytest.mark.service
 def test_the_command_line_and_the_service_share_one_library(tmp_path: Path) -> None:
     environment = {name: value for name, value in os.environ.items() if not name.startswith("SIMS_")}
     environment |= {"SIMS_DATA_DIR": str(tmp_path / "data"), "OMP_NUM_THREADS": "1"}

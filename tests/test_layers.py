@@ -1,0 +1,47 @@
+"""The layers hold: a fast test can start nothing, and a row of many that fails is named."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+from for_each import for_each
+from run_layer import LAYERS
+
+
+def test_a_fast_test_can_start_no_process() -> None:
+    with pytest.raises(pytest.fail.Exception, match=r"pytest\.mark\.service"):
+        subprocess.run([sys.executable, "-c", "pass"], check=True)
+    with pytest.raises(pytest.fail.Exception, match=r"pytest\.mark\.service"):
+        os.fork()
+
+
+@pytest.mark.parametrize("fixture", ["service", "postgres_url"])
+def test_a_fast_test_gets_nothing_live(fixture: str, request: pytest.FixtureRequest) -> None:
+    with pytest.raises(pytest.fail.Exception, match=r"pytest\.mark\.service"):
+        request.getfixturevalue(fixture)
+
+
+@pytest.mark.service
+def test_a_marked_test_may() -> None:
+    assert subprocess.run([sys.executable, "-c", "pass"], check=True).returncode == 0
+
+
+def test_make_test_and_test_service_leave_out_only_the_sweeps_and_test_all_nothing() -> None:
+    chosen = {name: [layer.chosen for layer in layers] for name, layers in LAYERS.items()}
+    assert chosen["test-all"] == [*chosen["test"], *chosen["test-service"], "sweep"]
+
+
+def test_all_rows_that_fail_are_named() -> None:
+    @for_each("number", range(5))
+    @for_each(("word", "length"), [("a", 1), ("bb", 3)])
+    def holds(number: int, word: str, length: int) -> None:
+        assert number < 3
+        assert len(word) == length
+
+    with pytest.raises(pytest.fail.Exception, match=r"^5 of 5:") as told:
+        holds()
+    assert "4: Failed 2 of 2" in str(told.value)
+    assert "0: Failed 1 of 2: bb, 3" in str(told.value)
