@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from functools import wraps
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -27,45 +29,53 @@ def for_each(names: str | tuple[str, ...], rows: Iterable[Any]) -> Callable[[Che
         signature = inspect.signature(check)
         kept = [one for name, one in signature.parameters.items() if name not in keys]
 
-        if inspect.iscoroutinefunction(check):
+        async def waited(**fixtures: Any) -> None:
+            failed: list[str] = []
+            for row in listed:
+                with _noting(row, failed):
+                    await check(**dict(zip(keys, row, strict=True)), **fixtures)
+            _report(failed, len(listed))
 
-            @wraps(check)
-            async def whole(**fixtures: Any) -> None:
-                failed = []
-                for row in listed:
-                    try:
-                        await check(**dict(zip(keys, row, strict=True)), **fixtures)
-                    except (Exception, pytest.fail.Exception) as error:
-                        failed.append(_said(row, error))
-                _report(failed, len(listed))
-        else:
+        def called(**fixtures: Any) -> None:
+            failed: list[str] = []
+            for row in listed:
+                with _noting(row, failed):
+                    check(**dict(zip(keys, row, strict=True)), **fixtures)
+            _report(failed, len(listed))
 
-            @wraps(check)
-            def whole(**fixtures: Any) -> None:
-                failed = []
-                for row in listed:
-                    try:
-                        check(**dict(zip(keys, row, strict=True)), **fixtures)
-                    except (Exception, pytest.fail.Exception) as error:
-                        failed.append(_said(row, error))
-                _report(failed, len(listed))
-
-        del whole.__wrapped__  # type: ignore[attr-defined]
+        whole = wraps(check)(waited if inspect.iscoroutinefunction(check) else called)
+        del whole.__wrapped__
         whole.__signature__ = signature.replace(parameters=kept)  # type: ignore[attr-defined]
         return whole
 
     return decorate
 
 
-def _said(row: tuple[Any, ...], error: BaseException) -> str:
-    label = ", ".join(_label(value) for value in row)
-    return f"{label}: {type(error).__name__} {' '.join(str(error).split())[:SHOWN]}"
+class RowsFailed(pytest.fail.Exception):
+    """Rows for which a check does not hold."""
+
+    def __init__(self, failed: list[str], count: int) -> None:
+        super().__init__(f"{len(failed)} failed, of {count} rows:\n" + "\n".join(failed), pytrace=False)
+        self.failed = failed
+
+
+@contextmanager
+def _noting(row: tuple[Any, ...], failed: list[str]) -> Iterator[None]:
+    label = ", ".join(map(_label, row))
+    try:
+        yield
+    except RowsFailed as inner:
+        failed.extend(f"{label}, {line}" for line in inner.failed)
+    except (Exception, pytest.fail.Exception) as error:
+        failed.append(f"{label}: {type(error).__name__} {' '.join(str(error).split())[:SHOWN]}")
 
 
 def _label(value: Any) -> str:
+    if isinstance(value, Path):
+        return "/".join(value.parts[-3:])
     return str(getattr(value, "id", None) or value)[:60]
 
 
 def _report(failed: list[str], count: int) -> None:
     if failed:
-        pytest.fail(f"{len(failed)} of {count}:\n" + "\n".join(failed), pytrace=False)
+        raise RowsFailed(failed, count)

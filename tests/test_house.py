@@ -11,6 +11,7 @@ from pathlib import Path
 
 import networkx
 import pytest
+from for_each import for_each
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = {
@@ -67,7 +68,7 @@ def imported(path: Path) -> Iterator[str]:
             yield node.module
 
 
-@pytest.mark.parametrize("path", modules(), ids=lambda p: str(p.relative_to(ROOT)))
+@for_each("path", modules())
 def test_imports_point_one_way(path: Path) -> None:
     package = path.relative_to(ROOT).parts[0]
     ours = {name.split(".")[0] for name in imported(path)} & set(PACKAGES)

@@ -7,8 +7,13 @@ import subprocess
 import sys
 
 import pytest
-from for_each import for_each
+from for_each import RowsFailed, for_each
 from run_layer import LAYERS
+
+
+@pytest.fixture
+def anyio_backend() -> str:
+    return "asyncio"
 
 
 def test_a_fast_test_can_start_no_process() -> None:
@@ -41,7 +46,17 @@ def test_all_rows_that_fail_are_named() -> None:
         assert number < 3
         assert len(word) == length
 
-    with pytest.raises(pytest.fail.Exception, match=r"^5 of 5:") as told:
+    with pytest.raises(RowsFailed, match=r"^7 failed") as told:
         holds()
-    assert "4: Failed 2 of 2" in str(told.value)
-    assert "0: Failed 1 of 2: bb, 3" in str(told.value)
+    rows = [line.split(":")[0] for line in told.value.failed]
+    assert rows == ["0, bb, 3", "1, bb, 3", "2, bb, 3", "3, a, 1", "3, bb, 3", "4, a, 1", "4, bb, 3"]
+
+
+@pytest.mark.anyio
+async def test_rows_of_a_check_that_waits_are_waited_for() -> None:
+    @for_each("number", range(3))
+    async def holds(number: int) -> None:
+        assert number == 1
+
+    with pytest.raises(RowsFailed, match=r"^2 failed, of 3 rows:"):
+        await holds()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from for_each import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -64,14 +65,14 @@ def test_canonical_is_idempotent(word: str) -> None:
     assert canonical(canonical(word)) == canonical(word)
 
 
-@pytest.mark.parametrize("word", WORDS)
+@for_each("word", WORDS)
 def test_known_words_are_their_own_canonical_form(word: str) -> None:
     assert canonical(word) == word
     assert canonical(word.upper().replace("_", " ")) == word
     assert canonical(f"the old {word}") == word
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("word", "name"),
     [
         ("Couch", "sofa"),

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from for_each import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -82,7 +83,7 @@ def test_a_measured_shape_is_written_and_read_to_the_last_bit_and_left_out_where
     assert "shape" not in layout_to_dict(layout_from_dict(ROW))["objects"][0]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("shape", "message"),
     [
         ("box", "shape must be a list of at most 64"),
@@ -114,7 +115,7 @@ def test_an_outline_is_counter_clockwise_seen_from_above_whatever_its_order() ->
     assert (points[:, 0] * following[:, 1] - following[:, 0] * points[:, 1]).sum() < 0
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("fields", "message"),
     [
         ({"id": ""}, "layout.id must be a text"),

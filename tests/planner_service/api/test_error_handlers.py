@@ -13,6 +13,7 @@ import httpx
 import pytest
 from anyio import BrokenResourceError, ClosedResourceError
 from fastapi import FastAPI, Header, Query
+from for_each import for_each
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from pydantic import BaseModel, ConfigDict, Field
@@ -98,14 +99,14 @@ async def raised(app: FastAPI, error: Exception) -> httpx.Response:
     return await ask(app, "GET", "/v1/raise/it")
 
 
-@pytest.mark.parametrize("method", ["GET", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE", "BREW"])
-@pytest.mark.parametrize("path", ["/nope", "/v1", "/v1/nope/1", "/v1/wishes/", "/healthz/", "/assets/no.js"])
+@for_each("method", ["GET", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE", "BREW"])
+@for_each("path", ["/nope", "/v1", "/v1/nope/1", "/v1/wishes/", "/healthz/", "/assets/no.js"])
 async def test_unknown_paths_are_not_found_whatever_the_method(app: FastAPI, method: str, path: str) -> None:
     answer = await ask(app, method, path)
     check_problem(answer, 405 if path.startswith("/assets") and method != "GET" else 404)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("method", "path", "allowed"),
     [
         ("PUT", "/session", {"GET", "HEAD", "POST", "DELETE"}),
@@ -127,7 +128,7 @@ async def test_a_method_that_is_not_there_is_told_with_all_that_are(
     assert set(answer.headers["allow"].split(", ")) == allowed
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("body", "pointer"),
     [
         ({}, "/theme"),
@@ -242,7 +243,7 @@ def test_over_a_real_connection_too_long_a_body_gets_its_answer(app: FastAPI, ch
         assert client.get(f"{url}/healthz").status_code == 200
 
 
-@pytest.mark.parametrize(
+@for_each(
     "problem",
     [
         errors.Malformed("a"),
@@ -261,7 +262,6 @@ def test_over_a_real_connection_too_long_a_body_gets_its_answer(app: FastAPI, ch
         errors.StorageFull("a"),
         Problem("a"),
     ],
-    ids=lambda problem: type(problem).__name__,
 )
 async def test_every_problem_can_be_raised_in_a_route(app: FastAPI, problem: Problem) -> None:
     answer = await raised(app, problem)
@@ -320,7 +320,7 @@ def wrapped(kind: type[Exception], cause: Exception) -> Exception:
     return kind("SELECT 1", {}, cause)  # type: ignore[call-arg]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("error", "status"),
     [
         (wrapped(OperationalError, sqlite3.OperationalError("database is locked")), 503),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pysubs2
 import pytest
+from for_each import for_each
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -74,7 +75,7 @@ def test_any_bytes_are_cues_or_a_clear_error(data: bytes) -> None:
             assert not any(letter in cue.text for letter in "\n\r\x00\x1b\u202e")
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("encoding", "text"),
     [
         ("cp1252", "C’est déjà l’été, où êtes-vous, cœur brisé?"),

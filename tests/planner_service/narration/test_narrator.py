@@ -6,6 +6,7 @@ import re
 from importlib import resources
 
 import pytest
+from for_each import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -261,8 +262,8 @@ def test_a_direct_script_without_short_scripts_is_told_from_its_events() -> None
     assert spoken(told) == list(range(len(keyframes)))
 
 
-@pytest.mark.parametrize("caption", ["swaying like seaweed", "yodelling", "hands in the air"])
-@pytest.mark.parametrize("skill", list(Skill))
+@for_each("caption", ["swaying like seaweed", "yodelling", "hands in the air"])
+@for_each("skill", list(Skill))
 def test_unknown_captions_are_told_by_their_mood(skill: Skill, caption: str) -> None:
     keyframe = PlannedKeyframe(skill=skill, caption=caption, emotion="sad", furniture="bed")
     script = LongScript(theme="Grief.", events=(), short_scripts=(), keyframes=(keyframe,))

@@ -6,6 +6,7 @@ import itertools
 from collections.abc import Sequence
 
 import pytest
+from for_each import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
@@ -45,7 +46,7 @@ def told(keyframes: tuple[Keyframe, ...]) -> list[str]:
     return [f"{keyframe.skill} {keyframe.furniture}" for keyframe in keyframes]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("before", "after"),
     [
         # a walk to the target, unless one is there already
@@ -200,7 +201,7 @@ def uses(keyframes: Sequence[Keyframe]) -> list[Skill]:
     return [skill for skill, _ in itertools.groupby(done)]
 
 
-@pytest.mark.parametrize("emotion", WALKS)
+@for_each("emotion", WALKS)
 def test_a_connecting_walk_shows_the_mood(emotion: str) -> None:
     walk = repair(script(f"sitdown chair, {emotion}"))[0][0]
     assert (walk.caption, walk.emotion) == (WALKS[emotion], emotion)

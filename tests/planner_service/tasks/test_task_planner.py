@@ -11,6 +11,7 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI
+from for_each import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from service_app import app_on, calling, check_problem
@@ -165,7 +166,7 @@ def test_steps_are_about_the_furniture_that_is_there_and_those_without_say_so() 
     assert {step.furniture for step in plan.steps[3:]} == {"coffee table", display_name("loveseat_sofa")}
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("action", "fault"),
     [
         ("", "action: it is empty"),
@@ -365,7 +366,7 @@ async def test_over_http_a_plan_is_the_engines_own_and_a_motion_can_be_made_of_i
 
 
 @pytest.mark.anyio
-@pytest.mark.parametrize(
+@for_each(
     ("body", "pointer"),
     [
         ({}, "/action"),

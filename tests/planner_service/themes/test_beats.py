@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from for_each import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from themes import THEMES, Theme
@@ -28,7 +29,7 @@ def test_the_themes_of_the_paper_have_the_expected_events(theme: Theme) -> None:
         assert mood in wanted.emotions, (text, mood)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("theme", "texts"),
     [
         # the order of time, not of the words
@@ -135,7 +136,7 @@ def test_an_event_of_a_model_keeps_its_words_and_emotion() -> None:
     assert "bed" in clause.query
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("words", "emotion"),
     [
         ("neutral, calm", "neutral"),

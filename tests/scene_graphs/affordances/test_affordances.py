@@ -6,6 +6,7 @@ from math import cos, hypot, inf, pi, sin
 
 import numpy as np
 import pytest
+from for_each import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -32,7 +33,7 @@ def ahead(spot: Spot, distance: float, yaw: float | None = None) -> tuple[float,
     return spot.point[0] + distance * sin(angle), spot.point[2] + distance * cos(angle)
 
 
-@pytest.mark.parametrize("category", [*SEATS, *SOFAS, *BEDS])
+@for_each("category", [*SEATS, *SOFAS, *BEDS])
 def test_a_piece_to_sit_on_offers_a_seat(category: str) -> None:
     found = spots(standing(category), "sit")
     assert found
@@ -46,7 +47,7 @@ def test_a_seat_faces_away_from_its_backrest(category: str) -> None:
     assert 0.16 - 1e-9 <= best.back < inf
 
 
-@pytest.mark.parametrize("category", [*SEATS, *SOFAS, *BEDS])
+@for_each("category", [*SEATS, *SOFAS, *BEDS])
 def test_shins_of_a_sitter_do_not_cut_the_piece(category: str) -> None:
     placed = standing(category)
     for spot in spots(placed, "sit"):
@@ -57,7 +58,7 @@ def test_shins_of_a_sitter_do_not_cut_the_piece(category: str) -> None:
             assert not any(overlaps(part, low, high) for part in parts(category, placed.size) if not part.is_soft)
 
 
-@pytest.mark.parametrize("category", [*SEATS, *SOFAS, *BEDS])
+@for_each("category", [*SEATS, *SOFAS, *BEDS])
 def test_the_trunk_of_a_sitter_does_not_cut_the_piece(category: str) -> None:
     placed = standing(category)
     for spot in spots(placed, "sit"):
@@ -66,7 +67,7 @@ def test_the_trunk_of_a_sitter_does_not_cut_the_piece(category: str) -> None:
         assert not any(overlaps(part, low, high) for part in parts(category, placed.size) if not part.is_soft)
 
 
-@pytest.mark.parametrize("category", [*SEATS, *SOFAS, *BEDS])
+@for_each("category", [*SEATS, *SOFAS, *BEDS])
 def test_one_stands_where_the_feet_of_the_sitter_are(category: str) -> None:
     for spot in spots(standing(category), "sit"):
         assert spot.standing == pytest.approx(ahead(spot, 0.42))

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 import shapely
 import trimesh
+from for_each import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scenes_at_hand import add, block, glb, obj_of, pose_of, scene_of, small_document
@@ -214,7 +215,7 @@ def _all(node: Node) -> list[Node]:
     return [node, *(below for child in node.children for below in _all(child))]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("change", "message"),
     [
         ({"nodes": [{"children": [0]}]}, "two parents or is its own"),

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from for_each import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from spoiling import spoiled
@@ -117,7 +118,7 @@ def test_reading_undoes_writing_wherever_a_bed_stands(yaw: float, x: float, z: f
     assert np.allclose(sorted(layout.doors[0].segment), sorted(room.doors[0].segment), atol=1e-9)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("asset", "category"),
     [
         ("Bed_13", "single_bed"),

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from for_each import for_each
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from scans import ROOM
@@ -185,7 +186,7 @@ def test_a_damaged_mesh_gives_its_points_or_is_refused(kind: str, place: int, ju
             assert np.isfinite(read).all()
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("header", "named"),
     [
         ("element vertex 99999999999\nproperty float x\nproperty float y\nproperty float z\n", "at most"),
@@ -196,7 +197,7 @@ def test_a_damaged_mesh_gives_its_points_or_is_refused(kind: str, place: int, ju
         ("element vertex -1\nproperty float x\nproperty float y\nproperty float z\n", "at most"),
     ],
 )
-@pytest.mark.parametrize("kind", ["ascii", "binary_little_endian"])
+@for_each("kind", ["ascii", "binary_little_endian"])
 def test_a_header_that_lies_is_refused(kind: str, header: str, named: str) -> None:
     data = f"ply\nformat {kind} 1.0\n{header}end_header\n1 2 3".encode()
     with pytest.raises(LayoutError, match=named):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from for_each import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -32,7 +33,7 @@ def test_every_part_lies_within_its_piece(category: str, size: Point3) -> None:
         assert all(high <= bound + 1e-9 for high, bound in zip(part.high, (w / 2, h, d / 2), strict=True))
 
 
-@pytest.mark.parametrize("category", sorted(catalogue().categories))
+@for_each("category", sorted(catalogue().categories))
 def test_solid_parts_of_a_piece_of_usual_size_reach_its_full_box(category: str) -> None:
     size = typical_size(category)
     built = parts(category, size)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import trimesh
+from for_each import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -53,7 +54,7 @@ def test_a_floor_of_any_winding_covers_its_polygon_and_faces_up() -> None:
         assert np.allclose(shape.face_normals, (0, 1, 0))
 
 
-@pytest.mark.parametrize("category", [*sorted(catalogue().categories), "aquarium"])
+@for_each("category", [*sorted(catalogue().categories), "aquarium"])
 def test_every_category_is_drawn_within_a_centimetre_or_two_of_its_box(category: str) -> None:
     size = typical_size(category)
     meshes = furniture_meshes(Placed("a", category, (0.0, 0.0, 0.0), size))

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from for_each import for_each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
@@ -69,7 +70,7 @@ def test_nothing_is_called(tmp_path, wrap, protocol):
     assert not (tmp_path / "touched").exists()
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("data", "fault"),
     [
         (b"cos\nsystem\n(S'ls'\ntR.", "os system"),

@@ -11,6 +11,7 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI
+from for_each import for_each
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from service_app import app_on, calling, check_problem
@@ -82,7 +83,7 @@ async def test_the_answer_is_a_question_for_a_room(app: FastAPI) -> None:
     assert answer.json()["matches"][0]["missing"] == []
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("body", "pointer"),
     [
         ({"graphs": []}, "/graphs"),

@@ -10,6 +10,7 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI
+from for_each import for_each
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from service_app import app_on, calling, check_problem
@@ -152,7 +153,7 @@ def with_object(place: int, **fields: Any) -> dict[str, Any]:
 
 
 @pytest.mark.anyio
-@pytest.mark.parametrize(
+@for_each(
     ("row", "pointer"),
     [
         (with_object(1, size=[1, -1, 1]), "/objects/1/size/1"),
@@ -263,7 +264,7 @@ async def test_of_homes_each_piece_is_in_a_room_that_is_named(app: FastAPI) -> N
 
 
 @pytest.mark.anyio
-@pytest.mark.parametrize(
+@for_each(
     ("body", "pointer"),
     [
         ({"graph": {"nodes": []}}, "/graph/nodes"),

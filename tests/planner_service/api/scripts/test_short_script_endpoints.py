@@ -11,6 +11,7 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI
+from for_each import for_each
 from forking import Forked
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -180,7 +181,7 @@ async def test_what_comes_from_a_film_says_its_licence_and_an_export_counts_the_
         await ask(app, f"/{row['id']}", "DELETE")
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("query", "pointer"),
     [
         ("?furniture=spaceship", "?furniture"),
@@ -208,7 +209,7 @@ def with_keyframe(**fields: Any) -> dict[str, Any]:
     return EXAMPLE | {"keyframes": [EXAMPLE["keyframes"][0], EXAMPLE["keyframes"][1] | fields]}
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("body", "pointer"),
     [
         (with_keyframe(furniture="spaceship"), "/keyframes/1/furniture"),
