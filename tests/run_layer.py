@@ -37,7 +37,7 @@ FAST = Layer("not service and not sweep", 240, 250, min(CORES, 4), "worksteal")
 # Tests of a whole service mostly wait for it, and files share one: three at a time on two cores, file by file.
 SERVICE = Layer("service and not sweep", 480, None, min(CORES, 4) + 1, "loadfile")
 SWEEP = Layer("sweep", None, None, min(CORES, 4), "loadfile")
-RELEASE = {"SIMS_TEST_KILLS": "20", "SIMS_TEST_STORIES": "50", "SIMS_TEST_EXAMPLES": "thorough"}
+RELEASE = {"SIMS_TEST_KILLS": "20", "SIMS_TEST_STORIES": "50", "SIMS_TEST_EXAMPLES": "many"}
 LAYERS = {"test": (FAST,), "test-service": (SERVICE,), "test-all": (FAST, SERVICE, SWEEP)}
 
 

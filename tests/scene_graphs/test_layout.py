@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 from for_each import for_each
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.furniture_shapes import parts_of
 from scene_graphs.layout import (
@@ -41,7 +42,7 @@ def changed(**fields: Any) -> dict[str, Any]:
     return {**ROW, **fields}
 
 
-@settings(max_examples=30, deadline=None)
+@tries(30)
 @given(numbers, numbers, numbers, st.floats(-3.1, 3.1), st.tuples(numbers, numbers, numbers))
 def test_to_local_undoes_to_world(x: float, y: float, z: float, yaw: float, point: tuple[float, float, float]) -> None:
     placed = Placed("a", "desk", (x, y, z), (1.0, 1.0, 1.0), yaw)
@@ -149,7 +150,7 @@ json_values = st.recursive(
 )
 
 
-@settings(max_examples=60, deadline=None)
+@tries(60)
 @given(st.sampled_from(sorted(ROW)), json_values)
 def test_whatever_a_field_holds_it_is_read_or_refused_by_name(field: str, value: Any) -> None:
     try:

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from motion_backend.language.sentence_encoder import CachedEncoder, HashingEncoder, Vectors, load_encoder
 
@@ -29,7 +30,7 @@ class Counting:
         return HashingEncoder().encode(texts)
 
 
-@settings(max_examples=50, deadline=None)
+@tries(50)
 @given(st.lists(st.text(), max_size=5))
 def test_hashed_rows_have_unit_length_and_do_not_depend_on_their_neighbours(texts: list[str]) -> None:
     rows = HashingEncoder().encode(texts)

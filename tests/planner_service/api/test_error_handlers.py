@@ -14,13 +14,14 @@ import pytest
 from anyio import BrokenResourceError, ClosedResourceError
 from fastapi import FastAPI, Header, Query
 from for_each import for_each
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 from pydantic import BaseModel, ConfigDict, Field
 from service_app import app_on, calling, check_problem, running
 from sqlalchemy import create_engine, text
 from sqlalchemy.exc import DataError, IntegrityError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
+from tries import tries
 
 from motion_backend.backends import BrokenBackendError
 from planner_service.api import errors
@@ -372,7 +373,7 @@ ANYTHING = st.recursive(
 )
 
 
-@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@tries(60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(body=ANYTHING)
 async def test_whatever_json_is_sent_the_answer_is_a_wish_or_a_problem(app: FastAPI, body: Any) -> None:
     answer = await ask(app, "POST", "/v1/wishes/1", content=json.dumps(body), headers=JSON)

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 
 import pytest
 from for_each import for_each
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
+from tries import tries
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Posture, Skill
@@ -97,7 +98,7 @@ KEYFRAMES = st.builds(
 )
 
 
-@settings(max_examples=300, deadline=None)
+@tries(300)
 @given(st.lists(KEYFRAMES, max_size=12))
 def test_whatever_was_repaired_can_be_acted_out_and_is_then_left_alone(keyframes: list[Keyframe]) -> None:
     repaired, repairs = repair(keyframes)
@@ -106,7 +107,7 @@ def test_whatever_was_repaired_can_be_acted_out_and_is_then_left_alone(keyframes
     assert bool(repairs) == (list(repaired) != keyframes) == bool(check(keyframes))
 
 
-@settings(max_examples=100, deadline=None)
+@tries(100)
 @given(st.lists(KEYFRAMES, max_size=12))
 def test_repairing_keeps_the_order_of_what_is_done(keyframes: list[Keyframe]) -> None:
     assert uses(repair(keyframes)[0]) == uses(keyframes)
@@ -135,7 +136,7 @@ HOMES = st.none() | st.lists(
 )
 
 
-@settings(max_examples=100, deadline=None)
+@tries(100)
 @given(st.lists(OUTSIDE, max_size=10), st.sampled_from([WORDS, None]), HOMES)
 def test_whatever_comes_from_outside_is_repaired_once_and_for_all(
     keyframes: list[Keyframe], vocabulary: Vocabulary | None, home: list[str] | None

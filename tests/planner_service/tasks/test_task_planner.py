@@ -12,9 +12,10 @@ import httpx
 import pytest
 from fastapi import FastAPI
 from for_each import for_each
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from service_app import app_on, calling, check_problem
+from tries import tries
 from typer.testing import CliRunner
 
 from motion_backend.motion import Action, Skill
@@ -110,7 +111,7 @@ def test_rules_go_there_take_what_is_needed_sit_down_and_put_things_back(action:
     assert all(step.acted for step in plan.steps)
 
 
-@settings(max_examples=25, deadline=None)
+@tries(25)
 @given(
     st.lists(st.sampled_from(DEEDS), min_size=1, max_size=4), st.sampled_from([", ", " and ", ", then "]),
     st.integers(0, 2**53 - 1), st.booleans(),
@@ -206,7 +207,7 @@ def test_hands_that_a_body_has_are_read(action: str, hand: str) -> None:
     assert plan_task(action).steps[-1].hand == hand
 
 
-@settings(max_examples=30, deadline=None)
+@tries(30)
 @given(st.lists(st.sampled_from([*" ".join(DEEDS).split(), "and", "the", ",", "after", "before", "of", "7", "é", "it"]),
                 max_size=25))  # fmt: skip
 def test_any_words_are_planned_or_refused_and_never_break(words: list[str]) -> None:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 from for_each import for_each
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from themes import THEMES, Theme
+from tries import tries
 
 from planner_service.scripts.emotions import emotion_of, feelings
 from planner_service.scripts.script import EMOTIONS
@@ -100,7 +101,7 @@ def test_an_emotion_is_judged_from_the_meaning_only_where_no_word_shows_one() ->
     assert moods_of(clauses, ["sad", "sad", "sad"]) == ("sad", "happy", "happy")
 
 
-@settings(max_examples=60, deadline=None)
+@tries(60)
 @given(st.integers(1, 8))
 def test_clauses_are_grouped_to_the_number_wanted_without_losing_words(most: int) -> None:
     clauses = clauses_of(THEMES[5].text)
@@ -109,7 +110,7 @@ def test_clauses_are_grouped_to_the_number_wanted_without_losing_words(most: int
     assert " and ".join(clause.text for clause in told) == " and ".join(clause.text for clause in clauses)
 
 
-@settings(max_examples=200, deadline=None)
+@tries(200)
 @given(st.text(max_size=200))
 def test_any_text_has_events_or_is_refused(theme: str) -> None:
     try:

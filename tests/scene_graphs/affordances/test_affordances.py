@@ -7,8 +7,9 @@ from math import cos, hypot, inf, pi, sin
 import numpy as np
 import pytest
 from for_each import for_each
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.affordances.affordances import Spot, floor_spot, spots
 from scene_graphs.furniture import affordances, typical_size
@@ -178,7 +179,7 @@ def test_a_touched_point_lies_on_a_part(category: str) -> None:
         )
 
 
-@settings(max_examples=25, deadline=None)
+@tries(25)
 @given(st.sampled_from([*SEATS, *SOFAS, *BEDS, "wardrobe"]), st.floats(-3, 3), st.floats(-4, 4), st.floats(-4, 4))
 def test_spots_turn_and_move_with_their_piece(category: str, yaw: float, x: float, z: float) -> None:
     moved = standing(category, yaw, (x, 0.0, z))

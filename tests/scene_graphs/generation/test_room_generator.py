@@ -7,8 +7,9 @@ from collections import Counter
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.affordances.room_validation import RoomCheck, validate
 from scene_graphs.furniture import ROOM_TYPES, affordances, categories_of, class_of
@@ -24,7 +25,7 @@ WORDS = (
 )  # fmt: skip
 
 
-@settings(max_examples=40)
+@tries(40)
 @given(st.sampled_from(ROOM_TYPES), st.integers(0, 1_000_000))
 def test_a_generated_room_has_no_problems(room_type: str, seed: int) -> None:
     layout = generate_room(room_type, seed)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 from for_each import for_each
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.furniture import catalogue, typical_size
 from scene_graphs.layout import Point3
@@ -22,7 +23,7 @@ def by_role(category: str, size: Point3) -> dict[str, list[Part]]:
     return found
 
 
-@settings(max_examples=60, deadline=None)
+@tries(60)
 @given(st.sampled_from(sorted(catalogue().categories)), sizes)
 def test_every_part_lies_within_its_piece(category: str, size: Point3) -> None:
     w, h, d = size

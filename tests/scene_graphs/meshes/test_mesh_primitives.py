@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 import trimesh
 from for_each import for_each
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.furniture import catalogue, typical_size
 from scene_graphs.home import home_from_layouts
@@ -26,7 +27,7 @@ def assert_sound(mesh: Mesh) -> None:
     assert all(0 <= value <= 1 for value in mesh.color)
 
 
-@settings(max_examples=25, deadline=None)
+@tries(25)
 @given(st.tuples(*[st.floats(0.05, 2.0)] * 3), st.floats(0.0, 0.5))
 def test_a_bevelled_block_is_closed_faces_out_and_keeps_its_extent(
     size: tuple[float, float, float], bevel: float

@@ -12,9 +12,10 @@ import httpx
 import pytest
 from fastapi import FastAPI
 from for_each import for_each
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 from service_app import app_on, calling, check_problem
+from tries import tries
 
 from planner_service.api.layouts.schemas import Merged
 from scene_graphs.furniture import canonical
@@ -50,7 +51,7 @@ def graphs(draw: st.DrawFn) -> dict[str, Any]:
     return {"nodes": nodes, "edges": [list(pair) for pair in edges]}
 
 
-@settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@tries(80, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(graphs(), min_size=1, max_size=4), st.sampled_from(["canonical", "aligned"]))
 async def test_every_graph_is_found_in_the_merged_one_with_edges_and_needs(
     app: FastAPI, sent: list[dict[str, Any]], method: str

@@ -13,9 +13,10 @@ import pytest
 from fastapi import FastAPI
 from for_each import for_each
 from forking import Forked
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 from service_app import app_on, calling, check_problem, warm_app_on
+from tries import tries
 
 from planner_service.api.scripts.schemas import (
     EXAMPLE,
@@ -235,7 +236,7 @@ async def test_what_is_wrong_with_a_script_is_named_by_its_place(app: FastAPI, b
 WILD = st.none() | st.integers() | st.text(max_size=30) | st.sampled_from([[], {}, "\ud800", "\0", "sofa 2", 1.5])
 
 
-@settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@tries(120, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     st.dictionaries(st.sampled_from(sorted(EXAMPLE)), WILD, max_size=2),
     st.dictionaries(st.sampled_from(["skill", "emotion", "caption", "furniture"]), WILD, max_size=2),
