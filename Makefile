@@ -67,10 +67,11 @@ test-service: $(READY_DEV) page $(NODE_TESTS)
 	@if $(NODE_20); then npm test --silent --prefix web; fi
 	@$(BIN)/python tests/run_layer.py test-service
 
-# Before a release: kills twenty times as often, posts fifty stories at once, looks at all instead of samples.
+# Before a release: twenty kills, fifty stories at once, many more examples, small bugs that the tests must see.
 test-all: $(READY_DEV) page $(NODE_TESTS)
 	@if $(NODE_20); then npm test --silent --prefix web; fi
 	@$(BIN)/python tests/run_layer.py test-all
+	@PYTHONPATH=tests $(BIN)/python -m mutants
 
 lint: $(READY_DEV) web/node_modules/.ready
 	@$(BIN)/ruff check .

@@ -2,7 +2,7 @@
 
 A test without a marker is fast and runs in this process alone. `service` marks what starts a process: a live service, a
 command, PostgreSQL, a browser, Node, a build. `sweep` marks what looks at all of something, where a fast test looks at
-a sample.
+a sample, and what asks for much to see that it ends in time.
 """
 
 from __future__ import annotations

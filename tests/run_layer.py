@@ -8,7 +8,7 @@ import resource
 import subprocess
 import sys
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -26,19 +26,15 @@ class Layer:
     """Seconds that all its processes together may compute."""
     workers: int
     """Processes that share the tests."""
-    share: str
-    """How xdist shares them out."""
-    environment: dict[str, str] = field(default_factory=dict)
-    """How much of some things is tried, if nothing else is asked for."""
 
 
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-FAST = Layer("not service and not sweep", 240, 250, min(CORES, 4), "worksteal")
-# Tests of a whole service mostly wait for it, and files share one: three at a time on two cores, file by file.
-SERVICE = Layer("service and not sweep", 480, None, min(CORES, 4) + 1, "loadfile")
-SWEEP = Layer("sweep", None, None, min(CORES, 4), "loadfile")
+FAST = Layer("not service and not sweep", 240, 250, min(CORES, 4))
+# Tests of a whole service mostly wait for it: three files at a time on two cores.
+REST = Layer("service or sweep", 480, None, min(CORES, 4) + 1)
+LAYERS = {"test": (FAST,), "test-service": (REST,), "test-all": (FAST, REST)}
 RELEASE = {"SIMS_TEST_KILLS": "20", "SIMS_TEST_STORIES": "50", "SIMS_TEST_EXAMPLES": "many"}
-LAYERS = {"test": (FAST,), "test-service": (SERVICE,), "test-all": (FAST, SERVICE, SWEEP)}
+"""How much `test-all` tries, where nothing else is asked for."""
 
 
 def computed() -> float:
@@ -50,7 +46,7 @@ def computed() -> float:
 def run(layer: Layer, more: list[str], environment: dict[str, str]) -> tuple[int, float, float]:
     """Pytest's exit code, and the wall and CPU seconds it took."""
     command = [sys.executable, "-m", "pytest", "-m", layer.chosen]
-    command += ["--numprocesses", str(layer.workers), "--dist", layer.share, "--no-loadscope-reorder", *more]
+    command += ["--numprocesses", str(layer.workers), "--dist", "loadfile", "--no-loadscope-reorder", *more]
     began, before = time.monotonic(), computed()
     code = subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
     return code, time.monotonic() - began, computed() - before

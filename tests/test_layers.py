@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 import pytest
+from _pytest.mark.expression import Expression
 from for_each import RowsFailed, for_each
 from run_layer import LAYERS
 
@@ -34,9 +35,11 @@ def test_a_marked_test_may() -> None:
     assert subprocess.run([sys.executable, "-c", "pass"], check=True).returncode == 0
 
 
-def test_make_test_and_test_service_leave_out_only_the_sweeps_and_test_all_nothing() -> None:
-    chosen = {name: [layer.chosen for layer in layers] for name, layers in LAYERS.items()}
-    assert chosen["test-all"] == [*chosen["test"], *chosen["test-service"], "sweep"]
+@pytest.mark.parametrize("marks", [set(), {"service"}, {"sweep"}, {"service", "sweep"}])
+def test_every_test_is_in_one_layer_and_test_all_runs_both(marks: set[str]) -> None:
+    chosen = [layer.chosen for layer in LAYERS["test-all"]]
+    assert chosen == [layer.chosen for name in ("test", "test-service") for layer in LAYERS[name]]
+    assert [Expression.compile(one).evaluate(lambda mark, **_: mark in marks) for one in chosen].count(True) == 1
 
 
 def test_all_rows_that_fail_are_named() -> None:

@@ -125,8 +125,9 @@ def test_no_story_has_a_slip_of_grammar_or_says_a_thing_twice_in_one_way(
     assert person.name in told.text
 
 
-def test_every_short_script_is_told_without_a_slip() -> None:
-    found = {s.id: slips(narrate(long_script([s]), PEOPLE[n % 3], n).text) for n, s in enumerate(LIBRARY)}
+@pytest.mark.parametrize("step", [7, pytest.param(1, marks=pytest.mark.sweep)])
+def test_every_short_script_is_told_without_a_slip(step: int) -> None:
+    found = {s.id: slips(narrate(long_script([s]), PEOPLE[n % 3], n).text) for n, s in enumerate(LIBRARY[::step])}
     assert {name: problems for name, problems in found.items() if problems} == {}
 
 

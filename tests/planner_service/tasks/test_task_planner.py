@@ -395,6 +395,7 @@ def test_the_client_sends_what_it_is_given() -> None:
     assert call.body == {"action": "watch TV", "layout_id": ROOM, "seed": 2}
 
 
+@pytest.mark.sweep
 def test_on_the_command_line_a_plan_is_a_table_and_with_a_folder_a_film(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -129,6 +129,7 @@ def test_who_is_joined_is_what_looking_at_every_three_finds(objects: list[Placed
     assert {frozenset(str(graph.nodes[end]["object_id"]) for end in edge) for edge in graph.edges} == joined
 
 
+@pytest.mark.sweep
 def test_five_hundred_objects_in_a_heap_are_a_graph_within_seconds() -> None:
     rng = np.random.default_rng(0)
     points = rng.uniform(0, 4, (500, 2))

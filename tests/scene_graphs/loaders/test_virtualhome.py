@@ -136,6 +136,7 @@ def test_things_on_each_other_in_a_circle_do_no_harm() -> None:
     assert len(read(graph).layouts) == 2
 
 
+@pytest.mark.sweep
 def test_a_hundred_thousand_nodes_are_refused_in_bounded_time() -> None:
     graph = flat()
     graph["nodes"] += [node(n, "chair", "Furniture", (1, 0, 1), (0.5, 1, 0.5)) for n in range(100, 100_000)]
