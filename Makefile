@@ -19,13 +19,13 @@ TORCH_INDEX ?=
 export OMP_NUM_THREADS ?= 1
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help demo serve page test lint bench format dist docs image clean
+.PHONY: help demo serve page test test-service test-all lint bench format dist docs image clean
 
 help:
 	@echo "make demo    a theme becomes a film: writes $(OUT)/ (story, film.glb, motion, report, storyboard)"
 	@echo "make serve   the service and its page, on http://127.0.0.1:8000"
 	@echo "make page    only builds the page (Node 20 or newer)"
-	@echo "make test    the test suite"
+	@echo "make test    the tests that start nothing: four minutes at most; make test-service has the rest, make test-all more"
 	@echo "make lint    ruff, mypy --strict, tsc, eslint"
 	@echo "make bench   speed and memory, printed beside their limits"
 	@echo "make docs    the documentation site with the API reference, in out/site"
@@ -59,10 +59,19 @@ serve: $(READY) page
 demo: $(READY)
 	@$(BIN)/sims story "$(THEME)" --out $(OUT) --seed 7
 
-# Three files at a time, in the order of tests/conftest.py: those that run a whole service mostly wait for it.
-test: $(READY_DEV) page $(NODE_TESTS)
+# Each closes with the time it took beside its limits: tests/run_layer.py.
+test: $(READY_DEV)
+	@$(BIN)/python tests/run_layer.py test
+
+test-service: $(READY_DEV) page $(NODE_TESTS)
 	@if $(NODE_20); then npm test --silent --prefix web; fi
-	@$(BIN)/python -m pytest --numprocesses 3 --dist loadfile --no-loadscope-reorder
+	@$(BIN)/python tests/run_layer.py test-service
+
+# Before a release: twenty kills, fifty stories at once, many more examples, small bugs that the tests must see.
+test-all: $(READY_DEV) page $(NODE_TESTS)
+	@if $(NODE_20); then npm test --silent --prefix web; fi
+	@$(BIN)/python tests/run_layer.py test-all
+	@PYTHONPATH=tests $(BIN)/python -m mutants
 
 lint: $(READY_DEV) web/node_modules/.ready
 	@$(BIN)/ruff check .

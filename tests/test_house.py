@@ -11,6 +11,7 @@ from pathlib import Path
 
 import networkx
 import pytest
+from for_each import for_each
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = {
@@ -67,7 +68,7 @@ def imported(path: Path) -> Iterator[str]:
             yield node.module
 
 
-@pytest.mark.parametrize("path", modules(), ids=lambda p: str(p.relative_to(ROOT)))
+@for_each("path", modules())
 def test_imports_point_one_way(path: Path) -> None:
     package = path.relative_to(ROOT).parts[0]
     ours = {name.split(".")[0] for name in imported(path)} & set(PACKAGES)
@@ -160,6 +161,7 @@ def test_there_is_no_drawer_for_odds_and_ends() -> None:
         assert path.stem not in {"common", "utils", "util", "helpers", "types", "misc"}, path
 
 
+@pytest.mark.service
 def test_importing_the_planner_loads_nothing_heavy() -> None:
     """Neither command line nor service."""
     modules = (

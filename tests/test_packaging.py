@@ -65,6 +65,7 @@ def files_below(folder: Path) -> set[str]:
     return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
 
 
+@pytest.mark.service
 def test_a_wheel_holds_the_packages_with_their_data_and_the_page_and_nothing_else(
     tree: Path, archives: tuple[Path, Path]
 ) -> None:
@@ -75,10 +76,12 @@ def test_a_wheel_holds_the_packages_with_their_data_and_the_page_and_nothing_els
     assert {"planner_service/page/index.html", "planner_service/data/short_scripts.jsonl"} < names
 
 
+@pytest.mark.service
 def test_a_wheel_is_small(archives: tuple[Path, Path]) -> None:
     assert archives[1].stat().st_size <= MAX_MEGABYTES * 1_000_000
 
 
+@pytest.mark.service
 def test_the_licence_and_the_command_come_with_the_wheel(archives: tuple[Path, Path]) -> None:
     with zipfile.ZipFile(archives[1]) as opened:
         (entry,) = [name for name in opened.namelist() if name.endswith("entry_points.txt")]
@@ -86,6 +89,7 @@ def test_the_licence_and_the_command_come_with_the_wheel(archives: tuple[Path, P
         assert [name for name in opened.namelist() if name.endswith("licenses/LICENSE")]
 
 
+@pytest.mark.service
 def test_the_source_archive_can_make_test_and_image(archives: tuple[Path, Path]) -> None:
     with tarfile.open(archives[0]) as opened:
         names = {name.partition("/")[2] for name in opened.getnames()}

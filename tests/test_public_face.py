@@ -54,6 +54,7 @@ def test_a_name_that_is_not_there_is_missing_as_anywhere() -> None:
             importlib.import_module(package).nothing  # noqa: B018
 
 
+@pytest.mark.service
 def test_a_package_alone_loads_nothing() -> None:
     """Neither our own rooms nor anybody's library."""
     for package in FACES:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from importlib import resources
 from typing import Final
 
@@ -13,6 +14,7 @@ CAPTION_WEIGHT: Final = 0.7
 _SENTENCE: Final = re.compile(r"(?<=[.!?])\s+")
 
 
+@cache
 def built_in() -> tuple[ShortScript, ...]:
     """The short scripts shipped with the package."""
     lines = resources.files("planner_service").joinpath("data", BUILT_IN).read_text(encoding="utf-8").splitlines()

@@ -18,6 +18,7 @@ from planner_service.client import ApiError, Client
 from planner_service.scripts.script import ShortScript
 from planner_service.scripts.script_repair import check
 
+pytestmark = pytest.mark.service
 CUES = ((0.5, 1.5, "She storms through the room."), (8.0, 9.5, "He lies down on the bed."))
 KEY = "sk-test-0123456789abcdef"
 

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from running import RunningService
 
+pytestmark = pytest.mark.service
 GUIDE = Path(__file__).resolve().parents[2] / "docs" / "http.md"
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 END = "-- end of block --"

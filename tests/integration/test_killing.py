@@ -20,6 +20,7 @@ from sqlalchemy import text
 from planner_service.settings import read_settings
 from planner_service.store.database import database_url, open_engine
 
+pytestmark = pytest.mark.service
 KILLS = int(os.environ.get("SIMS_TEST_KILLS", "2"))
 """Moments at which processes are killed, on each database: the whole service, then its worker."""
 STORIES = 2

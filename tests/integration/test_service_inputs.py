@@ -15,6 +15,7 @@ from motion_backend.formats.motion_json import read_json
 from motion_backend.formats.npz import read_raw
 from planner_service.api.layouts.schemas import EXAMPLE
 
+pytestmark = pytest.mark.service
 WALK = {"skill": "loco", "caption": "walk", "furniture": "sofa"}
 SIT = {"skill": "sitdown", "caption": "sit", "furniture": "sofa"}
 ROOM = "living-room-0016"

@@ -19,6 +19,7 @@ from running import ENDED, SHORT, RunningService, finished
 
 from motion_backend.formats.npz import read_raw
 
+pytestmark = pytest.mark.service
 STORIES = int(os.environ.get("SIMS_TEST_STORIES", "6"))
 """Stories posted at once, on each database; every film is asked for twice."""
 SEVERAL = "He wakes up, reads at the desk, argues on the phone, eats at the table and falls asleep in bed."

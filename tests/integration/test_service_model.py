@@ -11,6 +11,7 @@ import pytest
 from model_server import ModelServer, failing
 from running import RunningService, finished
 
+pytestmark = pytest.mark.service
 THEME = "Sam reads a book on the sofa and then lies down on the bed in tears."
 TEXT = (
     "Sam read on the sofa the whole morning while the light moved over the wall. "

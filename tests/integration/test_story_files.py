@@ -28,6 +28,7 @@ from motion_backend.motion import Action, Skill
 from planner_service.output.story_files import FILES
 from scene_graphs.home import home_from_dict, home_to_dict
 
+pytestmark = pytest.mark.service
 TESTS = Path(__file__).resolve().parents[1]
 VALIDATE = TESTS / "motion_backend" / "formats" / "gltf_validate.mjs"
 VALIDATOR = TESTS / "gltf" / "node_modules" / "gltf-validator"

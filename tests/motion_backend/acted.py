@@ -10,7 +10,7 @@ from small_home import contact, rise, small_home, to
 
 from motion_backend import rotations
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import FPS, Action, BodyState, Character, Motion, Part, Skill
+from motion_backend.motion import Action, BodyState, Character, Motion, Part, Skill
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.skeleton import INDEX
 from scene_graphs.affordances.affordances import floor_spot, spots

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from motion_backend.motion import Action, Skill
@@ -23,6 +25,7 @@ ROOM = Layout(
 )
 
 
+@cache
 def small_home() -> Home:
     return home_from_layouts([ROOM], 0)
 

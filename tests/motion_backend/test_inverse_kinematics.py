@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+from tries import tries
 
 from motion_backend import rotations
 from motion_backend.inverse_kinematics import arm_rotations, leg_rotations, two_bone
@@ -14,7 +15,7 @@ from motion_backend.skeleton import INDEX, build_skeleton
 
 DIRECTION = hnp.arrays(np.float64, 3, elements=st.floats(-1.0, 1.0)).filter(lambda v: np.linalg.norm(v) > 0.1)
 LENGTHS = (0.4, 0.35)
-FEW = settings(max_examples=80, deadline=None)
+FEW = tries(80)
 
 
 @FEW

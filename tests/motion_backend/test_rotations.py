@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from scipy.spatial.transform import Rotation
+from tries import tries
 
 from motion_backend import rotations
 
 VECTORS = hnp.arrays(np.float64, 3, elements=st.floats(-3.0, 3.0))
-FEW = settings(max_examples=60, deadline=None)
+FEW = tries(60)
 
 
 def same(a: np.ndarray, b: np.ndarray) -> bool:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import io
 from dataclasses import replace
+from functools import cache
+from itertools import product
 
 import pytest
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from small_home import contact, rise, small_home, to
@@ -26,17 +29,21 @@ ACTIONS = {
     Skill.LOCO: to(TOUCH), Skill.SITDOWN: SIT, Skill.LIEDOWN: LIE, Skill.TOUCH: TOUCH,
     Skill.STANDUP: rise(SIT), Skill.GETUP: rise(LIE, Skill.GETUP),
 }  # fmt: skip
-FROM = {
-    Posture.STANDING: BACKEND.begin(HOME, Character(), 3),
-    Posture.SEATED: BACKEND.advance(HOME, SIT, BACKEND.begin(HOME, Character(), 3))[1],
-    Posture.LYING: BACKEND.advance(HOME, LIE, BACKEND.begin(HOME, Character(), 3))[1],
-}
-MADE: dict[tuple[Posture, Skill], tuple[Motion, BodyState]] = {
-    (posture, skill): BACKEND.advance(HOME, action, state)
-    for posture, state in FROM.items()
-    for skill, action in ACTIONS.items()
-}
-EVERY = pytest.mark.parametrize(("posture", "skill"), list(MADE))
+PAIRS = tuple(product(Posture, ACTIONS))
+
+
+@cache
+def start(posture: Posture) -> BodyState:
+    """A body that stands, sits or lies."""
+    state = BACKEND.begin(HOME, Character(), 3)
+    taken = {Posture.SEATED: SIT, Posture.LYING: LIE}.get(posture)
+    return state if taken is None else BACKEND.advance(HOME, taken, state)[1]
+
+
+@cache
+def made(posture: Posture, skill: Skill) -> tuple[Motion, BodyState]:
+    """What a body does from there."""
+    return BACKEND.advance(HOME, ACTIONS[skill], start(posture))
 
 
 @given(st.sampled_from(Posture), st.sampled_from(Skill))
@@ -50,9 +57,9 @@ def test_every_skill_follows_every_posture_and_nobody_walks_before_standing(post
     assert parts[-1] is OWN[skill]
 
 
-@EVERY
+@for_each(("posture", "skill"), PAIRS)
 def test_the_body_does_what_the_table_says_in_its_order(posture: Posture, skill: Skill) -> None:
-    motion, after = MADE[posture, skill]
+    motion, after = made(posture, skill)
     assert motion.completed, motion.reason
     assert after.posture is ENDS[skill]
     done = [phase.part for phase in motion.phases]
@@ -61,9 +68,9 @@ def test_the_body_does_what_the_table_says_in_its_order(posture: Posture, skill:
     assert set(LEAVING[posture]) <= set(done)
 
 
-@EVERY
+@for_each(("posture", "skill"), PAIRS)
 def test_the_parts_of_a_segment_fill_it_without_a_gap(posture: Posture, skill: Skill) -> None:
-    motion, _ = MADE[posture, skill]
+    motion, _ = made(posture, skill)
     edges = [0, *(phase.stop for phase in motion.phases)]
     assert [phase.start for phase in motion.phases] == edges[:-1]
     assert edges[-1] == len(motion)
@@ -72,7 +79,7 @@ def test_the_parts_of_a_segment_fill_it_without_a_gap(posture: Posture, skill: S
 @pytest.mark.parametrize("skill", list(DONE))
 def test_done_means_near_enough_for_as_long_as_is_said(skill: Skill) -> None:
     action = ACTIONS[skill]
-    motion, _ = MADE[Posture.STANDING, skill]
+    motion, _ = made(Posture.STANDING, skill)
     assert shortfall(action, Kinematics.of(motion), 60.0) == ""
     last = motion.phases[-1]
     early = motion.part(0, last.start if skill is not Skill.LOCO else len(motion) // 3)
@@ -81,13 +88,13 @@ def test_done_means_near_enough_for_as_long_as_is_said(skill: Skill) -> None:
 
 
 def test_who_has_not_stood_has_not_risen() -> None:
-    motion, _ = MADE[Posture.LYING, Skill.GETUP]
+    motion, _ = made(Posture.LYING, Skill.GETUP)
     body = Kinematics.of(motion.part(0, len(motion) // 2))
     assert "had stood for 0.0 s" in shortfall(ACTIONS[Skill.GETUP], body, 60.0)
 
 
 def test_too_long_is_not_done_and_the_reason_names_the_keyframe() -> None:
-    motion, _ = MADE[Posture.STANDING, Skill.SITDOWN]
+    motion, _ = made(Posture.STANDING, Skill.SITDOWN)
     why = shortfall(replace(SIT, keyframe=7), Kinematics.of(motion), motion.duration - 0.5)
     assert why.startswith("keyframe 7: sitdown took ")
 
@@ -102,7 +109,7 @@ def test_a_longer_way_may_take_longer(posture: Posture, skill: Skill, way: float
 
 def test_what_cannot_be_walked_to_is_told_and_the_body_stands() -> None:
     far = Action(Skill.LOCO, "smoothly forward walk", "neutral", goal=(50.0, 50.0))
-    motion, after = BACKEND.advance(HOME, far, FROM[Posture.SEATED])
+    motion, after = BACKEND.advance(HOME, far, start(Posture.SEATED))
     assert not motion.completed
     assert motion.reason
     assert after.posture is Posture.STANDING
@@ -110,7 +117,7 @@ def test_what_cannot_be_walked_to_is_told_and_the_body_stands() -> None:
 
 
 def test_parts_are_kept_by_joining_cutting_and_files() -> None:
-    walk, state = MADE[Posture.LYING, Skill.LOCO]
+    walk, state = made(Posture.LYING, Skill.LOCO)
     touch, _ = BACKEND.advance(HOME, TOUCH, state)
     whole = join([walk, touch])
     assert [phase.part for phase in whole.phases] == [phase.part for phase in (*walk.phases, *touch.phases)]
@@ -122,8 +129,8 @@ def test_parts_are_kept_by_joining_cutting_and_files() -> None:
 
 def test_what_is_done_otherwise_is_said_and_kept() -> None:
     typing = contact(HOME, Skill.SITDOWN, "chair", "typing, both hands on the keyboard")
-    lacking, _ = BACKEND.advance(HOME, replace(typing, keyframe=4), FROM[Posture.STANDING])
-    fine = MADE[Posture.STANDING, Skill.SITDOWN][0]
+    lacking, _ = BACKEND.advance(HOME, replace(typing, keyframe=4), start(Posture.STANDING))
+    fine = made(Posture.STANDING, Skill.SITDOWN)[0]
     whole = join([fine, lacking])
     assert fine.notes == ()
     assert whole.notes == (Note(4, "no table before the seat: each hand in the lap"),)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from for_each import for_each
 
 from motion_backend.rendering.motion_figures import around, home_props
 from motion_backend.rendering.rasterizer import orbit
@@ -40,8 +41,8 @@ def hidden(eye: np.ndarray, solids: list, point: np.ndarray) -> bool:  # type: i
     return False
 
 
-@pytest.mark.parametrize("yaw", np.arange(16) * np.pi / 8)
-@pytest.mark.parametrize("middle", [(1.2, 1.2), (4.2, 1.2), (1.2, 4.2)])
+@for_each("yaw", np.arange(16) * np.pi / 8)
+@for_each("middle", [(1.2, 1.2), (4.2, 1.2), (1.2, 4.2)])
 def test_no_wall_of_a_cornered_room_hides_a_body_from_any_side(yaw: float, middle: tuple[float, float]) -> None:
     body = BODY + np.array([middle[0] - 1.2, 0.0, middle[1] - 1.2])
     camera = orbit((middle[0], 0.9, middle[1]), 4.0, yaw, 0.36)

@@ -31,7 +31,6 @@ OURS: Final = (
     "planner_service.pipeline", "planner_service.output.story_files", "planner_service.cli",
 )  # fmt: skip
 """What most tests import of the project, directly or not; read by those who do not change it."""
-SERVING: Final = {"service", "postgres_server", "postgres_url"}
 """Fixtures of tests that need something running, and the name of their marker."""
 OPTIONS: Final = ("-q", "-p", "no:cacheprovider", "--tb=line", "-W", "ignore::pytest.PytestAssertRewriteWarning")
 """For pytest; the warning is about libraries that are imported before it."""
@@ -105,10 +104,9 @@ class Chosen:
         self._order = None if wanted is None else {name: place for place, name in enumerate(wanted)}
         self.failed = ""
 
-    def pytest_configure(self, config: pytest.Config) -> None:
+    def pytest_configure(self) -> None:
         from hypothesis import Phase, settings
 
-        config.addinivalue_line("markers", "service: needs something that runs")
         phases = (Phase.explicit, Phase.generate)
         settings.register_profile("mutants", deadline=None, derandomize=True, database=None, phases=phases)
         settings.load_profile("mutants")
@@ -131,13 +129,7 @@ class Chosen:
 
 
 def _served(item: pytest.Item) -> bool:
-    fixtures: Sequence[str] = getattr(item, "fixturenames", ())
-    module = getattr(item, "module", None)
-    return (
-        bool(SERVING & set(fixtures))
-        or item.get_closest_marker("service") is not None
-        or hasattr(module, "RunningService")
-    )
+    return item.get_closest_marker("service") is not None or item.get_closest_marker("sweep") is not None
 
 
 class Watched(Chosen):

@@ -37,6 +37,7 @@ def test_an_address_of_no_database_is_refused_without_its_password(url: str) -> 
     assert "secret" not in str(caught.value)
 
 
+@pytest.mark.service
 def test_a_database_in_which_the_jobs_may_not_be_kept_is_refused(tmp_path: Path, postgres_url: str) -> None:
     from sqlalchemy import create_engine, make_url, text
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 import prompts
 
@@ -25,7 +26,7 @@ def test_a_theme_is_fenced_as_data() -> None:
     assert '<data name="theme">\nHe sits.\n</data>' in text
 
 
-@settings(max_examples=60, deadline=None)
+@tries(60)
 @given(
     st.lists(
         st.sampled_from(["</data>", "< / DATA >", '<data name="x">', "{{who}}", "{{note}}", "a", "\n"]), max_size=8

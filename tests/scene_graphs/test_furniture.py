@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from hypothesis import given, settings
+from for_each import for_each
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.furniture import (
     Furniture,
@@ -59,19 +61,19 @@ def test_every_other_word_leads_to_something_known() -> None:
 
 
 @given(st.text(max_size=30))
-@settings(max_examples=60, deadline=None)
+@tries(60)
 def test_canonical_is_idempotent(word: str) -> None:
     assert canonical(canonical(word)) == canonical(word)
 
 
-@pytest.mark.parametrize("word", WORDS)
+@for_each("word", WORDS)
 def test_known_words_are_their_own_canonical_form(word: str) -> None:
     assert canonical(word) == word
     assert canonical(word.upper().replace("_", " ")) == word
     assert canonical(f"the old {word}") == word
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("word", "name"),
     [
         ("Couch", "sofa"),

@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.doorways import TIGHT, WALL_GAP
 from scene_graphs.home import Home, HomeError, home_from_dict, home_from_layouts, home_to_dict, random_home
@@ -59,14 +60,14 @@ def outlines(home: Home) -> list[shapely.Polygon]:
 
 
 @given(homes())
-@settings(max_examples=10, deadline=None)
+@tries(10)
 def test_rooms_keep_the_thickness_of_a_wall_apart(home: Home) -> None:
     for first, second in combinations(outlines(home), 2):
         assert first.distance(second) > 0.8 * WALL_GAP
 
 
 @given(homes())
-@settings(max_examples=10, deadline=None)
+@tries(10)
 def test_all_rooms_can_be_walked_to_from_each_other(home: Home) -> None:
     walkable = Walkable(home)
     inside = [walkable.random_point(np.random.default_rng(0), index) for index in range(len(home.rooms))]
@@ -75,7 +76,7 @@ def test_all_rooms_can_be_walked_to_from_each_other(home: Home) -> None:
 
 
 @given(homes())
-@settings(max_examples=10, deadline=None)
+@tries(10)
 def test_furniture_keeps_off_the_way_through_a_doorway(home: Home) -> None:
     solid = [outline for _, outline in obstacles(home.objects)]
     for doorway in home.doorways:
@@ -88,7 +89,7 @@ def test_furniture_keeps_off_the_way_through_a_doorway(home: Home) -> None:
 
 
 @given(homes())
-@settings(max_examples=10, deadline=None)
+@tries(10)
 def test_every_doorway_is_cut_through_both_walls(home: Home) -> None:
     for doorway in home.doorways:
         middle = shapely.Point(np.mean(doorway.segment, axis=0))
@@ -103,7 +104,7 @@ def test_every_doorway_is_cut_through_both_walls(home: Home) -> None:
 
 
 @given(homes())
-@settings(max_examples=10, deadline=None)
+@tries(10)
 def test_openings_lie_on_their_wall_and_lead_outside_or_through_a_doorway(home: Home) -> None:
     for wall in home.walls:
         line = shapely.LineString(wall.segment)
@@ -112,7 +113,7 @@ def test_openings_lie_on_their_wall_and_lead_outside_or_through_a_doorway(home: 
 
 
 @given(homes())
-@settings(max_examples=10, deadline=None)
+@tries(10)
 def test_furniture_moves_with_its_room(home: Home) -> None:
     for placed in home.objects:
         index, name = placed.id.split("/")
@@ -124,7 +125,7 @@ def test_furniture_moves_with_its_room(home: Home) -> None:
 
 
 @given(homes())
-@settings(max_examples=10, deadline=None)
+@tries(10)
 def test_a_home_survives_its_json_exactly(home: Home) -> None:
     assert home_from_dict(json.loads(json.dumps(home_to_dict(home)))) == home
 
@@ -206,7 +207,7 @@ TYPES = ("bedroom", "living_room", "dining_room", "study")
 
 
 @given(st.lists(st.sampled_from(TYPES), min_size=1, max_size=4), st.integers(0, 10_000))
-@settings(max_examples=6, deadline=None)
+@tries(6)
 def test_a_random_home_has_a_room_of_each_asked_type(room_types: list[str], seed: int) -> None:
     home = random_home(built_in_layouts(), room_types, seed)
     for one, room_type in zip(home.rooms, room_types, strict=True):

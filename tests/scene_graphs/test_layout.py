@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from for_each import for_each
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.furniture_shapes import parts_of
 from scene_graphs.layout import (
@@ -40,7 +42,7 @@ def changed(**fields: Any) -> dict[str, Any]:
     return {**ROW, **fields}
 
 
-@settings(max_examples=30, deadline=None)
+@tries(30)
 @given(numbers, numbers, numbers, st.floats(-3.1, 3.1), st.tuples(numbers, numbers, numbers))
 def test_to_local_undoes_to_world(x: float, y: float, z: float, yaw: float, point: tuple[float, float, float]) -> None:
     placed = Placed("a", "desk", (x, y, z), (1.0, 1.0, 1.0), yaw)
@@ -82,7 +84,7 @@ def test_a_measured_shape_is_written_and_read_to_the_last_bit_and_left_out_where
     assert "shape" not in layout_to_dict(layout_from_dict(ROW))["objects"][0]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("shape", "message"),
     [
         ("box", "shape must be a list of at most 64"),
@@ -114,7 +116,7 @@ def test_an_outline_is_counter_clockwise_seen_from_above_whatever_its_order() ->
     assert (points[:, 0] * following[:, 1] - following[:, 0] * points[:, 1]).sum() < 0
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("fields", "message"),
     [
         ({"id": ""}, "layout.id must be a text"),
@@ -148,7 +150,7 @@ json_values = st.recursive(
 )
 
 
-@settings(max_examples=60, deadline=None)
+@tries(60)
 @given(st.sampled_from(sorted(ROW)), json_values)
 def test_whatever_a_field_holds_it_is_read_or_refused_by_name(field: str, value: Any) -> None:
     try:

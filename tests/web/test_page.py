@@ -34,14 +34,14 @@ def missing() -> str | None:
     if shutil.which("node") is None:
         return "Node is not installed"
     if not (HERE / "node_modules" / "playwright-core").is_dir():
-        return "the browser's driver is not installed: `make test` does that, or npm ci in tests/web"
+        return "the browser's driver is not installed: `make test-service` does that, or npm ci in tests/web"
     if not os.environ.get("CHROMIUM") and not any(map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))):
         return "no Chromium: install it, or name one by CHROMIUM"
     return None if PAGE.is_file() else "the page is not built: `make page`"
 
 
 REASON = missing()
-pytestmark = pytest.mark.skipif(REASON is not None, reason=str(REASON))
+pytestmark = [pytest.mark.service, pytest.mark.skipif(REASON is not None, reason=str(REASON))]
 
 
 class Visit:

@@ -142,6 +142,7 @@ def test_a_minute_of_body_is_small():
     assert len(body_glb(tumbling(60 * 30))) < 700_000
 
 
+@pytest.mark.service
 @pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")
 @pytest.mark.skipif(not VALIDATOR.is_dir(), reason="the glTF validator is not installed: npm ci in tests/gltf")
 def test_the_khronos_validator_has_nothing_to_say(tmp_path):

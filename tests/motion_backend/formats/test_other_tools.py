@@ -43,6 +43,7 @@ def standing(frames: int) -> Motion:
     )
 
 
+@pytest.mark.service
 @needs_three
 @pytest.mark.parametrize(("suffix", "unit"), [("glb", 1.0), ("bvh", 0.01)])
 def test_three_js_plays_the_joints_where_the_motion_has_them(suffix: str, unit: float, tmp_path):

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from motion_backend.language.sentence_encoder import CachedEncoder, HashingEncoder, Vectors, load_encoder
 
@@ -29,7 +30,7 @@ class Counting:
         return HashingEncoder().encode(texts)
 
 
-@settings(max_examples=50, deadline=None)
+@tries(50)
 @given(st.lists(st.text(), max_size=5))
 def test_hashed_rows_have_unit_length_and_do_not_depend_on_their_neighbours(texts: list[str]) -> None:
     rows = HashingEncoder().encode(texts)
@@ -40,6 +41,7 @@ def test_hashed_rows_have_unit_length_and_do_not_depend_on_their_neighbours(text
         np.testing.assert_array_equal(HashingEncoder().encode([text])[0], row)
 
 
+@pytest.mark.service
 def test_hashing_is_the_same_in_another_process() -> None:
     encoded = "HashingEncoder().encode(['a red sofa'])[0]"
     code = f"from motion_backend.language.sentence_encoder import *; print({encoded}.tobytes().hex())"
@@ -87,6 +89,7 @@ def test_the_hashing_encoder_can_be_asked_for_and_says_its_name() -> None:
         load_encoder("clip")  # type: ignore[arg-type]
 
 
+@pytest.mark.service
 def test_importing_the_encoders_does_not_import_torch() -> None:
     modules = "motion_backend.language.sentence_encoder, motion_backend.language.minilm"
     code = f"import sys, {modules}; sys.exit('torch' in sys.modules)"

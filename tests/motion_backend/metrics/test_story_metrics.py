@@ -13,7 +13,7 @@ from motion_backend.body.scene_collision import Obstacles
 from motion_backend.metrics import contact_error, foot_skate, smoothness, story_metrics
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.penetration import penetration
-from motion_backend.motion import Action, ContactGoal, Motion, Skill
+from motion_backend.motion import Action, ContactGoal, Skill
 from motion_backend.skeleton import INDEX, build_skeleton
 from scene_graphs.home import home_from_layouts
 from scene_graphs.layout import Layout, Opening

@@ -9,9 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from sample_motions import tumbling
+from tries import tries
 
 from motion_backend import rotations
 from motion_backend.formats.bvh import write_bvh
@@ -60,7 +61,7 @@ def test_the_same_clips_give_the_same_bytes_and_read_back_so(tmp_path: Path) -> 
     assert len(kept(dataset, tmp_path).entries) == 2
 
 
-@settings(deadline=None, max_examples=40)
+@tries(40)
 @given(data=st.data())
 def test_a_damaged_collection_is_refused_in_one_way(
     data: st.DataObject, tmp_path_factory: pytest.TempPathFactory

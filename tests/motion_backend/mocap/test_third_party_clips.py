@@ -53,6 +53,7 @@ def leg(clip: Clip) -> float:
     return float(np.linalg.norm(np.diff(bent, axis=0), axis=-1).sum())
 
 
+@pytest.mark.sweep
 def test_every_recording_is_read():
     counts = {
         kind: sum(len(clips(file)) for file in of_kind(kind))

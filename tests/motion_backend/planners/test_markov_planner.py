@@ -8,9 +8,10 @@ from itertools import islice, pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from small_home import small_home
+from tries import tries
 
 from motion_backend.motion import Posture
 from motion_backend.planners.balanced_chain import Edges, balanced
@@ -76,7 +77,7 @@ def follow(sequence: list[Candidate]) -> None:
         posture = candidate.end
 
 
-@settings(max_examples=8, deadline=None)
+@tries(8)
 @given(st.sets(st.sampled_from(range(len(HOME)))), st.integers(0, 2**32))
 def test_whatever_is_left_out_a_plan_is_refused_or_every_instruction_is_possible(left_out: set[int], seed: int) -> None:
     # Few are left out, or hardly anything could be planned.
@@ -162,7 +163,7 @@ def test_what_cannot_go_on_for_ever_is_refused_by_name(candidates: list[Candidat
         Planner(candidates)
 
 
-@settings(max_examples=12, deadline=None)
+@tries(12)
 @given(st.integers(2, 7), st.integers(0, 10_000))
 def test_the_chain_of_any_connected_graph_has_the_shares_it_claims(states: int, seed: int) -> None:
     rng = np.random.default_rng(seed)

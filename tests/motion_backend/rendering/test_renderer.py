@@ -7,8 +7,9 @@ from time import process_time
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from motion_backend.rendering.rasterizer import Camera, clip, fragments, orbit
 from motion_backend.rendering.renderer import Solid, render
@@ -33,7 +34,7 @@ def is_red(pixel: np.ndarray) -> bool:
 
 
 @given(st.lists(st.floats(-5, 45), min_size=6, max_size=6))
-@settings(max_examples=60, deadline=None)
+@tries(60)
 def test_a_triangle_covers_exactly_the_pixel_centres_inside_it(numbers):
     corners = np.array(numbers).reshape(3, 2)
     screen = np.concatenate([corners, np.ones((3, 1))], axis=1)[None]
@@ -55,7 +56,7 @@ def test_a_triangle_covers_exactly_the_pixel_centres_inside_it(numbers):
 
 
 @given(st.floats(0.0, 6.28), st.floats(-0.3, 1.4), st.floats(1.0, 8.0))
-@settings(max_examples=40, deadline=None)
+@tries(40)
 def test_unprojecting_undoes_projecting(yaw, pitch, distance):
     rng = np.random.default_rng(0)
     points = rng.uniform(-0.4, 0.4, (20, 3)) + np.array([0, 1, 0])

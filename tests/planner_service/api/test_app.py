@@ -168,6 +168,7 @@ def test_shutting_down_closes_the_parts(tmp_path: Path) -> None:
         assert app.state.parts.engine.pool.checkedin() == 0
 
 
+@pytest.mark.service
 async def test_postgresql_may_go_away_and_come_back(tmp_path: Path, postgres_server: Any, postgres_url: str) -> None:
     with app_on(tmp_path, database_url=postgres_url) as app:
         assert (await ask(app, "/v1/stories")).json()["items"] == []

@@ -9,6 +9,7 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI, Request
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from service_app import KEY, OTHER_KEY, app_on, calling, check_problem
@@ -73,8 +74,8 @@ def bearer(key: str) -> dict[str, str]:
     return {"Authorization": f"Bearer {key}"}
 
 
-@pytest.mark.parametrize("path", ["/", "/healthz", "/metrics", "/v1/who", "/session", "/assets/a.js", "/nope"])
-@pytest.mark.parametrize(
+@for_each("path", ["/", "/healthz", "/metrics", "/v1/who", "/session", "/assets/a.js", "/nope"])
+@for_each(
     ("host", "let_in"),
     [
         ("localhost", True),
@@ -107,8 +108,8 @@ async def test_without_keys_only_names_of_this_machine_are_served(
         assert "SIMS_API_KEYS" in check_problem(answer, 403)["detail"]
 
 
-@pytest.mark.parametrize("method", ["GET", "POST"])
-@pytest.mark.parametrize(
+@for_each("method", ["GET", "POST"])
+@for_each(
     ("headers", "let_in"),
     [
         ({}, True),
@@ -160,8 +161,8 @@ async def test_a_right_key_gets_in_and_is_known_by_its_fingerprint(
     assert caller not in KEY
 
 
-@pytest.mark.parametrize("method", ["GET", "POST", "DELETE", "HEAD"])
-@pytest.mark.parametrize("path", ["/v1/who", "/v1/nope", "/metrics", "/assetsx", "/healthz/x", "//v1/who"])
+@for_each("method", ["GET", "POST", "DELETE", "HEAD"])
+@for_each("path", ["/v1/who", "/v1/nope", "/metrics", "/assetsx", "/healthz/x", "//v1/who"])
 async def test_without_a_key_all_but_the_open_paths_are_closed(locked: FastAPI, method: str, path: str) -> None:
     answer = await ask(locked, method, path)
     assert answer.status_code == 401
@@ -239,7 +240,7 @@ async def test_without_keys_there_is_nothing_to_log_in_to(local: FastAPI) -> Non
     assert "set-cookie" not in answer.headers
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("headers", "let_in"),
     [
         ({"Origin": "http://localhost:8000"}, True),

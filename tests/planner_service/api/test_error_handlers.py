@@ -13,13 +13,15 @@ import httpx
 import pytest
 from anyio import BrokenResourceError, ClosedResourceError
 from fastapi import FastAPI, Header, Query
-from hypothesis import HealthCheck, given, settings
+from for_each import for_each
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 from pydantic import BaseModel, ConfigDict, Field
 from service_app import app_on, calling, check_problem, running
 from sqlalchemy import create_engine, text
 from sqlalchemy.exc import DataError, IntegrityError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
+from tries import tries
 
 from motion_backend.backends import BrokenBackendError
 from planner_service.api import errors
@@ -98,14 +100,14 @@ async def raised(app: FastAPI, error: Exception) -> httpx.Response:
     return await ask(app, "GET", "/v1/raise/it")
 
 
-@pytest.mark.parametrize("method", ["GET", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE", "BREW"])
-@pytest.mark.parametrize("path", ["/nope", "/v1", "/v1/nope/1", "/v1/wishes/", "/healthz/", "/assets/no.js"])
+@for_each("method", ["GET", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE", "BREW"])
+@for_each("path", ["/nope", "/v1", "/v1/nope/1", "/v1/wishes/", "/healthz/", "/assets/no.js"])
 async def test_unknown_paths_are_not_found_whatever_the_method(app: FastAPI, method: str, path: str) -> None:
     answer = await ask(app, method, path)
     check_problem(answer, 405 if path.startswith("/assets") and method != "GET" else 404)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("method", "path", "allowed"),
     [
         ("PUT", "/session", {"GET", "HEAD", "POST", "DELETE"}),
@@ -127,7 +129,7 @@ async def test_a_method_that_is_not_there_is_told_with_all_that_are(
     assert set(answer.headers["allow"].split(", ")) == allowed
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("body", "pointer"),
     [
         ({}, "/theme"),
@@ -242,7 +244,7 @@ def test_over_a_real_connection_too_long_a_body_gets_its_answer(app: FastAPI, ch
         assert client.get(f"{url}/healthz").status_code == 200
 
 
-@pytest.mark.parametrize(
+@for_each(
     "problem",
     [
         errors.Malformed("a"),
@@ -261,7 +263,6 @@ def test_over_a_real_connection_too_long_a_body_gets_its_answer(app: FastAPI, ch
         errors.StorageFull("a"),
         Problem("a"),
     ],
-    ids=lambda problem: type(problem).__name__,
 )
 async def test_every_problem_can_be_raised_in_a_route(app: FastAPI, problem: Problem) -> None:
     answer = await raised(app, problem)
@@ -320,7 +321,7 @@ def wrapped(kind: type[Exception], cause: Exception) -> Exception:
     return kind("SELECT 1", {}, cause)  # type: ignore[call-arg]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("error", "status"),
     [
         (wrapped(OperationalError, sqlite3.OperationalError("database is locked")), 503),
@@ -372,7 +373,7 @@ ANYTHING = st.recursive(
 )
 
 
-@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@tries(60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(body=ANYTHING)
 async def test_whatever_json_is_sent_the_answer_is_a_wish_or_a_problem(app: FastAPI, body: Any) -> None:
     answer = await ask(app, "POST", "/v1/wishes/1", content=json.dumps(body), headers=JSON)

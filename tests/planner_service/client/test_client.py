@@ -40,6 +40,7 @@ from planner_service.client import (
 )
 from planner_service.client.event_stream_client import EventParser, Message
 
+pytestmark = pytest.mark.service
 ROOT = Path(__file__).resolve().parents[3]
 SIT = [{"skill": "sitdown", "emotion": "tired", "caption": "sit slumped", "furniture": "sofa"}]
 KEY = "0123456789abcdef-first-key"

@@ -6,9 +6,10 @@ import re
 
 import pytest
 from encoded import encoded
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from themes import THEMES, Theme
+from tries import tries
 
 from motion_backend.language.sentence_encoder import HashingEncoder, SentenceEncoder
 from planner_service.composition.compose import Request, compose
@@ -162,7 +163,7 @@ WORDS = """he she becomes drunk sad and then but , . when before after reads a b
 wine so"""
 
 
-@settings(max_examples=40, deadline=None)
+@tries(40)
 @given(st.lists(st.sampled_from(WORDS.split()), min_size=1, max_size=25))
 def test_any_string_of_words_gives_an_executable_script_or_a_clear_refusal(words: list[str]) -> None:
     try:

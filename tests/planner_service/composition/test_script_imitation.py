@@ -7,9 +7,10 @@ from collections.abc import Iterable
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
+from tries import tries
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from planner_service.composition.script_imitation import MAX_QUESTIONS, MAX_WANTED, Imitated, Wish, examples, imitate
@@ -195,7 +196,7 @@ ROW = st.fixed_dictionaries({"skill": WILD, "emotion": WILD, "caption": WILD, "f
 SCRIPT = st.fixed_dictionaries({"summary": WILD | st.just(RING), "keyframes": st.lists(ROW, max_size=4)})
 
 
-@settings(max_examples=25, deadline=None)
+@tries(25)
 @given(st.lists(SCRIPT, max_size=4))
 def test_whatever_a_model_writes_what_is_kept_can_be_acted_out(rows: list[dict[str, Any]]) -> None:
     def answer(_prompt: str, _schema: type[BaseModel]) -> Answer:

@@ -108,6 +108,7 @@ def report() -> WalkReport:
     return evaluate_walks(collection(), rooms=1, seeds=1)
 
 
+@pytest.mark.sweep
 def test_walks_like_the_recorded_ones_are_nearer_than_others() -> None:
     distance = {one.walks.name: one.distance.value for one in report().compared}
     assert distance["at recorded speeds"] < 0.25 < distance["sad"]
@@ -119,6 +120,7 @@ def test_walks_like_the_recorded_ones_are_nearer_than_others() -> None:
     assert all(one.ours == one.recorded for one in jerk_bins(recorded, recorded))
 
 
+@pytest.mark.sweep
 def test_the_command_prints_what_was_measured(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     asked = []
 

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 from film_made import Drawn, Making, film_of
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
 from stories import GERMAN, NARRATIVE, SCREENPLAY, SUBTITLES
+from tries import tries
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from planner_service.extraction.extract import extract
@@ -59,7 +60,7 @@ def answering(*scripts: dict[str, object]) -> ScriptedModel:
     return ScriptedModel(lambda _prompt, _schema: {"scripts": list(scripts)}, name="scripted-a")
 
 
-@settings(max_examples=40)
+@tries(40)
 @given(st.lists(WORDS, max_size=60).map(" ".join) | st.text(max_size=200))
 def test_whatever_the_text_every_script_can_be_acted_out_told_and_kept(text: str) -> None:
     try:
@@ -280,7 +281,7 @@ LONG = st.lists(
 )
 
 
-@settings(max_examples=30, deadline=None)
+@tries(30)
 @given(LONG, st.sampled_from(["", "INT. KITCHEN"]))
 def test_long_scenes_are_cut_without_losing_a_letter(lines: list[Line], place: str) -> None:
     scene = TextScene(tuple(lines), place)

@@ -8,8 +8,9 @@ from itertools import pairwise
 
 import pytest
 from film_made import Drawn, Making, film_of, four_shots
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from planner_service.extraction.shot_detection import (
     MAX_FRAMES,
@@ -33,7 +34,7 @@ def cuts(found: Sequence[Shot]) -> list[float]:
     return [shot.start for shot in found[1:]]
 
 
-@settings(max_examples=6, deadline=None)
+@tries(6)
 @given(st.lists(st.tuples(st.integers(8, 24), st.integers(1, 4)), min_size=1, max_size=5))
 def test_hard_cuts_are_found_to_the_picture(lengths: list[tuple[int, int]]) -> None:
     drawn, colour = [], 0
@@ -91,7 +92,7 @@ def cut_films(draw: st.DrawFn) -> list[Shot]:
     return found
 
 
-@settings(max_examples=50, deadline=None)
+@tries(50)
 @given(cut_films(), st.lists(st.tuples(st.floats(0, 3000), st.floats(0.1, 8)), max_size=20))
 def test_scenes_are_the_whole_film_and_each_is_bounded(film: list[Shot], said: list[tuple[float, float]]) -> None:
     cues = [Cue(start, start + length, "words") for start, length in said if start + length < film[-1].end]

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pysubs2
 import pytest
-from hypothesis import example, given, settings
+from for_each import for_each
+from hypothesis import example, given
 from hypothesis import strategies as st
+from tries import tries
 
 from planner_service.extraction.subtitles import (
     MAX_CUE_SECONDS,
@@ -47,7 +49,7 @@ def one(text: str) -> Subtitles:
     return read_subtitles(f"1\n00:00:01,000 --> 00:00:02,000\n{text}\n".encode())
 
 
-@settings(max_examples=50, deadline=None)
+@tries(50)
 @given(SPANS, st.sampled_from(["srt", "vtt", "ass"]), st.sampled_from(["utf-8", "utf-8-sig", "utf-16"]))
 def test_what_another_library_writes_is_read(spans: list[tuple[int, int, str]], form: str, encoding: str) -> None:
     film = pysubs2.SSAFile()
@@ -61,7 +63,6 @@ def test_what_another_library_writes_is_read(spans: list[tuple[int, int, str]], 
     assert [cue.start for cue in read.cues] == sorted(cue.start for cue in read.cues)
 
 
-@settings(deadline=None)
 @given(st.one_of(st.binary(max_size=400), st.text(max_size=300).map(str.encode)))
 @example(b"1\n00:00:00,000 --> 00:00:00,000\n\x00\n")
 @example(b"WEBVTT\n\n00:00.000 --> 99:99.999\n<v >{\\p1}&#0;\n")
@@ -74,7 +75,7 @@ def test_any_bytes_are_cues_or_a_clear_error(data: bytes) -> None:
             assert not any(letter in cue.text for letter in "\n\r\x00\x1b\u202e")
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("encoding", "text"),
     [
         ("cp1252", "C’est déjà l’été, où êtes-vous, cœur brisé?"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from stories import GERMAN, NARRATIVE, SCREENPLAY
@@ -87,7 +88,7 @@ def test_subtitles_are_told_where_they_tell_of_somebody_and_else_spoken() -> Non
     ]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("clause", "skill", "piece"),
     [
         ("slumps onto the couch", "sitdown", "sofa"),
@@ -116,7 +117,7 @@ def test_a_clause_is_a_deed_by_its_verb_and_the_furniture_it_names(clause: str, 
     assert (deed.skill, deed.piece) == (skill, piece)
 
 
-@pytest.mark.parametrize(
+@for_each(
     "clause",
     [
         "falls into a rage", "lies to her mother", "opens the door", "closes her eyes", "took a deep breath",

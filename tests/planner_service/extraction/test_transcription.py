@@ -8,6 +8,7 @@ import threading
 import wave
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from itertools import pairwise
 from pathlib import Path
@@ -25,7 +26,12 @@ from planner_service.extraction.transcription_server import ServedTranscriber
 from planner_service.extraction.video import Film, open_film
 from planner_service.settings import Settings, SettingsError
 
-SOUNDING = film_of([Drawn(2)], Making(sound=2.0))
+
+@cache
+def sounding() -> bytes:
+    return film_of([Drawn(2)], Making(sound=2.0))
+
+
 Answer = tuple[int, dict[str, str], bytes]
 SEGMENTS = {
     "text": "Hello there. Sit down.",
@@ -36,8 +42,8 @@ SEGMENTS = {
 }
 
 
-def film(data: bytes = SOUNDING) -> Film:
-    return open_film(io.BytesIO(data), "a film")
+def film(data: bytes | None = None) -> Film:
+    return open_film(io.BytesIO(sounding() if data is None else data), "a film")
 
 
 @contextmanager

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import pytest
@@ -25,7 +26,12 @@ from planner_service.scripts.script_repair import check
 
 Json = dict[str, Any]
 SAID = ((1.0, 2.0, "ANN: I am so tired."), (8.0, 9.5, "Where is my phone? [phone rings]"))
-FILM = film_of([Drawn(7, 0), Drawn(7, 1)], Making(subtitles=SAID, rate=4))
+
+
+@cache
+def filmed() -> bytes:
+    """Two scenes, with subtitles."""
+    return film_of([Drawn(7, 0), Drawn(7, 1)], Making(subtitles=SAID, rate=4))
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +40,7 @@ def library() -> ScriptLibrary:
 
 
 def film() -> Film:
-    return open_film(io.BytesIO(FILM), "A quiet evening")
+    return open_film(io.BytesIO(filmed()), "A quiet evening")
 
 
 def scenes() -> list[Scene]:

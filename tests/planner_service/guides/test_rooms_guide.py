@@ -11,6 +11,7 @@ import pytest
 from forking import Forked
 from guides import BLOCK, said_as, typed
 
+pytestmark = pytest.mark.service
 GUIDE = Path(__file__).resolve().parents[3] / "docs" / "rooms.md"
 
 

@@ -15,6 +15,7 @@ from xml.etree import ElementTree
 
 import httpx
 import pytest
+from databases import DATABASES
 from fastapi import FastAPI
 from service_app import app_on, calling, check_problem
 
@@ -137,7 +138,7 @@ async def test_a_scene_file_may_be_larger_than_other_bodies_but_not_endless(app:
 
 
 @pytest.mark.anyio
-@pytest.mark.parametrize("database", ["sqlite", "postgresql"])
+@pytest.mark.parametrize("database", DATABASES)
 async def test_one_file_sent_many_times_at_once_comes_in_once(
     tmp_path: Path, database: str, request: pytest.FixtureRequest
 ) -> None:

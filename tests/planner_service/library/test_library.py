@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from databases import DATABASES
 from sqlalchemy import Engine, text, update
 
 from planner_service.grounding.furnish import furnish
@@ -53,7 +54,7 @@ def settings(folder: Path, **changes: object) -> Settings:
     return Settings(_env_file=None, **{"data_dir": folder, **changes})  # type: ignore[call-arg, arg-type]
 
 
-@pytest.fixture(params=["sqlite", "postgresql"])
+@pytest.fixture(params=DATABASES)
 def url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
     """A database of either kind."""
     address = "" if request.param == "sqlite" else request.getfixturevalue("postgres_url")

@@ -7,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
+from databases import DATABASES
 from sqlalchemy import Engine
 
 from planner_service.library.library import (
@@ -37,7 +38,7 @@ def script(script_id: str = "my-nap", **changes: object) -> ShortScript:
     return ShortScript.model_validate({**row, "room": "living_room", "keyframes": [keyframe], **changes})
 
 
-@pytest.fixture(params=["sqlite", "postgresql"])
+@pytest.fixture(params=DATABASES)
 def opening(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Opening]:
     """Opens shelves as another process would, on a database of either kind."""
     address = "" if request.param == "sqlite" else request.getfixturevalue("postgres_url")

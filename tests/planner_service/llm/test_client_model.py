@@ -8,9 +8,10 @@ import threading
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
+from tries import tries
 
 import prompts
 from planner_service.llm.answer_cache import Memory
@@ -73,7 +74,7 @@ def test_a_story_waits_so_long_and_no_longer() -> None:
         ServedModel(source, Spending(Limits(story_seconds=100), seconds=100.0)).answer("?", Meal)
 
 
-@settings(max_examples=60, deadline=None)
+@tries(60)
 @given(st.integers(-100, 10**9), st.integers(-100, 10**9), st.text(max_size=2000), st.integers(1, 10**6))
 def test_the_ledger_never_falls_and_an_allowance_never_passes_the_budget(
     tokens_in: int, tokens_out: int, text: str, most: int

@@ -106,6 +106,7 @@ def test_a_key_is_not_shown_and_reaches_the_workers() -> None:
     assert "SIMS_LLM_STORY_DOLLARS" not in environment(settings(), "worker-0")
 
 
+@pytest.mark.service
 def test_naming_a_model_loads_no_library_yet() -> None:
     code = (
         "import sys, planner_service.api.app, planner_service.cli; from planner_service.settings import Settings;"

@@ -6,9 +6,10 @@ import contextlib
 import json
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel, ConfigDict
+from tries import tries
 
 from planner_service.llm.protocol import InvalidAnswerError, ModelError
 from planner_service.llm.scripted_model import ScriptedModel
@@ -58,7 +59,7 @@ def test_an_answer_that_does_not_fit_says_why(text: str, problem: str) -> None:
     assert error.value.text == text
 
 
-@settings(max_examples=100, deadline=None)
+@tries(100)
 @given(st.text(alphabet='{}[]":,dishplates 0123\\', max_size=60))
 def test_any_text_is_read_or_refused(text: str) -> None:
     with contextlib.suppress(InvalidAnswerError):

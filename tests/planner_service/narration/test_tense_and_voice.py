@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -23,7 +24,7 @@ from planner_service.themes.lexicon import english_verbs, gerund, past, third_pe
 SHE, HE, THEY = Voice("Ana", "she"), Voice("Tom", "he"), Voice("Sam", "they")
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("base", "simple_past", "ing", "present"),
     [
         ("sit", "sat", "sitting", "sits"),
@@ -53,7 +54,7 @@ def test_a_noun_that_looks_like_a_verb_stays() -> None:
     assert told == "Ana drank two drinks and looked at the steps."
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "voice", "told"),
     [
         ("The character is tired and sits down.", THEY, "Sam was tired and sat down."),
@@ -88,7 +89,7 @@ def test_what_might_go_wrong_is_not_told(text: str) -> None:
     assert retell(text, THEY) is None
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("event", "told"),
     [
         ("misses the bus", "Ana missed the bus."),
@@ -150,7 +151,7 @@ def test_pronouns_are_read_kindly(written: str, kind: str) -> None:
     assert Voice.of(Character("Kim", written)).pronouns == kind
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("theme", "event", "told"),
     [
         ("Maria cannot find her glasses.", "Maria cannot find her glasses", "Ana could not find her glasses."),

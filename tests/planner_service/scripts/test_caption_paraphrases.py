@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from for_each import for_each
 from pydantic import BaseModel
 
 from motion_backend.motion import Skill
@@ -48,7 +49,7 @@ def test_every_caption_that_the_body_knows_gets_five_other_ways_to_say_it() -> N
     assert not set(phrases) & set(every)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("phrase", "caption", "skill", "says"),
     [
         ("touch with the right hand", "touch with the left hand", "touch", "right"),

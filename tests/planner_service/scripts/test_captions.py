@@ -6,8 +6,9 @@ import itertools
 import re
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from motion_backend.language.sentence_encoder import HashingEncoder, load_encoder
 from motion_backend.motion import Skill
@@ -58,7 +59,7 @@ def test_the_sides_of_a_caption_are_read(caption: str, named: set[str]) -> None:
 @given(
     SKILLS, st.text(max_size=60) | st.sampled_from(["left hand", "with the right hand", "both hands up", "sit left"])
 )
-@settings(max_examples=80, deadline=None)
+@tries(80)
 def test_the_nearest_caption_is_known_for_the_skill_and_never_changes_sides(skill: Skill, caption: str) -> None:
     nearest, score = WORDS.nearest(skill, caption)
     assert WORDS.known(skill, nearest)

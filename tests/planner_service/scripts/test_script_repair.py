@@ -6,9 +6,11 @@ import itertools
 from collections.abc import Sequence
 
 import pytest
-from hypothesis import given, settings
+from for_each import for_each
+from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
+from tries import tries
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Posture, Skill
@@ -45,7 +47,7 @@ def told(keyframes: tuple[Keyframe, ...]) -> list[str]:
     return [f"{keyframe.skill} {keyframe.furniture}" for keyframe in keyframes]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("before", "after"),
     [
         # a walk to the target, unless one is there already
@@ -96,7 +98,7 @@ KEYFRAMES = st.builds(
 )
 
 
-@settings(max_examples=300, deadline=None)
+@tries(300)
 @given(st.lists(KEYFRAMES, max_size=12))
 def test_whatever_was_repaired_can_be_acted_out_and_is_then_left_alone(keyframes: list[Keyframe]) -> None:
     repaired, repairs = repair(keyframes)
@@ -105,7 +107,7 @@ def test_whatever_was_repaired_can_be_acted_out_and_is_then_left_alone(keyframes
     assert bool(repairs) == (list(repaired) != keyframes) == bool(check(keyframes))
 
 
-@settings(max_examples=100, deadline=None)
+@tries(100)
 @given(st.lists(KEYFRAMES, max_size=12))
 def test_repairing_keeps_the_order_of_what_is_done(keyframes: list[Keyframe]) -> None:
     assert uses(repair(keyframes)[0]) == uses(keyframes)
@@ -134,7 +136,7 @@ HOMES = st.none() | st.lists(
 )
 
 
-@settings(max_examples=100, deadline=None)
+@tries(100)
 @given(st.lists(OUTSIDE, max_size=10), st.sampled_from([WORDS, None]), HOMES)
 def test_whatever_comes_from_outside_is_repaired_once_and_for_all(
     keyframes: list[Keyframe], vocabulary: Vocabulary | None, home: list[str] | None
@@ -200,7 +202,7 @@ def uses(keyframes: Sequence[Keyframe]) -> list[Skill]:
     return [skill for skill, _ in itertools.groupby(done)]
 
 
-@pytest.mark.parametrize("emotion", WALKS)
+@for_each("emotion", WALKS)
 def test_a_connecting_walk_shows_the_mood(emotion: str) -> None:
     walk = repair(script(f"sitdown chair, {emotion}"))[0][0]
     assert (walk.caption, walk.emotion) == (WALKS[emotion], emotion)

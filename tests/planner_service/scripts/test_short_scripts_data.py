@@ -10,6 +10,7 @@ from itertools import pairwise, product
 
 import numpy as np
 import pytest
+from for_each import for_each
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Skill
@@ -107,7 +108,7 @@ def why_not_executable(script: ShortScript) -> str | None:
     return None
 
 
-@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.id)
+@for_each("script", SCRIPTS)
 def test_a_body_can_act_a_script_out(script: ShortScript) -> None:
     assert why_not_executable(script) is None
     assert check(script) == ()

@@ -7,8 +7,9 @@ from functools import cache
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Skill
@@ -91,7 +92,7 @@ def following(rows: list[Row], scripts: list[ShortScript]) -> list[int | None]:
     return succession(rows, Traits(scripts), vectors)
 
 
-@settings(max_examples=60, deadline=None)
+@tries(60)
 @given(
     st.lists(st.lists(st.floats(0.1, 1.0).map(lambda x: round(x, 3)), min_size=4, max_size=4), min_size=1, max_size=4)
 )

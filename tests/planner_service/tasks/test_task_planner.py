@@ -11,9 +11,11 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI
-from hypothesis import given, settings
+from for_each import for_each
+from hypothesis import given
 from hypothesis import strategies as st
 from service_app import app_on, calling, check_problem
+from tries import tries
 from typer.testing import CliRunner
 
 from motion_backend.motion import Action, Skill
@@ -109,7 +111,7 @@ def test_rules_go_there_take_what_is_needed_sit_down_and_put_things_back(action:
     assert all(step.acted for step in plan.steps)
 
 
-@settings(max_examples=25, deadline=None)
+@tries(25)
 @given(
     st.lists(st.sampled_from(DEEDS), min_size=1, max_size=4), st.sampled_from([", ", " and ", ", then "]),
     st.integers(0, 2**53 - 1), st.booleans(),
@@ -165,7 +167,7 @@ def test_steps_are_about_the_furniture_that_is_there_and_those_without_say_so() 
     assert {step.furniture for step in plan.steps[3:]} == {"coffee table", display_name("loveseat_sofa")}
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("action", "fault"),
     [
         ("", "action: it is empty"),
@@ -205,7 +207,7 @@ def test_hands_that_a_body_has_are_read(action: str, hand: str) -> None:
     assert plan_task(action).steps[-1].hand == hand
 
 
-@settings(max_examples=30, deadline=None)
+@tries(30)
 @given(st.lists(st.sampled_from([*" ".join(DEEDS).split(), "and", "the", ",", "after", "before", "of", "7", "é", "it"]),
                 max_size=25))  # fmt: skip
 def test_any_words_are_planned_or_refused_and_never_break(words: list[str]) -> None:
@@ -365,7 +367,7 @@ async def test_over_http_a_plan_is_the_engines_own_and_a_motion_can_be_made_of_i
 
 
 @pytest.mark.anyio
-@pytest.mark.parametrize(
+@for_each(
     ("body", "pointer"),
     [
         ({}, "/action"),
@@ -393,6 +395,7 @@ def test_the_client_sends_what_it_is_given() -> None:
     assert call.body == {"action": "watch TV", "layout_id": ROOM, "seed": 2}
 
 
+@pytest.mark.sweep
 def test_on_the_command_line_a_plan_is_a_table_and_with_a_folder_a_film(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

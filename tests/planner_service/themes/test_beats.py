@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from for_each import for_each
+from hypothesis import given
 from hypothesis import strategies as st
 from themes import THEMES, Theme
+from tries import tries
 
 from planner_service.scripts.emotions import emotion_of, feelings
 from planner_service.scripts.script import EMOTIONS
@@ -28,7 +30,7 @@ def test_the_themes_of_the_paper_have_the_expected_events(theme: Theme) -> None:
         assert mood in wanted.emotions, (text, mood)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("theme", "texts"),
     [
         # the order of time, not of the words
@@ -99,7 +101,7 @@ def test_an_emotion_is_judged_from_the_meaning_only_where_no_word_shows_one() ->
     assert moods_of(clauses, ["sad", "sad", "sad"]) == ("sad", "happy", "happy")
 
 
-@settings(max_examples=60, deadline=None)
+@tries(60)
 @given(st.integers(1, 8))
 def test_clauses_are_grouped_to_the_number_wanted_without_losing_words(most: int) -> None:
     clauses = clauses_of(THEMES[5].text)
@@ -108,7 +110,7 @@ def test_clauses_are_grouped_to_the_number_wanted_without_losing_words(most: int
     assert " and ".join(clause.text for clause in told) == " and ".join(clause.text for clause in clauses)
 
 
-@settings(max_examples=200, deadline=None)
+@tries(200)
 @given(st.text(max_size=200))
 def test_any_text_has_events_or_is_refused(theme: str) -> None:
     try:
@@ -135,7 +137,7 @@ def test_an_event_of_a_model_keeps_its_words_and_emotion() -> None:
     assert "bed" in clause.query
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("words", "emotion"),
     [
         ("neutral, calm", "neutral"),

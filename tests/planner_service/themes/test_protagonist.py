@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -11,7 +11,7 @@ from planner_service.pipeline import StoryRequest
 from planner_service.themes.protagonist import cast_by
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("theme", "name", "pronouns"),
     [
         ("Anna comes home and sleeps.", "Anna", "she"),

@@ -6,8 +6,10 @@ from math import cos, hypot, inf, pi, sin
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from for_each import for_each
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.affordances.affordances import Spot, floor_spot, spots
 from scene_graphs.furniture import affordances, typical_size
@@ -32,7 +34,7 @@ def ahead(spot: Spot, distance: float, yaw: float | None = None) -> tuple[float,
     return spot.point[0] + distance * sin(angle), spot.point[2] + distance * cos(angle)
 
 
-@pytest.mark.parametrize("category", [*SEATS, *SOFAS, *BEDS])
+@for_each("category", [*SEATS, *SOFAS, *BEDS])
 def test_a_piece_to_sit_on_offers_a_seat(category: str) -> None:
     found = spots(standing(category), "sit")
     assert found
@@ -46,7 +48,7 @@ def test_a_seat_faces_away_from_its_backrest(category: str) -> None:
     assert 0.16 - 1e-9 <= best.back < inf
 
 
-@pytest.mark.parametrize("category", [*SEATS, *SOFAS, *BEDS])
+@for_each("category", [*SEATS, *SOFAS, *BEDS])
 def test_shins_of_a_sitter_do_not_cut_the_piece(category: str) -> None:
     placed = standing(category)
     for spot in spots(placed, "sit"):
@@ -57,7 +59,7 @@ def test_shins_of_a_sitter_do_not_cut_the_piece(category: str) -> None:
             assert not any(overlaps(part, low, high) for part in parts(category, placed.size) if not part.is_soft)
 
 
-@pytest.mark.parametrize("category", [*SEATS, *SOFAS, *BEDS])
+@for_each("category", [*SEATS, *SOFAS, *BEDS])
 def test_the_trunk_of_a_sitter_does_not_cut_the_piece(category: str) -> None:
     placed = standing(category)
     for spot in spots(placed, "sit"):
@@ -66,7 +68,7 @@ def test_the_trunk_of_a_sitter_does_not_cut_the_piece(category: str) -> None:
         assert not any(overlaps(part, low, high) for part in parts(category, placed.size) if not part.is_soft)
 
 
-@pytest.mark.parametrize("category", [*SEATS, *SOFAS, *BEDS])
+@for_each("category", [*SEATS, *SOFAS, *BEDS])
 def test_one_stands_where_the_feet_of_the_sitter_are(category: str) -> None:
     for spot in spots(standing(category), "sit"):
         assert spot.standing == pytest.approx(ahead(spot, 0.42))
@@ -177,7 +179,7 @@ def test_a_touched_point_lies_on_a_part(category: str) -> None:
         )
 
 
-@settings(max_examples=25, deadline=None)
+@tries(25)
 @given(st.sampled_from([*SEATS, *SOFAS, *BEDS, "wardrobe"]), st.floats(-3, 3), st.floats(-4, 4), st.floats(-4, 4))
 def test_spots_turn_and_move_with_their_piece(category: str, yaw: float, x: float, z: float) -> None:
     moved = standing(category, yaw, (x, 0.0, z))

@@ -7,8 +7,9 @@ from math import pi
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.affordances.affordances import spots
 from scene_graphs.affordances.room_validation import RoomCheck, validate
@@ -90,7 +91,7 @@ def test_an_unknown_object_is_refused_by_name() -> None:
         pulled_out(room(TABLE, CHAIR), "sofa")
 
 
-@settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@tries(8, suppress_health_check=[HealthCheck.too_slow])
 @given(
     st.lists(st.tuples(st.floats(-2.2, 2.2), st.floats(-2.2, 2.2), st.floats(-pi, pi)), min_size=1, max_size=4),
     st.floats(-0.4, 0.4),

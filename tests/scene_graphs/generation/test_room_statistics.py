@@ -6,6 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from for_each import for_each
 
 from scene_graphs.furniture import categories_of
 from scene_graphs.generation.random_choices import BLOCK, Luck
@@ -80,7 +81,7 @@ def counts(kind: str, word: str) -> list[int]:
     return [sum(placed.category in meaning(word) for placed in layout.objects) for layout in kinds()[kind]]
 
 
-@pytest.mark.parametrize(("kind", "word"), [(kind, word) for kind, shares in SHARES.items() for word in shares])
+@for_each(("kind", "word"), [(kind, word) for kind, shares in SHARES.items() for word in shares])
 def test_as_many_rooms_hold_a_thing_as_in_the_real_world_or_as_is_stated(kind: str, word: str) -> None:
     share = np.mean(np.array(counts(kind, word)) > 0)
     wanted = recipe_of(kind).oversampled_shares.get(word)
@@ -101,7 +102,7 @@ def test_studies_are_a_quarter_of_all_rooms() -> None:
     assert len(kinds()["study"]) / len(built_in_layouts()) == 0.25 > 10 * ROOMS["study"] / sum(ROOMS.values())
 
 
-@pytest.mark.parametrize(("kind", "word"), list(COUNTS))
+@for_each(("kind", "word"), list(COUNTS))
 def test_where_there_is_one_there_are_as_many_as_in_the_real_world(kind: str, word: str) -> None:
     present = [count for count in counts(kind, word) if count]
     assert np.mean(present) == pytest.approx(COUNTS[kind, word], rel=0.16)
@@ -113,7 +114,7 @@ def test_rooms_hold_about_as_many_pieces_as_real_ones(kind: str) -> None:
     assert np.mean(pieces) == pytest.approx(PIECES[kind], rel=0.2)
 
 
-@pytest.mark.parametrize("word", list(MEDIANS))
+@for_each("word", list(MEDIANS))
 def test_median_sizes_are_within_15_percent_of_real_ones(word: str) -> None:
     """Every kind of room counts as often as it was met: most beds stand in bedrooms, most tables do not."""
     sizes, weights = [], []

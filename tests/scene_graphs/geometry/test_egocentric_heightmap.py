@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.furniture_shapes import parts_of
 from scene_graphs.geometry.egocentric_heightmap import SIMS, TOKENHSI, UNIHSI, HeightmapSpec, SceneHeights
@@ -53,7 +54,7 @@ def heights_within(objects: list[Placed], points: Array, margin: float) -> Array
 
 
 @given(st.lists(furniture(), max_size=4, unique_by=lambda placed: placed.id), st.floats(-4.0, 4.0))
-@settings(max_examples=25, deadline=None)
+@tries(25)
 def test_every_height_is_that_of_a_part_there_to_within_a_cell(objects: list[Placed], yaw: float) -> None:
     scene = scene_of(*objects)
     found = scene.egocentric((0.1, 0.9, -0.2), yaw, replace(ABSOLUTE, shows="furniture")).ravel()
@@ -77,7 +78,7 @@ def test_a_box_at_the_origin_has_its_exact_height_at_the_centre_and_none_beyond(
 
 
 @given(st.lists(furniture(), max_size=3, unique_by=lambda placed: placed.id), st.integers(0, 3))
-@settings(max_examples=25, deadline=None)
+@tries(25)
 def test_a_quarter_turn_permutes_the_grid(objects: list[Placed], quarters: int) -> None:
     scene = scene_of(*objects)
     i, j = scene.raster.cells_at(np.array(0.3), np.array(0.5))
@@ -98,7 +99,7 @@ def test_a_mirrored_room_is_another_and_its_heights_are_mirrored() -> None:
 
 
 @given(st.lists(st.tuples(st.floats(-5, 5), st.floats(-5, 5), st.floats(-7, 7)), min_size=1, max_size=6))
-@settings(max_examples=25, deadline=None)
+@tries(25)
 def test_many_bodies_at_once_see_what_each_sees_alone(roots: list[tuple[float, float, float]]) -> None:
     scene = scene_of(CHEST)
     places, yaws = np.array([[x, 0.8, z] for x, z, _ in roots]), np.array([yaw for *_, yaw in roots])

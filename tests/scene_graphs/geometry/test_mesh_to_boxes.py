@@ -11,9 +11,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from tries import tries
 
 from scene_graphs.affordances.affordances import Spot, spots
 from scene_graphs.boxes import MAX_PARTS, Part, Point3
@@ -74,7 +75,7 @@ def is_settled(category: str, size: Point3) -> bool:
     return len(counts) == 1
 
 
-@settings(max_examples=25, deadline=None)
+@tries(25)
 @given(st.sampled_from([*SEATS, *SOFAS, *BEDS, *TABLES]), st.tuples(*(st.floats(0.9, 1.15) for _ in range(3))))
 def test_the_mesh_of_a_form_is_sat_and_lain_on_where_the_form_is(category: str, scale: tuple[float, ...]) -> None:
     width, height, depth = (length * by for length, by in zip(typical_size(category), scale, strict=True))
@@ -233,7 +234,7 @@ def test_a_surface_that_would_take_hours_to_sample_is_refused() -> None:
         shape_of(rng.uniform(-1, 1, (3000, 3)), rng.integers(0, 3000, (40_000, 3)), "armchair")
 
 
-@settings(max_examples=6, deadline=None)
+@tries(6)
 @given(st.integers(0, 2**32 - 1), st.integers(1, 12), st.sampled_from(["armchair", "double_bed", "desk", "wardrobe"]))
 def test_any_heap_of_triangles_becomes_boxes_within_its_own(seed: int, count: int, category: str) -> None:
     vertices = np.random.default_rng(seed).uniform([-0.5, 0, -0.5], [0.5, 1, 0.5], (3 * count, 3))

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.furniture_shapes import parts_of
 from scene_graphs.geometry.egocentric_heightmap import SceneHeights
@@ -53,7 +54,7 @@ def furniture(draw: st.DrawFn) -> Placed:
 
 
 @given(st.lists(furniture(), max_size=3, unique_by=lambda placed: placed.id), st.floats(-4.0, 4.0))
-@settings(max_examples=25, deadline=None)
+@tries(25)
 def test_a_point_is_occupied_where_a_part_is_to_within_a_cell(objects: list[Placed], yaw: float) -> None:
     scene = scene_of(*objects)
     found, points = occupancy(scene, (0.2, -0.3), yaw, COARSE), points_of(COARSE, (0.2, -0.3), yaw)

@@ -9,17 +9,18 @@ import networkx as nx
 import numpy as np
 import pytest
 from graphs_at_random import CATEGORIES, GENERIC, brute_force, build, graphs
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import linear_sum_assignment
+from tries import tries
 
 from scene_graphs.furniture import Furniture, affordances, class_of, group_of, is_minor
 from scene_graphs.graph.edit_distance import exact_distance, lower_bound
 from scene_graphs.graph.furniture_graph import FurnitureGraph
 from scene_graphs.graph.substitution_costs import CostTable, GroupCosts
 
-QUICK = settings(max_examples=60, deadline=None)
-FEW = settings(max_examples=40, deadline=None)
+QUICK = tries(60)
+FEW = tries(40)
 WORDS = CATEGORIES + GENERIC
 COSTS = CostTable()
 

@@ -7,8 +7,9 @@ from itertools import combinations
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.furniture import Furniture, is_minor
 from scene_graphs.graph.furniture_graph import graph_from_layout, graph_from_objects, graph_from_uses, offers
@@ -114,7 +115,7 @@ def furnished(draw: st.DrawFn) -> list[Placed]:
 
 
 @given(furnished())
-@settings(max_examples=150, deadline=None)
+@tries(150)
 def test_who_is_joined_is_what_looking_at_every_three_finds(objects: list[Placed]) -> None:
     prints = [shapely.Polygon(placed.footprint) for placed in objects]
     solid = [not is_minor(o.category) and o.parent is None and o.position[1] < 1.5 for o in objects]
@@ -128,6 +129,7 @@ def test_who_is_joined_is_what_looking_at_every_three_finds(objects: list[Placed
     assert {frozenset(str(graph.nodes[end]["object_id"]) for end in edge) for edge in graph.edges} == joined
 
 
+@pytest.mark.sweep
 def test_five_hundred_objects_in_a_heap_are_a_graph_within_seconds() -> None:
     rng = np.random.default_rng(0)
     points = rng.uniform(0, 4, (500, 2))

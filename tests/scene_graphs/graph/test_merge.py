@@ -8,8 +8,9 @@ from typing import Literal
 import networkx as nx
 import pytest
 from graphs_at_random import CATEGORIES, GENERIC, graphs
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.furniture import Furniture
 from scene_graphs.graph.furniture_graph import FurnitureGraph, graph_from_uses
@@ -18,7 +19,7 @@ from scene_graphs.graph.merge import categorised, merge, side_by_side
 Method = Literal["canonical", "aligned"]
 METHODS = st.sampled_from(["canonical", "aligned"])
 SCRIPTS = st.lists(graphs(5, CATEGORIES[:5] + GENERIC, "needs"), max_size=4)
-QUICK = settings(max_examples=60, deadline=None)
+QUICK = tries(60)
 
 
 def same(first: FurnitureGraph, second: FurnitureGraph) -> bool:

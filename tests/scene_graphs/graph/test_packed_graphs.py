@@ -15,9 +15,10 @@ import networkx as nx
 import numpy as np
 import pytest
 from graphs_at_random import CATEGORIES, build, graphs
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from rooms_at_random import strewn
+from tries import tries
 
 from scene_graphs.furniture import AFFORDANCES, Furniture, canonical, categories_of, class_of, group_of
 from scene_graphs.graph.count_table import ANY_NUMBER, Counts
@@ -31,7 +32,7 @@ from scene_graphs.retrieval.packed_graphs_file import read_packed, write_packed
 WORDS = (*CATEGORIES[:8], "chair", "harp", "grand piano", "side", "storage")
 """With two words that nobody knows, and two that name a class and a group."""
 ROOMS = st.lists(graphs(7, WORDS, "offers"), max_size=6)
-QUICK = settings(max_examples=60, deadline=None)
+QUICK = tries(60)
 
 
 def told(rooms: PackedRooms) -> list[tuple[object, ...]]:

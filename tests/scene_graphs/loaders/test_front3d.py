@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from spoiling import spoiled
+from tries import tries
 
 from benchmarks.houses import MODELS, TYPES, synthetic_house
 from scene_graphs.json_fields import LayoutError
@@ -287,7 +288,7 @@ def test_rooms_of_one_name_get_ids_of_their_own() -> None:
 
 
 @given(st.integers(0, 10**6), st.integers(1, 10), st.integers(0, 40))
-@settings(max_examples=10, deadline=None)
+@tries(10)
 def test_every_piece_of_a_house_is_kept_or_counted(seed: int, rooms: int, pieces: int) -> None:
     house = synthetic_house(seed, rooms, pieces)
     try:
@@ -313,7 +314,7 @@ def test_the_same_house_gives_the_same_rooms() -> None:
 
 
 @given(spoiled(small_house(meshes=(mesh("d", "Door", [[3.1, 0, 1], [3.1, 0, 1.9], [3.1, 2, 1]], [0, 1, 2]),))))
-@settings(max_examples=200, deadline=None)
+@tries(200)
 def test_a_spoiled_house_is_refused_or_reported(house: Any) -> None:
     try:
         imported = read(house)
@@ -324,7 +325,7 @@ def test_a_spoiled_house_is_refused_or_reported(house: Any) -> None:
 
 
 @given(st.integers(0, 1200))
-@settings(max_examples=30, deadline=None)
+@tries(30)
 def test_a_cut_off_file_is_refused(length: int) -> None:
     data = json.dumps(small_house()).encode()
     with pytest.raises(LayoutError, match=r"h1\.json"):

@@ -7,8 +7,9 @@ from math import cos, pi, sin
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.furniture import group_of
 from scene_graphs.generation.room_generator import generate_room
@@ -39,7 +40,7 @@ PIECES = st.builds(
 
 
 @given(st.lists(PIECES, max_size=8))
-@settings(max_examples=80, deadline=None)
+@tries(80)
 def test_a_turn_leaves_every_box_where_it_is(objects: list[Placed]) -> None:
     turned = faced(objects, FLOOR, {placed.id for placed in objects})
     for before, after in zip(objects, turned, strict=True):
@@ -51,7 +52,7 @@ def test_a_turn_leaves_every_box_where_it_is(objects: list[Placed]) -> None:
 
 
 @given(st.lists(PIECES, max_size=8))
-@settings(max_examples=30, deadline=None)
+@tries(30)
 def test_a_known_front_stays(objects: list[Placed]) -> None:
     assert faced(objects, FLOOR, ()) == objects
 

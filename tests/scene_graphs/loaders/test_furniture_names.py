@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -30,7 +30,7 @@ def test_any_text_is_a_name(name: str) -> None:
     assert furniture_named(name) is None or is_known(meaning(name))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("name", "word"),
     [
         ("SM_Chair_01", "chair"),
@@ -64,7 +64,7 @@ def test_a_room_is_what_its_file_or_its_furniture_says() -> None:
     assert likely_room("scene", ["rug"]) == "room"
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("word", "size", "category"),
     [
         ("bed", (1.0, 0.9, 2.0), "single_bed"),

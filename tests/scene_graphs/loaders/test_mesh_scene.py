@@ -15,10 +15,12 @@ import numpy as np
 import pytest
 import shapely
 import trimesh
-from hypothesis import given, settings
+from for_each import for_each
+from hypothesis import given
 from hypothesis import strategies as st
 from scenes_at_hand import add, block, glb, obj_of, pose_of, scene_of, small_document
 from spoiling import spoiled
+from tries import tries
 
 from scene_graphs.affordances.affordances import spots
 from scene_graphs.furniture import affordances
@@ -84,7 +86,7 @@ def test_an_obj_with_its_axis_and_unit_named_is_the_same_room(z_up: bool) -> Non
     assert_same(found.layouts[0], ROOMS[0], fronts=False)
 
 
-@settings(max_examples=20, deadline=None)
+@tries(20)
 @given(st.floats(-pi, pi), st.sampled_from(["+z", "+x", "-z", "-x"]))
 def test_the_front_is_where_the_option_says_in_the_turned_node(yaw: float, front: str) -> None:
     scene = trimesh.Scene()
@@ -186,7 +188,7 @@ def test_a_scene_stands_on_its_floor_wherever_that_is() -> None:
     assert min(placed.position[1] for placed in layout.objects) == pytest.approx(0.0, abs=1e-3)
 
 
-@settings(max_examples=25, deadline=None)
+@tries(25)
 @given(st.data())
 def test_points_are_those_another_library_reads(data: st.DataObject) -> None:
     numbers = st.floats(-3, 3, width=32)
@@ -214,7 +216,7 @@ def _all(node: Node) -> list[Node]:
     return [node, *(below for child in node.children for below in _all(child))]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("change", "message"),
     [
         ({"nodes": [{"children": [0]}]}, "two parents or is its own"),
@@ -266,7 +268,7 @@ def test_a_gltf_that_holds_its_own_data_is_read_too() -> None:
     assert read(json.dumps(document).encode()).layouts == read(glb(*small_document())).layouts
 
 
-@settings(max_examples=150, deadline=None)
+@tries(150)
 @given(spoiled(small_document()[0]))
 def test_whatever_a_document_says_it_is_read_or_refused(document: Any) -> None:
     with suppress(LayoutError):
@@ -274,7 +276,7 @@ def test_whatever_a_document_says_it_is_read_or_refused(document: Any) -> None:
             assert layout_from_dict(layout_to_dict(layout)) == layout
 
 
-@settings(max_examples=100, deadline=None)
+@tries(100)
 @given(st.data())
 def test_a_file_that_is_cut_off_or_has_flipped_bytes_is_read_or_refused(data: st.DataObject) -> None:
     content = bytearray(glb(*small_document()))
@@ -285,7 +287,7 @@ def test_a_file_that_is_cut_off_or_has_flipped_bytes_is_read_or_refused(data: st
         read(bytes(content[:length]))
 
 
-@settings(max_examples=100, deadline=None)
+@tries(100)
 @given(st.lists(st.sampled_from(OBJ_LINES), max_size=12))
 def test_whatever_an_obj_says_it_is_read_or_refused(lines: list[str]) -> None:
     with suppress(LayoutError):

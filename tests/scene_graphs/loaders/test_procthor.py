@@ -12,9 +12,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from for_each import for_each
+from hypothesis import given
 from hypothesis import strategies as st
 from spoiling import spoiled
+from tries import tries
 from unity_houses import procthor_house, vector
 
 from scene_graphs.json_fields import LayoutError
@@ -100,7 +102,7 @@ def test_a_room_written_as_a_house_is_read_as_it_was() -> None:
     assert [(window.bottom, window.top) for window in layout.windows] == [(0.9, 2.0)]
 
 
-@settings(max_examples=40, deadline=None)
+@tries(40)
 @given(st.floats(-pi, pi), st.floats(0.6, 3.4), st.floats(0.6, 2.4), st.booleans())
 def test_reading_undoes_writing_wherever_a_bed_stands(yaw: float, x: float, z: float, runs_back: bool) -> None:
     bed = Placed("2|0", "single_bed", (-x, 0.0, z), (1.0, 0.9, 2.0), yaw)
@@ -117,7 +119,7 @@ def test_reading_undoes_writing_wherever_a_bed_stands(yaw: float, x: float, z: f
     assert np.allclose(sorted(layout.doors[0].segment), sorted(room.doors[0].segment), atol=1e-9)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("asset", "category"),
     [
         ("Bed_13", "single_bed"),
@@ -199,7 +201,7 @@ def test_a_heap_of_a_hundred_thousand_things_is_refused_in_bounded_time() -> Non
         read(house_with(*[pile] * 20))
 
 
-@settings(max_examples=150, deadline=None)
+@tries(150)
 @given(spoiled({"house": HOUSE, "assets": ASSETS}))
 def test_whatever_a_house_says_it_is_read_or_refused(file: Any) -> None:
     parts = file if isinstance(file, dict) else {}
@@ -208,7 +210,7 @@ def test_whatever_a_house_says_it_is_read_or_refused(file: Any) -> None:
             assert layout_from_dict(layout_to_dict(layout)) == layout
 
 
-@settings(max_examples=40, deadline=None)
+@tries(40)
 @given(st.integers(0, len(json.dumps(HOUSE)) - 1))
 def test_a_file_that_is_cut_off_is_refused(length: int) -> None:
     with pytest.raises(LayoutError):

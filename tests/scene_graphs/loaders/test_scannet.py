@@ -10,10 +10,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from for_each import for_each
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 from scans import ROOM
 from spoiling import spoiled
+from tries import tries
 
 from scene_graphs.json_fields import LayoutError
 from scene_graphs.layout import Array, Layout, layout_from_dict, layout_to_dict
@@ -156,7 +158,7 @@ def test_without_floor_points_the_hull_of_all_is_the_floor(tmp_path: Path) -> No
 
 
 @given(spoiled([*scan()[:2]]), st.sampled_from([INFO, "", "sceneType = \x1b[1m", "axisAlignment = 1e300", "\ud800?"]))
-@settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@tries(80, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_a_spoiled_scan_is_refused_or_reported(tmp_path: Path, rows: Any, info: str) -> None:
     points = ply(scan()[2])
     rows = rows if isinstance(rows, list) and len(rows) == 2 else (rows, rows)
@@ -173,7 +175,7 @@ def test_a_point_that_is_a_signalling_nan_is_refused_without_a_warning() -> None
 
 
 @given(st.sampled_from(["ascii", "binary_little_endian"]), st.integers(0, 10**6), st.binary(max_size=9))
-@settings(max_examples=150, deadline=None)
+@tries(150)
 def test_a_damaged_mesh_gives_its_points_or_is_refused(kind: str, place: int, junk: bytes) -> None:
     points = np.arange(30, dtype=float).reshape(10, 3)
     data = ply(points, kind)
@@ -185,7 +187,7 @@ def test_a_damaged_mesh_gives_its_points_or_is_refused(kind: str, place: int, ju
             assert np.isfinite(read).all()
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("header", "named"),
     [
         ("element vertex 99999999999\nproperty float x\nproperty float y\nproperty float z\n", "at most"),
@@ -196,7 +198,7 @@ def test_a_damaged_mesh_gives_its_points_or_is_refused(kind: str, place: int, ju
         ("element vertex -1\nproperty float x\nproperty float y\nproperty float z\n", "at most"),
     ],
 )
-@pytest.mark.parametrize("kind", ["ascii", "binary_little_endian"])
+@for_each("kind", ["ascii", "binary_little_endian"])
 def test_a_header_that_lies_is_refused(kind: str, header: str, named: str) -> None:
     data = f"ply\nformat {kind} 1.0\n{header}end_header\n1 2 3".encode()
     with pytest.raises(LayoutError, match=named):

@@ -11,6 +11,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -31,19 +32,18 @@ def zipped(data: bytes, files: int = 1, how: int = zipfile.ZIP_DEFLATED) -> byte
     return stream.getvalue()
 
 
-@pytest.mark.parametrize("pack", [bytes, gzip.compress, zipped])
-@pytest.mark.parametrize("text", [LINES, LINES + b"\n\n", b"\xef\xbb\xbf" + LINES, json.dumps(ROWS).encode()])
+@for_each("pack", [bytes, gzip.compress, zipped])
+@for_each("text", [LINES, LINES + b"\n\n", b"\xef\xbb\xbf" + LINES, json.dumps(ROWS).encode()])
 def test_rows_are_the_same_as_lines_or_as_a_list_packed_or_not(text: bytes, pack) -> None:
     assert [row for _, row in Source.of_bytes("a", pack(text)).rows()] == ROWS
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("data", "says"),
     [
         (gzip.compress(gzip.compress(LINES)), "packed twice"),
         (gzip.compress(zipped(LINES)), "packed twice"),
         (zipped(LINES, files=2), "zip of 2 files"),
-        (zipped(b"", files=10_001, how=zipfile.ZIP_STORED), "many files"),
         (zipped(LINES, how=zipfile.ZIP_LZMA), "plainly"),
         (gzip.compress(b" " * (3 << 20)), "larger than 2 MiB"),
         (zipped(b"{}" + b" " * (3 << 20)), "larger than 2 MiB"),
@@ -52,11 +52,15 @@ def test_rows_are_the_same_as_lines_or_as_a_list_packed_or_not(text: bytes, pack
         (b'{"id": 1}\n{"id": "\xff"}', "line 2 is not UTF-8"),
         (b"[" + b"9" * 5000 + b"]", "not JSON"),
     ],
-    ids=range(11),  # packed bytes hold the time of day: they are no name that two processes agree on
 )
 def test_what_is_packed_to_do_damage_is_refused_with_the_reason(data: bytes, says: str) -> None:
     with pytest.raises(LayoutError, match=says):
         list(Source.of_bytes("a", data, 2 << 20).rows())
+
+
+def test_a_zip_of_very_many_files_is_refused() -> None:
+    with pytest.raises(LayoutError, match="many files"):
+        list(Source.of_bytes("a", zipped(b"", files=10_001, how=zipfile.ZIP_STORED)).rows())
 
 
 def test_a_text_of_very_many_values_or_rows_is_refused_before_it_fills_the_memory() -> None:

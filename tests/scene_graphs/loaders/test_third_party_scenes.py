@@ -43,6 +43,7 @@ def test_every_room_and_object_is_kept(imported: dict[str, Imported], capsys: py
     assert not any(result.report.dropped for result in imported.values())
 
 
+@pytest.mark.sweep
 @pytest.mark.parametrize("has_boxes", [True, False])
 def test_rooms_written_back_as_houses_are_read_as_others_converted_them(
     has_boxes: bool, capsys: pytest.CaptureFixture[str]

@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scans import ROOM, Piece
 from spoiling import spoiled
+from tries import tries
 
 from scene_graphs.furniture import Furniture
 from scene_graphs.json_fields import LayoutError
@@ -131,7 +132,7 @@ def test_a_graph_that_cannot_be_read_names_the_place(objects: Any, relationships
 
 
 @given(spoiled(OBJECTS), spoiled(RELATIONSHIPS))
-@settings(max_examples=150, deadline=None)
+@tries(150)
 def test_a_spoiled_graph_is_read_or_refused(objects: Any, relationships: Any) -> None:
     with suppress(LayoutError):
         graph = graph_from_3dssg(objects, relationships, "s1")
@@ -162,7 +163,7 @@ def test_a_scan_with_boxes_becomes_a_room_with_y_up() -> None:
 
 
 @given(st.floats(-pi, pi), st.floats(0.5, 1.0))
-@settings(max_examples=50, deadline=None)
+@tries(50)
 def test_a_turned_box_keeps_its_plan(heading: float, depth: float) -> None:
     piece = Piece("wardrobe", (2.0, 1.5, 1.0), (1.6, depth, 2.0), heading)
     placed = only(piece).objects[0]
@@ -210,7 +211,7 @@ def test_a_room_type_can_be_given() -> None:
 
 
 @given(spoiled(semseg(*ROOM)))
-@settings(max_examples=150, deadline=None)
+@tries(150)
 def test_a_spoiled_scan_is_refused_or_reported(row: Any) -> None:
     with suppress(LayoutError):
         for layout in read(row).layouts:

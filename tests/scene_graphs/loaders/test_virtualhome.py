@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from spoiling import spoiled
+from tries import tries
 
 from scene_graphs.json_fields import LayoutError
 from scene_graphs.layout import Layout, layout_from_dict, layout_to_dict, read_layouts
@@ -135,6 +136,7 @@ def test_things_on_each_other_in_a_circle_do_no_harm() -> None:
     assert len(read(graph).layouts) == 2
 
 
+@pytest.mark.sweep
 def test_a_hundred_thousand_nodes_are_refused_in_bounded_time() -> None:
     graph = flat()
     graph["nodes"] += [node(n, "chair", "Furniture", (1, 0, 1), (0.5, 1, 0.5)) for n in range(100, 100_000)]
@@ -142,7 +144,7 @@ def test_a_hundred_thousand_nodes_are_refused_in_bounded_time() -> None:
         read(graph)
 
 
-@settings(max_examples=150, deadline=None)
+@tries(150)
 @given(spoiled(flat()))
 def test_whatever_a_graph_says_it_is_read_or_refused(graph: Any) -> None:
     with suppress(LayoutError):
@@ -150,7 +152,7 @@ def test_whatever_a_graph_says_it_is_read_or_refused(graph: Any) -> None:
             assert layout_from_dict(layout_to_dict(layout)) == layout
 
 
-@settings(max_examples=40, deadline=None)
+@tries(40)
 @given(st.integers(0, len(json.dumps(flat())) - 1))
 def test_a_file_that_is_cut_off_is_refused(length: int) -> None:
     with pytest.raises(LayoutError):

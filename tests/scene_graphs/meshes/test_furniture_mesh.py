@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from for_each import for_each
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.furniture import catalogue, typical_size
 from scene_graphs.layout import Point3
@@ -21,7 +23,7 @@ def by_role(category: str, size: Point3) -> dict[str, list[Part]]:
     return found
 
 
-@settings(max_examples=60, deadline=None)
+@tries(60)
 @given(st.sampled_from(sorted(catalogue().categories)), sizes)
 def test_every_part_lies_within_its_piece(category: str, size: Point3) -> None:
     w, h, d = size
@@ -32,7 +34,7 @@ def test_every_part_lies_within_its_piece(category: str, size: Point3) -> None:
         assert all(high <= bound + 1e-9 for high, bound in zip(part.high, (w / 2, h, d / 2), strict=True))
 
 
-@pytest.mark.parametrize("category", sorted(catalogue().categories))
+@for_each("category", sorted(catalogue().categories))
 def test_solid_parts_of_a_piece_of_usual_size_reach_its_full_box(category: str) -> None:
     size = typical_size(category)
     built = parts(category, size)

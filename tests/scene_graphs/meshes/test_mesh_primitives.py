@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import trimesh
-from hypothesis import given, settings
+from for_each import for_each
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.furniture import catalogue, typical_size
 from scene_graphs.home import home_from_layouts
@@ -25,7 +27,7 @@ def assert_sound(mesh: Mesh) -> None:
     assert all(0 <= value <= 1 for value in mesh.color)
 
 
-@settings(max_examples=25, deadline=None)
+@tries(25)
 @given(st.tuples(*[st.floats(0.05, 2.0)] * 3), st.floats(0.0, 0.5))
 def test_a_bevelled_block_is_closed_faces_out_and_keeps_its_extent(
     size: tuple[float, float, float], bevel: float
@@ -53,7 +55,7 @@ def test_a_floor_of_any_winding_covers_its_polygon_and_faces_up() -> None:
         assert np.allclose(shape.face_normals, (0, 1, 0))
 
 
-@pytest.mark.parametrize("category", [*sorted(catalogue().categories), "aquarium"])
+@for_each("category", [*sorted(catalogue().categories), "aquarium"])
 def test_every_category_is_drawn_within_a_centimetre_or_two_of_its_box(category: str) -> None:
     size = typical_size(category)
     meshes = furniture_meshes(Placed("a", category, (0.0, 0.0, 0.0), size))

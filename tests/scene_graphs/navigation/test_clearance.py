@@ -7,8 +7,9 @@ from math import pi
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.layout import Placed
 from scene_graphs.navigation.clearance import Rectangles, find_footing, measure_clearance
@@ -37,7 +38,7 @@ def test_the_distance_to_walls_is_that_of_geometry(px: float, pz: float) -> None
     assert walls.distances(np.array([px, pz])).min() == pytest.approx(expected, abs=1e-9)
 
 
-@settings(max_examples=40, deadline=None)
+@tries(40)
 @given(within, within, st.floats(0.1, 2.0), st.floats(0.1, 2.0), st.floats(-pi, pi), st.floats(0.05, 0.4))
 def test_a_cell_is_free_where_clearance_is_enough(
     x: float, z: float, width: float, depth: float, yaw: float, radius: float

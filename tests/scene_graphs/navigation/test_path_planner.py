@@ -8,8 +8,9 @@ import networkx as nx
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.home import Home, home_from_layouts
 from scene_graphs.layout import Array, Layout, Placed
@@ -45,7 +46,7 @@ SEEDS = st.integers(0, 10_000)
 
 
 @given(SEEDS)
-@settings(max_examples=25, deadline=None)
+@tries(25)
 def test_a_path_joins_its_ends_over_free_floor(walkable: Walkable, seed: int) -> None:
     rng = np.random.default_rng(seed)
     start, goal = (walkable.random_point(rng, int(room)) for room in rng.integers(0, 3, 2))
@@ -56,7 +57,7 @@ def test_a_path_joins_its_ends_over_free_floor(walkable: Walkable, seed: int) ->
 
 
 @given(SEEDS)
-@settings(max_examples=8, deadline=None)
+@tries(8)
 def test_nothing_of_a_path_through_furnished_rooms_comes_nearer_than_the_radius(seed: int) -> None:
     rng = np.random.default_rng(seed)
     rooms = built_in_layouts()
@@ -69,7 +70,7 @@ def test_nothing_of_a_path_through_furnished_rooms_comes_nearer_than_the_radius(
 
 
 @given(SEEDS)
-@settings(max_examples=10, deadline=None)
+@tries(10)
 def test_no_way_over_the_cells_is_cheaper_than_a_path(
     one_room: Walkable, grid: nx.Graph[tuple[int, int]], seed: int
 ) -> None:
@@ -114,7 +115,7 @@ def nearest_to(walkable: Walkable, path: Array) -> float:
 
 
 @given(SEEDS)
-@settings(max_examples=25, deadline=None)
+@tries(25)
 def test_a_path_has_short_steps_and_no_sharp_turns(walkable: Walkable, seed: int) -> None:
     rng = np.random.default_rng(seed)
     path = walkable.path(walkable.random_point(rng, 0), walkable.random_point(rng, 1))
@@ -126,7 +127,7 @@ def test_a_path_has_short_steps_and_no_sharp_turns(walkable: Walkable, seed: int
 
 
 @given(st.floats(-0.5, 6.5), st.floats(-0.5, 6.5))
-@settings(max_examples=60, deadline=None)
+@tries(60)
 def test_clearance_is_the_distance_to_furniture_and_walls(one_room: Walkable, x: float, z: float) -> None:
     floor = shapely.Polygon(SQUARE)
     point = shapely.Point(x, z)
@@ -152,7 +153,7 @@ def test_in_the_open_a_path_is_straight(one_room: Walkable) -> None:
 
 
 @given(SEEDS)
-@settings(max_examples=6, deadline=None)
+@tries(6)
 def test_who_gets_there_gets_back_and_who_is_slimmer_too(seed: int) -> None:
     rng = np.random.default_rng(seed)
     rooms = built_in_layouts()
@@ -235,7 +236,7 @@ def test_a_goal_off_the_floor_is_named() -> None:
 
 
 @given(SEEDS)
-@settings(max_examples=30, deadline=None)
+@tries(30)
 def test_random_points_are_free_places_of_their_room(walkable: Walkable, seed: int) -> None:
     rng = np.random.default_rng(seed)
     for room in range(3):

@@ -7,9 +7,10 @@ from itertools import combinations
 import networkx as nx
 import pytest
 from graphs_at_random import brute_force, build
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from rooms_at_random import scattered, searches, strewn
+from tries import tries
 
 from scene_graphs.furniture import Furniture
 from scene_graphs.graph.edit_distance import exact_distance
@@ -24,7 +25,7 @@ from scene_graphs.retrieval.match_explanation import explain
 
 Search = tuple[list[Layout], FurnitureGraph]
 Ranked = tuple[int, int, int, tuple[str, ...]]
-QUICK = settings(max_examples=40, deadline=None)
+QUICK = tries(40)
 
 
 def together(index: LayoutIndex, ids: tuple[str, ...]) -> FurnitureGraph:
@@ -90,7 +91,7 @@ def test_a_home_of_one_room_is_what_the_index_finds(search: Search, k: int) -> N
 
 
 @given(searches(most=7, nodes=6), st.sampled_from([1, 2, 20]))
-@settings(max_examples=20, deadline=None)
+@tries(20)
 def test_more_rooms_never_cost_more_and_no_beam_finds_less(search: Search, beam: int) -> None:
     index, query = LayoutIndex(search[0]), search[1]
     with pytest.MonkeyPatch.context() as patch:
@@ -103,7 +104,7 @@ def test_more_rooms_never_cost_more_and_no_beam_finds_less(search: Search, beam:
 
 
 @given(searches(most=6, objects=3), st.integers(1, 4))
-@settings(max_examples=40, deadline=None)
+@tries(40)
 def test_what_is_called_exact_is_the_nearest_there_is(search: Search, k: int) -> None:
     index, query = LayoutIndex(search[0]), search[1]
     scan = all_homes(index, query, 4)
@@ -127,7 +128,7 @@ def test_a_home_names_every_piece_of_query_and_rooms_once(search: Search, most: 
 
 
 @given(searches(fewest=3), st.sampled_from([1, 2, 5]), st.sampled_from([1, 3, 30]), st.sampled_from([1, 40, 9999]))
-@settings(max_examples=40, deadline=None)
+@tries(40)
 def test_what_was_cut_is_never_called_exact(search: Search, budget: int, limit: int, effort: int) -> None:
     index, query = LayoutIndex(search[0]), search[1]
     best = all_homes(index, query, 2)[0][0]

@@ -10,8 +10,9 @@ import networkx as nx
 import numpy as np
 import pytest
 from graphs_at_random import CATEGORIES, GENERIC, build, graphs
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
+from tries import tries
 
 from scene_graphs.furniture import Furniture, typical_size
 from scene_graphs.graph.branch_and_bound import CodedQuery, Hunt
@@ -47,7 +48,7 @@ def libraries(draw: st.DrawFn) -> list[Layout]:
 
 
 @given(libraries(), graphs(5, WORDS, "needs"), st.integers(1, 5), st.sampled_from([1, 2, 5, 64]))
-@settings(max_examples=60, deadline=None)
+@tries(60)
 def test_the_nearest_are_those_of_a_full_scan(
     layouts: list[Layout], query: FurnitureGraph, k: int, first_stage: int
 ) -> None:
@@ -60,7 +61,7 @@ def test_the_nearest_are_those_of_a_full_scan(
 
 
 @given(libraries(), graphs(6, WORDS))
-@settings(max_examples=40, deadline=None)
+@tries(40)
 def test_the_bounds_of_all_rooms_are_those_of_each(layouts: list[Layout], query: FurnitureGraph) -> None:
     index = LayoutIndex(layouts)
     bounds = index.bounds(CodedQuery.of(query, index.costs))
@@ -70,7 +71,7 @@ def test_the_bounds_of_all_rooms_are_those_of_each(layouts: list[Layout], query:
 
 
 @given(libraries(), graphs(5, WORDS, "needs"))
-@settings(max_examples=40, deadline=None)
+@tries(40)
 def test_a_match_names_every_piece_of_query_and_room_once(layouts: list[Layout], query: FurnitureGraph) -> None:
     assume(len(query))
     index = LayoutIndex(layouts)
@@ -152,7 +153,7 @@ def test_a_room_is_not_called_the_nearest_while_one_that_met_the_limit_may_be_ne
 
 
 @given(libraries(), graphs(6, WORDS), st.integers(1, 5), st.integers(1, 30), st.integers(0, 200))
-@settings(max_examples=60, deadline=None)
+@tries(60)
 def test_no_limit_drops_a_room_or_hides_that_it_may_be_wrong(
     layouts: list[Layout], query: FurnitureGraph, k: int, limit: int, effort: int
 ) -> None:
@@ -170,7 +171,7 @@ def test_no_limit_drops_a_room_or_hides_that_it_may_be_wrong(
 
 
 @given(libraries(), graphs(5, WORDS), st.integers(0, 60))
-@settings(max_examples=40, deadline=None)
+@tries(40)
 def test_below_a_distance_a_room_is_found_if_it_is_nearer(
     layouts: list[Layout], query: FurnitureGraph, upper: int
 ) -> None:
@@ -185,7 +186,7 @@ def test_below_a_distance_a_room_is_found_if_it_is_nearer(
 
 
 @given(libraries(), graphs(5, WORDS, "needs"))
-@settings(max_examples=40, deadline=None)
+@tries(40)
 def test_rooms_side_by_side_are_searched_as_one(layouts: list[Layout], query: FurnitureGraph) -> None:
     index = LayoutIndex(layouts)
     hunt = index.hunt(CodedQuery.of(query, index.costs))
@@ -231,12 +232,14 @@ def test_words_that_nobody_knows_are_found_by_their_own_name_only() -> None:
     assert {match.missing for match in strange} == {(Furniture("zither", 1),)}
 
 
+@pytest.mark.service
 def test_importing_retrieval_does_not_wait_for_the_compiler() -> None:
     code = "import sys, scene_graphs.retrieval.layout_index; print([name for name in sys.modules if 'numba' in name])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
 
 
+@pytest.mark.service
 def test_where_no_folder_takes_compiled_code_it_is_compiled_all_the_same() -> None:
     """As in a container whose every folder is read-only: the compiler then refuses to be asked to keep anything."""
     code = (

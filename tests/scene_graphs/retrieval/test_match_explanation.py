@@ -7,9 +7,10 @@ from dataclasses import replace
 import networkx as nx
 import pytest
 from graphs_at_random import CATEGORIES, GENERIC, NEEDS, build, graphs
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from rooms_at_random import searches, strewn
+from tries import tries
 
 from scene_graphs.furniture import Furniture, group_of
 from scene_graphs.graph.edit_distance import exact_distance
@@ -33,7 +34,7 @@ SIT, LIE = frozenset({"sit"}), frozenset({"lie"})
 
 
 @given(graphs(4, WORDS, "needs"), graphs(6, CATEGORIES, "offers"), TABLES, st.booleans(), st.sampled_from([3, 100_000]))
-@settings(max_examples=150, deadline=None)
+@tries(150)
 def test_the_costs_of_a_match_add_up_to_its_distance(
     query: FurnitureGraph, room: FurnitureGraph, costs: CostTable, strict: bool, limit: int
 ) -> None:
@@ -52,7 +53,7 @@ def test_the_costs_of_a_match_add_up_to_its_distance(
 
 
 @given(searches(nodes=5))
-@settings(max_examples=60, deadline=None)
+@tries(60)
 def test_matches_of_an_index_explain_themselves_too(search: tuple[list[Layout], FurnitureGraph]) -> None:
     index, query = LayoutIndex(search[0]), search[1]
     for strict in (False, True):
@@ -67,7 +68,7 @@ def test_matches_of_an_index_explain_themselves_too(search: tuple[list[Layout], 
 
 
 @given(graphs(4, WORDS, "needs"), graphs(6, CATEGORIES, "offers"))
-@settings(max_examples=100, deadline=None)
+@tries(100)
 def test_what_is_missing_is_missing_for_the_reason_that_is_told(query: FurnitureGraph, room: FurnitureGraph) -> None:
     match = exact_distance(query, room)
     used = {pair.room for pair in match.pairs}

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from tries import tries
 
 from motion_backend.formats.npz import write_npz
 from motion_backend.mocap.clip import ClipError, make_bones, make_clip
@@ -454,7 +455,7 @@ def test_a_broken_amp_motion_says_what_is_wrong(tmp_path, change, fault):
 
 @pytest.mark.parametrize("suffix", [".bvh", ".amc", ".npy", ".npz", ".glb", ".gltf", ".txt", ".json"])
 @given(data=st.binary(max_size=300))
-@settings(max_examples=25, deadline=None)
+@tries(25)
 def test_random_bytes_end_in_an_error_that_names_the_file(tmp_path_factory, suffix, data):
     folder = tmp_path_factory.getbasetemp() / "random"
     folder.mkdir(exist_ok=True)
@@ -465,7 +466,7 @@ def test_random_bytes_end_in_an_error_that_names_the_file(tmp_path_factory, suff
 
 @pytest.mark.parametrize("make", ["walk.npy", "walk.npz", "gen.npz", "walk.txt", "02_01.amc"])
 @given(data=st.data())
-@settings(max_examples=25, deadline=None)
+@tries(25)
 def test_a_damaged_file_ends_in_an_error_or_in_a_clip(tmp_path_factory, make, data):
     folder = tmp_path_factory.getbasetemp() / "damaged"
     folder.mkdir(exist_ok=True)

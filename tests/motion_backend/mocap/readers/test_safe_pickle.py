@@ -10,9 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from for_each import for_each
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
+from tries import tries
 
 from motion_backend.mocap.clip import ClipError
 from motion_backend.mocap.readers.safe_pickle import read_pickled
@@ -25,7 +27,7 @@ PLAIN = st.recursive(
 
 
 @given(value=PLAIN, protocol=st.integers(2, 5))
-@settings(max_examples=60, deadline=None)
+@tries(60)
 def test_plain_values_come_back_as_python_reads_them(value, protocol):
     assert read_pickled(pickle.dumps(value, protocol)) == value
 
@@ -36,7 +38,7 @@ def test_plain_values_come_back_as_python_reads_them(value, protocol):
     ),
     fortran=st.booleans(),
 )
-@settings(max_examples=60, deadline=None)
+@tries(60)
 def test_arrays_come_back_with_type_and_shape(array, fortran):
     array = np.asfortranarray(array) if fortran else array
     read = read_pickled(pickle.dumps(OrderedDict(a={"arr": array}), 4))
@@ -69,7 +71,7 @@ def test_nothing_is_called(tmp_path, wrap, protocol):
     assert not (tmp_path / "touched").exists()
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("data", "fault"),
     [
         (b"cos\nsystem\n(S'ls'\ntR.", "os system"),
@@ -98,14 +100,14 @@ def test_a_list_that_holds_itself_many_times_over_costs_little():
 
 
 @given(data=st.binary(max_size=80))
-@settings(max_examples=150, deadline=None)
+@tries(150)
 def test_random_bytes_end_in_an_error_or_a_value(data):
     with suppress(ClipError):
         read_pickled(b"\x80\x03" + data)
 
 
 @given(place=st.integers(0, 400), byte=st.integers(0, 255))
-@settings(max_examples=150, deadline=None)
+@tries(150)
 def test_a_damaged_pickle_ends_in_an_error_or_a_value(place, byte):
     file = io.BytesIO()
     np.lib.format.write_array(file, np.array(OrderedDict(a=np.arange(6.0).reshape(2, 3), b="text"), dtype=object))

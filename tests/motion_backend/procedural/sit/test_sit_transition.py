@@ -8,9 +8,10 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from small_home import contact, rise, small_home, to
+from tries import tries
 
 from motion_backend.body.joint_limits import CLEARLY, beyond_limits
 from motion_backend.body.scene_collision import Obstacles
@@ -161,7 +162,7 @@ def test_feet_of_a_sitter_stay_where_they_stand_and_hang_where_a_stool_is_high()
 HEIGHTS = st.floats(0.38, 0.62)
 
 
-@settings(max_examples=12)
+@tries(12)
 @given(caption=st.sampled_from(captions()["sitdown"]), height=HEIGHTS, ahead=st.floats(0.5, 0.8))
 def test_no_way_of_sitting_bends_a_joint_beyond_its_range(caption: str, height: float, ahead: float) -> None:
     seat = Seat(np.array([0.0, height + 0.09, 0.0]), 0.0, 0.2, 0.33)

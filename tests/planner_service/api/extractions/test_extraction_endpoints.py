@@ -20,12 +20,13 @@ import pytest
 from fastapi import FastAPI
 from film_made import Drawn, Making, film_of, sound_alone
 from good_model import seen_in
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
 from service_app import app_on, calling, check_problem, running
 from starlette.requests import Request
 from stories import GERMAN, NARRATIVE, SUBTITLES
+from tries import tries
 
 from planner_service.api import multipart
 from planner_service.api.errors import Problem
@@ -454,7 +455,7 @@ def read_form(folder: Path, boundary: bytes, pieces: list[bytes]) -> Any:
         return {name: sent.receiving.path.read_bytes() for name, sent in form.files.items()}, dict(form.fields)
 
 
-@settings(max_examples=40, deadline=None)
+@tries(40)
 @given(file=st.binary(max_size=400), text=st.text(max_size=50), cuts=st.lists(st.integers(1, 60), max_size=12))
 def test_a_form_is_the_same_however_it_is_cut(
     tmp_path_factory: pytest.TempPathFactory, file: bytes, text: str, cuts: list[int]
@@ -467,7 +468,7 @@ def test_a_form_is_the_same_however_it_is_cut(
     assert whole == ({"video": file}, {"name": text.encode("utf-8", "replace").decode()})
 
 
-@settings(max_examples=40, deadline=None)
+@tries(40)
 @given(
     body=st.lists(st.sampled_from([b"--x", b"\r\n", b"--", b"Content-Disposition: form-data; name=", b"video", b"\0"]))
 )

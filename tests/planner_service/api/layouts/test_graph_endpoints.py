@@ -11,9 +11,11 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI
-from hypothesis import HealthCheck, given, settings
+from for_each import for_each
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 from service_app import app_on, calling, check_problem
+from tries import tries
 
 from planner_service.api.layouts.schemas import Merged
 from scene_graphs.furniture import canonical
@@ -49,7 +51,7 @@ def graphs(draw: st.DrawFn) -> dict[str, Any]:
     return {"nodes": nodes, "edges": [list(pair) for pair in edges]}
 
 
-@settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@tries(80, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(graphs(), min_size=1, max_size=4), st.sampled_from(["canonical", "aligned"]))
 async def test_every_graph_is_found_in_the_merged_one_with_edges_and_needs(
     app: FastAPI, sent: list[dict[str, Any]], method: str
@@ -82,7 +84,7 @@ async def test_the_answer_is_a_question_for_a_room(app: FastAPI) -> None:
     assert answer.json()["matches"][0]["missing"] == []
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("body", "pointer"),
     [
         ({"graphs": []}, "/graphs"),
@@ -108,7 +110,7 @@ def hostile(kinds: int, size: int, edges: int) -> dict[str, Any]:
     return {"nodes": nodes, "edges": [list(pair) for pair in list(combinations(range(size), 2))[-edges:]]}
 
 
-@pytest.mark.parametrize("kinds", [1, 4])
+@pytest.mark.parametrize("kinds", [1, pytest.param(4, marks=pytest.mark.sweep)])
 async def test_the_worst_that_may_be_asked_ends_in_seconds(app: FastAPI, kinds: int) -> None:
     started = time.process_time()
     merging = {"graphs": [hostile(kinds, 52, 25)] * 12, "method": "aligned"}

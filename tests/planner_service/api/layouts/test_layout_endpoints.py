@@ -10,9 +10,11 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI
-from hypothesis import HealthCheck, given, settings
+from for_each import for_each
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 from service_app import app_on, calling, check_problem
+from tries import tries
 
 from motion_backend.formats.gltf_document import read_glb
 from planner_service.api.layouts.schemas import EXAMPLE, HomeMatch, LayoutMatches, LayoutPage, LayoutShown
@@ -152,7 +154,7 @@ def with_object(place: int, **fields: Any) -> dict[str, Any]:
 
 
 @pytest.mark.anyio
-@pytest.mark.parametrize(
+@for_each(
     ("row", "pointer"),
     [
         (with_object(1, size=[1, -1, 1]), "/objects/1/size/1"),
@@ -263,7 +265,7 @@ async def test_of_homes_each_piece_is_in_a_room_that_is_named(app: FastAPI) -> N
 
 
 @pytest.mark.anyio
-@pytest.mark.parametrize(
+@for_each(
     ("body", "pointer"),
     [
         ({"graph": {"nodes": []}}, "/graph/nodes"),
@@ -320,7 +322,7 @@ def mutated(draw: st.DrawFn, whole: dict[str, Any]) -> dict[str, Any]:
     return row
 
 
-@settings(max_examples=150, deadline=None)
+@tries(150)
 @given(mutated(ROOM))
 def test_a_damaged_room_is_refused_by_name_or_can_be_looked_over(row: dict[str, Any]) -> None:
     try:
@@ -335,7 +337,7 @@ def test_a_damaged_room_is_refused_by_name_or_can_be_looked_over(row: dict[str, 
     assert len(json.dumps(layout_to_dict(layout), allow_nan=False)) < 100_000
 
 
-@settings(max_examples=150, deadline=None)
+@tries(150)
 @given(mutated(HOME))
 def test_a_damaged_home_is_refused_by_name_or_read(row: dict[str, Any]) -> None:
     try:
@@ -348,7 +350,7 @@ def test_a_damaged_home_is_refused_by_name_or_read(row: dict[str, Any]) -> None:
 
 
 @pytest.mark.anyio
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@tries(60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(mutated(ROOM))
 async def test_a_damaged_room_never_breaks_the_service(app: FastAPI, row: dict[str, Any]) -> None:
     body = json.dumps(row).encode("utf-8", "surrogatepass")

@@ -10,6 +10,7 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI
+from for_each import for_each
 from model_server import ModelServer, failing
 from service_app import calling, check_problem, warm_app_on
 
@@ -61,7 +62,7 @@ async def test_a_script_that_was_just_added_is_planned_with(app: FastAPI) -> Non
     assert [chosen.script.id for chosen in script.short_scripts][:1] == ["zebra"]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("body", "pointer"),
     [
         ({"theme": ""}, "/theme"),

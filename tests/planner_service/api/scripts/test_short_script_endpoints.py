@@ -11,10 +11,12 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI
+from for_each import for_each
 from forking import Forked
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 from service_app import app_on, calling, check_problem, warm_app_on
+from tries import tries
 
 from planner_service.api.scripts.schemas import (
     EXAMPLE,
@@ -180,7 +182,7 @@ async def test_what_comes_from_a_film_says_its_licence_and_an_export_counts_the_
         await ask(app, f"/{row['id']}", "DELETE")
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("query", "pointer"),
     [
         ("?furniture=spaceship", "?furniture"),
@@ -208,7 +210,7 @@ def with_keyframe(**fields: Any) -> dict[str, Any]:
     return EXAMPLE | {"keyframes": [EXAMPLE["keyframes"][0], EXAMPLE["keyframes"][1] | fields]}
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("body", "pointer"),
     [
         (with_keyframe(furniture="spaceship"), "/keyframes/1/furniture"),
@@ -234,7 +236,7 @@ async def test_what_is_wrong_with_a_script_is_named_by_its_place(app: FastAPI, b
 WILD = st.none() | st.integers() | st.text(max_size=30) | st.sampled_from([[], {}, "\ud800", "\0", "sofa 2", 1.5])
 
 
-@settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@tries(120, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     st.dictionaries(st.sampled_from(sorted(EXAMPLE)), WILD, max_size=2),
     st.dictionaries(st.sampled_from(["skill", "emotion", "caption", "furniture"]), WILD, max_size=2),
@@ -253,6 +255,7 @@ async def test_a_damaged_script_never_breaks_the_service(
         assert answer.status_code in (400, 409, 422)
 
 
+@pytest.mark.service
 def test_the_command_line_and_the_service_share_one_library(tmp_path: Path) -> None:
     environment = {name: value for name, value in os.environ.items() if not name.startswith("SIMS_")}
     environment |= {"SIMS_DATA_DIR": str(tmp_path / "data"), "OMP_NUM_THREADS": "1"}

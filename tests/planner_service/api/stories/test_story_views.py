@@ -3,7 +3,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from planner_service.api.stories.schemas import StoryShown, StorySummary
@@ -61,7 +61,6 @@ def records(draw: st.DrawFn) -> Record:
 
 
 @given(records())
-@settings(deadline=None)
 def test_event_numbers_rise_and_the_end_comes_once_and_last(story: Record) -> None:
     events = list(events_of(story))
     assert [event.id for event in events] == sorted({event.id for event in events})
@@ -72,7 +71,6 @@ def test_event_numbers_rise_and_the_end_comes_once_and_last(story: Record) -> No
 
 
 @given(records(), st.integers(0, 60))
-@settings(deadline=None)
 def test_events_of_a_longer_story_begin_with_those_of_the_shorter(story: Record, cut: int) -> None:
     running = replace(story, status="PENDING")
     shorter = replace(running, artifacts=running.artifacts[:cut])
@@ -81,7 +79,6 @@ def test_events_of_a_longer_story_begin_with_those_of_the_shorter(story: Record,
 
 
 @given(records())
-@settings(deadline=None)
 def test_every_story_fits_the_schema_it_is_answered_in(story: Record) -> None:
     shown = StoryShown.model_validate(story_shown(story))
     assert StorySummary.model_validate(story_summary(story, 0)).id == shown.id

@@ -1,0 +1,78 @@
+"""Run the layers of the tests one after the other, and close with what each took beside its limits."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import resource
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@dataclass(frozen=True)
+class Layer:
+    """Tests that are run together."""
+
+    chosen: str
+    """What pytest is to choose by marker."""
+    wall: float | None
+    """Seconds it may take on two cores from a set-up environment; None: no limit."""
+    cpu: float | None
+    """Seconds that all its processes together may compute."""
+    workers: int
+    """Processes that share the tests."""
+
+
+CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+FAST = Layer("not service and not sweep", 240, 250, min(CORES, 4))
+# Tests of a whole service mostly wait for it: three files at a time on two cores.
+REST = Layer("service or sweep", 480, None, min(CORES, 4) + 1)
+LAYERS = {"test": (FAST,), "test-service": (REST,), "test-all": (FAST, REST)}
+RELEASE = {"SIMS_TEST_KILLS": "20", "SIMS_TEST_STORIES": "50", "SIMS_TEST_EXAMPLES": "many"}
+"""How much `test-all` tries, where nothing else is asked for."""
+
+
+def computed() -> float:
+    """CPU-seconds of all processes that have ended below this one."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def run(layer: Layer, more: list[str], environment: dict[str, str]) -> tuple[int, float, float]:
+    """Pytest's exit code, and the wall and CPU seconds it took."""
+    command = [sys.executable, "-m", "pytest", "-m", layer.chosen]
+    command += ["--numprocesses", str(layer.workers), "--dist", "loadfile", "--no-loadscope-reorder", *more]
+    began, before = time.monotonic(), computed()
+    code = subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
+    return code, time.monotonic() - began, computed() - before
+
+
+def beside(seconds: float, limit: float | None, name: str) -> str:
+    """A figure beside its limit."""
+    over = " (over)" if limit is not None and seconds > limit else ""
+    return f"{seconds:.0f} {name}" + (f" of at most {limit:.0f}{over}" if limit is not None else "")
+
+
+def main() -> int:
+    """Run what is asked for; 1 when a test failed."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("layers", choices=LAYERS)
+    asked, more = parser.parse_known_args()
+    environment = (RELEASE if asked.layers == "test-all" else {}) | dict(os.environ)
+    code, lines = 0, []
+    for layer in LAYERS[asked.layers]:
+        ended, wall, cpu = run(layer, more, environment)
+        code = code or ended
+        took = f"{beside(wall, layer.wall, 'seconds')}, {beside(cpu, layer.cpu, 'CPU-seconds')}"
+        lines.append(f"make {asked.layers}, {layer.chosen}: {took}, on {CORES} cores")
+    print("\n".join(lines), flush=True)
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

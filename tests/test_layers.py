@@ -1,0 +1,65 @@
+"""The layers hold: a fast test can start nothing, and a row of many that fails is named."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+from _pytest.mark.expression import Expression
+from for_each import RowsFailed, for_each
+from run_layer import LAYERS
+
+
+@pytest.fixture
+def anyio_backend() -> str:
+    return "asyncio"
+
+
+def test_a_fast_test_can_start_no_process() -> None:
+    with pytest.raises(pytest.fail.Exception, match=r"pytest\.mark\.service"):
+        subprocess.run([sys.executable, "-c", "pass"], check=True)
+    with pytest.raises(pytest.fail.Exception, match=r"pytest\.mark\.service"):
+        os.fork()
+
+
+@pytest.mark.parametrize("fixture", ["service", "postgres_url"])
+def test_a_fast_test_gets_nothing_live(fixture: str, request: pytest.FixtureRequest) -> None:
+    with pytest.raises(pytest.fail.Exception, match=r"pytest\.mark\.service"):
+        request.getfixturevalue(fixture)
+
+
+@pytest.mark.service
+def test_a_marked_test_may() -> None:
+    assert subprocess.run([sys.executable, "-c", "pass"], check=True).returncode == 0
+
+
+@pytest.mark.parametrize("marks", [set(), {"service"}, {"sweep"}, {"service", "sweep"}])
+def test_every_test_is_in_one_layer_and_test_all_runs_both(marks: set[str]) -> None:
+    chosen = [layer.chosen for layer in LAYERS["test-all"]]
+    assert chosen == [layer.chosen for name in ("test", "test-service") for layer in LAYERS[name]]
+    assert [Expression.compile(one).evaluate(lambda mark, **_: mark in marks) for one in chosen].count(True) == 1
+
+
+def test_all_rows_that_fail_are_named() -> None:
+    @for_each("number", range(5))
+    @for_each(("word", "length"), [("a", 1), ("bb", 3)])
+    def holds(number: int, word: str, length: int) -> None:
+        assert number < 3
+        assert len(word) == length
+
+    with pytest.raises(RowsFailed, match=r"^7 failed") as told:
+        holds()
+    rows = [line.split(":")[0] for line in told.value.failed]
+    assert rows == ["0, bb, 3", "1, bb, 3", "2, bb, 3", "3, a, 1", "3, bb, 3", "4, a, 1", "4, bb, 3"]
+
+
+@pytest.mark.anyio
+async def test_rows_of_a_check_that_waits_are_waited_for() -> None:
+    @for_each("number", range(3))
+    async def holds(number: int) -> None:
+        assert number == 1
+
+    with pytest.raises(RowsFailed, match=r"^2 failed, of 3 rows:"):
+        await holds()
