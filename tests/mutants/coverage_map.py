@@ -23,7 +23,7 @@ from mutants.watched_session import OPTIONS, Watched, child, load_ours
 
 PACKAGES: Final = ("prompts", "scene_graphs", "motion_backend", "planner_service")
 APART: Final = ("tests/integration/", "tests/web/", "tests/mutants/")
-"""Tests of whole services and pages; the files at the top of tests/ are about the tree itself, not about what it does."""
+"""Tests of whole services and pages. (The files at the top of tests/ are about the tree, not about what it does.)"""
 FILE_SECONDS: Final = 400.0
 """Processor time that the tests of one file may take while they are watched."""
 
@@ -76,7 +76,7 @@ def test_files(root: Path) -> list[str]:
 
 
 def watch(root: Path, kept: Path, trees: list[ScratchTree]) -> list[Watching]:
-    """All test files; anew those that changed themselves, or whose helpers or modules did. `trees` work side by side."""
+    """All test files; anew those that changed, or whose helpers or modules did. `trees` work side by side."""
     kept.mkdir(parents=True, exist_ok=True)
     names = test_files(root)
     missing = [name for name in names if not _is_fresh(root, _place(kept, name))]
@@ -160,7 +160,7 @@ class Selection:
         self._readers = cache(self._lines_that_read)
 
     def tests(self, bug: Bug) -> list[TimedTest]:
-        """Those of files that mirror the module, then those elsewhere that run its line, then the others of their files.
+        """Those of files that mirror the module, then others that run its line, then the rest of their files.
 
         Of a file all tests are tried, since what it makes once and keeps is seen to run in the first of them alone.
         Quick files go first, and what comes after `seconds` is left out.

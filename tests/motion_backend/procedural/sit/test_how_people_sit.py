@@ -175,3 +175,17 @@ def test_a_held_pose_breathes_and_no_more() -> None:
     for seat, home in SEATS:
         held = sat(seat, UPRIGHT[0], home=home).kinematics.positions[-FPS:]
         assert 1e-5 < np.ptp(held, axis=0).max() < 0.04
+
+
+def test_on_the_floor_knees_are_drawn_up_and_who_does_something_sits_tailorwise() -> None:
+    drawn_up = ("hands on thighs", "arms crossed", "playing music")
+    tailorwise = ("eating", "reading a book", "cross-legged, hands on knees")
+    for caption in (*drawn_up, *tailorwise):
+        crossed = caption in tailorwise
+        body = sat("floor", caption)
+        left = np.array([body.facing[2], 0.0, -body.facing[0]])
+        apart = (body.at("left_ankle") - body.at("right_ankle"))[-1] @ left
+        assert (apart < 0) == crossed, caption
+        assert (body.at("left_knee")[-1, 1] > 0.33) == (not crossed), caption
+        assert 80 < body.knee("left")[-1] < 150, caption
+        assert 0.05 < body.at("pelvis")[-1, 1] < 0.12, caption
