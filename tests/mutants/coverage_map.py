@@ -217,11 +217,11 @@ def _mirrors(test: str, module: str) -> bool:
 
 
 def _readers(text: str, names: tuple[str, ...]) -> set[int]:
-    lines: set[int] = set()
-    for function in ast.walk(ast.parse(text)):
-        if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef):
-            for node in ast.walk(function):
-                name = node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else ""
-                if name in names:
-                    lines.add(node.lineno)  # type: ignore[attr-defined] names and attributes have lines
-    return lines
+    """Lines inside functions that read one of some names."""
+    functions = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)]
+    return {
+        node.lineno
+        for function in functions
+        for node in ast.walk(function)
+        if (isinstance(node, ast.Name) and node.id in names) or (isinstance(node, ast.Attribute) and node.attr in names)
+    }
