@@ -88,7 +88,8 @@ def _move_to(tree: Path, out: Path, environment: dict[str, str]) -> None:
     os.chdir(tree)
     # Beside the tree itself nothing of the project is on the path: neither the one that was run nor an installed one.
     sys.path[:] = [str(tree), *(place for place in sys.path if place and not (Path(place) / "scene_graphs").is_dir())]
-    os.environ.update({"PYTHONPATH": str(tree), "SIMS_DATA_DIR": str(out.parent / "data")} | environment)
+    kept = {"SIMS_DATA_DIR": out.parent / "data", "SIMS_TEST_CACHE": out.parent / "sentences"}
+    os.environ.update({"PYTHONPATH": str(tree)} | {name: str(folder) for name, folder in kept.items()} | environment)
     # A bug has a date of its own, so that what is compiled of it is not taken for the module without it.
     sys.dont_write_bytecode = False
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
