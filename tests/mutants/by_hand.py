@@ -34,7 +34,12 @@ class Mistake(NamedTuple):
 
 BODIES: Final = (
     Mistake("the pelvis turns the wrong way in every walk", GAIT, "hip_turn = np", "hip_turn = -np"),
-    Mistake("the pelvis is lowest over the standing foot", GAIT, "beat = -np.cos(", "beat = np.cos("),
+    Mistake(
+        "the pelvis is lowest over the standing foot",
+        "motion_backend/procedural/walk/pelvis_height.py",
+        "beat = -steps.wave(",
+        "beat = steps.wave(",
+    ),
     Mistake(
         "hips hardly fold when sitting down",
         SITTING,

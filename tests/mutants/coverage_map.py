@@ -22,8 +22,8 @@ from mutants.scratch_tree import ScratchTree
 from mutants.watched_session import OPTIONS, Watched, child, load_ours
 
 PACKAGES: Final = ("prompts", "scene_graphs", "motion_backend", "planner_service")
-APART: Final = ("tests/integration/", "tests/web/", "tests/mutants/")
-"""Tests of whole services and pages. (The files at the top of tests/ are about the tree, not about what it does.)"""
+APART: Final = ("tests/web/", "tests/mutants/")
+"""Tests of the page and of this command. (Files at the top of tests/ are about the tree, not about what it does.)"""
 FILE_SECONDS: Final = 400.0
 """Processor time that the tests of one file may take while they are watched."""
 
