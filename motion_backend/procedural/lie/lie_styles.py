@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from motion_backend.motion import Emotion
 from motion_backend.procedural.emotion_style import AT_EASE, Bearing, Words, bearing_of, changes_of
 
 
@@ -50,14 +51,14 @@ _LIE_WORDS: Words = (
 )
 
 
-def lie_style(emotion: str, caption: str) -> Lying:
+def lie_style(emotion: Emotion, caption: str) -> Lying:
     """The way of lying a caption asks for."""
     return Lying(bearing=bearing_of(emotion, caption), **changes_of(caption, _LIE_WORDS))
 
 
 def wanted_edge(caption: str) -> str | None:
     """The side of the body that a caption wants towards the free edge: the front of who lies on a side, a foot's."""
-    style = lie_style("neutral", caption)
+    style = lie_style(Emotion.NEUTRAL, caption)
     if style.side != "back":
         return style.side
     return style.legs.removesuffix("_down") if style.legs.endswith("_down") else None

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from motion_backend.procedural.emotion_style import AT_EASE, THIGHS, Bearing, Words, bearing_of, changes_of, feeling
+from motion_backend.motion import Emotion
+from motion_backend.procedural.emotion_style import AT_EASE, THIGHS, Bearing, Words, bearing_of, changes_of
 
 
 @dataclass(frozen=True)
@@ -103,10 +104,10 @@ _SIT_WORDS: Words = (
 )  # fmt: skip
 
 
-def sit_style(emotion: str, caption: str) -> Seated:
+def sit_style(emotion: Emotion, caption: str) -> Seated:
     """The way of sitting a caption asks for, in that emotion."""
     bearing, changes = bearing_of(emotion, caption), changes_of(caption, _SIT_WORDS)
     if "lean" in changes:
         bearing = replace(bearing, lean=changes.pop("lean"))
     slump = {"recline": 4.0 - 0.6 * max(bearing.lean, 0.0), "head": 0.8 * max(bearing.head, 0.0)}
-    return Seated(bearing=bearing, manner=MANNERS[feeling(emotion, caption)], **(slump | changes))
+    return Seated(bearing=bearing, manner=MANNERS[emotion], **(slump | changes))

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from motion_backend.procedural.emotion_style import AT_EASE, BEARINGS, Bearing, Words, changes_of, feeling
+from motion_backend.motion import Emotion
+from motion_backend.procedural.emotion_style import AT_EASE, BEARINGS, Bearing, Words, changes_of
 
 
 @dataclass(frozen=True)
@@ -158,9 +159,8 @@ _WALK_WORDS: Words = (
 )  # fmt: skip
 
 
-def walk_style(emotion: str, caption: str) -> Walk:
+def walk_style(emotion: Emotion, caption: str) -> Walk:
     """The gait of an emotion, changed by what the caption says."""
-    mood = feeling(emotion, caption)
-    bearing, changes = BEARINGS[mood], changes_of(caption, _WALK_WORDS)
+    bearing, changes = BEARINGS[emotion], changes_of(caption, _WALK_WORDS)
     carried = {name: changes.pop(name) for name in ("lean", "head", "arms") if name in changes}
-    return Walk(bearing=replace(bearing, **carried), **(_WALKS[mood] | changes))
+    return Walk(bearing=replace(bearing, **carried), **(_WALKS[emotion] | changes))
