@@ -15,7 +15,7 @@ from motion_backend import rotations
 from motion_backend.procedural.pose import Pose, smooth
 from motion_backend.procedural.walk.foot_trajectory import TIP_UP, Feet, Swing
 from motion_backend.procedural.walk.root_path import Route
-from motion_backend.procedural.walk.walk_styles import Walk
+from motion_backend.procedural.walk.walk_styles import Walk, usual_width
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
 
@@ -198,7 +198,7 @@ def _swing_of(
     last = len(phase) - 1
     turned = abs(float(route.heading[min(at + 8, last)] - route.heading[max(at - 8, 0)]))
     turning = min(turned / TURNING, 1.0)
-    stance = max(style.width, turning * Walk.width)
+    stance = max(style.width, turning * usual_width())
     width = stance * (1 - (0.0 if style.aside == SIDEWAYS else NARROWER) * under_way * (1 - turning))
     target = home_ankle(middle, heading, beat.index, width, skeleton)
     before = max(int(np.searchsorted(phase, beat.window[0])) - 1, 0)

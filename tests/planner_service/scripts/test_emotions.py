@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from motion_backend.emotion_words import naming_words
 from motion_backend.motion import Action, Emotion, Skill
-from motion_backend.procedural.emotion_style import BEARINGS
+from motion_backend.procedural.emotion_style import bearings
 from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.sit.sit_styles import sit_style
 from motion_backend.procedural.walk.walk_styles import walk_style
@@ -47,7 +47,7 @@ def test_every_word_that_the_planner_knows_means_the_same_to_the_body() -> None:
         for (word, emotion), keyframe, action in zip(written, keyframes, acted(keyframes), strict=True)
         if not (
             keyframe.mood is action.emotion is emotion
-            and walk_style(action.emotion, action.caption).bearing == BEARINGS[emotion]
+            and walk_style(action.emotion, action.caption).bearing == bearings()[emotion]
         )
     ]
     assert len(NAMED) >= 235
@@ -66,7 +66,7 @@ def test_no_caption_changes_the_emotion() -> None:
         for caption in captions()[skill]:
             tempos = [style(emotion, caption).bearing.tempo for emotion in Emotion]
             paced = any(word in caption.lower() for word in ("slow", "weari", "quick"))
-            assert paced or tempos == [BEARINGS[emotion].tempo for emotion in Emotion], caption
+            assert paced or tempos == [bearings()[emotion].tempo for emotion in Emotion], caption
 
 
 @given(st.text(alphabet="qxz ", max_size=12))

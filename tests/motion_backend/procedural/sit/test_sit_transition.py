@@ -19,7 +19,7 @@ from motion_backend.metrics import story_metrics
 from motion_backend.motion import Action, Character, Emotion, Motion, Skill
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.procedural.collision_avoidance.body_collision import hands_round_body
-from motion_backend.procedural.emotion_style import ARMS, Bearing
+from motion_backend.procedural.emotion_style import Bearing, arm_poses
 from motion_backend.procedural.held_poses import Seat, standing
 from motion_backend.procedural.pose import Pose, interpolate
 from motion_backend.procedural.pose_solver import hips_within, solve
@@ -77,7 +77,7 @@ def held(caption: str, name: str = "chair", home: Home = HOME) -> dict[str, np.n
 def test_every_caption_names_hands_and_legs_that_there_are() -> None:
     for caption in captions()["sitdown"]:
         style = sit_style(Emotion.NEUTRAL, caption)
-        assert all(arm in ARMS or arm in HOLDS or arm in SURFACES for arm in style.arms), caption
+        assert all(arm in arm_poses() or arm in HOLDS or arm in SURFACES for arm in style.arms), caption
         assert style.legs in WAYS, caption
 
 

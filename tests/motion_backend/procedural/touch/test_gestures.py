@@ -13,7 +13,7 @@ from motion_backend.body.scene_collision import Obstacles
 from motion_backend.metrics import story_metrics
 from motion_backend.motion import Action, Character, Emotion, Motion, Skill
 from motion_backend.procedural.backend import ProceduralBackend
-from motion_backend.procedural.emotion_style import ARMS, Bearing
+from motion_backend.procedural.emotion_style import Bearing, arm_poses
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.sit.sit_pose import SURFACES
@@ -74,7 +74,7 @@ def seated(caption: str) -> tuple[Motion, np.ndarray]:
 def test_a_caption_of_sitting_is_shown_by_the_hands(caption: str) -> None:
     style = sit_style(Emotion.NEUTRAL, caption)
     assert style.doing == SITTING[caption]
-    assert all(arm in ARMS or arm in HOLDS or arm in SURFACES for arm in style.arms)
+    assert all(arm in arm_poses() or arm in HOLDS or arm in SURFACES for arm in style.arms)
     motion, joints = seated(caption)
     figures = story_metrics.judge(
         motion, replace(contact(HOME, Skill.SITDOWN, "chair", caption), keyframe=1), OBSTACLES

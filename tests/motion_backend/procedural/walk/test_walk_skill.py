@@ -25,7 +25,7 @@ from motion_backend.metrics.smoothness import jerk_against_real
 from motion_backend.mocap.readers import read_clips
 from motion_backend.mocap.retarget import retarget
 from motion_backend.motion import FPS, Emotion, Motion
-from motion_backend.procedural.emotion_style import BEARINGS, Bearing
+from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose_solver import solve
 from motion_backend.procedural.walk.foot_trajectory import HEEL_RISE, SETTLE, Swing
@@ -174,7 +174,7 @@ def test_captions_are_told_apart() -> None:
 
 
 def test_moods_are_told_apart() -> None:
-    assert share_told_apart([("steadily walking forward", mood) for mood in BEARINGS]) == 1.0
+    assert share_told_apart([("steadily walking forward", mood) for mood in Emotion]) == 1.0
 
 
 def test_two_walks_are_not_the_same() -> None:
