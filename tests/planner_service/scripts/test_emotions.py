@@ -15,7 +15,7 @@ from planner_service.grounding.keyframes_to_actions import Place, act
 from planner_service.scripts.captions import captions
 from planner_service.scripts.emotions import EmotionHints, feelings
 from planner_service.scripts.script import Keyframe
-from planner_service.scripts.script_library import built_in
+from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.script_repair import repair
 from scene_graphs.data_tables import read_table
 from scene_graphs.home import home_from_layouts
