@@ -9,8 +9,7 @@ import pytest
 from acted import Body, walked
 
 from motion_backend.metrics.gait_features import UNITS, gait_features, windows
-from motion_backend.motion import FPS
-from motion_backend.procedural.emotion_style import BEARINGS
+from motion_backend.motion import FPS, Emotion
 
 PLAIN = (
     "steadily walking forward",
@@ -26,7 +25,7 @@ HIGH = ("marching with swinging arms", "stomping heavily")
 WALKS = [
     *product((*PLAIN, *HIGH), ("neutral",), ("small",), (3,)),
     *product((*PLAIN[:1], *PLAIN[4:6]), ("neutral",), ("hall",), (6,)),
-    *product(("steadily walking forward",), sorted(set(BEARINGS) - {"drunk"}), ("small",), (4,)),
+    *product(("steadily walking forward",), sorted(set(Emotion) - {Emotion.DRUNK}), ("small",), (4,)),
 ]
 """Drunks sway too much for any of it."""
 SIDES = ("left", "right")
@@ -181,7 +180,7 @@ def head_height(body: Body) -> float:
 
 
 def test_moods_are_seen_in_pace_and_bearing() -> None:
-    mood = {emotion: walked("steadily walking forward", emotion, seed=4) for emotion in BEARINGS}
+    mood = {emotion: walked("steadily walking forward", emotion, seed=4) for emotion in Emotion}
     speed = {emotion: pace(body) for emotion, body in mood.items()}
     head = {emotion: head_height(body) for emotion, body in mood.items()}
     lean = {emotion: float(body.lean(body.way)[body.middle].mean()) for emotion, body in mood.items()}
