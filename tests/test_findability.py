@@ -1,8 +1,8 @@
-"""The house can be found one's way in: the first word one types names a right module, and names alone tell what is where.
+"""One finds one's way in the house: the first word typed names a right module, and names alone tell what is where.
 
-`data/concepts.tsv` holds the questions: what one looks for, the words one would type (most usual first), the modules that
-hold it. A new concept gets its row in the change that brings it. An editor's file finder is what is imitated: a word
-matches any part of a path, folders included; the name of the package on top says nothing and does not count.
+`data/concepts.tsv` holds the questions: what one looks for, the words one would type (most usual first), the modules
+that hold it. A new concept gets its row in the change that brings it. An editor's file finder is what is imitated: a
+word matches any part of a path, folders included; the name of the package on top says nothing and does not count.
 """
 
 from __future__ import annotations
