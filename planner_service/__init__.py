@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from planner_service.library.library import Shelves
-    from planner_service.output.story_files import write_story
+    from planner_service.output.story_export import write_story
     from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest
     from planner_service.scripts.script import Keyframe, LongScript, ShortScript
     from planner_service.scripts.script_library import ScriptLibrary
@@ -37,7 +37,7 @@ _ROOMS = {
     "ShortScript": "scripts.script",
     "Story": "pipeline",
     "StoryRequest": "pipeline",
-    "write_story": "output.story_files",
+    "write_story": "output.story_export",
 }
 """Where each of them is defined, below this package."""
 

@@ -11,7 +11,7 @@ from anyio import CapacityLimiter
 from sqlalchemy import Engine
 from sqlalchemy.exc import SQLAlchemyError
 
-from planner_service.extraction.transcription import Transcriber, load_transcriber
+from planner_service.extraction.speech_to_text import Transcriber, load_transcriber
 from planner_service.jobs.queue import Jobs
 from planner_service.jobs.uploads import Uploads
 from planner_service.library.library import Shelves

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from scene_graphs.errors import UserError
     from scene_graphs.furniture import Furniture
-    from scene_graphs.generation.room_generator import generate_room
+    from scene_graphs.generation.generate_room import generate_room
     from scene_graphs.graph.furniture_graph import FurnitureGraph, graph_from_layout
     from scene_graphs.home import Home, home_from_layouts
     from scene_graphs.layout import Layout, Placed, read_layouts, write_layouts
@@ -46,7 +46,7 @@ _ROOMS = {
     "UserError": "errors",
     "built_in_index": "layout_library",
     "built_in_layouts": "layout_library",
-    "generate_room": "generation.room_generator",
+    "generate_room": "generation.generate_room",
     "graph_from_layout": "graph.furniture_graph",
     "home_from_layouts": "home",
     "read_layouts": "layout",

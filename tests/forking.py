@@ -18,7 +18,7 @@ HEAVY = (
         "planner_service.pipeline",
         "planner_service.store.database",
         "planner_service.library.import_layouts",
-        "planner_service.output.story_files",
+        "planner_service.output.story_export",
     ),
     *("planner_service.output.storyboard", "matplotlib.figure", "scipy.ndimage", "motion_backend.procedural.backend"),
 )

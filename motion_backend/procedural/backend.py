@@ -17,11 +17,11 @@ from motion_backend.motion import FPS, Action, BodyState, Character, ContactGoal
 from motion_backend.procedural.body_state import Body, Scene
 from motion_backend.procedural.collision_avoidance.elbow_collision import elbows_clear
 from motion_backend.procedural.collision_avoidance.hand_collision import hands_clear
-from motion_backend.procedural.controller import perform
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import idle, standing
 from motion_backend.procedural.pose import Pose, concatenate
 from motion_backend.procedural.pose_solver import hips_within, released, solve
+from motion_backend.procedural.skill_controller import perform
 from motion_backend.procedural.touch.hand_captions import steadies, with_both_hands
 from motion_backend.rotations import Array
 from motion_backend.skeleton import HAND_REST, LYING_REST, SEATED_REST, build_skeleton

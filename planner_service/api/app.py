@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from importlib.metadata import version
-from typing import Any, Final
+from typing import Any
 
 from fastapi import Depends, FastAPI
 from fastapi.routing import APIRoute
@@ -17,26 +17,15 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from planner_service.api.authentication import Access, Cors, Gate
 from planner_service.api.dependencies import only_known_parameters
 from planner_service.api.error_handlers import Unforeseen, register_handlers
-from planner_service.api.extractions.endpoints import EXTRACT, extract_router, extractions_router
-from planner_service.api.layouts.endpoints import layouts_router
-from planner_service.api.layouts.graph_endpoints import layout_graphs_router
+from planner_service.api.extractions.endpoints import EXTRACT
 from planner_service.api.multipart import most_sent
 from planner_service.api.openapi import document
 from planner_service.api.rate_limit import LARGER, BodyLimit, Limiting, Rate
-from planner_service.api.scripts.endpoints import long_scripts_router, short_scripts_router
-from planner_service.api.stories.endpoints import motions_router, stories_router
-from planner_service.api.stories.event_stream import events_router
-from planner_service.api.task_plans.endpoints import task_plans_router
+from planner_service.api.routes import ROUTERS
 from planner_service.api.telemetry import Figures, Telemetry
-from planner_service.api.web_page import assets, page_router, service_router
+from planner_service.api.web_page import assets
 from planner_service.components import Parts
 from planner_service.store.job_statistics import StoreFigures
-
-ROUTERS: Final = (
-    stories_router, events_router, motions_router, task_plans_router, extract_router, extractions_router,
-    short_scripts_router, long_scripts_router, layouts_router, layout_graphs_router, service_router, page_router,
-)  # fmt: skip
-"""In the order in which paths are looked for."""
 
 
 class Service(FastAPI):

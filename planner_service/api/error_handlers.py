@@ -35,7 +35,7 @@ from planner_service.api.errors import (  # fmt: skip
     WrongMedia,
 )
 from planner_service.llm.protocol import ModelError
-from planner_service.output.story_files import OutputError
+from planner_service.output.story_export import OutputError
 from planner_service.settings import SettingsError
 from planner_service.store.story_store import StoryGone
 from planner_service.user_errors import one_line

@@ -16,7 +16,7 @@ from rich.table import Table
 
 from motion_backend.motion import Skill
 from planner_service.cli.console import plain_table
-from planner_service.output.story_files import OutputError, check_writable, write_files
+from planner_service.output.story_export import OutputError, check_writable, write_files
 from planner_service.pipeline import RequestError
 from planner_service.user_errors import printable
 

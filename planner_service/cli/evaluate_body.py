@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from planner_service.evaluation.body_evaluation import Figure, Result
-    from planner_service.evaluation.caption_recognition import Telling
+    from planner_service.evaluation.caption_classifier import Telling
     from planner_service.evaluation.trials import Performance
 
 FIGURES = (
@@ -65,9 +65,9 @@ def body(
     whole is --rooms 20 --seeds 5. Exit code 1 when a limit is missed.
     """
     from planner_service.evaluation.body_evaluation import plan_trials, run_trials, sum_up
-    from planner_service.evaluation.caption_recognition import tell_apart
+    from planner_service.evaluation.caption_classifier import tell_apart
     from planner_service.evaluation.diversity import diversity
-    from planner_service.output.story_files import check_writable, write_files
+    from planner_service.output.story_export import check_writable, write_files
 
     console = Console(markup=False, highlight=False)
     chosen = _chosen(captions, skill, only)
@@ -139,7 +139,7 @@ def _one_trial(
 ) -> None:
     """Every figure of one trial, and its film and storyboard."""
     from planner_service.evaluation.trials import Trial, perform
-    from planner_service.output.story_files import check_writable
+    from planner_service.output.story_export import check_writable
     from scene_graphs.layout_library import built_in_index
 
     pairs = [(skill, caption) for skill, some in chosen.items() for caption in some]
@@ -169,7 +169,7 @@ def _one_trial(
 def _write_trial(done: Performance, out: Path) -> None:
     from motion_backend.formats.glb_film import film_glb
     from motion_backend.motion import join
-    from planner_service.output.story_files import write_files
+    from planner_service.output.story_export import write_files
     from planner_service.output.storyboard import storyboard
 
     whole = join(list(done.motions))
@@ -185,7 +185,7 @@ def _write_trial(done: Performance, out: Path) -> None:
 
 
 def _print(console: Console, figures: Sequence[Figure], told: Sequence[Telling], value: Mapping[str, Any]) -> None:
-    from planner_service.evaluation.caption_recognition import APART
+    from planner_service.evaluation.caption_classifier import APART
 
     console.print(_table(figures))
     console.print(f"{value['trials']} trials, {value['rooms']} rooms, seeds {value['seeds']}; kinematic; ± is 95 %")

@@ -26,7 +26,7 @@ from rich.console import Console
 from planner_service.cli.console import plain_table, writing_database
 from planner_service.library.library import Shelves, open_shelves
 from planner_service.output.room_pictures import Shown, picture
-from planner_service.output.story_files import Writer, check_writable, write_files
+from planner_service.output.story_export import Writer, check_writable, write_files
 from planner_service.pipeline import RequestError
 from planner_service.settings import read_settings
 from scene_graphs.affordances.usable_furniture import count_uses
@@ -354,8 +354,8 @@ def generate(
 
     from rich.progress import track
 
-    from planner_service.output.story_files import check_writable, write_files
-    from scene_graphs.generation.room_generator import CHUNK, generate_rooms
+    from planner_service.output.story_export import check_writable, write_files
+    from scene_graphs.generation.generate_room import CHUNK, generate_rooms
 
     if not out.name.endswith(ENDINGS):
         raise RequestError(f"{out} must end in one of {', '.join(ENDINGS)}, or no reader knows what it is", at="--out")

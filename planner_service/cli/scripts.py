@@ -24,7 +24,7 @@ from planner_service.llm.client import for_story
 from planner_service.llm.factory import KINDS, load_model
 from planner_service.llm.protocol import LanguageModel
 from planner_service.llm.structured_output import problems_of
-from planner_service.output.story_files import check_writable, write_files
+from planner_service.output.story_export import check_writable, write_files
 from planner_service.scripts.captions import Vocabulary, captions
 from planner_service.scripts.script import ShortScript, Source
 from planner_service.scripts.script_library import UNKNOWN, Choice, LibraryError, unknown_licences, unlicensed

@@ -54,7 +54,7 @@ def story(
 ) -> None:
     """Turn a story theme into a script, a home, a told story and an animated film."""
     from planner_service.cli.layouts import chosen_layouts
-    from planner_service.output.story_files import FILES, check_writable, write_story
+    from planner_service.output.story_export import FILES, check_writable, write_story
 
     settings = read_settings()
     check_writable(out, FILES)

@@ -65,7 +65,7 @@ def _room(name: str | None, shelves: Shelves) -> Layout | None:
 
 def _finish(plan: TaskPlan, room: Layout | None, out: Path | None, shelves: Shelves) -> None:
     """Print the plan and, with a folder, act it out and write its files."""
-    from planner_service.output.story_files import FILES, check_writable, write_story
+    from planner_service.output.story_export import FILES, check_writable, write_story
 
     if out is not None:
         check_writable(out, FILES)

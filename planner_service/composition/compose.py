@@ -16,8 +16,9 @@ from planner_service.composition.event_retrieval import Reading, read
 from planner_service.composition.sequence_search import cast
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts.script import Event, Keyframe, LongScript, PlannedKeyframe, Retrieved
-from planner_service.scripts.script_library import Found, ScriptLibrary
+from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import repair
+from planner_service.scripts.script_search import Found
 from planner_service.scripts.suitability import Limits, Scores
 from planner_service.themes.beats import (
     LANGUAGE,

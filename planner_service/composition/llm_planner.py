@@ -14,8 +14,8 @@ from planner_service.llm.protocol import LanguageModel
 from planner_service.llm.structured_output import ask, problems_of
 from planner_service.scripts.captions import captions_offered, furniture_offered
 from planner_service.scripts.script import EMOTIONS, Event, Keyframe
-from planner_service.scripts.script_library import Found
 from planner_service.scripts.script_repair import check, read_keyframe
+from planner_service.scripts.script_search import Found
 
 MAX_KEYFRAMES: Final = 40
 _MAX_CAPTIONS: Final = 40

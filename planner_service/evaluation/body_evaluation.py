@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from motion_backend.motion import Skill
 from motion_backend.rotations import Array
-from planner_service.evaluation.caption_recognition import describe
+from planner_service.evaluation.caption_classifier import describe
 from planner_service.evaluation.diversity import contact_frames
 from planner_service.evaluation.trials import Trial, perform, places_for, setting
 from planner_service.grounding.keyframes_to_actions import UnreachableError

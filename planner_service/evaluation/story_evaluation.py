@@ -28,7 +28,7 @@ from planner_service.composition.llm_planner import DirectKeyframe, DirectScript
 from planner_service.evaluation.labels import LabelledEvent, LabelledTheme
 from planner_service.grounding.furnish import FurnishError, furnish
 from planner_service.grounding.keyframes_to_actions import UnreachableError, act
-from planner_service.llm.scripted_model import ScriptedModel
+from planner_service.llm.fake_model import ScriptedModel
 from planner_service.narration.narrator import narrate
 from planner_service.scripts.script import Event, LongScript, PlannedKeyframe
 from planner_service.scripts.script_library import ScriptLibrary

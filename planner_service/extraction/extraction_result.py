@@ -23,7 +23,7 @@ from planner_service.scripts.script_duplicates import MIN_DUPLICATE_COSINE, doin
 from planner_service.scripts.script_library import UNKNOWN, ScriptLibrary
 
 if TYPE_CHECKING:
-    from planner_service.extraction.transcription import Transcriber
+    from planner_service.extraction.speech_to_text import Transcriber
 
 
 @dataclass(frozen=True)

@@ -16,11 +16,11 @@ from planner_service.extraction.extraction_result import (
 from planner_service.extraction.from_text import read_by_rules, refuse_other_languages, scenes_read
 from planner_service.extraction.script_writer import RULES, Maker
 from planner_service.extraction.shot_detection import Scene, scenes_of
+from planner_service.extraction.speech_to_text import hear
 from planner_service.extraction.subtitles import MAX_SUBTITLE_BYTES, Subtitles, embedded_cues, read_subtitles
 from planner_service.extraction.text_files import ExtractionError, first_bytes
 from planner_service.extraction.text_rules import SceneRead
 from planner_service.extraction.text_scenes import scenes_of_cues
-from planner_service.extraction.transcription import hear
 from planner_service.extraction.video import Film, open_film
 from planner_service.extraction.video_frames import Album
 from planner_service.extraction.vision_model import Watched, watch_film

@@ -36,10 +36,10 @@ from planner_service.extraction.from_text import read_piece
 from planner_service.extraction.llm_text import pieces_of
 from planner_service.extraction.script_writer import Maker
 from planner_service.extraction.shot_detection import Scene, scenes_of
+from planner_service.extraction.speech_to_text import Transcriber
 from planner_service.extraction.subtitles import Subtitles
 from planner_service.extraction.text_files import ExtractionError
 from planner_service.extraction.text_scenes import TextScene, scenes_of_cues
-from planner_service.extraction.transcription import Transcriber
 from planner_service.extraction.video import Film, open_film
 from planner_service.extraction.video_frames import Album
 from planner_service.jobs.uploads import Uploads

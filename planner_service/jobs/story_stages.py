@@ -24,7 +24,7 @@ from planner_service.grounding.furnish import Furnished
 from planner_service.jobs import serialization
 from planner_service.jobs.serialization import summary_of_home, summary_of_script
 from planner_service.narration.narrator import Told
-from planner_service.output.story_files import report_to_dict
+from planner_service.output.story_export import report_to_dict
 from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, judge
 from planner_service.scripts.script import LongScript
 from planner_service.store.story_store import Made, Stories

@@ -12,7 +12,7 @@ import structlog
 from sqlalchemy import Engine, text
 from sqlalchemy.exc import InterfaceError, OperationalError
 
-from planner_service.extraction.transcription import load_transcriber
+from planner_service.extraction.speech_to_text import load_transcriber
 from planner_service.jobs.extraction_stages import Reader
 from planner_service.jobs.queue import APPLICATION, EXTRACTIONS, QUEUE, VERSION
 from planner_service.jobs.story_stages import Maker

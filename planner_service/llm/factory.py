@@ -12,10 +12,10 @@ from urllib.parse import urlsplit
 from planner_service.llm.answer_cache import Memory
 from planner_service.llm.budget import Limits, Spending
 from planner_service.llm.client import ServedModel
+from planner_service.llm.fake_model import ScriptedModel
 from planner_service.llm.messages import Question, Reply
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.llm.replay_model import Recorder, Replay
-from planner_service.llm.scripted_model import ScriptedModel
 from planner_service.settings import Settings, SettingsError
 
 if TYPE_CHECKING:

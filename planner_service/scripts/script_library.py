@@ -1,7 +1,7 @@
 """A library of short scripts, and the sentence features by which one is found by its meaning (SIMS 3.2).
 
-A query is held against every script: meaning first, then feeling, room and furniture; a selection names emotion, room,
-furniture, source and licence.
+How well each answers a query is a matter of `script_search`; a selection names emotion, room, furniture, source and
+licence.
 """
 
 from __future__ import annotations
@@ -23,48 +23,10 @@ from planner_service.scripts.built_in_scripts import texts_of
 from planner_service.scripts.emotion_classifier import MoodReader, lessons
 from planner_service.scripts.script import EMOTIONS, ShortScript
 from planner_service.scripts.script_embeddings import load_by_heart
-from planner_service.scripts.suitability import Demand, Limits, Scores, Traits, raises
-from planner_service.themes.beats import Clause, ThemeError, clauses_of
+from planner_service.scripts.script_search import Found, answers
+from planner_service.scripts.suitability import Scores, Traits
 from scene_graphs.errors import UserError
 from scene_graphs.furniture import ROOM_TYPES, canonical_room, categories_of, is_known
-
-_EVENTS: Final = 0.5
-"""How much the single events of a query count beside the whole of it."""
-_RAISED: Final = 0.5
-"""How much feeling, room and furniture count: less than for a story, since they are not what was asked."""
-_SHARED: Final = 0.1
-"""What it counts that a summary has the query's words, rare ones for most."""
-_MOOD: Final = 0.3
-"""How much it counts that a script feels like the query: sentence features hardly tell "passed" from "failed"."""
-
-
-def answers(query: str, library: ScriptLibrary) -> Scores:
-    """How well each script answers the query, -1 to 1, rounded to 1e-4. (scripts,)."""
-    clauses = _clauses(query)
-    vectors = library.encoder.encode([query, *(clause.query for clause in clauses)])
-    near = library.scores(vectors)
-    whole, events = near[0], near[1:]
-    if len(clauses) == 1:
-        total = np.maximum(whole, events[0])  # what a saying means, where it is one
-    elif clauses:
-        total = (1 - _EVENTS) * whole + _EVENTS * events.mean(axis=0)
-    else:
-        total = whole
-    total = total + _MOOD * library.moods(vectors[:1])[0][library.traits.emotions]
-    for clause in clauses:
-        demand = Demand(clause.text, clause.emotion, 1.0 if clause.sure else 0.8, -1.0, clause.room)
-        raised = _RAISED * raises(demand, library.traits, Limits()) + _SHARED * library.sharing(clause.text)
-        total = total + raised / len(clauses)
-    answered: Scores = np.clip(total, -1.0, 1.0).round(4)
-    return answered
-
-
-def _clauses(query: str) -> tuple[Clause, ...]:
-    try:
-        return clauses_of(query)
-    except ThemeError:
-        return ()
-
 
 _WORD: Final = re.compile(r"[^\W\d_]{3,}")
 _ENDING: Final = re.compile(r"(?:ing|ed|es|s|ly)$")
@@ -75,14 +37,6 @@ _COMMON: Final = frozenset(_COMMON_WORDS.split())
 
 class LibraryError(UserError):
     """A short script cannot be read, kept or found; the text names the field."""
-
-
-@dataclass(frozen=True)
-class Found:
-    """A short script and how well it answers what was asked, -1 to 1."""
-
-    script: ShortScript
-    score: float
 
 
 class Features:

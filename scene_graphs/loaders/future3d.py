@@ -14,7 +14,7 @@ import numpy as np
 
 from scene_graphs.boxes import Part, box, inside
 from scene_graphs.furniture import canonical
-from scene_graphs.geometry.mesh_to_boxes import shape_of
+from scene_graphs.geometry.mesh_decomposition import shape_of
 from scene_graphs.json_fields import LayoutError, Row
 from scene_graphs.layout import MAX_SIZE, Point3
 from scene_graphs.loaders.frames import Pose, numbers

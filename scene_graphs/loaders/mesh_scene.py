@@ -17,7 +17,7 @@ import numpy as np
 
 from scene_graphs.boxes import Part, Point3
 from scene_graphs.furniture import affordances
-from scene_graphs.geometry.mesh_to_boxes import front_of_mesh, shape_of
+from scene_graphs.geometry.mesh_decomposition import front_of_mesh, shape_of
 from scene_graphs.json_fields import MAX_COORDINATE, LayoutError
 from scene_graphs.layout import MAX_SIZE, Array, Layout, Placed, wrap
 from scene_graphs.loaders.doors_and_windows import distinct, gap_around, gaps_of_rooms

@@ -24,7 +24,7 @@ from planner_service.pipeline import Pipeline, StoryRequest
 from planner_service.scripts.script import ShortScript
 from planner_service.settings import read_settings
 from scene_graphs.errors import UserError
-from scene_graphs.generation.room_generator import generate_room
+from scene_graphs.generation.generate_room import generate_room
 from scene_graphs.layout import layout_from_dict, layout_to_dict
 
 ENVIRONMENT = {name: value for name, value in os.environ.items() if not name.startswith("SIMS_")}

@@ -18,7 +18,7 @@ from motion_backend import backends
 from motion_backend.backends import BrokenBackendError, UnknownBackendError, about, backend_names, load_backend
 from motion_backend.motion import Action, Character, Skill
 from planner_service.settings import SettingsError, read_settings
-from scene_graphs.generation.room_generator import generate_room
+from scene_graphs.generation.generate_room import generate_room
 from scene_graphs.home import home_from_layouts
 
 

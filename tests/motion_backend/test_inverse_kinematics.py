@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
-from tries import tries
 
 from motion_backend import rotations
 from motion_backend.inverse_kinematics import arm_rotations, leg_rotations, two_bone

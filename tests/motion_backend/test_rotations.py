@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from scipy.spatial.transform import Rotation
-from tries import tries
 
 from motion_backend import rotations
 

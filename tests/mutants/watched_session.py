@@ -29,7 +29,7 @@ LIBRARIES: Final = (
 )  # fmt: skip
 OURS: Final = (
     "scene_graphs.layout_library", "motion_backend.procedural.backend", "motion_backend.metrics.story_metrics",
-    "planner_service.pipeline", "planner_service.output.story_files", "planner_service.cli",
+    "planner_service.pipeline", "planner_service.output.story_export", "planner_service.cli",
 )  # fmt: skip
 """What most tests import of the project, directly or not; read by those who do not change it."""
 OPTIONS: Final = (

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 import prompts
 

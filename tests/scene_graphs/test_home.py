@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 from scene_graphs.doorways import TIGHT, WALL_GAP
 from scene_graphs.home import Home, HomeError, home_from_dict, home_from_layouts, home_to_dict, random_home

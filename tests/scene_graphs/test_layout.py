@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from examples import tries
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 from scene_graphs.furniture_shapes import parts_of
 from scene_graphs.layout import (

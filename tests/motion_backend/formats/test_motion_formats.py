@@ -7,10 +7,10 @@ import json
 
 import numpy as np
 import pytest
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
 from sample_motions import tumbling
-from tries import tries
 
 from motion_backend import rotations
 from motion_backend.formats import FORMATS, encode, write_motion

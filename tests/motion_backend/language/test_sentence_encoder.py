@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 from motion_backend.language.sentence_encoder import CachedEncoder, HashingEncoder, Vectors, load_encoder
 

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
 from sample_motions import tumbling
-from tries import tries
 
 from motion_backend import rotations
 from motion_backend.formats.bvh import write_bvh

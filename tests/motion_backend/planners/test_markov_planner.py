@@ -8,10 +8,10 @@ from itertools import islice, pairwise
 
 import numpy as np
 import pytest
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
 from small_home import small_home
-from tries import tries
 
 from motion_backend.motion import Posture
 from motion_backend.planners.balanced_chain import Edges, balanced

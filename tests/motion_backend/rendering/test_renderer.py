@@ -7,9 +7,9 @@ from time import process_time
 
 import numpy as np
 import pytest
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 from motion_backend.rendering.rasterizer import Camera, clip, fragments, orbit
 from motion_backend.rendering.renderer import Solid, render

@@ -12,6 +12,7 @@ from typing import Annotated, Any
 import httpx
 import pytest
 from anyio import BrokenResourceError, ClosedResourceError
+from examples import tries
 from fastapi import FastAPI, Header, Query
 from for_each import for_each
 from hypothesis import HealthCheck, given
@@ -21,7 +22,6 @@ from service_app import app_on, calling, check_problem, running
 from sqlalchemy import create_engine, text
 from sqlalchemy.exc import DataError, IntegrityError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
-from tries import tries
 
 from motion_backend.backends import BrokenBackendError
 from planner_service.api import errors

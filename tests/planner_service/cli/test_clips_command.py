@@ -17,7 +17,7 @@ from motion_backend.mocap.dataset_file import read_dataset
 from motion_backend.motion import Motion
 from motion_backend.skeleton import INDEX, build_skeleton
 from planner_service.cli import app
-from planner_service.output.story_files import OutputError
+from planner_service.output.story_export import OutputError
 
 SECONDS = 2
 

@@ -6,15 +6,15 @@ import re
 
 import pytest
 from encoded import encoded
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
 from themes import THEMES, Theme
-from tries import tries
 
 from motion_backend.language.sentence_encoder import HashingEncoder, SentenceEncoder
 from planner_service.composition.compose import Request, compose
+from planner_service.llm.fake_model import ScriptedModel
 from planner_service.llm.protocol import ModelError
-from planner_service.llm.scripted_model import ScriptedModel
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.script import LongScript
 from planner_service.scripts.script_embeddings import load_by_heart

@@ -7,15 +7,15 @@ from collections.abc import Iterable
 from typing import Any
 
 import pytest
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
-from tries import tries
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from planner_service.composition.script_imitation import MAX_QUESTIONS, MAX_WANTED, Imitated, Wish, examples, imitate
+from planner_service.llm.fake_model import Answer, ScriptedModel
 from planner_service.llm.protocol import ModelError
-from planner_service.llm.scripted_model import Answer, ScriptedModel
 from planner_service.llm.structured_output import ModelAnswerError
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.captions import captions

@@ -17,7 +17,7 @@ from motion_backend.motion import Motion, Skill
 from motion_backend.skeleton import INDEX, build_skeleton
 from planner_service.cli import app
 from planner_service.evaluation.body_evaluation import LIMITS, Limit, Result, plan_trials, run_trials, sum_up
-from planner_service.evaluation.caption_recognition import APART, SAME, describe, group_of, nearest, tell_apart
+from planner_service.evaluation.caption_classifier import APART, SAME, describe, group_of, nearest, tell_apart
 from planner_service.evaluation.diversity import diversity, pairwise_distances
 from planner_service.evaluation.trials import AWAY, FLOOR, Trial, perform, places_for, setting
 from planner_service.scripts.captions import captions

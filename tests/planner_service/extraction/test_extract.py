@@ -7,12 +7,12 @@ import json
 from pathlib import Path
 
 import pytest
+from examples import tries
 from film_made import Drawn, Making, film_of
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
 from stories import GERMAN, NARRATIVE, SCREENPLAY, SUBTITLES
-from tries import tries
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from planner_service.extraction.extract import extract
@@ -23,8 +23,8 @@ from planner_service.extraction.script_writer import Maker
 from planner_service.extraction.text_files import ExtractionError
 from planner_service.extraction.text_scenes import Line, TextScene
 from planner_service.extraction.video_container import FilmError
+from planner_service.llm.fake_model import Answer, ScriptedModel
 from planner_service.llm.protocol import ModelError
-from planner_service.llm.scripted_model import Answer, ScriptedModel
 from planner_service.llm.structured_output import ModelAnswerError
 from planner_service.narration.narrative_voice import Voice, retell
 from planner_service.scripts.built_in_scripts import built_in

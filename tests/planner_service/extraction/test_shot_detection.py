@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import pytest
+from examples import tries
 from film_made import Drawn, Making, film_of, four_shots
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 from planner_service.extraction.shot_detection import (
     MAX_FRAMES,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pysubs2
 import pytest
+from examples import tries
 from for_each import for_each
 from hypothesis import example, given
 from hypothesis import strategies as st
-from tries import tries
 
 from planner_service.extraction.subtitles import (
     MAX_CUE_SECONDS,

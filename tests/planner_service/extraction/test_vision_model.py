@@ -17,8 +17,8 @@ from planner_service.extraction.shot_detection import MAX_FRAMES, Scene, scenes_
 from planner_service.extraction.subtitles import Cue, embedded_cues
 from planner_service.extraction.video import Film, open_film
 from planner_service.extraction.vision_model import watch, watch_film
+from planner_service.llm.fake_model import ScriptedModel
 from planner_service.llm.protocol import ModelError
-from planner_service.llm.scripted_model import ScriptedModel
 from planner_service.llm.structured_output import ModelAnswerError
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.script_library import Features, ScriptLibrary

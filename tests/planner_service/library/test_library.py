@@ -32,7 +32,7 @@ from planner_service.settings import Settings
 from planner_service.store.database import database_url, open_engine
 from planner_service.store.library_store import ShelfFull, put
 from planner_service.store.tables import short_scripts
-from scene_graphs.generation.room_generator import generate_room
+from scene_graphs.generation.generate_room import generate_room
 from scene_graphs.graph.furniture_graph import graph_from_uses
 from scene_graphs.layout import Layout, LayoutError, Placed, write_layouts
 from scene_graphs.layout_library import built_in_layouts

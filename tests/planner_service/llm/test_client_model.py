@@ -8,10 +8,10 @@ import threading
 from pathlib import Path
 
 import pytest
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
-from tries import tries
 
 import prompts
 from planner_service.llm.answer_cache import Memory

@@ -12,7 +12,7 @@ import pytest
 from planner_service.llm import factory
 from planner_service.llm.client import ServedModel
 from planner_service.llm.factory import load_model
-from planner_service.llm.scripted_model import ScriptedModel
+from planner_service.llm.fake_model import ScriptedModel
 from planner_service.server import environment
 from planner_service.settings import Settings, SettingsError, read_settings
 

@@ -6,13 +6,13 @@ import contextlib
 import json
 
 import pytest
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel, ConfigDict
-from tries import tries
 
+from planner_service.llm.fake_model import ScriptedModel
 from planner_service.llm.protocol import InvalidAnswerError, ModelError
-from planner_service.llm.scripted_model import ScriptedModel
 from planner_service.llm.structured_output import ModelAnswerError, ask, read_answer
 
 

@@ -6,13 +6,13 @@ import re
 from importlib import resources
 
 import pytest
+from examples import tries
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 from motion_backend.motion import Character, Skill
-from planner_service.llm.scripted_model import ScriptedModel
+from planner_service.llm.fake_model import ScriptedModel
 from planner_service.llm.structured_output import ModelAnswerError
 from planner_service.narration.keyframe_phrases import Variety, templates, touches
 from planner_service.narration.llm_narrator import narrate_with_model

@@ -7,7 +7,7 @@ import pytest
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Emotion, Skill
 from motion_backend.procedural.caption_coverage import understands
-from planner_service.output.story_files import report_to_dict, story_to_markdown
+from planner_service.output.story_export import report_to_dict, story_to_markdown
 from planner_service.pipeline import Pipeline, StoryRequest
 from planner_service.scripts.caption_fallbacks import hashed_words, performed_as
 from planner_service.scripts.captions import Vocabulary, captions, synonyms

@@ -12,8 +12,8 @@ from for_each import for_each
 from pydantic import BaseModel
 
 from motion_backend.motion import Skill
+from planner_service.llm.fake_model import Answer, ScriptedModel
 from planner_service.llm.protocol import ModelError
-from planner_service.llm.scripted_model import Answer, ScriptedModel
 from planner_service.scripts.caption_paraphrases import (
     MAX_QUESTIONS,
     all_synonyms,

@@ -6,9 +6,9 @@ import itertools
 import re
 
 import pytest
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 from motion_backend.language.sentence_encoder import HashingEncoder, load_encoder
 from motion_backend.motion import Emotion, Skill

@@ -6,11 +6,11 @@ import itertools
 from collections.abc import Sequence
 
 import pytest
+from examples import tries
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
-from tries import tries
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Posture, Skill

@@ -7,9 +7,9 @@ from functools import cache
 
 import numpy as np
 import pytest
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Skill

@@ -10,19 +10,19 @@ from typing import Any
 
 import httpx
 import pytest
+from examples import tries
 from fastapi import FastAPI
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from service_app import app_on, calling, check_problem
-from tries import tries
 from typer.testing import CliRunner
 
 from motion_backend.motion import Action, Emotion, Skill
 from planner_service.cli import app as command_line
 from planner_service.client import requests
 from planner_service.library.library import Shelves
-from planner_service.llm.scripted_model import ScriptedModel
+from planner_service.llm.fake_model import ScriptedModel
 from planner_service.llm.structured_output import ModelAnswerError
 from planner_service.pipeline import Pipeline, StoryRequest
 from planner_service.scripts.caption_actions import Hands, done_in, look_of

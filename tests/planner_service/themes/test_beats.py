@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from examples import tries
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from themes import THEMES, Theme
-from tries import tries
 
 from motion_backend.emotion_words import emotion_of
 from planner_service.scripts.emotions import feelings

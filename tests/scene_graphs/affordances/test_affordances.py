@@ -6,10 +6,10 @@ from math import cos, hypot, inf, pi, sin
 
 import numpy as np
 import pytest
+from examples import tries
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 from scene_graphs.affordances.affordances import Spot, floor_spot, spots
 from scene_graphs.furniture import affordances, typical_size

@@ -7,9 +7,9 @@ from math import pi
 
 import numpy as np
 import pytest
+from examples import tries
 from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
-from tries import tries
 
 from scene_graphs.affordances.affordances import spots
 from scene_graphs.affordances.room_validation import RoomCheck, validate

@@ -9,8 +9,8 @@ import pytest
 from for_each import for_each
 
 from scene_graphs.furniture import categories_of
+from scene_graphs.generation.generate_room import luck_of
 from scene_graphs.generation.random_choices import BLOCK, Luck
-from scene_graphs.generation.room_generator import luck_of
 from scene_graphs.generation.room_recipes import recipe_of
 from scene_graphs.layout import Layout
 from scene_graphs.layout_library import built_in_layouts

@@ -8,11 +8,11 @@ from itertools import combinations, product
 import networkx as nx
 import numpy as np
 import pytest
+from examples import tries
 from graphs_at_random import CATEGORIES, GENERIC, brute_force, build, graphs
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import linear_sum_assignment
-from tries import tries
 
 from scene_graphs.furniture import Furniture, affordances, class_of, group_of, is_minor
 from scene_graphs.graph.edit_distance import exact_distance, lower_bound

@@ -7,9 +7,9 @@ from itertools import combinations
 import numpy as np
 import pytest
 import shapely
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 from scene_graphs.furniture import Furniture, is_minor
 from scene_graphs.graph.furniture_graph import graph_from_layout, graph_from_objects, graph_from_uses, offers

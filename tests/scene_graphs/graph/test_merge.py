@@ -7,10 +7,10 @@ from typing import Literal
 
 import networkx as nx
 import pytest
+from examples import tries
 from graphs_at_random import CATEGORIES, GENERIC, graphs
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 from scene_graphs.furniture import Furniture
 from scene_graphs.graph.furniture_graph import FurnitureGraph, graph_from_uses

@@ -14,11 +14,11 @@ from typing import Any
 import networkx as nx
 import numpy as np
 import pytest
+from examples import tries
 from graphs_at_random import CATEGORIES, build, graphs
 from hypothesis import given
 from hypothesis import strategies as st
 from rooms_at_random import strewn
-from tries import tries
 
 from scene_graphs.furniture import AFFORDANCES, Furniture, canonical, categories_of, class_of, group_of
 from scene_graphs.graph.count_table import ANY_NUMBER, Counts

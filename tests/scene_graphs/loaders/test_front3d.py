@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
 from spoiling import spoiled
-from tries import tries
 
 from benchmarks.houses import MODELS, TYPES, synthetic_house
 from scene_graphs.json_fields import LayoutError

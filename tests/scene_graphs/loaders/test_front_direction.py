@@ -7,12 +7,12 @@ from math import cos, pi, sin
 
 import numpy as np
 import pytest
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 from scene_graphs.furniture import group_of
-from scene_graphs.generation.room_generator import generate_room
+from scene_graphs.generation.generate_room import generate_room
 from scene_graphs.layout import Placed
 from scene_graphs.loaders.front_direction import faced
 

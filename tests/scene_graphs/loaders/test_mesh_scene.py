@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 import shapely
 import trimesh
+from examples import tries
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from scenes_at_hand import add, block, glb, obj_of, pose_of, scene_of, small_document
 from spoiling import spoiled
-from tries import tries
 
 from scene_graphs.affordances.affordances import spots
 from scene_graphs.furniture import affordances

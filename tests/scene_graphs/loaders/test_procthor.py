@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from examples import tries
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from spoiling import spoiled
-from tries import tries
 from unity_houses import procthor_house, vector
 
 from scene_graphs.json_fields import LayoutError

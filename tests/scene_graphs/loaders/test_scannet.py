@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from examples import tries
 from for_each import for_each
 from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 from scans import ROOM
 from spoiling import spoiled
-from tries import tries
 
 from scene_graphs.json_fields import LayoutError
 from scene_graphs.layout import Array, Layout, layout_from_dict, layout_to_dict

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
 from scans import ROOM, Piece
 from spoiling import spoiled
-from tries import tries
 
 from scene_graphs.furniture import Furniture
 from scene_graphs.json_fields import LayoutError

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from examples import tries
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 from scene_graphs.furniture import catalogue, typical_size
 from scene_graphs.layout import Point3

@@ -7,9 +7,9 @@ from math import pi
 import numpy as np
 import pytest
 import shapely
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 from scene_graphs.layout import Placed
 from scene_graphs.navigation.clearance import Rectangles, find_footing, measure_clearance

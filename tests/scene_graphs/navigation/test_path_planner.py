@@ -8,9 +8,9 @@ import networkx as nx
 import numpy as np
 import pytest
 import shapely
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 from scene_graphs.home import Home, home_from_layouts
 from scene_graphs.layout import Array, Layout, Placed

@@ -6,11 +6,11 @@ from itertools import combinations
 
 import networkx as nx
 import pytest
+from examples import tries
 from graphs_at_random import brute_force, build
 from hypothesis import given
 from hypothesis import strategies as st
 from rooms_at_random import scattered, searches, strewn
-from tries import tries
 
 from scene_graphs.furniture import Furniture
 from scene_graphs.graph.edit_distance import exact_distance

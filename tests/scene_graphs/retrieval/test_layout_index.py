@@ -9,10 +9,10 @@ from concurrent.futures import ThreadPoolExecutor
 import networkx as nx
 import numpy as np
 import pytest
+from examples import tries
 from graphs_at_random import CATEGORIES, GENERIC, build, graphs
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from tries import tries
 
 from scene_graphs.furniture import Furniture, typical_size
 from scene_graphs.graph.branch_and_bound import CodedQuery, Hunt

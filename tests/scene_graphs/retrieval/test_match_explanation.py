@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import networkx as nx
 import pytest
+from examples import tries
 from graphs_at_random import CATEGORIES, GENERIC, NEEDS, build, graphs
 from hypothesis import given
 from hypothesis import strategies as st
 from rooms_at_random import searches, strewn
-from tries import tries
 
 from scene_graphs.furniture import Furniture, group_of
 from scene_graphs.graph.edit_distance import exact_distance

@@ -7,10 +7,10 @@ import re
 
 import numpy as np
 import pytest
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
-from tries import tries
 
 from motion_backend import rotations
 from motion_backend.formats.bvh import write_bvh

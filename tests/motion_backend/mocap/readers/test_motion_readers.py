@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 from motion_backend.formats.npz import write_npz
 from motion_backend.mocap.clip import ClipError, make_bones, make_clip

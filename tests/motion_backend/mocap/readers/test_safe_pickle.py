@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from examples import tries
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
-from tries import tries
 
 from motion_backend.mocap.clip import ClipError
 from motion_backend.mocap.readers.safe_pickle import read_pickled

@@ -8,10 +8,10 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
 from small_home import contact, rise, small_home, to
-from tries import tries
 
 from motion_backend.body.joint_limits import CLEARLY, beyond_limits
 from motion_backend.body.scene_collision import Obstacles

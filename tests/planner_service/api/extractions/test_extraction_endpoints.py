@@ -17,6 +17,7 @@ from typing import Any
 import anyio
 import httpx
 import pytest
+from examples import tries
 from fastapi import FastAPI
 from film_made import Drawn, Making, film_of, sound_alone
 from good_model import seen_in
@@ -26,7 +27,6 @@ from pydantic import BaseModel
 from service_app import app_on, calling, check_problem, running
 from starlette.requests import Request
 from stories import GERMAN, NARRATIVE, SUBTITLES
-from tries import tries
 
 from planner_service.api import multipart
 from planner_service.api.errors import Problem
@@ -37,8 +37,8 @@ from planner_service.components import MAX_UPLOADS, Parts
 from planner_service.extraction.text_files import ExtractionError
 from planner_service.jobs.extraction_stages import Reader
 from planner_service.jobs.uploads import KEPT, Receiving, Uploads
+from planner_service.llm.fake_model import ScriptedModel
 from planner_service.llm.protocol import LanguageModel
-from planner_service.llm.scripted_model import ScriptedModel
 from planner_service.scripts.script import ShortScript
 from planner_service.scripts.script_repair import check
 from planner_service.store.extraction_store import extraction_request

@@ -10,12 +10,12 @@ from typing import Any
 
 import httpx
 import pytest
+from examples import tries
 from fastapi import FastAPI
 from for_each import for_each
 from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 from service_app import app_on, calling, check_problem
-from tries import tries
 
 from planner_service.api.layouts.schemas import Merged
 from scene_graphs.furniture import canonical

@@ -9,12 +9,12 @@ from typing import Any
 
 import httpx
 import pytest
+from examples import tries
 from fastapi import FastAPI
 from for_each import for_each
 from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 from service_app import app_on, calling, check_problem
-from tries import tries
 
 from motion_backend.formats.gltf_document import read_glb
 from planner_service.api.layouts.schemas import EXAMPLE, HomeMatch, LayoutMatches, LayoutPage, LayoutShown
@@ -22,7 +22,7 @@ from planner_service.api.layouts.views import problem_of
 from planner_service.grounding.room_report import MAX_CELLS, survey
 from scene_graphs.affordances.room_validation import RoomCheck
 from scene_graphs.errors import FieldPath
-from scene_graphs.generation.room_generator import generate_room
+from scene_graphs.generation.generate_room import generate_room
 from scene_graphs.graph.furniture_graph import graph_from_layout, graph_from_uses
 from scene_graphs.home import home_from_dict, home_from_layouts, home_to_dict
 from scene_graphs.layout import LayoutError, layout_from_dict, layout_to_dict

@@ -10,13 +10,13 @@ from typing import Any
 
 import httpx
 import pytest
+from examples import tries
 from fastapi import FastAPI
 from for_each import for_each
 from forking import Forked
 from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 from service_app import app_on, calling, check_problem, warm_app_on
-from tries import tries
 
 from planner_service.api.scripts.schemas import (
     EXAMPLE,

@@ -11,9 +11,9 @@ from pydantic import BaseModel
 
 from motion_backend.motion import Character
 from planner_service.library.library import Shelves
+from planner_service.llm.fake_model import Answer, ScriptedModel
 from planner_service.llm.protocol import ModelError
-from planner_service.llm.scripted_model import Answer, ScriptedModel
-from planner_service.output.story_files import report_to_dict, story_to_markdown, write_story
+from planner_service.output.story_export import report_to_dict, story_to_markdown, write_story
 from planner_service.pipeline import Pipeline, Planned, StoryRequest
 
 

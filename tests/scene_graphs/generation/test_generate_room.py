@@ -7,13 +7,13 @@ from collections import Counter
 import numpy as np
 import pytest
 import shapely
+from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
-from tries import tries
 
 from scene_graphs.affordances.room_validation import RoomCheck, validate
 from scene_graphs.furniture import ROOM_TYPES, affordances, categories_of, class_of
-from scene_graphs.generation.room_generator import CHUNK, generate_library, generate_room, generate_rooms, luck_of
+from scene_graphs.generation.generate_room import CHUNK, generate_library, generate_room, generate_rooms, luck_of
 from scene_graphs.home import home_from_layouts
 from scene_graphs.layout import Layout, layout_from_dict, layout_to_dict, write_layouts
 from scene_graphs.layout_library import COUNT, SEED, built_in_layouts

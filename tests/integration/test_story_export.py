@@ -25,7 +25,7 @@ from motion_backend.metrics.penetration import penetration
 from motion_backend.metrics.smoothness import seam_jump
 from motion_backend.mocap.readers.bvh_reader import read_bvh
 from motion_backend.motion import Action, Skill
-from planner_service.output.story_files import FILES
+from planner_service.output.story_export import FILES
 from scene_graphs.home import home_from_dict, home_to_dict
 
 pytestmark = pytest.mark.service

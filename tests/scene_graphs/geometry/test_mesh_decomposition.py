@@ -11,16 +11,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from examples import tries
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from tries import tries
 
 from scene_graphs.affordances.affordances import Spot, spots
 from scene_graphs.boxes import MAX_PARTS, Part, Point3
 from scene_graphs.furniture import typical_size
 from scene_graphs.furniture_shapes import parts
-from scene_graphs.geometry.mesh_to_boxes import front_of_mesh, shape_of
+from scene_graphs.geometry.mesh_decomposition import front_of_mesh, shape_of
 from scene_graphs.graph.furniture_graph import offers
 from scene_graphs.layout import Layout, LayoutError, Placed, layout_from_dict, layout_to_dict
 from scene_graphs.meshes.furniture_mesh import furniture_meshes

@@ -20,7 +20,7 @@ from pydantic import SecretStr
 
 from planner_service.extraction import transcription_server
 from planner_service.extraction.audio import MAX_AUDIO_SECONDS, RATE, SoundPiece, sound_of
-from planner_service.extraction.transcription import hear, load_transcriber
+from planner_service.extraction.speech_to_text import hear, load_transcriber
 from planner_service.extraction.transcription_result import SpeechError
 from planner_service.extraction.transcription_server import ServedTranscriber
 from planner_service.extraction.video import Film, open_film
@@ -210,6 +210,6 @@ def test_a_local_model_without_its_library_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "model.bin").write_bytes(b"no model")
-    monkeypatch.setattr("planner_service.extraction.transcription.find_spec", lambda _: None)
+    monkeypatch.setattr("planner_service.extraction.speech_to_text.find_spec", lambda _: None)
     with pytest.raises(SettingsError, match=r"pip install \"sims-stories\[asr\]\""):
         load_transcriber(chosen(asr_folder=tmp_path))

@@ -15,7 +15,7 @@ from planner_service.cli.scripts import keep_scripts
 from planner_service.library.library import RESERVED, open_shelves
 from planner_service.llm.client import for_story
 from planner_service.llm.factory import load_model
-from planner_service.output.story_files import check_writable
+from planner_service.output.story_export import check_writable
 from planner_service.pipeline import RequestError
 from planner_service.scripts.script_library import UNKNOWN
 from planner_service.settings import read_settings
@@ -43,7 +43,7 @@ def extract(
     """Take short scripts out of a film, subtitles or a text: by the language model if one is set, else by rules."""
     from planner_service.extraction.extract import extract
     from planner_service.extraction.extraction_result import Means, Source
-    from planner_service.extraction.transcription import load_transcriber
+    from planner_service.extraction.speech_to_text import load_transcriber
 
     title = " ".join((file.stem if name is None else name).split())
     if not 0 < len(title) <= 200 or not title.isprintable():
