@@ -18,7 +18,7 @@ from motion_backend.mocap.clip import ClipError
 from motion_backend.mocap.joint_map import find_map
 from motion_backend.mocap.readers import read_clips
 from motion_backend.mocap.readers.bvh_reader import euler_to_quat, read_bvh_clip
-from tests.motion_backend.sample_motions import tumbling
+from sample_motions import tumbling
 
 CHAIN = """HIERARCHY
 ROOT base

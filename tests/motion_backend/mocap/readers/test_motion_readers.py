@@ -17,7 +17,7 @@ from motion_backend.formats.npz import write_npz
 from motion_backend.mocap.clip import ClipError, make_bones, make_clip
 from motion_backend.mocap.readers import FORMATS, read_clips
 from motion_backend.mocap.readers.expmap import WIDTH
-from tests.motion_backend.sample_motions import tumbling
+from sample_motions import tumbling
 
 HALF = np.sqrt(0.5)
 INCH = 0.0254
