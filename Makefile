@@ -26,7 +26,7 @@ help:
 	@echo "make serve   the service and its page, on http://127.0.0.1:8000"
 	@echo "make page    only builds the page (Node 20 or newer)"
 	@echo "make test    the tests that start nothing: four minutes at most; make test-service has the rest, make test-all more"
-	@echo "make lint    ruff, mypy --strict, tsc, eslint"
+	@echo "make lint    ruff, mypy, tsc, eslint"
 	@echo "make bench   speed and memory, printed beside their limits"
 	@echo "make docs    the documentation site with the API reference, in out/site"
 	@echo "make dist    a wheel and a source archive, with the page in them, in dist/"
@@ -77,7 +77,6 @@ lint: $(READY_DEV) web/node_modules/.ready
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
-	@$(BIN)/mypy docker install.py
 	@if $(NODE_20); then npm run --silent check --prefix web; fi
 
 format: $(READY_DEV)

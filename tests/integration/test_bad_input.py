@@ -387,11 +387,10 @@ def contents(root: Path) -> dict[object, object]:
     """Every file, and what is on the user's shelves: the bytes of a database may differ."""
     shelves = own_shelves(root)
     files = [*(root / "files").rglob("*"), *(root / "data").glob("[!cs]*")]
-    return (
-        {path: path.read_bytes() if path.is_file() else b"" for path in files}
-        | {script.id: script for script in shelves.scripts().scripts}
-        | dict(shelves.rooms())
-    )
+    found: dict[object, object] = {path: path.read_bytes() if path.is_file() else b"" for path in files}
+    found |= {script.id: script for script in shelves.scripts().scripts}
+    found |= shelves.rooms().items()
+    return found
 
 
 @pytest.fixture(scope="module")

@@ -221,7 +221,8 @@ def _readers(text: str, names: tuple[str, ...]) -> set[int]:
     for function in ast.walk(ast.parse(text)):
         if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef):
             for node in ast.walk(function):
-                name = node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else ""
-                if name in names:
-                    lines.add(node.lineno)  # type: ignore[attr-defined] names and attributes have lines
+                if isinstance(node, ast.Name | ast.Attribute):
+                    name = node.id if isinstance(node, ast.Name) else node.attr
+                    if name in names:
+                        lines.add(node.lineno)
     return lines

@@ -167,12 +167,12 @@ class _Finder:
                     if span := self._operator(left, right, sign):
                         yield span, wrong, "and, or"
             case ast.Compare(left=left, ops=ops, comparators=comparators):
-                for before, op, after in zip([left, *comparators], ops, comparators, strict=False):
-                    sign, others = COMPARISONS[type(op)]
+                for before, asked, after in zip([left, *comparators], ops, comparators, strict=False):
+                    sign, others = COMPARISONS[type(asked)]
                     if span := self._operator(before, after, sign):
                         for wrong in others:
                             yield span, wrong, "comparison"
-            case ast.Constant(value=value) if type(value) in (int, float):
+            case ast.Constant(value=int() | float() as value) if type(value) in (int, float):
                 yield self._span(node), _another(value), "constant"
             case ast.Constant(value=bool() as value):
                 yield self._span(node), repr(not value), "constant"

@@ -318,7 +318,7 @@ def test_an_answer_that_breaks_in_the_middle_is_broken_off(app: FastAPI) -> None
 
 
 def wrapped(kind: type[Exception], cause: Exception) -> Exception:
-    return kind("SELECT 1", {}, cause)  # type: ignore[call-arg]
+    return kind("SELECT 1", {}, cause)
 
 
 @for_each(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from importlib import resources
 
 import pytest
@@ -277,7 +278,7 @@ def test_unknown_captions_are_told_by_their_mood(skill: Skill, caption: str) -> 
 def test_every_caption_has_its_own_words_and_every_phrase_starts_with_a_verb() -> None:
     captions = {(k.skill, k.caption) for script in LIBRARY for k in script.keyframes}
     known = templates()
-    tables = {Skill.LOCO: known.walks, Skill.SITDOWN: known.sits, Skill.LIEDOWN: known.lies}
+    tables: dict[Skill, Iterable[str]] = {Skill.LOCO: known.walks, Skill.SITDOWN: known.sits, Skill.LIEDOWN: known.lies}
     for skill, table in tables.items():
         assert {caption for of, caption in captions if of == skill} == set(table)
     walks = [*known.walks.values(), *known.walks_in_mood.values()]

@@ -24,6 +24,7 @@ from scene_graphs.affordances.room_validation import RoomCheck
 from scene_graphs.generation.room_generator import generate_room
 from scene_graphs.graph.furniture_graph import graph_from_layout, graph_from_uses
 from scene_graphs.home import home_from_dict, home_from_layouts, home_to_dict
+from scene_graphs.json_fields import FieldPath
 from scene_graphs.layout import LayoutError, layout_from_dict, layout_to_dict
 from scene_graphs.layout_library import built_in_layouts
 from scene_graphs.plots.floor_plan import EDGE_COLOR
@@ -326,7 +327,7 @@ def mutated(draw: st.DrawFn, whole: dict[str, Any]) -> dict[str, Any]:
 @given(mutated(ROOM))
 def test_a_damaged_room_is_refused_by_name_or_can_be_looked_over(row: dict[str, Any]) -> None:
     try:
-        layout = layout_from_dict(row, "body")
+        layout = layout_from_dict(row, FieldPath(("body",)))
     except LayoutError as error:
         problem = problem_of(error, "")
         assert problem.errors[0].pointer.startswith("/")
@@ -341,7 +342,7 @@ def test_a_damaged_room_is_refused_by_name_or_can_be_looked_over(row: dict[str, 
 @given(mutated(HOME))
 def test_a_damaged_home_is_refused_by_name_or_read(row: dict[str, Any]) -> None:
     try:
-        home = home_from_dict(row, "body")
+        home = home_from_dict(row, FieldPath(("body",)))
     except LayoutError as error:
         problem = problem_of(error, "/home")
         assert problem.errors[0].pointer.startswith("/home")

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -24,7 +25,7 @@ def keyframe(index: int) -> dict[str, object]:
 
 def artifacts(count: int, segments: int, told: bool = True) -> list[Artifact]:
     """What a story of `count` actions has made when `segments` of them are moved."""
-    made = [
+    made: list[tuple[str, dict[str, Any], str]] = [
         ("script", {"keyframes": [keyframe(i) for i in range(count)], "planner": "rules"}, "furnish"),
         ("home", {"home": {"rooms": []}}, "narrate" if told else "act"),
         ("told", {"title": "T", "text": "Told."}, "act"),
