@@ -16,16 +16,20 @@ OUT ?= out/demo
 # Where torch comes from; if empty, install.py chooses.
 TORCH_INDEX ?=
 
+# Of the sample of bugs that `make mutants` puts into copies of the code.
+SEED ?= 0
+
 export OMP_NUM_THREADS ?= 1
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help demo serve page test test-service test-all lint bench format dist docs image clean
+.PHONY: help demo serve page test test-service test-all mutants lint bench format dist docs image clean
 
 help:
 	@echo "make demo    a theme becomes a film: writes $(OUT)/ (story, film.glb, motion, report, storyboard)"
 	@echo "make serve   the service and its page, on http://127.0.0.1:8000"
 	@echo "make page    only builds the page (Node 20 or newer)"
 	@echo "make test    the tests that start nothing: four minutes at most; make test-service has the rest, make test-all more"
+	@echo "make mutants small bugs put into copies of the code: the share that the tests see, beside its limit"
 	@echo "make lint    ruff, mypy, tsc, eslint"
 	@echo "make bench   speed and memory, printed beside their limits"
 	@echo "make docs    the documentation site with the API reference, in out/site"
@@ -72,6 +76,10 @@ test-all: $(READY_DEV) page $(NODE_TESTS)
 	@if $(NODE_20); then npm test --silent --prefix web; fi
 	@$(BIN)/python tests/run_layer.py test-all
 	@PYTHONPATH=tests $(BIN)/python -m mutants
+
+# A quarter of an hour a package, and once as long again to see which test runs which line; SEED chooses the bugs.
+mutants: $(READY_DEV)
+	@PYTHONPATH=tests $(BIN)/python -m mutants --seed $(SEED)
 
 lint: $(READY_DEV) web/node_modules/.ready
 	@$(BIN)/ruff check .

@@ -31,6 +31,20 @@ class Skill(StrEnum):
     TOUCH = "touch"
 
 
+class Emotion(StrEnum):
+    """Neutral and the eight emotions or styles of SIMS 4.1; free words become one in emotion_words.py."""
+
+    NEUTRAL = "neutral"
+    HAPPY = "happy"
+    ANGRY = "angry"
+    HURRIED = "hurried"
+    TIRED = "tired"
+    SAD = "sad"
+    STRESSED = "stressed"
+    DRUNK = "drunk"
+    RELAXED = "relaxed"
+
+
 class Posture(StrEnum):
     """What the body rests in between two actions."""
 
@@ -90,8 +104,8 @@ class Action:
 
     skill: Skill
     caption: str
-    emotion: str
-    """Free text of the keyframe, such as "tired, sad"."""
+    emotion: Emotion
+    """What the keyframe's words ("tired, sad") mean: the planner tells it and the body acts it."""
     furniture: str = "floor"
     object_id: str | None = None
     spot: Spot | None = None

@@ -17,8 +17,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
+from motion_backend import emotion_words
 from motion_backend.mocap.clip import ClipError
-from motion_backend.procedural.emotion_style import feeling
+from motion_backend.motion import Emotion
 
 WAYS = 5
 """Captions a clip gets (SIMS 4.1)."""
@@ -82,15 +83,20 @@ _MANNERS = (
 )
 
 
+_WORD = re.compile(r"[A-Z]?[a-z']+|[A-Z]+(?![a-z])")
+"""Words that stand apart or are told apart by capitals."""
+
+
 def skill_of(text: str) -> str:
     """The skill that a clip's name or caption tells of; "other" where it tells of none."""
     plain = text.lower().replace("_", " ")
     return next((skill for skill, pattern in _SKILLS if re.search(pattern, plain)), "other")
 
 
-def emotion_of(style: str, text: str) -> str:
-    """The one of nine emotions that a style stands for."""
-    return feeling(style, text)
+def emotion_of(style: str, text: str) -> Emotion:
+    """The emotion that a style names, else the one that a caption or a file's name does ("ZombieWalk_02")."""
+    told = (emotion_words.emotion_of(" ".join(_WORD.findall(one))) for one in (style, text))
+    return next(filter(None, told), Emotion.NEUTRAL)
 
 
 def ways_to_say(skill: str, style: str, caption: str) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from motion_backend.motion import Skill
+from motion_backend.motion import Emotion, Skill
 from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.sit.sit_styles import sit_style
 from motion_backend.procedural.touch.hand_captions import handling_of, with_both_hands
@@ -32,11 +32,11 @@ def understands(skill: Skill, caption: str) -> bool:
     text = caption.lower()
     match skill:
         case Skill.LOCO:
-            known = walk_style("neutral", text) != walk_style("neutral", "")
+            known = walk_style(Emotion.NEUTRAL, text) != walk_style(Emotion.NEUTRAL, "")
         case Skill.SITDOWN:
-            known = sit_style("neutral", text) != sit_style("neutral", "")
+            known = sit_style(Emotion.NEUTRAL, text) != sit_style(Emotion.NEUTRAL, "")
         case Skill.LIEDOWN:
-            known = lie_style("neutral", text) != lie_style("neutral", "")
+            known = lie_style(Emotion.NEUTRAL, text) != lie_style(Emotion.NEUTRAL, "")
         case Skill.TOUCH:
             return bool(handling_of(text) or with_both_hands(text) or re.search(_PLAIN[skill], text))
         case _:

@@ -9,6 +9,7 @@ from typing import Final, Literal
 
 import numpy as np
 
+from motion_backend.motion import Emotion
 from planner_service.composition import llm_planner
 from planner_service.composition.direct_generation import direct_by_rules
 from planner_service.composition.event_retrieval import Reading, read
@@ -230,7 +231,7 @@ def _direct(
 ) -> LongScript:
     """Keyframes without the library: a model's, whose captions the body reads word by word, else those of the rules."""
     moods = moods_of(by_rules, [None] * len(by_rules))
-    events = tuple(Event(text=clause.text, emotion=mood) for clause, mood in zip(by_rules, moods, strict=True))
+    events = tuple(Event(text=clause.text, emotion=Emotion(mood)) for clause, mood in zip(by_rules, moods, strict=True))
     keyframes, planner = direct_by_rules(events), _RULES
     if model is not None:
         try:

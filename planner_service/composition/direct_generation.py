@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
-from motion_backend.motion import Skill
+from motion_backend.motion import Emotion, Skill
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.script import Event, PlannedKeyframe
 from planner_service.scripts.script_words import NEEDS, affords
@@ -45,7 +45,7 @@ def _furniture(text: str, skill: Skill) -> str:
     return next((word for word in named if affords(word, NEEDS[skill])), _USUAL[skill])
 
 
-def _keyframe(skill: Skill, emotion: str, word: str, event: int) -> PlannedKeyframe:
+def _keyframe(skill: Skill, emotion: Emotion, word: str, event: int) -> PlannedKeyframe:
     caption = usual(skill, emotion)
     return PlannedKeyframe.model_validate(
         {"skill": skill, "emotion": emotion, "caption": caption, "furniture": word, "event": event}

@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from motion_backend.motion import Emotion
 from planner_service.scripts.emotion_classifier import clear_moods
 from planner_service.scripts.script import Event
 from planner_service.scripts.script_library import ScriptLibrary
@@ -80,7 +81,7 @@ def read(theme: str, clauses: Sequence[Clause], library: ScriptLibrary, limits: 
         )
         for clause, mood in zip(clauses, moods, strict=True)
     ]
-    events = tuple(Event(text=clause.text, emotion=mood) for clause, mood in zip(clauses, moods, strict=True))
+    events = tuple(Event(text=clause.text, emotion=Emotion(mood)) for clause, mood in zip(clauses, moods, strict=True))
     suits = suitability(demands, scores, library.traits, limits)
     weights = np.array([[_MOOD_CONTEXT if state_words(clause.text) else _CONTEXT] for clause in clauses])
     shared = np.array([library.sharing(clause.text) for clause in clauses])

@@ -8,11 +8,11 @@ from typing import Final
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 import prompts
-from motion_backend.motion import Skill
+from motion_backend.emotion_words import emotion_of
+from motion_backend.motion import Emotion, Skill
 from planner_service.llm.protocol import LanguageModel
 from planner_service.llm.structured_output import ask, problems_of
 from planner_service.scripts.captions import captions_offered, furniture_offered
-from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.script import EMOTIONS, Event, Keyframe
 from planner_service.scripts.script_library import Found
 from planner_service.scripts.script_repair import check, read_keyframe
@@ -81,7 +81,7 @@ def plan_events(model: LanguageModel, theme: str, most: int) -> tuple[Event, ...
     prompt = prompts.render("plan_events", theme=theme, emotions=", ".join(EMOTIONS), most=str(most))
     answer = ask(model, prompt, PlannedEvents, problems)
     return tuple(
-        Event(text=" ".join(event.text.split()), emotion=emotion_of(event.emotion) or "neutral")
+        Event(text=" ".join(event.text.split()), emotion=emotion_of(event.emotion) or Emotion.NEUTRAL)
         for event in answer.events
     )
 

@@ -20,7 +20,6 @@ from planner_service.composition.llm_planner import DirectKeyframe
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.llm.structured_output import ModelAnswerError, ask, problems_of
 from planner_service.scripts.captions import Vocabulary
-from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.script import EMOTIONS, MAX_PIECES, Keyframe, Origin, ShortScript
 from planner_service.scripts.script_duplicates import Likeness, slug_of
 from planner_service.scripts.script_library import UNKNOWN, Choice, LibraryError, ScriptLibrary
@@ -253,7 +252,7 @@ def _script(written: WrittenScript, wish: Wish, vocabulary: Vocabulary) -> tuple
     kept, repairs = repair(keyframes, vocabulary)
     _refuse_strange(kept, wish.categories)
     _refuse_count(len(kept))
-    if not any(emotion_of(keyframe.emotion) == wish.emotion for keyframe in kept):
+    if not any(keyframe.mood == wish.emotion for keyframe in kept):
         raise _Unfit(f"emotion: no keyframe is {wish.emotion}")
     row = {"id": "unnamed", "summary": summary, "emotion": wish.emotion, "room": wish.room, "keyframes": kept}
     return ShortScript.model_validate({**row, "source": "imitation"}), repairs

@@ -8,12 +8,12 @@ from typing import Annotated, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from motion_backend.motion import Emotion
 from planner_service.scripts.script import LongScript, ShortScript
 
 Split = Literal["tune", "held_out"]
 SPLITS: Final[tuple[Split, ...]] = ("tune", "held_out")
 Kind = Literal["idiom", "synonym", "negation", "several", "furniture", "plain"]
-_Emotion = Literal["neutral", "happy", "angry", "hurried", "tired", "sad", "stressed", "drunk", "relaxed"]
 _Id = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$")]
 _Stem = Annotated[str, Field(min_length=1)]
 
@@ -38,7 +38,7 @@ class LabelledEvent(_Label):
 
     words: tuple[_Stem, ...] = Field(min_length=1)
     """Each begins a word of the event's text."""
-    emotions: tuple[_Emotion, ...] = Field(min_length=1)
+    emotions: tuple[Emotion, ...] = Field(min_length=1)
     """Any of these is right."""
     plays: tuple[_Stem, ...] = Field(min_length=1)
     """One of these begins a word of the summary or a caption of the script that plays it, or is its id."""

@@ -19,8 +19,9 @@ from typing import Final
 import numpy as np
 from pydantic import BaseModel
 
+from motion_backend.emotion_words import emotion_of
 from motion_backend.language.sentence_encoder import SentenceEncoder, Vectors
-from motion_backend.motion import Character, Skill
+from motion_backend.motion import Character, Emotion, Skill
 from planner_service.composition.compose import Request, compose
 from planner_service.composition.direct_generation import direct_by_rules
 from planner_service.composition.llm_planner import DirectKeyframe, DirectScript
@@ -29,7 +30,6 @@ from planner_service.grounding.furnish import FurnishError, furnish
 from planner_service.grounding.keyframes_to_actions import UnreachableError, act
 from planner_service.llm.scripted_model import ScriptedModel
 from planner_service.narration.narrator import narrate
-from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.script import Event, LongScript, PlannedKeyframe
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import check
@@ -157,7 +157,7 @@ def improviser(theme: str, seed: int) -> ScriptedModel:
     """
     clauses = clauses_of(theme)
     moods = moods_of(clauses, [None] * len(clauses))
-    events = [Event(text=clause.text, emotion=mood) for clause, mood in zip(clauses, moods, strict=True)]
+    events = [Event(text=clause.text, emotion=Emotion(mood)) for clause, mood in zip(clauses, moods, strict=True)]
 
     def answer(prompt: str, _schema: type[BaseModel]) -> DirectScript:
         return improvised(events, captions_in(prompt), furniture_in(prompt), seed)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from motion_backend.body.joint_limits import worst_joint
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.body.self_collision import deepest_pair
+from motion_backend.emotion_words import emotion_of
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.smoothness import bone_deviation, jerk_against_real, seam_jump, seam_speed_jump
@@ -25,7 +26,6 @@ from motion_backend.motion import FPS, Action, BodyState, Character, Motion, Mot
 from motion_backend.procedural.backend import ProceduralBackend
 from planner_service.grounding.keyframes_to_actions import Place, UnreachableError, act, can_stand, height_of
 from planner_service.scripts.caption_actions import look_of
-from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_words import NEEDS
 from scene_graphs import furniture

@@ -21,9 +21,8 @@ from motion_backend.metrics.kernel_mmd import Distance, discrepancy, floor
 from motion_backend.mocap.clip import ClipError
 from motion_backend.mocap.dataset_file import Dataset, Entry
 from motion_backend.mocap.resampling import low_pass
-from motion_backend.motion import Action, Character, Motion, Skill
+from motion_backend.motion import Action, Character, Emotion, Motion, Skill
 from motion_backend.procedural.backend import ProceduralBackend
-from motion_backend.procedural.emotion_style import BEARINGS
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose_solver import solve
 from motion_backend.procedural.walk.gait import walk
@@ -133,7 +132,7 @@ def evaluate_walks(
     made = [
         matched,
         room_walks(caption, rooms, seeds),
-        *(mood_walks(caption, mood, seeds) for mood in BEARINGS),
+        *(mood_walks(caption, mood, seeds) for mood in Emotion),
     ]
     compared = [
         Compared(one, discrepancy(recorded.features, recorded.groups, one.features, one.groups))
@@ -166,7 +165,7 @@ def recorded_walks(dataset: Dataset, style: str = "") -> Walks:
     return _chosen(found, kept)
 
 
-def matched_walks(speeds: Array, caption: str, skeleton: Skeleton, mood: str = "neutral") -> Walks:
+def matched_walks(speeds: Array, caption: str, skeleton: Skeleton, mood: Emotion = Emotion.NEUTRAL) -> Walks:
     """A straight walk over open ground at each of these speeds, its middle two seconds."""
     motions = []
     for seed, speed in enumerate(speeds.tolist()):
@@ -192,7 +191,7 @@ def room_walks(caption: str, rooms: int, seeds: int) -> Walks:
     return _walks("in rooms", [(trial.room, motion) for trial in trials for motion in perform(trial).motions])
 
 
-def mood_walks(caption: str, mood: str, seeds: int) -> Walks:
+def mood_walks(caption: str, mood: Emotion, seeds: int) -> Walks:
     """From somewhere in an empty hall to both its ends in a mood, as a backend walks that is told no more than that."""
     home, backend = _hall(), ProceduralBackend()
     motions = []

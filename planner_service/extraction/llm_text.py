@@ -13,6 +13,7 @@ from typing import Final
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 import prompts
+from motion_backend.emotion_words import emotion_of
 from motion_backend.motion import Skill
 from planner_service.composition.llm_planner import DirectKeyframe
 from planner_service.extraction.script_writer import Draft, Maker, Span
@@ -21,7 +22,6 @@ from planner_service.llm.protocol import LanguageModel
 from planner_service.llm.structured_output import ask, problems_of
 from planner_service.narration.narrative_voice import Voice, retell
 from planner_service.scripts.captions import captions_offered, furniture_offered
-from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.script import EMOTIONS, MAX_PIECES
 from planner_service.scripts.script_repair import check, read_keyframe
 from scene_graphs.furniture import ROOM_TYPES, canonical_room

@@ -6,8 +6,8 @@ from typing import Annotated, Final
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from motion_backend.emotion_words import emotion_of
 from planner_service.extraction.shot_detection import Scene
-from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.script import EMOTIONS
 from scene_graphs.furniture import ROOM_TYPES, canonical, canonical_room, display_name, is_known
 

@@ -29,7 +29,6 @@ from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_fallbacks import WALKS
 from planner_service.scripts.captions import captions
 from planner_service.scripts.emotion_classifier import clear_moods
-from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import hand_of
@@ -154,7 +153,7 @@ def _used() -> dict[tuple[Skill, str], dict[str, float]]:
     counts: dict[tuple[Skill, str], Counter[str]] = {}
     for script in built_in():
         for keyframe in script.keyframes:
-            mood = emotion_of(keyframe.emotion) or "neutral"
+            mood = keyframe.mood
             counts.setdefault((keyframe.skill, keyframe.caption), Counter())[mood] += 1
     return {key: {mood: n / moods.total() for mood, n in moods.items()} for key, moods in counts.items()}
 

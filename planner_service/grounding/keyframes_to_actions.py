@@ -17,7 +17,7 @@ from typing import Any, Final
 import numpy as np
 
 from motion_backend.body.scene_collision import Obstacles
-from motion_backend.motion import Action, Skill
+from motion_backend.motion import Action, Emotion, Skill
 from motion_backend.procedural.lie.lie_pose import place_to_lie
 from motion_backend.procedural.sit.sit_skill import seat_for
 from motion_backend.procedural.touch.hand_contacts import suits
@@ -146,13 +146,12 @@ class _Stage:
 
     def contact(self, index: int, keyframe: Keyframe, place: Place, free: str = "right") -> Action:
         """The action of a keyframe; walks get their goal later, when what follows them is known."""
-        performed = performed_as(keyframe.skill, look_of(keyframe.caption), keyframe.emotion, self.words)
+        mood = keyframe.mood
+        performed = performed_as(keyframe.skill, look_of(keyframe.caption), mood, self.words)
         keyframe = keyframe.model_copy(update={"caption": performed})
-        action = Action(
-            keyframe.skill, keyframe.caption, keyframe.emotion, keyframe.furniture, place.object_id, keyframe=index
-        )
+        action = Action(keyframe.skill, keyframe.caption, mood, keyframe.furniture, place.object_id, keyframe=index)
         if keyframe.skill in NEEDS:
-            hand, spot = hand_of(keyframe.caption, default=free), self._spot(index, keyframe, place)
+            hand, spot = hand_of(keyframe.caption, default=free), self._spot(index, keyframe, mood, place)
             if keyframe.skill is Skill.TOUCH:
                 hand, spot = self._elbows.freely(spot, hand, keyframe.caption)
             else:
@@ -163,7 +162,7 @@ class _Stage:
             return replace(action, object_id=self.resting.object_id, spot=self.resting)
         return action
 
-    def _spot(self, index: int, keyframe: Keyframe, place: Place) -> Spot:
+    def _spot(self, index: int, keyframe: Keyframe, mood: Emotion, place: Place) -> Spot:
         need = NEEDS[keyframe.skill]
         if place.object_id is None:
             if keyframe.skill is Skill.TOUCH:
@@ -179,7 +178,7 @@ class _Stage:
         if need == "touch":
             return self._to_touch(found, keyframe.caption)
         if need == "sit":
-            return seat_for(found, keyframe.emotion, keyframe.caption, self._elbows.solid)
+            return seat_for(found, mood, keyframe.caption, self._elbows.solid)
         return place_to_lie(found, keyframe.caption)
 
     def _to_touch(self, found: list[Spot], caption: str) -> Spot:
@@ -331,4 +330,4 @@ def action_to_dict(action: Action) -> dict[str, Any]:
     if action.spot is not None:
         spot = {name: (None if value == np.inf else value) for name, value in vars(action.spot).items()}
     plain: dict[str, Any] = {name: value for name, value in vars(action).items() if name != "spot"}
-    return plain | {"skill": action.skill.value, "spot": spot}
+    return plain | {"skill": action.skill.value, "emotion": action.emotion.value, "spot": spot}

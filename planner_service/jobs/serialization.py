@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from motion_backend.motion import Action, BodyState, Posture, Skill
+from motion_backend.motion import Action, BodyState, Emotion, Posture, Skill
 from planner_service.grounding.furnish import Furnished, RoomMatch
 from planner_service.grounding.keyframes_to_actions import Place, action_to_dict
 from planner_service.grounding.seat_access import pull_from_dict, pull_to_dict
@@ -77,7 +77,7 @@ def action_from_dict(row: Json) -> Action:
         spot = Spot(**{name: _tupled(value) for name, value in limits.items()})
     known = {field.name for field in fields(Action)}
     plain = {name: _tupled(value) for name, value in row.items() if name in known}
-    return Action(**plain | {"skill": Skill(row["skill"]), "spot": spot})
+    return Action(**plain | {"skill": Skill(row["skill"]), "emotion": Emotion(row["emotion"]), "spot": spot})
 
 
 def state_to_dict(state: BodyState) -> Json:
@@ -111,7 +111,7 @@ def summary_of_script(script: LongScript) -> Json:
     return {
         "planner": script.planner,
         "encoder": script.encoder or None,
-        "events": [event.model_dump() for event in script.events],
+        "events": [event.model_dump(mode="json") for event in script.events],
         "uncovered": list(script.uncovered),
         "repairs": list(script.repairs),
         "short_scripts": [
@@ -148,6 +148,7 @@ def _keyframes(script: LongScript) -> list[Json]:
             "index": index,
             "skill": keyframe.skill.value,
             "emotion": keyframe.emotion,
+            "mood": keyframe.mood.value,
             "caption": keyframe.caption,
             "furniture": keyframe.furniture,
             "object_id": None,

@@ -13,7 +13,6 @@ import numpy as np
 
 from motion_backend.motion import Skill
 from planner_service.narration.narrative_voice import Voice, require_blanks
-from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.script import Keyframe, PlannedKeyframe
 from planner_service.themes.lexicon import gerund, past
 from scene_graphs.data_tables import read_table, require_known, table
@@ -197,7 +196,7 @@ class Wording:
             rises = keyframe.skill in _RISES
             at = "" if keyframe.on_floor else self._the(index, keyframe)
             anew = any(rows[i][1].skill in _RISES for i in range(position) if rows[i][0] in untold)
-            told.append(Phrase(text, (*untold, index), mood_of(keyframe), rises, anew, arrives, keyframe.skill, at))
+            told.append(Phrase(text, (*untold, index), keyframe.mood, rises, anew, arrives, keyframe.skill, at))
             untold, risen = (), rises
         return told
 
@@ -218,7 +217,7 @@ class Wording:
         return not keyframe.on_floor and self._at == self._the(index, keyframe)
 
     def _text(self, index: int, keyframe: PlannedKeyframe) -> str:
-        mood = mood_of(keyframe)
+        mood = keyframe.mood
         match keyframe.skill:
             case Skill.LOCO:
                 template = self._fresh(self._walks(keyframe, mood))
@@ -315,13 +314,6 @@ class Wording:
         chosen = self.variety.pick((name, "room")) if self.say_room else "room"
         self.say_room = self.say_room and chosen != name
         return f"the {chosen}"
-
-
-def mood_of(keyframe: Keyframe) -> str:
-    """The one emotion of a keyframe's words, neutral when they name none."""
-    if keyframe.emotion.lower().startswith("neutral"):
-        return "neutral"
-    return emotion_of(keyframe.emotion) or "neutral"
 
 
 def touches(keyframe: Keyframe) -> tuple[str, ...]:

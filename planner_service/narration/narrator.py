@@ -15,7 +15,6 @@ from planner_service.narration.keyframe_phrases import (
     Variety,
     Wording,
     joined,
-    mood_of,
     sentences_of,
     without_room,
 )
@@ -43,7 +42,6 @@ from planner_service.narration.story_scenes import (
     leads_of,
     scenes_of,
 )
-from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.script import Event, LongScript
 
 __all__ = ["Places", "Span", "Told", "narrate"]
@@ -142,7 +140,7 @@ class _Narrator:
         if told and len(self.scene) == 1:
             self.scene = told.pop() + self.scene
         text, spans = laid_out(balanced([*told, self.scene]))
-        title = title_of(self.script.theme, emotion_of(self.last.emotion) or "neutral", self.time)
+        title = title_of(self.script.theme, self.last.emotion, self.time)
         return Told(title, text, spans)
 
     def _tell_scene(self, scene: Scene, head: Lead, final: bool) -> None:
@@ -206,7 +204,7 @@ class _Narrator:
 
     def _opening(self) -> list[Sentence]:
         """First sentences that the first event does not gainsay."""
-        openings = story_texts().openings[emotion_of(self.first.emotion) or "neutral"]
+        openings = story_texts().openings[self.first.emotion]
         fitting = [text for text in openings if not gainsaid(text, self.first.text)]
         return self._framed(fitting or story_texts().openings["neutral"][3:4])
 
@@ -214,7 +212,7 @@ class _Narrator:
         """A sentence that leads from the mood of the scene before to that of this one."""
         emotion = self._emotion(scene)
         turns = story_texts().mood_changes.get(emotion, {})
-        fits = scene.event is None or emotion_of(self.script.events[scene.event].emotion) in (emotion, None)
+        fits = scene.event is None or self.script.events[scene.event].emotion == emotion
         if self.mood and emotion != self.mood and fits and self.variety.chance(0.75):
             options = self._framed(turns.get(self.mood, turns.get(ANY_OTHER, ())))
             if options and not self.ear.heard(options):
@@ -225,7 +223,7 @@ class _Narrator:
     def _emotion(self, scene: Scene) -> str:
         if scene.script is not None:
             return self.script.short_scripts[scene.script].script.emotion
-        return mood_of(scene.keyframes[-1][1])
+        return scene.keyframes[-1][1].mood
 
     def _happens(self, events: Sequence[int]) -> list[Remark]:
         """Events in the theme's own words, each sentence with the theme's "so" or "but" before it."""
@@ -352,10 +350,10 @@ class _Narrator:
         if not self.script.keyframes:
             return story_texts().closings["neutral"]
         last = self.script.keyframes[-1]
-        mood = mood_of(last)
+        mood = last.mood
         asleep = re.search(r"sleep|awake", " ".join(sentence.text for part in told for sentence in part))
         lying = story_texts().lying_closings.get(mood) if last.skill == Skill.LIEDOWN and not asleep else None
-        turned = story_texts().turned_closings.get(emotion_of(self.first.emotion) or "neutral", {}).get(mood)
+        turned = story_texts().turned_closings.get(self.first.emotion, {}).get(mood)
         return lying or turned or story_texts().closings[mood]
 
     def _framed(self, templates: Sequence[str]) -> list[Sentence]:

@@ -18,7 +18,6 @@ from planner_service.narration.event_sentences import joint_between
 from planner_service.narration.keyframe_phrases import Variety
 from planner_service.narration.sentence_frames import Sentence
 from planner_service.narration.tense import stem
-from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.script import LongScript, PlannedKeyframe
 
 _ASLEEP = re.compile(r"\b(?:fell (?:fast )?asleep|went to sleep|(?:took|into) a nap|dozed off|nodded off|passed out)\b")
@@ -185,7 +184,7 @@ def _together(script: LongScript, scenes: Sequence[Scene], leads: list[Lead], va
         joint = joint_between(script.theme, before.text, after.text)
         if not joint or scenes[place].tells(before.text) or scenes[place + 1].tells(after.text):
             continue
-        lasting = joint == "before" or emotion_of(before.emotion) == emotion_of(after.emotion)
+        lasting = joint == "before" or before.emotion == after.emotion
         if lasting and one.details and len(one.events) == 1 and place not in moved:
             leads[place], leads[place + 1] = replace(one, events=()), replace(two, events=one.events + two.events)
             moved.add(place + 1)

@@ -11,10 +11,9 @@ from functools import cache
 from typing import Final
 
 from motion_backend.language.sentence_encoder import HashingEncoder
-from motion_backend.motion import Skill
+from motion_backend.motion import Emotion, Skill
 from motion_backend.procedural.caption_coverage import understands
 from planner_service.scripts.captions import Vocabulary, agree, captions, sides
-from planner_service.scripts.emotions import emotion_of
 
 WALKS: Final = {
     "neutral": "smoothly forward walk",
@@ -56,12 +55,12 @@ _SLOW: Final = r"slow|weari|heav|reluctan"
 _FAST: Final = r"abrupt|quick|sudden|leap|jump|spring"
 
 
-def usual(skill: Skill, mood: str, caption: str = "") -> str:
+def usual(skill: Skill, mood: Emotion, caption: str = "") -> str:
     """The caption of a skill in one of nine emotions; a touch keeps height and hand of `caption`, a rising its pace."""
     text = caption.lower()
     match skill:
         case Skill.LOCO:
-            return WALKS.get(mood, WALKS["neutral"])
+            return WALKS[mood]
         case Skill.SITDOWN | Skill.LIEDOWN:
             pose = _POSES[skill].get(mood, _PLAIN[skill])
             return pose if agree(caption, pose) else _PLAIN[skill]
@@ -87,10 +86,10 @@ def hashed_words() -> Vocabulary:
     return Vocabulary.built_in(HashingEncoder())
 
 
-def performed_as(skill: Skill, caption: str, emotion: str, words: Words) -> str:
+def performed_as(skill: Skill, caption: str, mood: Emotion, words: Words) -> str:
     """The caption itself where the body knows it or words of it; else the nearest in meaning, or the usual one."""
     if caption in captions()[skill.value] or understands(skill, caption):
         return caption
     known = words()
     nearest, score = known.nearest(skill, caption)
-    return nearest if score >= known.least else usual(skill, emotion_of(emotion) or "neutral", caption)
+    return nearest if score >= known.least else usual(skill, mood, caption)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend.language.sentence_encoder import Vectors
+from motion_backend.motion import Emotion
 from planner_service.scripts.script import EMOTIONS, ShortScript
 from planner_service.scripts.suitability import Scores
 
@@ -48,21 +49,22 @@ class MoodReader:
         return felt
 
 
-def clear_moods(felt: Scores) -> list[str | None]:
+def clear_moods(felt: Scores) -> list[Emotion | None]:
     """The emotion that each text clearly feels like, or None. `felt` is what `MoodReader.read` gives, (N, 9)."""
     return [_clear(row) for row in felt]
 
 
-def _clear(row: Scores) -> str | None:
+def _clear(row: Scores) -> Emotion | None:
     second, first = np.argsort(row, kind="stable")[-2:]
     if row[first] - row[second] >= _AHEAD:
-        return EMOTIONS[first]
+        return EMOTIONS[int(first)]
     kinds = [[EMOTIONS.index(emotion) for emotion in kind] for kind in _KINDS]
     sums = np.array([np.maximum(row[kind], 0).sum() for kind in kinds])
     next_kind, best = np.argsort(sums, kind="stable")[-2:]
     if sums[best] - sums[next_kind] < _KIND_AHEAD:
         return None
-    return EMOTIONS[max(kinds[best], key=lambda index: row[index])]
+    loudest: int = max(kinds[best], key=lambda index: row[index])
+    return EMOTIONS[loudest]
 
 
 def lessons(scripts: Sequence[ShortScript]) -> tuple[list[str], list[str]]:

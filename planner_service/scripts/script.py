@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 from pydantic import AliasChoices, BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, field_validator
 
-from motion_backend.motion import Skill
+from motion_backend.emotion_words import emotion_of
+from motion_backend.motion import Emotion, Skill
 
-EMOTIONS = ("neutral", "happy", "angry", "hurried", "tired", "sad", "stressed", "drunk", "relaxed")
+EMOTIONS: Final[tuple[Emotion, ...]] = tuple(Emotion)
 """Neutral and the eight emotions or styles of SIMS 4.1."""
 
 Room = Literal["bedroom", "living_room", "dining_room", "study"]
@@ -44,9 +45,15 @@ class Keyframe(BaseModel):
 
     skill: Skill
     emotion: Line = Field("neutral", validation_alias=AliasChoices("emotion", "emotion/style"), max_length=80)
+    """In free words, as it was written: "tired, sad"."""
     caption: Line = Field(min_length=1, max_length=200)
     furniture: Line = Field("floor", validation_alias=AliasChoices("furniture", "furnitures"), max_length=60)
     """A furniture word, with an instance number when a script uses two of a kind ("wardrobe 2"), or "floor"."""
+
+    @property
+    def mood(self) -> Emotion:
+        """What its emotion means: all that planner, narration and body go by. Words nobody knows are neutral."""
+        return emotion_of(self.emotion) or Emotion.NEUTRAL
 
     @property
     def piece(self) -> tuple[str, int]:
@@ -108,7 +115,7 @@ class ShortScript(BaseModel):
 
     id: str = Field(pattern=r"^[a-z0-9][a-z0-9-]{0,79}$")
     summary: Line = Field(min_length=1, max_length=400)
-    emotion: Literal["neutral", "happy", "angry", "hurried", "tired", "sad", "stressed", "drunk", "relaxed"]
+    emotion: Emotion
     room: Room
     keyframes: tuple[Keyframe, ...] = Field(min_length=1, max_length=MAX_PIECES)
     cues: tuple[Annotated[Line, Field(min_length=1, max_length=200)], ...] = Field((), max_length=12)
@@ -149,7 +156,7 @@ class Event(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     text: Line
-    emotion: str = "neutral"
+    emotion: Emotion = Emotion.NEUTRAL
 
 
 class LongScript(BaseModel):

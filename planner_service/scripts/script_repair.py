@@ -9,10 +9,9 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any, Final, Generic, TypeVar
 
-from motion_backend.motion import Posture, Skill
+from motion_backend.motion import Emotion, Posture, Skill
 from planner_service.scripts.caption_fallbacks import WALKS
 from planner_service.scripts.captions import Vocabulary, sides
-from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.script import Keyframe, LongScript, ShortScript
 from planner_service.scripts.script_words import (
     Fitting,
@@ -129,9 +128,9 @@ class Mending(Generic[K]):
         if before is not None and before.skill is Skill.LOCO and not _NO_WAY_TO_GO.search(before.caption):
             caption, emotion = before.caption, before.emotion
         else:
-            moods = [emotion_of(k.emotion) for k in (keyframe, *reversed(self.kept)) if _same_script(k, keyframe)]
-            emotion = next((mood for mood in moods if mood not in (None, "neutral")), None) or "neutral"
-            caption = WALKS[emotion]
+            moods = [k.mood for k in (keyframe, *reversed(self.kept)) if _same_script(k, keyframe)]
+            mood = next((mood for mood in moods if mood is not Emotion.NEUTRAL), Emotion.NEUTRAL)
+            caption, emotion = WALKS[mood], mood.value
         update = {"skill": Skill.LOCO, "caption": caption, "emotion": emotion, "short_script": None}
         return keyframe.model_copy(update=fields(keyframe, update))
 

@@ -7,10 +7,10 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Generic, TypeVar
 
+from motion_backend.emotion_words import emotion_of
 from motion_backend.motion import Skill
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.captions import PHONE, Vocabulary, sides
-from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.script import EMOTIONS, Keyframe
 from scene_graphs import furniture
 
@@ -101,7 +101,7 @@ class Fitting(Generic[K]):
     def caption(self, index: int, keyframe: K, caption: str, fault: str) -> K:
         """The keyframe with another caption, or the usual one where that is not known either."""
         if self._vocabulary is not None and not self._vocabulary.known(keyframe.skill, caption):
-            caption = usual(keyframe.skill, emotion_of(keyframe.emotion) or "neutral", caption)
+            caption = usual(keyframe.skill, keyframe.mood, caption)
         self._note(index, "caption", fault, f'"{caption}" instead')
         return keyframe.model_copy(update={"caption": caption})
 
@@ -119,7 +119,7 @@ class Fitting(Generic[K]):
             return keyframe
         instead, score = words.nearest(skill, caption)
         remedy = f'"{instead}" is nearest ({score:.2f})'
-        common = usual(skill, emotion_of(keyframe.emotion) or "neutral", caption)
+        common = usual(skill, keyframe.mood, caption)
         if score < words.least and words.known(skill, common):
             instead, remedy = common, f'nothing known is near it ({score:.2f}): "{common}" as usual'
         one_and_both = " names one side and both, and" if "both" in sides(caption) and len(sides(caption)) > 1 else ""

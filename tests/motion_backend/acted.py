@@ -161,6 +161,14 @@ def risen_from(name: str, caption: str, emotion: str = "neutral", home: str = "s
 
 
 @cache
+def got_up(name: str, caption: str, emotion: str = "neutral", home: str = "small", seed: int = 3) -> Body:
+    """Getting up from a thing, or the floor, that was lain on."""
+    body, state = _rested(Skill.LIEDOWN, name, caption, emotion, home, seed)
+    action = replace(rise(body.action, Skill.GETUP), caption="get up", emotion=emotion, keyframe=2)
+    return Body(BACKEND.advance(HOMES[home], action, state)[0], action)
+
+
+@cache
 def touched(name: str, height: str, caption: str, hand: str = "right", home: str = "small", seed: int = 3) -> Body:
     """Touching a thing at a height ("low", "medium", "high"), walked to before."""
     where = HOMES[home]

@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 
-from motion_backend.motion import Action, Skill
+from motion_backend.motion import Action, Emotion, Skill
 from scene_graphs.affordances.affordances import spots
 from scene_graphs.home import Home, home_from_layouts
 from scene_graphs.layout import Layout, Placed
@@ -30,7 +30,9 @@ def small_home() -> Home:
     return home_from_layouts([ROOM], 0)
 
 
-def contact(home: Home, skill: Skill, name: str, caption: str, emotion: str = "neutral", which: int = 0) -> Action:
+def contact(
+    home: Home, skill: Skill, name: str, caption: str, emotion: Emotion = Emotion.NEUTRAL, which: int = 0
+) -> Action:
     """A contact action at the `which`-th spot of an object."""
     need = {Skill.SITDOWN: "sit", Skill.LIEDOWN: "lie", Skill.TOUCH: "touch"}[skill]
     spot = spots(home.object(f"0/{name}"), need)[which]
@@ -39,10 +41,10 @@ def contact(home: Home, skill: Skill, name: str, caption: str, emotion: str = "n
 
 def rise(action: Action, skill: Skill = Skill.STANDUP) -> Action:
     """Leaving what a contact action rests on."""
-    return Action(skill, "stand up", "neutral", action.furniture, action.object_id, action.spot)
+    return Action(skill, "stand up", Emotion.NEUTRAL, action.furniture, action.object_id, action.spot)
 
 
-def to(action: Action, caption: str = "smoothly forward walk", emotion: str = "neutral") -> Action:
+def to(action: Action, caption: str = "smoothly forward walk", emotion: Emotion = Emotion.NEUTRAL) -> Action:
     """The walk to where a contact action begins."""
     spot = action.spot
     assert spot is not None

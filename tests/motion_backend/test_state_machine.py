@@ -16,7 +16,7 @@ from small_home import contact, rise, small_home, to
 from motion_backend.formats.motion_json import json_bytes, read_json
 from motion_backend.formats.npz import npz_bytes, read_npz
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Action, BodyState, Character, Motion, Note, Part, Posture, Skill, join
+from motion_backend.motion import Action, BodyState, Character, Emotion, Motion, Note, Part, Posture, Skill, join
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.state_machine import DONE, ENDS, ENTERING, LEAVING, OWN, parts_of, shortfall, time_limit
 
@@ -108,7 +108,7 @@ def test_a_longer_way_may_take_longer(posture: Posture, skill: Skill, way: float
 
 
 def test_what_cannot_be_walked_to_is_told_and_the_body_stands() -> None:
-    far = Action(Skill.LOCO, "smoothly forward walk", "neutral", goal=(50.0, 50.0))
+    far = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=(50.0, 50.0))
     motion, after = BACKEND.advance(HOME, far, start(Posture.SEATED))
     assert not motion.completed
     assert motion.reason

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from dataclasses import dataclass
 
 
@@ -31,5 +30,11 @@ class Bug:
 
     def difference(self, text: str) -> str:
         """The lines that change, before with - and after with +."""
-        lines = difflib.ndiff(text.splitlines(), self.put_into(text).splitlines())
-        return "\n".join(f"    {line[0]} {line[2:].strip()}" for line in lines if line[0] in "+-")
+        begin, end = text.rfind("\n", 0, self.start) + 1, text.find("\n", self.stop)
+        end = len(text) if end < 0 else end
+        changed = text[begin : self.start] + self.wrong + text[self.stop : end]
+        return "\n".join(
+            f"    {sign} {line.strip()}"
+            for sign, lines in (("-", text[begin:end]), ("+", changed))
+            for line in lines.splitlines()
+        )

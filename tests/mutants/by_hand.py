@@ -6,6 +6,7 @@ All of them must be seen: they are the bugs that somebody would really make.
 from __future__ import annotations
 
 import ast
+from functools import cache
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -33,7 +34,12 @@ class Mistake(NamedTuple):
 
 BODIES: Final = (
     Mistake("the pelvis turns the wrong way in every walk", GAIT, "hip_turn = np", "hip_turn = -np"),
-    Mistake("the pelvis is lowest over the standing foot", GAIT, "beat = -np.cos(", "beat = np.cos("),
+    Mistake(
+        "the pelvis is lowest over the standing foot",
+        "motion_backend/procedural/walk/pelvis_height.py",
+        "beat = -steps.wave(",
+        "beat = steps.wave(",
+    ),
     Mistake(
         "hips hardly fold when sitting down",
         SITTING,
@@ -213,13 +219,16 @@ def _bug(root: Path, mistake: Mistake) -> Bug:
         )
     start = text.index(mistake.right)
     line = text.count("\n", 0, start) + 1
-    statement = _statement_at(ast.parse(text), line)
+    statement = _statement_at(_parsed(text), line)
     lines = statement.lineno, statement.end_lineno or statement.lineno
     if mistake.right.startswith("def "):
         return Bug(mistake.module, len(text), len(text), mistake.wrong, *lines, mistake.bug)
     stop = start + len(mistake.right)
     names = (mistake.right.split(" ")[0],) if isinstance(statement, ast.Assign) and statement.col_offset == 0 else ()
     return Bug(mistake.module, start, stop, mistake.wrong, *lines, mistake.bug, names)
+
+
+_parsed = cache(ast.parse)
 
 
 def _statement_at(tree: ast.Module, line: int) -> ast.stmt:

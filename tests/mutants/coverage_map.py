@@ -22,8 +22,8 @@ from mutants.scratch_tree import ScratchTree
 from mutants.watched_session import OPTIONS, Watched, child, load_ours
 
 PACKAGES: Final = ("prompts", "scene_graphs", "motion_backend", "planner_service")
-APART: Final = ("tests/integration/", "tests/web/", "tests/mutants/")
-"""Tests of whole services and pages; the files at the top of tests/ are about the tree itself, not about what it does."""
+APART: Final = ("tests/web/", "tests/mutants/")
+"""Tests of the page and of this command. (Files at the top of tests/ are about the tree, not about what it does.)"""
 FILE_SECONDS: Final = 400.0
 """Processor time that the tests of one file may take while they are watched."""
 
@@ -76,7 +76,7 @@ def test_files(root: Path) -> list[str]:
 
 
 def watch(root: Path, kept: Path, trees: list[ScratchTree]) -> list[Watching]:
-    """All test files; anew those that changed themselves, or whose helpers or modules did. `trees` work side by side."""
+    """All test files; anew those that changed, or whose helpers or modules did. `trees` work side by side."""
     kept.mkdir(parents=True, exist_ok=True)
     names = test_files(root)
     missing = [name for name in names if not _is_fresh(root, _place(kept, name))]
@@ -160,7 +160,7 @@ class Selection:
         self._readers = cache(self._lines_that_read)
 
     def tests(self, bug: Bug) -> list[TimedTest]:
-        """Those of files that mirror the module, then those elsewhere that run its line, then the others of their files.
+        """Those of files that mirror the module, then others that run its line, then the rest of their files.
 
         Of a file all tests are tried, since what it makes once and keeps is seen to run in the first of them alone.
         Quick files go first, and what comes after `seconds` is left out.
@@ -217,12 +217,11 @@ def _mirrors(test: str, module: str) -> bool:
 
 
 def _readers(text: str, names: tuple[str, ...]) -> set[int]:
-    lines: set[int] = set()
-    for function in ast.walk(ast.parse(text)):
-        if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef):
-            for node in ast.walk(function):
-                if isinstance(node, ast.Name | ast.Attribute):
-                    name = node.id if isinstance(node, ast.Name) else node.attr
-                    if name in names:
-                        lines.add(node.lineno)
-    return lines
+    """Lines inside functions that read one of some names."""
+    functions = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)]
+    return {
+        node.lineno
+        for function in functions
+        for node in ast.walk(function)
+        if (isinstance(node, ast.Name) and node.id in names) or (isinstance(node, ast.Attribute) and node.attr in names)
+    }

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from itertools import accumulate
+from itertools import accumulate, pairwise
 from typing import Final
 
 from mutants.bug import Bug
@@ -22,9 +22,9 @@ COMPARISONS: Final[dict[type[ast.cmpop], tuple[str, tuple[str, ...]]]] = {
     ast.In: ("in", ("not in",)), ast.NotIn: ("not in", ("in",)),
 }  # fmt: skip
 TWINS: Final = {
-    **{"min": "max", "minimum": "maximum", "argmin": "argmax", "any": "all", "floor": "ceil", "sin": "cos"},
-    **{"startswith": "endswith", "union": "intersection", "append": "extend"},
-}
+    "min": "max", "minimum": "maximum", "argmin": "argmax", "any": "all", "floor": "ceil", "sin": "cos",
+    "startswith": "endswith", "union": "intersection", "append": "extend",
+}  # fmt: skip
 TWIN: Final = TWINS | {second: first for first, second in TWINS.items()} | {"extend": "append"}
 """Functions that are easily mistaken for one another."""
 MESSAGES: Final = {"print", "warn", "warning", "info", "debug", "error", "exception", "log", "echo", "Field", "cast"}
@@ -163,16 +163,16 @@ class _Finder:
                 yield self._span(node), self._text[slice(*self._span(operand))], "sign"
             case ast.BoolOp(op=op, values=values):
                 sign, wrong = ("and", "or") if isinstance(op, ast.And) else ("or", "and")
-                for left, right in zip(values, values[1:], strict=False):
+                for left, right in pairwise(values):
                     if span := self._operator(left, right, sign):
                         yield span, wrong, "and, or"
             case ast.Compare(left=left, ops=ops, comparators=comparators):
-                for before, asked, after in zip([left, *comparators], ops, comparators, strict=False):
-                    sign, others = COMPARISONS[type(asked)]
+                for before, compared, after in zip([left, *comparators], ops, comparators, strict=False):
+                    sign, others = COMPARISONS[type(compared)]
                     if span := self._operator(before, after, sign):
                         for wrong in others:
                             yield span, wrong, "comparison"
-            case ast.Constant(value=int() | float() as value) if type(value) in (int, float):
+            case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
                 yield self._span(node), _another(value), "constant"
             case ast.Constant(value=bool() as value):
                 yield self._span(node), repr(not value), "constant"

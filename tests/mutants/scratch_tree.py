@@ -33,7 +33,7 @@ class ScratchTree:
         path = self.folder / bug.path
         text, stat = path.read_text(encoding="utf-8"), path.stat()
         path.write_text(bug.put_into(text), encoding="utf-8")
-        # What was compiled is told by size and date: the bug has a date of its own, and the date comes back with the text.
+        # What is compiled is told by size and date: the bug has a date of its own, and the old one comes back.
         os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns + 10_000_000_000))
         try:
             yield

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import pytest
+from run_layer import FAST
 
 LIBRARIES: Final = (
     "numpy", "scipy.ndimage", "scipy.spatial", "scipy.optimize", "scipy.interpolate", "scipy.signal", "shapely",
@@ -31,9 +32,11 @@ OURS: Final = (
     "planner_service.pipeline", "planner_service.output.story_files", "planner_service.cli",
 )  # fmt: skip
 """What most tests import of the project, directly or not; read by those who do not change it."""
-"""Fixtures of tests that need something running, and the name of their marker."""
-OPTIONS: Final = ("-q", "-p", "no:cacheprovider", "--tb=line", "-W", "ignore::pytest.PytestAssertRewriteWarning")
-"""For pytest; the warning is about libraries that are imported before it."""
+OPTIONS: Final = (
+    *("-q", "-p", "no:cacheprovider", "--tb=line", "-m", FAST.chosen),
+    *("-W", "ignore::pytest.PytestAssertRewriteWarning"),
+)
+"""For pytest: tests of the fast layer; the warning is about libraries that are imported before it."""
 
 
 def load_libraries() -> None:
@@ -88,7 +91,8 @@ def _move_to(tree: Path, out: Path, environment: dict[str, str]) -> None:
     os.chdir(tree)
     # Beside the tree itself nothing of the project is on the path: neither the one that was run nor an installed one.
     sys.path[:] = [str(tree), *(place for place in sys.path if place and not (Path(place) / "scene_graphs").is_dir())]
-    os.environ.update({"PYTHONPATH": str(tree), "SIMS_DATA_DIR": str(out.parent / "data")} | environment)
+    kept = {"SIMS_DATA_DIR": out.parent / "data", "SIMS_TEST_CACHE": out.parent / "sentences"}
+    os.environ.update({"PYTHONPATH": str(tree)} | {name: str(folder) for name, folder in kept.items()} | environment)
     # A bug has a date of its own, so that what is compiled of it is not taken for the module without it.
     sys.dont_write_bytecode = False
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -98,7 +102,7 @@ def _move_to(tree: Path, out: Path, environment: dict[str, str]) -> None:
 
 
 class Chosen:
-    """Only the tests asked for, in their order, without those that need a service; examples are not made smaller."""
+    """Only the tests asked for, in their order; examples that fail are not made smaller."""
 
     def __init__(self, wanted: Sequence[str] | None = None) -> None:
         self._order = None if wanted is None else {name: place for place, name in enumerate(wanted)}
@@ -108,16 +112,14 @@ class Chosen:
         from hypothesis import Phase, settings
 
         phases = (Phase.explicit, Phase.generate)
-        settings.register_profile("mutants", deadline=None, derandomize=True, database=None, phases=phases)
+        settings.register_profile("mutants", settings(), database=None, phases=phases)
         settings.load_profile("mutants")
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        alone = [item for item in items if not _served(item)]
         if self._order is not None:
             order = self._order
-            alone = sorted((item for item in alone if item.nodeid in order), key=lambda item: order[item.nodeid])
-        items[:] = alone
+            items[:] = sorted((item for item in items if item.nodeid in order), key=lambda item: order[item.nodeid])
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         if report.failed and not self.failed:
@@ -126,10 +128,6 @@ class Chosen:
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         if report.failed and not self.failed:
             self.failed = report.nodeid
-
-
-def _served(item: pytest.Item) -> bool:
-    return item.get_closest_marker("service") is not None or item.get_closest_marker("sweep") is not None
 
 
 class Watched(Chosen):

@@ -1,5 +1,6 @@
 /** The service's resources, and the calls that the page makes. */
 
+import type { Emotion } from "./emotions";
 import type { Span } from "./spans";
 
 export type State = "queued" | "running" | "succeeded" | "failed" | "cancelled";
@@ -29,7 +30,10 @@ export interface Summary {
 export interface Keyframe {
   readonly index: number;
   readonly skill: Skill;
+  /** As it was written. */
   readonly emotion: string;
+  /** What that means. */
+  readonly mood: Emotion;
   readonly caption: string;
   readonly furniture: string;
   readonly object_id: string | null;
@@ -97,7 +101,7 @@ export interface Story extends Summary {
   readonly encoder: string | null;
   readonly text: string | null;
   readonly spans: readonly Span[];
-  readonly events: readonly { readonly text: string; readonly emotion: string }[];
+  readonly events: readonly { readonly text: string; readonly emotion: Emotion }[];
   readonly uncovered: readonly string[];
   readonly repairs: readonly string[];
   readonly keyframes: readonly Keyframe[];

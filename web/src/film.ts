@@ -5,7 +5,6 @@ import { color, isDark, isStill, onAppearance } from "./appearance";
 import type { CameraMode } from "./camera";
 import { Controls } from "./controls";
 import { fill, h } from "./dom";
-import { emotionOf } from "./emotions";
 import { listenKeys, showHelp } from "./keyboard";
 import { MiniMap } from "./minimap";
 import { Player } from "./player";
@@ -255,7 +254,7 @@ export class Film {
     const keyframe = index === null ? undefined : keyframes[index];
     this.#subtitle.hidden = !keyframe;
     if (keyframe) {
-      this.#subtitle.dataset["emotion"] = emotionOf(keyframe.emotion);
+      this.#subtitle.dataset["emotion"] = keyframe.mood;
       fill(this.#subtitle, h("small", {}, keyframe.emotion), h("span", {}, keyframe.caption));
     }
     if (keyframe && this.#stage) this.#stage.cameraMan.aside = ASIDE[keyframe.skill];
@@ -265,7 +264,7 @@ export class Film {
   }
 
   #mood(): void {
-    const emotion = this.keyframe === null ? "neutral" : emotionOf(this.#story?.keyframes[this.keyframe]?.emotion ?? "");
+    const emotion = this.keyframe === null ? "neutral" : (this.#story?.keyframes[this.keyframe]?.mood ?? "neutral");
     this.#stage?.setMood({ dark: isDark(), around: color("--stage"), ground: color("--stage-floor"), tint: color(`--${emotion}`) });
   }
 

@@ -2,7 +2,6 @@
 
 import type { FoundRoom, FoundScript, Story } from "./api";
 import { fill, h } from "./dom";
-import { emotionOf } from "./emotions";
 import { drawGraph } from "./graph";
 import { capital, count, noteWords, plain } from "./words";
 
@@ -25,7 +24,7 @@ function scripts(story: Story): HTMLElement[] {
   const events = story.events.map((event, index) =>
     h(
       "li",
-      { "data-emotion": emotionOf(event.emotion) },
+      { "data-emotion": event.emotion },
       h("p", { class: "event" }, h("i", {}), `“${event.text}”`),
       ...story.short_scripts.filter((script) => script.event === index).map(found),
     ),

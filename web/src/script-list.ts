@@ -2,7 +2,6 @@
 
 import type { Keyframe } from "./api";
 import { h } from "./dom";
-import { emotionOf } from "./emotions";
 import { clock } from "./timing";
 import { placeWords, SKILL_WORDS } from "./words";
 
@@ -38,7 +37,7 @@ export class ScriptList {
     const { item, button, words, time } = this.#rows[index]!;
     const made = keyframe.start !== null;
     button.disabled = !made;
-    item.dataset["emotion"] = emotionOf(keyframe.emotion);
+    item.dataset["emotion"] = keyframe.mood;
     item.classList.toggle("missed", keyframe.reached === false);
     const missed = keyframe.reached === false ? " · not reached" : "";
     words.replaceChildren(

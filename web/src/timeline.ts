@@ -2,7 +2,7 @@
 
 import type { Keyframe } from "./api";
 import { fill, h } from "./dom";
-import { emotionOf, EMOTIONS } from "./emotions";
+import { EMOTIONS } from "./emotions";
 import { blocks, clock, placeOf, type Block } from "./timing";
 import { placeWords, SKILL_WORDS } from "./words";
 
@@ -41,7 +41,7 @@ export class Timeline {
     for (const item of this.#items.splice(keyframes.length)) item.remove();
     this.#buttons.splice(keyframes.length);
     for (const [index, keyframe] of keyframes.entries()) this.#block(index, keyframe);
-    const felt = EMOTIONS.filter((emotion) => keyframes.some((keyframe) => emotionOf(keyframe.emotion) === emotion));
+    const felt = EMOTIONS.filter((emotion) => keyframes.some((keyframe) => keyframe.mood === emotion));
     if (felt.length !== this.#legend.children.length) {
       fill(this.#legend, ...felt.map((emotion) => h("li", { "data-emotion": emotion }, h("i", {}), emotion)));
     }
@@ -55,7 +55,7 @@ export class Timeline {
     if (!item.parentElement) this.#line.append(item);
     const { width, made } = this.#laid[index]!;
     item.style.flexGrow = String(width * 1000);
-    item.dataset["emotion"] = emotionOf(keyframe.emotion);
+    item.dataset["emotion"] = keyframe.mood;
     item.classList.toggle("made", made);
     item.classList.toggle("missed", keyframe.reached === false);
     const time = keyframe.start === null ? "not made yet" : `at ${clock(keyframe.start / this.#fps)}`;

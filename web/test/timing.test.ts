@@ -1,5 +1,4 @@
 import { describe, expect, test } from "vitest";
-import { emotionOf } from "../src/emotions";
 import { Player } from "../src/player";
 import { paragraphs, spanOf } from "../src/spans";
 import { blocks, clock, keyframeAt, placeOf } from "../src/timing";
@@ -106,10 +105,6 @@ describe("player", () => {
     player.feed(1, true);
     expect(player.state).toBe("ended");
   });
-});
-
-test("the first known emotion of a text counts", () => {
-  expect(["tired, sad", "very Happy", "greenish", "", "Sad/angry", "depressed"].map(emotionOf)).toEqual(["tired", "happy", "neutral", "neutral", "sad", "sad"]);
 });
 
 test("a clock shows minutes and two digits of seconds", () => {

@@ -12,6 +12,7 @@ from typing import Final, TypeVar
 import numpy as np
 
 from motion_backend import rotations
+from motion_backend.motion import Emotion
 from motion_backend.procedural.held_poses import UP, bend, shoulders
 from motion_backend.procedural.lie.lie_keys import LiePose, Propped, RestingHand, SideLegs
 from motion_backend.procedural.lie.lie_legs import foot_down, on_a_side, on_the_back, shortened
@@ -158,7 +159,7 @@ def place_to_lie(found: Sequence[Spot], caption: str) -> Spot:
     """The first spot with the edge on the side that a caption wants; near to it where a foot goes down there."""
     wanted = wanted_edge(caption)
     spot = next((spot for spot in found if Bed.of(spot).edge_side == wanted), found[0])
-    if not lie_style("neutral", caption).legs.endswith("_down"):
+    if not lie_style(Emotion.NEUTRAL, caption).legs.endswith("_down"):
         return spot
     over = max(spot.edge - OVER_EDGE, 0.0)
     x, y, z = spot.point

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from motion_backend.body.scene_collision import Obstacles
-from motion_backend.motion import FPS, Action, Posture
+from motion_backend.motion import FPS, Action, Emotion, Posture
 from motion_backend.procedural.body_state import Body, spot_of
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import SHIN_REACH, Seat, idle
@@ -136,7 +136,7 @@ ABOUT = 1.4
 """A table in reach is within this distance of the pelvis (metres)."""
 
 
-def seat_for(found: Sequence[Spot], emotion: str, caption: str, obstacles: Obstacles) -> Spot:
+def seat_for(found: Sequence[Spot], emotion: Emotion, caption: str, obstacles: Obstacles) -> Spot:
     """The first of the sit spots, and the place on it, where the most hands have what they are to lie on.
 
     Chairs stand so far from their tables that a body can get between: at a table one sits on the front of the seat.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Final
@@ -12,23 +11,26 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.procedural.emotion_style import arm_arrays
 from motion_backend.procedural.pose import Pose
+from motion_backend.procedural.style_sheet import read_style_sheet
 from motion_backend.rotations import Array
 from motion_backend.skeleton import HAND_REST
 
-HANDLINGS: Final = (
-    ("pick", r"\bpick(s|ing)?\b.*\bup\b|\btak(e|ing) (up|hold)|\bgrab|\bgrasp"),
-    ("put", r"\bput(s|ting)?\b.*\bdown\b|\bset(ting)? down|\bplac(e|ing)\b"),
-    ("press", r"\b(turn|switch)(ing|es)? (it )?(on|off)\b|\bpress|\bpush"),
-    ("wash", r"\bwash|\bwip(e|ing)|\bscrub|\bpolish"),
-    ("rotate", r"\brotat|\bturn(s|ing)?\b(?! (on|off))|\btwist"),
-)
-"""What a caption may say is done at a thing, the first that is found."""
 CARRIES: Final = 0.08
 """A wrist so near to where it would carry something carries it (arm lengths)."""
 FREE: Final = ("hang", "bent")
 """Arms that swing as one walks."""
 FINGERS, FINGER = 0.14, 0.024
 """From the wrist to the fingertips, and half of what a hand is thick (metres)."""
+
+
+@dataclass(frozen=True)
+class Handled:
+    """What a caption may say of hands at a thing."""
+
+    doing: str = ""
+    """pick, put, press, wash or rotate; nothing for a plain touch."""
+    both_hands: bool = False
+    """Whether both are laid on it."""
 
 
 @dataclass(frozen=True)
@@ -64,14 +66,19 @@ class Laid:
         return replace(self, wrist=self.wrist + lift * self.normal, palm=rotations.compose(self.palm, turn))
 
 
+def handled(caption: str) -> Handled:
+    """What data/styles/touch.toml says of a caption."""
+    return Handled(**read_style_sheet("touch.toml", Handled).of_caption(caption))
+
+
 def handling_of(caption: str) -> str:
-    """What a touch does, a word of `HANDLINGS`, or "" for a plain touch."""
-    return next((doing for doing, pattern in HANDLINGS if re.search(pattern, caption.lower())), "")
+    """What a touch does, as `Handled.doing` says it."""
+    return handled(caption).doing
 
 
 def with_both_hands(caption: str) -> bool:
     """Whether a caption lays both hands on what is touched."""
-    return re.search(r"\b(both|two) (hands|palms)\b", caption.lower()) is not None
+    return handled(caption).both_hands
 
 
 def steadies(caption: str) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.motion import FPS
-from motion_backend.procedural.emotion_style import ARMS, arm_arrays
+from motion_backend.procedural.emotion_style import arm_arrays, arm_poses
 from motion_backend.procedural.pose import smooth
 from motion_backend.procedural.walk.footsteps import Steps
 from motion_backend.procedural.walk.walk_styles import Walk
@@ -153,7 +153,7 @@ def _hanging(style: Walk, index: int, beat: Array, moving: Array, speed: Array) 
 def _held(style: Walk, index: int, wrist: Array, frames: int) -> Array:
     """A wrist on its way from hanging into the pose it is held in, and back where something is begun. (T, 3)."""
     spread = _spread(frames, style.bearing.arms[index], style.release)
-    hang = np.asarray(ARMS["hang"].wrist) * [1 if index == 0 else -1, 1, 1]
+    hang = np.asarray(arm_poses()["hang"].wrist_arm_lengths) * [1 if index == 0 else -1, 1, 1]
     between = hang + spread[:, None] * (wrist - hang)
     length = np.linalg.norm(hang) + spread * (np.linalg.norm(wrist, axis=1) - np.linalg.norm(hang))
     return np.asarray(rotations.normalize(between) * length[:, None])

@@ -15,7 +15,7 @@ from motion_backend import rotations
 from motion_backend.procedural.pose import Pose, smooth
 from motion_backend.procedural.walk.foot_trajectory import TIP_UP, Feet, Swing
 from motion_backend.procedural.walk.root_path import Route
-from motion_backend.procedural.walk.walk_styles import Walk
+from motion_backend.procedural.walk.walk_styles import Walk, usual_width
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
 from scene_graphs.data_tables import read_table, table
@@ -308,7 +308,7 @@ def _widths(route: Route, at: int, style: Walk, place: LandingPlace) -> tuple[fl
     last = len(route.heading) - 1
     after, before = min(at + place.turn_frames, last), max(at - place.turn_frames, 0)
     turning = min(abs(float(route.heading[after] - route.heading[before])) / place.turn_rad, 1.0)
-    stance = max(style.width, turning * Walk.width)
+    stance = max(style.width, turning * usual_width())
     under_way = min(float(route.speed[at]) / place.under_way_mps, 1.0)
     narrower = 0.0 if style.aside == SIDEWAYS else place.narrower_share
     return stance, stance * (1 - narrower * under_way * (1 - turning))

@@ -14,10 +14,10 @@ from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from pydantic import Field
 
+from motion_backend.motion import Emotion
 from planner_service.api.dependencies import PartsDep
 from planner_service.api.errors import Conflict, Fault, NotFound, Problem, Unavailable, Unprocessable
 from planner_service.api.scripts.schemas import (
-    EmotionName,
     LongScriptAsk,
     RoomName,
     ShortScriptPage,
@@ -45,7 +45,7 @@ UNLICENSED: Final = "Sims-Licence-Unknown"
 
 
 def chosen(
-    emotion: Annotated[EmotionName | None, Query(description="Only scripts of this emotion.")] = None,
+    emotion: Annotated[Emotion | None, Query(description="Only scripts of this emotion.")] = None,
     room: Annotated[RoomName | None, Query(description="Only scripts that play in this type of room.")] = None,
     furniture: Annotated[
         list[Annotated[str, Field(min_length=1, max_length=60)]] | None,

@@ -9,13 +9,13 @@ from typing import Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from motion_backend.motion import Emotion
 from planner_service.api.stories.schemas import Ask, RoomType, Seed
 from planner_service.composition.compose import MAX_SHORT_SCRIPTS
 from planner_service.scripts.script import Keyframe, Origin, Room, ScriptGraph, Source
 from planner_service.themes.beats import MAX_THEME_LENGTH
 from scene_graphs.home import MAX_ROOMS
 
-EmotionName = Literal["neutral", "happy", "angry", "hurried", "tired", "sad", "stressed", "drunk", "relaxed"]
 RoomName = Room
 EXAMPLE: dict[str, Any] = {
     "id": "water-the-plant",
@@ -39,7 +39,7 @@ class ShortScriptShown(BaseModel):
 
     id: str = Field(description="A slug; the script is at /v1/short-scripts/{id}.")
     summary: str = Field(description="What happens, in one or a few sentences; by this it is found.")
-    emotion: EmotionName
+    emotion: Emotion
     room: RoomName = Field(description="The type of room it plays in.")
     keyframes: list[Keyframe]
     cues: list[str] = Field(description="Other words for what happens, by which it is found too.")

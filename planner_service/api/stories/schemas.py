@@ -10,7 +10,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticKnownError
 
 from motion_backend.backends import UnknownBackendError, backend_names, require_backend
-from motion_backend.motion import Skill
+from motion_backend.motion import Emotion, Skill
 from planner_service.composition.compose import MAX_SHORT_SCRIPTS
 from planner_service.pipeline import MAX_HEIGHT, MAX_NAME_LENGTH, MAX_SEED, MIN_HEIGHT
 from planner_service.scripts.script import Event, Keyframe
@@ -142,7 +142,8 @@ class KeyframeShown(BaseModel):
 
     index: int
     skill: Skill
-    emotion: str
+    emotion: str = Field(description="As it was written.")
+    mood: Emotion = Field(description="What that means: how it is told and acted.")
     caption: str
     furniture: str
     object_id: str | None = Field(description='"room_index/object_id" in the home.')

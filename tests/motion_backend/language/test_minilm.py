@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import os
 from pathlib import Path
 
 import numpy as np
@@ -92,6 +94,23 @@ def test_weights_that_are_not_ours_are_refused(tmp_path: Path) -> None:
     if minilm.torch_is_installed():
         with pytest.raises(minilm.WeightsError):
             load_encoder(folder=tmp_path)
+
+
+def test_what_was_checked_is_not_read_again_until_it_changes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    wanted = hashlib.sha256(b"weights").hexdigest()
+    monkeypatch.setattr(minilm, "FILES", {"model": wanted})
+    model, cache = tmp_path / "model", tmp_path / "cache"
+    model.write_bytes(b"weights")
+    minilm.verify(tmp_path, cache)
+    before = model.stat()
+    model.write_bytes(b"WEIGHTS")
+    os.utime(model, ns=(before.st_atime_ns, before.st_mtime_ns))
+    minilm.verify(tmp_path, cache)
+    with pytest.raises(minilm.WeightsError, match="has sha256"):
+        minilm.verify(tmp_path)
+    os.utime(model, ns=(before.st_atime_ns, before.st_mtime_ns + 10**9))
+    with pytest.raises(minilm.WeightsError, match="has sha256"):
+        minilm.verify(tmp_path, cache)
 
 
 def test_without_the_package_the_fall_back_says_that_it_is_one(monkeypatch: pytest.MonkeyPatch) -> None:

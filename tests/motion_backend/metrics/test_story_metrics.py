@@ -13,7 +13,7 @@ from motion_backend.body.scene_collision import Obstacles
 from motion_backend.metrics import contact_error, foot_skate, smoothness, story_metrics
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.penetration import penetration
-from motion_backend.motion import Action, ContactGoal, Skill
+from motion_backend.motion import Action, ContactGoal, Emotion, Skill
 from motion_backend.skeleton import INDEX, build_skeleton
 from scene_graphs.home import home_from_layouts
 from scene_graphs.layout import Layout, Opening
@@ -27,7 +27,7 @@ def box(center: tuple[float, float, float], size: tuple[float, float, float], ow
 
 
 def touch(**changes: object) -> Action:
-    return replace(Action(Skill.TOUCH, "touch", "neutral"), **changes)  # type: ignore[arg-type]
+    return replace(Action(Skill.TOUCH, "touch", Emotion.NEUTRAL), **changes)  # type: ignore[arg-type]
 
 
 def test_a_body_that_stands_still_neither_skates_nor_jerks_nor_sinks() -> None:
@@ -85,7 +85,7 @@ def test_only_contact_bodies_may_sink_and_only_into_their_own_target() -> None:
     body = Kinematics.of(motion)
     hips = body.positions[0, 0]
     seat = box((0.0, hips[1] - 0.09 + 0.03 - 0.5, -0.3), (0.5, 1.0, 0.6), owner="0/chair")
-    sit = Action(Skill.SITDOWN, "sit", "neutral", object_id="0/chair")
+    sit = Action(Skill.SITDOWN, "sit", Emotion.NEUTRAL, object_id="0/chair")
     free = penetration(body, seat, None)
     own = penetration(body, seat, sit)
     other = penetration(body, seat, replace(sit, object_id="0/table"))
@@ -121,7 +121,7 @@ def test_strict_success_asks_for_ten_centimetres(away: float, reached: bool, str
 
 def test_execution_time_is_when_the_threshold_is_first_met() -> None:
     motion = standing_still(root=np.outer(np.arange(90) / 30, [1.0, 0.0, 0.0]))
-    found = contact_error.outcome(Action(Skill.LOCO, "walk", "neutral", goal=(2.3, 0.0)), Kinematics.of(motion))
+    found = contact_error.outcome(Action(Skill.LOCO, "walk", Emotion.NEUTRAL, goal=(2.3, 0.0)), Kinematics.of(motion))
     assert found.seconds == pytest.approx(2.0, abs=1 / 30)
 
 
@@ -134,7 +134,7 @@ def test_a_trial_without_a_goal_is_not_a_success() -> None:
 def test_a_walk_succeeds_where_it_ends_not_where_it_passes() -> None:
     root = np.outer(np.arange(90) / 30, [1.0, 0.0, 0.0])
     motion = standing_still(root=root)
-    there = Action(Skill.LOCO, "walk", "neutral", goal=(2.9, 0.0))
+    there = Action(Skill.LOCO, "walk", Emotion.NEUTRAL, goal=(2.9, 0.0))
     passed = replace(there, goal=(1.0, 0.0))
     body = Kinematics.of(motion)
     for action, reached in ((there, True), (passed, False)):
@@ -144,7 +144,7 @@ def test_a_walk_succeeds_where_it_ends_not_where_it_passes() -> None:
 
 def test_a_motion_that_was_not_completed_is_never_reached() -> None:
     motion = replace(standing_still(), completed=False, reason="no way")
-    figures = story_metrics.judge(motion, Action(Skill.LOCO, "walk", "neutral", goal=(0.0, 0.0)), NOTHING)
+    figures = story_metrics.judge(motion, Action(Skill.LOCO, "walk", Emotion.NEUTRAL, goal=(0.0, 0.0)), NOTHING)
     assert not figures.reached
     assert figures.reason == "no way"
 
@@ -216,7 +216,7 @@ def test_a_body_floats_above_the_floor_and_not_above_what_holds_it() -> None:
 
 
 def test_a_summary_counts_every_trial_and_has_no_error_where_nothing_is_touched() -> None:
-    walk = Action(Skill.LOCO, "walk", "neutral", goal=(0.0, 0.0))
+    walk = Action(Skill.LOCO, "walk", Emotion.NEUTRAL, goal=(0.0, 0.0))
     figures = story_metrics.judge(standing_still(), walk, NOTHING)
     told = story_metrics.summarise([figures, replace(figures, reached=False, seconds=6.0, pen_max=0.1)])
     assert (told["success"], told["contact_error"], told["contact_error_success"]) == (0.5, None, None)

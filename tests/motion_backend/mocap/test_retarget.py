@@ -19,7 +19,7 @@ from motion_backend.mocap.readers import clip_of_motion, read_clips
 from motion_backend.mocap.resampling import low_pass, sample_rotations, sample_times
 from motion_backend.mocap.rest_pose import LIMBS, shortest_turn
 from motion_backend.mocap.retarget import Retargeted, retarget
-from motion_backend.motion import Action, Character, Motion, Skill
+from motion_backend.motion import Action, Character, Emotion, Motion, Skill
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.skeleton import INDEX, JOINTS, PARENTS, build_skeleton
 
@@ -79,9 +79,9 @@ def angle(a: Array, b: Array) -> Array:
 def walk() -> Motion:
     backend, home = ProceduralBackend(), small_home()
     state = backend.begin(home, Character(), 3)
-    way = Action(Skill.LOCO, "steadily walking forward", "neutral", goal=(2.6, 1.4))
+    way = Action(Skill.LOCO, "steadily walking forward", Emotion.NEUTRAL, goal=(2.6, 1.4))
     _, state = backend.advance(home, way, state)
-    back = Action(Skill.LOCO, "steadily walking forward", "neutral", goal=(4.0, 3.4))
+    back = Action(Skill.LOCO, "steadily walking forward", Emotion.NEUTRAL, goal=(4.0, 3.4))
     return backend.advance(home, back, state)[0]
 
 

@@ -15,9 +15,8 @@ from motion_backend.metrics import story_metrics
 from motion_backend.metrics.contact_error import risen
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.smoothness import seam_jump
-from motion_backend.motion import Action, BodyState, Character, Motion, Posture, Skill, join
+from motion_backend.motion import Action, BodyState, Character, Emotion, Motion, Posture, Skill, join
 from motion_backend.procedural.backend import ProceduralBackend
-from motion_backend.procedural.emotion_style import feeling
 from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.sit.sit_styles import sit_style
 from motion_backend.procedural.walk.walk_styles import walk_style
@@ -126,7 +125,7 @@ def test_short_and_tall_bodies_reach_too(height: float) -> None:
 
 def test_a_seated_body_stands_up_before_it_walks() -> None:
     sofa = contact(HOME, Skill.SITDOWN, "sofa", "hands on thighs")
-    motions, state = perform([sofa, Action(Skill.LOCO, "walk", "neutral", goal=(3.0, 3.0))])
+    motions, state = perform([sofa, Action(Skill.LOCO, "walk", Emotion.NEUTRAL, goal=(3.0, 3.0))])
     assert state.posture is Posture.STANDING
     assert risen(Kinematics.of(motions[1]))[-1]
 
@@ -138,14 +137,14 @@ def test_a_body_remembers_what_it_rests_on() -> None:
 
 
 def test_a_place_that_cannot_be_reached_is_said_and_not_faked() -> None:
-    motions, state = perform([Action(Skill.LOCO, "walk", "neutral", goal=(30.0, 30.0))])
+    motions, state = perform([Action(Skill.LOCO, "walk", Emotion.NEUTRAL, goal=(30.0, 30.0))])
     assert not motions[0].completed
     assert "30" in motions[0].reason
     assert state.posture is Posture.STANDING
 
 
 def test_an_action_without_a_place_is_not_completed() -> None:
-    motions, _ = perform([Action(Skill.SITDOWN, "sit", "neutral")])
+    motions, _ = perform([Action(Skill.SITDOWN, "sit", Emotion.NEUTRAL)])
     assert not motions[0].completed
 
 
@@ -155,7 +154,7 @@ def test_a_held_pose_is_alive() -> None:
 
 
 def walked(caption: str, emotion: str) -> Motion:
-    start = Action(Skill.LOCO, "smoothly forward walk", "neutral", goal=(2.6, 2.6), facing=0.0)
+    start = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=(2.6, 2.6), facing=0.0)
     way = Action(Skill.LOCO, caption, emotion, goal=(4.2, 2.9))
     return perform([start, way])[0][1]
 
@@ -178,8 +177,8 @@ def test_nobody_lunges_into_a_walk(caption: str, emotion: str) -> None:
 @pytest.mark.parametrize("caption", ["walk", "skip steps running", "run and spin"])
 @pytest.mark.parametrize("distance", [0.2, 0.5, 1.4])
 def test_every_walk_ends_on_both_feet(caption: str, distance: float) -> None:
-    start = Action(Skill.LOCO, "smoothly forward walk", "neutral", goal=(2.6, 2.6), facing=0.0)
-    motions, _ = perform([start, Action(Skill.LOCO, caption, "happy", goal=(2.6, 2.6 + distance), facing=0.0)])
+    start = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=(2.6, 2.6), facing=0.0)
+    motions, _ = perform([start, Action(Skill.LOCO, caption, Emotion.HAPPY, goal=(2.6, 2.6 + distance), facing=0.0)])
     motion = motions[1]
     positions = motion.joint_positions().astype(np.float64)[-1]
     assert motion.contacts[-1].min() == 1
@@ -211,28 +210,12 @@ def test_emotions_show_in_speed_and_posture() -> None:
     assert bow(happy) > bow(sad) + 0.015
 
 
-@pytest.mark.parametrize(
-    ("text", "caption", "mood"),
-    [
-        ("neutral, calm", "smoothly forward walk", "neutral"),
-        ("neutral, calm", "walking drunkenly", "drunk"),
-        ("tired, depressed, drunk", "", "drunk"),
-        ("painful, sad", "", "sad"),
-        ("happy, childish", "", "happy"),
-        ("cold, disturbed, anxious", "", "angry"),
-        ("thinking, stressed", "", "stressed"),
-    ],
-)
-def test_free_text_stands_for_one_of_nine_emotions(text: str, caption: str, mood: str) -> None:
-    assert feeling(text, caption) == mood
-
-
 def test_captions_change_what_is_seen() -> None:
-    assert walk_style("neutral", "walk on tiptoes").tiptoe > 0
-    assert walk_style("happy", "run and spin").spin > 0
-    assert sit_style("neutral", "arms crossed, straight legs, feet crossed").legs == "feet_crossed"
-    assert lie_style("neutral", "side-lie on left, legs bent").side == "left"
-    assert lie_style("neutral", "side-lying on right").side == "right"
+    assert walk_style(Emotion.NEUTRAL, "walk on tiptoes").tiptoe > 0
+    assert walk_style(Emotion.HAPPY, "run and spin").spin > 0
+    assert sit_style(Emotion.NEUTRAL, "arms crossed, straight legs, feet crossed").legs == "feet_crossed"
+    assert lie_style(Emotion.NEUTRAL, "side-lie on left, legs bent").side == "left"
+    assert lie_style(Emotion.NEUTRAL, "side-lying on right").side == "right"
 
 
 def test_a_home_is_not_changed_by_acting_in_it() -> None:

@@ -17,7 +17,7 @@ from motion_backend.metrics.gait_features import UNITS
 from motion_backend.mocap.clip import ClipError
 from motion_backend.mocap.dataset_builder import Kept, collect, folder_labels, read_folder
 from motion_backend.mocap.dataset_file import Dataset, Entry, dataset_bytes
-from motion_backend.motion import Motion
+from motion_backend.motion import Emotion, Motion
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose_solver import solve
 from motion_backend.procedural.walk.gait import walk
@@ -41,7 +41,7 @@ PEOPLE = 5
 
 @cache
 def walked(speed: float, seed: int, length: float = 6.0) -> Motion:
-    style = replace(walk_style("neutral", CAPTION), speed=speed)
+    style = replace(walk_style(Emotion.NEUTRAL, CAPTION), speed=speed)
     start, way = standing((0.0, 0.0), 0.0, style.bearing, SKELETON), np.array([[0.0, 0.0], [0.0, length]])
     pose = walk(start, way, None, style, SKELETON, np.random.default_rng(seed))
     root, local = solve(pose, SKELETON)

@@ -18,8 +18,8 @@ from for_each import for_each
 
 from planner_service.extraction.shot_detection import Shot, shots_of
 from planner_service.extraction.subtitles import embedded_cues
-from planner_service.extraction.video import Film, FilmError, FilmLimits, Frame, frames_at, open_film, pictures
-from planner_service.extraction.video_container import container_of
+from planner_service.extraction.video import Film, FilmLimits, Frame, frames_at, open_film, pictures
+from planner_service.extraction.video_container import FilmError, container_of
 from planner_service.extraction.video_frames import Album
 
 whole = cache(four_shots)

@@ -8,7 +8,7 @@ import pytest
 from encoded import encoded
 
 from motion_backend.backends import load_backend
-from motion_backend.motion import Character
+from motion_backend.motion import Character, Emotion
 from planner_service.grounding.keyframes_to_actions import act
 from planner_service.jobs import serialization
 from planner_service.library.library import Shelves
@@ -63,6 +63,7 @@ def test_a_body_goes_on_from_json_exactly_as_from_memory(planned: Planned) -> No
         serialization.action_from_dict(through_json(serialization.action_to_dict(action))) for action in actions
     )
     assert again == actions
+    assert {type(action.emotion) for action in again} == {Emotion}
     backend, resumed = load_backend("procedural"), load_backend("procedural")
     home = serialization.furnished_from_dict(through_json(serialization.furnished_to_dict(planned.stage))).home
     state = backend.begin(planned.home, REQUEST.character, REQUEST.seed)

@@ -15,7 +15,7 @@ from tries import tries
 from motion_backend.motion import Character, Skill
 from planner_service.llm.scripted_model import ScriptedModel
 from planner_service.llm.structured_output import ModelAnswerError
-from planner_service.narration.keyframe_phrases import Variety, mood_of, templates, touches
+from planner_service.narration.keyframe_phrases import Variety, templates, touches
 from planner_service.narration.llm_narrator import narrate_with_model
 from planner_service.narration.narrator import Told, narrate
 from planner_service.narration.openings_and_endings import title_of
@@ -299,14 +299,6 @@ def test_a_touch_is_worded_by_height_and_furniture() -> None:
     assert "under" in touches(Keyframe(skill=Skill.TOUCH, caption=low, furniture="bed"))[0]
     assert "shelf" in touches(Keyframe(skill=Skill.TOUCH, caption=high, furniture="wardrobe"))[0]
     assert "crouch" in touches(Keyframe(skill=Skill.TOUCH, caption=prone, furniture="lamp"))[0]
-
-
-@pytest.mark.parametrize(
-    ("emotion", "mood"),
-    [("neutral, calm", "neutral"), ("tired, sad", "sad"), ("happy, childish", "happy"), ("zzz", "neutral")],
-)
-def test_the_mood_of_a_keyframe_is_one_emotion(emotion: str, mood: str) -> None:
-    assert mood_of(Keyframe(skill=Skill.LOCO, caption="walk", emotion=emotion)) == mood
 
 
 @pytest.mark.parametrize(

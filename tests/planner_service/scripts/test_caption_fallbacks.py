@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from motion_backend.language.sentence_encoder import HashingEncoder
-from motion_backend.motion import Skill
+from motion_backend.motion import Emotion, Skill
 from motion_backend.procedural.caption_coverage import understands
 from planner_service.output.story_files import report_to_dict, story_to_markdown
 from planner_service.pipeline import Pipeline, StoryRequest
@@ -20,12 +20,12 @@ def nobody() -> Vocabulary:
     raise AssertionError("the known captions were asked for")
 
 
-def acted(skill: Skill, caption: str, emotion: str = "neutral") -> str:
+def acted(skill: Skill, caption: str, emotion: Emotion = Emotion.NEUTRAL) -> str:
     return performed_as(skill, caption, emotion, hashed_words)
 
 
 def test_known_captions_are_acted_as_they_are() -> None:
-    assert all(performed_as(skill, caption, "neutral", nobody) == caption for skill, caption in KNOWN)
+    assert all(performed_as(skill, caption, Emotion.NEUTRAL, nobody) == caption for skill, caption in KNOWN)
 
 
 @pytest.mark.parametrize(
@@ -41,7 +41,7 @@ def test_known_captions_are_acted_as_they_are() -> None:
 )
 def test_words_that_the_body_knows_are_its_own(skill: Skill, caption: str) -> None:
     assert understands(skill, caption)
-    assert performed_as(skill, caption, "neutral", nobody) == caption
+    assert performed_as(skill, caption, Emotion.NEUTRAL, nobody) == caption
 
 
 def test_other_words_for_a_known_caption_are_acted_as_it() -> None:

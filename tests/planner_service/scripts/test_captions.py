@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tries import tries
 
 from motion_backend.language.sentence_encoder import HashingEncoder, load_encoder
-from motion_backend.motion import Skill
+from motion_backend.motion import Emotion, Skill
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.captions import Vocabulary, agree, captions, sides, synonyms
 from planner_service.scripts.script import EMOTIONS
@@ -136,9 +136,10 @@ def test_the_usual_caption_is_known_and_keeps_the_side(caption: str) -> None:
 
 def test_the_usual_touch_keeps_its_height_and_hand() -> None:
     assert (
-        usual(Skill.TOUCH, "sad", "juggle high up with the left hand") == "An act of reaching high with the left hand"
+        usual(Skill.TOUCH, Emotion.SAD, "juggle high up with the left hand")
+        == "An act of reaching high with the left hand"
     )
-    assert usual(Skill.TOUCH, "sad", "juggle under it") == "touch low height"
+    assert usual(Skill.TOUCH, Emotion.SAD, "juggle under it") == "touch low height"
 
 
 def test_captions_are_plain_words() -> None:

@@ -14,7 +14,6 @@ from for_each import for_each
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Skill
-from planner_service.narration.keyframe_phrases import mood_of
 from planner_service.narration.narrative_voice import Voice, retell
 from planner_service.scripts.script import EMOTIONS, ShortScript
 from planner_service.scripts.script_repair import check, repair
@@ -201,7 +200,7 @@ def _in_group(category: str, word: str) -> bool:
 
 def test_a_script_shows_the_emotion_it_is_filed_under() -> None:
     for script in SCRIPTS:
-        assert script.emotion in {mood_of(keyframe) for keyframe in script.keyframes}, script.id
+        assert script.emotion in {keyframe.mood for keyframe in script.keyframes}, script.id
 
 
 def test_no_keyframe_is_repeated_at_once() -> None:

@@ -18,7 +18,7 @@ from service_app import app_on, calling, check_problem
 from tries import tries
 from typer.testing import CliRunner
 
-from motion_backend.motion import Action, Skill
+from motion_backend.motion import Action, Emotion, Skill
 from planner_service.cli import app as command_line
 from planner_service.client import requests
 from planner_service.library.library import Shelves
@@ -233,9 +233,9 @@ def test_a_caption_says_what_is_done_and_how_it_looks_and_hands_keep_what_they_t
     assert done_in("turn on the TV, watch TV; arms loosely, legs open") == ("turn on the TV", "watch TV")
     assert look_of("turn on the TV, watch TV; arms loosely, legs open") == "arms loosely, legs open"
     assert (done_in("arms loosely, legs open"), look_of("arms loosely, legs open")) == ((), "arms loosely, legs open")
-    hands, touch = Hands(), Action(Skill.TOUCH, "", "neutral", hold=1.4)
+    hands, touch = Hands(), Action(Skill.TOUCH, "", Emotion.NEUTRAL, hold=1.4)
     took = hands.follow(touch, ("pick up the red cup with the left hand",))
-    sat = hands.follow(Action(Skill.SITDOWN, "", "neutral", hold=2.5), ("drink tea", "watch TV"))
+    sat = hands.follow(Action(Skill.SITDOWN, "", Emotion.NEUTRAL, hold=2.5), ("drink tea", "watch TV"))
     laid = hands.follow(touch, ("put down the red cup with the left hand",))
     assert [action.holds for action in (took, sat, laid)] == ["red cup", "red cup", None]
     assert (took.interaction, sat.interaction) == (None, "drink tea, watch TV")

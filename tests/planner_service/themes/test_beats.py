@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from themes import THEMES, Theme
 from tries import tries
 
-from planner_service.scripts.emotions import emotion_of, feelings
+from motion_backend.emotion_words import emotion_of
+from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import EMOTIONS
 from planner_service.themes.beats import ThemeError, clause_of, clauses_of, grouped, moods_of, rooms_in
 from planner_service.themes.sentence_parser import has_verb

@@ -188,6 +188,14 @@ def test_one_bad_house_or_object_does_not_spoil_the_others() -> None:
     assert result.report.dropped["one of the objects that cannot be read"] == 3
 
 
+def test_a_room_that_is_named_twice_is_read_once_and_that_is_said() -> None:
+    house = copy.deepcopy(HOUSE)
+    house["rooms"].append(house["rooms"][0])
+    result = read(house)
+    assert len(result.layouts) == len(read(HOUSE).layouts)
+    assert result.report.dropped["a room whose id occurs before"] == 1
+
+
 def test_a_file_without_houses_is_refused_with_the_reason() -> None:
     with pytest.raises(LayoutError, match="must be a house with rooms"):
         read({"nodes": []})

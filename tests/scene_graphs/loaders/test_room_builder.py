@@ -100,3 +100,19 @@ def test_a_floor_of_crossing_slivers_is_their_hull_at_once() -> None:
     assert time.process_time() - start < 20
     assert floor is not None
     assert shapely.Polygon(floor).area == pytest.approx(100, rel=0.01)
+
+
+def test_what_is_left_out_of_a_room_is_counted_with_its_reason_and_all_else_is_kept() -> None:
+    intake = Intake()
+    room = room_of(intake)
+    room.add("bed", "double_bed", (0, 0, 0), (1.6, 0.6, 2))
+    room.door(((-3.0, -1.0), (-3.0, 0.0)), 0.0, 2.0)
+    room.door(((0.0, 0.0), (1.0, 0.0)), 0.0, 2.0)
+    room.window(((-1.0, 3.0), (1.0, 3.0)), 1.0, 2.0)
+    room.window(((-1.0, 3.0), (1.0, 3.0)), 2.0, 1.0)
+    layout = room.finish()
+    assert layout is not None
+    assert len(layout.doors) == len(layout.windows) == 1
+    assert intake.report.dropped["a door that is not in a wall of the room"] == 1
+    assert intake.report.dropped["a window that is not in a wall of the room"] == 1
+    assert (layout.windows[0].bottom, layout.windows[0].top) == (1.0, 2.0)

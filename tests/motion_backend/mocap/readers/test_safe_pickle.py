@@ -46,6 +46,12 @@ def test_arrays_come_back_with_type_and_shape(array, fortran):
     assert read["a"]["arr"].tobytes() == array.tobytes()
 
 
+@pytest.mark.parametrize("array", [np.array([1j]), np.array(["2026-01-01"], "M8[D]"), np.zeros(2, "f4,i4")])
+def test_arrays_of_other_types_are_refused_and_told(array):
+    with pytest.raises(ClipError, match=r"type|structure|whole|state"):
+        read_pickled(pickle.dumps({"poses": array}, 4))
+
+
 @pytest.mark.parametrize("number", [np.float32(0.1), np.float64(-2.5), np.int32(7), np.bool_(True), np.str_("text")])
 def test_numpys_single_numbers_come_back(number):
     read = read_pickled(pickle.dumps({"fps": number}, 4))["fps"]

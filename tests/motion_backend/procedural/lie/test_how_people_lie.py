@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import product
 
 import numpy as np
-from acted import Body, lain
+from acted import Body, got_up, lain
 
 from motion_backend.motion import FPS, Part
 from motion_backend.skeleton import LYING_REST
@@ -101,3 +101,41 @@ def test_who_lies_down_sits_on_the_edge_first_and_comes_down_gently() -> None:
         assert body.at("pelvis")[down.start, 1] < body.at("pelvis")[edge.start, 1] - 0.2, name
         speed = np.linalg.norm(np.diff(body.at("head"), axis=0), axis=1).max() * FPS
         assert 0.3 < speed < 2.5, name
+
+
+def test_the_head_rests_on_what_is_lain_on_and_looks_where_the_chest_does() -> None:
+    for name, body in lying(BACK[:2]):
+        # The back of the head touches mattress or pillow.
+        assert 0.07 < above(body, "head").min() <= above(body, "head").max() < 0.17, name
+        assert body.axis("head", (0.0, 0.0, 1.0))[-1] @ UP > 0.85, name
+    for name, body in lying(("side-lie on right",)):
+        assert 0.12 < above(body, "head").min() <= above(body, "head").max() < 0.28, name
+
+
+def test_who_gets_up_comes_over_the_edge_onto_both_feet_and_bears_on_a_hand() -> None:
+    for place, home in PLACES:
+        body = got_up(place, BACK[0], home=home)
+        end = body.phase(Part.GETUP).stop - 1
+        trunk = body.at("neck")[end] - body.at("pelvis")[end]
+        assert trunk[1] / np.linalg.norm(trunk) > 0.9, place
+        assert body.action.spot is not None
+        hands = [body.at(f"{side}_wrist")[: end + 1, 1] - body.action.spot.point[1] for side in ("left", "right")]
+        assert max(int((hand < 0.085).sum()) for hand in hands) > 4, place
+        if place != "floor":
+            feet = [body.at(f"{side}_ankle")[end] for side in ("left", "right")]
+            assert 0.13 < np.linalg.norm(feet[0] - feet[1]) < 0.21, place
+            for side, foot in zip(("left", "right"), feet, strict=True):
+                assert abs(foot[1] - body.motion.skeleton.ankle_height) < 0.01, place
+                assert 60 < body.hip(side)[end] < 125, place
+                assert 60 < body.knee(side)[end] < 115, place
+        height = body.at("head")[:, 1]
+        assert np.abs(np.diff(height)).sum() < 1.35 * (height[-1] - height[0]), place
+        assert abs(np.linalg.norm((body.at("left_ankle") - body.at("right_ankle"))[-1]) - 0.17) < 0.03, place
+        assert np.linalg.norm(np.diff(body.kinematics.positions, axis=0), axis=2).max() * FPS < 4.5, place
+
+
+def test_the_hurried_are_up_sooner_than_the_tired() -> None:
+    seconds = [got_up("bed", BACK[0], mood).phase(Part.GETUP).stop for mood in ("hurried", "neutral", "tired")]
+    assert seconds[0] < seconds[1] < seconds[2]
+    slow = [lain("bed", BACK[0], mood).phase(Part.LIEDOWN) for mood in ("hurried", "tired")]
+    assert slow[0].stop - slow[0].start < slow[1].stop - slow[1].start

@@ -17,7 +17,7 @@ from motion_backend.body.joint_limits import limits_share
 from motion_backend.body.self_collision import self_penetration
 from motion_backend.metrics.foot_skate import skate_ratio
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Action, BodyState, Character, Motion, Part, Skill
+from motion_backend.motion import Action, BodyState, Character, Emotion, Motion, Part, Skill
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.procedural.lie.lie_pose import Bed, place_to_lie
 from motion_backend.procedural.lie.lie_styles import lie_style, wanted_edge
@@ -151,7 +151,7 @@ def test_short_and_tall_bodies_lie_as_well(height: float) -> None:
 def on_the_floor(caption: str) -> tuple[Action, Motion, BodyState]:
     """Lying down on the floor."""
     backend = ProceduralBackend()
-    action = Action(Skill.LIEDOWN, caption, "neutral", "floor", "floor", floor_spot("lie", (3.2, 2.6), 0.7))
+    action = Action(Skill.LIEDOWN, caption, Emotion.NEUTRAL, "floor", "floor", floor_spot("lie", (3.2, 2.6), 0.7))
     return action, *backend.advance(HOME, action, backend.begin(HOME, Character(), 2))
 
 
@@ -214,4 +214,4 @@ def test_who_puts_a_foot_down_lies_by_the_edge(turned: float) -> None:
 def test_captions_say_which_edge_is_wanted() -> None:
     assert wanted_edge("side-lie on right") == "right"
     assert wanted_edge("lying still") is None
-    assert lie_style("neutral", "curled up on the left side, knees drawn up").legs == "tucked"
+    assert lie_style(Emotion.NEUTRAL, "curled up on the left side, knees drawn up").legs == "tucked"

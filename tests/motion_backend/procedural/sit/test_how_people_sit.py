@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from acted import HOMES, Body, risen_from, sat
 
+from motion_backend.body.self_collision import self_penetration
 from motion_backend.motion import FPS, Part
 from motion_backend.skeleton import SEATED_REST
 
@@ -176,3 +177,38 @@ def test_a_held_pose_breathes_and_no_more() -> None:
     for seat, home in SEATS:
         held = sat(seat, UPRIGHT[0], home=home).kinematics.positions[-FPS:]
         assert 1e-5 < np.ptp(held, axis=0).max() < 0.04
+
+
+def test_on_the_floor_knees_are_drawn_up_and_who_does_something_sits_tailorwise() -> None:
+    drawn_up = ("hands on thighs", "arms crossed", "playing music")
+    tailorwise = ("eating", "reading a book", "cross-legged, hands on knees")
+    for caption in (*drawn_up, *tailorwise):
+        crossed = caption in tailorwise
+        body = sat("floor", caption)
+        left = np.array([body.facing[2], 0.0, -body.facing[0]])
+        apart = (body.at("left_ankle") - body.at("right_ankle"))[-1] @ left
+        assert (apart < 0) == crossed, caption
+        assert (body.at("left_knee")[-1, 1] > 0.33) == (not crossed), caption
+        assert 80 < body.knee("left")[-1] < 150, caption
+        assert 0.05 < body.at("pelvis")[-1, 1] < 0.12, caption
+
+
+def test_hands_on_thighs_lie_on_them_half_way_with_bent_elbows() -> None:
+    for seat, home in SEATS[:3]:
+        body = sat(seat, "hands on thighs", home=home)
+        for side in SIDES:
+            hip, knee, wrist = (body.at(f"{side}_{joint}")[-1] for joint in ("hip", "knee", "wrist"))
+            share = (wrist - hip) @ (knee - hip) / ((knee - hip) @ (knee - hip))
+            assert 0.3 < share < 0.95
+            # A thigh is some 7 cm thick about its bone, and a wrist is held a little off what the hand lies on.
+            assert 0.08 < np.linalg.norm(wrist - hip - share * (knee - hip)) < 0.13
+            assert 40 < body.elbow(side)[-1] < 85
+            assert wrist[1] > hip[1]
+
+
+def test_hands_never_go_through_thighs_trunk_or_head() -> None:
+    for _, body in [*sittings((*UPRIGHT, *BENT)), *risings()]:
+        kinematics = body.kinematics
+        deep = self_penetration(body.motion.skeleton, kinematics.positions, kinematics.world)
+        assert deep.max() < 0.05, body.action
+        assert (deep > 0.02).mean() < 0.25, body.action

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from motion_backend.body.scene_collision import Obstacles
-from motion_backend.motion import Action, Character, Skill
+from motion_backend.motion import Action, Character, Emotion, Skill
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.procedural.sit.sit_skill import MIN_EDGE, seat_for
 from scene_graphs.affordances.affordances import spots
@@ -35,7 +35,7 @@ def noted(home: Home, piece: str, caption: str) -> list[str]:
     """What sitting there says it did otherwise."""
     found = spots(home.object(f"0/{piece}"), "sit")
     spot = seat_for(found, "neutral", caption, Obstacles.of_home(home))
-    action = Action(Skill.SITDOWN, caption, "neutral", piece, f"0/{piece}", spot)
+    action = Action(Skill.SITDOWN, caption, Emotion.NEUTRAL, piece, f"0/{piece}", spot)
     motion, _ = BACKEND.advance(home, action, BACKEND.begin(home, Character(), 1))
     assert motion.completed, motion.reason
     return [note.words for note in motion.notes]

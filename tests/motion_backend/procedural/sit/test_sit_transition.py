@@ -17,10 +17,10 @@ from motion_backend.body.joint_limits import CLEARLY, beyond_limits
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.body.self_collision import self_penetration
 from motion_backend.metrics import story_metrics
-from motion_backend.motion import Action, Character, Motion, Skill
+from motion_backend.motion import Action, Character, Emotion, Motion, Skill
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.procedural.collision_avoidance.body_collision import hands_round_body
-from motion_backend.procedural.emotion_style import ARMS, Bearing
+from motion_backend.procedural.emotion_style import Bearing, arm_poses
 from motion_backend.procedural.held_poses import Seat, standing
 from motion_backend.procedural.pose import Pose, interpolate
 from motion_backend.procedural.pose_solver import hips_within, solve
@@ -54,7 +54,9 @@ AT_TABLE, WITH_ARMS = studio(CHAIR, TABLE), studio(ARMCHAIR)
 
 
 @cache
-def seated(caption: str, name: str = "chair", home: Home = HOME, emotion: str = "neutral") -> tuple[Motion, np.ndarray]:
+def seated(
+    caption: str, name: str = "chair", home: Home = HOME, emotion: Emotion = Emotion.NEUTRAL
+) -> tuple[Motion, np.ndarray]:
     """Sitting down on a thing ("floor" too) and holding it: the motion and its joints (T, 22, 3)."""
     if name == "floor":
         action = Action(Skill.SITDOWN, caption, emotion, "floor", "floor", floor_spot("sit", (3.0, 3.0), 0.0))
@@ -75,8 +77,8 @@ def held(caption: str, name: str = "chair", home: Home = HOME) -> dict[str, np.n
 
 def test_every_caption_names_hands_and_legs_that_there_are() -> None:
     for caption in captions()["sitdown"]:
-        style = sit_style("neutral", caption)
-        assert all(arm in ARMS or arm in HOLDS or arm in SURFACES for arm in style.arms), caption
+        style = sit_style(Emotion.NEUTRAL, caption)
+        assert all(arm in arm_poses() or arm in HOLDS or arm in SURFACES for arm in style.arms), caption
         assert style.legs in WAYS, caption
 
 
@@ -167,7 +169,7 @@ HEIGHTS = st.floats(0.38, 0.62)
 def test_no_way_of_sitting_bends_a_joint_beyond_its_range(caption: str, height: float, ahead: float) -> None:
     seat = Seat(np.array([0.0, height + 0.09, 0.0]), 0.0, 0.2, 0.33)
     place = Place(seat, Handholds(), (Room(ahead, 0.4), Room(ahead, 0.4)))
-    stood, style = standing((0.0, 0.42), 0.0, Bearing(), SKELETON), sit_style("neutral", caption)
+    stood, style = standing((0.0, 0.42), 0.0, Bearing(), SKELETON), sit_style(Emotion.NEUTRAL, caption)
     pose, _ = settled(stood, place, style, SKELETON, sit_keys().pose)
     _, local = solve(hips_within(pose.repeat(1), SKELETON), SKELETON)
     assert beyond_limits(local).max() < CLEARLY
@@ -176,7 +178,9 @@ def test_no_way_of_sitting_bends_a_joint_beyond_its_range(caption: str, height: 
 @pytest.mark.parametrize(("caption", "name"), [("stand up", "floor"), ("stand up slowly", "chair")])
 def test_who_rises_passes_hands_round_the_thighs_and_stays_within_limits(caption: str, name: str) -> None:
     if name == "floor":
-        action = Action(Skill.SITDOWN, "sitting still", "neutral", "floor", "floor", floor_spot("sit", (3.0, 3.0), 0.0))
+        action = Action(
+            Skill.SITDOWN, "sitting still", Emotion.NEUTRAL, "floor", "floor", floor_spot("sit", (3.0, 3.0), 0.0)
+        )
     else:
         action = contact(HOME, Skill.SITDOWN, name, "sitting still")
     backend = ProceduralBackend()

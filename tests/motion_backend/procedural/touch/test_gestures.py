@@ -11,9 +11,9 @@ from small_home import contact, small_home, to
 
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.metrics import story_metrics
-from motion_backend.motion import Action, Character, Motion, Skill
+from motion_backend.motion import Action, Character, Emotion, Motion, Skill
 from motion_backend.procedural.backend import ProceduralBackend
-from motion_backend.procedural.emotion_style import ARMS, Bearing, feeling
+from motion_backend.procedural.emotion_style import Bearing, arm_poses
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.sit.sit_pose import SURFACES
@@ -72,9 +72,9 @@ def seated(caption: str) -> tuple[Motion, np.ndarray]:
 
 @pytest.mark.parametrize("caption", SITTING)
 def test_a_caption_of_sitting_is_shown_by_the_hands(caption: str) -> None:
-    style = sit_style("neutral", caption)
+    style = sit_style(Emotion.NEUTRAL, caption)
     assert style.doing == SITTING[caption]
-    assert all(arm in ARMS or arm in HOLDS or arm in SURFACES for arm in style.arms)
+    assert all(arm in arm_poses() or arm in HOLDS or arm in SURFACES for arm in style.arms)
     motion, joints = seated(caption)
     figures = story_metrics.judge(
         motion, replace(contact(HOME, Skill.SITDOWN, "chair", caption), keyframe=1), OBSTACLES
@@ -113,12 +113,12 @@ def test_who_lies_still_hardly_moves_and_who_reads_holds_a_book_up() -> None:
     assert np.abs(np.diff(still[-50:], axis=0)).max() < 0.004
     _, reads = performed(contact(HOME, Skill.LIEDOWN, "bed", "reading on the back, book held above the chest"))
     assert (reads[-10, [LEFT, RIGHT], 1] > reads[-10, INDEX["spine3"], 1] + 0.25).all()
-    assert lie_style("neutral", "hands on belly").arms == ("belly", "belly")
+    assert lie_style(Emotion.NEUTRAL, "hands on belly").arms == ("belly", "belly")
 
 
 @pytest.mark.parametrize(("caption", "up"), [("stand still", False), ("wave with the right hand", True)])
 def test_a_body_without_a_goal_stays_where_it_is(caption: str, up: bool) -> None:
-    motion, joints = performed(Action(Skill.LOCO, caption, "neutral", hold=2.0))
+    motion, joints = performed(Action(Skill.LOCO, caption, Emotion.NEUTRAL, hold=2.0))
     assert motion.completed
     assert motion.contacts.min() == 1
     assert np.linalg.norm(joints[:, 0] - joints[0, 0], axis=1).max() < 0.05
@@ -202,13 +202,8 @@ def test_a_gesture_begins_and_ends_in_the_held_pose(doing: str) -> None:
     np.testing.assert_allclose(made.arms[0], pose.arms[0], atol=0.02)
 
 
-@pytest.mark.parametrize("caption", [*SITTING, *TOUCHING, "stand still", "wave with the right hand", "lying still"])
-def test_what_is_done_is_no_mood(caption: str) -> None:
-    assert feeling("neutral", caption) == "neutral"
-
-
 def test_words_about_hands_are_read() -> None:
     assert with_both_hands("wash with both hands")
     assert not with_both_hands("wash with the right hand")
-    assert walk_style("neutral", "wave with the left hand").bearing.arms == ("wave", "hang")
-    assert walk_style("neutral", "walk").doing == ""
+    assert walk_style(Emotion.NEUTRAL, "wave with the left hand").bearing.arms == ("wave", "hang")
+    assert walk_style(Emotion.NEUTRAL, "walk").doing == ""

@@ -10,7 +10,7 @@ import pytest
 from small_home import ROOM
 
 from motion_backend.body.joint_limits import limits_share
-from motion_backend.motion import Action, Character, Motion, Skill
+from motion_backend.motion import Action, Character, Emotion, Motion, Skill
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.skeleton import INDEX
 from scene_graphs.affordances.affordances import spots
@@ -28,9 +28,9 @@ def act(caption: str, name: str, height: str, hand: str = "right", body: float =
     spot = next(s for s in spots(HOME.object(f"0/{name}"), "touch") if s.height == height)
     backend = ProceduralBackend()
     state = backend.begin(HOME, Character(height=body), 4)
-    walk = Action(Skill.LOCO, "smoothly forward walk", "neutral", goal=spot.standing, facing=spot.facing)
+    walk = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=spot.standing, facing=spot.facing)
     state = backend.advance(HOME, walk, state)[1]
-    action = Action(Skill.TOUCH, caption, "neutral", name, f"0/{name}", spot, hand=hand)
+    action = Action(Skill.TOUCH, caption, Emotion.NEUTRAL, name, f"0/{name}", spot, hand=hand)
     return backend.advance(HOME, action, state)[0]
 
 

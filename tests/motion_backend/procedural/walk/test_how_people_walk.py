@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from acted import Body, walked
 
-from motion_backend.motion import FPS
-from motion_backend.procedural.emotion_style import BEARINGS
+from motion_backend.metrics.gait_features import UNITS, gait_features, windows
+from motion_backend.motion import FPS, Emotion
 
 PLAIN = (
     "steadily walking forward",
@@ -26,7 +26,7 @@ HIGH = ("marching with swinging arms", "stomping heavily")
 WALKS = [
     *product((*PLAIN, *HIGH), ("neutral",), ("small",), (3,)),
     *product((*PLAIN[:1], *PLAIN[4:6]), ("neutral",), ("hall",), (6,)),
-    *product(("steadily walking forward",), sorted(set(BEARINGS) - {"drunk"}), ("small",), (4,)),
+    *product(("steadily walking forward",), sorted(set(Emotion) - {Emotion.DRUNK}), ("small",), (4,)),
 ]
 """Drunks sway too much for any of it."""
 SIDES = ("left", "right")
@@ -181,7 +181,7 @@ def head_height(body: Body) -> float:
 
 
 def test_moods_are_seen_in_pace_and_bearing() -> None:
-    mood = {emotion: walked("steadily walking forward", emotion, seed=4) for emotion in BEARINGS}
+    mood = {emotion: walked("steadily walking forward", emotion, seed=4) for emotion in Emotion}
     speed = {emotion: pace(body) for emotion, body in mood.items()}
     head = {emotion: head_height(body) for emotion, body in mood.items()}
     lean = {emotion: float(body.lean(body.way)[body.middle].mean()) for emotion, body in mood.items()}
@@ -191,7 +191,7 @@ def test_moods_are_seen_in_pace_and_bearing() -> None:
     assert speed["happy"] > 1.15 * speed["sad"]
     assert head["happy"] > head["neutral"] > max(head["sad"], head["tired"]) + 0.005
     assert lean["happy"] < lean["neutral"] < min(lean["sad"], lean["tired"], lean["angry"], lean["hurried"])
-    assert -10 < lean["happy"]
+    assert lean["happy"] > -10
     assert max(lean.values()) < 30
 
 
@@ -216,3 +216,80 @@ def test_longer_legs_make_longer_steps(height: float) -> None:
     steps = [np.ptp(body.before("left_ankle", "right_ankle")) for body in (plain, other)]
     assert (steps[1] > steps[0]) == (height > 1.7)
     assert 0.85 < (steps[1] / steps[0]) / (height / 1.7) < 1.15
+
+
+PEOPLE = {
+    "speed": (1.05, 1.4), "stride_length": (1.2, 1.5), "stride_rate": (0.8, 1.0), "step_width": (0.07, 0.125),
+    "pelvis_bob": (0.02, 0.04), "lateral_sway": (0.04, 0.075), "trunk_pitch": (0.03, 0.11), "trunk_sway": (0.02, 0.09),
+    "arm_swing_left": (0.5, 0.85), "arm_swing_right": (0.5, 0.85), "knee_range": (0.95, 1.2),
+    "toe_clearance": (0.03, 0.075), "duty_factor": (0.55, 0.66), "double_support": (0.1, 0.26), "log_jerk": (4.0, 5.3),
+    "pelvis_yaw": (0.11, 0.22),
+}  # fmt: skip
+"""Between what most adults of 1.70 m do who walk as they like to (metres, seconds, radians)."""
+
+
+def test_a_neutral_walk_has_the_measures_of_people() -> None:
+    for seed in (3, 6):
+        body = walked("steadily walking forward", home="hall", seed=seed)
+        positions = body.kinematics.positions
+        told = [gait_features(positions[start:stop], FPS) for start, stop in windows(positions, FPS)]
+        measures = np.mean([one for one in told if one is not None], axis=0)
+        outside = {
+            name: value
+            for name, value in zip(UNITS, measures, strict=True)
+            if not PEOPLE[name][0] < value < PEOPLE[name][1]
+        }
+        assert outside == {}
+
+
+def test_thighs_elbows_and_shoulders_turn_as_far_as_those_of_people() -> None:
+    body = walked("steadily walking forward", home="hall")
+    for side in SIDES:
+        ahead = body.before(f"{side}_knee", f"{side}_hip")
+        down = (body.at(f"{side}_hip") - body.at(f"{side}_knee"))[body.middle, 1]
+        thigh = np.degrees(np.arctan2(ahead, down))
+        assert 28 < thigh.max() < 42
+        assert -28 < thigh.min() < -15
+        elbow = body.elbow(side)[body.middle]
+        assert 12 < elbow.min() < 28
+        assert 32 < elbow.max() < 48
+        # An arm is bent most where it is farthest forward.
+        assert together(elbow, body.before(f"{side}_wrist", f"{side}_shoulder")) > 0.7
+        assert 0.19 < body.at(f"{side}_ankle")[body.middle, 1].max() < 0.28
+        hand = (body.at(f"{side}_wrist") - body.at("pelvis"))[body.middle] @ np.array([body.way[2], 0.0, -body.way[0]])
+        assert 0.2 < np.abs(hand).mean() < 0.36
+    chest = np.degrees(np.ptp(body.before("left_shoulder", "right_shoulder")) / 0.36)
+    assert 3 < chest < 10
+
+
+def test_how_far_one_goes_in_a_step_and_how_quickly_grow_together() -> None:
+    paces = [walked(caption, home="hall") for caption in ("walk with depression", PLAIN[0], "walking quickly")]
+    speed, rate, swing = [], [], []
+    for body in paces:
+        positions = body.kinematics.positions
+        told = [gait_features(positions[start:stop], FPS) for start, stop in windows(positions, FPS)]
+        mean = dict(zip(UNITS, np.mean([one for one in told if one is not None], axis=0), strict=True))
+        speed.append(mean["stride_length"])
+        rate.append(mean["stride_rate"])
+        swing.append(mean["arm_swing_left"])
+    for grows in (speed, rate, swing):
+        assert grows[0] < grows[1] < grows[2]
+    assert 1.4 < speed[2] < 1.8
+    assert 0.95 < rate[2] < 1.2
+    assert 0.6 < speed[0] < 1.0
+
+
+def test_a_walk_starts_and_ends_standing_and_neither_lunges_nor_stops_dead() -> None:
+    for caption in (*PLAIN[:2], *HIGH, PLAIN[5]):
+        body = walked(caption)
+        ground = np.linalg.norm(np.diff(body.at("pelvis")[:, [0, 2]], axis=0), axis=1) * FPS
+        assert ground[:2].max() < 0.35
+        assert ground[-4:].max() < 0.15
+        change = np.abs(np.diff(np.convolve(ground, np.ones(8) / 8, "valid"))).max() * FPS
+        assert change < 5.0, caption
+        for side, sign in (("left", 1), ("right", -1)):
+            foot = body.at(f"{side}_ankle")[-1] - body.at("pelvis")[-1]
+            facing = body.axis("pelvis", (1.0, 0.0, 0.0))[-1]
+            assert 0.05 < sign * (foot @ facing) < 0.13
+        assert 0.96 < body.at("pelvis")[-1, 1] / body.motion.skeleton.standing_height <= 1.0
+        assert np.linalg.norm(body.at("pelvis")[-1, [0, 2]] - np.array(body.action.goal)) < 0.06

@@ -24,8 +24,8 @@ from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.smoothness import jerk_against_real
 from motion_backend.mocap.readers import read_clips
 from motion_backend.mocap.retarget import retarget
-from motion_backend.motion import FPS, Motion
-from motion_backend.procedural.emotion_style import BEARINGS, Bearing
+from motion_backend.motion import FPS, Emotion, Motion
+from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose_solver import solve
 from motion_backend.procedural.walk.foot_trajectory import HEEL_RISE, SETTLE, Swing
@@ -49,7 +49,7 @@ WALKABLE = Walkable(small_home())
 @cache
 def walked(
     caption: str,
-    emotion: str = "neutral",
+    emotion: Emotion = Emotion.NEUTRAL,
     seed: int = 0,
     end_yaw: float | None = None,
     goal: tuple[float, float] = (0.0, FAR),
@@ -180,7 +180,7 @@ def test_captions_are_told_apart() -> None:
 
 
 def test_moods_are_told_apart() -> None:
-    assert share_told_apart([("steadily walking forward", mood) for mood in BEARINGS]) == 1.0
+    assert share_told_apart([("steadily walking forward", mood) for mood in Emotion]) == 1.0
 
 
 def test_two_walks_are_not_the_same() -> None:
@@ -243,7 +243,7 @@ def test_who_sidesteps_faces_across_the_way() -> None:
 
 def test_who_walks_backwards_looks_where_it_came_from() -> None:
     start = standing((0.0, 0.0), 0.0, Bearing(), SKELETON)
-    path, style = np.array([[0.0, 0.0], [0.0, -2.5]]), walk_style("neutral", "walking backwards")
+    path, style = np.array([[0.0, 0.0], [0.0, -2.5]]), walk_style(Emotion.NEUTRAL, "walking backwards")
     pose = walk(start, path, 0.0, style, SKELETON, np.random.default_rng(0))
     assert np.abs(yaw_of(pose.hips)).max() < 0.3
     assert pose.pelvis[-1, 2] == pytest.approx(-2.5, abs=0.05)

@@ -21,6 +21,7 @@ from planner_service.api.layouts.schemas import EXAMPLE, HomeMatch, LayoutMatche
 from planner_service.api.layouts.views import problem_of
 from planner_service.grounding.room_report import MAX_CELLS, survey
 from scene_graphs.affordances.room_validation import RoomCheck
+from scene_graphs.errors import FieldPath
 from scene_graphs.generation.room_generator import generate_room
 from scene_graphs.graph.furniture_graph import graph_from_layout, graph_from_uses
 from scene_graphs.home import home_from_dict, home_from_layouts, home_to_dict
