@@ -40,13 +40,13 @@ def script(**changed: object) -> dict[str, object]:
     return row | {"room": "living_room", "keyframes": [keyframe()]} | changed
 
 
-def room(**changed: object) -> dict[str, object]:
+def room(**changed: object) -> dict[str, Any]:
     return layout_to_dict(generate_room("living_room", 3)) | {"id": "my-room"} | changed
 
 
 def with_sizes(size: list[object]) -> dict[str, object]:
     row = room()
-    objects = [dict(placed) for placed in row["objects"]]  # type: ignore[attr-defined]
+    objects = [dict(placed) for placed in row["objects"]]
     objects[0]["size"] = size
     return row | {"objects": objects}
 

@@ -195,8 +195,8 @@ def test_the_error_is_the_smallest_of_the_last_second_of_the_contact_and_the_tim
     root = np.zeros((100, 3))
     root[:, 1] = gaps
     motion = standing_still(root=root)
-    pelvis = tuple(float(value) for value in standing_still(1).root_positions[0])
-    body = Kinematics.of(replace(motion, goals=(ContactGoal("pelvis", pelvis),)))  # type: ignore[arg-type]
+    x, y, z = standing_still(1).root_positions[0].tolist()
+    body = Kinematics.of(replace(motion, goals=(ContactGoal("pelvis", (x, y, z)),)))
     found = contact_error.outcome(Action(Skill.SITDOWN, "", "neutral"), body)
     assert found.error == pytest.approx(0.05, abs=1e-5)
     assert found.seconds == pytest.approx(20 / FPS)

@@ -198,7 +198,9 @@ def test_diversity_is_nought_for_equal_samples_and_grows_with_their_distance() -
     apart = pairwise_distances(np.stack([still, still + np.array([0.0, 0.3, 0.4], dtype=np.float32)]).astype(float))
     assert apart == pytest.approx((0.5 * np.sqrt(60 * 22), 0.5))
     assert diversity([still]) is None
-    assert diversity([still, still])["apd_pos"] == 0.0
+    alike = diversity([still, still])
+    assert alike is not None
+    assert alike["apd_pos"] == 0.0
 
 
 def test_the_command_prints_figures_and_writes_every_trial(tmp_path: Path) -> None:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from importlib import resources
+from typing import Any
 
 import pytest
 from for_each import for_each
@@ -283,7 +284,8 @@ def test_every_caption_has_its_own_words_and_every_phrase_starts_with_a_verb() -
         assert {caption for of, caption in captions if of == skill} == set(table)
     walks = [*known.walks.values(), *known.walks_in_mood.values()]
     phrases = [t for walk in walks for t in (*walk.to, *walk.about)]
-    for by_word in (known.sits_in_mood, known.lies_in_mood, known.rises, known.touches, *known.touches_at.values()):
+    worded: list[Mapping[Any, tuple[str, ...]]] = [known.sits_in_mood, known.lies_in_mood, known.rises, known.touches]
+    for by_word in (*worded, *known.touches_at.values()):
         phrases += [t for ways in by_word.values() for t in ways]
     verbs = {verb for t in phrases for verb in re.findall(r"(?:^|~)(\w+)", t)}
     assert verbs - _BASES == set()

@@ -307,9 +307,10 @@ def test_a_model_that_gives_nothing_usable_leaves_it_to_the_rules_unless_they_ma
     plan = plan_task("watch TV", None, ScriptedModel(answers))
     assert plan.planner == "rules"
     assert plan.notes[0].startswith("planned by rules: scripted gave no usable TaskSteps in 3 attempts")
-    for options in ({"insist": True}, {"method": "model"}):
+    insisting: tuple[dict[str, Any], ...] = ({"insist": True}, {"method": "model"})
+    for options in insisting:
         with pytest.raises(ModelAnswerError, match="steps: 25 of them, wanted 1 to 24"):
-            plan_task("watch TV", None, ScriptedModel(answers), **options)  # type: ignore[arg-type]
+            plan_task("watch TV", None, ScriptedModel(answers), **options)
     with pytest.raises(TaskError, match="method: there is no language model; set SIMS_LLM_MODEL"):
         plan_task("watch TV", method="model")
     asked = ScriptedModel([])

@@ -15,7 +15,8 @@ from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scene_graphs.json_fields import FieldPath, LayoutError
+from scene_graphs.errors import FieldPath
+from scene_graphs.json_fields import LayoutError
 from scene_graphs.loaders import Source
 from scene_graphs.loaders import scene_source as bounds
 from scene_graphs.loaders.scene_source import parse_json

@@ -43,13 +43,13 @@ def artifacts(count: int, segments: int, told: bool = True) -> list[Artifact]:
     return found
 
 
-def record(made: list[Artifact], status: str, **more: object) -> Record:
+def record(made: list[Artifact], status: str, **more: Any) -> Record:
     base = Record(
         id=new_id(1_700_000_000_000), kind="story", created=1_700_000_000_000, theme="t", title=None, seed=0,
         backend="procedural", stage="plan", progress=0.1, error=None, status=status, attempts=1, method="matching",
         character={"name": "Sam", "pronouns": "they", "height": 1.7}, artifacts=tuple(made),
     )  # fmt: skip
-    return replace(base, **more)  # type: ignore[arg-type]
+    return replace(base, **more)
 
 
 @st.composite
