@@ -73,6 +73,11 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningService
 sys.addaudithook(layers.refuse)
 
 
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """What a file of another layer needs is not even loaded."""
+    return layers.is_left_out(collection_path, config.option.markexpr) or None
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
     """Whose fault it is if something is started now."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from pathlib import Path
 
 import pytest
 
@@ -41,6 +42,12 @@ def refuse(event: str, arguments: tuple[object, ...]) -> None:
         program = os.fsdecode(arguments[0]) if arguments and isinstance(arguments[0], str | bytes) else "a process"
         if program not in ASKED_BY_LIBRARIES:
             check_layer(program)
+
+
+def is_left_out(path: Path, chosen: str) -> bool:
+    """Whether a file is marked as a whole, and what is chosen leaves such tests out."""
+    wholly = f"\npytestmark = pytest.mark.{SERVICE}\n"
+    return f"not {SERVICE}" in chosen and path.suffix == ".py" and wholly in path.read_text(encoding="utf-8")
 
 
 def unmarked(items: Iterable[pytest.Item]) -> list[str]:

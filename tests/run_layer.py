@@ -26,10 +26,13 @@ class Layer:
     """Seconds that all its processes together may compute."""
     workers: int
     """Processes that share the tests."""
+    more: tuple[str, ...] = ()
+    """What else pytest is told."""
 
 
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-FAST = Layer("not service and not sweep", 240, 250, min(CORES, 4))
+# Its plugin takes longer to load than many tests, and only those of the service want it.
+FAST = Layer("not service and not sweep", 240, 250, min(CORES, 4), ("-p", "no:schemathesis"))
 # Tests of a whole service mostly wait for it: three files at a time on two cores.
 REST = Layer("service or sweep", 480, None, min(CORES, 4) + 1)
 LAYERS = {"test": (FAST,), "test-service": (REST,), "test-all": (FAST, REST)}
@@ -46,7 +49,15 @@ def computed() -> float:
 def run(layer: Layer, more: list[str], environment: dict[str, str]) -> tuple[int, float, float]:
     """Pytest's exit code, and the wall and CPU seconds it took."""
     command = [sys.executable, "-m", "pytest", "-m", layer.chosen]
-    command += ["--numprocesses", str(layer.workers), "--dist", "loadfile", "--no-loadscope-reorder", *more]
+    command += [
+        "--numprocesses",
+        str(layer.workers),
+        "--dist",
+        "loadfile",
+        "--no-loadscope-reorder",
+        *layer.more,
+        *more,
+    ]
     began, before = time.monotonic(), computed()
     code = subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
     return code, time.monotonic() - began, computed() - before

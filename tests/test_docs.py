@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +31,7 @@ def code_of(page: Path) -> str:
     return "\n".join(re.findall(r"```.*?```|`[^`\n]+`", text_of(page), re.DOTALL))
 
 
+@cache
 def commands() -> dict[str, list[str]]:
     """Words after `sims` of every command there is, and its options."""
     found = {}

@@ -17,6 +17,7 @@ from threading import Event, Thread
 
 import pytest
 
+pytestmark = pytest.mark.service
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 import install  # noqa: E402

@@ -13,7 +13,6 @@ from planner_service.extraction.audio import SoundPiece, sound_of
 from planner_service.extraction.shot_detection import Progress
 from planner_service.extraction.subtitles import MAX_CUES, Cue, Subtitles, ordered
 from planner_service.extraction.transcription_result import SpeechError, heard
-from planner_service.extraction.transcription_server import served_transcriber
 from planner_service.extraction.video import Film
 from planner_service.settings import Settings, SettingsError
 
@@ -90,4 +89,6 @@ def load_transcriber(settings: Settings) -> Transcriber | None:
         return LocalTranscriber(settings.asr_folder)
     if not settings.asr_model and not settings.asr_base_url:
         return None
+    from planner_service.extraction.transcription_server import served_transcriber
+
     return served_transcriber(settings)

@@ -25,6 +25,8 @@ from test_service_inputs import (  # noqa: F401 - they are tests here as well, o
     test_what_never_changes_need_not_be_sent_twice,
 )
 
+pytestmark = pytest.mark.service
+
 
 @pytest.fixture(scope="module")
 def environment(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:

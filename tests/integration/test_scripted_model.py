@@ -23,18 +23,18 @@ def answer_well(prompt: str, _schema: type[BaseModel]) -> Answer:
     return answer_to(prompt)
 
 
-def plan(model: ScriptedModel, cache: Path, **asked: Any) -> Planned:
-    return Pipeline(Shelves(cache=cache), model=model).plan(StoryRequest(THEME, **asked))
+def plan(model: ScriptedModel, shelves: Shelves, **asked: Any) -> Planned:
+    return Pipeline(shelves, model=model).plan(StoryRequest(THEME, **asked))
 
 
 @pytest.fixture(scope="module")
-def cache() -> Path:
-    return encoded()
+def shelves() -> Shelves:
+    return Shelves(cache=encoded())
 
 
-def test_a_model_finds_the_events_arranges_the_scripts_and_tells_the_story(cache: Path) -> None:
+def test_a_model_finds_the_events_arranges_the_scripts_and_tells_the_story(shelves: Shelves) -> None:
     model = ScriptedModel(answer_well, name="scripted-a")
-    planned = plan(model, cache)
+    planned = plan(model, shelves)
     script = planned.script
     assert [call.schema for call in model.calls] == ["PlannedEvents", "Arrangement", "_ModelStory"]
     assert tuple(event.text for event in script.events) == EVENTS
@@ -45,16 +45,16 @@ def test_a_model_finds_the_events_arranges_the_scripts_and_tells_the_story(cache
     assert (planned.told.title, planned.told.text) == ("A Letter of Glass", f"{TEXT} {told_in(model.calls[2].prompt)}")
 
 
-def test_a_model_changes_what_is_played(cache: Path) -> None:
-    by_model = plan(ScriptedModel(answer_well), cache)
-    by_rules = Pipeline(Shelves(cache=cache)).plan(StoryRequest(THEME))
+def test_a_model_changes_what_is_played(shelves: Shelves) -> None:
+    by_model = plan(ScriptedModel(answer_well), shelves)
+    by_rules = Pipeline(shelves).plan(StoryRequest(THEME))
     assert by_rules.script.planner == "rules"
     assert [r.script.id for r in by_model.script.short_scripts] != [r.script.id for r in by_rules.script.short_scripts]
 
 
-def test_the_theme_and_the_character_reach_the_model(cache: Path) -> None:
+def test_the_theme_and_the_character_reach_the_model(shelves: Shelves) -> None:
     model = ScriptedModel(answer_well)
-    plan(model, cache, character=Character("Noor", "she"))
+    plan(model, shelves, character=Character("Noor", "she"))
     assert all(THEME in call.prompt for call in model.calls)
     assert "Noor" in model.calls[-1].prompt
 
@@ -70,9 +70,9 @@ def test_the_theme_and_the_character_reach_the_model(cache: Path) -> None:
         "{" * 99,
     ],
 )
-def test_a_model_that_talks_nonsense_is_done_without_and_this_is_said(nonsense: str, cache: Path) -> None:
-    planned = plan(ScriptedModel(lambda _prompt, _schema: nonsense), cache)
-    by_rules = Pipeline(Shelves(cache=cache)).plan(StoryRequest(THEME))
+def test_a_model_that_talks_nonsense_is_done_without_and_this_is_said(nonsense: str, shelves: Shelves) -> None:
+    planned = plan(ScriptedModel(lambda _prompt, _schema: nonsense), shelves)
+    by_rules = Pipeline(shelves).plan(StoryRequest(THEME))
     assert planned.script.planner == "rules"
     assert planned.script.keyframes == by_rules.script.keyframes
     assert planned.told == by_rules.told
@@ -81,17 +81,17 @@ def test_a_model_that_talks_nonsense_is_done_without_and_this_is_said(nonsense: 
         assert stage in said
 
 
-def test_a_lost_connection_costs_only_the_stage_it_happened_in(cache: Path) -> None:
+def test_a_lost_connection_costs_only_the_stage_it_happened_in(shelves: Shelves) -> None:
     def answer(prompt: str, schema: type[BaseModel]) -> Answer:
         return ModelError("no connection") if schema.__name__ == "Arrangement" else answer_well(prompt, schema)
 
-    planned = plan(ScriptedModel(answer, name="half"), cache)
+    planned = plan(ScriptedModel(answer, name="half"), shelves)
     assert planned.script.planner == "llm:half, rules"
     assert any("arranged by rules: no connection" in note for note in planned.script.repairs)
     assert planned.told.title == "A Letter of Glass"
 
 
-def test_a_model_may_write_the_keyframes_itself(cache: Path) -> None:
+def test_a_model_may_write_the_keyframes_itself(shelves: Shelves) -> None:
     keyframes = [
         {"skill": "walk", "emotion": "sad", "caption": "walk slowly", "furniture": "bed"},
         {"skill": "liedown", "emotion": "sad", "caption": "lie on the back", "furniture": "bed"},
@@ -100,21 +100,21 @@ def test_a_model_may_write_the_keyframes_itself(cache: Path) -> None:
     def answer(prompt: str, schema: type[BaseModel]) -> Answer:
         return {"keyframes": keyframes} if schema.__name__ == "DirectScript" else answer_well(prompt, schema)
 
-    planned = plan(ScriptedModel(answer, name="writer"), cache, method="direct")
+    planned = plan(ScriptedModel(answer, name="writer"), shelves, method="direct")
     assert planned.script.method == "direct"
     assert planned.script.planner == "llm:writer"
     assert [keyframe.skill.value for keyframe in planned.script.keyframes] == ["loco", "liedown"]
     assert {keyframe.room for keyframe in planned.script.keyframes} == {"bedroom"}
 
 
-def test_the_told_story_of_a_model_is_acted_out_and_says_who_told_it(cache: Path) -> None:
-    pipeline = Pipeline(Shelves(cache=cache), model=ScriptedModel(answer_well, name="scripted-a"))
+def test_the_told_story_of_a_model_is_acted_out_and_says_who_told_it(shelves: Shelves) -> None:
+    pipeline = Pipeline(shelves, model=ScriptedModel(answer_well, name="scripted-a"))
     made = pipeline.make(StoryRequest(THEME, seed=3))
     assert "Planner: llm:scripted-a" in story_to_markdown(made)
     assert report_to_dict(made)["planner"] == "llm:scripted-a"
 
 
-def test_a_story_on_the_floor_needs_no_furniture_and_is_filed(cache: Path, tmp_path: Path) -> None:
+def test_a_story_on_the_floor_needs_no_furniture_and_is_filed(shelves: Shelves, tmp_path: Path) -> None:
     keyframes = [
         {"skill": "loco", "emotion": "tired", "caption": "walk wearily", "furniture": "floor"},
         {"skill": "sitdown", "emotion": "tired", "caption": "sit cross-legged", "furniture": "floor"},
@@ -126,7 +126,7 @@ def test_a_story_on_the_floor_needs_no_furniture_and_is_filed(cache: Path, tmp_p
         return {"keyframes": keyframes} if schema.__name__ == "DirectScript" else answer_well(prompt, schema)
 
     request = StoryRequest("A tired person lies on the floor.", method="direct")
-    made = Pipeline(Shelves(cache=cache), model=ScriptedModel(answer)).make(request)
+    made = Pipeline(shelves, model=ScriptedModel(answer)).make(request)
     assert [figure.reached for figure in made.figures] == [True] * len(made.figures)
     assert {action.object_id for action in made.actions} <= {None, "floor"}
     files = write_story(made, tmp_path)

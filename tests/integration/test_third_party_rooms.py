@@ -74,6 +74,7 @@ def test_chairs_that_a_table_blocks_can_be_pulled_out(step: int) -> None:
     assert 0.05 <= share(counts, CHAIRS, "as placed") <= 0.4
 
 
+@pytest.mark.sweep
 def test_stories_are_played_in_them_and_say_which_chairs_were_pulled_out() -> None:
     playable = [layout for layout in rooms() if layout.room_type in THEMES]
     pipeline, keyframes, reached, said = Pipeline(Shelves(cache=encoded())), 0, 0, 0

@@ -229,7 +229,9 @@ def test_a_type_there_is_no_room_of_is_named() -> None:
 
 
 @pytest.mark.skipif(not ROOMS.is_dir(), reason="SIMS_TEST_DATA holds no layouts/rooms")
-@pytest.mark.parametrize("source", ["procthor", "tdw", "virtualhome"])
+@pytest.mark.parametrize(
+    "source", ["tdw", *(pytest.param(name, marks=pytest.mark.sweep) for name in ("procthor", "virtualhome"))]
+)
 def test_other_peoples_rooms_make_homes_one_can_walk_through(source: str) -> None:
     layouts = read_layouts(ROOMS / f"{source}_rooms.jsonl.gz")
     for seed in range(2):

@@ -105,7 +105,7 @@ class Way:
 
 
 def deed(way: Way, doing: str, keys: TouchKeys) -> Pose:
-    """A touch from standing to standing, with what is done there (a word of `hand_captions.HANDLINGS`, or "")."""
+    """A touch from standing to standing, with what is done there (see `hand_captions.Handled`)."""
     rows = keys.of(doing)
     poses = {row.name: way.pose(row) for row in rows.pose}
     frames, last = [], way.away

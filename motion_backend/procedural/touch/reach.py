@@ -50,7 +50,7 @@ class Manner:
     hold: float
     """Seconds the hand stays."""
     doing: str = ""
-    """What the hand does there, a word of `hand_captions.HANDLINGS`, "" for a plain touch."""
+    """What the hand does there, see `hand_captions.Handled`."""
     prone: bool = False
     """Whether one kneels down and bends forwards to it."""
 

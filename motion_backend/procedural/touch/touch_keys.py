@@ -396,7 +396,7 @@ class TouchKeys:
     put: TouchTable
 
     def of(self, doing: str) -> TouchTable:
-        """The key poses of what is done (a word of `hand_captions.HANDLINGS`, or "" for a plain touch)."""
+        """The key poses of what is done (see `hand_captions.Handled`)."""
         deeds = {"": self.rest, "press": self.press, "wash": self.wash, "rotate": self.rotate, "pick": self.pick}
         return (deeds | {"put": self.put})[doing]
 

@@ -70,6 +70,7 @@ def test_what_is_no_motion_says_so():
             clips(file)
 
 
+@pytest.mark.sweep
 def test_every_t_pose_faces_forward_with_arms_out_and_legs_down():
     for file in of_kind("real mocap", "hand-keyed", "model-generated"):
         clip = clips(file)[0]

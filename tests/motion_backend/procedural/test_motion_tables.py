@@ -11,14 +11,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from motion_backend.procedural.emotion_style import ARMS, Bearing
+from motion_backend.procedural.emotion_style import Bearing, arm_poses
 from motion_backend.procedural.held_poses import idle_table, standing
 from motion_backend.procedural.lie.lie_keys import lie_keys
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.sit.sit_keys import sit_keys
+from motion_backend.procedural.style_sheet import read_style_sheet
 from motion_backend.procedural.touch.gestures import GESTURES, gesture_table
 from motion_backend.procedural.touch.hand_actions import STAGES
-from motion_backend.procedural.touch.hand_captions import HANDLINGS, Laid
+from motion_backend.procedural.touch.hand_captions import Handled, Laid
 from motion_backend.procedural.touch.hand_contacts import palm_on
 from motion_backend.procedural.touch.reach import Manner, touch
 from motion_backend.procedural.touch.touch_keys import TouchKeys, TouchTable, touch_keys
@@ -33,7 +34,7 @@ from motion_backend.skeleton import build_skeleton
 from scene_graphs.data_tables import read_table
 
 TOUCH = touch_keys()
-DEEDS = ["", *(doing for doing, _ in HANDLINGS)]
+DEEDS = ["", *(row["doing"] for _, row in read_style_sheet("touch.toml", Handled).captions if "doing" in row)]
 TABLES = {
     "touch": TOUCH, "gestures": gesture_table(), "idle": idle_table(), "carriage": carriage(), "feet": foot_table(),
     "steps": footstep_table(), "cadence": cadence(), "arms": arm_table(), "pelvis": pelvis_table(),
@@ -151,8 +152,8 @@ def test_a_touch_goes_to_the_thing_and_comes_away_from_it(doing: str) -> None:
     assert (
         (rows.busy_s > 0) == ("hold" in {key.pace for key in rows.key}) == ("after" in {key.stage for key in rows.key})
     )
-    assert {row.arms for row in rows.pose} - {""} <= set(ARMS)
-    assert {TOUCH.reach.free_arm.high, TOUCH.reach.free_arm.doing[doing]} <= set(ARMS)
+    assert {row.arms for row in rows.pose} - {""} <= set(arm_poses())
+    assert {TOUCH.reach.free_arm.high, TOUCH.reach.free_arm.doing[doing]} <= set(arm_poses())
 
 
 def test_who_kneels_goes_down_on_one_knee_and_then_the_other() -> None:

@@ -53,7 +53,7 @@ def covers(script: LongScript, theme: Theme) -> None:
 
 
 @pytest.mark.parametrize("theme", THEMES, ids=lambda theme: theme.name)
-@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.sweep) for seed in (1, 2))])
 def test_a_theme_of_the_paper_is_covered_event_by_event_in_order(
     meaning: ScriptLibrary, theme: Theme, seed: int
 ) -> None:

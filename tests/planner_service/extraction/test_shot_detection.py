@@ -140,3 +140,37 @@ def test_a_long_shot_is_several_scenes_and_a_short_film_is_one() -> None:
     assert [scene.end - scene.start for scene in scenes] == [MAX_SCENE_SECONDS] * 3
     film = open_film(io.BytesIO(film_of([Drawn(MIN_SCENE_SECONDS / 4, 0), Drawn(MIN_SCENE_SECONDS / 4, 1)])), "a film")
     assert len(scenes_of(film, [])) == 1
+
+
+def unlike(share: float) -> list[tuple[int, ...]]:
+    """Two looks that are so far apart, from 0 to 1."""
+    moved = round(255 * share)
+    return [
+        tuple(255 if bin_ == 2 else 0 for _ in range(3) for bin_ in range(16)),
+        tuple({2: 255 - moved, 7: moved}.get(bin_, 0) for _ in range(3) for bin_ in range(16)),
+    ]
+
+
+def parted(share: float, cues: tuple[Cue, ...] = (), first: float = 12.0) -> bool:
+    """Whether there is a scene's end between two shots that are so far apart."""
+    looks = unlike(share)
+    return len(scenes_in([Shot(0.0, first, looks[0]), Shot(first, first + 20, looks[1])], list(cues))) == 2
+
+
+def test_a_scene_ends_at_a_change_of_three_tenths_and_of_more_where_somebody_speaks() -> None:
+    near, during = (Cue(8.0, 10.5, "before"),), (Cue(11.0, 13.0, "over it"),)
+    quiet = (Cue(8.0, 9.9, "long before"), Cue(14.1, 15.0, "long after"))
+    for cues, least in (((), 0.3), (quiet, 0.3), (near, 0.4), (during, 0.7)):
+        assert not parted(least - 0.02, cues), cues
+        assert parted(least + 0.02, cues), cues
+
+
+def test_no_scene_is_shorter_than_six_seconds() -> None:
+    assert not parted(1.0, first=MIN_SCENE_SECONDS - 0.1)
+    assert parted(1.0, first=MIN_SCENE_SECONDS + 0.1)
+
+
+def test_who_is_shown_again_within_three_shots_is_in_the_same_scene() -> None:
+    for between, one in ((2, True), (3, False)):
+        film = row((7.0, 0), *[(2.5, 1)] * between, (20.0, 0))
+        assert (len(scenes_in(film, [])) == 1) == one, between

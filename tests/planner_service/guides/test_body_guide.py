@@ -16,6 +16,7 @@ from planner_service.cli import app
 GUIDE = Path(__file__).resolve().parents[3] / "docs" / "body.md"
 
 
+@pytest.mark.sweep
 def test_the_guide_to_the_body_is_true(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in [name for name in os.environ if name.startswith(("SIMS_", "COLUMNS"))]:
         monkeypatch.delenv(name)

@@ -28,6 +28,7 @@ def carry_out(words: list[str], shown: list[str], patch: pytest.MonkeyPatch) -> 
     said_as(shown, done.stdout)
 
 
+@pytest.mark.sweep
 def test_the_guide_to_scripts_is_true(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     if load_encoder().name == "hashing":
         pytest.skip("the guide was written with the sentence encoder installed")

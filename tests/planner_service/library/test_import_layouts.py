@@ -118,6 +118,7 @@ async def test_what_is_no_scene_is_refused_by_name(
     assert len(app.state.parts.shelves.rooms()) == before
 
 
+@pytest.mark.sweep
 @pytest.mark.anyio
 async def test_a_small_file_that_unpacks_to_a_huge_one_is_refused(app: FastAPI) -> None:
     bomb = gzip.compress(b"[" + b" " * (200 << 20))

@@ -330,6 +330,7 @@ def test_what_a_user_or_a_room_says_is_fenced_and_what_a_model_says_is_only_read
     assert plan.keyframes == []
 
 
+@pytest.mark.sweep
 def test_instructions_without_end_become_a_plan_the_body_can_act() -> None:
     plan = plan_routine(home(), 60, seed=4)
     assert len(plan.steps) == 60

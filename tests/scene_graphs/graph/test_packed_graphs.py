@@ -260,6 +260,7 @@ def test_graphs_of_other_rooms_are_refused(good: Path) -> None:
         read_packed(good, b"others")
 
 
+@pytest.mark.sweep
 def test_the_shipped_graphs_are_those_of_the_shipped_rooms() -> None:
     """If this fails: python -m scene_graphs.layout_library."""
     assert json.dumps(told(built_in_index().rooms), default=sorted) == json.dumps(

@@ -343,6 +343,7 @@ def test_a_folder_asks_for_the_house(tmp_path: Path) -> None:
         read_scene(tmp_path, "3d-front")
 
 
+@pytest.mark.sweep
 @pytest.mark.parametrize("what", ["children", "pieces", "rooms", "meshes", "triangles", "doors", "round"])
 def test_a_huge_house_is_read_or_refused_in_bounded_time(what: str) -> None:
     house, many = small_house(), 100_000

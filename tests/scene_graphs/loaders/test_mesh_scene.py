@@ -311,6 +311,7 @@ def test_a_bad_line_of_an_obj_is_named(text: str, message: str) -> None:
         read_obj(text)
 
 
+@pytest.mark.sweep
 def test_a_text_of_millions_of_lines_is_refused() -> None:
     with pytest.raises(LayoutError, match="lines; simplify it"):
         read_obj("\n" * (MAX_LINES + 1))
@@ -330,6 +331,7 @@ def test_a_scene_in_centimetres_says_so() -> None:
         read(scene)
 
 
+@pytest.mark.sweep
 @pytest.mark.skipif(not MESHES.is_dir(), reason="SIMS_TEST_DATA holds no layouts/meshes_aws_mit0")
 def test_real_furniture_is_read_with_its_size_and_its_seat() -> None:
     pieces = json.loads((MESHES / "manifest.json").read_text())["meshes"]

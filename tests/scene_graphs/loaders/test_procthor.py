@@ -203,6 +203,7 @@ def test_a_file_without_houses_is_refused_with_the_reason() -> None:
         read(HOUSE, assets=["Bed_13"])
 
 
+@pytest.mark.sweep
 def test_a_heap_of_a_hundred_thousand_things_is_refused_in_bounded_time() -> None:
     pile = thing("Bed_13", children=[thing("pillow_1")] * 4_999)
     with pytest.raises(LayoutError, match="a house holds at most 5000 objects"):

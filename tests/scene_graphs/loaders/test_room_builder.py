@@ -50,6 +50,7 @@ def test_sizes_that_are_none_are_dropped_with_the_reason(size: tuple[float, ...]
     assert room.finish() is None
 
 
+@pytest.mark.sweep
 def test_of_very_many_objects_a_bounded_number_is_looked_at_and_all_are_counted() -> None:
     intake = Intake()
     room = room_of(intake)

@@ -64,6 +64,7 @@ def test_a_zip_of_very_many_files_is_refused() -> None:
         list(Source.of_bytes("a", zipped(b"", files=10_001, how=zipfile.ZIP_STORED)).rows())
 
 
+@pytest.mark.sweep
 def test_a_text_of_very_many_values_or_rows_is_refused_before_it_fills_the_memory() -> None:
     with pytest.raises(LayoutError, match="values"):
         parse_json("[" + "[]," * bounds.MAX_VALUES + "[]]", FieldPath(file="a"))

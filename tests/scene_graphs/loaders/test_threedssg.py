@@ -218,6 +218,7 @@ def test_a_spoiled_scan_is_refused_or_reported(row: Any) -> None:
             assert layout_from_dict(layout_to_dict(layout)) == layout
 
 
+@pytest.mark.sweep
 @pytest.mark.parametrize("count", [1_500, 6_000])
 def test_a_huge_scan_is_read_or_refused(count: int) -> None:
     row = semseg(*ROOM)

@@ -181,7 +181,7 @@ def head_height(body: Body) -> float:
 
 
 def test_moods_are_seen_in_pace_and_bearing() -> None:
-    mood = {emotion: walked("steadily walking forward", emotion, seed=4) for emotion in Emotion}
+    mood = {emotion.value: walked("steadily walking forward", emotion, seed=4) for emotion in Emotion}
     speed = {emotion: pace(body) for emotion, body in mood.items()}
     head = {emotion: head_height(body) for emotion, body in mood.items()}
     lean = {emotion: float(body.lean(body.way)[body.middle].mean()) for emotion, body in mood.items()}

@@ -110,7 +110,8 @@ def hostile(kinds: int, size: int, edges: int) -> dict[str, Any]:
     return {"nodes": nodes, "edges": [list(pair) for pair in list(combinations(range(size), 2))[-edges:]]}
 
 
-@pytest.mark.parametrize("kinds", [1, pytest.param(4, marks=pytest.mark.sweep)])
+@pytest.mark.sweep
+@pytest.mark.parametrize("kinds", [1, 4])
 async def test_the_worst_that_may_be_asked_ends_in_seconds(app: FastAPI, kinds: int) -> None:
     started = time.process_time()
     merging = {"graphs": [hostile(kinds, 52, 25)] * 12, "method": "aligned"}
