@@ -7,12 +7,12 @@ from itertools import product
 
 import pytest
 
+from motion_backend.emotion_words import emotion_of
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Skill
 from planner_service.extraction.text_rules import captions_for, rise
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.captions import captions
-from planner_service.scripts.emotions import emotion_of
 from planner_service.scripts.script_library import Features, ScriptLibrary
 
 LIBRARY = cache(lambda: ScriptLibrary(built_in(), Features(HashingEncoder())))
