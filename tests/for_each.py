@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from _pytest.outcomes import Failed
 
 Check = Callable[..., Any]
 SHOWN = 300
@@ -51,7 +52,7 @@ def for_each(names: str | tuple[str, ...], rows: Iterable[Any]) -> Callable[[Che
     return decorate
 
 
-class RowsFailed(pytest.fail.Exception):
+class RowsFailed(Failed):
     """Rows for which a check does not hold."""
 
     def __init__(self, failed: list[str], count: int) -> None:

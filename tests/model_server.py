@@ -172,8 +172,8 @@ class ModelServer:
                 self.send_response(sent.status)
                 for name, value in {**sent.headers, "Connection": "close"}.items():
                     self.send_header(name, value)
-                whole = isinstance(sent.body, bytes)
-                length = sent.length if sent.length is not None else (len(sent.body) if whole else None)
+                whole = len(sent.body) if isinstance(sent.body, bytes) else None
+                length = sent.length if sent.length is not None else whole
                 if length is not None:
                     self.send_header("Content-Length", str(length))
                 self.end_headers()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import typer
 from for_each import for_each
@@ -35,12 +36,12 @@ def commands() -> dict[str, list[str]]:
     """Words after `sims` of every command there is, and its options."""
     found = {}
 
-    def walk(command: object, words: str) -> None:
+    def walk(command: Any, words: str) -> None:
         inner = getattr(command, "commands", {})
         for name, child in inner.items():
             walk(child, f"{words} {name}".strip())
         if not inner:
-            found[words] = [option for parameter in command.params for option in parameter.opts]  # type: ignore[attr-defined]
+            found[words] = [option for parameter in command.params for option in parameter.opts]
 
     walk(typer.main.get_command(app), "")
     return found

@@ -152,7 +152,8 @@ def imports_in(tree: ast.Module, name: str) -> set[str]:
 
 def circles(imports: dict[str, set[str]]) -> list[list[str]]:
     """Modules that need each other, circle by circle."""
-    found = networkx.strongly_connected_components(networkx.DiGraph(imports))
+    graph = networkx.DiGraph([(module, needed) for module, all_needed in imports.items() for needed in all_needed])
+    found = networkx.strongly_connected_components(graph)
     return sorted(sorted(together) for together in found if len(together) > 1)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import io
 import os
+import platform
 import re
 import sys
 import time
@@ -135,7 +136,7 @@ def test_all_steps_are_told_and_torch_is_fetched_only_where_it_is_missing(
     tmp_path: Path, index: Index, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(install, "CPU_INDEX", index("404"))
-    monkeypatch.setattr(install.platform, "system", lambda: "Linux")
+    monkeypatch.setattr(platform, "system", lambda: "Linux")
     for first in (True, False):
         monkeypatch.setattr(sys, "argv", ["install.py", "--dev"])
         assert install.main() == 0

@@ -39,7 +39,7 @@ def test_a_marked_test_may() -> None:
 def test_every_test_is_in_one_layer_and_test_all_runs_both(marks: set[str]) -> None:
     chosen = [layer.chosen for layer in LAYERS["test-all"]]
     assert chosen == [layer.chosen for name in ("test", "test-service") for layer in LAYERS[name]]
-    assert [Expression.compile(one).evaluate(lambda mark, **_: mark in marks) for one in chosen].count(True) == 1
+    assert [Expression.compile(one).evaluate(lambda mark, /, **_: mark in marks) for one in chosen].count(True) == 1
 
 
 def test_all_rows_that_fail_are_named() -> None:

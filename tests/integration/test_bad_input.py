@@ -40,13 +40,13 @@ def script(**changed: object) -> dict[str, object]:
     return row | {"room": "living_room", "keyframes": [keyframe()]} | changed
 
 
-def room(**changed: object) -> dict[str, object]:
+def room(**changed: object) -> dict[str, Any]:
     return layout_to_dict(generate_room("living_room", 3)) | {"id": "my-room"} | changed
 
 
 def with_sizes(size: list[object]) -> dict[str, object]:
     row = room()
-    objects = [dict(placed) for placed in row["objects"]]  # type: ignore[attr-defined]
+    objects = [dict(placed) for placed in row["objects"]]
     objects[0]["size"] = size
     return row | {"objects": objects}
 
@@ -387,11 +387,10 @@ def contents(root: Path) -> dict[object, object]:
     """Every file, and what is on the user's shelves: the bytes of a database may differ."""
     shelves = own_shelves(root)
     files = [*(root / "files").rglob("*"), *(root / "data").glob("[!cs]*")]
-    return (
-        {path: path.read_bytes() if path.is_file() else b"" for path in files}
-        | {script.id: script for script in shelves.scripts().scripts}
-        | dict(shelves.rooms())
-    )
+    found: dict[object, object] = {path: path.read_bytes() if path.is_file() else b"" for path in files}
+    found |= {script.id: script for script in shelves.scripts().scripts}
+    found |= shelves.rooms().items()
+    return found
 
 
 @pytest.fixture(scope="module")

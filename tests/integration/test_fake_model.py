@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 from encoded import encoded
@@ -22,8 +23,8 @@ def answer_well(prompt: str, _schema: type[BaseModel]) -> Answer:
     return answer_to(prompt)
 
 
-def plan(model: ScriptedModel, shelves: Shelves, **asked: object) -> Planned:
-    return Pipeline(shelves, model=model).plan(StoryRequest(THEME, **asked))  # type: ignore[arg-type]
+def plan(model: ScriptedModel, shelves: Shelves, **asked: Any) -> Planned:
+    return Pipeline(shelves, model=model).plan(StoryRequest(THEME, **asked))
 
 
 @pytest.fixture(scope="module")

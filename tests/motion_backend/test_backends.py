@@ -16,7 +16,7 @@ from stranger import GUIDE, install
 
 from motion_backend import backends
 from motion_backend.backends import BrokenBackendError, UnknownBackendError, about, backend_names, load_backend
-from motion_backend.motion import Action, Character, Skill
+from motion_backend.motion import Action, Character, Emotion, Skill
 from planner_service.settings import SettingsError, read_settings
 from scene_graphs.generation.generate_room import generate_room
 from scene_graphs.home import home_from_layouts
@@ -91,7 +91,9 @@ def test_any_backend_can_be_stopped_between_two_actions_and_repeats_itself(insta
     state = first.begin(home, Character(height=1.6), 7)
     assert state == second.begin(home, Character(height=1.6), 7)
     assert json.loads(json.dumps(asdict(state))) == json.loads(json.dumps(asdict(state)))
-    action = Action(Skill.LOCO, "walk", "neutral", goal=(state.pelvis[0], state.pelvis[2]), facing=1.0, keyframe=4)
+    action = Action(
+        Skill.LOCO, "walk", Emotion.NEUTRAL, goal=(state.pelvis[0], state.pelvis[2]), facing=1.0, keyframe=4
+    )
     motion, after = first.advance(home, action, state)
     again, same = second.advance(home, action, state)
     assert after == same

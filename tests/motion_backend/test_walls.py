@@ -26,12 +26,12 @@ BODY = np.array([[x, y, z] for x in (1.0, 1.4) for y in (0.1, 1.0, 1.7) for z in
 SIDES = [side for wall in HOME.walls if (side := Side.of(wall, HOME)) is not None]
 
 
-def hidden(eye: np.ndarray, solids: list, point: np.ndarray) -> bool:  # type: ignore[type-arg]
+def hidden(eye: np.ndarray, solids: list, point: np.ndarray) -> bool:
     """Whether any triangle is between an eye and a point, by the signed volumes of tetrahedra."""
     for solid in solids:
         a, b, c = np.moveaxis(np.asarray(solid.vertices, dtype=float)[solid.faces], 1, 0)
 
-        def volume(p, q, r, s):  # type: ignore[no-untyped-def]
+        def volume(p, q, r, s):
             return np.sign(np.einsum("fk,fk->f", np.cross(q - p, r - p), s - p))
 
         parted = volume(a, b, c, eye) != volume(a, b, c, point)

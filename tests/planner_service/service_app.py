@@ -26,7 +26,7 @@ Adding = Callable[[FastAPI], None]
 @contextmanager
 def parts_on(folder: Path, **settings: Any) -> Iterator[Parts]:
     """Real parts on a SQLite file in a folder."""
-    parts = open_parts(Settings(_env_file=None, **{"data_dir": folder, **settings}))  # type: ignore[call-arg]
+    parts = open_parts(Settings(_env_file=None, **{"data_dir": folder, **settings}))
     try:
         yield parts
     finally:

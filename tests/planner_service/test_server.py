@@ -21,7 +21,7 @@ def test_the_database_lies_in_the_folder_that_was_named_whatever_its_name(tmp_pa
 
 
 def test_a_worker_gets_the_database_of_its_service_whatever_its_own_env_file_says(tmp_path: Path) -> None:
-    settings = Settings(_env_file=None, data_dir=tmp_path / "what?now")  # type: ignore[call-arg]
+    settings = Settings(_env_file=None, data_dir=tmp_path / "what?now")
     given = environment(settings, "worker-0")
     theirs = settings.model_copy(update={"database_url": given["SIMS_DATABASE_URL"]})
     assert database_url(theirs) == database_url(settings)
@@ -32,7 +32,7 @@ def test_a_worker_gets_the_database_of_its_service_whatever_its_own_env_file_say
 )
 def test_an_address_of_no_database_is_refused_without_its_password(url: str) -> None:
     with pytest.raises(SettingsError, match=r"^SIMS_DATABASE_URL: ") as caught:
-        database_url(Settings(_env_file=None, database_url=url))  # type: ignore[call-arg]
+        database_url(Settings(_env_file=None, database_url=url))
     assert "postgresql://user:password@host:5432/name" in str(caught.value)
     assert "secret" not in str(caught.value)
 

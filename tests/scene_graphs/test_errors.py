@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -31,14 +32,15 @@ def test_a_text_is_made_of_place_fault_and_remedy() -> None:
 
 @given(STEPS)
 def test_a_path_is_written_as_in_python_and_points_as_in_json(steps: tuple[str | int, ...]) -> None:
-    row = value = "here"
+    value = "here"
+    row: Any = value
     for step in reversed(steps):
-        row = {step: row} if isinstance(step, str) else [None] * step + [row]  # type: ignore[assignment]
+        row = {step: row} if isinstance(step, str) else [None] * step + [row]
     path = FieldPath()
     for step in steps:
         path = path / step
     for step in path.steps:
-        row = row[step]  # type: ignore[index]
+        row = row[step]
     assert row == value
     assert path.pointer.split("/")[1:] == [str(step) for step in steps]
     assert str(path) == "".join(f"[{one}]" if isinstance(one, int) else f".{one}" for one in steps)[1:]

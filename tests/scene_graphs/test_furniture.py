@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from examples import tries
@@ -28,7 +29,7 @@ from scene_graphs.furniture import (
 WORDS = tuple(catalogue().class_of)
 
 
-def wrong(**sections: object) -> str:
+def wrong(**sections: Any) -> str:
     with pytest.raises(ValueError, match=r"^\w+") as refused:
         replace(catalogue(), **sections)
     return str(refused.value)

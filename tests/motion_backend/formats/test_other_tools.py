@@ -35,7 +35,7 @@ def standing(frames: int) -> Motion:
     """The rest pose on its feet, the pelvis above the origin."""
     skeleton = build_skeleton()
     return Motion(
-        root_positions=np.tile(np.float32([0, skeleton.standing_height, 0]), (frames, 1)),
+        root_positions=np.tile(np.array([0, skeleton.standing_height, 0], dtype=np.float32), (frames, 1)),
         local_rotations=np.tile(rotations.IDENTITY.astype(np.float32), (frames, 22, 1)),
         contacts=np.ones((frames, 4), dtype=np.float32),
         skeleton=skeleton,
@@ -79,7 +79,8 @@ def test_whoever_knows_amass_alone_finds_the_joints_where_the_motion_has_them(tm
     with np.load(write_motion(motion, tmp_path / "motion.amass.npz"), allow_pickle=False) as data:
         assert float(data["mocap_framerate"]) == motion.fps
         turns = Rotation.from_rotvec(data["poses"].reshape(-1, 3)).as_matrix().reshape(len(motion), -1, 3, 3)
-        world, positions = [], []
+        world: list[np.ndarray] = []
+        positions: list[np.ndarray] = []
         for joint, parent in enumerate(data["joint_parents"]):
             world.append(turns[:, joint] if parent < 0 else world[parent] @ turns[:, joint])
             shift = data["joint_offsets"][joint]

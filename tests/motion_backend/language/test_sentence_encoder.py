@@ -86,7 +86,7 @@ def test_a_cache_that_cannot_be_written_costs_nothing_but_time(tmp_path: Path) -
 def test_the_hashing_encoder_can_be_asked_for_and_says_its_name() -> None:
     assert load_encoder("hashing").name == "hashing"
     with pytest.raises(ValueError, match="'minilm' and 'hashing'"):
-        load_encoder("clip")  # type: ignore[arg-type]
+        load_encoder("clip")  # type: ignore[arg-type]  # no such encoder
 
 
 @pytest.mark.service

@@ -14,7 +14,8 @@ SEEDS = st.integers(0, 2**32 - 1)
 
 def of(first: np.ndarray, second: np.ndarray, median: float = 1.0) -> float:
     pairs = ((first, first), (second, second), (first, second))
-    return mmd_squared(*(kernel(distances(a, b), median) for a, b in pairs))
+    within, without, between = (kernel(distances(a, b), median) for a, b in pairs)
+    return mmd_squared(within, without, between)
 
 
 def test_two_points_against_two_others_is_as_worked_out_by_hand() -> None:
@@ -55,7 +56,7 @@ def test_weights_are_how_often_a_vector_was_drawn(seed: int, times: list[int]) -
     rng = np.random.default_rng(seed)
     first, second = rng.standard_normal((6, 2)), rng.standard_normal((4, 2))
     kernels = [kernel(distances(a, b), 1.0) for a, b in ((first, first), (second, second), (first, second))]
-    found = mmd_squared(*kernels, (np.array(times, dtype=np.float64), np.ones(4)))
+    found = mmd_squared(kernels[0], kernels[1], kernels[2], (np.array(times, dtype=np.float64), np.ones(4)))
     drawn = np.repeat(np.arange(6), times)
     pairs = [kernels[0][a, b] for a in drawn for b in drawn if a != b]
     wanted = np.mean(pairs) + (kernels[1].sum() - 4) / 12 - 2 * kernels[2][drawn].mean()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -26,8 +27,8 @@ def box(center: tuple[float, float, float], size: tuple[float, float, float], ow
     return Obstacles(np.array([center]), np.array([size]) / 2, np.zeros(1), (owner,), np.zeros(1, dtype=bool))
 
 
-def touch(**changes: object) -> Action:
-    return replace(Action(Skill.TOUCH, "touch", Emotion.NEUTRAL), **changes)  # type: ignore[arg-type]
+def touch(**changes: Any) -> Action:
+    return replace(Action(Skill.TOUCH, "touch", Emotion.NEUTRAL), **changes)
 
 
 def test_a_body_that_stands_still_neither_skates_nor_jerks_nor_sinks() -> None:
@@ -97,8 +98,8 @@ def test_only_contact_bodies_may_sink_and_only_into_their_own_target() -> None:
 
 def test_success_must_be_sustained_for_a_second_unless_any_frame_counts() -> None:
     motion = standing_still(90)
-    wrist = motion.joint_positions()[0, INDEX["right_wrist"]]
-    goal = ContactGoal("right_wrist", tuple(float(v) for v in wrist))  # type: ignore[arg-type]
+    x, y, z = motion.joint_positions()[0, INDEX["right_wrist"]].tolist()
+    goal = ContactGoal("right_wrist", (x, y, z))
     sliding = standing_still(root=np.outer(np.concatenate([np.zeros(20), np.arange(1, 71) / 30]), [1.0, 0.0, 0.0]))
     for moved, sustained in ((motion, True), (sliding, False)):
         trial = replace(moved, goals=(goal,))

@@ -15,7 +15,7 @@ from motion_backend.metrics import contact_error, foot_skate, smoothness, story_
 from motion_backend.metrics.gait_features import windows
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.penetration import penetration
-from motion_backend.motion import FPS, Action, ContactGoal, Motion, Skill
+from motion_backend.motion import FPS, Action, ContactGoal, Emotion, Motion, Skill
 from motion_backend.skeleton import INDEX
 from motion_backend.state_machine import shortfall, time_limit
 
@@ -112,7 +112,7 @@ def test_two_centimetres_are_clearly_in(depth: float, share: float) -> None:
     motion = standing_still(6)
     crown = Kinematics.of(motion).positions[0, INDEX["head"], 1] + 0.09 + 0.09 * np.sqrt(0.5)
     ceiling = box((0.0, crown - depth + 0.5, 0.0), (4.0, 1.0, 4.0))
-    figures = story_metrics.judge(motion, Action(Skill.LOCO, "walk", "neutral"), ceiling)
+    figures = story_metrics.judge(motion, Action(Skill.LOCO, "walk", Emotion.NEUTRAL), ceiling)
     assert figures.pen_share == share
     assert figures.pen_max == pytest.approx(depth, abs=3e-3)
     assert figures.pen_mean == pytest.approx(figures.pen_max)
@@ -132,7 +132,7 @@ def test_who_rests_on_a_piece_may_sink_five_centimetres_into_that_piece(
     under = box((hand[0], hand[1] - 0.5, 0.0), (0.3, 1.0, 0.3), owner)
     free = penetration(body, under, None)
     assert free.min() > 0.01
-    action = Action(skill, "", "neutral", object_id="0/box")
+    action = Action(skill, "", Emotion.NEUTRAL, object_id="0/box")
     np.testing.assert_allclose(penetration(body, under, action), np.maximum(free - allowed, 0.0), atol=1e-9)
 
 
@@ -141,7 +141,7 @@ def test_feet_may_sink_into_a_bed_and_not_into_a_seat() -> None:
     step = box((0.0, 0.0, 0.1), (0.5, 0.04, 0.5))
     free = penetration(body, step, None)
     assert 0.005 < free.min() < 0.05
-    sit, lie = (Action(skill, "", "neutral", object_id="0/box") for skill in (Skill.SITDOWN, Skill.LIEDOWN))
+    sit, lie = (Action(skill, "", Emotion.NEUTRAL, object_id="0/box") for skill in (Skill.SITDOWN, Skill.LIEDOWN))
     np.testing.assert_allclose(penetration(body, step, sit), free)
     assert penetration(body, step, lie).max() == 0.0
 
@@ -157,7 +157,7 @@ def near_for(skill: Skill, gap: float, frames: int, total: int = 75) -> tuple[Ac
     motion = standing_still(root=root)
     at = Kinematics.of(standing_still(1)).positions[0, INDEX[JOINT[skill]]]
     goal = ContactGoal(JOINT[skill], (float(at[0]), float(at[1]) - gap, float(at[2])))
-    return Action(skill, "", "neutral"), Kinematics.of(replace(motion, goals=(goal,)))
+    return Action(skill, "", Emotion.NEUTRAL), Kinematics.of(replace(motion, goals=(goal,)))
 
 
 @pytest.mark.parametrize("skill", list(WITHIN))
@@ -195,9 +195,9 @@ def test_the_error_is_the_smallest_of_the_last_second_of_the_contact_and_the_tim
     root = np.zeros((100, 3))
     root[:, 1] = gaps
     motion = standing_still(root=root)
-    pelvis = tuple(float(value) for value in standing_still(1).root_positions[0])
-    body = Kinematics.of(replace(motion, goals=(ContactGoal("pelvis", pelvis),)))  # type: ignore[arg-type]
-    found = contact_error.outcome(Action(Skill.SITDOWN, "", "neutral"), body)
+    x, y, z = standing_still(1).root_positions[0].tolist()
+    body = Kinematics.of(replace(motion, goals=(ContactGoal("pelvis", (x, y, z)),)))
+    found = contact_error.outcome(Action(Skill.SITDOWN, "", Emotion.NEUTRAL), body)
     assert found.error == pytest.approx(0.05, abs=1e-5)
     assert found.seconds == pytest.approx(20 / FPS)
 
@@ -217,7 +217,7 @@ def test_a_walk_hands_over_within_thirty_centimetres_on_the_floor(gap: float, ne
     root = np.outer(np.clip(np.arange(60) / 40, 0, 1), [2.0, 0.0, 1.0])
     body = Kinematics.of(standing_still(root=root))
     aside = gap * np.array([1.0, -2.0]) / np.sqrt(5)
-    action = Action(Skill.LOCO, "", "neutral", goal=(2.0 + float(aside[0]), 1.0 + float(aside[1])))
+    action = Action(Skill.LOCO, "", Emotion.NEUTRAL, goal=(2.0 + float(aside[0]), 1.0 + float(aside[1])))
     found = contact_error.outcome(action, body)
     assert (found.reached, found.reached_any, found.reached_strict) == (near, near, strict)
     assert (shortfall(action, body, 60.0) == "") == near
@@ -226,12 +226,12 @@ def test_a_walk_hands_over_within_thirty_centimetres_on_the_floor(gap: float, ne
 @pytest.mark.parametrize(("frames", "done"), [(8, False), (9, True)])
 def test_a_walk_is_done_after_three_tenths_of_a_second_there(frames: int, done: bool) -> None:
     root = np.outer(np.concatenate([np.full(40, 2.0), np.zeros(frames)]), [1.0, 0.0, 0.0])
-    action = Action(Skill.LOCO, "", "neutral", goal=(0.0, 0.0))
+    action = Action(Skill.LOCO, "", Emotion.NEUTRAL, goal=(0.0, 0.0))
     assert (shortfall(action, Kinematics.of(standing_still(root=root)), 60.0) == "") == done
 
 
 def test_a_walk_without_a_goal_is_done_when_it_is_completed() -> None:
-    action, motion = Action(Skill.LOCO, "", "neutral"), standing_still(45)
+    action, motion = Action(Skill.LOCO, "", Emotion.NEUTRAL), standing_still(45)
     for completed in (True, False):
         found = contact_error.outcome(action, Kinematics.of(replace(motion, completed=completed)))
         assert (found.reached, found.reached_any, found.reached_strict) == (completed,) * 3
@@ -277,7 +277,7 @@ def test_who_has_risen_has_the_pelvis_at_most_of_its_height(share: float, up: bo
 def test_who_has_risen_stands_for_half_a_second_at_the_end(skill: Skill, frames: int, held: bool) -> None:
     root = np.zeros((60, 3))
     root[: 60 - frames, 1] = -0.4
-    action, body = Action(skill, "", "neutral"), Kinematics.of(standing_still(root=root))
+    action, body = Action(skill, "", Emotion.NEUTRAL), Kinematics.of(standing_still(root=root))
     found = contact_error.outcome(action, body)
     assert (found.reached, found.reached_any, found.error) == (held, True, None)
     assert found.seconds == pytest.approx((60 - frames) / FPS)
@@ -299,7 +299,7 @@ def test_what_takes_longer_than_it_may_is_not_done(limit: float, late: bool) -> 
 def test_every_part_but_walking_may_take_ten_seconds_and_a_metre_of_way_five() -> None:
     from motion_backend.motion import Posture
 
-    sit = Action(Skill.SITDOWN, "", "neutral", hold=2.0)
+    sit = Action(Skill.SITDOWN, "", Emotion.NEUTRAL, hold=2.0)
     assert time_limit(Posture.STANDING, sit, 0.0) == pytest.approx(12.0)
     assert time_limit(Posture.STANDING, sit, 3.0) == pytest.approx(27.0)
     assert time_limit(Posture.SEATED, sit, 0.0) == pytest.approx(22.0)
@@ -385,7 +385,9 @@ def test_no_quarter_of_steady_walking_is_slower_than_seven_tenths_of_the_whole(s
 
 def test_a_summary_weighs_by_time_what_is_told_by_frame_and_by_trial_what_is_told_by_trial() -> None:
     short, long = (
-        story_metrics.judge(standing_still(frames), Action(Skill.LOCO, "walk", "neutral", keyframe=index), NOTHING)
+        story_metrics.judge(
+            standing_still(frames), Action(Skill.LOCO, "walk", Emotion.NEUTRAL, keyframe=index), NOTHING
+        )
         for index, frames in enumerate((30, 90))
     )
     sat = replace(short, skill="sitdown", contact_error=0.04, reached=False, skate_ratio=1.0, execution_time=3.0)

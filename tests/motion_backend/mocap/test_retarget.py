@@ -40,8 +40,8 @@ def stranger(motion: Motion, rest: str, fps: float = 30.0, twist: float = 0.0) -
     if rest == "n":
         for side, sign in (("left", -1), ("right", 1)):
             turn = rotations.rotvec_to_quat(np.array([0.0, 0.0, sign * np.pi / 2]))
-            for joint in ("shoulder", "elbow", "wrist"):
-                world_t[INDEX[f"{side}_{joint}"]] = turn
+            for name in ("shoulder", "elbow", "wrist"):
+                world_t[INDEX[f"{side}_{name}"]] = turn
     positions, world = ours.forward_kinematics(motion.root_positions, motion.local_rotations)
     frames = rotations.rotvec_to_quat(np.random.default_rng(3).normal(size=(22, 3)) * twist)
     # A joint's frame of theirs is ours at their rest, turned by what nobody can see.
@@ -108,6 +108,7 @@ def test_the_figures_of_a_true_copy_are_small(walk: Motion) -> None:
     report = retarget(stranger(walk, "t")).report
     assert report.limb_mean < 1.5
     assert abs(report.lowest) < 0.02
+    assert report.source_skate is not None
     assert report.skate <= 1.15 * report.source_skate + 1.5
     assert report.fastest < 20
     assert set(report.limbs) == {"thigh", "shank", "upper arm", "forearm", "trunk"}
@@ -275,4 +276,5 @@ def test_a_real_clip_of_every_source_is_true_to_it(file: str, legs: str) -> None
     assert found.report.family == legs
     assert all(mean <= 5.0 for mean, _ in found.report.limbs.values())
     assert abs(found.report.lowest) <= 0.02
+    assert found.report.source_skate is not None
     assert found.report.skate <= 1.15 * found.report.source_skate + 1.5

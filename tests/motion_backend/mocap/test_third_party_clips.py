@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from motion_backend.mocap.clip import Clip, ClipError
-from motion_backend.mocap.clip_captions import Label
+from motion_backend.mocap.clip_captions import Label, Labels
 from motion_backend.mocap.dataset_builder import Kept, read_folder
 from motion_backend.mocap.joint_map import find_map
 from motion_backend.mocap.near_duplicates import near_copies
@@ -167,13 +167,13 @@ def test_one_walk_read_from_two_formats_bends_its_knees_alike():
 
 def test_one_walk_on_two_bodies_is_a_near_copy_and_other_subjects_walks_are_none():
     files = ["amp15/amp_humanoid_walk.npy", "cmu_bvh/08_02.bvh", "cmu_bvh/07_01.bvh", "cmu_bvh/16_15.bvh"]
-    labels = {(file, ""): (Label(),) for file in files}
+    labels: Labels = {(file, ""): (Label(),) for file in files}
     entries = [one.entry for one in read_folder(MOTION, labels) if isinstance(one, Kept)]
     assert [(copy.clip, copy.of) for copy in near_copies(entries)] == [tuple(files[:2])]
 
 
 def test_a_squat_is_cut_out_of_a_row_of_exercises():
-    labels = {("cmu_amc/13_29.amc", ""): (Label(skill="squat", start=31.7, stop=38.3),)}
+    labels: Labels = {("cmu_amc/13_29.amc", ""): (Label(skill="squat", start=31.7, stop=38.3),)}
     (found,) = (one for one in read_folder(MOTION, labels) if isinstance(one, Kept))
     heights = found.entry.motion.root_positions[:, 1]
     assert (found.entry.name, found.report.accepted) == ("cmu_amc/13_29.amc@31.7-38.3", True)

@@ -201,14 +201,15 @@ def touched(doing: str, keys: TouchKeys, prone: bool = False) -> Pose:
     )
 
 
-def varied(doing: str, **columns: float) -> TouchKeys:
+def varied(doing: str, **columns: Any) -> TouchKeys:
     """The shipped tables with columns of all rows of a touch that have them changed."""
     rows = TOUCH.of(doing)
     names = {field.name for field in fields(rows.pose[0])} & set(columns)
     posed = tuple(replace(row, **{name: columns[name] for name in names if getattr(row, name)}) for row in rows.pose)
     slower = tuple(replace(key, wait_s=columns.get("wait_ratio", 1.0) * key.wait_s) for key in rows.key)
     changed: TouchTable = replace(rows, pose=posed, key=slower)
-    return replace(TOUCH, **{doing or "rest": changed})
+    by_doing: dict[str, Any] = {doing or "rest": changed}
+    return replace(TOUCH, **by_doing)
 
 
 @pytest.mark.parametrize("doing", DEEDS)

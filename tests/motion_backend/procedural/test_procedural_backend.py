@@ -40,14 +40,14 @@ def perform(actions: list[Action], seed: int = 3, height: float = 1.70) -> tuple
 def day() -> list[Action]:
     """A little of everything."""
     high = contact(HOME, Skill.TOUCH, "shelf", "An act of reaching high")
-    sofa = contact(HOME, Skill.SITDOWN, "sofa", "hands behind head, lean back", "relaxed")
-    bed = contact(HOME, Skill.LIEDOWN, "bed", "lying down, legs straight", "tired")
-    chair = contact(HOME, Skill.SITDOWN, "chair", "supporting head with hands, head bowed", "sad")
-    table = contact(HOME, Skill.TOUCH, "table", "touch medium height", "sad")
+    sofa = contact(HOME, Skill.SITDOWN, "sofa", "hands behind head, lean back", Emotion.RELAXED)
+    bed = contact(HOME, Skill.LIEDOWN, "bed", "lying down, legs straight", Emotion.TIRED)
+    chair = contact(HOME, Skill.SITDOWN, "chair", "supporting head with hands, head bowed", Emotion.SAD)
+    table = contact(HOME, Skill.TOUCH, "table", "touch medium height", Emotion.SAD)
     return [
-        to(high, "excited walk", "happy"), high, to(sofa), sofa, rise(sofa),
-        to(bed, "walking drunkenly", "drunk"), bed, rise(bed, Skill.GETUP),
-        to(chair, "walk on tiptoes"), chair, rise(chair), to(table, "walk with depression", "sad"), table,
+        to(high, "excited walk", Emotion.HAPPY), high, to(sofa), sofa, rise(sofa),
+        to(bed, "walking drunkenly", Emotion.DRUNK), bed, rise(bed, Skill.GETUP),
+        to(chair, "walk on tiptoes"), chair, rise(chair), to(table, "walk with depression", Emotion.SAD), table,
     ]  # fmt: skip
 
 
@@ -155,7 +155,7 @@ def test_a_held_pose_is_alive() -> None:
 
 def walked(caption: str, emotion: str) -> Motion:
     start = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=(2.6, 2.6), facing=0.0)
-    way = Action(Skill.LOCO, caption, emotion, goal=(4.2, 2.9))
+    way = Action(Skill.LOCO, caption, Emotion(emotion), goal=(4.2, 2.9))
     return perform([start, way])[0][1]
 
 

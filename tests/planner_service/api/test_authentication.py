@@ -346,4 +346,4 @@ def test_weak_keys_and_origins_that_are_none_are_refused_at_the_start(wrong: dic
 
 
 def settings(**given: Any) -> Settings:
-    return Settings.model_construct(**{**Settings(_env_file=None).model_dump(), **given})  # type: ignore[call-arg]
+    return Settings.model_construct(**{**Settings(_env_file=None).model_dump(), **given})

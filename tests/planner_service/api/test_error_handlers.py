@@ -318,7 +318,7 @@ def test_an_answer_that_breaks_in_the_middle_is_broken_off(app: FastAPI) -> None
 
 
 def wrapped(kind: type[Exception], cause: Exception) -> Exception:
-    return kind("SELECT 1", {}, cause)  # type: ignore[call-arg]
+    return kind("SELECT 1", {}, cause)
 
 
 @for_each(
@@ -355,14 +355,18 @@ def test_a_really_locked_and_a_really_full_database_are_known(tmp_path: Path) ->
     holder.execute("BEGIN EXCLUSIVE")
     with pytest.raises(OperationalError) as locked, engine.begin() as connection:
         connection.execute(text("INSERT INTO t VALUES ('a')"))
-    assert database_problem(locked.value).status == 503  # type: ignore[union-attr]
+    problem = database_problem(locked.value)
+    assert problem is not None
+    assert problem.status == 503
     holder.execute("ROLLBACK")
     holder.close()
     with engine.begin() as connection:
         connection.execute(text("PRAGMA max_page_count = 3"))
         with pytest.raises(OperationalError) as full:
             connection.execute(text("INSERT INTO t VALUES (:x)"), {"x": "a" * 400_000})
-    assert database_problem(full.value).status == 507  # type: ignore[union-attr]
+    problem = database_problem(full.value)
+    assert problem is not None
+    assert problem.status == 507
     engine.dispose()
 
 

@@ -115,7 +115,7 @@ async def test_a_storys_id_is_cut_before_it_is_written_down(app: FastAPI, lines:
 @pytest.mark.parametrize("sent", ["", "two words", 'x"}{"level": "forged', "a" * 65, "né"])
 async def test_an_id_that_could_forge_a_line_is_replaced(app: FastAPI, lines: Lines, sent: str) -> None:
     async with calling(app) as client:
-        answer = await client.get("/healthz", headers={"X-Request-ID": sent.encode()})
+        answer = await client.get("/healthz", headers={b"X-Request-ID": sent.encode()})
     (line,) = lines.of("request")
     assert line["request_id"] == answer.headers["x-request-id"] != sent
     assert re.fullmatch("[0-9a-f]{32}", line["request_id"])

@@ -6,10 +6,9 @@ import json
 from pathlib import Path
 
 import pytest
-from click.testing import Result
 from film_made import Drawn, Making, film_of
 from stories import GERMAN, NARRATIVE, SUBTITLES
-from typer.testing import CliRunner
+from typer.testing import CliRunner, Result
 
 from planner_service.cli import app
 from planner_service.cli.scripts import read_scripts

@@ -156,7 +156,7 @@ def test_wrong_requests_name_the_field() -> None:
         ({"method": "x"}, "method"),
     ):
         with pytest.raises(ValueError, match=field):
-            Request(**wrong)  # type: ignore[arg-type]
+            Request(**wrong)
 
 
 WORDS = """he she becomes drunk sad and then but , . when before after reads a book the sofa sleeps not very because

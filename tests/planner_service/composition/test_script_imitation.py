@@ -25,7 +25,7 @@ from planner_service.scripts.script_library import Features, LibraryError, Scrip
 from planner_service.scripts.script_repair import check
 
 LIBRARY = ScriptLibrary(built_in(), Features(HashingEncoder()))
-CAPTIONS = {skill: dict.fromkeys(some, ()) for skill, some in captions().items()}
+CAPTIONS: dict[str, dict[str, tuple[str, ...]]] = {skill: dict.fromkeys(some, ()) for skill, some in captions().items()}
 WISH = Wish("sad", "bedroom", 2, ("bed", "wardrobe", "desk", "chair"))
 ANOTHER = LIBRARY.get("insomnia-at-three")
 ALL = ["bed", "desk", "chair", *(one.piece[0] for one in ANOTHER.keyframes if not one.on_floor)]

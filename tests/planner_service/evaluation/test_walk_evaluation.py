@@ -7,6 +7,7 @@ import os
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -49,20 +50,20 @@ def walked(speed: float, seed: int, length: float = 6.0) -> Motion:
     return Motion(root.astype(np.float32), local.astype(np.float32), contacts, SKELETON, actions)
 
 
-def entry(person: int, motion: Motion, **changes: object) -> Entry:
+def entry(person: int, motion: Motion, **changes: Any) -> Entry:
     plain = Entry(
         name=f"{person}", skill="loco", style="neutral", emotion="neutral", captions=("a person walks",),
         subject=f"person {person}", kind="real mocap", licence="", source="", changed=(), split="train", motion=motion,
         hands=np.zeros((len(motion), 2), dtype=np.bool_),
     )  # fmt: skip
-    return replace(plain, **changes)  # type: ignore[arg-type]
+    return replace(plain, **changes)
 
 
 @cache
 def collection() -> Dataset:
     """Walks of our own that pass for recorded ones, and what must not be taken for one."""
     entries = [entry(person, walked(0.9 + 0.12 * person, person)) for person in range(PEOPLE)]
-    odd = [
+    odd: list[dict[str, Any]] = [
         {"style": "zombie"}, {"style": "running/hurried"}, {"captions": ("a person runs",)}, {"kind": "hand-keyed"},
         {"kind": "model-generated"}, {"changed": ("mirrored",)}, {"skill": "touch"}, {"style": "exaggerated stride"},
     ]  # fmt: skip

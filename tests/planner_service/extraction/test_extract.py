@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 from examples import tries
@@ -47,9 +48,9 @@ from while sofa bed desk wardrobe kitchen book wine angry happy . , ! ? INT. BED
 WORDS = st.sampled_from([*MATERIAL.split(), "\n\n"])
 
 
-def taken_out(text: str | bytes, **means: object) -> Extraction:
+def taken_out(text: str | bytes, **means: Any) -> Extraction:
     data = text if isinstance(text, bytes) else text.encode()
-    return extract(Source("a text", io.BytesIO(data)), Means(LIBRARY, **means))  # type: ignore[arg-type]
+    return extract(Source("a text", io.BytesIO(data)), Means(LIBRARY, **means))
 
 
 def summaries(extraction: Extraction) -> list[str]:

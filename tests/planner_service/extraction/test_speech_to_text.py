@@ -12,6 +12,7 @@ from functools import cache
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -113,10 +114,8 @@ def test_a_server_s_segments_become_cues_within_their_piece() -> None:
     told: list[float] = []
     with speech_server(good(SEGMENTS)) as (url, asked):
         heard = hear(ServedTranscriber(url, "whisper-1", "secret-key-1"), film(), lambda _, share: told.append(share))
-    assert [(cue.start, cue.text, cue.sounds) for cue in heard.cues] == [
-        (pytest.approx(0.2, abs=0.1), "Hello there.", ()),
-        (pytest.approx(1.0, abs=0.1), "Sit down.", ("sighs",)),
-    ]
+    assert [cue.start for cue in heard.cues] == pytest.approx([0.2, 1.0], abs=0.1)
+    assert [(cue.text, cue.sounds) for cue in heard.cues] == [("Hello there.", ()), ("Sit down.", ("sighs",))]
     assert heard.cues[-1].end <= 2.2
     assert heard.notes == ("what is said was heard by asr:whisper-1",)
     assert told[-1] == 1.0
@@ -186,7 +185,7 @@ def test_a_server_that_is_not_there_is_named(monkeypatch: pytest.MonkeyPatch) ->
         ServedTranscriber("http://127.0.0.1:9/v1", "m").transcribe(SoundPiece(0, 1, b""))
 
 
-def chosen(**given: object) -> Settings:
+def chosen(**given: Any) -> Settings:
     return Settings(_env_file=None, **given)
 
 
@@ -194,7 +193,9 @@ def test_settings_choose_the_transcriber(tmp_path: Path) -> None:
     assert load_transcriber(chosen()) is None
     served = load_transcriber(chosen(asr_model="w", asr_base_url="http://127.0.0.1:1/v1/"))
     assert served == ServedTranscriber("http://127.0.0.1:1/v1", "w")
-    assert load_transcriber(chosen(asr_model="w", asr_api_key=SecretStr("k" * 20))).base_url.startswith("https://")
+    hosted = load_transcriber(chosen(asr_model="w", asr_api_key=SecretStr("k" * 20)))
+    assert isinstance(hosted, ServedTranscriber)
+    assert hosted.base_url.startswith("https://")
     (tmp_path / "model.bin").write_bytes(b"no model")
     for given, says in (
         ({"asr_model": "w"}, "SIMS_ASR_API_KEY"),

@@ -18,8 +18,8 @@ from for_each import for_each
 
 from planner_service.extraction.shot_detection import Shot, shots_of
 from planner_service.extraction.subtitles import embedded_cues
-from planner_service.extraction.video import Film, FilmError, FilmLimits, Frame, frames_at, open_film, pictures
-from planner_service.extraction.video_container import container_of
+from planner_service.extraction.video import Film, FilmLimits, Frame, frames_at, open_film, pictures
+from planner_service.extraction.video_container import FilmError, container_of
 from planner_service.extraction.video_frames import Album
 
 whole = cache(four_shots)
@@ -40,7 +40,7 @@ def read_or_refused(data: bytes, limits: FilmLimits | None = None) -> tuple[Shot
 
 def colour_of(frame: Frame) -> np.ndarray:
     """The mean colour of a JPEG, as it is decoded by itself."""
-    with av.open(io.BytesIO(frame.jpeg), format="jpeg_pipe") as container:
+    with av.open(io.BytesIO(frame.jpeg), "r", format="jpeg_pipe") as container:
         return next(container.decode(video=0)).to_ndarray(format="rgb24").mean(axis=(0, 1))
 
 
@@ -77,7 +77,7 @@ def test_frames_can_be_asked_for_in_any_order_twice_and_beyond_the_end() -> None
 def test_frames_are_small() -> None:
     film = opened(film_of([Drawn(0.25)], Making(size=(800, 450))))
     frame = next(frames_at(film, [0.0]))
-    with av.open(io.BytesIO(frame.jpeg), format="jpeg_pipe") as container:
+    with av.open(io.BytesIO(frame.jpeg), "r", format="jpeg_pipe") as container:
         picture = next(container.decode(video=0))
     assert (picture.width, picture.height) == (512, 288)
     assert frame.jpeg.startswith(b"\xff\xd8\xff")
@@ -286,7 +286,7 @@ def test_a_reference_to_another_file_is_not_followed(tmp_path: Path) -> None:
     other.write_bytes(whole())
     forged = _referring(whole(), str(other))
     options = {"enable_drefs": "1", "use_absolute_path": "1"}
-    with av.open(io.BytesIO(forged), format="mp4", container_options=options) as container:
+    with av.open(io.BytesIO(forged), "r", format="mp4", container_options=options) as container:
         assert len(list(container.decode(video=0))) == 96, "the forgery works where references are followed"
     with pytest.raises(FilmError):
         opened(forged)

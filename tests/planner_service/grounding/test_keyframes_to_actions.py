@@ -33,7 +33,7 @@ def keyframe(skill: str, caption: str = "x", furniture: str = "floor") -> Keyfra
     return Keyframe(skill=Skill(skill), caption=caption, furniture=furniture, emotion="neutral")
 
 
-def grounded(*rows: tuple[str, str, str | None], home: Home = HOME, seed: int = 0):  # type: ignore[no-untyped-def]
+def grounded(*rows: tuple[str, str, str | None], home: Home = HOME, seed: int = 0):
     keyframes = [keyframe(skill, caption, object_id or "floor") for skill, caption, object_id in rows]
     places = [Place(0, f"0/{object_id}" if object_id else None) for _, _, object_id in rows]
     return act(keyframes, places, home, seed)

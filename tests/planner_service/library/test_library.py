@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from databases import DATABASES
@@ -50,8 +51,8 @@ def room(layout_id: str = "my-room", seed: int = 3) -> Layout:
     return replace(generate_room("living_room", seed), id=layout_id)
 
 
-def settings(folder: Path, **changes: object) -> Settings:
-    return Settings(_env_file=None, **{"data_dir": folder, **changes})  # type: ignore[call-arg, arg-type]
+def settings(folder: Path, **changes: Any) -> Settings:
+    return Settings(_env_file=None, **{"data_dir": folder, **changes})
 
 
 @pytest.fixture(params=DATABASES)

@@ -42,7 +42,7 @@ def script(script_id: str = "my-nap", **changes: object) -> ShortScript:
 def opening(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Opening]:
     """Opens shelves as another process would, on a database of either kind."""
     address = "" if request.param == "sqlite" else request.getfixturevalue("postgres_url")
-    url = database_url(Settings(_env_file=None, data_dir=tmp_path, database_url=address))  # type: ignore[call-arg]
+    url = database_url(Settings(_env_file=None, data_dir=tmp_path, database_url=address))
     engines: list[Engine] = []
 
     def opened() -> Shelves:
@@ -57,7 +57,7 @@ def opening(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Opening]
 @pytest.fixture
 def shelves(tmp_path: Path) -> Iterator[Shelves]:
     """Shelves on an empty SQLite file."""
-    engine = open_engine(database_url(Settings(_env_file=None, data_dir=tmp_path)))  # type: ignore[call-arg]
+    engine = open_engine(database_url(Settings(_env_file=None, data_dir=tmp_path)))
     yield Shelves(engine)
     engine.dispose()
 
@@ -193,7 +193,7 @@ def test_a_full_shelf_takes_changes_and_nothing_new(shelves: Shelves) -> None:
 
 
 def test_a_database_of_the_version_before_gets_its_table(tmp_path: Path) -> None:
-    url = database_url(Settings(_env_file=None, data_dir=tmp_path))  # type: ignore[call-arg]
+    url = database_url(Settings(_env_file=None, data_dir=tmp_path))
     engine = open_engine(url)
     Shelves(engine).add_scripts(script())
     script_versions.drop(engine)

@@ -41,6 +41,9 @@ class Spoken:
         self.asked.append((question, tokens, seconds))
         return Reply(self.texts.pop(0) if len(self.texts) > 1 else self.texts[0], *self.tokens)
 
+    def close(self) -> None:
+        """Nothing is waited for."""
+
 
 SOUP = '{"dish": "soup"}'
 

@@ -20,7 +20,7 @@ KEY = "sk-test-0123456789abcdef"
 
 
 def settings(**given: Any) -> Settings:
-    return Settings(_env_file=None, **given)  # type: ignore[call-arg]
+    return Settings(_env_file=None, **given)
 
 
 def test_no_name_means_rules() -> None:

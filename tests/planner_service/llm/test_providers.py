@@ -10,6 +10,7 @@ import threading
 import time
 import tracemalloc
 from collections.abc import Callable, Iterator
+from functools import partial
 
 import pytest
 from model_server import Asked, Behaviour, ModelServer, Sent, chat, dripping, endless, failing, in_turn
@@ -52,6 +53,10 @@ def served(server: ModelServer, seconds: float = 10.0, kind: Kind = "openai", ke
     url = server.url.removesuffix("/v1") if kind == "anthropic" else server.url
     model = {"openai": "gpt-x", "ollama": "qwen3", "anthropic": "claude-sonnet-5-5"}[kind]
     return ServedModel(Vendor(Address(kind, model, url, key)), Spending(Limits(seconds=seconds)))
+
+
+def always(sent: Sent, _: Asked) -> Sent:
+    return sent
 
 
 @pytest.fixture(autouse=True)
@@ -259,10 +264,12 @@ def test_the_key_is_in_no_error_log_or_name(caplog: pytest.LogCaptureFixture) ->
     caplog.set_level(logging.DEBUG, "sims")
     for text in said:
         for status in (400, 401, 500):
-            with ModelServer(lambda _, t=text, s=status: failing(s, {"error": {"message": t}})) as server:
+            answer = failing(status, {"error": {"message": text}})
+            with ModelServer(partial(always, answer)) as server:
                 model = served(server)
                 with pytest.raises(ServerError) as error:
                     model.answer("?", Meal)
+            assert isinstance(model.source, Vendor)
             shown = f"{error.value!r} {error.value.__cause__!r} {model!r} {model.source!r} {model.source.address!r}"
             assert KEY[:12] not in shown
             assert KEY[-12:] not in shown

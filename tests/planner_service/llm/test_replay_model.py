@@ -36,6 +36,9 @@ class Cook:
         self.asked += 1
         return Reply('{"dish": "soup"}' if "refused" in question.prompt else "no ☕", 7, 3)
 
+    def close(self) -> None:
+        """Nothing is waited for."""
+
 
 def prompt(furniture: str = "a chair") -> str:
     return prompts.render("try_model", furniture=furniture)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Mapping
 from importlib import resources
+from typing import Any
 
 import pytest
 from examples import tries
@@ -277,12 +279,13 @@ def test_unknown_captions_are_told_by_their_mood(skill: Skill, caption: str) -> 
 def test_every_caption_has_its_own_words_and_every_phrase_starts_with_a_verb() -> None:
     captions = {(k.skill, k.caption) for script in LIBRARY for k in script.keyframes}
     known = templates()
-    tables = {Skill.LOCO: known.walks, Skill.SITDOWN: known.sits, Skill.LIEDOWN: known.lies}
+    tables: dict[Skill, Iterable[str]] = {Skill.LOCO: known.walks, Skill.SITDOWN: known.sits, Skill.LIEDOWN: known.lies}
     for skill, table in tables.items():
         assert {caption for of, caption in captions if of == skill} == set(table)
     walks = [*known.walks.values(), *known.walks_in_mood.values()]
     phrases = [t for walk in walks for t in (*walk.to, *walk.about)]
-    for by_word in (known.sits_in_mood, known.lies_in_mood, known.rises, known.touches, *known.touches_at.values()):
+    worded: list[Mapping[Any, tuple[str, ...]]] = [known.sits_in_mood, known.lies_in_mood, known.rises, known.touches]
+    for by_word in (*worded, *known.touches_at.values()):
         phrases += [t for ways in by_word.values() for t in ways]
     verbs = {verb for t in phrases for verb in re.findall(r"(?:^|~)(\w+)", t)}
     assert verbs - _BASES == set()

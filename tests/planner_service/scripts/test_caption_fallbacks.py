@@ -60,8 +60,8 @@ def test_other_words_for_a_known_caption_are_acted_as_it() -> None:
 
 
 def test_words_near_to_nothing_are_acted_as_the_mood_usually_is() -> None:
-    assert acted(Skill.LOCO, "xyzzy", "sad") == "walk with depression"
-    assert acted(Skill.SITDOWN, "xyzzy", "angry") == "crossing arms"
+    assert acted(Skill.LOCO, "xyzzy", Emotion.SAD) == "walk with depression"
+    assert acted(Skill.SITDOWN, "xyzzy", Emotion.ANGRY) == "crossing arms"
 
 
 def test_the_report_says_what_stood_in_and_the_story_keeps_its_words(monkeypatch: pytest.MonkeyPatch) -> None:

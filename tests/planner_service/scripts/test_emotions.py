@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -23,7 +26,11 @@ from scene_graphs.layout import Layout
 
 HOME = home_from_layouts([Layout("room", "study", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)), objects=())], 0)
 NAMED = [(stem.replace("*", ""), emotion) for emotion, stems in naming_words().items() for stem in stems]
-STYLES = {Skill.LOCO: walk_style, Skill.SITDOWN: sit_style, Skill.LIEDOWN: lie_style}
+STYLES: dict[Skill, Callable[[Emotion, str], Any]] = {
+    Skill.LOCO: walk_style,
+    Skill.SITDOWN: sit_style,
+    Skill.LIEDOWN: lie_style,
+}
 
 
 def hinted() -> list[str]:

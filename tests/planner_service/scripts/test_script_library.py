@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -115,9 +116,9 @@ def test_search_keeps_to_the_emotion_and_room_asked_for() -> None:
         ("x", {"k": 0}, "query"),
     ],
 )
-def test_a_search_for_nothing_is_refused(query: str, options: dict[str, object], fault: str) -> None:
+def test_a_search_for_nothing_is_refused(query: str, options: dict[str, Any], fault: str) -> None:
     with pytest.raises(LibraryError, match=f"^{fault}: "):
-        small(nap()).search(query, **options)  # type: ignore[arg-type]
+        small(nap()).search(query, **options)
 
 
 def test_a_caption_counts_less_than_a_summary() -> None:

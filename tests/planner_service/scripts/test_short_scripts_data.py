@@ -133,7 +133,7 @@ def test_no_two_scripts_are_played_alike() -> None:
 
 
 def test_every_emotion_is_shown_in_every_room_at_least_ten_times() -> None:
-    cells = Counter((script.emotion, script.room) for script in SCRIPTS)
+    cells: Counter[tuple[str, str]] = Counter((script.emotion, script.room) for script in SCRIPTS)
     assert {cell: count for cell in product(EMOTIONS, ROOM_TYPES) if (count := cells[cell]) < 10} == {}
 
 

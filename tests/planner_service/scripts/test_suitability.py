@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -72,7 +73,7 @@ def test_a_summary_begins_with_what_must_have_been(summary: str, before: Before)
 
 
 def test_only_who_lies_and_sleeps_is_left_asleep() -> None:
-    lying = {"keyframes": [Keyframe(skill=Skill.LIEDOWN, caption="hands on belly", furniture="bed")]}
+    lying: dict[str, Any] = {"keyframes": [Keyframe(skill=Skill.LIEDOWN, caption="hands on belly", furniture="bed")]}
     assert after_of(script(1, "The character falls asleep.", **lying)) is After.ASLEEP
     assert after_of(script(1, "The character cannot fall asleep.", **lying)) is After.ABOUT
     assert after_of(script(1, "The character falls asleep.")) is After.ABOUT
@@ -119,7 +120,7 @@ def test_among_equals_the_room_and_the_mood_stay() -> None:
 
 
 def test_after_falling_asleep_comes_waking_rather_than_going_on() -> None:
-    lying = {"keyframes": [Keyframe(skill=Skill.LIEDOWN, caption="hands on belly", furniture="bed")]}
+    lying: dict[str, Any] = {"keyframes": [Keyframe(skill=Skill.LIEDOWN, caption="hands on belly", furniture="bed")]}
     scripts = [script(0, "The character falls asleep.", **lying), script(1), script(2, "The character wakes up.")]
     assert following([row([1.0], [0]), row([0.5, 0.45], [1, 2])], scripts) == [0, 2]
     assert following([row([0.5, 0.45], [1, 2])], scripts) == [1]

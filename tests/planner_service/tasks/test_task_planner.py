@@ -262,6 +262,7 @@ def test_the_body_reaches_every_step_that_is_said_to_be_acted(action: str, pipel
         doing = [made.actions[index] for index in step.keyframes]
         if step.category == "grasp":
             assert (doing[-1].skill, doing[-1].hand) == (Skill.TOUCH, step.hand)
+            assert step.object is not None
             assert step.object in str(doing[-1].holds)
         elif step.category == "interaction":
             assert step.step in str(doing[-1].interaction)
@@ -302,13 +303,14 @@ def test_a_model_is_told_what_is_wrong_with_its_steps(change: dict[str, Any], fa
 
 
 def test_a_model_that_gives_nothing_usable_leaves_it_to_the_rules_unless_they_may_not() -> None:
-    answers = ["no", {"steps": []}, {"steps": PAPERS * 5}]
+    answers: list[Any] = ["no", {"steps": []}, {"steps": PAPERS * 5}]
     plan = plan_task("watch TV", None, ScriptedModel(answers))
     assert plan.planner == "rules"
     assert plan.notes[0].startswith("planned by rules: scripted gave no usable TaskSteps in 3 attempts")
-    for options in ({"insist": True}, {"method": "model"}):
+    insisting: tuple[dict[str, Any], ...] = ({"insist": True}, {"method": "model"})
+    for options in insisting:
         with pytest.raises(ModelAnswerError, match="steps: 25 of them, wanted 1 to 24"):
-            plan_task("watch TV", None, ScriptedModel(answers), **options)  # type: ignore[arg-type]
+            plan_task("watch TV", None, ScriptedModel(answers), **options)
     with pytest.raises(TaskError, match="method: there is no language model; set SIMS_LLM_MODEL"):
         plan_task("watch TV", method="model")
     asked = ScriptedModel([])

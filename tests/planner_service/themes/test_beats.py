@@ -124,7 +124,7 @@ def test_any_text_has_events_or_is_refused(theme: str) -> None:
 
 def test_what_is_not_text_is_refused() -> None:
     with pytest.raises(ThemeError, match="it is bytes, not text"):
-        clauses_of(b"He sits.")  # type: ignore[arg-type]
+        clauses_of(b"He sits.")  # type: ignore[arg-type]  # bytes
 
 
 def test_rooms_are_read_in_order() -> None:

@@ -131,11 +131,11 @@ def test_the_bound_is_a_sum_of_clipped_counts(query: FurnitureGraph, room: Furni
             costs = COSTS.of(next(node.category for node in query if of(node.category) == name))
             most = costs.delete + costs.insert if upper is None else getattr(costs, upper)
             bound -= (most - (getattr(costs, lower) if lower else 0)) * min(number, there[name])
-    asked, there = (
+    asked_pairs, there_pairs = (
         Counter(tuple(sorted((group_of(a.category), group_of(b.category)))) for a, b in graph.edges)
         for graph in (query, room)
     )
-    bound -= 20 * sum(min(number, there[pair]) for pair, number in asked.items())
+    bound -= 20 * sum(min(number, there_pairs[pair]) for pair, number in asked_pairs.items())
     assert lower_bound(query, room) == bound
 
 
@@ -164,7 +164,8 @@ def by_hand(query: FurnitureGraph, room: FurnitureGraph, costs: CostTable) -> in
         ]
         if None in steps:
             continue
-        kept = sum(room.has_edge(where[a], where[b]) for a, b in query.edges)
+        ends = [(where[a], where[b]) for a, b in query.edges]
+        kept = sum(a is not None and b is not None and room.has_edge(a, b) for a, b in ends)
         cost = sum(step for step in steps if step is not None)
         cost += sum(costs.of(r.category).insert for r in room if r not in hit)
         cost += costs.lost_edge * (query.number_of_edges() - kept) + costs.extra_edge * (room.number_of_edges() - kept)

@@ -169,4 +169,4 @@ def test_words_for_one_category_are_counted_together() -> None:
 
 def test_an_unknown_method_is_named() -> None:
     with pytest.raises(ValueError, match="canonical or aligned, got 'greedy'"):
-        merge([], "greedy")  # type: ignore[arg-type]
+        merge([], "greedy")  # type: ignore[arg-type]  # no such method

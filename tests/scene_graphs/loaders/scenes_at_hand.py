@@ -22,7 +22,9 @@ def mesh_of(placed: Placed) -> trimesh.Trimesh:
     for part in parts(placed.category, placed.size):
         boxes.append(trimesh.creation.box(extents=part.size))
         boxes[-1].apply_translation(part.center)
-    return trimesh.util.concatenate(boxes)
+    whole = trimesh.util.concatenate(boxes)
+    assert isinstance(whole, trimesh.Trimesh)
+    return whole
 
 
 def pose_of(placed: Placed) -> np.ndarray:

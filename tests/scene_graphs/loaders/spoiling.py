@@ -7,7 +7,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-JUNK = st.sampled_from(
+JUNK: st.SearchStrategy[Any] = st.sampled_from(
     [
         *(None, True, False, 0, -1, 1, 3, 10**30, -(10**400), 2**63, 1e308, -1e-320, 0.5),
         *(float("nan"), float("inf"), float("-inf")),

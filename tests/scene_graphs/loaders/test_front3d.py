@@ -121,7 +121,7 @@ def test_a_scale_that_is_none_drops_the_piece(scale: list[Any]) -> None:
 
 
 def test_only_valid_models_with_a_size_are_kept_and_the_others_counted() -> None:
-    entries = [
+    entries: list[Json] = [
         {"uid": "a", "valid": False, "size": [1, 1, 1], "title": "sofa"},
         {"uid": "b", "size": [1, 1, 1], "title": "sofa"},
         {"uid": "c", "valid": True, "title": "sofa"},

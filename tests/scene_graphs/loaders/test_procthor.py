@@ -80,7 +80,7 @@ def house_with(*objects: dict[str, Any]) -> dict[str, Any]:
     return {**HOUSE, "objects": list(objects)}
 
 
-def thing(asset: str, x: float = 2.0, y: float = 0.4, z: float = 1.5, **more: Any) -> dict[str, Any]:
+def thing(asset: str, x: float = 2.0, y: Any = 0.4, z: float = 1.5, **more: Any) -> dict[str, Any]:
     return {"id": f"2|{asset}", "assetId": asset, "position": vector(x, y, z), "rotation": vector(0, 0, 0), **more}
 
 

@@ -80,7 +80,7 @@ def test_floors_are_united_as_another_way_unites_them() -> None:
     for count in (0, 1, 2, 3, 50):
         corners = rng.uniform(0, 4, (count, 3, 2))
         polygons = np.asarray(shapely.polygons(corners) if count else [], dtype=object)
-        assert united(polygons).symmetric_difference(shapely.union_all(polygons)).area < 1e-9
+        assert shapely.symmetric_difference(united(polygons), shapely.union_all(polygons)).area < 1e-9
 
 
 def test_triangles_that_are_points_take_nothing_from_the_floor() -> None:

@@ -15,6 +15,7 @@ from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 
+from scene_graphs.errors import FieldPath
 from scene_graphs.json_fields import LayoutError
 from scene_graphs.loaders import Source
 from scene_graphs.loaders import scene_source as bounds
@@ -66,7 +67,7 @@ def test_a_zip_of_very_many_files_is_refused() -> None:
 @pytest.mark.sweep
 def test_a_text_of_very_many_values_or_rows_is_refused_before_it_fills_the_memory() -> None:
     with pytest.raises(LayoutError, match="values"):
-        parse_json("[" + "[]," * bounds.MAX_VALUES + "[]]", "a")
+        parse_json("[" + "[]," * bounds.MAX_VALUES + "[]]", FieldPath(file="a"))
     with pytest.raises(LayoutError, match="rows"):
         for _ in Source.of_bytes("a", b"{}\n" * (bounds.MAX_ROWS + 2)).rows():
             pass

@@ -125,7 +125,8 @@ def test_a_room_without_tiles_has_its_own_box_for_a_floor() -> None:
 
 
 def test_what_is_no_graph_is_refused() -> None:
-    for junk in ({"rooms": []}, [1], "graph", None):
+    no_graphs: tuple[Any, ...] = ({"rooms": []}, [1], "graph", None)
+    for junk in no_graphs:
         with pytest.raises(LayoutError, match="nodes and edges"):
             read(junk)
 

@@ -71,7 +71,7 @@ def test_furniture_is_drawn_where_it_stands_and_turned_as_it_stands() -> None:
     here = furniture_meshes(Placed("a", "desk", (0.0, 0.0, 0.0), size))
     moved = Placed("a", "desk", (2.0, 0.0, -1.0), size, 0.7)
     for at_home, away in zip(here, furniture_meshes(moved), strict=True):
-        assert np.allclose(moved.to_world(at_home.vertices), away.vertices, atol=1e-5)
+        assert np.allclose(moved.to_world(at_home.vertices.astype(float)), away.vertices, atol=1e-5)
 
 
 def test_chairs_of_a_set_match_in_colour() -> None:

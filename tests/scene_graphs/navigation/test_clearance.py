@@ -77,5 +77,6 @@ def test_clearance_is_the_distance_to_the_nearest_of_few_or_many_obstacles(count
     found = measure_clearance(floor, Rectangles.of(np.stack(outlines)), walls, cell=0.2)
     i, j = np.indices(found.distances.shape).reshape(2, -1)
     cells = shapely.points(found.origin[0] + 0.2 * i, found.origin[1] + 0.2 * j)
-    exact = shapely.distance(shapely.union_all([floor.exterior, *shapely.polygons(outlines)]), cells)
+    obstacles = [floor.exterior, *(shapely.Polygon(outline) for outline in outlines)]
+    exact = shapely.distance(shapely.union_all(obstacles), cells)
     assert np.allclose(found.distances[i, j], exact, atol=1e-9)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import combinations
+from typing import Any
 
 import networkx as nx
 import pytest
@@ -235,9 +236,10 @@ def test_what_cannot_be_asked_for_is_named() -> None:
     for most in (0, 5):
         with pytest.raises(ValueError, match=f"max_rooms must be 1 to 4, got {most}"):
             retrieve_home(index, query, most)
-    for wrong in ({"k": 0}, {"budget": 0}, {"limit": 0}, {"effort": -3}):
+    wrongs: tuple[dict[str, Any], ...] = ({"k": 0}, {"budget": 0}, {"limit": 0}, {"effort": -3})
+    for wrong in wrongs:
         with pytest.raises(ValueError, match="k, limit, budget and effort must be at least 1"):
-            retrieve_home(index, query, 2, **wrong)  # type: ignore[arg-type]
+            retrieve_home(index, query, 2, **wrong)
     with pytest.raises(ValueError, match="no furniture"):
         retrieve_home(index, nx.Graph(), 2)
     with pytest.raises(ValueError, match="at most 52 pieces"):

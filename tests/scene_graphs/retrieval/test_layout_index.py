@@ -144,7 +144,7 @@ def test_a_room_is_not_called_the_nearest_while_one_that_met_the_limit_may_be_ne
     rooms = [room("apart", []), room("hidden", [])]
     offers = frozenset({"sit"})
     for graph in (apart, hidden):
-        nx.set_node_attributes(graph, offers, "offers")
+        nx.set_node_attributes(graph, dict.fromkeys(graph, offers), "offers")
     index = LayoutIndex.of_packed(pack([apart, hidden], rooms), rooms)
     assert [(match.layout_id, match.distance) for match in index.search(query, 2)] == [("hidden", 3), ("apart", 40)]
     (match,) = index.search(query, limit=4)

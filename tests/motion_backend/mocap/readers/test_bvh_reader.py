@@ -10,6 +10,7 @@ import pytest
 from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
+from sample_motions import tumbling
 from scipy.spatial.transform import Rotation
 
 from motion_backend import rotations
@@ -18,7 +19,6 @@ from motion_backend.mocap.clip import ClipError
 from motion_backend.mocap.joint_map import find_map
 from motion_backend.mocap.readers import read_clips
 from motion_backend.mocap.readers.bvh_reader import euler_to_quat, read_bvh_clip
-from tests.motion_backend.sample_motions import tumbling
 
 CHAIN = """HIERARCHY
 ROOT base
@@ -52,7 +52,7 @@ def body(frames, turn=OURS, metres=100.0, order="ZXY", own=None) -> str:
 
     turn: from our axes to the file's; own: axes of a joint's own, in which what hangs on it is told.
     """
-    places = {
+    places: dict[str, tuple[str | None, tuple[float, float, float]]] = {
         "Hips": (None, (0, 0, 0)),
         "Spine": ("Hips", (0, 0.11, 0)), "Spine1": ("Spine", (0, 0.12, 0)), "Spine2": ("Spine1", (0, 0.12, 0)),
         "Neck": ("Spine2", (0, 0.2, 0)), "Head": ("Neck", (0, 0.1, 0)),

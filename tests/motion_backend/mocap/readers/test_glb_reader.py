@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,7 +22,7 @@ class Character:
 
     def __init__(self) -> None:
         self.binary = bytearray()
-        self.json = {
+        self.json: dict[str, Any] = {
             "asset": {"version": "2.0"},
             "nodes": [
                 {"name": "Armature", "children": [1], "scale": [0.5, 0.5, 0.5], "translation": [1, 0, 0]},
@@ -90,7 +91,7 @@ def test_every_animation_is_a_clip_and_what_only_steers_is_left_out(tmp_path):
 
 def test_sizes_and_places_above_the_hips_go_into_the_path(tmp_path):
     (clip,) = turning().read(tmp_path)
-    np.testing.assert_allclose(clip.root_positions[[0, -1]], [[1, 1, 0], [1, 1.5, 0]], atol=1e-6)
+    np.testing.assert_allclose(clip.root_positions[[0, -1]], np.array([[1, 1, 0], [1, 1.5, 0]]), atol=1e-6)
     foot = clip.joint_positions()[:, clip.bones.index("foot.l")]
     np.testing.assert_allclose(foot[0], [1.1, 0, 0], atol=1e-6)
     np.testing.assert_allclose(foot[-1], [1, 0.5, -0.1], atol=1e-6)
@@ -104,7 +105,7 @@ def test_uneven_keys_are_resampled_along_the_arc(tmp_path):
 
 
 def test_stepped_keys_stay_until_the_next(tmp_path):
-    times, values = np.arange(4) / 10, [[0, 0, 0, 1], QUARTER, QUARTER, [0, 0, 0, 1]]
+    times, values = np.arange(4) / 10, np.array([[0, 0, 0, 1], QUARTER, QUARTER, [0, 0, 0, 1]])
     character = Character().animate("Step", (2, "rotation", times, values), interpolation="STEP")
     character.animate("Long", (2, "rotation", [0.0, 0.95], [[0, 0, 0, 1], QUARTER]), interpolation="STEP")
     step, long = character.read(tmp_path)
@@ -133,7 +134,7 @@ def test_a_pose_is_held_for_two_frames(tmp_path):
 
 
 def change(character: Character, *path, value) -> Character:
-    place = character.json
+    place: Any = character.json
     for step in path[:-1]:
         place = place[step]
     place[path[-1]] = value

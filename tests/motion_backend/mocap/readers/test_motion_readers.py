@@ -12,12 +12,12 @@ import pytest
 from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
+from sample_motions import tumbling
 
 from motion_backend.formats.npz import write_npz
 from motion_backend.mocap.clip import ClipError, make_bones, make_clip
 from motion_backend.mocap.readers import FORMATS, read_clips
 from motion_backend.mocap.readers.expmap import WIDTH
-from tests.motion_backend.sample_motions import tumbling
 
 HALF = np.sqrt(0.5)
 INCH = 0.0254
@@ -71,6 +71,10 @@ thigh 90 0
 def written(path: Path, content: str | bytes) -> Path:
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
     return path
+
+
+def changed(text: str, change: tuple[str, str] | None) -> str:
+    return text if change is None else text.replace(*change, 1)
 
 
 def at(clip, *joints):
@@ -156,7 +160,7 @@ def test_broken_acclaim_says_what_is_wrong(tmp_path, asf, amc, fault):
     for change, text in ((asf, ASF), (amc, AMC)):
         assert change is None or change[0] in text
     with pytest.raises(ClipError, match=fault):
-        acclaim(tmp_path, ASF.replace(*asf, 1) if asf else ASF, AMC.replace(*amc, 1) if amc else AMC)
+        acclaim(tmp_path, changed(ASF, asf), changed(AMC, amc))
 
 
 def test_a_skeleton_alone_is_no_motion(tmp_path):
@@ -419,8 +423,8 @@ def test_amp_faces_z_with_its_left_on_x(tmp_path):
     assert clip.fps == 60.0
     np.testing.assert_allclose(clip.root_positions, [[0, 0.9, 0], [2, 0.9, 1]], atol=1e-6)
     np.testing.assert_allclose(at(clip, "torso")[:, 0, 1], 1.15, atol=1e-6)
-    np.testing.assert_allclose(at(clip, "left_thigh")[0, 0], [0.1, 0.9, 0], atol=1e-6)
-    np.testing.assert_allclose(at(clip, "left_thigh")[1, 0] - clip.root_positions[1], [0, 0, -0.1], atol=1e-6)
+    np.testing.assert_allclose(at(clip, "left_thigh")[0, 0], np.array([0.1, 0.9, 0]), atol=1e-6)
+    np.testing.assert_allclose(at(clip, "left_thigh")[1, 0] - clip.root_positions[1], np.array([0, 0, -0.1]), atol=1e-6)
 
 
 def test_world_rotations_of_amp_are_made_local(tmp_path):

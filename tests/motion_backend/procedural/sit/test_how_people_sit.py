@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
@@ -34,7 +35,7 @@ def risings() -> list[tuple[Name, Body]]:
     return [*found, *((("chair", words), risen_from("chair", words)) for words in ("stand up abruptly",))]
 
 
-def failures(found: list[tuple[Name, object, object]]) -> list[tuple[Name, object]]:
+def failures(found: Sequence[tuple[Name, object, object]]) -> list[tuple[Name, object]]:
     """What is not so, with its figure."""
     return [(name, figure) for name, fine, figure in found if not fine]
 

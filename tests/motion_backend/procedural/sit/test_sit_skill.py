@@ -34,7 +34,7 @@ def with_table(gap: float) -> Home:
 def noted(home: Home, piece: str, caption: str) -> list[str]:
     """What sitting there says it did otherwise."""
     found = spots(home.object(f"0/{piece}"), "sit")
-    spot = seat_for(found, "neutral", caption, Obstacles.of_home(home))
+    spot = seat_for(found, Emotion.NEUTRAL, caption, Obstacles.of_home(home))
     action = Action(Skill.SITDOWN, caption, Emotion.NEUTRAL, piece, f"0/{piece}", spot)
     motion, _ = BACKEND.advance(home, action, BACKEND.begin(home, Character(), 1))
     assert motion.completed, motion.reason
@@ -45,7 +45,7 @@ def noted(home: Home, piece: str, caption: str) -> list[str]:
 def test_a_seat_drawn_up_is_moved_ahead_only_and_never_left(gap: float) -> None:
     home = with_table(gap)
     (spot,) = spots(home.object("0/chair"), "sit")
-    drawn = seat_for([spot], "neutral", TYPING, Obstacles.of_home(home))
+    drawn = seat_for([spot], Emotion.NEUTRAL, TYPING, Obstacles.of_home(home))
     moved = np.asarray(drawn.point) - np.asarray(spot.point)
     ahead = np.array([np.sin(spot.facing), 0.0, np.cos(spot.facing)])
     assert moved @ ahead >= 0.0
@@ -58,7 +58,7 @@ def test_a_seat_drawn_up_is_moved_ahead_only_and_never_left(gap: float) -> None:
 def test_who_wants_no_table_sits_where_one_sits() -> None:
     home = with_table(0.5)
     found = spots(home.object("0/chair"), "sit")
-    assert seat_for(found, "neutral", "crossing arms", Obstacles.of_home(home)) is found[0]
+    assert seat_for(found, Emotion.NEUTRAL, "crossing arms", Obstacles.of_home(home)) is found[0]
 
 
 @pytest.mark.parametrize(("gap", "said"), [(0.55, []), (1.5, ["no table before the seat: each hand in the lap"])])

@@ -145,7 +145,9 @@ def test_whatever_is_done_at_a_surface_reaches_it_cleanly(caption: str, name: st
 
 def test_both_hands_wash_the_table_side_by_side() -> None:
     _, joints = performed(contact(HOME, Skill.TOUCH, "table", "wash with both hands"))
-    goal = np.asarray(contact(HOME, Skill.TOUCH, "table", "x").spot.point)  # type: ignore[union-attr]
+    spot = contact(HOME, Skill.TOUCH, "table", "x").spot
+    assert spot is not None
+    goal = np.asarray(spot.point)
     low = np.abs(joints[:, [LEFT, RIGHT], 1] - goal[1]).max(axis=1) < 0.08
     assert low.sum() > 45
     apart = np.linalg.norm(joints[low][:, LEFT] - joints[low][:, RIGHT], axis=1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
@@ -41,7 +42,7 @@ def together(one: np.ndarray, other: np.ndarray) -> float:
     return float(np.corrcoef(one, other)[0, 1])
 
 
-def failures(found: list[tuple[tuple[str, ...], bool, object]]) -> list[tuple[tuple[str, ...], object]]:
+def failures(found: Sequence[tuple[tuple[str, ...], object, object]]) -> list[tuple[tuple[str, ...], object]]:
     """What is not so, with its figure."""
     return [(name, figure) for name, fine, figure in found if not fine]
 
@@ -180,7 +181,7 @@ def head_height(body: Body) -> float:
 
 
 def test_moods_are_seen_in_pace_and_bearing() -> None:
-    mood = {emotion: walked("steadily walking forward", emotion, seed=4) for emotion in Emotion}
+    mood = {emotion.value: walked("steadily walking forward", emotion, seed=4) for emotion in Emotion}
     speed = {emotion: pace(body) for emotion, body in mood.items()}
     head = {emotion: head_height(body) for emotion, body in mood.items()}
     lean = {emotion: float(body.lean(body.way)[body.middle].mean()) for emotion, body in mood.items()}

@@ -95,10 +95,16 @@ def test_every_caption_is_walked_cleanly_to_its_end(caption: str) -> None:
     assert steps.max() * FPS < 9.0
 
 
+def overlaps_of(motion: Motion) -> rotations.Array:
+    """How deep the parts of the body are in each other. (T, P) metres."""
+    positions, world = SKELETON.forward_kinematics(motion.root_positions, motion.local_rotations)
+    return overlaps(SKELETON, positions.astype(np.float64), world)
+
+
 @pytest.mark.parametrize("caption", WALKS)
 def test_arms_keep_out_of_the_trunk_and_legs_out_of_each_other(caption: str) -> None:
     motion = walked(caption)
-    deep = overlaps(SKELETON, *SKELETON.forward_kinematics(motion.root_positions, motion.local_rotations))
+    deep = overlaps_of(motion)
     arms = [index for index, pair in enumerate(pairs()) if "arm" in pair[0] and pair[1] in ("torso", "pelvis", "head")]
     legs = [index for index, pair in enumerate(pairs()) if "thigh" in pair[0] or "shin" in pair[0]]
     assert deep[:, arms].max() < 0.03
@@ -118,7 +124,7 @@ LEGS = [index for index, (part, _) in enumerate(pairs()) if part.endswith(("thig
 def test_legs_keep_out_of_each_other_in_turns_and_on_short_ways(way: str) -> None:
     goal, end_yaw = SHORT_WAYS[way]
     motion = walked("steadily walking forward", end_yaw=end_yaw, goal=goal)
-    deep = overlaps(SKELETON, *SKELETON.forward_kinematics(motion.root_positions, motion.local_rotations))
+    deep = overlaps_of(motion)
     assert deep[:, LEGS].max() < 0.035
 
 

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -24,7 +25,7 @@ def keyframe(index: int) -> dict[str, object]:
 
 def artifacts(count: int, segments: int, told: bool = True) -> list[Artifact]:
     """What a story of `count` actions has made when `segments` of them are moved."""
-    made = [
+    made: list[tuple[str, dict[str, Any], str]] = [
         ("script", {"keyframes": [keyframe(i) for i in range(count)], "planner": "rules"}, "furnish"),
         ("home", {"home": {"rooms": []}}, "narrate" if told else "act"),
         ("told", {"title": "T", "text": "Told."}, "act"),
@@ -42,13 +43,13 @@ def artifacts(count: int, segments: int, told: bool = True) -> list[Artifact]:
     return found
 
 
-def record(made: list[Artifact], status: str, **more: object) -> Record:
+def record(made: list[Artifact], status: str, **more: Any) -> Record:
     base = Record(
         id=new_id(1_700_000_000_000), kind="story", created=1_700_000_000_000, theme="t", title=None, seed=0,
         backend="procedural", stage="plan", progress=0.1, error=None, status=status, attempts=1, method="matching",
         character={"name": "Sam", "pronouns": "they", "height": 1.7}, artifacts=tuple(made),
     )  # fmt: skip
-    return replace(base, **more)  # type: ignore[arg-type]
+    return replace(base, **more)
 
 
 @st.composite
