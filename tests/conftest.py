@@ -52,6 +52,8 @@ def postgres_server() -> Iterator[PostgresServer]:
         connection.execute("ALTER SYSTEM SET fsync = off")
         connection.execute("SELECT pg_reload_conf()")
     yield server
+    # Whichever test comes last has not started what ends here.
+    layers.run(None)
     server.cleanup()
 
 
