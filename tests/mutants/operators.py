@@ -1,6 +1,7 @@
 """Every small bug that a module can be given: signs, borders, constants, conditions, statements, values returned.
 
-Texts are left alone, and what only makes texts: docstrings, messages, annotations, imports, logging.
+Texts are left alone, and what only makes texts: docstrings, messages, annotations, imports, logging; and what is only
+held to be so: assertions, and zip's `strict`.
 """
 
 from __future__ import annotations
@@ -149,7 +150,7 @@ class _Finder:
             elif isinstance(child, ast.comprehension):
                 for part in (child.iter, *child.ifs):
                     yield from self._of_expression(part, lines, names)
-            elif isinstance(child, ast.keyword):
+            elif isinstance(child, ast.keyword) and child.arg != "strict":
                 yield from self._of_expression(child.value, lines, names)
 
     def _here(self, node: ast.expr) -> Iterator[tuple[tuple[int, int], str, str]]:

@@ -52,6 +52,20 @@ def test_an_npz_that_is_no_motion_is_refused():
         read_npz(file)
 
 
+def test_a_pickle_in_an_npz_is_not_loaded(tmp_path):
+    arrays = dict(np.load(io.BytesIO(npz_bytes(tumbling()))))
+    called = tmp_path / "called"
+
+    class Harm:
+        def __reduce__(self):
+            return called.touch, ()
+
+    np.savez(tmp_path / "harm.npz", **(arrays | {"contacts": np.array([Harm()], dtype=object)}), allow_pickle=True)
+    with pytest.raises(ValueError, match="pickle"):
+        read_npz(tmp_path / "harm.npz")
+    assert not called.exists()
+
+
 @pytest.mark.parametrize("height", [1.5, 1.9])
 def test_bvh_positions_come_back_within_a_tenth_of_a_millimetre(height: float):
     motion = tumbling(height=height)

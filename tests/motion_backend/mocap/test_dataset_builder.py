@@ -324,6 +324,16 @@ def test_a_folder_is_read_clip_by_clip_and_what_cannot_be_is_told(tmp_path: Path
     json.dumps(found[1].report.to_dict(), allow_nan=False)
 
 
+def test_a_folder_of_more_files_than_may_be_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("motion_backend.mocap.dataset_builder.MAX_FILES", 2)
+    for count in range(3):
+        (tmp_path / f"{count}.bvh").write_text("")
+        if count < 2:
+            assert len(motion_files(tmp_path, {})) == count + 1
+    with pytest.raises(ClipError, match="holds 3 files, more than 2"):
+        motion_files(tmp_path, {})
+
+
 def test_a_folder_without_motion_says_so(tmp_path: Path) -> None:
     with pytest.raises(ClipError, match="no motion file"):
         motion_files(tmp_path, {})

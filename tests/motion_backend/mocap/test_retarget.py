@@ -13,7 +13,7 @@ from small_home import small_home
 
 from motion_backend import rotations
 from motion_backend.mocap.clip import Clip, ClipError, make_bones, make_clip
-from motion_backend.mocap.foot_contacts import ANKLES, BALLS, Feet, no_faster, runs
+from motion_backend.mocap.foot_contacts import ANKLES, BALLS, Feet, held_still, no_faster, runs
 from motion_backend.mocap.joint_map import FAMILIES, checked_map, find_map, read_map
 from motion_backend.mocap.readers import clip_of_motion, read_clips
 from motion_backend.mocap.resampling import low_pass, sample_rotations, sample_times
@@ -183,7 +183,13 @@ def test_unknown_names_say_what_is_missing_and_how_to_give_a_map(walk: Motion) -
 
 @pytest.mark.parametrize(
     ("text", "says"),
-    [("[]", "one object"), ("{", "not a JSON"), ('{"tail": "x"}', "tail"), ('{"pelvis": 3}', "names")],
+    [
+        ("[]", "one object"),
+        ("{", "not a JSON"),
+        ('{"tail": "x"}', "tail"),
+        ('{"pelvis": 3}', "names"),
+        ('{"pelvis": "Hips", "head": 3}', "names"),
+    ],
 )
 def test_a_bad_map_is_named(tmp_path: Path, text: str, says: str) -> None:
     path = tmp_path / "map.json"
@@ -210,6 +216,31 @@ def test_a_body_without_legs_is_refused(walk: Motion) -> None:
     bones, _ = make_bones(own.bones.names, own.bones.parents, offsets)
     with pytest.raises(ClipError, match=r"length|legs"):
         retarget(make_clip("flat", bones, own.root_positions, own.local_rotations, own.tpose, 30.0, "sims"))
+
+
+def test_legs_of_a_few_centimetres_are_asked_for_their_units(walk: Motion) -> None:
+    own = clip_of_motion(walk, "own")
+    offsets = own.bones.offsets.copy()
+    for name in ("left_knee", "right_knee", "left_ankle", "right_ankle"):
+        offsets[own.bones.index(name)] /= 17
+    bones, _ = make_bones(own.bones.names, own.bones.parents, offsets)
+    with pytest.raises(ClipError, match="are the units right"):
+        retarget(make_clip("tiny", bones, own.root_positions, own.local_rotations, own.tpose, 30.0, "sims"))
+
+
+@pytest.mark.parametrize(("slide", "moved"), [(0.02, 0.01), (0.05, 0.025), (0.25, 0.06)])
+@pytest.mark.parametrize("axis", [0, 2])
+def test_a_standing_foot_that_slides_is_held_over_its_middle_but_moved_by_six_centimetres_at_most(
+    slide: float, moved: float, axis: int
+) -> None:
+    skeleton, frames = build_skeleton(), 60
+    ankles = np.tile([[0.09, skeleton.ankle_height, 0.0], [-0.09, skeleton.ankle_height, 0.0]], (frames, 1, 1))
+    ankles[:, 0, axis] += np.linspace(0, slide, frames)
+    turns = np.tile(rotations.IDENTITY, (frames, 2, 1))
+    shift = held_still(Feet(ankles, turns, turns, skeleton, 30.0))
+    assert np.abs(shift[5:-5, 0, axis]).max() == pytest.approx(moved * (0.83 if moved < 0.06 else 1.0), rel=0.1)
+    assert np.abs(np.delete(shift[:, 0], axis, axis=1)).max() < 1e-9
+    assert np.abs(shift[:, 1]).max() < 1e-9
 
 
 def test_the_shortest_turn_takes_one_vector_to_the_other_even_if_they_are_opposite() -> None:

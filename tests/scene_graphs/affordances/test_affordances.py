@@ -96,6 +96,19 @@ def test_a_short_or_narrow_piece_is_not_lain_on() -> None:
     assert spots(Placed("a", "bench", (0, 0, 0), (1.8, 0.45, 0.35)), "lie") == ()
 
 
+@pytest.mark.parametrize(
+    ("category", "need", "limits"), [("single_bed", "lie", (0.18, 0.80)), ("dining_chair", "sit", (0.28, 0.68))]
+)
+def test_what_is_too_low_or_too_high_is_neither_sat_nor_lain_on(
+    category: str, need: str, limits: tuple[float, float]
+) -> None:
+    top = spots(standing(category), need)[0].point[1]
+    for limit, inwards in zip(limits, (1, -1), strict=True):
+        for off, offered in ((0.01, True), (-0.01, False)):
+            raised = standing(category, position=(0.0, limit + inwards * off - top, 0.0))
+            assert bool(spots(raised, need)) == offered, (limit, off)
+
+
 def test_a_person_who_lies_down_stands_beside_the_bed() -> None:
     placed = standing("double_bed")
     for spot in spots(placed, "lie"):

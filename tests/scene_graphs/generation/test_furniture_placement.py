@@ -99,3 +99,17 @@ def test_nothing_is_put_on_something_nor_before_a_door() -> None:
     assert room.try_at(box, (0.0, 0.6), 0.0)
     assert not room.try_at(box, (0.0, 1.6), 0.0)
     assert [placed.id for placed in room.placed] == ["cabinet_1", "cabinet_2"]
+
+
+@pytest.mark.parametrize("sides", [(-1, 1), (1,)])
+def test_a_bed_is_clear_along_its_free_sides_and_one_can_walk_round_its_foot(sides: tuple[int, ...]) -> None:
+    group = furniture_groups.bed(np.random.default_rng(0), "double_bed", sides, 1, lamps=True)
+    placed, *others = group.items
+    width, _, length = placed.size
+    assert len(group.clear) == len(sides)
+    for side, (near, far, start, end) in zip(sides, group.clear, strict=True):
+        assert sorted((side * near, side * far)) == pytest.approx([width / 2, width / 2 + 0.75])
+        assert end > length
+        assert 0.0 < start < length / 2
+    assert [item.category for item in others] == ["nightstand", "table_lamp"]
+    assert others[0].x == pytest.approx(sides[0] * (width / 2 + 0.06 + others[0].size[0] / 2))

@@ -190,6 +190,8 @@ def test_moods_are_seen_in_pace_and_bearing() -> None:
     assert speed["neutral"] > speed["sad"] > 0.4
     assert speed["happy"] > 1.15 * speed["sad"]
     assert head["happy"] > head["neutral"] > max(head["sad"], head["tired"]) + 0.005
+    look = {mood: body.axis("head", (0.0, 0.0, 1.0))[body.middle, 1].mean() for mood, body in mood.items()}
+    assert look["happy"] > look["relaxed"] > look["neutral"] > look["tired"] > look["sad"]
     assert lean["happy"] < lean["neutral"] < min(lean["sad"], lean["tired"], lean["angry"], lean["hurried"])
     assert lean["happy"] > -10
     assert max(lean.values()) < 30

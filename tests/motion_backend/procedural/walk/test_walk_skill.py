@@ -317,6 +317,12 @@ def test_pacing_goes_there_and_back_and_there() -> None:
     assert np.linalg.norm(ways[1][-1] - ways[1][0]) > 1.0
 
 
+def test_one_paces_back_most_of_a_short_way_and_two_metres_and_a_half_of_a_long_one() -> None:
+    for length, back in ((1.5, 0.9 * 1.5), (3.2, 2.4)):
+        ways = to_and_fro(np.array([[1.2, 3.1], [1.2 + length, 3.1]]), WALKABLE)
+        assert np.linalg.norm(ways[1][-1] - ways[1][0]) == pytest.approx(back, abs=0.12)
+
+
 def test_a_short_way_is_paced_once() -> None:
     short = np.array([[1.2, 3.1], [1.6, 3.1]])
     assert len(to_and_fro(short, WALKABLE)) == 1
