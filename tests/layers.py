@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -42,6 +43,16 @@ def refuse(event: str, arguments: tuple[object, ...]) -> None:
         program = os.fsdecode(arguments[0]) if arguments and isinstance(arguments[0], str | bytes) else "a process"
         if program not in ASKED_BY_LIBRARIES:
             check_layer(program)
+
+
+def sampled(rows: Iterable[Any], every: int) -> list[Any]:
+    """Rows for `parametrize`: every so many for the fast layer, the others for the sweep."""
+    return [
+        row
+        if number % every == 0
+        else pytest.param(*(row if isinstance(row, tuple) else (row,)), marks=pytest.mark.sweep)
+        for number, row in enumerate(rows)
+    ]
 
 
 def is_left_out(path: Path, chosen: str) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
@@ -60,8 +60,18 @@ def tree_of(path: Path) -> ast.Module:
     return ast.parse(path.read_text(encoding="utf-8"))
 
 
-def imported(path: Path) -> Iterator[str]:
-    for node in ast.walk(tree_of(path)):
+@cache
+def nodes_of(path: Path) -> tuple[ast.AST, ...]:
+    return tuple(ast.walk(tree_of(path)))
+
+
+@cache
+def imported(path: Path) -> tuple[str, ...]:
+    return tuple(imports_of_tree(nodes_of(path)))
+
+
+def imports_of_tree(nodes: Iterable[ast.AST]) -> Iterator[str]:
+    for node in nodes:
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
@@ -178,7 +188,7 @@ def test_no_error_is_taken_apart_by_its_text() -> None:
     """Errors carry facts (`scene_graphs/errors.py`): whoever needs the place or the remedy asks for it."""
     apart = {"split", "rsplit", "partition", "rpartition", "removeprefix", "removesuffix", "startswith", "match"}
     for path in modules():
-        for node in ast.walk(tree_of(path)):
+        for node in nodes_of(path):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in apart:
                 taken = [node.func.value, *node.args]
                 assert not {"str(error)", "str(fault)", "explain(error)"} & set(map(ast.unparse, taken)), path
@@ -186,7 +196,7 @@ def test_no_error_is_taken_apart_by_its_text() -> None:
 
 def test_nothing_of_ours_is_pickled_or_evaluated() -> None:
     for path in modules():
-        for node in ast.walk(tree_of(path)):
+        for node in nodes_of(path):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
                 assert node.func.id not in {"eval", "exec"}, path
             if isinstance(node, ast.keyword) and node.arg == "allow_pickle":

@@ -87,6 +87,7 @@ def test_every_t_pose_faces_forward_with_arms_out_and_legs_down():
             assert toes[2] > 0.7 * np.linalg.norm(toes), file
 
 
+@pytest.mark.sweep
 def test_bodies_walk_the_way_they_face():
     for file in of_kind("real mocap"):
         (clip,) = clips(file)
@@ -180,6 +181,7 @@ def test_a_squat_is_cut_out_of_a_row_of_exercises():
     assert heights.max() > 0.85 > 0.55 > heights.min()
 
 
+@pytest.mark.sweep
 def test_toy_bodies_keep_their_own_size():
     assert clips("cc0_keyed/kaykit_rogue_hooded.glb")[0].bones.names[0] == "hips"
     assert leg(clips("cc0_keyed/kaykit_rogue_hooded.glb")[0]) < 0.4

@@ -17,6 +17,7 @@ import httpx
 import pytest
 from databases import DATABASES
 from fastapi import FastAPI
+from layers import sampled
 from service_app import app_on, calling, check_problem
 
 from planner_service.api.layouts.endpoints import MAX_ROOMS
@@ -171,7 +172,9 @@ async def test_a_file_of_more_rooms_than_one_call_takes_is_refused(app: FastAPI)
 
 
 @pytest.mark.anyio
-@pytest.mark.parametrize("name", ["../../etc/passwd", "<script>", "\u202e\x1b[2J", "x" * 120, "drawing.svg"])
+@pytest.mark.parametrize(
+    "name", sampled(["../../etc/passwd", "<script>", "\u202e\x1b[2J", "x" * 120, "drawing.svg"], 2)
+)
 async def test_whatever_a_file_is_called_its_rooms_have_plain_ids(app: FastAPI, name: str) -> None:
     answer = await send(app, "procthor", json.dumps(house()).encode(), name=name)
     assert answer.status_code == 201, answer.text
@@ -185,7 +188,8 @@ async def test_whatever_a_file_is_called_its_rooms_have_plain_ids(app: FastAPI, 
 
 @pytest.mark.anyio
 @pytest.mark.parametrize(
-    "word", ["<script>alert(1)</script>", "$\\frac{$", "]]>", "&amp;\"'", "椅子 🪑", "word " * 39 + "words"]
+    "word",
+    sampled(["<script>alert(1)</script>", "$\\frac{$", "]]>", "&amp;\"'", "椅子 🪑", "word " * 39 + "words"], 4),
 )
 async def test_a_drawing_holds_names_as_text_and_runs_nothing(app: FastAPI, word: str) -> None:
     name = hashlib.sha256(word.encode()).hexdigest()[:12]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from matplotlib.image import imread
 
 from motion_backend import rotations
@@ -39,6 +40,7 @@ def test_every_keyframe_that_is_acted_gets_a_pair(tmp_path):
     assert three.shape[0] == one.shape[0]
 
 
+@pytest.mark.sweep
 def test_the_same_story_gives_the_same_picture(tmp_path):
     first, again = (storyboard(HOME, told([0, 1]), KEYFRAMES, tmp_path / f"{n}.png") for n in "ab")
     assert first.read_bytes() == again.read_bytes()

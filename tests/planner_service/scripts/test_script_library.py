@@ -83,6 +83,7 @@ def test_each_sentence_is_encoded_once_though_libraries_follow_each_other(cached
     assert encoder.texts == before + 1
 
 
+@pytest.mark.sweep
 def test_threads_that_search_at_once_find_the_same(tmp_path: Path) -> None:
     library = ScriptLibrary(built_in(), Features(HashingEncoder(), tmp_path))
     queries = [script.summary for script in library.scripts[:40]]

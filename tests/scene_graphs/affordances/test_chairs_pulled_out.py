@@ -59,6 +59,7 @@ def test_heavy_furniture_is_not_pulled_out(category: str) -> None:
     assert pulled_out(room(TABLE, blocked), "chair") is None
 
 
+@pytest.mark.sweep
 def test_a_chair_in_a_room_full_of_things_stays() -> None:
     around = [
         Placed(f"{x}/{z}", "cabinet", (x, 0.0, z), (0.95, 1.8, 0.95)) for x in (-2, -1, 0, 1, 2) for z in (1.5, -1)

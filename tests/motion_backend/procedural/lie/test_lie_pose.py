@@ -10,6 +10,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from layers import sampled
 from small_home import contact, rise, small_home
 
 from motion_backend.body.capsules import placed
@@ -56,7 +57,7 @@ def which_has(side: str, name: str) -> int:
     return next(i for i, s in enumerate(found) if (np.sin(s.facing - s.approach) > 0) == (side == "left"))
 
 
-@pytest.mark.parametrize("caption", CAPTIONS)
+@pytest.mark.parametrize("caption", sampled(CAPTIONS, 3))
 def test_a_lying_body_keeps_its_joints_and_its_place(caption: str) -> None:
     motion = lie(caption)
     assert motion.completed, motion.reason
@@ -69,6 +70,7 @@ def test_a_lying_body_keeps_its_joints_and_its_place(caption: str) -> None:
     assert self_penetration(still.skeleton, positions.astype(np.float64), world).max() <= 0.05
 
 
+@pytest.mark.sweep
 def test_no_two_captions_of_lying_look_alike() -> None:
     poses = {caption: np.stack(list(held(caption).values())) for caption in CAPTIONS}
     for one, other in combinations(CAPTIONS, 2):

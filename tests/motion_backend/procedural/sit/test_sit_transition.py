@@ -11,6 +11,7 @@ import pytest
 from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
+from layers import sampled
 from small_home import contact, rise, small_home, to
 
 from motion_backend.body.joint_limits import CLEARLY, beyond_limits
@@ -98,7 +99,7 @@ CAPTIONS = (
 )
 
 
-@pytest.mark.parametrize("caption", CAPTIONS)
+@pytest.mark.parametrize("caption", sampled(CAPTIONS, 2))
 def test_a_seated_body_is_within_its_limits_and_not_in_itself_or_the_seat(caption: str) -> None:
     motion, _ = seated(caption)
     positions, world = motion.skeleton.forward_kinematics(motion.root_positions, motion.local_rotations)
@@ -112,6 +113,7 @@ def test_a_seated_body_is_within_its_limits_and_not_in_itself_or_the_seat(captio
     assert figures.pen_max < 0.05
 
 
+@pytest.mark.sweep
 def test_captions_that_say_different_things_look_different() -> None:
     poses = {caption: np.stack(list(held(caption).values())) for caption in CAPTIONS}
     for one, other in combinations(CAPTIONS, 2):

@@ -175,6 +175,7 @@ def share_told_apart(styles: list[tuple[str, str]]) -> float:
     return float((gaps.argmin(axis=1) == np.arange(len(styles))).mean())
 
 
+@pytest.mark.sweep
 def test_captions_are_told_apart() -> None:
     assert share_told_apart([(caption, "neutral") for caption in WALKS]) >= 0.95
 

@@ -33,7 +33,7 @@ def query(rng: np.random.Generator) -> FurnitureGraph:
 
 
 @pytest.mark.parametrize("k", [1, 2])
-@pytest.mark.parametrize("types", [TYPES[:1], TYPES])
+@pytest.mark.parametrize("types", [pytest.param(TYPES[:1], marks=pytest.mark.sweep), TYPES])
 def test_what_is_called_proven_is_what_is_found_without_a_limit(
     types: tuple[str, ...], k: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
