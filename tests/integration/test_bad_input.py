@@ -437,7 +437,7 @@ def test_a_fault_of_ours_is_not_taken_for_a_mistake_of_the_user() -> None:
         assert not issubclass(fault, UserError)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("field", "changed"),
     [
         ("rooms", {"rooms": ("attic",)}),

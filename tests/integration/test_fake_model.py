@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 from encoded import encoded
+from for_each import for_each
 from good_model import EVENTS, TEXT, THEME, answer_to, chosen_in, told_in
 from pydantic import BaseModel
 
@@ -58,7 +59,7 @@ def test_the_theme_and_the_character_reach_the_model(shelves: Shelves) -> None:
     assert "Noor" in model.calls[-1].prompt
 
 
-@pytest.mark.parametrize(
+@for_each(
     "nonsense",
     [
         "As a model I like cats.",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
+from for_each import for_each
 
 from motion_backend.emotion_words import emotion_of, naming_words
 from motion_backend.mocap import clip_captions
@@ -20,7 +20,7 @@ def test_every_word_names_the_emotion_it_stands_under_and_no_word_stands_twice()
     assert len(dict(rows)) == len(rows) >= 235
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("words", "emotion"),
     [
         ("neutral, calm", Emotion.NEUTRAL),
@@ -44,7 +44,7 @@ def test_what_a_body_shows_most_is_meant(words: str, emotion: Emotion | None) ->
     assert emotion_of(words) is emotion
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("style", "told", "emotion"),
     [
         ("brisk/hurried", "walk 07_12.bvh", Emotion.HURRIED),

@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import cache
 from itertools import product
 
-import pytest
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
@@ -76,7 +75,7 @@ def test_the_parts_of_a_segment_fill_it_without_a_gap(posture: Posture, skill: S
     assert edges[-1] == len(motion)
 
 
-@pytest.mark.parametrize("skill", list(DONE))
+@for_each("skill", list(DONE))
 def test_done_means_near_enough_for_as_long_as_is_said(skill: Skill) -> None:
     action = ACTIONS[skill]
     motion, _ = made(Posture.STANDING, skill)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
-import pytest
+from for_each import for_each
 
 from mutants.bug import Bug
 from mutants.by_hand import bugs_by_hand
@@ -29,7 +29,7 @@ def wrong(text: str) -> set[str]:
     return {bug.put_into(text) for bug in bugs("a.py", text)}
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("right", "others"),
     [
         ("x = a + b", {"x = a - b"}),

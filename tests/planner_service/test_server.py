@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from for_each import for_each
 from service_app import parts_on
 
 from planner_service.server import environment
@@ -27,7 +28,7 @@ def test_a_worker_gets_the_database_of_its_service_whatever_its_own_env_file_say
     assert database_url(theirs) == database_url(settings)
 
 
-@pytest.mark.parametrize(
+@for_each(
     "url", ["postgresql://a:secret@h:port/x", "mysql://a:secret@h/x", "postgres://a:secret@h/x", "sqlite://", "nothing"]
 )
 def test_an_address_of_no_database_is_refused_without_its_password(url: str) -> None:

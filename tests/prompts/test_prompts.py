@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from examples import tries
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -48,7 +49,7 @@ def test_wrong_values_are_named() -> None:
         prompts.render("nothing")
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("source", "fault"),
     [
         ("Hello", "front matter must stand"),

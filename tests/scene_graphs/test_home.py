@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import shapely
 from examples import tries
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -251,7 +252,7 @@ def test_a_home_has_one_to_four_rooms() -> None:
         home_from_layouts([], 0)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("change", "message"),
     [
         ({"rooms": []}, "home.rooms must hold"),

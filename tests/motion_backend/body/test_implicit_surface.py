@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from for_each import for_each
 
 from motion_backend.body.implicit_surface import (
     capsule,
@@ -29,7 +30,7 @@ def edge_counts(faces) -> np.ndarray:
     return np.unique(edges, axis=0, return_counts=True)[1]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("field", "expected"),
     [
         (ellipsoid((0, 0, 0), (0.4, 0.4, 0.4)), 4 / 3 * np.pi * 0.4**3),

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -64,7 +65,7 @@ def test_a_t_pose_is_within_every_limit_and_so_is_a_pelvis_however_it_turns() ->
     assert worst_joint(T_POSE) == ("", 0.0)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("joint", "axis", "within", "beyond"),
     [
         ("knee", "x", 145, -20), ("elbow", "y", -150, 25), ("hip", "x", -120, 50), ("ankle", "x", 45, -60),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from for_each import for_each
 
 from motion_backend import rotations
 from motion_backend.body.mannequin_mesh import Proportions, build_mannequin
@@ -84,7 +85,7 @@ def test_skinning_moves_with_the_root():
     np.testing.assert_allclose(normals[0], MESH.normals[:, [2, 1, 0]] * [1, 1, -1], atol=1e-5)
 
 
-@pytest.mark.parametrize(
+@for_each(
     "turns",
     [
         {"left_shoulder": (0.0, 0.0, -78.0), "right_shoulder": (0.0, 0.0, 78.0)},
@@ -140,7 +141,7 @@ def test_no_triangle_is_torn_by_other_proportions():
         assert (longest < 2 * np.linalg.norm(before - np.roll(before, 1, axis=1), axis=-1).max(axis=1)).all()
 
 
-@pytest.mark.parametrize("field", ["girth", "chest", "hips", "limbs", "head"])
+@for_each("field", ["girth", "chest", "hips", "limbs", "head"])
 def test_proportions_of_no_person_are_refused_by_name(field: str):
     with pytest.raises(ValueError, match=rf"proportions\.{field}"):
         Proportions(**{field: 1.5})

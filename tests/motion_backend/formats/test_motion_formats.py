@@ -8,6 +8,7 @@ import json
 import numpy as np
 import pytest
 from examples import tries
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from sample_motions import tumbling
@@ -93,7 +94,7 @@ def test_euler_angles_describe_the_same_rotation(z: float, x: float, y: float):
     assert abs(float(np.dot(q, again))) > 1 - 1e-9
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "fault"),
     [
         ("", "HIERARCHY"),

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from for_each import for_each
 
 from motion_backend.language import minilm
 from motion_backend.language.sentence_encoder import HashingEncoder, load_encoder
@@ -44,7 +45,7 @@ def test_word_pieces_are_the_longest_that_the_vocabulary_has() -> None:
 
 
 @needs_weights
-@pytest.mark.parametrize("text", REFERENCE, ids=ascii)
+@for_each("text", REFERENCE)
 def test_ids_are_those_of_the_reference_tokeniser(encoder: minilm.MiniLM, text: str) -> None:
     assert encoder._tokens.encode(text) == REFERENCE[text]
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from for_each import for_each
 from sample_motions import standing_still
 
 from motion_backend import rotations
@@ -224,7 +225,7 @@ def test_a_summary_counts_every_trial_and_has_no_error_where_nothing_is_touched(
     assert (told["pen_max"], told["seconds"]) == (0.1, 8.0)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("flags", "run"),
     [([0, 1, 1, 0, 1], (1, 3)), ([1, 1, 0, 1, 1], (3, 5)), ([0, 0], (0, 0)), ([1], (0, 1))],
 )

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from for_each import for_each
 from sample_motions import standing_still
 
 from motion_backend import rotations
@@ -93,7 +94,7 @@ def test_soles_in_the_floor_count_by_their_depth_and_those_above_it_do_not() -> 
     assert foot_skate.floor_penetration(Kinematics.of(standing_still(root=root))) == pytest.approx(0.02, abs=1e-5)
 
 
-@pytest.mark.parametrize(("height", "above"), [(0.38, 0.08), (0.3, 0.0), (0.21, 0.0), (0.13, 0.13)])
+@for_each(("height", "above"), [(0.38, 0.08), (0.3, 0.0), (0.21, 0.0), (0.13, 0.13)])
 def test_a_surface_holds_what_is_at_most_ten_centimetres_in_it(height: float, above: float) -> None:
     top = box((0.0, 0.15, 0.0), (3.0, 0.30, 3.0))
     assert foot_skate.height_above_support(gliding(0.0, height), top) == pytest.approx(above, abs=1e-4)
@@ -118,7 +119,7 @@ def test_two_centimetres_are_clearly_in(depth: float, share: float) -> None:
     assert figures.pen_mean == pytest.approx(figures.pen_max)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("skill", "owner", "allowed"),
     [(Skill.SITDOWN, "0/box", 0.05), (Skill.STANDUP, "0/box", 0.05), (Skill.LIEDOWN, "0/box", 0.05),
      (Skill.GETUP, "0/box", 0.05), (Skill.TOUCH, "0/box", 0.0), (Skill.LOCO, "0/box", 0.0),
@@ -160,16 +161,16 @@ def near_for(skill: Skill, gap: float, frames: int, total: int = 75) -> tuple[Ac
     return Action(skill, "", Emotion.NEUTRAL), Kinematics.of(replace(motion, goals=(goal,)))
 
 
-@pytest.mark.parametrize("skill", list(WITHIN))
-@pytest.mark.parametrize(("more", "reached"), [(-0.005, True), (0.005, False)])
+@for_each("skill", list(WITHIN))
+@for_each(("more", "reached"), [(-0.005, True), (0.005, False)])
 def test_a_contact_counts_within_its_radius(skill: Skill, more: float, reached: bool) -> None:
     found = contact_error.outcome(*near_for(skill, WITHIN[skill] + more, 40))
     assert (found.reached, found.reached_any, found.seconds is not None) == (reached, reached, reached)
     assert found.error == pytest.approx(WITHIN[skill] + more, abs=1e-5)
 
 
-@pytest.mark.parametrize("skill", list(WITHIN))
-@pytest.mark.parametrize(("frames", "held"), [(29, False), (30, True)])
+@for_each("skill", list(WITHIN))
+@for_each(("frames", "held"), [(29, False), (30, True)])
 def test_a_contact_is_held_for_a_second(skill: Skill, frames: int, held: bool) -> None:
     action, body = near_for(skill, 0.05, frames)
     found = contact_error.outcome(action, body)
@@ -177,8 +178,8 @@ def test_a_contact_is_held_for_a_second(skill: Skill, frames: int, held: bool) -
     assert (shortfall(action, body, 60.0) == "") == held
 
 
-@pytest.mark.parametrize("skill", list(WITHIN))
-@pytest.mark.parametrize(("more", "done"), [(-0.005, True), (0.005, False)])
+@for_each("skill", list(WITHIN))
+@for_each(("more", "done"), [(-0.005, True), (0.005, False)])
 def test_the_state_machine_asks_for_the_same_radius(skill: Skill, more: float, done: bool) -> None:
     assert (shortfall(*near_for(skill, WITHIN[skill] + more, 40), 60.0) == "") == done
 
@@ -258,7 +259,7 @@ def tilted(degrees: float, frames: int = 40) -> Motion:
     return replace(motion, local_rotations=turned)
 
 
-@pytest.mark.parametrize(("degrees", "up"), [(29.0, True), (-29.0, True), (31.0, False), (-31.0, False)])
+@for_each(("degrees", "up"), [(29.0, True), (-29.0, True), (31.0, False), (-31.0, False)])
 def test_who_has_risen_is_within_thirty_degrees_of_upright(degrees: float, up: bool) -> None:
     assert contact_error.risen(Kinematics.of(tilted(degrees))).all() == up
 
@@ -272,8 +273,8 @@ def test_who_has_risen_has_the_pelvis_at_most_of_its_height(share: float, up: bo
         assert contact_error.risen(Kinematics.of(low)).all() == up
 
 
-@pytest.mark.parametrize(("frames", "held"), [(14, False), (15, True)])
-@pytest.mark.parametrize("skill", [Skill.STANDUP, Skill.GETUP])
+@for_each(("frames", "held"), [(14, False), (15, True)])
+@for_each("skill", [Skill.STANDUP, Skill.GETUP])
 def test_who_has_risen_stands_for_half_a_second_at_the_end(skill: Skill, frames: int, held: bool) -> None:
     root = np.zeros((60, 3))
     root[: 60 - frames, 1] = -0.4

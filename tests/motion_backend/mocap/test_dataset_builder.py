@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from examples import tries
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from sample_motions import tumbling
@@ -232,7 +233,7 @@ def test_captions_are_five_and_different_for_every_skill() -> None:
             assert not any(words.startswith("a person does:") for words in said)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("name", "skill"),
     [
         ("Lie_StandUp", "getup"), ("Lie_Down", "liedown"), ("Sit_Chair_StandUp", "standup"),

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from for_each import for_each
 from numpy.typing import NDArray
 from small_home import small_home
 
@@ -85,7 +86,7 @@ def walk() -> Motion:
     return backend.advance(home, back, state)[0]
 
 
-@pytest.mark.parametrize(("rest", "twist"), [("t", 0.0), ("n", 0.0), ("t", 2.0), ("n", 2.0)])
+@for_each(("rest", "twist"), [("t", 0.0), ("n", 0.0), ("t", 2.0), ("n", 2.0)])
 def test_a_stranger_with_our_motion_moves_our_body_alike(walk: Motion, rest: str, twist: float) -> None:
     found = retarget(stranger(walk, rest, twist=twist))
     assert found.report.family == "Mixamo"
@@ -228,8 +229,8 @@ def test_legs_of_a_few_centimetres_are_asked_for_their_units(walk: Motion) -> No
         retarget(make_clip("tiny", bones, own.root_positions, own.local_rotations, own.tpose, 30.0, "sims"))
 
 
-@pytest.mark.parametrize(("slide", "moved"), [(0.02, 0.01), (0.05, 0.025), (0.25, 0.06)])
-@pytest.mark.parametrize("axis", [0, 2])
+@for_each(("slide", "moved"), [(0.02, 0.01), (0.05, 0.025), (0.25, 0.06)])
+@for_each("axis", [0, 2])
 def test_a_standing_foot_that_slides_is_held_over_its_middle_but_moved_by_six_centimetres_at_most(
     slide: float, moved: float, axis: int
 ) -> None:
@@ -289,7 +290,7 @@ def test_planted_feet_are_found_where_a_walk_of_ours_says(walk: Motion) -> None:
 
 
 @with_data
-@pytest.mark.parametrize(
+@for_each(
     ("file", "legs"),
     [
         ("cmu_bvh/02_01.bvh", "CMU trials as BVH"),

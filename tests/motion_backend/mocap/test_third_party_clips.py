@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from for_each import for_each
 
 from motion_backend.mocap.clip import Clip, ClipError
 from motion_backend.mocap.clip_captions import Label, Labels
@@ -125,7 +126,7 @@ def test_only_the_t_pose_is_dropped_but_where_the_data_jump():
     assert {name: count for name, count in dropped.items() if count != 1} == {"07_12": 2, "08_07": 7, "16_15": 3}
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("file", "lowest", "highest"),
     [
         ("deepmimic/humanoid3d_getup_faceup.txt", 0.12, 0.84),

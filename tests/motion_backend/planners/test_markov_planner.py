@@ -9,6 +9,7 @@ from itertools import islice, pairwise
 import numpy as np
 import pytest
 from examples import tries
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from small_home import small_home
@@ -143,7 +144,7 @@ def test_the_same_seed_gives_the_same_endless_plan_and_another_seed_another(plan
     assert len({Planner(HOME, seed).sequence(40) for seed in (8,)} | {again.sequence(40)}) == 2
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("candidates", "fault"),
     [
         ([], "there are none"),

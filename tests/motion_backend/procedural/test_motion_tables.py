@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from for_each import for_each
 
 from motion_backend.procedural.emotion_style import Bearing, arm_poses
 from motion_backend.procedural.held_poses import idle_table, standing
@@ -128,7 +129,7 @@ def test_shares_of_one_thing_add_up_to_it() -> None:
     assert gestures.read.leaf_at_share + gestures.read.leaf_share < 1.0
 
 
-@pytest.mark.parametrize("doing", DEEDS)
+@for_each("doing", DEEDS)
 def test_a_touch_goes_to_the_thing_and_comes_away_from_it(doing: str) -> None:
     rows = TOUCH.of(doing)
     poses = {row.name: row for row in rows.pose}
@@ -212,7 +213,7 @@ def varied(doing: str, **columns: Any) -> TouchKeys:
     return replace(TOUCH, **by_doing)
 
 
-@pytest.mark.parametrize("doing", DEEDS)
+@for_each("doing", DEEDS)
 def test_a_slower_table_makes_a_longer_touch(doing: str) -> None:
     assert len(touched(doing, varied(doing, wait_ratio=1.5))) > len(touched(doing, TOUCH)) + 5
 

@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from for_each import for_each
 from layers import sampled
 from small_home import contact, rise, small_home, to
 
@@ -58,7 +59,7 @@ def motions() -> list[Motion]:
     return perform(day())[0]
 
 
-@pytest.mark.parametrize("index", range(13))
+@for_each("index", range(13))
 def test_every_action_of_a_day_is_reached_cleanly(index: int) -> None:
     action = replace(day()[index], keyframe=index)
     figures = story_metrics.judge(motions()[index], action, OBSTACLES)
@@ -165,7 +166,7 @@ def mean_speed(motion: Motion) -> float:
     return float(np.linalg.norm(np.diff(root[:, [0, 2]], axis=0), axis=1).sum() * 30 / len(root))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("caption", "emotion"),
     [("walk", "neutral"), ("walk", "hurried"), ("walk with depression", "sad"), ("walk on tiptoes", "neutral")],
 )
@@ -175,8 +176,8 @@ def test_nobody_lunges_into_a_walk(caption: str, emotion: str) -> None:
     assert np.abs(np.diff(height, n=2)).max() * 900 < 40
 
 
-@pytest.mark.parametrize("caption", ["walk", "skip steps running", "run and spin"])
-@pytest.mark.parametrize("distance", [0.2, 0.5, 1.4])
+@for_each("caption", ["walk", "skip steps running", "run and spin"])
+@for_each("distance", [0.2, 0.5, 1.4])
 def test_every_walk_ends_on_both_feet(caption: str, distance: float) -> None:
     start = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=(2.6, 2.6), facing=0.0)
     motions, _ = perform([start, Action(Skill.LOCO, caption, Emotion.HAPPY, goal=(2.6, 2.6 + distance), facing=0.0)])

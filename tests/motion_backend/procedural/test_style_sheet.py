@@ -8,6 +8,7 @@ from itertools import combinations
 from pathlib import Path
 
 import pytest
+from for_each import for_each
 
 from motion_backend.motion import Emotion
 from motion_backend.procedural.emotion_style import THIGHS, Bearing, arm_poses, bearing_of, bearings
@@ -92,7 +93,7 @@ def test_the_pace_of_a_caption_bounds_that_of_the_emotion() -> None:
         assert bearing_of(emotion, "sitting still").restless == pytest.approx(0.3 * usual.restless)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("caption", "said"),
     [
         ("pick it up and turn it", Handled("pick")),

@@ -9,6 +9,7 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI
+from for_each import for_each
 from service_app import KEY, app_on, calling, check_problem, running
 
 from planner_service.api import web_page
@@ -55,7 +56,7 @@ async def test_without_its_database_it_is_alive_but_not_ready(tmp_path: Path) ->
     assert "busy or away" in database["detail"]
 
 
-@pytest.mark.parametrize("path", ["/healthz", "/readyz", "/session", "/metrics", "/", "/openapi.json", "/nope"])
+@for_each("path", ["/healthz", "/readyz", "/session", "/metrics", "/", "/openapi.json", "/nope"])
 async def test_head_is_get_without_its_body(app: FastAPI, path: str) -> None:
     got, headed = await ask(app, path), await ask(app, path, "HEAD")
     assert headed.status_code == got.status_code
@@ -98,7 +99,7 @@ async def test_the_page_is_never_stale_and_its_parts_are_kept_for_ever(built: Fa
     assert {check["name"]: check["ok"] for check in (await ask(built, "/readyz")).json()["checks"]}["page"]
 
 
-@pytest.mark.parametrize(
+@for_each(
     "path", ["/assets/../secret.txt", "/assets/..%2f..%2fsecret.txt", "/assets/%2e%2e/%2e%2e/secret.txt", "/assets/"]
 )
 async def test_nothing_but_the_pages_files_is_served(built: FastAPI, path: str) -> None:

@@ -135,15 +135,13 @@ async def test_without_keys_only_our_page_and_origins_let_in_may_ask(
         assert "SIMS_CORS_ORIGINS" in check_problem(answer, 403)["detail"]
 
 
-@pytest.mark.parametrize(
-    ("site", "status"), [("cross-site", 403), ("same-site", 403), ("same-origin", 200), ("none", 200)]
-)
+@for_each(("site", "status"), [("cross-site", 403), ("same-site", 403), ("same-origin", 200), ("none", 200)])
 async def test_a_browser_that_hides_the_origin_still_tells_the_site(local: FastAPI, site: str, status: int) -> None:
     assert (await ask(local, "POST", headers={"Sec-Fetch-Site": site})).status_code == status
     assert (await ask(local, "GET", headers={"Sec-Fetch-Site": site})).status_code == 200
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("headers", "caller"),
     [
         (bearer(KEY), fingerprint(KEY)),
@@ -169,7 +167,7 @@ async def test_without_a_key_all_but_the_open_paths_are_closed(locked: FastAPI, 
     assert answer.headers["www-authenticate"] == 'Bearer realm="sims"'
 
 
-@pytest.mark.parametrize("path", ["/", "/healthz", "/readyz", "/session", "/openapi.json", "/favicon.ico"])
+@for_each("path", ["/", "/healthz", "/readyz", "/session", "/openapi.json", "/favicon.ico"])
 async def test_open_paths_need_no_key(locked: FastAPI, path: str) -> None:
     assert (await ask(locked, path=path)).status_code == 200
 
@@ -315,20 +313,20 @@ def test_no_text_but_a_key_is_a_key(text: str) -> None:
     assert Gate(()).owner(text) is None
 
 
-@pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "::1", "[::1]", "127.8.8.8"])
+@for_each("host", ["127.0.0.1", "localhost", "::1", "[::1]", "127.8.8.8"])
 def test_on_loopback_no_key_is_needed(host: str) -> None:
     assert is_loopback(host)
     check_exposure(settings(host=host))
 
 
-@pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.0.1", "sims.example", "", "localhost.example"])
+@for_each("host", ["0.0.0.0", "::", "192.168.0.1", "sims.example", "", "localhost.example"])
 def test_beyond_loopback_a_key_is_needed(host: str) -> None:
     with pytest.raises(SettingsError, match="SIMS_API_KEYS"):
         check_exposure(settings(host=host))
     check_exposure(settings(host=host, api_keys=(KEY,)))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("wrong", "field"),
     [
         ({"api_keys": ("short",)}, "SIMS_API_KEYS"),

@@ -151,7 +151,7 @@ async def test_a_fault_of_the_body_is_pointed_at(app: FastAPI, body: Any, pointe
     assert problem["errors"][0]["pointer"] == pointer
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("path", "headers", "pointer"),
     [
         ("/v1/wishes/x", {}, "path:number"),
@@ -167,7 +167,7 @@ async def test_a_fault_elsewhere_is_pointed_at_too(
     assert [fault["pointer"] for fault in check_problem(answer, 422)["errors"]] == [pointer]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("content", "place"),
     [
         (b"{", "line 1, column 2"),
@@ -178,14 +178,13 @@ async def test_a_fault_elsewhere_is_pointed_at_too(
         (b"[" * 100_000, "nested"),
         (b'{"theme": ' + b"1" * 5000 + b"}", ""),
     ],
-    ids=["open", "second line", "quotes", "trailing", "encoding", "nesting", "digits"],
 )
 async def test_what_is_not_json_is_a_400_that_says_where(app: FastAPI, content: bytes, place: str) -> None:
     answer = await ask(app, "POST", "/v1/wishes/1", content=content, headers=JSON)
     assert place in check_problem(answer, 400)["detail"]
 
 
-@pytest.mark.parametrize("media", [None, "text/plain", "application/x-www-form-urlencoded", "nonsense", "image/png"])
+@for_each("media", [None, "text/plain", "application/x-www-form-urlencoded", "nonsense", "image/png"])
 async def test_other_content_types_are_refused_by_name(app: FastAPI, media: str | None) -> None:
     headers = {"Content-Type": media} if media else {}
     answer = await ask(app, "POST", "/v1/wishes/1", content=b'{"theme": "a"}', headers=headers)
@@ -276,7 +275,7 @@ async def test_every_problem_can_be_raised_in_a_route(app: FastAPI, problem: Pro
         assert told["errors"] == [{"pointer": "/a/b", "detail": "c"}]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("error", "status", "pointer"),
     [
         (RequestError("a home has one to 4 rooms", at="rooms"), 422, "/rooms"),

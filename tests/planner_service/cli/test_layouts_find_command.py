@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
@@ -43,7 +44,7 @@ def test_words_mean_what_a_script_means_that_uses_them_in_order(
     assert {frozenset(edge) for edge in graph.edges} == {frozenset(edge) for edge in same.edges}
 
 
-@pytest.mark.parametrize("word", ["7", ":sit", "sofa:", "sofa:fly", "sofa:sit+", "chair0", "chair123", "a:b:c"])
+@for_each("word", ["7", ":sit", "sofa:", "sofa:fly", "sofa:sit+", "chair0", "chair123", "a:b:c"])
 def test_a_word_that_is_none_is_named(word: str) -> None:
     with pytest.raises(RequestError, match="WORDS: ") as caught:
         graph_of_words(["lamp", word])

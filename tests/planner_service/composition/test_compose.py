@@ -7,6 +7,7 @@ import re
 import pytest
 from encoded import encoded
 from examples import tries
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from themes import THEMES, Theme
@@ -64,7 +65,7 @@ def test_a_theme_of_the_paper_is_covered_event_by_event_in_order(
     assert script.encoder == "all-MiniLM-L6-v2"
 
 
-@pytest.mark.parametrize("theme", THEMES, ids=lambda theme: theme.name)
+@for_each("theme", THEMES)
 def test_the_hashing_encoder_finds_the_same_events_and_says_that_it_ranked(theme: Theme) -> None:
     script = compose(theme.text, HASHING)
     assert [event.emotion in wanted.emotions for event, wanted in zip(script.events, theme.events, strict=True)]
@@ -80,7 +81,7 @@ def test_the_same_seed_gives_the_same_script_and_seeds_differ() -> None:
     assert len({tuple(chosen.script.id for chosen in script.short_scripts) for script in scripts}) > 1
 
 
-@pytest.mark.parametrize("count", [1, 2, 4, 9, 12])
+@for_each("count", [1, 2, 4, 9, 12])
 def test_as_many_short_scripts_as_asked_for_are_used_and_none_twice(count: int) -> None:
     script = compose(THEME, HASHING, request=Request(short_scripts=count))
     ids = [chosen.script.id for chosen in script.short_scripts]
@@ -127,7 +128,7 @@ def test_nonsense_is_refused_with_what_was_not_understood_and_examples(meaning: 
         assert theme.split()[-1] in str(error.value)
 
 
-@pytest.mark.parametrize(
+@for_each(
     "theme",
     [
         "Eine Frau kommt müde nach Hause und liest ein Buch.",
@@ -143,7 +144,7 @@ def test_a_theme_in_another_language_is_refused_and_told_that_english_is_read(
         compose(theme, meaning)
 
 
-@pytest.mark.parametrize("theme", ["", "  \n ", "x" * 2001, "a\x00b", "12 34 !!", "\ud800 sits"])
+@for_each("theme", ["", "  \n ", "x" * 2001, "a\x00b", "12 34 !!", "\ud800 sits"])
 def test_what_is_no_theme_is_refused(theme: str) -> None:
     with pytest.raises(ThemeError, match=r"^theme: "):
         compose(theme, HASHING)
@@ -205,9 +206,7 @@ def test_a_model_that_makes_up_scripts_is_told_and_then_the_rules_take_over() ->
     assert len(script.short_scripts) == 2
 
 
-@pytest.mark.parametrize(
-    "answer", ["", "no idea", '{"events": [', '{"events": []}', {"x": 1}, ModelError("no connection")]
-)
+@for_each("answer", ["", "no idea", '{"events": [', '{"events": []}', {"x": 1}, ModelError("no connection")])
 def test_a_model_without_usable_answers_leaves_the_rules_script(answer: str) -> None:
     model = ScriptedModel(lambda prompt, schema: answer)  # noqa: ARG005
     script = compose(THEME, HASHING, model=model)
@@ -224,7 +223,7 @@ def test_direct_generation_by_a_model_is_repaired_until_it_can_be_acted() -> Non
     assert (script.method, script.planner, len(script.repairs)) == ("direct", "llm:scripted", 2)
 
 
-@pytest.mark.parametrize("theme", THEMES, ids=lambda theme: theme.name)
+@for_each("theme", THEMES)
 def test_direct_generation_by_rules_plays_every_event_in_order(theme: Theme) -> None:
     script = compose(theme.text, HASHING, request=Request(method="direct"))
     events = [keyframe.event for keyframe in script.keyframes if keyframe.event is not None]

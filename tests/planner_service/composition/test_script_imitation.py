@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from examples import tries
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
@@ -140,7 +141,7 @@ BAD = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", BAD)
+@for_each("name", BAD)
 def test_a_bad_script_is_refused_and_asked_for_again(name: str) -> None:
     bad, why = BAD[name]
     wish = Wish("sad", "bedroom", 1, tuple(ALL))
@@ -215,7 +216,7 @@ def test_whatever_a_model_writes_what_is_kept_can_be_acted_out(rows: list[dict[s
         likeness.add(script)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("wish", "says"),
     [
         (("bored", "bedroom", 1, ("bed",)), "emotion: 'bored'"),

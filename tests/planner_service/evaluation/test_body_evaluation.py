@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
@@ -216,7 +217,7 @@ def test_the_command_prints_figures_and_writes_every_trial(tmp_path: Path) -> No
     assert done.exit_code == int(any(missed))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("asked", "told"),
     [
         (["--only", "no such caption"], "--skill"),

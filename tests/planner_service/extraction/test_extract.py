@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from examples import tries
 from film_made import Drawn, Making, film_of
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
@@ -172,7 +173,7 @@ def test_another_language_is_answered_clearly_and_passed_on_to_a_model() -> None
     assert "setzte sich auf das Sofa" in model.calls[0].prompt
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("data", "why"),
     [
         (b"", "is empty"),
@@ -184,7 +185,6 @@ def test_another_language_is_answered_clearly_and_passed_on_to_a_model() -> None
         (b"frame%05d.png", "a pattern of picture files"),
         (b"\n/my films/img%d.JPEG\n", "a pattern of picture files"),
     ],
-    ids=["empty", "binary", "playlist", "dash", "concat", "no word", "pictures", "pictures-in-a-folder"],
 )
 def test_what_is_neither_text_nor_subtitles_nor_film_is_refused_in_one_line(data: bytes, why: str) -> None:
     with pytest.raises((ExtractionError, FilmError), match=why) as caught:
@@ -210,7 +210,7 @@ def test_a_caption_that_nobody_knows_becomes_a_known_one_and_that_is_told() -> N
     assert any("sack of potatoes" in line for line in draft.repairs)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("wrong", "told"),
     [
         ({"scene": 99}, "there is no scene 99"),

@@ -9,6 +9,7 @@ from itertools import pairwise
 import pytest
 from examples import tries
 from film_made import Drawn, Making, film_of, four_shots
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -45,8 +46,8 @@ def test_hard_cuts_are_found_to_the_picture(lengths: list[tuple[int, int]]) -> N
     assert cuts(shots(drawn)) == wanted
 
 
-@pytest.mark.parametrize("seconds", [1.0, 2.0])
-@pytest.mark.parametrize("through_black", [False, True], ids=["into-each-other", "through-black"])
+@for_each("seconds", [1.0, 2.0])
+@for_each("through_black", [False, True])
 def test_a_fade_is_one_cut_within_it(seconds: float, through_black: bool) -> None:
     found = cuts(shots([Drawn(4, 0, seconds, through_black), Drawn(3, 1)]))
     assert len(found) == 1

@@ -97,7 +97,7 @@ def test_other_encodings_are_guessed_and_it_says_that_it_guessed(encoding: str, 
     assert "guess" in read.notes[0]
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-32", "utf-16-le", "utf-16-be"])
+@for_each("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-32", "utf-16-le", "utf-16-be"])
 def test_utf_is_read_with_and_without_a_mark(encoding: str) -> None:
     read = read_subtitles(srt([(1000, 1000, "Déjà vu")]).encode(encoding))
     assert read.cues[0].text == "Déjà vu"
@@ -148,7 +148,7 @@ def test_a_missing_empty_line_and_cues_out_of_order_do_no_harm() -> None:
     assert [cue.text for cue in read_subtitles(text.encode()).cues] == ["earlier", "later"]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("data", "says"),
     [
         (b"", "empty"),
@@ -158,7 +158,6 @@ def test_a_missing_empty_line_and_cues_out_of_order_do_no_harm() -> None:
         (b"WEBVTT\n\n", "no cue"),
         (b"x" * (MAX_SUBTITLE_BYTES + 1), "at most"),
     ],
-    ids=["empty", "blank", "binary", "prose", "no-cues", "large"],
 )
 def test_what_are_no_subtitles_is_refused(data: bytes, says: str) -> None:
     with pytest.raises(SubtitleError, match=says):

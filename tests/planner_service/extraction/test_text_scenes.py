@@ -147,7 +147,7 @@ def test_who_does_it_is_the_name_last_said_and_things_are_nobody() -> None:
     ]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("clause", "told"),
     [
         ("sat by her bed and wept", "sits by their bed and weeps"),
@@ -169,7 +169,7 @@ def test_an_id_is_a_slug_that_is_not_taken(summary: str, taken: set[str]) -> Non
     assert len({first, second} - taken) == 2
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "language"),
     [
         (NARRATIVE, "English"),
@@ -184,7 +184,7 @@ def test_the_language_is_told_by_common_words(text: str, language: str) -> None:
     assert language_of(text) == language
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("data", "why"),
     [
         (b"", "is empty"),
@@ -194,7 +194,6 @@ def test_the_language_is_told_by_common_words(text: str, language: str) -> None:
         (b"a" * (MAX_TEXT_LENGTH + 1), "cut it into chapters"),
         (b"word " * 2_000_000, "cut it into chapters"),
     ],
-    ids=["empty", "blank", "no word", "binary", "long", "huge"],
 )
 def test_what_cannot_be_read_says_why_in_one_line(data: bytes, why: str) -> None:
     with pytest.raises(ExtractionError, match=why) as caught:

@@ -84,7 +84,7 @@ def test_frames_are_small() -> None:
     assert len(frame.jpeg) < 60_000
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("making", "form"),
     [
         (Making("matroska", subtitles=SAID, texts="subrip"), "matroska"),
@@ -93,7 +93,6 @@ def test_frames_are_small() -> None:
         (Making("mpegts"), "mpegts"),
         (Making("mov"), "mp4"),
     ],
-    ids=["matroska", "webm", "avi", "mpegts", "mov"],
 )
 def test_every_container_is_read_by_its_bytes(making: Making, form: str) -> None:
     film = opened(film_of([Drawn(1, 0), Drawn(1, 1)], making))
@@ -194,7 +193,7 @@ def test_a_film_that_grows_in_the_middle_is_not_decoded_beyond_the_limit() -> No
     assert film.notes
 
 
-@pytest.mark.parametrize(("box", "at"), [(b"mvhd", 20), (b"tkhd", 24), (b"mdhd", 20), (b"stts", 12)])
+@for_each(("box", "at"), [(b"mvhd", 20), (b"tkhd", 24), (b"mdhd", 20), (b"stts", 12)])
 def test_a_header_that_lies_about_time_is_not_believed(box: bytes, at: int) -> None:
     lying = bytearray(whole())
     place = lying.find(box)
@@ -202,7 +201,7 @@ def test_a_header_that_lies_about_time_is_not_believed(box: bytes, at: int) -> N
     assert shots_of(opened(bytes(lying)))[-1].end == pytest.approx(8.0, abs=0.1)
 
 
-@pytest.mark.parametrize(("box", "at"), [(b"mdat", -4), (b"stsz", 12), (b"moov", -4), (b"stco", 8)])
+@for_each(("box", "at"), [(b"mdat", -4), (b"stsz", 12), (b"moov", -4), (b"stco", 8)])
 def test_a_header_that_claims_gigabytes_is_refused_or_read_in_little_memory(box: bytes, at: int) -> None:
     huge = bytearray(whole())
     place = huge.find(box)
@@ -213,8 +212,8 @@ def test_a_header_that_claims_gigabytes_is_refused_or_read_in_little_memory(box:
     assert _resident() - before < 100_000_000
 
 
-@pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize("form", ["mp4", "matroska", "mpegts"])
+@for_each("seed", range(6))
+@for_each("form", ["mp4", "matroska", "mpegts"])
 def test_a_corrupt_film_is_read_as_far_as_it_can_be_or_refused(form: str, seed: int) -> None:
     rng = random.Random(seed)
     spoilt = bytearray(whole() if form == "mp4" else short_film(form))
@@ -297,7 +296,7 @@ def test_the_title_is_kept_short() -> None:
     assert len(open_film(io.BytesIO(whole()), "x" * 1000, None).name) == 200
 
 
-@pytest.mark.parametrize("length", [0, 1, 3, 7, 11, 187])
+@for_each("length", [0, 1, 3, 7, 11, 187])
 def test_short_heads_are_no_containers(length: int) -> None:
     assert container_of(b"\x47" * length) is None
 

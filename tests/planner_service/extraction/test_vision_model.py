@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from film_made import Drawn, Making, film_of
+from for_each import for_each
 from pydantic import BaseModel
 
 from motion_backend.language.sentence_encoder import HashingEncoder
@@ -106,7 +107,7 @@ def test_only_what_is_known_comes_through_and_the_rest_is_told() -> None:
     assert any("phone" in note for note in outline.notes)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("wrong", "told"),
     [
         ({"moments": [{"time": 500, "who": "a", "what": "b", "emotion": "sad"}]}, "moments.0.time: 500 is not in"),
@@ -116,7 +117,6 @@ def test_only_what_is_known_comes_through_and_the_rest_is_told() -> None:
         ({"summary": "  "}, "summary: it is empty"),
         ({"summary": "x" * 9000}, "summary: String should have at most"),
     ],
-    ids=["time", "nan", "emotion", "many", "empty", "long"],
 )
 def test_a_wrong_answer_is_told_to_the_model_and_asked_again_at_most_twice(wrong: Json, told: str) -> None:
     scene = scenes()[0]

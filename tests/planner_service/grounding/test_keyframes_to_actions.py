@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from for_each import for_each
 
 from motion_backend.motion import Skill
 from planner_service.grounding.keyframes_to_actions import Place, UnreachableError, act, can_stand, height_of
@@ -110,7 +111,7 @@ def test_a_bed_walled_in_by_cupboards_is_refused_by_name() -> None:
         grounded(("liedown", "lie", "bed"), home=home)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("caption", "height"),
     [
         ("An act of reaching high", "high"),
@@ -151,10 +152,8 @@ def test_who_stands_still_or_waves_goes_nowhere(caption: str) -> None:
     assert walk.goal is not None
 
 
-@pytest.mark.parametrize(("side", "sign"), [("left", 1), ("right", -1)])
-@pytest.mark.parametrize(
-    "before", [("touch", "touch", "shelf"), ("sitdown", "sit", "sofa"), ("liedown", "lie", "sofa")]
-)
+@for_each(("side", "sign"), [("left", 1), ("right", -1)])
+@for_each("before", [("touch", "touch", "shelf"), ("sitdown", "sit", "sofa"), ("liedown", "lie", "sofa")])
 def test_front_left_and_right_are_seen_from_the_body(before: tuple[str, str, str], side: str, sign: int) -> None:
     start, still, walk = grounded(before, ("loco", "stand still", None), ("loco", f"walk to the front {side}", None))
     assert start.spot is not None

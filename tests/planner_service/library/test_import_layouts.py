@@ -17,6 +17,7 @@ import httpx
 import pytest
 from databases import DATABASES
 from fastapi import FastAPI
+from for_each import for_each
 from layers import sampled
 from service_app import app_on, calling, check_problem
 
@@ -99,7 +100,7 @@ async def test_a_house_comes_in_with_a_report_and_its_rooms_are_there(app: FastA
 
 
 @pytest.mark.anyio
-@pytest.mark.parametrize(
+@for_each(
     ("format_name", "body", "status", "told"),
     [
         ("procthor", b"", 422, "not JSON"),
@@ -207,7 +208,7 @@ async def test_a_drawing_holds_names_as_text_and_runs_nothing(app: FastAPI, word
 
 
 @pytest.mark.anyio
-@pytest.mark.parametrize("body", [b'{"id": ' + b"9" * 5000 + b"}", b"[" * 100_000, b'{"id": "\xff"}', b"NaN"])
+@for_each("body", [b'{"id": ' + b"9" * 5000 + b"}", b"[" * 100_000, b'{"id": "\xff"}', b"NaN"])
 async def test_json_that_no_program_reads_is_malformed_and_no_fault_of_ours(app: FastAPI, body: bytes) -> None:
     async with calling(app) as client:
         answer = await client.post("/v1/layouts", content=body, headers={"Content-Type": "application/json"})

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 import pytest
+from for_each import for_each
 from model_server import Asked, Behaviour, ModelServer, Sent, chat, dripping, endless, failing, in_turn
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -115,7 +116,7 @@ def test_a_refusal_that_is_not_about_the_schema_is_told_as_it_was() -> None:
     assert len(server.asked) == 2
 
 
-@pytest.mark.parametrize("status", [429, 500, 503, 529])
+@for_each("status", [429, 500, 503, 529])
 def test_a_server_that_is_busy_is_asked_again(status: int) -> None:
     behave = in_turn([failing(status, {"error": {"message": "busy"}}), failing(status), chat(GOOD)])
     with ModelServer(behave) as server:
@@ -188,7 +189,7 @@ HOSTILE: dict[str, tuple[Behaviour, str]] = {
 }
 
 
-@pytest.mark.parametrize("mode", HOSTILE)
+@for_each("mode", HOSTILE)
 def test_a_hostile_server_gets_a_clear_error_in_bounded_time_and_memory(mode: str) -> None:
     behave, said = HOSTILE[mode]
     with ModelServer(behave) as server:
@@ -214,7 +215,7 @@ def test_a_server_that_is_not_there_is_named() -> None:
         model.answer("?", Meal)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "problem"),
     [
         ("", "no JSON object"),
@@ -246,7 +247,7 @@ def test_a_model_that_mends_its_answer_is_heard() -> None:
         assert ask(served(server), "?", Meal).dish == "soup"
 
 
-@pytest.mark.parametrize("tokens", [(-5, -5), (None, None), ("many", []), (10**30, 10**30), (0.5, 1e308)])
+@for_each("tokens", [(-5, -5), (None, None), ("many", []), (10**30, 10**30), (0.5, 1e308)])
 def test_a_server_that_lies_about_tokens_is_counted_by_what_it_wrote(tokens: tuple[object, object]) -> None:
     with ModelServer(lambda _: chat(GOOD, tokens=tokens)) as server:
         model = served(server)
@@ -295,7 +296,7 @@ def test_thoughts_before_the_answer_are_passed_over() -> None:
         assert served(server).answer("?", Meal).dish == "soup"
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("header", "seconds"),
     [
         ("3", 3.0), ("0.5", 0.5), ("-3", 0.0), ("", 0.0), ("soon", 0.0), ("inf", 0.0), ("1e400", 0.0), ("9" * 40, 0.0),
@@ -306,7 +307,7 @@ def test_retry_after_is_read_in_seconds_or_as_a_date(header: str, seconds: float
     assert retry_after(header, now=100.0) == seconds
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("body", "said"),
     [
         (b'{"error": {"message": "no"}}', "no"), (b'{"error": "no"}', "no"), (b'{"message": "no"}', "no"),

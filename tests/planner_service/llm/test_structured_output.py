@@ -7,6 +7,7 @@ import json
 
 import pytest
 from examples import tries
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel, ConfigDict
@@ -29,7 +30,7 @@ SOUP = Meal(dish="soup", plates=2)
 JSON = '{"dish": "soup", "plates": 2}'
 
 
-@pytest.mark.parametrize(
+@for_each(
     "text",
     [
         JSON,
@@ -42,7 +43,7 @@ def test_json_is_found_whatever_stands_around_it(text: str) -> None:
     assert read_answer(text, Meal) == SOUP
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "problem"),
     [
         ("", "there is no JSON object in it"),

@@ -139,7 +139,7 @@ def test_a_story_of_twelve_short_scripts_is_not_monotonous() -> None:
         assert monotonies(text) == [], text
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "slip"),
     [
         ("They was tired.", "they with a singular verb"),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
@@ -84,7 +83,7 @@ def test_a_sentence_is_told_in_the_past_of_its_person(text: str, voice: Voice, t
     assert retell(text, voice) == told
 
 
-@pytest.mark.parametrize("text", ["", "rain and wind", "She calls him.", "I sit down.", "He gives her a ring."])
+@for_each("text", ["", "rain and wind", "She calls him.", "I sit down.", "He gives her a ring."])
 def test_what_might_go_wrong_is_not_told(text: str) -> None:
     assert retell(text, THEY) is None
 
@@ -108,7 +107,7 @@ def test_an_event_becomes_a_sentence_or_nothing(event: str, told: str | None) ->
     assert event_retold(event, SHE) == told
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("theme", "event", "told"),
     [
         ("A teenager plays games all night.", "A teenager plays games all night", "Ana played games all night."),
@@ -131,7 +130,7 @@ def test_an_event_is_told_of_the_person_whom_the_theme_is_about(theme: str, even
     assert event_retold(told_of_hero(event, theme), SHE) == told
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("theme", "event", "link"),
     [
         ("He wins a lottery, so he runs around the room.", "runs around the room", "So"),
@@ -144,9 +143,7 @@ def test_the_word_that_joined_two_events_is_kept(theme: str, event: str, link: s
     assert link_before(theme, event) == link
 
 
-@pytest.mark.parametrize(
-    ("written", "kind"), [("she", "she"), ("He", "he"), ("they/them", "they"), ("xe", "they"), ("", "they")]
-)
+@for_each(("written", "kind"), [("she", "she"), ("He", "he"), ("they/them", "they"), ("xe", "they"), ("", "they")])
 def test_pronouns_are_read_kindly(written: str, kind: str) -> None:
     assert Voice.of(Character("Kim", written)).pronouns == kind
 
@@ -183,7 +180,7 @@ def test_an_event_is_told_in_the_words_that_the_theme_has_for_it(theme: str, eve
     assert happening(event, theme, SHE) == told
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("theme", "events", "told"),
     [
         ("He studied but failed and cried.", ["studied", "failed", "cried"], ["Tom studied but failed and cried."]),

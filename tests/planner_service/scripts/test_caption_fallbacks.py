@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from for_each import for_each
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Emotion, Skill
@@ -28,7 +29,7 @@ def test_known_captions_are_acted_as_they_are() -> None:
     assert all(performed_as(skill, caption, Emotion.NEUTRAL, nobody) == caption for skill, caption in KNOWN)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("skill", "caption"),
     [
         (Skill.LOCO, "walk to the sofa"),

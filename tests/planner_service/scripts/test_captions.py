@@ -7,6 +7,7 @@ import re
 
 import pytest
 from examples import tries
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -42,7 +43,7 @@ def test_no_caption_names_both_hands_and_one() -> None:
         assert "both" not in sides(caption) or len(sides(caption)) == 1, caption
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("caption", "named"),
     [
         ("typing, both hands on the keyboard", {"both"}),
@@ -86,7 +87,7 @@ def test_other_words_lead_back_to_their_caption_when_they_were_never_seen() -> N
     assert sum(home) / len(home) > 0.5
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("skill", "caption", "nearest"),
     [
         ("loco", "tiptoe quietly", "walk on tiptoes"),
@@ -124,9 +125,7 @@ def test_a_vocabulary_without_the_side_says_so() -> None:
         words.nearest(Skill.LOCO, "walk")
 
 
-@pytest.mark.parametrize(
-    "caption", ["", "slowly", "suddenly", "high, left hand", "low with the right hand", "both hands"]
-)
+@for_each("caption", ["", "slowly", "suddenly", "high, left hand", "low with the right hand", "both hands"])
 def test_the_usual_caption_is_known_and_keeps_the_side(caption: str) -> None:
     for skill, mood in itertools.product(Skill, EMOTIONS):
         found = usual(skill, mood, caption)

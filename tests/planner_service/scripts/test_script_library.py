@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from for_each import for_each
 
 from motion_backend.language.sentence_encoder import HashingEncoder, Vectors
 from planner_service.scripts.built_in_scripts import built_in
@@ -108,7 +109,7 @@ def test_search_keeps_to_the_emotion_and_room_asked_for() -> None:
     assert [one.score for one in found] == sorted((one.score for one in found), reverse=True)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("query", "options", "fault"),
     [
         ("x", {"emotion": "bored"}, "emotion"),
@@ -145,9 +146,7 @@ def test_words_of_a_text_tell_which_summaries_share_them_and_rare_ones_tell_most
     assert library.sharing(library.scripts[3].summary)[3] == 1
 
 
-@pytest.mark.parametrize(
-    "odd", ["\x1b[31mred\x1b[0m", "a\x00b", "a\x9b31mb", "a\u202eb", "# a\n![x](http://evil/)", "a\u2028b"]
-)
+@for_each("odd", ["\x1b[31mred\x1b[0m", "a\x00b", "a\x9b31mb", "a\u202eb", "# a\n![x](http://evil/)", "a\u2028b"])
 def test_what_a_terminal_or_page_would_obey_is_not_kept(odd: str) -> None:
     kept = nap(summary=f"The character naps {odd}", cues=[f"naps {odd}"], licence=f"MIT {odd}")
     for text in (kept.summary, *kept.cues, kept.licence):

@@ -178,7 +178,7 @@ def test_the_hand_with_the_phone_touches_nothing() -> None:
     assert (free_hand(rows[0]), free_hand(rows[1]), free_hand(None)) == ("left", "right", "right")
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("home", "before", "after"),
     [
         (["armchair", "bed"], ["loco sofa", "sitdown sofa"], ["loco armchair", "sitdown armchair"]),
@@ -247,9 +247,7 @@ def test_the_last_posture_is_told() -> None:
     assert last_posture(script("sitdown chair", "standup chair")) is Posture.STANDING
 
 
-@pytest.mark.parametrize(
-    ("word", "skill"), [("walk", "loco"), ("Sit down", "sitdown"), ("lie-down", "liedown"), ("reach", "touch")]
-)
+@for_each(("word", "skill"), [("walk", "loco"), ("Sit down", "sitdown"), ("lie-down", "liedown"), ("reach", "touch")])
 def test_skills_have_other_words(word: str, skill: str) -> None:
     assert skill_of(word) == skill
     row = {"skill": word, "emotion/style": "happy", "caption": "x", "furnitures": "sofa"}

@@ -63,7 +63,7 @@ def steps_of(plan: TaskPlan) -> list[str]:
     return [step.step for step in plan.steps]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("action", "wanted"),
     [
         (
@@ -282,7 +282,7 @@ def test_lingos_own_plan_is_acted_and_the_body_rises_for_what_lies_out_of_reach(
     assert check(plan.keyframes) == ()
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("change", "fault"),
     [
         ({"step_id": 7}, "steps.2.step_id: 7, wanted 3"),

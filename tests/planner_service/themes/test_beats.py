@@ -22,7 +22,7 @@ def read(theme: str) -> list[tuple[str, str]]:
     return [(clause.text, mood) for clause, mood in zip(clauses, moods_of(clauses, [None] * len(clauses)), strict=True)]
 
 
-@pytest.mark.parametrize("theme", THEMES, ids=lambda theme: theme.name)
+@for_each("theme", THEMES)
 def test_the_themes_of_the_paper_have_the_expected_events(theme: Theme) -> None:
     found = read(theme.text)
     assert len(found) == len(theme.events), found
@@ -58,7 +58,7 @@ def test_a_theme_is_told_in_the_order_of_time(theme: str, texts: list[str]) -> N
     assert [clause.text for clause in clauses_of(theme)] == texts
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("theme", "moods"),
     [
         ("He is happy. He eats. He cries. He sleeps on the floor.", ["happy", "happy", "sad", "tired"]),
@@ -74,7 +74,7 @@ def test_a_mood_lasts_until_another_one_comes(theme: str, moods: list[str]) -> N
     assert [mood for _, mood in read(theme)] == moods
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("saying", "emotion", "meant"),
     [
         ("He is drowning his sorrows.", "drunk", "wine"),
@@ -199,11 +199,11 @@ def test_a_time_without_a_comma_comes_before_whoever_does_it() -> None:
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("text", ["reads books", "he yodels", "is sitting", "to win", "cried"])
+@for_each("text", ["reads books", "he yodels", "is sitting", "to win", "cried"])
 def test_verbs_are_known(text: str) -> None:
     assert has_verb(text)
 
 
-@pytest.mark.parametrize("text", ["a walk", "the drink and his dreams", "butter", "insomnia"])
+@for_each("text", ["a walk", "the drink and his dreams", "butter", "insomnia"])
 def test_nouns_are_no_verbs(text: str) -> None:
     assert not has_verb(text)

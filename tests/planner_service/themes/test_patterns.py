@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
+from for_each import for_each
 
 from planner_service.extraction.deed_parser import deed_patterns
 from planner_service.narration.keyframe_phrases import templates
@@ -68,7 +69,7 @@ def test_parts_are_put_in_and_what_is_wrong_with_a_pattern_is_said_by_its_place(
     assert max(len(pattern.pattern) for pattern in every_pattern().values()) < MAX_PATTERN_LENGTH
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("change", "fault"),
     [
         (lambda: replace(english_verbs(), doubled="hop sit frobnicate"), "doubled: frobnicate is none"),

@@ -41,7 +41,7 @@ def test_a_piece_to_sit_on_offers_a_seat(category: str) -> None:
     assert all(0.28 <= spot.point[1] <= 0.68 for spot in found)
 
 
-@pytest.mark.parametrize("category", ["dining_chair", "office_chair", "armchair", *SOFAS])
+@for_each("category", ["dining_chair", "office_chair", "armchair", *SOFAS])
 def test_a_seat_faces_away_from_its_backrest(category: str) -> None:
     best = spots(standing(category), "sit")[0]
     assert best.facing == pytest.approx(0.0)
@@ -76,7 +76,7 @@ def test_one_stands_where_the_feet_of_the_sitter_are(category: str) -> None:
         assert 0.1 <= spot.edge <= 0.34
 
 
-@pytest.mark.parametrize("category", BEDS)
+@for_each("category", BEDS)
 def test_a_bed_is_lain_on_from_both_sides_with_the_head_at_the_headboard(category: str) -> None:
     found = spots(standing(category), "lie")
     assert {round(spot.approach, 4) for spot in found} == {round(pi / 2, 4), round(-pi / 2, 4)}
@@ -146,7 +146,7 @@ def test_tall_storage_is_touched_low_medium_and_high_from_the_front(category: st
     assert front[0].height == "medium"
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("category", "heights"),
     [
         ("double_bed", {"low", "medium"}),
@@ -159,9 +159,7 @@ def test_a_height_that_a_piece_lacks_is_not_offered(category: str, heights: set[
     assert {spot.height for spot in spots(standing(category), "touch")} == heights
 
 
-@pytest.mark.parametrize(
-    "category", ["wardrobe", "desk", "double_bed", "multi_seat_sofa", "floor_lamp", "tv_stand", "stool"]
-)
+@for_each("category", ["wardrobe", "desk", "double_bed", "multi_seat_sofa", "floor_lamp", "tv_stand", "stool"])
 def test_who_touches_stands_clear_of_the_piece_and_within_reach(category: str) -> None:
     placed = standing(category)
     found = spots(placed, "touch")
@@ -181,7 +179,7 @@ def test_a_chair_is_touched_on_its_back_from_behind() -> None:
     assert {spot.height for spot in behind} >= {"medium"}
 
 
-@pytest.mark.parametrize("category", ["wardrobe", "dining_table", "armchair", "table_lamp"])
+@for_each("category", ["wardrobe", "dining_table", "armchair", "table_lamp"])
 def test_a_touched_point_lies_on_a_part(category: str) -> None:
     placed = standing(category)
     for spot in spots(placed, "touch"):

@@ -7,8 +7,8 @@ from math import pi
 from pathlib import Path
 
 import numpy as np
-import pytest
 import shapely
+from for_each import for_each
 
 from scene_graphs.affordances.room_validation import RoomCheck, solids_overlap, validate
 from scene_graphs.home import home_from_layouts
@@ -119,6 +119,6 @@ def test_a_drawing_goes_into_axes_that_are_given() -> None:
     assert second.get_title().startswith("living-room-0000")
 
 
-@pytest.mark.parametrize("index", range(0, 240, 40))
+@for_each("index", range(0, 240, 40))
 def test_shipped_rooms_have_no_problems(index: int) -> None:
     assert validate(built_in_layouts()[index]) == []

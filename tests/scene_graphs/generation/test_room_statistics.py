@@ -108,7 +108,7 @@ def test_where_there_is_one_there_are_as_many_as_in_the_real_world(kind: str, wo
     assert np.mean(present) == pytest.approx(COUNTS[kind, word], rel=0.16)
 
 
-@pytest.mark.parametrize("kind", list(ROOMS))
+@for_each("kind", list(ROOMS))
 def test_rooms_hold_about_as_many_pieces_as_real_ones(kind: str) -> None:
     pieces = [sum(placed.category not in UNCOUNTED for placed in layout.objects) for layout in kinds()[kind]]
     assert np.mean(pieces) == pytest.approx(PIECES[kind], rel=0.2)
@@ -134,7 +134,7 @@ def weighted_median(values: np.ndarray, weights: np.ndarray) -> float:
     return float(values[order][np.searchsorted(np.cumsum(weights[order]), weights.sum() / 2)])
 
 
-@pytest.mark.parametrize("share", [0.02, 0.3, 0.5, 0.9, 1.0])
+@for_each("share", [0.02, 0.3, 0.5, 0.9, 1.0])
 def test_a_share_comes_out_exactly_in_every_block_and_more_often_where_there_is_plenty(share: float) -> None:
     for block in range(20):
         rooms = [Luck("any", block * BLOCK + number) for number in range(BLOCK)]

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from examples import tries
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -168,7 +169,7 @@ def test_presets_span_what_their_papers_say() -> None:
         assert len(np.unique(x.round(9))) == len(np.unique(z.round(9))) == spec.size
 
 
-@pytest.mark.parametrize("spec", [(0, 0.1, 0.0), (25, 0.0, 0.0), (25, float("nan"), 0.0), (9999, 0.1, 0.0)])
+@for_each("spec", [(0, 0.1, 0.0), (25, 0.0, 0.0), (25, float("nan"), 0.0), (9999, 0.1, 0.0)])
 def test_a_grid_without_size_is_refused(spec: tuple[int, float, float]) -> None:
     with pytest.raises(ValueError, match="samples a side"):
         HeightmapSpec(*spec)

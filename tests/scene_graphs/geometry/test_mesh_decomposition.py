@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from examples import tries
+from for_each import for_each
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -89,7 +90,7 @@ def test_the_mesh_of_a_form_is_sat_and_lain_on_where_the_form_is(category: str, 
     assert offers(form) == offers(measured)
 
 
-@pytest.mark.parametrize("category", ["dining_chair", "l_shaped_sofa", "double_bed", "desk", "bookshelf"])
+@for_each("category", ["dining_chair", "l_shaped_sofa", "double_bed", "desk", "bookshelf"])
 def test_boxes_fill_what_the_mesh_fills_and_leave_free_what_it_leaves_free(category: str) -> None:
     size = typical_size(category)
     form = parts(category, size)
@@ -105,8 +106,8 @@ def test_boxes_fill_what_the_mesh_fills_and_leave_free_what_it_leaves_free(categ
     assert not (holds(solid, -0.001) & ~holds(form, 0.031)).any()
 
 
-@pytest.mark.parametrize("category", ["dining_chair", "multi_seat_sofa", "double_bed"])
-@pytest.mark.parametrize("quarters", [1, 2, 3])
+@for_each("category", ["dining_chair", "multi_seat_sofa", "double_bed"])
+@for_each("quarters", [1, 2, 3])
 def test_the_front_of_a_turned_mesh_is_turned_as_much(category: str, quarters: int) -> None:
     vertices, faces = mesh_of(parts(category, typical_size(category)))
     assert front_of_mesh(vertices, faces, category) == 0.0
@@ -118,7 +119,7 @@ def test_the_front_of_a_turned_mesh_is_turned_as_much(category: str, quarters: i
     assert isclose(np.cos(front - quarters * pi / 2), 1.0, abs_tol=1e-9)
 
 
-@pytest.mark.parametrize("category", ["stool", "ottoman", "dining_table", "wardrobe", "rug"])
+@for_each("category", ["stool", "ottoman", "dining_table", "wardrobe", "rug"])
 def test_what_looks_the_same_from_all_sides_has_no_front(category: str) -> None:
     assert front_of_mesh(*mesh_of(parts(category, typical_size(category))), category) is None
 
@@ -174,14 +175,12 @@ def test_a_sofa_without_an_underside_is_filled_and_a_table_stays_hollow() -> Non
     assert all(part.role == "top" or max(abs(part.center[0]), abs(part.center[2])) > 0.3 for part in table)
 
 
-@pytest.mark.parametrize("category", ["rug", "plant", "floor_lamp", "picture", "tv"])
+@for_each("category", ["rug", "plant", "floor_lamp", "picture", "tv"])
 def test_decor_keeps_its_form(category: str) -> None:
     assert shape_of(*mesh_of(parts(category, typical_size(category))), category) == ()
 
 
-@pytest.mark.parametrize(
-    "category", ["wardrobe", "bookshelf", "dresser", "nightstand", "refrigerator", "piano", "trash_can"]
-)
+@for_each("category", ["wardrobe", "bookshelf", "dresser", "nightstand", "refrigerator", "piano", "trash_can"])
 def test_storage_and_the_unknown_are_never_sat_on(category: str) -> None:
     size = typical_size(category)
     measured = standing(category, size, shape_of(*mesh_of(parts(category, size)), category))
@@ -211,7 +210,7 @@ def test_a_measured_piece_is_drawn_by_its_boxes() -> None:
 ONE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("vertices", "faces", "message"),
     [
         (ONE, np.zeros((0, 3), dtype=int), "needs faces"),
@@ -275,7 +274,7 @@ def measured(name: str) -> Placed:
     return standing(category, (width, height, depth), shape_of(vertices, faces, category))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("name", "affordance"),
     [("bed", "lie"), ("chaira", "sit"), ("chaird", "sit"), ("sofab", "sit"), ("sofac", "sit"), ("sofac", "lie")],
 )
@@ -295,9 +294,7 @@ def stands_outside(placed: Placed, spot: Spot) -> bool:
     return bool(np.hypot(*(above - spot.standing).T).min() > 0.08)
 
 
-@pytest.mark.parametrize(
-    "name", ["sofab", "chaira", "chaird", "sofac", "readingdesk", "kitchentable", "shoerack", "trash"]
-)
+@for_each("name", ["sofab", "chaira", "chaird", "sofac", "readingdesk", "kitchentable", "shoerack", "trash"])
 def test_the_surface_of_a_real_piece_is_nowhere_far_from_its_boxes(name: str) -> None:
     vertices, faces = mesh(name)
     points = np.concatenate([vertices, vertices[faces].mean(axis=1)])
@@ -312,12 +309,12 @@ def test_both_wings_of_a_real_corner_sofa_are_sat_on() -> None:
     assert facing == {0, 1}
 
 
-@pytest.mark.parametrize("name", ["bed", "chaira", "chaird", "sofab", "sofac"])
+@for_each("name", ["bed", "chaira", "chaird", "sofab", "sofac"])
 def test_the_front_of_a_real_piece_is_where_its_maker_put_it(name: str) -> None:
     assert front_of_mesh(*mesh(name), manifest()[name]["category"]) == 0.0
 
 
-@pytest.mark.parametrize(
+@for_each(
     "name", ["tvcabinet", "nightstand", "wardrobe", "readingdesk", "kitchentable", "refrigerator", "shoerack", "trash"]
 )
 def test_real_tables_and_storage_are_not_called_seats(name: str) -> None:

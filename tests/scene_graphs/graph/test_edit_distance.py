@@ -9,6 +9,7 @@ import networkx as nx
 import numpy as np
 import pytest
 from examples import tries
+from for_each import for_each
 from graphs_at_random import CATEGORIES, GENERIC, brute_force, build, graphs
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -384,9 +385,7 @@ def test_a_query_of_more_than_fifty_two_pieces_is_refused() -> None:
         exact_distance(build(["stool"] * 53, set()), build([], set()))
 
 
-@pytest.mark.parametrize(
-    "costs", [(100, 1, 60, 30), (100, 1, 30, 102), (100, -1, 0, 0), (1.5, 1, 0, 0), (10_001, 0, 0, 0)]
-)
+@for_each("costs", [(100, 1, 60, 30), (100, 1, 30, 102), (100, -1, 0, 0), (1.5, 1, 0, 0), (10_001, 0, 0, 0)])
 def test_a_cost_table_that_breaks_the_axioms_is_refused(costs: tuple[int, int, int, int]) -> None:
     with pytest.raises(ValueError, match=r"costs must rise|whole number"):
         GroupCosts(*costs)

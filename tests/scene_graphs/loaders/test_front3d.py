@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 import shapely
 from examples import tries
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from spoiling import spoiled
@@ -114,7 +115,7 @@ def test_a_scale_stretches_the_box_and_a_mirrored_front_looks_back(
     assert np.allclose(bed.front, [0.0, signs[1]])
 
 
-@pytest.mark.parametrize("scale", [[1e-6, 1, 1], [1, 6, 1], [0, 0, 0], [1, 1], ["1", "1", "1"], [1, 1, None]])
+@for_each("scale", [[1e-6, 1, 1], [1, 6, 1], [0, 0, 0], [1, 1], ["1", "1", "1"], [1, 1, None]])
 def test_a_scale_that_is_none_drops_the_piece(scale: list[Any]) -> None:
     imported = read(small_house(placed("3/model", scale=scale)))
     assert (len(imported.layouts[0].objects), dropped(imported)) == (1, 1)
@@ -135,7 +136,7 @@ def test_only_valid_models_with_a_size_are_kept_and_the_others_counted() -> None
     assert imported.report.dropped["it points at a model the house does not have"] == 2
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("entry", "category"),
     [
         ({"category": "Drawer Chest / Corner cabinet"}, "cabinet"),
@@ -196,7 +197,7 @@ def test_a_raw_model_gives_a_piece_its_shape_turned_and_mirrored_with_it(
     assert centres["back"][1] * 2 > 0.9 * scale[1]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("kind", "tags"),
     [
         ("LivingDiningRoom", ("living_room", "dining_room")),
@@ -332,7 +333,7 @@ def test_a_cut_off_file_is_refused(length: int) -> None:
         read_scene(Source.of_bytes("h1.json", data[: min(length, len(data) - 1)]), "3d-front")
 
 
-@pytest.mark.parametrize("value", [[], 5, {}, {"scene": {}}, {"scene": {"room": {}}}, {"scene": {"room": []}}])
+@for_each("value", [[], 5, {}, {"scene": {}}, {"scene": {"room": {}}}, {"scene": {"room": []}}])
 def test_another_format_is_refused_with_what_would_be_right(value: Any) -> None:
     with pytest.raises(LayoutError, match=r"3D-FRONT|no room"):
         read(value)

@@ -6,8 +6,8 @@ from dataclasses import replace
 from math import cos, pi, sin
 
 import numpy as np
-import pytest
 from examples import tries
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -71,7 +71,7 @@ def test_a_bed_without_pillows_has_its_head_at_the_wall() -> None:
     assert front_of(turned) == (0.0, 1.0)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("x", "z", "front"),
     [(2.0, 1.0, (0.0, 1.0)), (3.0, 3.0, (0.0, -1.0)), (1.2, 2.0, (1.0, 0.0)), (2.0, 1.7, (0.0, 1.0))],
 )

@@ -66,7 +66,7 @@ def assert_same(found: Layout, layout: Layout, fronts: bool = True) -> None:
             assert np.allclose(ours.size, placed.size, atol=0.03 if fronts else 0.15)
 
 
-@pytest.mark.parametrize("layout", ROOMS, ids=lambda layout: layout.id)
+@for_each("layout", ROOMS)
 def test_a_room_written_as_nodes_is_read_as_it_was(layout: Layout) -> None:
     assert_same(read(scene_of(layout)).layouts[0], layout)
 
@@ -296,7 +296,7 @@ def test_whatever_an_obj_says_it_is_read_or_refused(lines: list[str]) -> None:
         read_obj("\n".join(lines))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "message"),
     [
         ("o sofa\nv 1 2", "line 2: v must be followed by three numbers"),

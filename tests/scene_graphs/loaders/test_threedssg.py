@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from examples import tries
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from scans import ROOM, Piece
@@ -114,7 +115,7 @@ def test_ids_may_be_texts_or_numbers_in_either_file() -> None:
     assert {frozenset(edge) for edge in graph.edges} == {frozenset(edge) for edge in other.edges}
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("objects", "relationships", "scan", "named"),
     [
         (OBJECTS, RELATIONSHIPS, "s9", "s9"),

@@ -8,6 +8,7 @@ import re
 import numpy as np
 import pytest
 from examples import tries
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from sample_motions import tumbling
@@ -132,10 +133,8 @@ def test_a_map_of_joints_tells_unit_and_axes_where_names_do_not(tmp_path):
     assert any("no family" in note for note in read_clips(tmp_path / "walk.bvh")[0].notes)
 
 
-@pytest.mark.parametrize("order", ["ZXY", "XYZ", "YZX"])
-@pytest.mark.parametrize(
-    ("metres", "unit"), [(100.0, "centimetres"), (1.0, "metres"), (0.45 / 0.0254, "CMU"), (1e3, "milli")]
-)
+@for_each("order", ["ZXY", "XYZ", "YZX"])
+@for_each(("metres", "unit"), [(100.0, "centimetres"), (1.0, "metres"), (0.45 / 0.0254, "CMU"), (1e3, "milli")])
 def test_units_and_channel_orders_make_no_difference(order, metres, unit):
     clip = read_bvh_clip(body(STEPS, metres=metres, order=order), "walk")
     plain = read_bvh_clip(body(STEPS), "walk")
@@ -221,7 +220,7 @@ def test_what_we_write_comes_back_within_a_tenth_of_a_millimetre(tmp_path, heigh
     np.testing.assert_allclose(clip.joint_positions()[:, order], motion.joint_positions()[-len(clip) :], atol=1e-4)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("old", "new", "fault"),
     [
         ("HIERARCHY", "SCENE", "HIERARCHY"),

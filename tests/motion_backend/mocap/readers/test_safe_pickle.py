@@ -52,7 +52,7 @@ def test_arrays_of_other_types_are_refused_and_told(array):
         read_pickled(pickle.dumps({"poses": array}, 4))
 
 
-@pytest.mark.parametrize("number", [np.float32(0.1), np.float64(-2.5), np.int32(7), np.bool_(True), np.str_("text")])
+@for_each("number", [np.float32(0.1), np.float64(-2.5), np.int32(7), np.bool_(True), np.str_("text")])
 def test_numpys_single_numbers_come_back(number):
     read = read_pickled(pickle.dumps({"fps": number}, 4))["fps"]
     assert (read, read.dtype) == (number, number.dtype)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import pytest
+from for_each import for_each
 
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.procedural.collision_avoidance.hand_collision import arms_in, hands_clear
@@ -42,7 +42,7 @@ def test_open_arms_rise_where_it_is_narrow_and_hanging_arms_hang_on() -> None:
     np.testing.assert_allclose(arms_in(hanging, narrow, "raised", 0.8).arms, hanging.arms, atol=1e-9)
 
 
-@pytest.mark.parametrize(("arms", "needed"), [(arms, needed) for arms, (_, needed) in NARROW_ARMS.items()])
+@for_each(("arms", "needed"), [(arms, needed) for arms, (_, needed) in NARROW_ARMS.items()])
 def test_arms_that_stick_out_come_in_only_where_they_would_meet_something(arms: str, needed: float) -> None:
     pose = stood(arms)
     root, local = solve(pose, SKELETON)

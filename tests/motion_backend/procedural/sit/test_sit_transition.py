@@ -9,6 +9,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 from examples import tries
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from layers import sampled
@@ -244,7 +245,7 @@ def test_slow_rising_leans_on_the_knees_and_abrupt_rising_is_quicker() -> None:
     assert near["stand up slowly"] < 0.2 < near["stand up"]
 
 
-@pytest.mark.parametrize("name", sorted(HOLDS))
+@for_each("name", sorted(HOLDS))
 def test_a_hand_at_rest_keeps_its_place_on_the_body_however_that_moves(name: str) -> None:
     pose = standing((0.0, 0.0), 0.4, Bearing(), SKELETON)
     hold = HOLDS[name]

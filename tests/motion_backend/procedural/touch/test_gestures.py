@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from for_each import for_each
 from small_home import contact, small_home, to
 
 from motion_backend.body.scene_collision import Obstacles
@@ -70,7 +71,7 @@ def seated(caption: str) -> tuple[Motion, np.ndarray]:
     return performed(replace(contact(HOME, Skill.SITDOWN, "chair", caption), hold=2.5))
 
 
-@pytest.mark.parametrize("caption", SITTING)
+@for_each("caption", SITTING)
 def test_a_caption_of_sitting_is_shown_by_the_hands(caption: str) -> None:
     style = sit_style(Emotion.NEUTRAL, caption)
     assert style.doing == SITTING[caption]
@@ -127,9 +128,7 @@ def test_a_body_without_a_goal_stays_where_it_is(caption: str, up: bool) -> None
     assert joints[-1, RIGHT, 1] < joints[0, INDEX["spine1"], 1]
 
 
-@pytest.mark.parametrize(
-    ("caption", "name"), [*((c, "table") for c in TOUCHING), *((c, "shelf") for c in list(TOUCHING)[2:5])]
-)
+@for_each(("caption", "name"), [*((c, "table") for c in TOUCHING), *((c, "shelf") for c in list(TOUCHING)[2:5])])
 def test_whatever_is_done_at_a_surface_reaches_it_cleanly(caption: str, name: str) -> None:
     assert handling_of(caption) == TOUCHING[caption]
     action = replace(contact(HOME, Skill.TOUCH, name, caption), hand="left" if "left" in caption else "right")
@@ -195,7 +194,7 @@ def test_a_body_of_other_height_steps_straight_to_where_it_sits_down(height: flo
     assert steps.sum() < 0.42 * height / 1.7 + 0.12
 
 
-@pytest.mark.parametrize("doing", [*GESTURES, "", "juggle"])
+@for_each("doing", [*GESTURES, "", "juggle"])
 def test_a_gesture_begins_and_ends_in_the_held_pose(doing: str) -> None:
     pose = standing((0.0, 0.0), 0.0, replace(Bearing(), arms=("desk", "desk")), build_skeleton(1.7)).repeat(80)
     made = gesture(pose, doing)

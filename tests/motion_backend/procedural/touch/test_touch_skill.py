@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import pytest
+from for_each import for_each
 from small_home import ROOM
 
 from motion_backend.body.joint_limits import limits_share
@@ -40,7 +40,7 @@ def gap(motion: Motion) -> np.ndarray:
     return np.asarray(np.linalg.norm(at - np.array(goal.position), axis=1))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("caption", "name", "height"),
     [
         ("An act of reaching high", "shelf", "high"),
@@ -49,7 +49,7 @@ def gap(motion: Motion) -> np.ndarray:
         ("Low touch from a prone position", "low", "low"),
     ],
 )
-@pytest.mark.parametrize("hand", ["left", "right"])
+@for_each("hand", ["left", "right"])
 def test_the_hand_gets_there_and_stays_within_the_joints_limits(
     caption: str, name: str, height: str, hand: str
 ) -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from small_home import small_home
@@ -81,7 +82,7 @@ def on_the_way(motion: Motion) -> slice:
     return slice(int(0.3 * len(motion)), int(0.75 * len(motion)))
 
 
-@pytest.mark.parametrize("caption", WALKS)
+@for_each("caption", WALKS)
 def test_every_caption_is_walked_cleanly_to_its_end(caption: str) -> None:
     motion = walked(caption)
     body = Kinematics.of(motion)
@@ -101,7 +102,7 @@ def overlaps_of(motion: Motion) -> rotations.Array:
     return overlaps(SKELETON, positions.astype(np.float64), world)
 
 
-@pytest.mark.parametrize("caption", WALKS)
+@for_each("caption", WALKS)
 def test_arms_keep_out_of_the_trunk_and_legs_out_of_each_other(caption: str) -> None:
     motion = walked(caption)
     deep = overlaps_of(motion)
@@ -120,7 +121,7 @@ SHORT_WAYS = {
 LEGS = [index for index, (part, _) in enumerate(pairs()) if part.endswith(("thigh", "shin", "foot"))]
 
 
-@pytest.mark.parametrize("way", SHORT_WAYS)
+@for_each("way", SHORT_WAYS)
 def test_legs_keep_out_of_each_other_in_turns_and_on_short_ways(way: str) -> None:
     goal, end_yaw = SHORT_WAYS[way]
     motion = walked("steadily walking forward", end_yaw=end_yaw, goal=goal)

@@ -20,6 +20,7 @@ import pytest
 from examples import tries
 from fastapi import FastAPI
 from film_made import Drawn, Making, film_of, sound_alone
+from for_each import for_each
 from good_model import seen_in
 from hypothesis import given
 from hypothesis import strategies as st
@@ -201,10 +202,8 @@ def test_a_long_text_waits_for_a_worker_and_cancelling_throws_it_away(app: FastA
     assert [event.name for event in extraction_events(Stories(parts(app).engine).get(shown["id"]))] == ["cancelled"]
 
 
-@pytest.mark.parametrize(
-    "model", [None, ScriptedModel(lambda _prompt, _schema: {"scripts": []})], ids=["rules", "model"]
-)
-@pytest.mark.parametrize(("size", "status"), [(LETTERS_AT_ONCE * 4 // 5, 200), (LETTERS_AT_ONCE * 6 // 5, 202)])
+@for_each("model", [None, ScriptedModel(lambda _prompt, _schema: {"scripts": []})])
+@for_each(("size", "status"), [(LETTERS_AT_ONCE * 4 // 5, 200), (LETTERS_AT_ONCE * 6 // 5, 202)])
 def test_one_giant_paragraph_waits_for_a_worker_though_it_is_one_piece(
     app: FastAPI, model: LanguageModel | None, size: int, status: int
 ) -> None:
@@ -295,7 +294,7 @@ def test_a_worker_that_does_not_have_the_film_says_what_must_be_shared(
         elsewhere.listen(shown["id"])
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("files", "pointer", "told"),
     [
         ({"video": b"#EXTM3U\nhttp://example.org/a.ts\n"}, "/video", "playlist"),
@@ -315,10 +314,6 @@ def test_a_worker_that_does_not_have_the_film_says_what_must_be_shared(
         ({"video": "film", "name": (None, "\x07")}, "/name", "printable"),
         ([("video", "film"), ("video", "film")], "/video", "sent twice"),
     ],
-    ids=[
-        "playlist", "zip", "text", "pictures", "zero", "sound", "cut-off", "mute", "binary-subtitles",
-        "empty-subtitles", "film-as-subtitles", "unknown-part", "no-file", "add", "name", "two-films",
-    ],
 )  # fmt: skip
 def test_what_cannot_be_read_is_refused_with_its_place_and_nothing_is_left(
     refusing: FastAPI, film: bytes, mute: bytes, files: Any, pointer: str, told: str
@@ -336,7 +331,7 @@ def dict_items(files: Any) -> list[tuple[str, Any]]:
     return list(files.items()) if isinstance(files, dict) else files
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("headers", "body", "status"),
     [
         ("multipart/form-data", b"--x--\r\n", 400),

@@ -112,7 +112,7 @@ async def test_the_scene_of_a_room_holds_its_furniture(app: FastAPI) -> None:
 
 
 @pytest.mark.anyio
-@pytest.mark.parametrize("name", ["nothing", "study-0003/x", "x" * 300, "scene.glb", "%00", "..%2f..", "study-0003/"])
+@for_each("name", ["nothing", "study-0003/x", "x" * 300, "scene.glb", "%00", "..%2f..", "study-0003/"])
 async def test_a_room_that_is_not_there_is_a_404(app: FastAPI, name: str) -> None:
     for path in (f"/v1/layouts/{name}", f"/v1/layouts/{name}/scene.glb"):
         check_problem(await ask(app, path), 404)
@@ -188,7 +188,7 @@ async def test_what_is_wrong_with_a_room_is_named_by_its_place(app: FastAPI, row
 
 
 @pytest.mark.anyio
-@pytest.mark.parametrize(
+@for_each(
     ("query", "pointer"),
     [("limit=0", "?limit"), ("limit=101", "?limit"), ("limit=x", "?limit"), ("cursor=!!", "?cursor"),
      ("cursor=YWJj0", "?cursor"), ("cursor=", "?cursor"), ("room=", "?room")],

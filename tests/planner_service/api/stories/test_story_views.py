@@ -3,7 +3,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-import pytest
+from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -96,7 +96,7 @@ def test_a_segment_says_which_frames_can_be_had() -> None:
     assert stages == ["plan", "furnish", "narrate", "act", "move", "judge"]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("status", "error", "title"),
     [
         ("ERROR", {"title": "This story cannot be made", "detail": "d"}, "This story cannot be made"),
