@@ -1,7 +1,7 @@
 """Every small bug that a module can be given: signs, borders, constants, conditions, statements, values returned.
 
 Texts are left alone, and what only makes texts: docstrings, messages, annotations, imports, logging; and what is only
-held to be so: assertions, and zip's `strict`.
+held to be so: assertions, `strict`, `frozen`.
 """
 
 from __future__ import annotations
@@ -30,6 +30,8 @@ TWIN: Final = TWINS | {second: first for first, second in TWINS.items()} | {"ext
 """Functions that are easily mistaken for one another."""
 MESSAGES: Final = {"print", "warn", "warning", "info", "debug", "error", "exception", "log", "echo", "Field", "cast"}
 """Calls that only say something, or only concern types."""
+HELD: Final = {"strict", "frozen"}
+"""Arguments that only hold others to something."""
 SAYING: Final = {"__repr__", "__str__", "__format__"}
 
 
@@ -127,7 +129,7 @@ class _Finder:
                 text = self._text[slice(*self._span(value))]
                 if isinstance(value, ast.Compare | ast.BoolOp) or (isinstance(value, ast.UnaryOp) and "not" in text):
                     yield self._bug(self._span(value), f"not ({text})", lines, "value returned", names)
-                elif not (isinstance(value, ast.Constant) and value.value is None):
+                elif not (isinstance(value, ast.Constant) and not value.value):
                     yield self._bug(self._span(value), "None", lines, "value returned", names)
             case ast.If() | ast.While():
                 test = self._span(node.test)
@@ -150,7 +152,7 @@ class _Finder:
             elif isinstance(child, ast.comprehension):
                 for part in (child.iter, *child.ifs):
                     yield from self._of_expression(part, lines, names)
-            elif isinstance(child, ast.keyword) and child.arg != "strict":
+            elif isinstance(child, ast.keyword) and child.arg not in HELD:
                 yield from self._of_expression(child.value, lines, names)
 
     def _here(self, node: ast.expr) -> Iterator[tuple[tuple[int, int], str, str]]:
@@ -191,7 +193,7 @@ class _Finder:
 def _another(number: float) -> str:
     """A number that is not this one."""
     if isinstance(number, int):
-        return str(number + 1)
+        return str(number + 1 if number < 10 else number * 3 // 2)
     return repr(number * 1.5) if number else "1.0"
 
 

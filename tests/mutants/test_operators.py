@@ -39,6 +39,8 @@ def wrong(text: str) -> set[str]:
         ("x = a and b or c", {"x = a or b or c", "x = a and b and c"}),
         ("x = 0.5", {"x = 0.75"}),
         ("x = a[0]", {"x = a[1]"}),
+        ("x = 100", {"x = 150"}),
+        ("x = zip(a, b, strict=True)", set()),
         ("x = min(a, b)", {"x = max(a, b)"}),
         ("x = np.maximum(a, b)", {"x = np.minimum(a, b)"}),
         ("x = not a", {"x = a"}),
