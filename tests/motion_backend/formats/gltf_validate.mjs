@@ -2,7 +2,7 @@
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 
-const require = createRequire(new URL("../gltf/package.json", import.meta.url));
+const require = createRequire(new URL("../../gltf/package.json", import.meta.url));
 const validator = require("gltf-validator");
 
 for (const path of process.argv.slice(2)) {
