@@ -202,8 +202,10 @@ def test_a_long_text_waits_for_a_worker_and_cancelling_throws_it_away(app: FastA
     assert [event.name for event in extraction_events(Stories(parts(app).engine).get(shown["id"]))] == ["cancelled"]
 
 
-@for_each("model", [None, ScriptedModel(lambda _prompt, _schema: {"scripts": []})])
-@for_each(("size", "status"), [(LETTERS_AT_ONCE * 4 // 5, 200), (LETTERS_AT_ONCE * 6 // 5, 202)])
+@pytest.mark.parametrize(
+    "model", [None, ScriptedModel(lambda _prompt, _schema: {"scripts": []})], ids=["rules", "model"]
+)
+@pytest.mark.parametrize(("size", "status"), [(LETTERS_AT_ONCE * 4 // 5, 200), (LETTERS_AT_ONCE * 6 // 5, 202)])
 def test_one_giant_paragraph_waits_for_a_worker_though_it_is_one_piece(
     app: FastAPI, model: LanguageModel | None, size: int, status: int
 ) -> None:
