@@ -69,7 +69,8 @@ def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("kind", ["openai", "ollama", "anthropic"])
 def test_a_model_is_asked_and_its_answer_read(kind: Kind) -> None:
     with ModelServer(lambda asked: chat(GOOD, asked.path)) as server:
-        model = served(server, kind=kind)
+        # The vendor's library is imported meanwhile, which takes its time on a busy machine.
+        model = served(server, seconds=60.0, kind=kind)
         answer = model.answer("What is for dinner?", Meal, [JPEG, PNG])
         assert answer == Meal(dish="soup")
         assert model.name.startswith(f"{kind}:")
