@@ -147,8 +147,9 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
         f"encoder: {made.planned.script.encoder}",
         highlight=False,
     )
-    for event in made.planned.script.uncovered:
-        console.print(f"not covered: {event}", highlight=False)
+    for beat in made.planned.script.beats:
+        if beat.why:
+            console.print(f"not acted: {beat.text} ({beat.why})", highlight=False)
     for note in made.motion.notes:
         console.print(f"done otherwise: keyframe {note.keyframe}: {note.words}", highlight=False)
     console.print(f"\nwritten to {files[0].parent}/: {', '.join(file.name for file in files)}", highlight=False)

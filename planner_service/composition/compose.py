@@ -15,7 +15,7 @@ from planner_service.composition.direct_generation import direct_by_rules
 from planner_service.composition.event_retrieval import Reading, read
 from planner_service.composition.sequence_search import cast
 from planner_service.llm.protocol import LanguageModel, ModelError
-from planner_service.scripts.script import Event, Keyframe, LongScript, PlannedKeyframe, Retrieved
+from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe, Retrieved
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import repair
 from planner_service.scripts.script_search import Found
@@ -205,7 +205,7 @@ def _long_script(
         script = library.scripts[index]
         keyframes += [
             PlannedKeyframe.model_validate(
-                {**keyframe.model_dump(), "short_script": number, "event": event, "room": script.room}
+                {**keyframe.model_dump(), "short_script": number, "beat": event, "room": script.room}
             )
             for keyframe in script.keyframes
         ]
@@ -213,17 +213,24 @@ def _long_script(
     told = reading.told(chosen)
     return LongScript(
         theme=theme,
-        events=reading.events,
+        beats=_beats(reading, told),
         short_scripts=tuple(
-            Retrieved(script=library.scripts[index], event=event, score=float(reading.scores[event, index]))
+            Retrieved(script=library.scripts[index], beat=event, score=float(reading.scores[event, index]))
             for event, index in chosen
         ),
         keyframes=acted,
         repairs=(*record.notes, *repairs),
-        uncovered=tuple(event.text for index, event in enumerate(reading.events) if index not in told),
         planner=record.planner,
         encoder=library.encoder.name,
         seed=request.seed,
+    )
+
+
+def _beats(reading: Reading, told: frozenset[int]) -> tuple[Beat, ...]:
+    """The beats, those that no chosen script is about with the reason."""
+    return tuple(
+        beat if index in told else beat.model_copy(update={"why": "no short script is about it"})
+        for index, beat in enumerate(reading.events)
     )
 
 
@@ -232,7 +239,7 @@ def _direct(
 ) -> LongScript:
     """Keyframes without the library: a model's, whose captions the body reads word by word, else those of the rules."""
     moods = moods_of(by_rules, [None] * len(by_rules))
-    events = tuple(Event(text=clause.text, emotion=Emotion(mood)) for clause, mood in zip(by_rules, moods, strict=True))
+    events = tuple(Beat(text=clause.text, emotion=Emotion(mood)) for clause, mood in zip(by_rules, moods, strict=True))
     keyframes, planner = direct_by_rules(events), _RULES
     if model is not None:
         try:
@@ -245,7 +252,7 @@ def _direct(
     acted, repairs = repair(keyframes)
     return LongScript(
         theme=theme,
-        events=events,
+        beats=events,
         short_scripts=(),
         keyframes=acted,
         repairs=(*record.notes, *repairs),
@@ -259,7 +266,7 @@ def script_of(keyframes: Sequence[Keyframe], theme: str, seed: int = 0) -> LongS
     """The long script of keyframes that somebody else wrote: checked and repaired, nothing retrieved."""
     acted, repairs = repair([PlannedKeyframe.model_validate(keyframe.model_dump()) for keyframe in keyframes])
     return LongScript(
-        theme=theme, events=(), short_scripts=(), keyframes=acted, repairs=tuple(repairs), method="direct",
+        theme=theme, beats=(), short_scripts=(), keyframes=acted, repairs=tuple(repairs), method="direct",
         planner="given", seed=seed,
     )  # fmt: skip
 

@@ -8,7 +8,7 @@ from typing import Final
 
 from motion_backend.motion import Emotion, Skill
 from planner_service.scripts.caption_fallbacks import usual
-from planner_service.scripts.script import Event, PlannedKeyframe
+from planner_service.scripts.script import Beat, PlannedKeyframe
 from planner_service.scripts.script_words import NEEDS, affords
 from scene_graphs import furniture
 
@@ -24,7 +24,7 @@ _DEEDS: Final = (
 _USUAL: Final = {Skill.LIEDOWN: "sofa", Skill.SITDOWN: "armchair", Skill.TOUCH: "table"}
 
 
-def direct_by_rules(events: Sequence[Event]) -> tuple[PlannedKeyframe, ...]:
+def direct_by_rules(events: Sequence[Beat]) -> tuple[PlannedKeyframe, ...]:
     """Each event walked in its mood and, where its words tell of one, done at one piece of furniture.
 
     Not yet repaired: rising is left to `script_repair.repair`.
@@ -48,5 +48,5 @@ def _furniture(text: str, skill: Skill) -> str:
 def _keyframe(skill: Skill, emotion: Emotion, word: str, event: int) -> PlannedKeyframe:
     caption = usual(skill, emotion)
     return PlannedKeyframe.model_validate(
-        {"skill": skill, "emotion": emotion, "caption": caption, "furniture": word, "event": event}
+        {"skill": skill, "emotion": emotion, "caption": caption, "furniture": word, "beat": event}
     )

@@ -10,7 +10,7 @@ import numpy as np
 
 from motion_backend.motion import Emotion
 from planner_service.scripts.emotion_classifier import clear_moods
-from planner_service.scripts.script import Event
+from planner_service.scripts.script import Beat
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.suitability import Demand, Limits, Scores, suitability
 from planner_service.themes.beats import Clause, moods_of
@@ -43,7 +43,7 @@ _LIKE: Final = 0.15
 class Reading:
     """The events of a theme and what the library has for them."""
 
-    events: tuple[Event, ...]
+    events: tuple[Beat, ...]
     scores: Scores
     """How near in meaning, (events, scripts)."""
     suits: Scores
@@ -81,7 +81,7 @@ def read(theme: str, clauses: Sequence[Clause], library: ScriptLibrary, limits: 
         )
         for clause, mood in zip(clauses, moods, strict=True)
     ]
-    events = tuple(Event(text=clause.text, emotion=Emotion(mood)) for clause, mood in zip(clauses, moods, strict=True))
+    events = tuple(Beat(text=clause.text, emotion=Emotion(mood)) for clause, mood in zip(clauses, moods, strict=True))
     suits = suitability(demands, scores, library.traits, limits)
     weights = np.array([[_MOOD_CONTEXT if state_words(clause.text) else _CONTEXT] for clause in clauses])
     shared = np.array([library.sharing(clause.text) for clause in clauses])

@@ -13,7 +13,7 @@ from motion_backend.motion import Emotion, Skill
 from planner_service.llm.protocol import LanguageModel
 from planner_service.llm.structured_output import ask, problems_of
 from planner_service.scripts.captions import captions_offered, furniture_offered
-from planner_service.scripts.script import EMOTIONS, Event, Keyframe
+from planner_service.scripts.script import EMOTIONS, Beat, Keyframe
 from planner_service.scripts.script_repair import check, read_keyframe
 from planner_service.scripts.script_search import Found
 
@@ -66,7 +66,7 @@ class DirectScript(_Answer):
     keyframes: list[DirectKeyframe]
 
 
-def plan_events(model: LanguageModel, theme: str, most: int) -> tuple[Event, ...]:
+def plan_events(model: LanguageModel, theme: str, most: int) -> tuple[Beat, ...]:
     """The events of a theme in the order of time, as the model reads it. Raises ModelError."""
 
     def problems(answer: PlannedEvents) -> list[str]:
@@ -81,13 +81,13 @@ def plan_events(model: LanguageModel, theme: str, most: int) -> tuple[Event, ...
     prompt = prompts.render("plan_events", theme=theme, emotions=", ".join(EMOTIONS), most=str(most))
     answer = ask(model, prompt, PlannedEvents, problems)
     return tuple(
-        Event(text=" ".join(event.text.split()), emotion=emotion_of(event.emotion) or Emotion.NEUTRAL)
+        Beat(text=" ".join(event.text.split()), emotion=emotion_of(event.emotion) or Emotion.NEUTRAL)
         for event in answer.events
     )
 
 
 def arrange(
-    model: LanguageModel, theme: str, events: Sequence[Event], offers: Mapping[int, Sequence[Found]], count: int
+    model: LanguageModel, theme: str, events: Sequence[Beat], offers: Mapping[int, Sequence[Found]], count: int
 ) -> list[tuple[int, Found]]:
     """The short scripts a model chooses among those offered for each event, in order. Raises ModelError."""
 

@@ -54,7 +54,7 @@ class LabelledEvent(_Label):
 
     def emotion_in(self, script: LongScript) -> str | None:
         """The emotion the long script gives it, None where it has no such event."""
-        return next((event.emotion for event in script.events if self.told_in(event.text)), None)
+        return next((beat.emotion for beat in script.beats if self.told_in(beat.text)), None)
 
 
 class LabelledTheme(_Label):

@@ -30,7 +30,7 @@ from planner_service.grounding.furnish import FurnishError, furnish
 from planner_service.grounding.keyframes_to_actions import UnreachableError, act
 from planner_service.llm.fake_model import ScriptedModel
 from planner_service.narration.narrator import narrate
-from planner_service.scripts.script import Event, LongScript, PlannedKeyframe
+from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import check
 from planner_service.scripts.script_words import NEEDS, affords
@@ -116,14 +116,14 @@ def coverage(events: Sequence[LabelledEvent], script: LongScript) -> tuple[Cover
 
     A short script may play two events that follow each other, where the long script took them for one.
     """
-    chosen = [(script.events[one.event].text, one.script) for one in script.short_scripts]
+    chosen = [(script.beats[one.beat].text, one.script) for one in script.short_scripts]
     fits = [[event.told_in(text) and event.played_by(played) for text, played in chosen] for event in events]
     covered = in_order(fits)
     return tuple(
         Coverage(
             event,
             index in covered,
-            any(event.told_in(text) for text in script.uncovered),
+            any(event.told_in(beat.text) for beat in script.beats if beat.why),
             event.emotion_in(script),
             tuple(played.id for text, played in chosen if event.told_in(text)),
         )
@@ -157,7 +157,7 @@ def improviser(theme: str, seed: int) -> ScriptedModel:
     """
     clauses = clauses_of(theme)
     moods = moods_of(clauses, [None] * len(clauses))
-    events = [Event(text=clause.text, emotion=Emotion(mood)) for clause, mood in zip(clauses, moods, strict=True)]
+    events = [Beat(text=clause.text, emotion=Emotion(mood)) for clause, mood in zip(clauses, moods, strict=True)]
 
     def answer(prompt: str, _schema: type[BaseModel]) -> DirectScript:
         return improvised(events, captions_in(prompt), furniture_in(prompt), seed)
@@ -166,7 +166,7 @@ def improviser(theme: str, seed: int) -> ScriptedModel:
 
 
 def improvised(
-    events: Sequence[Event], captions: dict[Skill, list[str]], furniture: Sequence[str], seed: int
+    events: Sequence[Beat], captions: dict[Skill, list[str]], furniture: Sequence[str], seed: int
 ) -> DirectScript:
     """What is done in each event, with captions and furniture by the seed."""
     luck = np.random.default_rng(seed)
@@ -178,7 +178,7 @@ def improvised(
                 skill=keyframe.skill,
                 emotion=keyframe.emotion,
                 caption=str(luck.choice(_fitting(keyframe, captions.get(keyframe.skill, [])))),
-                furniture=pieces.get(keyframe.event, keyframe.furniture),
+                furniture=pieces.get(keyframe.beat, keyframe.furniture),
             )
             for keyframe in keyframes
         ]
@@ -209,16 +209,16 @@ def furniture_in(prompt: str) -> list[str]:
 
 
 def _pieces(
-    keyframes: Sequence[PlannedKeyframe], events: Sequence[Event], furniture: Sequence[str], luck: np.random.Generator
+    keyframes: Sequence[PlannedKeyframe], events: Sequence[Beat], furniture: Sequence[str], luck: np.random.Generator
 ) -> dict[int | None, str]:
     """The piece of furniture of each event that needs one: what its words name, else one that serves."""
     pieces: dict[int | None, str] = {}
     for keyframe in keyframes:
-        if keyframe.skill is Skill.LOCO or keyframe.event is None:
+        if keyframe.skill is Skill.LOCO or keyframe.beat is None:
             continue
-        named = keyframe.furniture in events[keyframe.event].text.lower()
+        named = keyframe.furniture in events[keyframe.beat].text.lower()
         serving = [] if named else [word for word in furniture if affords(word, NEEDS[keyframe.skill])]
-        pieces[keyframe.event] = str(luck.choice(serving)) if serving else keyframe.furniture
+        pieces[keyframe.beat] = str(luck.choice(serving)) if serving else keyframe.furniture
     return pieces
 
 

@@ -111,11 +111,10 @@ def summary_of_script(script: LongScript) -> Json:
     return {
         "planner": script.planner,
         "encoder": script.encoder or None,
-        "events": [event.model_dump(mode="json") for event in script.events],
-        "uncovered": list(script.uncovered),
+        "beats": [beat.model_dump(mode="json") for beat in script.beats],
         "repairs": list(script.repairs),
         "short_scripts": [
-            {"id": r.script.id, "summary": r.script.summary, "score": round(r.score, 4), "event": r.event}
+            {"id": r.script.id, "summary": r.script.summary, "score": round(r.score, 4), "beat": r.beat}
             for r in script.short_scripts
         ],
         "keyframes": _keyframes(script),
@@ -146,6 +145,7 @@ def _keyframes(script: LongScript) -> list[Json]:
     return [
         {
             "index": index,
+            "beat": keyframe.beat,
             "skill": keyframe.skill.value,
             "emotion": keyframe.emotion,
             "mood": keyframe.mood.value,

@@ -66,7 +66,7 @@ def narrate_with_model(
         name=voice.name,
         pronouns=voice.pronouns,
         theme=script.theme,
-        events="\n".join(f"- {script.events[r.event].text}: {r.script.summary}" for r in script.short_scripts),
+        events="\n".join(f"- {script.beats[r.beat].text}: {r.script.summary}" for r in script.short_scripts),
         keyframes="\n".join(f"- {moment}" for moment in moments),
     )
     said = " ".join([script.theme, *(r.script.summary for r in script.short_scripts)])

@@ -42,7 +42,7 @@ from planner_service.narration.story_scenes import (
     leads_of,
     scenes_of,
 )
-from planner_service.scripts.script import Event, LongScript
+from planner_service.scripts.script import Beat, LongScript
 
 __all__ = ["Places", "Span", "Told", "narrate"]
 _UNFIT = r"[,;:]|\b(?:when|that|this|first)\b"
@@ -102,8 +102,8 @@ class _Narrator:
         self.variety = Variety(seed, zlib.crc32(script.theme.encode()))
         self.ear = Ear(self.variety)
         self.wording = Wording(voice, self.variety, places, brief=len(script.keyframes) > _MANY)
-        events = script.events
-        self.first, self.last = (events[0], events[-1]) if events else (Event(text=script.theme),) * 2
+        events = script.beats
+        self.first, self.last = (events[0], events[-1]) if events else (Beat(text=script.theme),) * 2
         self.time = time_of(self.first.text, *(r.script.summary for r in script.short_scripts[:1]))
         self.rooms: list[str] = []
         self.arrival = ""
@@ -125,7 +125,7 @@ class _Narrator:
     def tell(self) -> Told:
         """The whole story."""
         scenes = scenes_of(self.script)
-        theme, events = self.script.theme, self.script.events
+        theme, events = self.script.theme, self.script.beats
         tellable = {number for number, event in enumerate(events) if happening(event.text, theme, self.voice)}
         told: list[list[Sentence]] = []
         leads = leads_of(self.script, scenes, tellable, self.variety)
@@ -212,7 +212,7 @@ class _Narrator:
         """A sentence that leads from the mood of the scene before to that of this one."""
         emotion = self._emotion(scene)
         turns = story_texts().mood_changes.get(emotion, {})
-        fits = scene.event is None or self.script.events[scene.event].emotion == emotion
+        fits = scene.event is None or self.script.beats[scene.event].emotion == emotion
         if self.mood and emotion != self.mood and fits and self.variety.chance(0.75):
             options = self._framed(turns.get(self.mood, turns.get(ANY_OTHER, ())))
             if options and not self.ear.heard(options):
@@ -227,7 +227,7 @@ class _Narrator:
 
     def _happens(self, events: Sequence[int]) -> list[Remark]:
         """Events in the theme's own words, each sentence with the theme's "so" or "but" before it."""
-        texts = [self.script.events[event].text for event in events]
+        texts = [self.script.beats[event].text for event in events]
         theme = self.script.theme
         together = told_together([text for text in texts if not fragment(text)], theme, self.voice, self._named())
         sentences = [sentence for text in together for sentence in SENTENCES.split(text)]

@@ -80,7 +80,7 @@ def deeds_in(text: str) -> frozenset[str]:
 def scenes_of(script: LongScript) -> list[Scene]:
     """The scenes in order; connecting keyframes go with what follows them, but rising ends the scene before."""
     keyframes = script.keyframes
-    owners: list[tuple[int | None, int | None]] = [(k.short_script, k.event) for k in keyframes]
+    owners: list[tuple[int | None, int | None]] = [(k.short_script, k.beat) for k in keyframes]
     bridging = [k.short_script is None and bool(script.short_scripts) for k in keyframes]
     for index in reversed(range(len(keyframes) - 1)):
         if bridging[index]:
@@ -154,7 +154,7 @@ def _own(script: LongScript, scene: Scene, events: Sequence[int], tellable: Cont
     if scene.script is None:
         return Lead(tuple(events))
     found = script.short_scripts[scene.script]
-    event = script.events[found.event].text
+    event = script.beats[found.beat].text
     sentences = SENTENCES.split(found.script.summary)
     shares = [1.0 if sentence.rstrip(".!?") in event else covered(event, sentence) for sentence in sentences]
     everything = tuple(range(len(shares)))
@@ -180,7 +180,7 @@ def _together(script: LongScript, scenes: Sequence[Scene], leads: list[Lead], va
         able = one.events and two.events and len(one.events) + len(two.events) <= _MAX_EVENTS_PER_LEAD
         if not able or not variety.chance(_TOGETHER):
             continue
-        before, after = (script.events[events[end]] for events, end in ((one.events, -1), (two.events, 0)))
+        before, after = (script.beats[events[end]] for events, end in ((one.events, -1), (two.events, 0)))
         joint = joint_between(script.theme, before.text, after.text)
         if not joint or scenes[place].tells(before.text) or scenes[place + 1].tells(after.text):
             continue

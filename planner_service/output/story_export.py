@@ -117,7 +117,7 @@ def story_to_markdown(story: Story) -> str:
     rooms = [f"- {line}" for line in planned.stage.explain()]
     notes = [f"- keyframe {note.keyframe}: {note.words}" for note in story.motion.notes] or ["- nothing"]
     repairs = [f"- {line}" for line in script.repairs] or ["- none"]
-    missed = [f"- not covered: {event}" for event in script.uncovered]
+    missed = [f"- not acted: {beat.text} ({beat.why})" for beat in script.beats if beat.why]
     return "\n".join(
         [
             f"# {planned.told.title}",
@@ -196,8 +196,7 @@ def report_to_dict(story: Story) -> dict[str, Any]:
         "backend": planned.request.backend,
         "physics_mode": "none",
         "seed": planned.request.seed,
-        "events": [event.model_dump() for event in planned.script.events],
-        "uncovered": list(planned.script.uncovered),
+        "beats": [beat.model_dump() for beat in planned.script.beats],
         "repairs": list(planned.script.repairs),
         "rooms": planned.stage.rooms_to_dicts(),
         "motion": story.report,

@@ -134,47 +134,72 @@ class PlannedKeyframe(Keyframe):
     """A keyframe of a long script, with where it came from."""
 
     short_script: int | None = None
-    """Index into the long script's short scripts; None for a connecting keyframe."""
-    event: int | None = None
-    """Index of the theme's event it serves."""
+    """Index into the long script's short scripts; None where it was written, or connects two others."""
+    beat: int | None = None
+    """Index of the theme's beat it serves; a walk or rising that leads to a deed serves the deed's beat."""
     room: Room | None = None
 
 
 class Retrieved(BaseModel):
-    """A short script that was chosen, for which event of the theme, and how near its summary was."""
+    """A short script that was chosen, for which beat of the theme, and how near its summary was."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     script: ShortScript
-    event: int
+    beat: int
     score: float
 
 
-class Event(BaseModel):
-    """One thing that happens in a theme, in order."""
+BeatKind = Literal["deed", "feeling", "undone", "memory", "other", "speech"]
+"""What a beat is: something done at home now · how somebody feels · what is not done, or only wished for · what happened
+before and is only thought of · what somebody else or the world does · what is said."""
+
+
+class Beat(BaseModel):
+    """One thing that a theme says happens, or does not, in the order of time."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     text: Line
+    """The theme's words for it, without whom the story is about: "drinks a glass of wine"."""
     emotion: Emotion = Emotion.NEUTRAL
+    """The mood it happens in."""
+    kind: BeatKind = "deed"
+    who: Line = ""
+    """Whose deed it is where it is not the story's person's: "the neighbour", "it"."""
+    why: Line = ""
+    """Why no keyframe shows it; empty where one does."""
+
+    @property
+    def asked(self) -> bool:
+        """Whether the theme says that it happens: all but what is left undone."""
+        return self.kind != "undone"
 
 
 class LongScript(BaseModel):
-    """The whole plan: events of the theme, the short scripts chosen for them, and every keyframe in order."""
+    """The whole plan: beats of the theme, the short scripts chosen for them, and every keyframe in order."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     theme: str
-    events: tuple[Event, ...]
+    beats: tuple[Beat, ...]
     short_scripts: tuple[Retrieved, ...]
     keyframes: tuple[PlannedKeyframe, ...]
     repairs: tuple[str, ...] = ()
     """What checking changed, and why."""
-    uncovered: tuple[str, ...] = ()
-    """Events that no short script is really about: left out, or played by what is nearest."""
-    method: Literal["matching", "direct"] = "matching"
+    method: Literal["auto", "matching", "direct"] = "matching"
     planner: str = "rules"
     """What planned it: "rules" or "llm:<model>"."""
     encoder: str = ""
     """The sentence encoder that ranked the library."""
     seed: int = 0
+
+    @property
+    def acted(self) -> int:
+        """How many of the beats asked for some keyframe shows."""
+        return sum(beat.asked and not beat.why for beat in self.beats)
+
+    @property
+    def asked(self) -> int:
+        """How many beats the theme asks for."""
+        return sum(beat.asked for beat in self.beats)

@@ -136,7 +136,7 @@ class Mending(Generic[K]):
 
 
 def _same_script(one: Keyframe, other: Keyframe) -> bool:
-    return getattr(one, "event", None) == getattr(other, "event", None)
+    return getattr(one, "beat", None) == getattr(other, "beat", None)
 
 
 def _alike(one: Keyframe, other: Keyframe) -> bool:

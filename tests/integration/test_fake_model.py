@@ -37,10 +37,10 @@ def test_a_model_finds_the_events_arranges_the_scripts_and_tells_the_story(shelv
     planned = plan(model, shelves)
     script = planned.script
     assert [call.schema for call in model.calls] == ["PlannedEvents", "Arrangement", "_ModelStory"]
-    assert tuple(event.text for event in script.events) == EVENTS
-    assert [event.emotion for event in script.events] == ["relaxed", "stressed", "sad"]
+    assert tuple(event.text for event in script.beats) == EVENTS
+    assert [event.emotion for event in script.beats] == ["relaxed", "stressed", "sad"]
     wanted = chosen_in(model.calls[1].prompt)
-    assert {r.event: r.script.id for r in script.short_scripts} == wanted
+    assert {r.beat: r.script.id for r in script.short_scripts} == wanted
     assert script.planner == "llm:scripted-a"
     assert (planned.told.title, planned.told.text) == ("A Letter of Glass", f"{TEXT} {told_in(model.calls[2].prompt)}")
 

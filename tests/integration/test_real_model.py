@@ -81,7 +81,7 @@ def test_a_story_is_planned_and_told_by_a_real_model(kind: str, shelves: Shelves
         url = server.url.removesuffix("/v1") if kind.startswith("anthropic") else server.url
         planned = plan(pipeline_of(server, shelves, tmp_path, llm_model=kind, llm_base_url=url))
     assert planned.script.planner == f"llm:{kind}"
-    assert tuple(event.text for event in planned.script.events) == EVENTS
+    assert tuple(event.text for event in planned.script.beats) == EVENTS
     assert planned.told.title == TITLE
     assert planned.told.text.startswith(TEXT)
     assert len(server.asked) == 3

@@ -78,7 +78,7 @@ def test_what_a_model_writes_is_played_and_told_and_labelled(well: RunningServic
 def test_events_that_a_model_finds_are_woven(well: RunningService) -> None:
     """It has no answer for arranging; the rules arrange, and that is said."""
     story = made(well)
-    assert [event["emotion"] for event in story["events"]] == ["relaxed", "sad"]
+    assert [event["emotion"] for event in story["beats"]] == ["relaxed", "sad"]
     assert story["planner"] == "llm:scripted, rules"
     assert any("arranged by rules" in repair for repair in story["repairs"])
     assert story["title"] == "A Letter of Glass"

@@ -40,8 +40,8 @@ def test_the_sentences_were_compared_by_meaning(stories: dict[str, Story]) -> No
 def test_a_theme_is_covered(stories: dict[str, Story]) -> None:
     for name, story in stories.items():
         script = story.planned.script
-        assert script.uncovered == (), name
-        assert {retrieved.event for retrieved in script.short_scripts} == set(range(len(script.events))), name
+        assert script.acted == script.asked, name
+        assert {retrieved.beat for retrieved in script.short_scripts} == set(range(len(script.beats))), name
 
 
 def test_every_keyframe_of_a_theme_is_at_something_or_on_the_floor(stories: dict[str, Story]) -> None:

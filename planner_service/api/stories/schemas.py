@@ -13,7 +13,7 @@ from motion_backend.backends import UnknownBackendError, backend_names, require_
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.compose import MAX_SHORT_SCRIPTS
 from planner_service.pipeline import MAX_HEIGHT, MAX_NAME_LENGTH, MAX_SEED, MIN_HEIGHT
-from planner_service.scripts.script import Event, Keyframe
+from planner_service.scripts.script import Beat, Keyframe
 from planner_service.themes.beats import MAX_THEME_LENGTH
 from scene_graphs.home import MAX_ROOMS
 from scene_graphs.json_fields import Json
@@ -141,6 +141,7 @@ class KeyframeShown(BaseModel):
     """One moment: what is done, how, at what, and in which frames once it was moved."""
 
     index: int
+    beat: int | None = Field(description="The beat it serves; null: it connects two others, or nobody asked for it.")
     skill: Skill
     emotion: str = Field(description="As it was written.")
     mood: Emotion = Field(description="What that means: how it is told and acted.")
@@ -155,12 +156,12 @@ class KeyframeShown(BaseModel):
 
 
 class ShortScriptChosen(BaseModel):
-    """A short script that was retrieved, for which event, and how near its summary is."""
+    """A short script that was retrieved, for which beat, and how near its summary is."""
 
     id: str
     summary: str
     score: float
-    event: int
+    beat: int
 
 
 class GraphNode(BaseModel):
@@ -278,8 +279,7 @@ class StoryShown(StorySummary):
     encoder: str | None = Field(description="The sentence encoder that ranked the library.")
     text: str | None
     spans: list[Span] = []
-    events: list[Event] = []
-    uncovered: list[str] = Field([], description="Events no short script is about: left out, or played by the nearest.")
+    beats: list[Beat] = Field([], description="What the theme says happens, in order; `why` says why one is not acted.")
     repairs: list[str] = Field([], description="What checking changed, and why.")
     keyframes: list[KeyframeShown] = []
     short_scripts: list[ShortScriptChosen] = []

@@ -38,19 +38,19 @@ def meaning() -> ScriptLibrary:
 
 def covers(script: LongScript, theme: Theme) -> None:
     """Every expected event is there, in order, felt rightly, played by a fitting script, and acted in that order."""
-    for event, wanted in zip(script.events, theme.events, strict=True):
+    for event, wanted in zip(script.beats, theme.events, strict=True):
         assert all(word in event.text for word in wanted.words), (event.text, wanted.words)
         assert event.emotion in wanted.emotions, event
-    assert not script.uncovered
-    served = [chosen.event for chosen in script.short_scripts]
+    assert script.acted == script.asked
+    served = [chosen.beat for chosen in script.short_scripts]
     assert served == sorted(served)
     assert set(served) == set(range(len(theme.events)))
-    acted = [keyframe.event for keyframe in script.keyframes if keyframe.event is not None]
+    acted = [keyframe.beat for keyframe in script.keyframes if keyframe.beat is not None]
     assert acted == sorted(acted)
     assert set(acted) == set(range(len(theme.events)))
     for chosen in script.short_scripts:
         told = " / ".join([chosen.script.summary, *(keyframe.caption for keyframe in chosen.script.keyframes)])
-        assert re.search(theme.events[chosen.event].played, told), (script.events[chosen.event].text, told)
+        assert re.search(theme.events[chosen.beat].played, told), (script.beats[chosen.beat].text, told)
 
 
 @pytest.mark.parametrize("theme", THEMES, ids=lambda theme: theme.name)
@@ -68,8 +68,8 @@ def test_a_theme_of_the_paper_is_covered_event_by_event_in_order(
 @for_each("theme", THEMES)
 def test_the_hashing_encoder_finds_the_same_events_and_says_that_it_ranked(theme: Theme) -> None:
     script = compose(theme.text, HASHING)
-    assert [event.emotion in wanted.emotions for event, wanted in zip(script.events, theme.events, strict=True)]
-    assert {chosen.event for chosen in script.short_scripts} == set(range(len(theme.events)))
+    assert [event.emotion in wanted.emotions for event, wanted in zip(script.beats, theme.events, strict=True)]
+    assert {chosen.beat for chosen in script.short_scripts} == set(range(len(theme.events)))
     assert not check(script)
     assert script.encoder == "hashing"
 
@@ -86,7 +86,7 @@ def test_as_many_short_scripts_as_asked_for_are_used_and_none_twice(count: int) 
     script = compose(THEME, HASHING, request=Request(short_scripts=count))
     ids = [chosen.script.id for chosen in script.short_scripts]
     assert len(ids) == len(set(ids)) == count
-    assert {chosen.event for chosen in script.short_scripts} == set(range(len(script.events)))
+    assert {chosen.beat for chosen in script.short_scripts} == set(range(len(script.beats)))
     assert not check(script)
 
 
@@ -116,8 +116,8 @@ def test_every_keyframe_knows_its_room_and_the_script_it_came_from() -> None:
 
 def test_an_event_nothing_is_about_is_listed_and_the_rest_is_played(meaning: ScriptLibrary) -> None:
     script = compose("He reads a book. Quantum chromodynamics governs black holes. He falls asleep.", meaning)
-    assert script.uncovered == ("Quantum chromodynamics governs black holes",)
-    assert {chosen.event for chosen in script.short_scripts} == {0, 2}
+    assert tuple(beat.text for beat in script.beats if beat.why) == ("Quantum chromodynamics governs black holes",)
+    assert {chosen.beat for chosen in script.short_scripts} == {0, 2}
 
 
 @pytest.mark.parametrize("theme", ["asdf qwer zxcv", "qwertz uiop", "🚀🚀 blorf"])
@@ -191,8 +191,8 @@ def test_a_model_plans_the_events_and_arranges_summaries_without_seeing_keyframe
     model = ScriptedModel(lambda prompt, schema: EVENTS if schema.__name__ == "PlannedEvents" else arranged(prompt))
     script = compose(THEME, HASHING, model=model)
     assert script.planner == "llm:scripted"
-    assert [event.text for event in script.events] == [event["text"] for event in EVENTS["events"]]
-    assert [chosen.event for chosen in script.short_scripts] == [0, 1]
+    assert [event.text for event in script.beats] == [event["text"] for event in EVENTS["events"]]
+    assert [chosen.beat for chosen in script.short_scripts] == [0, 1]
     assert not any("caption" in call.prompt or "walk with" in call.prompt for call in model.calls)
 
 
@@ -226,7 +226,7 @@ def test_direct_generation_by_a_model_is_repaired_until_it_can_be_acted() -> Non
 @for_each("theme", THEMES)
 def test_direct_generation_by_rules_plays_every_event_in_order(theme: Theme) -> None:
     script = compose(theme.text, HASHING, request=Request(method="direct"))
-    events = [keyframe.event for keyframe in script.keyframes if keyframe.event is not None]
+    events = [keyframe.beat for keyframe in script.keyframes if keyframe.beat is not None]
     assert events == sorted(events)
     assert set(events) == set(range(len(theme.events)))
     assert not check(script)

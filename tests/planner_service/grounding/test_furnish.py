@@ -13,7 +13,7 @@ from motion_backend.motion import Skill
 from planner_service.api.stories.schemas import HomeShown
 from planner_service.grounding.furnish import FurnishError, furnish
 from planner_service.jobs import serialization
-from planner_service.scripts.script import Event, LongScript, PlannedKeyframe
+from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe
 from scene_graphs.affordances.room_validation import validate
 from scene_graphs.layout import Layout, Placed
 from scene_graphs.layout_library import built_in_layouts
@@ -32,7 +32,7 @@ def script(*rows: tuple[str, str, str]) -> LongScript:
         PlannedKeyframe(skill=Skill(skill), caption="x", furniture=piece, room=room, short_script=rooms.index(room))
         for skill, piece, room in rows
     )
-    return LongScript(theme="t", events=(Event(text="t"),), short_scripts=(), keyframes=keyframes)
+    return LongScript(theme="t", beats=(Beat(text="t"),), short_scripts=(), keyframes=keyframes)
 
 
 DAY = script(

@@ -20,7 +20,7 @@ from planner_service.narration.keyframe_phrases import Variety, templates, touch
 from planner_service.narration.llm_narrator import narrate_with_model
 from planner_service.narration.narrator import Told, narrate
 from planner_service.narration.openings_and_endings import title_of
-from planner_service.scripts.script import Event, Keyframe, LongScript, PlannedKeyframe, Retrieved, ShortScript
+from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe, Retrieved, ShortScript
 from planner_service.themes.lexicon import english_verbs, past, third_person
 
 LIBRARY = tuple(
@@ -62,7 +62,7 @@ def long_script(
     chosen: list[ShortScript], events: list[str] | None = None, theme: str = "A person spends a day."
 ) -> LongScript:
     """Short scripts one after the other, with the rising in between that a body needs."""
-    told = [Event(text=text) for text in events or [script.summary for script in chosen]]
+    told = [Beat(text=text) for text in events or [script.summary for script in chosen]]
     keyframes: list[PlannedKeyframe] = []
     for number, script in enumerate(chosen):
         last = keyframes[-1] if keyframes else None
@@ -70,11 +70,11 @@ def long_script(
             skill = Skill.STANDUP if last.skill == Skill.SITDOWN else Skill.GETUP
             keyframes.append(PlannedKeyframe(skill=skill, caption="get up", furniture=last.furniture, room=last.room))
         keyframes += [
-            PlannedKeyframe(**k.model_dump(), short_script=number, event=number, room=script.room)
+            PlannedKeyframe(**k.model_dump(), short_script=number, beat=number, room=script.room)
             for k in script.keyframes
         ]
-    found = tuple(Retrieved(script=script, event=number, score=0.5) for number, script in enumerate(chosen))
-    return LongScript(theme=theme, events=tuple(told), short_scripts=found, keyframes=tuple(keyframes))
+    found = tuple(Retrieved(script=script, beat=number, score=0.5) for number, script in enumerate(chosen))
+    return LongScript(theme=theme, beats=tuple(told), short_scripts=found, keyframes=tuple(keyframes))
 
 
 stories = st.lists(st.sampled_from(LIBRARY), min_size=1, max_size=5, unique=True).map(long_script)
@@ -242,7 +242,7 @@ def test_two_seeds_share_few_sentences() -> None:
 def test_an_event_without_a_short_script_is_told_in_its_place() -> None:
     chosen = [BY_ID["folding-the-laundry"], BY_ID["insulting-email"]]
     script = long_script(chosen, ["irons a shirt", "misses the bus", "reads mail"])
-    keyframes = tuple(k.model_copy(update={"event": 2}) if k.event == 1 else k for k in script.keyframes)
+    keyframes = tuple(k.model_copy(update={"beat": 2}) if k.beat == 1 else k for k in script.keyframes)
     for seed in range(3):
         told = narrate(script.model_copy(update={"keyframes": keyframes}), PEOPLE[1], seed)
         after = next(span for span in told.spans if len(chosen[0].keyframes) in span.keyframes)
@@ -256,10 +256,10 @@ def test_falling_asleep_is_told_last() -> None:
 
 def test_a_direct_script_without_short_scripts_is_told_from_its_events() -> None:
     keyframes = tuple(
-        PlannedKeyframe(**k.model_dump(), event=0, room="bedroom") for k in BY_ID["reading-in-bed"].keyframes
+        PlannedKeyframe(**k.model_dump(), beat=0, room="bedroom") for k in BY_ID["reading-in-bed"].keyframes
     )
     script = LongScript(
-        theme="She rests.", events=(Event(text="rests"),), short_scripts=(), keyframes=keyframes, method="direct"
+        theme="She rests.", beats=(Beat(text="rests"),), short_scripts=(), keyframes=keyframes, method="direct"
     )
     told = narrate(script, PEOPLE[1])
     assert re.search(r"\b(?:Emily|She) rested\.", told.text)
@@ -270,7 +270,7 @@ def test_a_direct_script_without_short_scripts_is_told_from_its_events() -> None
 @for_each("skill", list(Skill))
 def test_unknown_captions_are_told_by_their_mood(skill: Skill, caption: str) -> None:
     keyframe = PlannedKeyframe(skill=skill, caption=caption, emotion="sad", furniture="bed")
-    script = LongScript(theme="Grief.", events=(), short_scripts=(), keyframes=(keyframe,))
+    script = LongScript(theme="Grief.", beats=(), short_scripts=(), keyframes=(keyframe,))
     told = narrate(script, PEOPLE[0])
     assert slips(told.text) == []
     assert spoken(told) == [0]

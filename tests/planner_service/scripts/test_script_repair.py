@@ -216,9 +216,9 @@ def test_a_connecting_walk_goes_on_in_the_manner_of_the_walk_before_it() -> None
 
 
 def test_a_connecting_keyframe_belongs_to_an_event_and_to_no_short_script() -> None:
-    row = {"emotion": "sad", "caption": "x", "furniture": "chair", "short_script": 3, "event": 2, "room": "study"}
+    row = {"emotion": "sad", "caption": "x", "furniture": "chair", "short_script": 3, "beat": 2, "room": "study"}
     (walk, sit), _ = repair([PlannedKeyframe.model_validate({"skill": "sitdown", **row})])
-    assert (walk.short_script, walk.event, walk.room, walk.skill) == (None, 2, "study", Skill.LOCO)
+    assert (walk.short_script, walk.beat, walk.room, walk.skill) == (None, 2, "study", Skill.LOCO)
     assert sit.short_script == 3
 
 

@@ -95,7 +95,7 @@ async def test_a_language_model_finds_the_events_where_one_is_set_and_rules_do_w
     with warm_app_on(tmp_path / "data", llm_model=f"scripted:{answers}") as app:
         planned = LongScript.model_validate((await ask(app, theme="She gets a letter of glass.")).json())
         by_rules = LongScript.model_validate((await ask(app, theme=THEME)).json())
-    assert [event.model_dump() for event in planned.events] == events
+    assert [event.model_dump() for event in planned.beats] == events
     assert planned.planner.startswith("llm:")
     assert by_rules.planner == "rules"
     assert any("by rules" in repair for repair in by_rules.repairs)
