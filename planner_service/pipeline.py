@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, get_args
 
 from motion_backend.backends import DEFAULT_BACKEND, load_backend, require_backend
 from motion_backend.body.scene_collision import Obstacles
@@ -21,7 +21,7 @@ from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.narration.llm_narrator import narrate_with_model
 from planner_service.narration.narrator import Told, narrate
 from planner_service.scripts.captions import Vocabulary
-from planner_service.scripts.script import Keyframe, LongScript
+from planner_service.scripts.script import MAX_NAME_LENGTH, Keyframe, LongScript, Pronouns
 from planner_service.themes.protagonist import cast_by
 from scene_graphs.errors import UserError
 from scene_graphs.furniture import ROOM_TYPES, canonical_room
@@ -33,8 +33,7 @@ Progress = Callable[[str, float], None]
 """Called with a stage's name and the share of it that is done, 0 to 1."""
 STAGES = ("plan", "furnish", "narrate", "act", "move", "judge")
 METHODS = ("matching", "direct")
-PRONOUNS = ("he", "she", "they")
-MAX_NAME_LENGTH = 40
+PRONOUNS = get_args(Pronouns)
 MAX_SEED = 2**53 - 1
 """The largest whole number that every JSON reader keeps exactly."""
 MIN_HEIGHT, MAX_HEIGHT = 1.2, 2.2

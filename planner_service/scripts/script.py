@@ -176,6 +176,21 @@ class Beat(BaseModel):
         return self.kind != "undone"
 
 
+Pronouns = Literal["he", "she", "they"]
+MAX_NAME_LENGTH: Final = 40
+
+
+class Person(BaseModel):
+    """Whom a theme is about, as a language model read it; what it does not tell is empty."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: Line = Field("", max_length=MAX_NAME_LENGTH)
+    pronouns: Pronouns | Literal[""] = ""
+    age: int | None = Field(None, ge=0, le=120)
+    """Years."""
+
+
 class LongScript(BaseModel):
     """The whole plan: beats of the theme, the short scripts chosen for them, and every keyframe in order."""
 
@@ -187,6 +202,8 @@ class LongScript(BaseModel):
     keyframes: tuple[PlannedKeyframe, ...]
     repairs: tuple[str, ...] = ()
     """What checking changed, and why."""
+    person: Person | None = None
+    """Whom the model read in the theme; None where rules did."""
     method: Literal["auto", "matching", "direct"] = "matching"
     planner: str = "rules"
     """What planned it: "rules" or "llm:<model>"."""

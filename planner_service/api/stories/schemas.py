@@ -12,8 +12,8 @@ from pydantic_core import CoreSchema, PydanticKnownError
 from motion_backend.backends import UnknownBackendError, backend_names, require_backend
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.request import MAX_SHORT_SCRIPTS
-from planner_service.pipeline import MAX_HEIGHT, MAX_NAME_LENGTH, MAX_SEED, MIN_HEIGHT
-from planner_service.scripts.script import Beat, Keyframe
+from planner_service.pipeline import MAX_HEIGHT, MAX_SEED, MIN_HEIGHT
+from planner_service.scripts.script import MAX_NAME_LENGTH, Beat, Keyframe
 from planner_service.themes.beats import MAX_THEME_LENGTH
 from scene_graphs.home import MAX_ROOMS
 from scene_graphs.json_fields import Json
