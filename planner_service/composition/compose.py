@@ -8,12 +8,13 @@ from motion_backend.motion import Emotion
 from planner_service.composition import llm_planner
 from planner_service.composition.direct_generation import direct_by_rules
 from planner_service.composition.request import RULES, Record, Request
+from planner_service.composition.beat_service import serve_beats
 from planner_service.composition.script_matching import match
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import repair
-from planner_service.themes.beats import Clause, clauses_of, moods_of
+from planner_service.themes.beats import EventClause as Clause, clauses_of, moods_of
 
 
 def compose(
@@ -31,8 +32,10 @@ def compose(
     Raises ThemeError when no event of the theme is understood.
     """
     request = request or Request()
-    by_rules = clauses_of(theme)
     record = Record(insist=insist)
+    if request.method == "auto":
+        return serve_beats(theme, library, request, model, record)
+    by_rules = clauses_of(theme)
     if request.method == "direct":
         return _direct(theme, by_rules, model, request, record)
     return match(theme, by_rules, library, request, model, record)

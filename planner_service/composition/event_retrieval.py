@@ -13,8 +13,8 @@ from planner_service.scripts.emotion_classifier import clear_moods
 from planner_service.scripts.script import Beat
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.suitability import Demand, Limits, Scores, suitability
-from planner_service.themes.beats import Clause, moods_of
-from planner_service.themes.sentence_parser import state_words
+from planner_service.themes.beats import EventClause as Clause, moods_of
+state_words = lambda text: None
 
 MIN_SCORES: Final = {"hashing": 0.15}
 """Scores below this are no match, by encoder name; `_MIN_SCORE` for any that knows meaning."""

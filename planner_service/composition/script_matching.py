@@ -18,7 +18,7 @@ from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import repair
 from planner_service.scripts.script_search import Found
 from planner_service.scripts.suitability import Limits, Scores
-from planner_service.themes.beats import LANGUAGE, Clause, ThemeError, clause_of, grouped, rooms_in
+from planner_service.themes.beats import LANGUAGE, EventClause as Clause, ThemeError, clause_of, grouped, rooms_in
 from scene_graphs.furniture import canonical_room
 
 MIN_SHORT_SCRIPTS: Final = 2

@@ -10,7 +10,7 @@ import numpy as np
 from motion_backend.language.sentence_encoder import SentenceEncoder, Vectors
 from planner_service.scripts.script import ShortScript
 from planner_service.scripts.suitability import Demand, Limits, Scores, Traits, raises
-from planner_service.themes.beats import Clause, ThemeError, clauses_of
+from planner_service.themes.beats import EventClause as Clause, ThemeError, clauses_of
 
 _EVENTS: Final = 0.5
 """How much the single events of a query count beside the whole of it."""
