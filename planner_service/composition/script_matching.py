@@ -98,12 +98,13 @@ def _read(theme: str, clauses: Sequence[Clause], library: ScriptLibrary, request
     """Every event held against every script."""
     queries = [clause.query for clause in clauses]
     vectors = library.encoder.encode(queries)
+    scores = rank(queries, library, vectors)
     moods = moods_of(clauses, clear_moods(library.moods(vectors)))
     events = tuple(Beat(text=clause.text, emotion=Emotion(mood)) for clause, mood in zip(clauses, moods, strict=True))
-    scores = rank(queries, library, vectors)
     felt = np.array([[EMOTIONS.index(event.emotion)] for event in events]) == library.emotions
-    named = [_in_rooms(rooms_in(event.text) or rooms_in(theme), library) for event in events]
-    suits = scores + (scores >= ABOUT.get(library.encoder.name, ABOUT[""])) + _FEELING * felt + _ROOM * np.stack(named)
+    named = np.array([_in_rooms(rooms_in(event.text) or rooms_in(theme), library) for event in events])
+    about = scores >= ABOUT.get(library.encoder.name, ABOUT[""])
+    suits = scores + about + _FEELING * felt + _ROOM * named
     if request.rooms:
         suits[:, ~_in_rooms(map(canonical_room, request.rooms), library)] = -1
     return Reading(events, scores, suits)

@@ -20,7 +20,7 @@ Scores = NDArray[np.float64]
 
 _WORDS: Final = 0.5
 """How much shared words count beside meaning."""
-ABOUT: Final = {"hashing": 0.3, "": 0.4}
+ABOUT: Final = {"hashing": 0.3, "": 0.35}
 """From what score a script is about a query, and not only the nearest there is, by the encoder's name; "" for any that
 knows meaning."""
 
