@@ -292,37 +292,3 @@ def _emotion(text: str) -> tuple[Emotion | None, bool]:
         return (Emotion.DRUNK if Emotion.DRUNK in named else named[-1]), True
     return (found[-1].emotion, False) if found else (None, False)
 
-
-# TEMPORARY until matching reads beats
-@dataclass(frozen=True)
-class EventClause:
-    text: str
-    query: str
-    emotion: str | None = None
-    sure: bool = False
-    room: str | None = None
-    active: bool = True
-    sentence: int = 0
-
-
-def clauses_of(theme: str) -> tuple[EventClause, ...]:
-    return tuple(
-        EventClause(one.text, one.text, one.felt, one.sure, one.room, bool(one.clause.verb), one.clause.sentence)
-        for one in beats_of(theme)
-    )
-
-
-def moods_of(clauses, judged):
-    mood, moods = "neutral", []
-    for clause in clauses:
-        mood = clause.emotion or mood
-        moods.append(mood)
-    return tuple(moods)
-
-
-def clause_of(text, emotion):
-    return EventClause(text, text, emotion, True)
-
-
-def grouped(clauses, most):
-    return tuple(clauses[:most])

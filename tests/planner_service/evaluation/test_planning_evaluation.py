@@ -21,7 +21,6 @@ from planner_service.composition import llm_planner as planned
 from planner_service.composition.compose import compose
 from planner_service.composition.request import Request
 from planner_service.evaluation import planning_evaluation
-from planner_service.evaluation.bm25_baseline import KeywordSearch
 from planner_service.evaluation.labels import LabelledEvent, LabelledTheme, Query, labelled_queries, labelled_themes
 from planner_service.evaluation.planning_evaluation import Figure, figure, hits, ranked, reciprocal_rank
 from planner_service.evaluation.story_evaluation import (
@@ -226,12 +225,6 @@ def test_a_remembering_encoder_gives_the_same_vectors_and_makes_each_once() -> N
     encoder.encode(["a meal"])
     assert inside.made == 2
     assert encoder.encode([]).shape[0] == 0
-
-
-def test_keywords_find_the_summary_with_the_rarest_shared_word() -> None:
-    search = KeywordSearch([NAP, MEAL, LETTER])
-    assert search.search("the soup", 3)[0] == "meal"
-    assert search.search("nothing shared here", 2) == ["letter", "meal"]
 
 
 def test_a_figure_is_summed_over_each_half_and_missed_only_where_it_is_judged() -> None:
