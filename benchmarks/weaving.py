@@ -11,7 +11,8 @@ from benchmarks.figure import Figure
 from benchmarks.themes import SEED, THEMES
 from motion_backend.language.sentence_encoder import SentenceEncoder, Vectors, load_encoder
 from motion_backend.motion import Character
-from planner_service.composition.compose import Request, compose
+from planner_service.composition.compose import compose
+from planner_service.composition.request import Request
 from planner_service.narration.narrator import narrate
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.script import ShortScript

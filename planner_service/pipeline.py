@@ -11,7 +11,8 @@ from motion_backend.body.scene_collision import Obstacles
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.smoothness import seam_jump, seam_speed_jump
 from motion_backend.motion import Action, BodyState, Character, Motion, MotionBackend, join
-from planner_service.composition.compose import MAX_SHORT_SCRIPTS, Request, compose, script_of
+from planner_service.composition.compose import compose, script_of
+from planner_service.composition.request import MAX_SHORT_SCRIPTS, Request
 from planner_service.grounding.furnish import Furnished, furnish
 from planner_service.grounding.keyframes_to_actions import act
 from planner_service.library.library import Shelves

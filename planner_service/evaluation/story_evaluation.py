@@ -22,9 +22,10 @@ from pydantic import BaseModel
 from motion_backend.emotion_words import emotion_of
 from motion_backend.language.sentence_encoder import SentenceEncoder, Vectors
 from motion_backend.motion import Character, Emotion, Skill
-from planner_service.composition.compose import Request, compose
+from planner_service.composition.compose import compose
 from planner_service.composition.direct_generation import direct_by_rules
 from planner_service.composition.llm_planner import DirectKeyframe, DirectScript
+from planner_service.composition.request import Request
 from planner_service.evaluation.labels import LabelledEvent, LabelledTheme
 from planner_service.grounding.furnish import FurnishError, furnish
 from planner_service.grounding.keyframes_to_actions import UnreachableError, act

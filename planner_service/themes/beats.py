@@ -1,24 +1,20 @@
-"""A theme taken apart by rules: what happens in it, in the order of time, with the feeling each moment has."""
+"""A theme becomes beats: who does what, with what, where, in which mood and order of time, and what is not done."""
 
 from __future__ import annotations
 
-import itertools
 import re
 import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Final
 
+from motion_backend.motion import Emotion
 from planner_service.scripts.emotions import feelings
-from planner_service.themes.lexicon import idiom_in
-from planner_service.themes.sentence_parser import (
-    STRONG,
-    has_verb,
-    moments_of,
-    sentences_of,
-    state_words,
-    without_subject,
-)
+from planner_service.scripts.script import Beat, BeatKind
+from planner_service.themes.lexicon import is_third_person, lemma_of
+from planner_service.themes.sentence_parser import Clause, clauses_of_text, tokens_of
+from scene_graphs.data_tables import read_table, table
 from scene_graphs.errors import UserError
 
 MAX_THEME_LENGTH: Final = 2000
@@ -28,19 +24,16 @@ EXAMPLES: Final = (
     "A person enjoys a relaxed afternoon at home.",
     "A woman searches for her keys, misses the bus, gets angry and then calms down with a book.",
 )
-
-_OVER: Final = "is relieved, calm and at ease"
-"""What somebody is who is "no longer nervous": the encoder does not see a negation."""
-_BACK: Final = re.compile(r"\b(?:it|them)\b", re.IGNORECASE)
-_FEELS: Final = re.compile(r"(?:feels?|felt|is|are|was|were)\b", re.IGNORECASE)
-_LOUDER: Final = {"stressed": ("drunk", "angry", "sad", "hurried")}
-"""Moods that a mere hint of another one does not end within a sentence: who is angry paces with anger."""
 _ROOMS: Final = {
     "living_room": r"living[ -]?room|lounge|sitting room",
     "bedroom": r"bed ?rooms?",
     "dining_room": r"dining[ -]?room|kitchen",
     "study": r"study room|(?:in|into|to|from|of) (?:the|his|her|their) (?:study|library|office)|home office",
 }
+_LOUDER: Final = {"stressed": ("drunk", "angry", "sad", "hurried")}
+"""Moods that a mere hint of another one does not end within a sentence: who is angry paces with anger."""
+_FIRST_PERSON: Final = frozenset(("i", "we", "me", "my"))
+_PRONOUNS: Final = {"he": "he", "she": "she", "they": "they", "who": ""}
 
 
 class ThemeError(UserError):
@@ -51,24 +44,55 @@ class ThemeError(UserError):
         self.reason = reason
 
 
-@dataclass(frozen=True)
-class Clause:
-    """One event as the rules see it."""
+@table
+class ThemeWords:
+    """data/theme_words.toml: words by which the rules read themes; base forms, apart by spaces."""
 
-    text: str
-    """The user's words, without the subject."""
-    query: str
-    """What to look for in the library: the meaning of an idiom, or what "it" stands for put first."""
-    emotion: str | None = None
-    """None when the words show none; it is then judged from the whole."""
+    people: str
+    """Nouns for people."""
+    person_endings: tuple[str, ...]
+    """Endings of nouns for people who do something: "-er" only where what is left is a verb."""
+    memory_verbs: str
+    speech_verbs: str
+    thought_verbs: str
+    """What goes on in a head; a body shows none of it but thinking."""
+    state_verbs: str
+    """Verbs that only say how somebody is or feels."""
+    state_words: str
+    """Words that say no more when they stand beside a feeling."""
+    foreign: str
+    """The commonest words of other languages that are no English words."""
+
+    @property
+    def sets(self) -> dict[str, frozenset[str]]:
+        """Every list as a set."""
+        return {name: frozenset(words.split()) for name, words in vars(self).items() if isinstance(words, str)}
+
+
+@cache
+def theme_words() -> dict[str, frozenset[str]]:
+    """The lists of `ThemeWords`."""
+    known: ThemeWords = read_table("planner_service", "theme_words.toml", ThemeWords)
+    return known.sets
+
+
+@dataclass(frozen=True)
+class ReadBeat:
+    """A beat as the rules read it, with what of its words the planning goes by."""
+
+    beat: Beat
+    clause: Clause
     sure: bool = False
-    """Whether a word names the emotion; otherwise it is only hinted at."""
+    """Whether a word names its mood; otherwise it is hinted at, or goes on from before."""
+    felt: Emotion | None = None
+    """The mood that its own words show."""
     room: str | None = None
     """The room it names."""
-    active: bool = True
-    """Whether it has a verb: a bare noun ("insomnia") must be nearer to a script to count."""
-    sentence: int = 0
-    """Index of its sentence in the theme."""
+
+    @property
+    def text(self) -> str:
+        """The theme's words."""
+        return self.beat.text
 
 
 def clean(theme: object) -> str:
@@ -88,63 +112,142 @@ def clean(theme: object) -> str:
     return text
 
 
-def clauses_of(theme: str) -> tuple[Clause, ...]:
-    """What happens, in the order of time. Raises ThemeError as `clean` does."""
-    clauses: list[Clause] = []
-    for number, sentence in enumerate(sentences_of(clean(theme))):
-        said: list[Clause] = []
-        for moment in moments_of(sentence):
-            if re.search(r"[^\W\d_]", moment):
-                before = [*clauses, *said][-1:]
-                said.append(_clause(moment, before[0].text if before else "", number))
-        clauses.extend(_merge_states(said))
-    if not clauses:
-        raise ThemeError(f"nothing happens in {theme[:60]!r}. {LANGUAGE}")
-    return tuple(clauses)
+def beats_of(theme: str) -> tuple[ReadBeat, ...]:
+    """What a theme says happens, in the order of time. Raises ThemeError as `clean` does, and for other languages."""
+    text = clean(theme)
+    _refuse_foreign(text)
+    clauses = clauses_of_text(text)
+    hero = _hero(clauses)
+    read: list[ReadBeat] = []
+    subject = ""
+    for place, clause in enumerate(clauses):
+        new = place == 0 or clause.sentence != clauses[place - 1].sentence
+        subject = clause.subject or ("" if new else subject)
+        read.append(_read(clause, subject, hero))
+    return tuple(_moods(read))
 
 
-def moods_of(clauses: Sequence[Clause], judged: Sequence[str | None]) -> tuple[str, ...]:
-    """One emotion for each clause: what its words show, else what was `judged` of its meaning, else the mood it is in.
+def _read(clause: Clause, subject: str, hero: str) -> ReadBeat:
+    who = "" if is_hero(subject, hero) else subject
+    text = clause.text if not who else f"{who} {clause.text}" if clause.subject else clause.text
+    if not clause.verb:
+        text = clause.text
+    kind = _kind(clause, who)
+    emotion, sure = _emotion(clause.text if clause.verb else text)
+    if not sure and clause.subject:
+        named, of_subject = _emotion(f"{clause.subject} {clause.text}")  # "a tired student …"
+        emotion, sure = (named, True) if of_subject else (emotion, sure)
+    if kind in ("other", "undone") and not sure:
+        emotion = None
+    beat = Beat(text=_bounded(text), emotion=emotion or Emotion.NEUTRAL, kind=kind, who=_bounded(who, 80))
+    return ReadBeat(beat, clause, sure, emotion, next(iter(rooms_in(text)), None))
 
-    A mood lasts until another one comes; "is dressing up and feels excited" is excited from the start.
+
+def _bounded(text: str, most: int = 300) -> str:
+    return text if len(text) <= most else text[:most].rsplit(" ", 1)[0]
+
+
+def _kind(clause: Clause, who: str) -> BeatKind:
+    words = theme_words()
+    if clause.quotes or (clause.verb in words["speech_verbs"] and "phone" not in clause.lemmas):
+        return "speech" if not who else "other"
+    if who:
+        return "other"
+    if clause.denied and not clause.unable:
+        return "undone"
+    if clause.perfect or clause.verb in words["memory_verbs"]:
+        return "memory"
+    return "feeling" if is_feeling(clause) else "deed"
+
+
+def is_feeling(clause: Clause) -> bool:
+    """Whether a clause says nothing but how somebody feels: "becomes very sad"; or is words without a verb."""
+    words = theme_words()
+    if not clause.verb:
+        return bool(feelings(clause.text))
+    rest = [word for word in clause.lemmas[1:] if word not in words["state_words"]]
+    return clause.verb in words["state_verbs"] and bool(feelings(clause.text)) and len(rest) <= 4
+
+
+def _hero(clauses: Sequence[Clause]) -> str:
+    """Whom the theme is about: the first subject that is a person, as it is written; empty where none is named."""
+    named = [clause.subject for clause in clauses if clause.subject and is_person(clause.subject)]
+    return named[0] if named else ""
+
+
+def is_person(subject: str) -> bool:
+    """Whether words may name a person: a pronoun, a name, or a noun for people."""
+    words = [token.text for token in tokens_of(subject)]
+    if not words:
+        return False
+    if words[-1].lower() in _PRONOUNS or words[-1].lower() in _FIRST_PERSON:
+        return True
+    head = head_of(subject)
+    people = theme_words()["people"]
+    if head.lower() in people or lemma_of(head) in people:
+        return True
+    if head[:1].isupper() and words[0].lower() not in ("the", "a", "an"):
+        return True
+    if len(head) > 4 and head.endswith(("er", "or")):  # a "baker" is one who bakes
+        stem = head.lower()[:-2]
+        return is_third_person(f"{stem}s") or is_third_person(f"{stem}es")
+    return len(head) > 5 and head.lower().endswith(("ist", "ian", "man", "woman", "person", "ress"))
+
+
+def head_of(subject: str) -> str:
+    """The noun of a subject: "the old nurse after her shift" is "nurse", "a boy of six" is "boy"."""
+    words: list[str] = []
+    for token in tokens_of(subject):
+        if words and token.low in ("of", "with", "in", "on", "at", "from", "after", "who", "and", ",", "without", "by"):
+            break
+        words.append(token.text)
+    return words[-1] if words else ""
+
+
+def is_hero(subject: str, hero: str) -> bool:
+    """Whether a subject is whom the theme is about. Nobody named: it goes on with who it was about."""
+    if not subject:
+        return True
+    low, main = subject.split()[-1].lower(), hero.split()[-1].lower() if hero else ""
+    if low in _FIRST_PERSON:
+        return main in _FIRST_PERSON or not main
+    if low in _PRONOUNS:
+        return main not in ("he", "she") or low == main or low in ("they", "who")
+    if not is_person(subject):
+        return False
+    if not hero or hero.lower() in _PRONOUNS:
+        return subject[:1].isupper() and " " not in subject and subject not in ("It", "Everything", "Nothing")
+    if main in _FIRST_PERSON:
+        return False
+    mine, theirs = head_of(subject).lower(), head_of(hero).lower()
+    return mine == theirs or hero.lower() in subject.lower()
+
+
+def _refuse_foreign(text: str) -> None:
+    words = [token.low for token in tokens_of(text) if token.text[:1].isalpha()]
+    foreign = [word for word in words if word in theme_words()["foreign"]]
+    if not any(re.search(r"[a-z]", word) for word in words) or len(foreign) >= max(2, 0.2 * len(words)):
+        raise ThemeError(f"{text[:60]!r} is not English. {LANGUAGE}")
+
+
+def _moods(read: Sequence[ReadBeat]) -> list[ReadBeat]:
+    """Each beat in the mood it happens in: what its words show, else the mood before it, which lasts until another.
+
+    "dresses up and feels excited" is excited from the start.
     """
-    moods: list[str] = []
-    mood = "neutral"
-    for index, (clause, judgement) in enumerate(zip(clauses, judged, strict=True)):
-        after = clauses[index + 1] if index + 1 < len(clauses) else None
-        if clause.emotion is not None:
-            before = clauses[index - 1] if index else clause
-            if not clause.sure and re.search(r"\brest", clause.text):
-                mood = _rest(mood)
-            elif clause.sure or mood not in _LOUDER.get(clause.emotion, ()) or before.sentence != clause.sentence:
-                mood = clause.emotion
-        elif mood == "neutral" and after is not None and after.sentence == clause.sentence and _FEELS.match(after.text):
-            mood = after.emotion or mood
-        moods.append(judgement if judgement is not None and mood == "neutral" else mood)
-    return tuple(moods)
-
-
-def _rest(mood: str) -> str:
-    """How somebody rests who was in that mood."""
-    return {"drunk": "drunk", "sad": "tired", "stressed": "tired", "tired": "tired"}.get(mood, "relaxed")
-
-
-def clause_of(text: str, emotion: str) -> Clause:
-    """An event that somebody else found, with the emotion it was given."""
-    return replace(_clause(text, "", 0), text=text, emotion=emotion, sure=True, active=True)
-
-
-def grouped(clauses: Sequence[Clause], most: int) -> tuple[Clause, ...]:
-    """At most so many clauses: neighbours of one emotion are told together first, and the shortest of them."""
-    left = list(clauses)
-    while len(left) > most:
-        costs = [
-            (one.emotion != other.emotion, len(one.text) + len(other.text), index)
-            for index, (one, other) in enumerate(itertools.pairwise(left))
-        ]
-        at = min(costs)[2]
-        left[at : at + 2] = [_joined(left[at], left[at + 1], left[at + 1] if left[at + 1].emotion else left[at])]
-    return tuple(left)
+    moods: list[ReadBeat] = []
+    mood = Emotion.NEUTRAL
+    for index, one in enumerate(read):
+        after = read[index + 1] if index + 1 < len(read) else None
+        together = after is not None and after.clause.sentence == one.clause.sentence
+        if one.felt is not None:
+            before = read[index - 1] if index else one
+            if one.sure or mood not in _LOUDER.get(one.felt, ()) or before.clause.sentence != one.clause.sentence:
+                mood = one.felt
+        elif mood is Emotion.NEUTRAL and after is not None and together and after.beat.kind == "feeling" and after.felt:
+            mood = after.felt
+        moods.append(replace(one, beat=one.beat.model_copy(update={"emotion": mood})))
+    return moods
 
 
 def rooms_in(text: str) -> tuple[str, ...]:
@@ -155,65 +258,10 @@ def rooms_in(text: str) -> tuple[str, ...]:
     return tuple(room for _, room in sorted(found))
 
 
-def _clause(moment: str, before: str, sentence: int) -> Clause:
-    text = without_subject(moment)
-    idiom = idiom_in(text)
-    emotion, sure = (idiom.emotion, True) if idiom is not None else _emotion(text)
-    if not sure:
-        named, of_subject = _emotion(moment)  # "a tired student …"
-        emotion, sure = (named, True) if of_subject else (emotion, sure)
-    query = text
-    if idiom is not None:
-        query = idiom.meaning
-    elif emotion == "relaxed" and state_words(text) and all(feeling.negated for feeling in feelings(text)):
-        query = _OVER
-    elif before and (_BACK.search(text) or (len(text.split()) <= 2 and emotion is None)):
-        query = f"{before}, {text}"
-    return Clause(text, query, emotion, sure, next(iter(rooms_in(text)), None), has_verb(text), sentence)
-
-
-def _emotion(text: str) -> tuple[str | None, bool]:
+def _emotion(text: str) -> tuple[Emotion | None, bool]:
     """The emotion the words show: drunk if that is named, else the last one named, else the last hint."""
     found = [feeling for feeling in feelings(text) if feeling.emotion != "neutral"]
     named = [feeling.emotion for feeling in found if feeling.sure]
     if named:
-        return ("drunk" if "drunk" in named else named[-1]), True
+        return (Emotion.DRUNK if Emotion.DRUNK in named else named[-1]), True
     return (found[-1].emotion, False) if found else (None, False)
-
-
-def _merge_states(clauses: list[Clause]) -> list[Clause]:
-    """A bare feeling joined to what caused it ("finds it" + "becomes excited"), or to what is done in it.
-
-    Being drunk and what is stressed with "very" stay moments of their own: they are worth showing.
-    """
-    merged: list[Clause] = []
-    for clause in clauses:
-        last = merged[-1] if merged else None
-        if last is None:
-            merged.append(clause)
-        elif _joins(clause, last):
-            merged[-1] = _joined(last, clause, clause)
-        elif _joins(last, clause) and len(merged) == 1:
-            merged[-1] = _joined(last, clause, last)
-        else:
-            merged.append(clause)
-    return merged
-
-
-def _joins(state: Clause, other: Clause) -> bool:
-    """Whether `state` only says how `other` feels."""
-    words = state_words(state.text)
-    plain = words is not None and not STRONG.search(words) and "first" not in words and state.emotion != "drunk"
-    return plain and (not other.sure or other.emotion == state.emotion) and state_words(other.text) is None
-
-
-def _joined(first: Clause, second: Clause, feeling: Clause) -> Clause:
-    return replace(
-        first,
-        text=f"{first.text} and {second.text}",
-        query=f"{first.query} and {second.query.removeprefix(f'{first.text}, ')}",
-        emotion=feeling.emotion,
-        sure=feeling.sure,
-        room=first.room or second.room,
-        active=True,
-    )

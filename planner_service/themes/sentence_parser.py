@@ -1,191 +1,492 @@
-"""English sentences taken apart: stretches with one verb each, in the order of time, without their subjects.
+"""English sentences taken apart: clauses with one verb each, in the order of time, with who does it and what is denied.
 
-Which words are verbs: enough of English to tell where one event of a theme ends and the next begins.
+Sentences end where pysbd says; which words are verbs is told by their forms (lexicon) and by the words before them. It is
+no grammar of English: enough to tell where one thing that happens ends and the next begins.
 """
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
-from typing import Final
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cache
+from typing import Any, Final
 
-from planner_service.scripts.emotions import feelings
-from planner_service.themes.lexicon import english_verbs, is_verb
-
-_SUBJECTS: Final = frozenset(("he", "she", "they", "it", "i", "we", "you", "who"))
-
-
-def has_verb(text: str) -> bool:
-    """Whether some word of the text acts as a verb: a known form that does not follow a noun's mark, or any word right
-    after a pronoun ("he yodels")."""
-    words = re.findall(r"[a-z]+(?:'[a-z]+)?", text.lower())
-    verbs, before_nouns = english_verbs().read, english_verbs().before_nouns_read.split()
-    for index, word in enumerate(words):
-        before = words[index - 1] if index else ""
-        if before in _SUBJECTS or (before == "to" and word in verbs):
-            return True
-        if word in verbs and before not in before_nouns:
-            return True
-    return False
-
-
-_PEOPLE: Final = (
-    "person|character|man|woman|boy|girl|guy|student|child|kid|father|mother|writer|worker|old man|old woman"
+from planner_service.themes.lexicon import (
+    AUXILIARIES,
+    BE,
+    HAVE,
+    MODALS,
+    is_adjective,
+    is_noun,
+    is_third_person,
+    is_verb,
+    kinds_of,
+    lemma_of,
+    verb_of,
 )
-_SUBJECT: Final = re.compile(
-    rf"^(?:(?:(?:the|a|an|this|our|one|some)\s+)?(?:\w+\s+)?(?:{_PEOPLE})|he|she|they|someone|somebody)\s+"
-    r"(?=\w)(?!of\b|in\b|on\b|at\b|with\b)",
-    re.IGNORECASE,
+
+SUBJECTS: Final = frozenset("he she they it i we you who nobody somebody someone everyone everything nothing".split())
+_MARKS: Final = frozenset(
+    """the a an his her their its my our your this that these those some any no every each another both all few many
+    several more other own such what whose which to""".split()
 )
-_PRONOUN: Final = r"(?:he|she|they|it|the|a|an|his|her|their|someone|somebody|everything|nobody)"
-_ABBREVIATION: Final = re.compile(r"\b(Mr|Mrs|Ms|Dr|St|Prof)\.", re.IGNORECASE)
-_SENTENCE: Final = re.compile(r"(?<=[.!?])[\"'”’)]*\s+|\n+|[;:]\s+|\s+[–—-]\s+|…|\.{2,}")
-_BULLET: Final = re.compile(r"^\s*(?:\d{1,2}[.)]|[-*•])\s+")
-_LATER: Final = r"(?:then|afterwards?|after that|later|finally|eventually|suddenly|next(?! to)|soon|at last|in the end)"
-_JOINT: Final = re.compile(
-    r"\s*,?\s*\b(?P<word>"
-    rf"(?:and|but|so)?,?\s*{_LATER}(?=[\s,])|and so|and|but|so(?=\s+{_PRONOUN}\b)|yet(?=\s+{_PRONOUN}\b)"
-    rf"|before|after|until|when(?:ever)?|while|because|as soon as|once(?=\s+{_PRONOUN}\b)|since(?=\s+{_PRONOUN}\b)"
-    rf"|as(?=\s+(?:he|she|they|it)\b)|although|though"
-    r")\b,?\s*|\s*,\s*",
-    re.IGNORECASE,
+_NUMBERS: Final = frozenset("two three four five six seven eight nine ten eleven twelve thirteen sixteen".split())
+"""What stands before a noun."""
+_PREPOSITIONS: Final = frozenset(
+    """in on at by for with from into onto of off over under about around across along behind beside between beyond
+    down inside near outside past through toward towards up upon within without against among during after before until
+    since like as than despite except""".split()
 )
-_BY_THEN: Final = re.compile(
-    r"^(before|after|during|until) ((?:the|his|her|their|a|an) (?:\w+ )?\w+)"
-    r" (?=(?:he|she|they|the \w+|(?-i:[A-Z])\w+)\b)",
-    re.IGNORECASE,
+_ADVERBS: Final = frozenset(
+    """then just never always also still finally again now soon even once not n't quickly often only almost already
+    hardly barely later suddenly simply both first next eventually meanwhile afterwards instead rather really quite
+    together alone ever too there here nearly perhaps maybe usually sometimes""".split()
 )
-"""A time that is told by a thing, with no comma after it: "before the interview he is nervous"."""
-_ANOTHER: Final = re.compile(r"^(?:someone|somebody)\b.*\b(?:his|her|him)\b", re.IGNORECASE)
-"""Somebody who does something to whom the story is about."""
-_GOES_ON: Final = re.compile(r"^(?:it|everything|all) (?:is|was|gets|got|becomes|became)\b", re.IGNORECASE)
-_NO_NAME_WORDS: Final = """thunder lightning rain snow wind music hunger fear sleep love work lunch dinner breakfast
-nothing everything noise guests friends summer winter spring autumn money nobody everybody somebody someone everyone"""
-_NO_NAMES: Final = frozenset(_NO_NAME_WORDS.split())
-"""What stands before a verb at the beginning of a sentence and is nobody's name."""
-_EARLIER: Final = frozenset(("after", "when", "whenever", "because", "as soon as", "once", "since", "as"))
+_WORD: Final = re.compile(r"«\d+»|[^\W_]+(?:['’-][^\W_]+)*|[^\w\s]", re.UNICODE)
+_CONTRACTION: Final = re.compile(r"(?i)\b(ca|wo|sha|[a-z]+?)n['’]t\b")
+_SHORT: Final = {"ca": "can not", "wo": "will not", "sha": "shall not"}
+_ENDS: Final = (("'ll", " will"), ("'ve", " have"), ("'re", " are"), ("'m", " am"))
+_QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
+_SEMI: Final = re.compile(r"\n+|;\s+|:\s+|\s+[–—]\s*|\s*[–—]\s+|\s+-{1,2}\s+|…\s*|\.{2,}\s*|\s*[()\[\]]\s*")
+_BULLET: Final = re.compile(r"^\s*(?:\d{1,2}[.)]|[-*•])\s+", re.MULTILINE)
+_LATER: Final = "then afterwards later finally eventually suddenly next soon meanwhile"
+_JOINTS: Final = frozenset(
+    """and but so yet or before after until when whenever while because once since although though if unless whereas
+    without instead then as where plus nor""".split()
+)
+_EARLIER: Final = frozenset("after when whenever because once since as".split())
 """What follows these happened first."""
-_STATE: Final = re.compile(
-    r"^(?:(?:is|are|was|were|feel|feels|felt|become|becomes|became|get|gets|got|grow|grows|grew|seems?|being|turns?)\b)"
-    r"(?P<rest>.*)$",
-    re.IGNORECASE,
+_WITH_GERUND: Final = frozenset("without instead".split())
+_ASPECTS: Final = frozenset(
+    """start begin continue keep try manage proceed spend end go come get finish resume happen decide help need have
+    attempt use""".split()
 )
-_FILLER_WORDS: Final = """very really so too quite extremely deeply totally a bit little more and at first again now
-suddenly all completely rather still finally even then or much no not longer any anymore"""
-_FILLER: Final = frozenset(_FILLER_WORDS.split())
-STRONG: Final = re.compile(r"\b(?:very|extremely|deeply|totally|completely|terribly|utterly)\b", re.IGNORECASE)
+"""Verbs that only say how the deed of the next verb is done: "starts to read", "spends the evening reading"."""
+_POSTURES: Final = frozenset(
+    """sit lie stand kneel walk run go come stay lean rest wander pace wait crouch hurry rush head move return stop curl
+    settle slump sink get wake rise crawl climb collapse fall drop march storm tiptoe shuffle stroll sneak creep
+    jump dance stretch slouch lounge perch huddle stumble stagger trudge dash spring leap hop skip""".split()
+)
+"""Verbs beside which a second deed stands without a joint: "sits reading", "goes to the kitchen to eat"."""
+_DENIALS: Final = frozenset("not never n't without neither nor hardly barely nobody no-one instead".split())
+_REFUSALS: Final = frozenset("refuse forget avoid resist skip fail neglect decline forgo postpone".split())
+_WISHES: Final = frozenset(
+    "want wish hope plan intend long dream consider mean promise expect imagine prefer think ought".split()
+)
+_NOT_VERBS_AFTER_TO: Final = frozenset("bed sleep work school church kitchen class town dinner lunch breakfast".split())
 
 
 @dataclass(frozen=True)
-class _Piece:
-    """A stretch of a sentence and the word that joined it to the one before."""
+class Token:
+    """A word or mark of a sentence."""
 
-    joint: str
     text: str
+    start: int
+    end: int
+
+    @property
+    def low(self) -> str:
+        """In small letters."""
+        return self.text.lower()
+
+
+@dataclass(frozen=True)
+class Clause:
+    """A stretch of a sentence with one verb."""
+
+    text: str
+    """Without whom it is about, in the theme's words: "drinks a glass of wine"."""
+    subject: str
+    """Who or what does it, as it is written; empty where it goes on from the clause before."""
+    verb: str
+    """The base form of what is done; empty where there is no verb."""
+    lemmas: tuple[str, ...]
+    """The base forms of its words from the verb on."""
+    joint: str = ""
+    """What joins it to the clause before: "and", "before", ","; "to" and "ing" for a second deed of one clause."""
+    denied: bool = False
+    """Whether it is not done, or only wished for."""
+    unable: bool = False
+    """Whether it is not done since it cannot be: "cannot sleep"."""
+    perfect: bool = False
+    """Whether it had been done before."""
+    quotes: tuple[str, ...] = ()
+    """What is said in it."""
+    sentence: int = 0
+    """Index of its sentence in the text."""
+
+
+def clauses_of_text(text: str) -> tuple[Clause, ...]:
+    """What a text tells, in the order of time."""
+    quotes: list[str] = []
+
+    def kept(match: re.Match[str]) -> str:
+        quotes.append(match[1] or match[2])
+        said = quotes[-1].rstrip()
+        return f"«{len(quotes) - 1}»" + (". " if said[-1:] in ".!?" and match.string[match.end() :].lstrip()[:1].isupper() else " ")
+
+    found: list[Clause] = []
+    for number, sentence in enumerate(sentences_of(_QUOTE.sub(kept, text))):
+        said = [_clause(piece, quotes, number) for piece in _in_time(_pieces(sentence))]
+        found += [part for clause in said for part in clause]
+    return tuple(found)
 
 
 def sentences_of(text: str) -> list[str]:
     """The sentences, lines and list items of a text, without marks at their ends."""
-    parts = _SENTENCE.split(_ABBREVIATION.sub(r"\1", _BULLET.sub("", text)))
-    return [_BULLET.sub("", part).strip(" .!?,\"'“”‘’()") for part in parts if part.strip(" .!?,\"'")]
+    parts = [part for line in _SEMI.split(_BULLET.sub("", text)) if line.strip() for part in _segmenter().segment(line)]
+    return [part.strip(" \t.!?,;:-–—\"“”") for part in parts if re.search(r"\w", part)]
 
 
-def moments_of(sentence: str) -> list[str]:
-    """What happens in a sentence, one stretch of it a moment, in the order of time."""
-    return [piece.text for piece in _in_time(_whole(_pieces(sentence)))]
+@cache
+def _segmenter() -> Any:
+    from pysbd import Segmenter
+
+    return Segmenter(language="en", clean=False)
+
+
+def tokens_of(text: str) -> list[Token]:
+    """Words and marks; "can't" is "can not"."""
+    return [Token(match[0], match.start(), match.end()) for match in _WORD.finditer(text)]
+
+
+_SLANG: Final = {"n": "and", "n'": "and", "'n'": "and", "cant": "can not", "wont": "will not", "gonna": "going to",
+                 "wanna": "want to", "gotta": "have to", "cuz": "because", "bc": "because", "w/": "with", "&": "and"}  # fmt: skip
+_SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|had|have|should)nt\b")
+
+
+def plain(text: str) -> str:
+    """A text with its contractions and the commonest slang written out: "doesn't" is "does not"."""
+    text = _SLANG_NOT.sub(r"\1 not", text.replace("’", "'").replace("‘", "'"))
+    text = " ".join(_SLANG.get(word.lower(), word) for word in text.split(" "))
+    text = _CONTRACTION.sub(lambda m: _SHORT.get(m[1].lower(), f"{m[1]} not"), text)
+    for short, whole in _ENDS:
+        text = re.sub(rf"(?i)(?<=\w){short}\b", whole, text)
+    return re.sub(r"\b(I|[Hh]e|[Ss]he|[Tt]hey|[Ww]e)'d\b", r"\1 had", re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s\b", r"\1 is", text))
+
+
+@dataclass(frozen=True)
+class _Piece:
+    """A stretch of a sentence, the joint before it, and where its verb stands."""
+
+    joint: str
+    tokens: tuple[Token, ...]
+    source: str = field(repr=False)
+
+    @property
+    def text(self) -> str:
+        return self.source[self.tokens[0].start : self.tokens[-1].end] if self.tokens else ""
+
+
+def verb_place(tokens: Sequence[Token]) -> int | None:
+    """Where the first verb or auxiliary of a clause stands; None where it has none."""
+    for place, token in enumerate(tokens):
+        if token.low in AUXILIARIES or _acts(tokens, place):
+            return place
+    return None
+
+
+def has_verb(text: str) -> bool:
+    """Whether some word of the text acts as a verb."""
+    return verb_place(tokens_of(plain(text))) is not None
+
+
+def _acts(tokens: Sequence[Token], place: int) -> bool:
+    """Whether the word there acts as a verb, going by its form and the words about it."""
+    token = tokens[place]
+    base = verb_of(token.text)
+    if not base:
+        return False
+    at = place - 1
+    while at >= 0 and (tokens[at].low in _ADVERBS or (tokens[at].low.endswith("ly") and not is_noun(tokens[at].low))):
+        at -= 1
+    before = tokens[at].low if at >= 0 else ""
+    after = tokens[place + 1].low if place + 1 < len(tokens) else ""
+    if before in SUBJECTS or before in MODALS or before in ("do", "does", "did"):
+        return True
+    if before in ("to",):
+        return token.low == base and base not in _NOT_VERBS_AFTER_TO
+    if before in _NUMBERS and at and tokens[at - 1].low == "of":
+        return is_third_person(token.low)
+    if before in _MARKS | _NUMBERS or (before in _PREPOSITIONS and not token.low.endswith("ing")):
+        return False
+    goes_on = not after or after in _MARKS or after in _PREPOSITIONS or after in _ADVERBS or after in SUBJECTS | {"him", "them", "me", "himself", "herself", "back", "home", "and"} or after.endswith("ly")  # fmt: skip
+    if at < 0:
+        if token.low.endswith("ing"):
+            return not is_noun(token.low) or bool(after)
+        if is_adjective(token.low) and not (after in _MARKS or after in _PREPOSITIONS or is_third_person(token.low)):
+            return False
+        if is_third_person(token.low) or token.low != base:
+            return not (is_noun(token.low) and verb_of(after) and not (is_noun(after) or after.endswith("ing")))
+        return not is_noun(token.low) or (goes_on and bool(after))
+    if token.low.endswith("ing"):
+        return before in _WITH_GERUND or tokens[0].low == "instead" or (before not in _PREPOSITIONS and not is_noun(token.low))
+    if is_adjective(before) and not is_noun(before) and is_noun(token.low):
+        return False
+    if is_adjective(token.low) and (before in BE or before in ("feels", "felt", "seems", "looks", "gets", "becomes")):
+        return False
+    if token.low == base:
+        return _is_plural(before) and not is_noun(token.low)
+    if is_noun(token.low) and token.low.endswith("s"):
+        return goes_on or is_adjective(after) or is_noun(after)
+    return True
+
+
+def _is_plural(word: str) -> bool:
+    nouns = kinds_of(word).get("NOUN", ())
+    return bool(nouns) and word not in nouns
 
 
 def _pieces(sentence: str) -> list[_Piece]:
-    """The sentence cut at commas and joining words."""
-    sentence = _BY_THEN.sub(r"\1 \2, ", sentence)
-    pieces, joint, start = [], "", 0
-    for match in _JOINT.finditer(sentence):
-        if sentence[start : match.start()].strip():
-            pieces.append(_Piece(joint, sentence[start : match.start()].strip()))
-            joint = ""
-        joint = _plain(match["word"] or ",") if joint in ("", ",") else joint
-        start = match.end()
-    if sentence[start:].strip():
-        pieces.append(_Piece(joint, sentence[start:].strip()))
-    return pieces
+    """The sentence cut at commas and joining words, wherever a verb follows."""
+    source = plain(sentence)
+    tokens = tokens_of(source)
+    cut: list[_Piece] = []
+    joint, current = "", list[Token]()
+    for place, token in enumerate(tokens):
+        if token.text == "," or (token.low in _JOINTS and _joins(tokens, place)):
+            if current:
+                cut.append(_Piece(joint, tuple(current), source))
+                joint, current = "", []
+            joint = token.low if joint in ("", ",", "and", "but") and token.text != "," else joint or ","
+            if token.low in _WITH_GERUND:
+                current.append(token)
+        else:
+            led = (current and current[0].low in _WITH_GERUND) or joint in _EARLIER | {"before", "until", "while"}
+            if led and token.low in ("he", "she", "they", "i", "we") and verb_place(current) is not None:
+                cut.append(_Piece(joint, tuple(current), source))
+                joint, current = ",", []
+            current.append(token)
+    if current:
+        cut.append(_Piece(joint, tuple(current), source))
+    return _whole(cut)
 
 
-def _plain(joint: str) -> str:
-    return " ".join(joint.lower().replace(",", " ").split()) or ","
+def _joins(tokens: Sequence[Token], place: int) -> bool:
+    """Whether a joining word joins clauses here: "as soon as", "so tired" and "before dinner" do not."""
+    low = tokens[place].low
+    rest = tokens[place + 1 :]
+    if low == "as":
+        return bool(rest) and rest[0].low in SUBJECTS | _MARKS and verb_place(rest[:6]) is not None
+    if low in ("so", "yet", "once", "since", "then", "where", "or"):
+        return bool(rest) and (low == "then" or rest[0].low in SUBJECTS or (low in ("so", "or") and verb_place(rest[:2]) is not None) or (low in ("once", "since", "where") and verb_place(rest[:5]) not in (None, 0)))  # fmt: skip
+    if low in ("after", "before", "until", "without", "instead"):
+        return bool(rest) and (_starts_gerund(rest) or rest[0].low in SUBJECTS or (low != "instead" and _clause_follows(rest)))
+    return True
+
+
+def _starts_gerund(rest: Sequence[Token]) -> bool:
+    at = 1 if rest[0].low in ("of", "even", "ever", "finally") and len(rest) > 1 else 0
+    word = rest[at].low
+    return word.endswith("ing") and bool(verb_of(word))
+
+
+def _clause_follows(rest: Sequence[Token]) -> bool:
+    """Whether a subject and its verb follow before the next comma: "after the phone rings", not "after dinner"."""
+    end = next((i for i, token in enumerate(rest) if token.text == "," or token.low in ("and", "but")), len(rest))
+    head = list(rest[: min(end, 6)])
+    place = verb_place(head)
+    return place is not None and place > 0 and head[place - 1].low not in SUBJECTS | {","} or (place is not None and place > 0)
 
 
 def _whole(pieces: list[_Piece]) -> list[_Piece]:
-    """Pieces without a verb put to the one before them ("bread and butter"), or to the one after ("one evening")."""
+    """Pieces without a verb put to the one before ("bread and butter"), or to the one after ("one evening, …")."""
     whole: list[_Piece] = []
     waiting: _Piece | None = None
     for piece in pieces:
         if waiting is not None:
-            piece = _led_by(waiting, piece)
+            joint = waiting.joint if waiting.joint not in (",", "") else piece.joint if piece.joint != "," else ""
+            piece = replace(piece, joint=joint, tokens=waiting.tokens + piece.tokens)
             waiting = None
-        if has_verb(piece.text) and not (whole and _only_describes(piece)):
+        if verb_place(piece.tokens) is not None and not (whole and _is_noun_list(whole[-1], piece)):
             whole.append(piece)
         elif whole:
-            last = whole[-1]
-            link = ", " if piece.joint == "," else f" {piece.joint} "
-            whole[-1] = _Piece(last.joint, last.text + link + piece.text)
+            whole[-1] = replace(whole[-1], tokens=whole[-1].tokens + piece.tokens)
         else:
             waiting = piece
     return [*whole, waiting] if waiting is not None else whole
 
 
-def _led_by(lead: _Piece, piece: _Piece) -> _Piece:
-    """A piece with the verbless one before it: "after dinner, …", or "the character" of "the character then …"."""
-    if lead.joint in ("before", "until"):
-        return _Piece("", f"{piece.text} {lead.joint} {lead.text}")
-    if lead.joint in _EARLIER:
-        return _Piece("", f"{lead.joint} {lead.text}, {piece.text}")
-    return _Piece(lead.joint, f"{lead.text}{', ' if piece.joint == ',' else ' '}{piece.text}")
-
-
-def _only_describes(piece: _Piece) -> bool:
-    """Whether it says how or how long something is done ("laughing loudly", "drunk"), not what happens next."""
-    words = piece.text.lower().split()
-    if piece.joint == "until":
-        return _GOES_ON.match(piece.text) is not None
-    if piece.joint != "," or len(words) > 3:
+def _is_noun_list(last: _Piece, piece: _Piece) -> bool:
+    """Whether a single word goes on with the nouns before it: "cakes and drinks", but not "eats and drinks"."""
+    words = piece.tokens
+    if len(words) > 1 or not is_noun(words[0].low):
         return False
-    felt = [word for word in words if word not in _FILLER]
-    return (len(words) <= 2 and words[0].endswith("ing")) or (bool(felt) and all(feelings(word) for word in felt))
+    end, word = last.tokens[-1].low, words[0].low
+    if is_third_person(word):
+        return _is_plural(end) and len(last.tokens) > 2 and last.tokens[-2].low not in _MARKS
+    return is_noun(end) and word == verb_of(word)
 
 
 def _in_time(pieces: list[_Piece]) -> list[_Piece]:
-    """Pieces in the order they happen: "B after A" is A, B; "before B, A" is A, B; "glad when A" stays one."""
+    """Pieces in the order they happen: "B after A" is A, B; "before B, A" is A, B."""
     ordered: list[_Piece] = []
-    first_is_later = bool(pieces) and pieces[0].joint == "before" and len(pieces) > 1
+    first_is_later = len(pieces) > 1 and pieces[0].joint in ("before", "until", "instead", "without")
     for piece in pieces:
-        if not ordered or piece.joint not in _EARLIER:
-            ordered.append(piece)
-            continue
-        main = ordered[-1]
-        if state_words(without_subject(main.text)) is not None:
-            ordered[-1] = _Piece(main.joint, f"{main.text} {piece.joint} {piece.text}")
-        elif piece.joint != "after" and re.search(r"^(?:\S+\s+){0,3}(?:is|are|was|were)\s+\w+ing\b", main.text):
-            ordered.append(piece)  # "is sitting there when …": the sitting came first
+        if ordered and piece.joint in _EARLIER and piece is not pieces[0]:
+            main = ordered[-1]
+            is_state = any(token.low in BE for token in main.tokens[:3])
+            if piece.joint == "as" or (is_state and piece.joint != "after"):
+                ordered.append(piece)
+            else:
+                ordered.insert(len(ordered) - 1, piece)
         else:
-            ordered.insert(len(ordered) - 1, piece)
-    return [*ordered[1:], ordered[0]] if first_is_later else ordered
+            ordered.append(piece)
+    return [*ordered[1:2], ordered[0], *ordered[2:]] if first_is_later else ordered
 
 
-def without_subject(text: str) -> str:
-    """The words without who does it: "the character is happy" is "is happy", "Anna reads" is "reads"."""
-    short = text if _ANOTHER.match(text) else _SUBJECT.sub("", text, count=1)
-    named = re.match(r"^[A-Z][a-z]+\s+(?=([a-z]+)\b)", short)
-    first = short.split()[0].lower() if short else ""
-    if short == text and named and is_verb(named[1]) and not is_verb(first) and first not in _NO_NAMES:
-        short = short[named.end() :]
-    return short if has_verb(short) else text
+def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
+    """The clause of a piece, and second deeds in it that stand without a joint."""
+    tokens = list(piece.tokens)
+    joint = piece.joint
+    while tokens and tokens[0].low in _ADVERBS | {"and", "but", "or"} and tokens[0].low not in _DENIALS and len(tokens) > 1:
+        tokens.pop(0)
+    place = verb_place(tokens)
+    if place is None:
+        return [Clause(piece.text, "", "", _lemmas(tokens), joint, quotes=_quotes(tokens, quotes), sentence=sentence)]
+    subject = _subject(tokens[:place])
+    lead = tokens[:place] if not subject else [t for t in tokens[:place] if t.low in _DENIALS]
+    words = (lead if any(token.low in _DENIALS for token in lead) else []) + tokens[place:]
+    if words and words[0].low in _ADVERBS - _DENIALS and len(words) > 1:
+        words = words[1:]
+    main, denied, unable, perfect = _main_verb(words)
+    lemmas = _lemmas(words[main:])
+    first = Clause(
+        _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, joint, denied, unable, perfect,
+        _quotes(tokens, quotes), sentence,
+    )  # fmt: skip
+    return [first] if denied and not unable else _parted(first, words, main, piece.source)
 
 
-def state_words(text: str) -> str | None:
-    """The feeling, where a clause says nothing but how somebody feels ("becomes very sad" is "very sad")."""
-    state = _STATE.match(text)
-    if state is None:
-        return None
-    rest = state["rest"].strip()
-    words = [word for word in re.findall(r"[\w-]+", rest.lower()) if word not in _FILLER]
-    return rest if words and all(feelings(word) for word in words) else None
+def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> list[Clause]:
+    """A clause and the second deed of it: "sits reading a letter", "goes to the kitchen to make tea"."""
+    if clause.verb not in _POSTURES or clause.quotes:
+        return [clause]
+    for place in range(main + 1, len(words)):
+        low, before = words[place].low, words[place - 1].low
+        gerund = low.endswith("ing") and bool(verb_of(low)) and before not in _MARKS - {"to"} and not is_adjective(before)
+        gerund = gerund and before not in _PREPOSITIONS - {"on", "off", "down", "up", "around", "there", "back"}
+        purpose = before == "to" and verb_of(low) == low and low not in _NOT_VERBS_AFTER_TO and not is_pure_noun(low)
+        if gerund or purpose:
+            stop = place - 1 if purpose else place
+            if stop <= main:
+                continue
+            head, tail = words[:stop], words[place:]
+            lemmas = _lemmas(tail)
+            second = replace(clause, text=_text(source, tail), subject="", verb=lemmas[0], lemmas=lemmas, joint="to" if purpose else "ing")  # fmt: skip
+            return [replace(clause, text=_text(source, head), lemmas=_lemmas(head[main:])), second]
+    return [clause]
+
+
+def is_pure_noun(word: str) -> bool:
+    """Whether a word after "to" is the place one goes to rather than a deed."""
+    return is_noun(word) and word in ("table", "door", "window", "garden", "floor", "study", "sofa", "desk", "bath")
+
+
+def _main_verb(words: Sequence[Token]) -> tuple[int, bool, bool, bool]:
+    """Where the verb of the deed stands; whether it is denied or wished for, cannot be done, was done before."""
+    denied = unable = perfect = False
+    at = 0
+    while at < len(words):
+        low = words[at].low
+        base = verb_of(low)
+        ahead = words[at + 1].low if at + 1 < len(words) else ""
+        if low in _DENIALS:
+            denied = True
+            unable = unable or (at > 0 and words[at - 1].low in ("can", "could", "cannot"))
+            if low in _WITH_GERUND and ahead == "of":
+                at += 1
+        elif low == "cannot":
+            denied = unable = True
+        elif low == "no" and ahead == "longer":
+            denied, at = True, at + 1
+        elif low in ("will", "would", "should", "must", "may", "might", "ought"):
+            denied = denied or (low in ("would", "should", "might") and bool(verb_place(words[at + 1 : at + 3]) is not None) and low != "would")
+        elif low == "had" and _participle_follows(words, at):
+            perfect = True
+        elif low in AUXILIARIES and _verb_follows(words, at):
+            pass
+        elif low in ("unable", "about", "afraid", "too") and "to" in [token.low for token in words[at : at + 3]]:
+            denied, unable = True, low == "unable"
+            at += [token.low for token in words[at : at + 3]].index("to")
+        elif base in _REFUSALS and (ahead == "to" or ahead.endswith("ing")):
+            denied, at = True, at + (ahead == "to")
+        elif base in _WISHES and (ahead == "to" or (base in ("consider", "imagine") and ahead.endswith("ing"))):
+            denied, at = True, at + (ahead == "to")
+        elif base == "stop" and ahead.endswith("ing"):
+            denied = True
+        elif base in _ASPECTS and (jump := _aspect(words, at)):
+            at = jump - 1
+        elif low in _ADVERBS or (low.endswith("ly") and not base):
+            pass
+        else:
+            break
+        at += 1
+    return min(at, len(words) - 1), denied, unable, perfect
+
+
+def _verb_follows(words: Sequence[Token], at: int) -> bool:
+    """Whether an auxiliary is followed by the verb it helps: "is reading", "does sit", not "is tired" or "has a bath"."""
+    for token in words[at + 1 : at + 4]:
+        low = token.low
+        if low in _DENIALS or low in _ADVERBS or low in AUXILIARIES or (low.endswith("ly") and not verb_of(low)):
+            continue
+        base = verb_of(low)
+        helper = words[at].low
+        if helper in BE:
+            return bool(base) and low.endswith("ing")
+        if helper in HAVE:
+            return bool(base) and low != base and not low.endswith("ing")
+        return bool(base)
+    return False
+
+
+def _participle_follows(words: Sequence[Token], at: int) -> bool:
+    return _verb_follows(words, at) or (at + 1 < len(words) and words[at + 1].low == "been")
+
+
+def _aspect(words: Sequence[Token], at: int) -> int:
+    """Where the deed of an aspect stands, 0 where the verb is the deed itself ("goes home", "tries a new recipe")."""
+    base = verb_of(words[at].low)
+    for place in range(at + 1, min(at + 7, len(words))):
+        low = words[place].low
+        if low == "to" and place + 1 < len(words):
+            after = words[place + 1].low
+            if place == at + 1 and base not in ("go", "come", "spend", "keep", "finish", "end", "resume") and verb_of(after) == after:
+                return place + 1 if after not in _NOT_VERBS_AFTER_TO else 0
+            return 0
+        if low.endswith("ing") and verb_of(low) and base not in ("need", "have", "decide", "help", "use"):
+            before = words[place - 1].low
+            if place == at + 1 or (base == "end" and before == "up") or (base == "spend" and before not in _MARKS):
+                return place
+        if base not in ("spend", "end", "keep", "try") or low in ("and",):
+            return 0
+    return 0
+
+
+def _subject(tokens: Sequence[Token]) -> str:
+    """Who does it, of the words before the verb: those after the last comma-like stretch of time or place."""
+    words = [token.text for token in tokens]
+    while words and (words[-1].lower() in _ADVERBS or words[-1].lower().endswith("ly")):
+        words.pop()
+    if words and words[-1].lower() in SUBJECTS:
+        return words[-1]
+    while words and (words[0].lower() in _ADVERBS or words[0].lower() in _JOINTS):
+        words.pop(0)
+    if words and words[0].lower() in _PREPOSITIONS:  # "in the kitchen Anna …"
+        names = [word for word in words[1:] if word[:1].isupper()]
+        return names[-1] if names else ""
+    return " ".join(words)
+
+
+def _lemmas(tokens: Sequence[Token]) -> tuple[str, ...]:
+    return tuple(lemma_of(token.text) for token in tokens if token.text[:1].isalnum())
+
+
+def _quotes(tokens: Sequence[Token], quotes: Sequence[str]) -> tuple[str, ...]:
+    return tuple(quotes[int(token.text[1:-1])] for token in tokens if token.text.startswith("«"))
+
+
+def _text(source: str, tokens: Sequence[Token]) -> str:
+    return " ".join(source[tokens[0].start : tokens[-1].end].split()) if tokens else ""

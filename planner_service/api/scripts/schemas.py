@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from motion_backend.motion import Emotion
 from planner_service.api.stories.schemas import Ask, RoomType, Seed
-from planner_service.composition.compose import MAX_SHORT_SCRIPTS
+from planner_service.composition.request import MAX_SHORT_SCRIPTS
 from planner_service.scripts.script import Keyframe, Origin, Room, ScriptGraph, Source
 from planner_service.themes.beats import MAX_THEME_LENGTH
 from scene_graphs.home import MAX_ROOMS

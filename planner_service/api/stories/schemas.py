@@ -11,7 +11,7 @@ from pydantic_core import CoreSchema, PydanticKnownError
 
 from motion_backend.backends import UnknownBackendError, backend_names, require_backend
 from motion_backend.motion import Emotion, Skill
-from planner_service.composition.compose import MAX_SHORT_SCRIPTS
+from planner_service.composition.request import MAX_SHORT_SCRIPTS
 from planner_service.pipeline import MAX_HEIGHT, MAX_SEED, MIN_HEIGHT
 from planner_service.scripts.script import MAX_NAME_LENGTH, Beat, Keyframe
 from planner_service.themes.beats import MAX_THEME_LENGTH

@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from themes import THEMES, Theme
 
 from motion_backend.language.sentence_encoder import HashingEncoder, SentenceEncoder
-from planner_service.composition.compose import Request, compose
+from planner_service.composition.compose import compose
+from planner_service.composition.request import Request
 from planner_service.llm.fake_model import ScriptedModel
 from planner_service.llm.protocol import ModelError
 from planner_service.scripts.built_in_scripts import built_in

@@ -18,7 +18,8 @@ from motion_backend.language.sentence_encoder import HashingEncoder, Vectors
 from motion_backend.motion import Skill
 from planner_service.cli import app
 from planner_service.composition import llm_planner as planned
-from planner_service.composition.compose import Request, compose
+from planner_service.composition.compose import compose
+from planner_service.composition.request import Request
 from planner_service.evaluation import planning_evaluation
 from planner_service.evaluation.bm25_baseline import KeywordSearch
 from planner_service.evaluation.labels import LabelledEvent, LabelledTheme, Query, labelled_queries, labelled_themes
