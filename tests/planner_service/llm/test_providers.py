@@ -108,6 +108,7 @@ def test_a_server_that_takes_no_schema_is_told_it_in_the_prompt_and_asked_so_fro
     assert server.prompts[1] == server.prompts[2]
 
 
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # the only ones of Anthropic that take a temperature
 @for_each("kind", ["openai", "ollama", "anthropic"])
 def test_temperature_and_the_storys_seed_are_sent(kind: Kind) -> None:
     with ModelServer(lambda asked: chat(GOOD, asked.path)) as server:
