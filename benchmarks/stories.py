@@ -65,7 +65,7 @@ def _make(pipeline: Pipeline, name: str, request: StoryRequest) -> Timed:
     plans = tuple(timed(lambda: pipeline.plan(request))[1] for _ in range(REPEATS))
     script, stage = planned.script, planned.stage
     actions, acted = timed(lambda: act(script.keyframes, stage.places, planned.home, request.seed))
-    motions, moved = timed(lambda: move(load_backend(request.backend), planned.home, actions, request, silent))
+    motions, moved = timed(lambda: move(load_backend(request.backend), planned, actions, silent))
     story, judged = timed(lambda: judge(planned, actions, motions, silent))
     return Timed(name, story, plans, acted, moved, judged)
 

@@ -154,6 +154,11 @@ class Planned:
         """The furnished home."""
         return self.stage.home
 
+    @property
+    def character(self) -> Character:
+        """Who acts."""
+        return actor(self.request, self.script)
+
 
 @dataclass(frozen=True)
 class Story:
@@ -206,15 +211,16 @@ class Pipeline:
 
     def tell(self, request: StoryRequest, stage: Furnished) -> tuple[Furnished, Told]:
         """The story as the model tells it, else as the rules do, with a note why among the script's repairs."""
+        character = actor(request, stage.script)
         if self.model is not None:
             try:
-                return stage, narrate_with_model(stage.script, request.character, self.model, stage.names)
+                return stage, narrate_with_model(stage.script, character, self.model, stage.names)
             except ModelError as error:
                 if self.insist:
                     raise
                 repairs = (*stage.script.repairs, f"told by rules: {error}")
                 stage = replace(stage, script=stage.script.model_copy(update={"repairs": repairs}))
-        return stage, narrate(stage.script, request.character, request.seed, stage.names)
+        return stage, narrate(stage.script, character, request.seed, stage.names)
 
     def act(self, request: StoryRequest, stage: Furnished) -> tuple[Action, ...]:
         """The keyframes of a script, grounded in its home."""
@@ -230,8 +236,17 @@ class Pipeline:
         planned = self.plan(request, progress)
         progress("act", 0.0)
         actions = self.act(request, planned.stage)
-        motions = move(backend, planned.home, actions, request, progress)
+        motions = move(backend, planned, actions, progress)
         return judge(planned, actions, motions, progress)
+
+
+def actor(request: StoryRequest, script: LongScript) -> Character:
+    """Who acts a script: whom the user described, else whom the model read in the theme, else whom the rules did."""
+    read = cast_by(request.theme, Character(height=request.character.height))
+    if script.person is None or request.character != read:
+        return request.character
+    person = script.person
+    return replace(read, name=person.name or read.name, pronouns=person.pronouns or read.pronouns)
 
 
 def given_script(request: StoryRequest) -> LongScript:
@@ -254,11 +269,10 @@ def types_of(layouts: Sequence[Layout]) -> tuple[str, ...]:
     return tuple(room for room in dict.fromkeys(own) if room in ROOM_TYPES)[:MAX_ROOMS]
 
 
-def move(
-    backend: MotionBackend, home: Home, actions: Sequence[Action], request: StoryRequest, progress: Progress
-) -> list[Motion]:
+def move(backend: MotionBackend, planned: Planned, actions: Sequence[Action], progress: Progress) -> list[Motion]:
     """One segment an action, each from the state the one before left."""
-    state: BodyState = backend.begin(home, request.character, request.seed)
+    home = planned.home
+    state: BodyState = backend.begin(home, planned.character, planned.request.seed)
     motions = []
     for index, action in enumerate(actions):
         progress("move", index / len(actions))

@@ -41,6 +41,8 @@ class Settings(BaseSettings):
     llm_api_key: SecretStr = SecretStr("")
     llm_on_failure: Literal["rules", "error"] = "rules"
     """What happens where the model gives no usable answer: the rules do it, or the story fails and says why."""
+    llm_temperature: float = Field(0.0, ge=0, le=2)
+    """How freely the model chooses its words, where it can be told: 0 is the likeliest word every time."""
     llm_timeout: float = Field(120.0, gt=0, le=3600)
     """Seconds of one question, with all that is tried again."""
     llm_answer_tokens: int = Field(16_384, ge=256, le=1_000_000)

@@ -212,6 +212,10 @@ class _Reader:
             if not 0 < len(beat.text) <= 300 or not _is_of(beat.text, self.theme):
                 notes.append(f"beats.{number}: {beat.text[:60]!r} is not in the theme, left out")
                 continue
+            times = sum(one.beat.text == beat.text for one in read)
+            if times >= max(1, self.theme.count(beat.text)):
+                notes.append(f"beats.{number}: {beat.text[:60]!r} is there already, left out")
+                continue
             read.append(self._beat(beat))
         if len(answer.beats) > MAX_BEATS:
             notes.append(f"beats: {len(answer.beats)} of them, {MAX_BEATS} were read")
@@ -278,7 +282,11 @@ def _believed(one: PlannedBeat) -> PlannedBeat:
 def _seats() -> frozenset[str]:
     """Words of one word for what one sits or lies on."""
     known = furniture_offered().lower().split(", ")
-    return frozenset(word for word in known if " " not in word and affordances(word) & {"sit", "lie"})
+    return frozenset(word for word in known if " " not in word and all(map(_rested_on, categories_of(word))))
+
+
+def _rested_on(category: str) -> bool:
+    return not affordances(category).isdisjoint(("sit", "lie"))
 
 
 def _cut_out(row: _Row, beat: Beat, script: ShortScript) -> PlannedBeat:

@@ -25,7 +25,7 @@ from planner_service.jobs import serialization
 from planner_service.jobs.serialization import summary_of_home, summary_of_script
 from planner_service.narration.narrator import Told
 from planner_service.output.story_export import report_to_dict
-from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, judge
+from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, actor, judge
 from planner_service.scripts.script import LongScript
 from planner_service.store.story_store import Made, Stories
 from scene_graphs.json_fields import Json
@@ -142,7 +142,7 @@ class Maker:
         position = FIRST_SEGMENT + index
         first = 0
         if index == 0:
-            state = backend.begin(home, story.request.character, story.request.seed)
+            state = backend.begin(home, actor(story.request, story.stage.script), story.request.seed)
         else:
             state = serialization.state_from_dict(self.store.segment(story_id, position - 1)[1])
             first = self._end_of(story_id, position - 1)

@@ -45,7 +45,7 @@ class ServedModel:
 
     def answer(self, prompt: str, schema: type[T], images: Sequence[bytes] = ()) -> T:
         """Ask, and read the answer. InvalidAnswerError, BudgetError, ModelError."""
-        question = question_of(prompt, schema, images)
+        question = question_of(prompt, schema, images, self.seed)
         tokens, seconds = self.spending.allowance(question)
         begun = time.monotonic()
         try:

@@ -62,9 +62,10 @@ def load_model(settings: Settings) -> LanguageModel | None:
 class Late:
     """A `Source` that asks a server and imports its library only then: that takes seconds."""
 
-    def __init__(self, name: str, base_url: str, key: str) -> None:
+    def __init__(self, name: str, base_url: str, key: str, temperature: float) -> None:
         self.name = name
         self._where = base_url, key
+        self._temperature = temperature
         self._vendor: Vendor | None = None
 
     def reply(self, question: Question, tokens: int, seconds: float) -> Reply:
@@ -83,7 +84,7 @@ class Late:
             from planner_service.llm.providers import Address, Vendor
 
             kind, _, model = self.name.partition(":")
-            self._vendor = Vendor(Address(kind, model, *self._where))  # type: ignore[arg-type]
+            self._vendor = Vendor(Address(kind, model, *self._where), self._temperature)  # type: ignore[arg-type]
         return self._vendor
 
 
@@ -103,7 +104,7 @@ def served(name: str, settings: Settings) -> Late:
         )
     if not key and kind == "anthropic":
         key = "none"  # the library wants one
-    return Late(name, base_url_of(settings.llm_base_url), key)
+    return Late(name, base_url_of(settings.llm_base_url), key, settings.llm_temperature)
 
 
 def base_url_of(given: str, setting: str = "SIMS_LLM_BASE_URL", key: str = "SIMS_LLM_API_KEY") -> str:

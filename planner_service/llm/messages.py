@@ -32,6 +32,8 @@ class Question:
     """Portable JSON schema of the answer."""
     images: tuple[bytes, ...] = ()
     """JPEG or PNG files."""
+    seed: int = 0
+    """For a model that draws lots; no part of the content."""
 
     @property
     def rules(self) -> str:
@@ -77,12 +79,12 @@ class Source(Protocol):
         ...
 
 
-def question_of(prompt: str, schema: type[BaseModel], images: Sequence[bytes] = ()) -> Question:
+def question_of(prompt: str, schema: type[BaseModel], images: Sequence[bytes] = (), seed: int = 0) -> Question:
     """The question for an answer of that type. ModelError for an image that is neither JPEG nor PNG."""
     for number, image in enumerate(images):
         media_type(image, number)
     title = f"{prompt.name}@{prompt.version}" if isinstance(prompt, prompts.Filled) else "unnamed"
-    return Question(str(prompt), title, schema.__name__, portable(schema.model_json_schema()), tuple(images))
+    return Question(str(prompt), title, schema.__name__, portable(schema.model_json_schema()), tuple(images), seed)
 
 
 def media_type(image: bytes, number: int = 0) -> str:

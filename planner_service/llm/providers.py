@@ -9,15 +9,17 @@ import asyncio
 import contextlib
 import functools
 import json
+import re
 import ssl
 import time
-from collections.abc import Coroutine
+from collections.abc import Coroutine, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import Any, Final, Literal, TypeVar
 
 import httpx2
 from pydantic_ai.direct import model_request
+from pydantic_ai.exceptions import UserError
 from pydantic_ai.messages import BinaryContent, ModelRequest, UserContent, UserPromptPart
 from pydantic_ai.models import Model, ModelRequestParameters
 from pydantic_ai.output import OutputObjectDefinition
@@ -27,6 +29,7 @@ import prompts
 from planner_service.llm.http_transport import Carrier, ServerError
 from planner_service.llm.messages import Question, Reply, media_type
 from planner_service.llm.protocol import ModelError
+from planner_service.user_errors import printable
 
 Kind = Literal["openai", "ollama", "anthropic"]
 ADDRESSES: Final[dict[str, str]] = {
@@ -36,8 +39,13 @@ ADDRESSES: Final[dict[str, str]] = {
 }
 CONNECT: Final = 10.0
 """Seconds for a connection."""
-_NO_SCHEMA: Final = (400, 404, 415, 422, 501)
-"""How servers refuse a schema they cannot hold an answer to."""
+MAX_CHOICES_TOLD: Final = 12
+"""Words of choice in a schema that is part of the prompt."""
+MAX_SEED: Final = 2**31
+"""Servers take seeds below this."""
+_REFUSED: Final = (400, 404, 415, 422, 501)
+"""How servers refuse a schema they cannot hold an answer to, a temperature, or a seed."""
+_SAMPLING: Final = re.compile(r"\b(?:temperature|seed|sampling)\b", re.IGNORECASE)
 R = TypeVar("R")
 
 
@@ -65,9 +73,12 @@ class Address:
 class Vendor:
     """A `Source` that asks a server. Threads may share it; it holds no connection open between questions."""
 
-    def __init__(self, address: Address) -> None:
+    def __init__(self, address: Address, temperature: float = 0.0) -> None:
         self.address = address
         self.name = address.name
+        self.temperature = temperature
+        self.steady = True
+        """Whether the server takes a temperature and a seed; one that refused them is asked without."""
         self.native = True
         """Whether the server holds answers to a JSON schema; where it refused to, the schema goes into the prompt."""
         self._closed = False
@@ -100,27 +111,32 @@ class Vendor:
             self._waiting.discard(mine)
 
     async def _reply(self, question: Question, tokens: int, seconds: float) -> Reply:
+        """With a schema, temperature and seed; where the server refuses one of them, without it, then and later."""
         deadline = time.monotonic() + seconds
+        native, steady, first = self.native, self.steady, None
         try:
             async with asyncio.timeout(seconds):
-                if not self.native:
-                    return await self._ask(question, tokens, deadline, native=False)
-                try:
-                    return await self._ask(question, tokens, deadline, native=True)
-                except ServerError as error:
-                    if error.status not in _NO_SCHEMA:
-                        raise
+                while True:
                     try:
-                        reply = await self._ask(question, tokens, deadline, native=False)
-                    except ServerError:
-                        raise error from None
-                    self.native = False
-                    return reply
+                        reply = await self._ask(question, tokens, deadline, native, steady)
+                    except ServerError as error:
+                        first = first or error
+                        if error.status not in _REFUSED:
+                            raise first from None
+                        if steady and _SAMPLING.search(str(error)):
+                            steady = False
+                        elif native:
+                            native = False
+                        else:
+                            raise first from None
+                    else:
+                        self.native, self.steady = native, steady
+                        return reply
         except TimeoutError:
             told = f"{self.name} gave no whole answer within {seconds:.3g} seconds; SIMS_LLM_TIMEOUT allows more"
             raise ServerError(told) from None
 
-    async def _ask(self, question: Question, tokens: int, deadline: float, native: bool) -> Reply:
+    async def _ask(self, question: Question, tokens: int, deadline: float, native: bool, steady: bool) -> Reply:
         left = max(deadline - time.monotonic(), 0.001)
         inner = httpx2.AsyncHTTPTransport(verify=_trusted(), retries=0)
         carrier = Carrier(inner, f"{self.name} at {self.address.url}", self.address.key, deadline)
@@ -129,13 +145,21 @@ class Vendor:
             headers={"accept-encoding": "identity"},
             timeout=httpx2.Timeout(left, connect=min(CONNECT, left)),
         ) as http:
+            model = _model(self.address, http)
+            said = ModelSettings(max_tokens=tokens, timeout=left, max_retries=0)
+            if steady:
+                said["seed"] = question.seed % MAX_SEED
+                if takes_temperature(model.profile):
+                    said["temperature"] = self.temperature
             try:
                 response = await model_request(
-                    _model(self.address, http),
+                    model,
                     [ModelRequest([UserPromptPart(_content(question, native))], instructions=question.rules)],
-                    model_settings=ModelSettings(max_tokens=tokens, timeout=left, max_retries=0),
+                    model_settings=said,
                     model_request_parameters=_parameters(question, native),
                 )
+            except UserError as error:  # the library knows what the model cannot do, before it asks
+                raise ServerError(f"{self.name}: {printable(str(error), 200)}", 501) from None
             except Exception as error:
                 raise _explained(error, self.name) from None
         usage = response.usage
@@ -166,6 +190,15 @@ def _model(address: Address, http: httpx2.AsyncClient) -> Model[Any]:
     return OpenAIChatModel(address.model, provider=provider, profile=profile)
 
 
+def takes_temperature(profile: Mapping[str, Any]) -> bool:
+    """Whether a model is not known to refuse one: then the library would leave it out, and warn at every question."""
+    thinks = profile.get("thinking_enabled_by_default", False) or not profile.get(
+        "openai_supports_reasoning_effort_none", False
+    )
+    refuses = profile.get("openai_supports_reasoning", False) and thinks
+    return not (refuses or profile.get("anthropic_disallows_sampling_settings", False))
+
+
 def _parameters(question: Question, native: bool) -> ModelRequestParameters:
     if not native:
         return ModelRequestParameters(output_mode="text")
@@ -175,9 +208,19 @@ def _parameters(question: Question, native: bool) -> ModelRequestParameters:
 
 def _content(question: Question, native: bool) -> list[UserContent]:
     """Prompt and pictures; the schema too, where the server does not hold the answer to it."""
-    schema = json.dumps(question.schema)
+    schema = json.dumps(outlined(question.schema))
     text = question.prompt if native else prompts.render("fit_schema", prompt=question.prompt, schema=schema)
     return [str(text), *(BinaryContent(image, media_type=media_type(image)) for image in question.images)]
+
+
+def outlined(schema: Any) -> Any:
+    """A schema without its long lists of choices: the prompt gives these already."""
+    if isinstance(schema, list):
+        return [outlined(one) for one in schema]
+    if not isinstance(schema, dict):
+        return schema
+    long = len(schema.get("enum", ())) > MAX_CHOICES_TOLD
+    return {word: outlined(value) for word, value in schema.items() if not (word == "enum" and long)}
 
 
 def _explained(error: BaseException, name: str) -> ModelError:

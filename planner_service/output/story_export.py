@@ -175,7 +175,7 @@ def story_to_dict(story: Story) -> dict[str, Any]:
         "spans": [{"start": s.start, "end": s.end, "keyframes": list(s.keyframes)} for s in planned.told.spans],
         "seed": planned.request.seed,
         "backend": planned.request.backend,
-        "character": vars(planned.request.character),
+        "character": vars(planned.character),
         "script": planned.script.model_dump(mode="json"),
         "rooms": planned.stage.rooms_to_dicts(),
         "home": home_to_dict(planned.home),

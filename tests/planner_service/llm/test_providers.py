@@ -23,7 +23,7 @@ from planner_service.llm.budget import Limits, Spending
 from planner_service.llm.client import MAX_ANSWER_LENGTH, ServedModel
 from planner_service.llm.http_transport import ServerError, message_of, retry_after
 from planner_service.llm.protocol import InvalidAnswerError, ModelError
-from planner_service.llm.providers import Address, Kind, Vendor
+from planner_service.llm.providers import Address, Kind, Vendor, outlined, takes_temperature
 from planner_service.llm.structured_output import ModelAnswerError, ask
 
 KEY = "sk-proj-0123456789abcdefghijklmnop"
@@ -106,6 +106,68 @@ def test_a_server_that_takes_no_schema_is_told_it_in_the_prompt_and_asked_so_fro
     assert [asked.schema is None for asked in server.asked] == [False, True, True]
     assert '"additionalProperties": false' in server.prompts[1]
     assert server.prompts[1] == server.prompts[2]
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # the only ones of Anthropic that take a temperature
+@for_each("kind", ["openai", "ollama", "anthropic"])
+def test_temperature_and_the_storys_seed_are_sent(kind: Kind) -> None:
+    with ModelServer(lambda asked: chat(GOOD, asked.path)) as server:
+        url = server.url.removesuffix("/v1") if kind == "anthropic" else server.url
+        name = {"openai": "gpt-x", "ollama": "qwen3", "anthropic": "claude-sonnet-4-5"}[kind]
+        ServedModel(Vendor(Address(kind, name, url, KEY), 0.0)).for_story(2**40 + 7).answer("?", Meal)
+        body = server.asked[0].body
+        assert body["temperature"] == 0
+        assert body.get("seed") == (None if kind == "anthropic" else 7)  # Anthropic's has none
+
+
+def test_a_server_that_refuses_temperature_or_seed_is_asked_without_from_then_on() -> None:
+    def behave(asked: Asked) -> Sent:
+        if "temperature" in asked.body:
+            return failing(400, {"error": {"message": "Unsupported value: 'temperature' does not support 0."}})
+        return chat(GOOD)
+
+    with ModelServer(behave) as server:
+        model = served(server)
+        assert [model.answer("?", Meal).dish for _ in range(2)] == ["soup", "soup"]
+    assert ["temperature" in asked.body for asked in server.asked] == [True, False, False]
+    assert all(asked.schema is not None for asked in server.asked)
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_an_older_model_of_anthropic_is_told_the_schema_in_the_prompt() -> None:
+    with ModelServer(lambda asked: chat(GOOD, asked.path)) as server:
+        url = server.url.removesuffix("/v1")
+        vendor = Vendor(Address("anthropic", "claude-3-5-haiku-latest", url, KEY))
+        assert ServedModel(vendor).answer("?", Meal).dish == "soup"
+    (asked,) = server.asked
+    assert asked.schema is None
+    assert '"additionalProperties": false' in asked.prompt
+
+
+def test_a_schema_in_the_prompt_has_no_long_lists() -> None:
+    short, long = {"enum": ["a", "b"]}, {"type": "string", "enum": [str(number) for number in range(99)]}
+    schema = {"type": "object", "properties": {"enum": short, "other": {"anyOf": [long]}}}
+    assert outlined(schema) == {
+        "type": "object", "properties": {"enum": short, "other": {"anyOf": [{"type": "string"}]}},
+    }  # fmt: skip
+
+
+@for_each(
+    ("profile", "taken"),
+    [
+        ({}, True),
+        ({"openai_supports_reasoning": True}, False),
+        ({"openai_supports_reasoning": True, "openai_supports_reasoning_effort_none": True}, True),
+        (
+            {"openai_supports_reasoning": True, "openai_supports_reasoning_effort_none": True,
+             "thinking_enabled_by_default": True},
+            False,
+        ),
+        ({"anthropic_disallows_sampling_settings": True}, False),
+    ],
+)  # fmt: skip
+def test_a_model_that_is_known_to_refuse_a_temperature_is_sent_none(profile: dict[str, bool], taken: bool) -> None:
+    assert takes_temperature(profile) is taken
 
 
 def test_a_refusal_that_is_not_about_the_schema_is_told_as_it_was() -> None:
