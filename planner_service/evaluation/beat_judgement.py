@@ -25,6 +25,7 @@ SECONDS: Final = {
     Skill.TOUCH: 4.1,
 }
 """Usual seconds of a keyframe: means over the 163 of the seven themes of SIMS, moved by the procedural backend."""
+_SENTENCE: Final = re.compile(r"(?<=[.!?])\s+")
 _WORD: Final = re.compile(r"[a-z]{2,}")
 _SMALL: Final = re.compile(
     "a[nts]?|and|are|be(en)?|by|did|do(es)?|for|from|ha[ds]|have|he|hers?|him|his|i[fnts]|into|its|not|o[fnr]|off|out|"
@@ -85,6 +86,14 @@ class Judgement:
         said = [one.beat.text for one in planned_beats(self.script).outcomes if not one.acted]
         texts = {index: self.label.beats[index].text for index in self.missing}
         return tuple(index for index, text in texts.items() if any(same_words(text, other) for other in said))
+
+    def told(self, story: str) -> tuple[int, ...]:
+        """Those of the missing that a sentence of the story tells nevertheless, be it as a thought or as not done."""
+        sentences = [_stems(sentence) for sentence in _SENTENCE.split(story)]
+        words = {index: _stems(self.label.beats[index].text) for index in self.missing}
+        return tuple(
+            index for index, stems in words.items() if any(3 * len(stems & one) > 2 * len(stems) for one in sentences)
+        )
 
     @cached_property
     def unasked(self) -> tuple[int, ...]:

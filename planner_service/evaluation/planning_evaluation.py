@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal, TypeVar
 
 from motion_backend.language.sentence_encoder import HashingEncoder
+from motion_backend.motion import Character
 from planner_service.composition.compose import compose
 from planner_service.composition.request import Request
 from planner_service.evaluation.beat_judgement import Judgement
@@ -19,6 +20,7 @@ from planner_service.evaluation.bm25_baseline import KeywordSearch
 from planner_service.evaluation.labels import SPLITS, LabelledTheme, Query, Split, labelled_queries, labelled_themes
 from planner_service.grounding.furnish import FurnishError, furnish
 from planner_service.grounding.keyframes_to_actions import UnreachableError, act
+from planner_service.narration.narrator import narrate
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.script import LongScript
 from planner_service.scripts.script_library import Features, ScriptLibrary
@@ -186,6 +188,8 @@ def beat_figures(themes: Sequence[Judgement]) -> list[Figure]:
         share("beats: the rest, named as not acted", [_named_rest(one) for one in played]),
         share("beats: all not acted, named as such", [(len(one.named), len(one.missing)) for one in played], NAMED),
     ]
+    stories = [narrate(one.script, Character()).text if one.script else "" for one in played]
+    told = [(len(one.told(text)), len(one.missing)) for one, text in zip(played, stories, strict=True)]
     unasked = share("screen time: unasked", [(one.unasked_seconds, one.seconds) for one in played])
     deeds = share("keyframes a beat, without walks to furniture", [(one.deeds, len(one.actable)) for one in played])
     forbidden = figure("keyframes: forbidden", labels, [len(one.forbidden) for one in played], sum, 0.0, "held_out")
@@ -194,6 +198,7 @@ def beat_figures(themes: Sequence[Judgement]) -> list[Figure]:
     sound = [part for one, part in zip(themes, refused, strict=True) if not one.label.refuse]
     return [
         *beats,
+        share("beats: not acted, yet told", told),
         replace(unasked, limit=UNASKED, sense="most"),
         replace(forbidden, sense="most", unit=""),
         replace(deeds, limit=DEEDS, sense="most", unit=""),

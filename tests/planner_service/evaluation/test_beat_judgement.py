@@ -153,6 +153,12 @@ def test_a_beat_that_is_said_to_be_acted_though_no_keyframe_is_left_for_it_is_na
     assert 1 in judged.named
 
 
+def test_what_is_told_of_a_missing_beat_is_found_in_one_sentence_of_the_story() -> None:
+    judged = Judgement(EVENING, script([SIT, SLEEP]))
+    assert judged.told("She sat. She drank a glass of wine, and was drinking it long. It rained.") == (1,)
+    assert judged.told("She sat. She had a glass. There was wine.") == ()
+
+
 def test_a_refusal_acts_nothing_and_hides_nothing() -> None:
     judged = Judgement(EVENING, None)
     assert (judged.acted, judged.unasked, judged.seconds) == ((), (), 0)
