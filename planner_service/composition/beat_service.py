@@ -40,13 +40,15 @@ def serve_beats(
     acted, repairs = repair(writer.keyframes)
     shown = {beat for keyframe in acted for beat in (keyframe.beat, *keyframe.also) if beat is not None}
     moods = {keyframe.mood for keyframe in acted}
-    shown |= {i for i, one in enumerate(read) if one.beat.kind == "feeling" and one.beat.emotion in moods and i not in writer.why}
+    shown |= {
+        i
+        for i, one in enumerate(read)
+        if one.beat.kind == "feeling" and one.beat.emotion in moods and i not in writer.why
+    }
     return LongScript(
         theme=theme,
         beats=beats_with_reasons(read, writer.why, shown),
-        short_scripts=tuple(
-            Retrieved(script=part.script, beat=beat, score=part.score) for beat, part in writer.parts
-        ),
+        short_scripts=tuple(Retrieved(script=part.script, beat=beat, score=part.score) for beat, part in writer.parts),
         keyframes=acted,
         repairs=(*record.notes, *repairs),
         method="auto",

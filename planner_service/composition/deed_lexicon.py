@@ -168,7 +168,18 @@ def _starts(clause: Clause) -> Iterator[tuple[str, ...]]:
 
 def _by_things(clause: Clause, about: str) -> DeedRow | None:
     """What is done with things by a verb nobody foresaw: a hand is laid on them; or a way is gone."""
-    if not clause.verb or clause.verb in ("be", "have", "become", "need", "like", "love", "hate", "know", "miss", "own"):
+    if not clause.verb or clause.verb in (
+        "be",
+        "have",
+        "become",
+        "need",
+        "like",
+        "love",
+        "hate",
+        "know",
+        "miss",
+        "own",
+    ):
         return None
     if any(affords(piece, "touch") for piece in _named(clause, about)) or _kept(clause):
         return DeedRow((clause.verb,), Skill.TOUCH, things=True)

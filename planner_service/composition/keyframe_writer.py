@@ -238,7 +238,14 @@ class KeyframeWriter:
     def _put(self, index: int, skill: Skill, mood: Emotion, caption: str, piece: str, room: str | None) -> None:
         self.keyframes.append(
             PlannedKeyframe.model_validate(
-                {"skill": skill, "emotion": mood.value, "caption": caption, "furniture": piece, "beat": index, "room": room}
+                {
+                    "skill": skill,
+                    "emotion": mood.value,
+                    "caption": caption,
+                    "furniture": piece,
+                    "beat": index,
+                    "room": room,
+                }
             )
         )
 
@@ -252,7 +259,11 @@ class KeyframeWriter:
     def _touching(self, index: int, deed: Deed, mood: Emotion) -> Sequence[str]:
         if deed.row.captions:
             return deed.row.captions
-        return ("touch medium height with the right hand", "touch medium height", "touch medium height with the left hand")
+        return (
+            "touch medium height with the right hand",
+            "touch medium height",
+            "touch medium height with the left hand",
+        )
 
     def _of_mood(self, skill: Skill, mood: Emotion) -> Sequence[str]:
         """Captions that the library uses in a mood mostly, and that show nothing else."""
@@ -305,7 +316,10 @@ def _captions_of(skill: Skill, mood: Emotion) -> tuple[str, ...]:
         sorted(
             caption
             for (of, caption), moods in shares.items()
-            if of is skill and caption not in deeds and not re.search("phone|to the front|hips", caption) and moods.get(mood, 0.0) >= _MIN_SHARE
+            if of is skill
+            and caption not in deeds
+            and not re.search("phone|to the front|hips", caption)
+            and moods.get(mood, 0.0) >= _MIN_SHARE
         )
     )
 

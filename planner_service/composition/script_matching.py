@@ -195,7 +195,9 @@ def _beats(reading: Reading, chosen: Sequence[Choice]) -> tuple[Beat, ...]:
     """The beats, those that no chosen script is about with the reason."""
     told = {event for event, script in chosen if reading.suits[event, script] >= 1}
     return tuple(
-        beat if index in told else beat.model_copy(update={"why": NOT_ACTED.get(beat.kind, "no short script is about it")})
+        beat
+        if index in told
+        else beat.model_copy(update={"why": NOT_ACTED.get(beat.kind, "no short script is about it")})
         for index, beat in enumerate(reading.events)
     )
 

@@ -233,7 +233,12 @@ def is_hero(subject: str, hero: str) -> bool:
         return main in _FIRST_PERSON or not main
     if low in _PRONOUNS:
         return main not in ("he", "she") or low == main or low in ("they", "who")
-    if head_of(subject).lower() in theme_words()["body"] and subject.split()[0].lower() in ("his", "her", "their", "my"):
+    if head_of(subject).lower() in theme_words()["body"] and subject.split()[0].lower() in (
+        "his",
+        "her",
+        "their",
+        "my",
+    ):
         return True
     if hero and head_of(subject).lower() == head_of(hero).lower():
         return True
@@ -291,4 +296,3 @@ def _emotion(text: str) -> tuple[Emotion | None, bool]:
     if named:
         return (Emotion.DRUNK if Emotion.DRUNK in named else named[-1]), True
     return (found[-1].emotion, False) if found else (None, False)
-

@@ -128,7 +128,9 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
     def kept(match: re.Match[str]) -> str:
         quotes.append(match[1] or match[2])
         said = quotes[-1].rstrip()
-        return f"«{len(quotes) - 1}»" + (". " if said[-1:] in ".!?" and match.string[match.end() :].lstrip()[:1].isupper() else " ")
+        return f"«{len(quotes) - 1}»" + (
+            ". " if said[-1:] in ".!?" and match.string[match.end() :].lstrip()[:1].isupper() else " "
+        )
 
     found: list[Clause] = []
     for number, sentence in enumerate(sentences_of(_QUOTE.sub(kept, text))):
@@ -153,7 +155,7 @@ def _next_subject(pieces: Sequence[_Piece], piece: _Piece) -> str:
 def sentences_of(text: str) -> list[str]:
     """The sentences, lines and list items of a text, without marks at their ends."""
     parts = [part for line in _SEMI.split(_BULLET.sub("", text)) if line.strip() for part in _segmenter().segment(line)]
-    return [part.strip(" \t.!?,;:-–—\"“”") for part in parts if re.search(r"\w", part)]
+    return [part.strip(' \t.!?,;:-–—"“”') for part in parts if re.search(r"\w", part)]
 
 
 @cache
@@ -180,7 +182,9 @@ def plain(text: str) -> str:
     text = _CONTRACTION.sub(lambda m: _SHORT.get(m[1].lower(), f"{m[1]} not"), text)
     for short, whole in _ENDS:
         text = re.sub(rf"(?i)(?<=\w){short}\b", whole, text)
-    return re.sub(r"\b(I|[Hh]e|[Ss]he|[Tt]hey|[Ww]e)'d\b", r"\1 had", re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s\b", r"\1 is", text))
+    return re.sub(
+        r"\b(I|[Hh]e|[Ss]he|[Tt]hey|[Ww]e)'d\b", r"\1 had", re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s\b", r"\1 is", text)
+    )
 
 
 @dataclass(frozen=True)
@@ -238,7 +242,11 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
             return not (is_noun(token.low) and verb_of(after) and not (is_noun(after) or after.endswith("ing")))
         return not is_noun(token.low) or (goes_on and bool(after))
     if token.low.endswith("ing"):
-        return before in _WITH_GERUND or tokens[0].low == "instead" or (before not in _PREPOSITIONS and not is_noun(token.low))
+        return (
+            before in _WITH_GERUND
+            or tokens[0].low == "instead"
+            or (before not in _PREPOSITIONS and not is_noun(token.low))
+        )
     if is_adjective(before) and not is_noun(before) and is_noun(token.low):
         return False
     if is_adjective(token.low) and (before in BE or before in ("feels", "felt", "seems", "looks", "gets", "becomes")):
@@ -263,7 +271,9 @@ def _pieces(sentence: str) -> list[_Piece]:
     cut: list[_Piece] = []
     joint, current = "", list[Token]()
     for place, token in enumerate(tokens):
-        if token.text == "," or (token.low in _JOINTS and _joins(tokens, place) and (not current or _may_end(token.low, current))):
+        if token.text == "," or (
+            token.low in _JOINTS and _joins(tokens, place) and (not current or _may_end(token.low, current))
+        ):
             if current:
                 cut.append(_Piece(joint, tuple(current), source))
                 joint, current = "", []
@@ -292,7 +302,9 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
     if low in ("so", "yet", "once", "since", "then", "where", "or"):
         return bool(rest) and (low == "then" or rest[0].low in SUBJECTS or (low in ("so", "or") and verb_place(rest[:2]) is not None) or (low in ("once", "since", "where") and (rest[0].low in _MARKS or rest[0].text[:1].isupper()) and verb_place(rest[:5]) not in (None, 0)))  # fmt: skip
     if low in ("after", "before", "until", "without", "instead"):
-        return bool(rest) and (_starts_gerund(rest) or rest[0].low in SUBJECTS or (low != "instead" and _clause_follows(rest)))
+        return bool(rest) and (
+            _starts_gerund(rest) or rest[0].low in SUBJECTS or (low != "instead" and _clause_follows(rest))
+        )
     return True
 
 
@@ -312,7 +324,12 @@ def _clause_follows(rest: Sequence[Token]) -> bool:
     end = next((i for i, token in enumerate(rest) if token.text == "," or token.low in ("and", "but")), len(rest))
     head = list(rest[: min(end, 6)])
     place = verb_place(head)
-    return place is not None and place > 0 and head[place - 1].low not in SUBJECTS | {","} or (place is not None and place > 0)
+    return (
+        place is not None
+        and place > 0
+        and head[place - 1].low not in SUBJECTS | {","}
+        or (place is not None and place > 0)
+    )
 
 
 def _whole(pieces: list[_Piece]) -> list[_Piece]:
@@ -365,7 +382,12 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     """The clause of a piece, and second deeds in it that stand without a joint."""
     tokens = list(piece.tokens)
     joint = piece.joint
-    while tokens and tokens[0].low in _ADVERBS | {"and", "but", "or"} and tokens[0].low not in _DENIALS and len(tokens) > 1:
+    while (
+        tokens
+        and tokens[0].low in _ADVERBS | {"and", "but", "or"}
+        and tokens[0].low not in _DENIALS
+        and len(tokens) > 1
+    ):
         tokens.pop(0)
     place = verb_place(tokens)
     if place is None:
@@ -390,7 +412,9 @@ def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> l
         return [clause]
     for place in range(main + 1, len(words)):
         low, before = words[place].low, words[place - 1].low
-        gerund = low.endswith("ing") and bool(verb_of(low)) and before not in _MARKS - {"to"} and not is_adjective(before)
+        gerund = (
+            low.endswith("ing") and bool(verb_of(low)) and before not in _MARKS - {"to"} and not is_adjective(before)
+        )
         gerund = gerund and before not in _PREPOSITIONS - {"on", "off", "down", "up", "around", "there", "back"}
         purpose = before == "to" and verb_of(low) == low and low not in _NOT_VERBS_AFTER_TO and not is_pure_noun(low)
         if gerund or purpose:
@@ -427,10 +451,20 @@ def _main_verb(words: Sequence[Token]) -> tuple[int, bool, bool, bool]:
         elif low == "no" and ahead == "longer":
             denied, at = True, at + 1
         elif low in ("will", "would", "should", "must", "may", "might", "ought"):
-            denied = denied or (low in ("would", "should", "might") and bool(verb_place(words[at + 1 : at + 3]) is not None) and low != "would")
+            denied = denied or (
+                low in ("would", "should", "might")
+                and bool(verb_place(words[at + 1 : at + 3]) is not None)
+                and low != "would"
+            )
         elif low == "had" and _participle_follows(words, at):
             perfect = True
-        elif low == "going" and ahead == "to" and at + 2 < len(words) and verb_of(words[at + 2].low) == words[at + 2].low and words[at + 2].low not in _NOT_VERBS_AFTER_TO:
+        elif (
+            low == "going"
+            and ahead == "to"
+            and at + 2 < len(words)
+            and verb_of(words[at + 2].low) == words[at + 2].low
+            and words[at + 2].low not in _NOT_VERBS_AFTER_TO
+        ):
             denied, at = True, at + 1
         elif low in AUXILIARIES and _verb_follows(words, at):
             pass
@@ -480,7 +514,11 @@ def _aspect(words: Sequence[Token], at: int) -> int:
         low = words[place].low
         if low == "to" and place + 1 < len(words):
             after = words[place + 1].low
-            if place == at + 1 and base not in ("go", "come", "spend", "keep", "finish", "end", "resume") and verb_of(after) == after:
+            if (
+                place == at + 1
+                and base not in ("go", "come", "spend", "keep", "finish", "end", "resume")
+                and verb_of(after) == after
+            ):
                 return place + 1 if after not in _NOT_VERBS_AFTER_TO else 0
             return 0
         if low.endswith("ing") and verb_of(low) and base not in ("need", "have", "decide", "help", "use"):
