@@ -115,7 +115,7 @@ class ReadBeat:
 
     def in_mood(self, mood: Emotion) -> ReadBeat:
         """The beat with the mood that its meaning shows."""
-        return replace(self, beat=self.beat.model_copy(update={"emotion": mood}), felt=mood, sure=True)
+        return replace(self, beat=self.beat.model_copy(update={"emotion": mood}), felt=mood)
 
 
 def clean(theme: object) -> str:
@@ -201,10 +201,19 @@ def _hero(clauses: Sequence[Clause]) -> str:
     """Whom the theme is about: the first subject that is a person, as it is written; empty where none is named."""
     named = [clause.subject for clause in clauses if clause.subject]
     people = [subject for subject in named if is_person(subject)]
-    if people and (people[0].lower() not in _PRONOUNS or not named[0].lower().startswith(("a ", "an "))):
-        return people[0]
+    if any(subject.lower() == "i" for subject in named):
+        return "I"
+    pronoun = next((subject for subject in people if subject.lower() in ("he", "she")), "")
+    one = [subject for subject in people if not (pronoun and _is_plural(subject))]
+    if one and (one[0].lower() not in _PRONOUNS or not named[0].lower().startswith(("a ", "an "))):
+        return one[0]
     living = named[:1] if named and named[0].lower().startswith(("a ", "an ", "one ", "my ", "our ")) else []
-    return next(iter([*living, *people]), "")
+    return next(iter([*living, *one, *people]), "")
+
+
+def _is_plural(subject: str) -> bool:
+    head = head_of(subject).lower()
+    return head.endswith("s") and lemma_of(head) != head
 
 
 def is_person(subject: str) -> bool:
@@ -245,12 +254,7 @@ def is_hero(subject: str, hero: str) -> bool:
         return main in _FIRST_PERSON or not main
     if low in _PRONOUNS:
         return main not in ("he", "she") or low == main or low in ("they", "who")
-    if head_of(subject).lower() in theme_words()["body"] and subject.split()[0].lower() in (
-        "his",
-        "her",
-        "their",
-        "my",
-    ):
+    if head_of(subject).lower() in theme_words()["body"]:
         return True
     if hero and head_of(subject).lower() == head_of(hero).lower():
         return True
@@ -307,4 +311,5 @@ def _emotion(text: str) -> tuple[Emotion | None, bool]:
     named = [feeling.emotion for feeling in found if feeling.sure]
     if named:
         return (Emotion.DRUNK if Emotion.DRUNK in named else named[-1]), True
-    return (found[-1].emotion, False) if found else (None, False)
+    first = [feeling for feeling in found if feeling.start == 0]  # what is done hints more than what it is done to
+    return ([*first, *found[-1:]][0].emotion, False) if found else (None, False)
