@@ -14,34 +14,17 @@ from planner_service.scripts.script import Beat
 
 WAS: Final = "\ue000"
 """Stands for was or were until the subject is known; no theme has it."""
-_HELPERS: Final = {
-    **dict.fromkeys(("is", "am", "are", "was", "were", "being", "be"), WAS),
-    **dict.fromkeys(("isn't", "aren't", "wasn't", "weren't", "ain't"), f"{WAS} not"),
-    **dict.fromkeys(("has", "have", "had", "having"), "had"), **dict.fromkeys(("hasn't", "haven't", "hadn't"), "had not"),
-    **dict.fromkeys(("does", "do", "did", "doing"), "did"), **dict.fromkeys(("doesn't", "don't", "didn't"), "did not"),
-    **dict.fromkeys(("can", "could"), "could"), **dict.fromkeys(("can't", "cannot", "couldn't"), "could not"),
-    **dict.fromkeys(("will", "would"), "would"), **dict.fromkeys(("won't", "wouldn't"), "would not"),
-    "must": "had to", "may": "might", "might": "might", "should": "should", "shouldn't": "should not",
-}  # fmt: skip
-_ADVERBS: Final = frozenset("again also always already finally hardly just never now once soon still then".split())
-_NEGATED: Final = frozenset("cannot hardly neither never no nobody none not nothing refused without".split())
-_SUBJECTS: Final = frozenset("he i it she that there they we which who you".split())
-_OPEN: Final = frozenset(
-    "a an the his her my their its it them him me some to up down out off away back on in into at over through about".split()
-)
-"""Words that follow a verb rather than a noun."""
+_SAID: Final = "\ue001"
+"""Stands for what is quoted."""
+_QUOTE: Final = re.compile(r'"[^"]*"|“[^”]*”')
 _PERSON: Final = {
     "he": {"he": "they", "him": "them", "his": "their", "himself": "themself"},
     "she": {"she": "they", "her": "their", "hers": "theirs", "herself": "themself"},
     "they": {"they": "they", "them": "them", "their": "their", "themselves": "themself", "themself": "themself"},
 }
 _FIRST: Final = {"i": "they", "me": "them", "my": "their", "mine": "theirs", "myself": "themself"}
-_DAYS: Final = (
-    (r"\btomorrow (morning|afternoon|evening|night)\b", r"the next \1"), (r"\btomorrow\b", "the next day"),
-    (r"\btonight\b", "that night"), (r"\btoday\b", "that day"), (r"\byesterday\b", "the day before"),
-    (r"\bthis (morning|afternoon|evening)\b", r"that \1"), (r"\bago\b", "before"),
-)  # fmt: skip
-"""Days named from the writer's present, named from the story's."""
+_OBJECT: Final = re.compile(r"\s+(?:and|to|in|on|at|with|from|for)\b|\W*$")
+"""What follows "her" where it does not own what follows."""
 
 
 @dataclass(frozen=True)
@@ -57,127 +40,105 @@ class Predicate:
     @property
     def negated(self) -> bool:
         """Whether it says that something is not done."""
-        return bool(_NEGATED & {*re.findall(r"\w+", self.text.lower())})
+        return bool(_of("negated") & {*re.findall(r"\w+", self.text.lower())})
 
 
 def event(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
     """A beat as it happens, None where its grammar is not sure; `hero` are the theme's own pronouns for its person."""
-    words = _own_clause(beat.text)
-    at = next((i for i, word in enumerate(words) if not _is_adverb(word) or len(words) == i + 1), 0)
+    quotes = iter(_QUOTE.findall(beat.text))
+    words = _own_clause(_QUOTE.sub(_SAID, beat.text))
+    at = next((at for at, word in enumerate(words) if not _is_adverb(word)), 0)
     told = _head(words[at:], beat.kind == "feeling")
     if told is None:
         return None
-    words = [words[0][:1].lower() + words[0][1:], *words[1:]]
     verb, rest, ing = told
-    adjective = " ".join(words[at:][len(words) - at - len(rest) :]) if verb == WAS else ""
-    text = " ".join([*words[:at], verb, *_shifted(rest, ing)] if verb else [*words[:at], *_shifted(rest, ing)])
-    text = _of_voice(text, hero, voice)
-    for pattern, instead in _DAYS:
-        text = re.sub(pattern, instead, text)
-    plain = adjective and len(words) <= 4 and at == 0 and is_adjective(_bare(words[-1]).lower()) and "," not in text
-    base = bases(_bare(words[at]).lower(), guessed=True) if verb != "did not" else bases(_bare(rest[0]).lower())
-    return Predicate(text.rstrip(" .,;:!?"), frozenset(base), adjective.rstrip(" .,;:!?") if plain else "")
+    text = _of_voice(" ".join([*words[:at], verb, *_shifted(rest, ing)]), hero, voice).rstrip(" .,;:!?")
+    for day, instead in story_words().days.items():
+        text = re.sub(rf"\b{day}\b", instead, text)
+    says_how = text.removeprefix(f"{WAS} ")
+    plain = says_how != text and len(says_how.split()) <= 2 and is_adjective(says_how.split()[-1])
+    head = _bare((rest if verb == "did not" else words[at:])[0])
+    text = re.sub(_SAID, lambda _: next(quotes), text)
+    return Predicate(text, frozenset(bases(head, guessed=True)), says_how if plain else "")
 
 
 def thought(beat: Beat, hero: str, voice: Voice) -> str | None:
     """A memory: what its person thinks of, "remembered her mother", or a clause "she had lost the key"."""
     told = event(beat, hero, voice)
-    if told is None or told.verbs & story_words().lists["minds"]:
+    if told is None or told.verbs & _of("minds"):
         return told and told.text
     verb, _, rest = told.text.partition(" ")
-    if verb in ("could", "would", "should", "might"):
-        return None
-    if rest.startswith("not ") and verb == "did":
-        word, _, rest = rest[4:].partition(" ")
-        had = f"had not {inflected(word, 'VBN')}"
-    elif verb == "had":
-        had = "had"
+    if verb == "did" and rest.startswith("not "):
+        _, word, *more = rest.split()
+        had = ["had not", inflected(word, "VBN"), *more]
+    elif base := "be" if verb == WAS else next((base for base in sorted(told.verbs) if past(base) == verb), ""):
+        had = ["had", *([] if verb == "had" and form_of(rest.split(" ")[0]) else [inflected(base, "VBN")]), rest]
     else:
-        base = next(iter(sorted(base for base in told.verbs if past(base) == verb)), "be" if verb == WAS else "")
-        had = f"had {inflected(base, 'VBN')}" if base else ""
-    return f"{voice['they']} {had} {rest}".strip() if had else None
+        return None
+    return " ".join([voice["they"], *had]).strip()
 
 
 def left_undone(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
     """What is not done, or only wished for, as a predicate; None where its words do not say so themselves."""
     told = event(beat, hero, voice)
-    return told if told and (told.negated or told.verbs & story_words().lists["wishes"]) else None
+    return told if told and (told.negated or told.verbs & _of("wishes")) else None
 
 
 def _own_clause(text: str) -> list[str]:
     """Words up to a clause with a subject of its own, and without what joins them to those before."""
-    words = re.sub(r"^(?:\W|and\b|but\b|then\b|so\b)+", "", text.strip(), flags=re.IGNORECASE).split()
-    cut = story_words().lists["cut"]
+    words = re.sub(r"^(?:(?![\"“\ue001])\W|(?:and|but|then|so)\b)+", "", text.strip(), flags=re.IGNORECASE).split()
+    words = [word[:1].lower() + word[1:] if not at else word for at, word in enumerate(words)]
     for at, word in enumerate(words[1:], start=1):
-        if word.lower() in cut and _has_verb(words[at + 1 :]):
+        later = [_bare(one) for one in words[at + 1 :]]
+        finite = (form_of(one) in ("VBZ", "VBD") or one in _of("subjects") or one in _helpers() for one in later)
+        if word.lower() in _of("cut") and any(finite):
             return words[:at]
     return words
 
 
-def _has_verb(words: Sequence[str]) -> bool:
-    bare = [_bare(word).lower() for word in words]
-    return any(word in _SUBJECTS or word in _HELPERS or form_of(word) in ("VBZ", "VBD") for word in bare)
-
-
 def _head(words: Sequence[str], feeling: bool) -> tuple[str, Sequence[str], bool] | None:
     """The verb in the past, what follows it, and whether it was an -ing form; None where it is no verb."""
-    if not words:
-        return None
-    words = [words[0][:1].lower() + words[0][1:], *words[1:]]
-    first, rest = _bare(words[0]).lower().replace("’", "'"), words[1:]
-    after = _bare(rest[0]).lower() if rest else ""
-    if first in ("not", "without") or (first == "instead" and after == "of"):
-        of = rest[1:] if first == "instead" else rest
-        base = bases(_bare(of[0]).lower()) if of and form_of(_bare(of[0]).lower()) == "VBG" else ()
-        return ("did not", [base[0], *of[1:]], False) if base else None
+    first, after = [*map(_bare, words[:2]), "", ""][:2]
+    rest = words[1:]
+    if first in ("not", "without") or (first, after) == ("instead", "of"):
+        rest = words[2:] if first == "instead" else rest
+        base = bases(_bare(rest[0])) if rest and form_of(_bare(rest[0])) == "VBG" else ()
+        return ("did not", [base[0], *rest[1:]], False) if base else None
     if first == "to" and rest:
         return _head(rest, feeling)
-    if first in _HELPERS:
-        if _HELPERS[first] == WAS and form_of(after) == "VBG" and not feeling and bases(after):
-            return _head(rest, feeling)
-        return _HELPERS[first], rest, False
-    if feeling and form_of(first) != "VBZ" and is_adjective(first) and after not in ("down", "up", "out"):
-        return WAS, words, False
-    if feeling and first in ("in", "at") and len(words) > 1:
+    if first in _helpers():
+        goes_on = _helpers()[first] == WAS and form_of(after) == "VBG" and not feeling
+        return _head(rest, feeling) if goes_on else (_helpers()[first], rest, False)
+    adjective = form_of(first) != "VBZ" and is_adjective(first) and after not in ("down", "up", "out")
+    if feeling and (adjective or (first in ("in", "at") and rest)):
         return WAS, words, False
     told = in_past(first)
     return (told, rest, form_of(first) == "VBG") if told else None
 
 
 def _shifted(words: Sequence[str], ing: bool) -> list[str]:
-    """What follows the verb, with the further verbs in it in the past too; what is quoted stays."""
-    told: list[str] = []
-    quoted = False
-    bare = [_bare(word).lower().replace("’", "'") for word in words]
+    """What follows the verb, with the further verbs in it in the past too."""
+    bare = ["", *map(_bare, words), ""]
+    told = []
     for at, word in enumerate(words):
-        before = bare[at - 1] if at else ""
-        follows = bare[at + 1] if at + 1 < len(bare) else ""
-        quoted_now = quoted or word[:1] in '"“'
-        if word.count('"') % 2 or "“" in word or "”" in word:
-            quoted = not quoted and "”" not in word
-        form = form_of(bare[at]) if not quoted_now else None
-        alone = bool(story_words().lists["alone"] & {*bases(bare[at])})
-        joined = before in ("and", "or", "then") and (follows in _OPEN or at <= 1 or alone)
-        base = joined and alone and bare[at] in bases(bare[at]) and not ing
-        new = None
-        if quoted_now:
-            new = None
-        elif bare[at] in ("is", "has", "does", "isn't", "hasn't", "doesn't", "cannot", "can't", "won't"):
-            new = _HELPERS[bare[at]].replace(WAS, "was")
-        elif bare[at] in ("am", "are", "aren't"):
-            new = "was" if before == "i" else "were not" if bare[at] == "aren't" else "were"
-        elif before in _SUBJECTS and bare[at] in _HELPERS and bare[at] not in ("was", "were"):
-            new = _HELPERS[bare[at]]
-        elif (
-            (before in _SUBJECTS and (form == "VBZ" or before in ("i", "they", "we")))
-            or (joined and form == "VBZ")
-            or base
-        ):
-            new = in_past(bare[at])
-        elif before in ("and", "or", "then") and form == "VBG" and ing:
-            new = in_past(bare[at])
+        new = _later(bare[at], bare[at + 1], bare[at + 2], at <= 1, ing)
         told.append(word.replace(_bare(word), new) if new else word)
     return told
+
+
+def _later(before: str, word: str, follows: str, early: bool, ing: bool) -> str | None:
+    """A verb after a subject of its own, or after "and", in the past; None for any other word."""
+    form, subject, was = form_of(word), before in _of("subjects"), "were" if word in ("are", "aren't") else "was"
+    if word in ("is", "has", "isn't", "hasn't", "doesn't", "cannot", "can't", "won't", "are", "aren't") or (
+        subject and word in _helpers() and word not in ("was", "were")
+    ):
+        return _helpers()[word].replace(WAS, was)
+    if subject:
+        return in_past(word) if form == "VBZ" or before in ("i", "they", "we") else None
+    alone = bool(_of("alone") & {*bases(word)})
+    joined = before in ("and", "or", "then") and (alone or early or follows in _of("after_verbs"))
+    takes = (form == "VBZ" and joined) or (form == "VBG" and ing) or (form is None and alone and not ing)
+    return in_past(word) if takes and before in ("and", "or", "then") else None
 
 
 def _of_voice(text: str, hero: str, voice: Voice) -> str:
@@ -185,22 +146,25 @@ def _of_voice(text: str, hero: str, voice: Voice) -> str:
     blanks = _FIRST | (_PERSON[hero] if hero != voice.pronouns else {})
 
     def pronoun(match: re.Match[str]) -> str:
-        blank = blanks.get(match[0].lower())
-        if blank is None:
-            return match[0]
-        if match[0].lower() == "her" and not re.match(
-            r"\s+(?!(?:and|to|in|on|at|with|from|for)\b)\w", text[match.end() :]
-        ):
-            blank = "them"
-        return voice[blank]
+        word = match[0].lower()
+        owner = word != "her" or not _OBJECT.match(text[match.end() :])
+        return voice[blanks[word] if owner else "them"] if word in blanks else match[0]
 
     return re.sub(r"\b[A-Za-z]+\b(?!['’]\w)", pronoun, text)
 
 
 def _is_adverb(word: str) -> bool:
-    lower = _bare(word).lower()
-    return lower in _ADVERBS or (lower.endswith("ly") and not bases(lower) and lower not in ("lonely", "lovely"))
+    lower = _bare(word)
+    return lower in _of("adverbs") or (lower.endswith("ly") and not bases(lower) and not is_adjective(lower))
+
+
+def _of(name: str) -> frozenset[str]:
+    return story_words().lists[name]
+
+
+def _helpers() -> dict[str, str]:
+    return {word: told.format(was=WAS) for word, told in story_words().helpers.items()}
 
 
 def _bare(word: str) -> str:
-    return word.strip(".,;:!?\"“”()'’—–-")
+    return word.strip(".,;:!?\"“”()'’—–-").lower().replace("’", "'")

@@ -18,7 +18,7 @@ from planner_service.scripts.script import Keyframe, PlannedKeyframe
 from scene_graphs.data_tables import read_table, require_known, table
 from scene_graphs.furniture import class_of, display_name
 
-_BLANKS: Final = ("to", "about", "back", "on", "onto", "the")
+_BLANKS: Final = ("to", "about", "back", "on", "onto", "the", "room")
 
 
 @table
@@ -44,6 +44,9 @@ class Phrases:
     """Captions of walks that say little."""
     neutral_walks: tuple[str, ...]
     """Captions of the walks that a walk to furniture is usually done in."""
+    to: tuple[str, ...]
+    about: tuple[str, ...]
+    back: tuple[str, ...]
     further: tuple[str, ...]
     """Where a walk with no goal goes after another one."""
     walks: dict[str, Walk]
@@ -219,15 +222,15 @@ class Wording:
         if here:
             template = re.sub(r"the (\w+(?: \w+)?) of \{the\}", r"its \1", template)
         name = "it" if here else the
-        about = templates().further if self._wandering else ("around {}", "about {}", "through {}")
+        known = templates()
+        blanks = {"to": known.to, "about": known.further if self._wandering else known.about, "back": known.back}
+        ways = {blank: self.variety.pick(way) for blank, way in blanks.items() if f"{{{blank}}}" in template}
         return self.voice.fill(
             template,
             the=name,
             on=f"{'in' if the.endswith(_IN) else 'on'} {name}",
             onto=f"{'into' if the.endswith(_DEEP) else 'onto'} {name}",
-            to=f"{self.variety.pick(('to', 'over to', 'across to'))} {the}",
-            about=self.variety.pick(about).format(room) if "{about}" in template else "",
-            back=f"{self.variety.pick(('up and down', 'back and forth'))} in {room}" if "{back}" in template else "",
+            **{blank: way.format(the=the, room=room) for blank, way in ways.items()},
         )
 
     def the(self, index: int, keyframe: Keyframe) -> str:

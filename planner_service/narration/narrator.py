@@ -9,7 +9,7 @@ import re
 import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import groupby
+from itertools import groupby, pairwise
 from typing import Final
 
 from motion_backend.motion import Character, Skill
@@ -105,7 +105,7 @@ class _Teller:
         shown = {beat for beat, _ in runs}
         moves: list[_Move] = []
         for beat, rows in runs:
-            for earlier in range(beat or 0):
+            for earlier in range(min(beat or 0, len(self.script.beats))):
                 moves += self._unshown(earlier) if earlier not in shown else []
             moves += self._shown(beat, rows)
         for late in range(len(self.script.beats)):
@@ -194,7 +194,7 @@ def _same(told: Predicate, phrase: Phrase) -> bool:
 def _furniture_in(text: str, word: str) -> str:
     """How a text calls a piece of furniture: by its name, or that of another of its class; empty where it does not."""
     words = re.findall(r"[a-z]+", text.lower())
-    two = [" ".join(pair) for pair in zip(words, words[1:], strict=False)]
+    two = [" ".join(pair) for pair in pairwise(words)]
     names = (word.lower(), display_name(word).lower())
     alike = (one for one in (*two, *words) if one in names or (is_known(one) and class_of(one) == class_of(word)))
     return next(alike, "") if word else ""

@@ -43,6 +43,17 @@ class StoryWords:
     """Verbs that can stand alone after "and"."""
     cut: str
     """Words that begin a clause of its own, which is not told."""
+    adverbs: str
+    """Words before a verb that belong to it."""
+    negated: str
+    """Words that say no."""
+    subjects: str
+    after_verbs: str
+    """Words that follow a verb rather than a noun."""
+    helpers: dict[str, str]
+    """Helping verbs in the past; {was} is was or were."""
+    days: dict[str, str]
+    """Days named from the writer's present, named from the story's."""
     deeds: dict[str, str]
     """By skill, verbs that say what a body does there."""
     mood_titles: dict[str, str]
@@ -55,6 +66,7 @@ class StoryWords:
         require_blanks("others", self.others, ("others",))
         require_blanks("thoughts", self.thoughts, ("clause",))
         require_blanks("mood_titles", self.mood_titles, ("time",))
+        require_blanks("helpers", self.helpers, ("was",))
         require_known("deeds", self.deeds, tuple(Skill))
 
     @cached_property

@@ -13,7 +13,8 @@ _CHOSEN: Final = {
     ("program", "VBD"): "programmed", ("program", "VBG"): "programming",
 }  # fmt: skip
 """Where the first of the forms in the dictionary is not ours."""
-_SMALL: Final = frozenset("a an and as at but by for he her his i in it my no of on or she so the they to we".split())
+_NO_VERBS: Final = "a an and as at but by for he her his i in it my no of on or she so the they to we"
+"""Small words that a dictionary also has as verbs."""
 
 
 @cache
@@ -43,7 +44,7 @@ def bases(word: str, guessed: bool = False) -> tuple[str, ...]:
     or -ing that no dictionary has: facetimes → facetime."""
     from lemminflect import getAllLemmas, getAllLemmasOOV
 
-    if word in _SMALL:
+    if word in _NO_VERBS.split():
         return ()
     known = getAllLemmas(word, upos="VERB")
     if not known and guessed and len(word) > 4 and word.endswith(("s", "ed", "ing")):

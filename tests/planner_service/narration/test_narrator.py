@@ -9,6 +9,8 @@ from typing import Any
 import pytest
 from examples import tries
 from for_each import for_each
+from hypothesis import given
+from hypothesis import strategies as st
 from narration.hand_made_scripts import (
     BY_ID,
     HAND_MADE,
@@ -21,8 +23,6 @@ from narration.hand_made_scripts import (
     long_script,
     made,
 )
-from hypothesis import given
-from hypothesis import strategies as st
 
 from motion_backend.motion import Character, Skill
 from planner_service.llm.fake_model import ScriptedModel
@@ -141,7 +141,7 @@ def test_no_word_is_told_that_theme_keyframes_and_tables_do_not_have(
 ) -> None:
     furniture = " ".join(f"{k.piece[0]} {display_name(k.piece[0])} {k.room}" for k in script.keyframes)
     known = TABLES | stems(f"{script.theme} {furniture} {person.name} himself herself themself".replace("_", " "))
-    told = {word for word in re.findall(r"[a-z]+", narrate(script, person, seed).text.lower())}
+    told = set(re.findall(r"[a-z]+", narrate(script, person, seed).text.lower()))
     assert {word for word in told if word not in known and not stems(word) & known} == set()
 
 

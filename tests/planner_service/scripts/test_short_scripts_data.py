@@ -9,7 +9,6 @@ from importlib import resources
 from itertools import pairwise, product
 
 import numpy as np
-import pytest
 from for_each import for_each
 
 from motion_backend.language.sentence_encoder import HashingEncoder
