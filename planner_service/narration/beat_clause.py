@@ -67,15 +67,20 @@ def thought(beat: Beat, hero: str, voice: Voice) -> str | None:
     told = event(beat, hero, voice)
     if told is None or told.verbs & _of("minds"):
         return told and told.text
-    verb, _, rest = told.text.partition(" ")
-    if verb == "did" and rest.startswith("not "):
-        _, word, *more = rest.split()
-        had = ["had not", inflected(word, "VBN"), *more]
-    elif base := "be" if verb == WAS else next((base for base in sorted(told.verbs) if past(base) == verb), ""):
-        had = ["had", *([] if verb == "had" and form_of(rest.split(" ")[0]) else [inflected(base, "VBN")]), rest]
-    else:
+    words = told.text.split()
+    at = next((at for at, word in enumerate(words) if not _is_adverb(word)), 0)
+    verb, rest = words[at], words[at + 1 :]
+    base = "be" if verb == WAS else next((base for base in sorted(told.verbs) if past(base) == verb), "")
+    if verb == "did" and rest[:1] == ["not"] and len(rest) > 1:
+        rest, done = rest[2:], ["not", inflected(rest[1], "VBN")]
+    elif not base or base in ("can", "may", "will"):
         return None
-    return " ".join([voice["they"], *had]).strip()
+    elif verb == "used" or (verb == "had" and form_of(_bare((rest or [""])[0]))):
+        done = []
+    else:
+        done = [inflected(base, "VBN")]
+    had = verb if verb == "used" else "had"
+    return " ".join([voice["they"], had, *words[:at], *done, *rest])
 
 
 def left_undone(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
@@ -86,7 +91,7 @@ def left_undone(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
 
 def _own_clause(text: str) -> list[str]:
     """Words up to a clause with a subject of its own, and without what joins them to those before."""
-    words = re.sub(r"^(?:(?![\"“\ue001])\W|(?:and|but|then|so)\b)+", "", text.strip(), flags=re.IGNORECASE).split()
+    words = re.sub(r"^(?:(?![\"“\ue001])\W|(?:and|but|then|so(?=,| (?:he|she|they|i)\b))\b)+", "", text.strip(), flags=re.IGNORECASE).split()
     words = [word[:1].lower() + word[1:] if not at else word for at, word in enumerate(words)]
     for at, word in enumerate(words[1:], start=1):
         later = [_bare(one) for one in words[at + 1 :]]
@@ -100,6 +105,8 @@ def _head(words: Sequence[str], feeling: bool) -> tuple[str, Sequence[str], bool
     """The verb in the past, what follows it, and whether it was an -ing form; None where it is no verb."""
     first, after = [*map(_bare, words[:2]), "", ""][:2]
     rest = words[1:]
+    if feeling and first == "not" and is_adjective(after):
+        return WAS, words, False
     if first in ("not", "without") or (first, after) == ("instead", "of"):
         rest = words[2:] if first == "instead" else rest
         base = bases(_bare(rest[0])) if rest and form_of(_bare(rest[0])) == "VBG" else ()
@@ -109,7 +116,7 @@ def _head(words: Sequence[str], feeling: bool) -> tuple[str, Sequence[str], bool
     if first in _helpers():
         goes_on = _helpers()[first] == WAS and form_of(after) == "VBG" and not feeling
         return _head(rest, feeling) if goes_on else (_helpers()[first], rest, False)
-    adjective = form_of(first) != "VBZ" and is_adjective(first) and after not in ("down", "up", "out")
+    adjective = form_of(first) not in ("VBZ", "VBG") and is_adjective(first) and after not in ("down", "up", "out")
     if feeling and (adjective or (first in ("in", "at") and rest)):
         return WAS, words, False
     told = in_past(first)

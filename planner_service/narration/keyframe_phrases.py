@@ -162,27 +162,17 @@ class Wording:
         """Keyframes in order as phrases; every index is in exactly one of them."""
         told: list[Phrase] = []
         untold: tuple[int, ...] = ()
-        risen = False  # whether a rising is not told, so that the way from there is
         self._named, self._wandering = "", False
-        for at, (index, keyframe) in enumerate(rows):
-            following = rows[at + 1][1] if at + 1 < len(rows) else None
+        for (index, keyframe), following in zip(rows, [*(row[1] for row in rows[1:]), None], strict=True):
             leads = _leads(keyframe, following)
-            plain = keyframe.caption in templates().neutral_walks
-            if (leads and plain and not risen and self.variety.chance(0.5)) or self._only_leads(keyframe, following):
-                untold, risen = (*untold, index), risen or keyframe.skill in RISES
+            plain = templates().neutral_walks if leads else templates().idle_walks if keyframe.on_floor else ()
+            onward = leads or (following is not None and following.skill == Skill.LOCO)
+            if onward and keyframe.skill == Skill.LOCO and keyframe.caption in plain and self.variety.chance(0.5):
+                untold = (*untold, index)
                 continue
             told.append(self._phrase((*untold, index), keyframe, leads))
-            untold, risen = (), False
-            if following is not None and following.skill == Skill.LOCO and not leads:
-                self._named = ""
+            untold = ()
         return told
-
-    def _only_leads(self, keyframe: Keyframe, following: Keyframe | None) -> bool:
-        """Whether a keyframe is a rising or a stroll that only leads to the walk after it."""
-        if following is None or following.skill != Skill.LOCO:
-            return False
-        idle = keyframe.skill == Skill.LOCO and keyframe.on_floor and keyframe.caption in templates().idle_walks
-        return (idle or keyframe.skill in RISES) and self.variety.chance(0.4)
 
     def _phrase(self, indices: tuple[int, ...], keyframe: PlannedKeyframe, leads: bool) -> Phrase:
         index, mood, known, manners = indices[-1], keyframe.mood, templates(), ()
@@ -200,7 +190,7 @@ class Wording:
         the = self.the(index, keyframe)
         base = " ".join(self._fill(self.variety.pick(ways), the, self.room(index, keyframe)).split())
         self._wandering = keyframe.skill == Skill.LOCO and keyframe.on_floor
-        self._named = the
+        self._named = the if leads else ""
         word = "" if keyframe.on_floor else keyframe.piece[0]
         deeds = frozenset(verb for way in manners for verb in re.findall(r"~(\w+)", way))
         manner = self._manner(manners)

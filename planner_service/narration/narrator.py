@@ -161,7 +161,7 @@ class _Teller:
         before, last, after = phrases[:at], phrases[at], [_move(phrase) for phrase in phrases[at + 1 :]]
         if last.skill != Skill.TOUCH:
             told_there = _Move(told.text, mood=last.mood)
-            return [*(_move(one) for one in before), _move(last, manner=not last.deeds), told_there, *after]
+            return [*(_move(one) for one in before), _move(last, manner=False), told_there, *after]
         place = "" if (before and before[-1].leads) or _PLACE.search(told.text) else f" at {last.the}"
         return [*(_move(one) for one in before), _Move(told.text + place, last.keyframes, mood=last.mood), *after]
 
@@ -216,12 +216,13 @@ def _runs(keyframes: Sequence[PlannedKeyframe]) -> list[tuple[int | None, Rows]]
 
 def _move(phrase: Phrase, manner: bool = True) -> _Move:
     gerund = phrase.gerund if phrase.skill in (Skill.LOCO, *RISES) else ""
-    ends = manner and bool(phrase.deeds) and bool(phrase.manner)
-    return _Move(phrase.text(manner), phrase.keyframes, gerund, mood=phrase.mood, leads=phrase.leads, ends=ends)
+    text = phrase.text(manner)
+    rises = phrase.skill in RISES
+    return _Move(text, phrase.keyframes, gerund, "", phrase.mood, rises, phrase.leads, ends="," in text)
 
 
 def _begun(moves: list[_Move]) -> list[_Move]:
-    return [replace(move, begins=at == 0) for at, move in enumerate(moves)]
+    return [replace(move, begins=move.begins or at == 0) for at, move in enumerate(moves)]
 
 
 def _at(phrase: Phrase) -> str:
