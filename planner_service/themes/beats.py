@@ -13,6 +13,7 @@ from motion_backend.motion import Emotion
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
 from planner_service.themes.lexicon import is_third_person, lemma_of
+from planner_service.themes.protagonist import is_name
 from planner_service.themes.sentence_parser import Clause, clauses_of_text, tokens_of
 from scene_graphs.data_tables import read_table, table
 from scene_graphs.errors import UserError
@@ -139,8 +140,12 @@ def beats_of(theme: str) -> tuple[ReadBeat, ...]:
     """What a theme says happens, in the order of time. Raises ThemeError as `clean` does, and for other languages."""
     text = clean(theme)
     _refuse_foreign(text)
-    clauses = clauses_of_text(text)
-    hero = _hero(clauses)
+    return read_beats(clauses_of_text(text))
+
+
+def read_beats(clauses: Sequence[Clause]) -> tuple[ReadBeat, ...]:
+    """What clauses say happens to whom they are about."""
+    hero = hero_of(clauses)
     return tuple(_moods([_read(clause, hero) for clause in clauses]))
 
 
@@ -197,7 +202,7 @@ def is_feeling(clause: Clause) -> bool:
     return clause.verb in words["state_verbs"] and bool(feelings(clause.text)) and len(rest) <= 4
 
 
-def _hero(clauses: Sequence[Clause]) -> str:
+def hero_of(clauses: Sequence[Clause]) -> str:
     """Whom the theme is about: the first subject that is a person, as it is written; empty where none is named."""
     named = [clause.subject for clause in clauses if clause.subject]
     people = [subject for subject in named if is_person(subject)]
@@ -227,7 +232,7 @@ def is_person(subject: str) -> bool:
     people = theme_words()["people"]
     if head.lower() in people or lemma_of(head) in people:
         return True
-    if head[:1].isupper() and words[0].lower() not in ("the", "a", "an"):
+    if any(is_name(word) for word in words) and words[0].lower() not in ("the", "a", "an"):
         return True
     if len(head) > 4 and head.endswith(("er", "or")):  # a "baker" is one who bakes
         stem = head.lower()[:-2]
