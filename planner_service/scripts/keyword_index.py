@@ -51,7 +51,7 @@ class KeywordIndex:
 
 def stems(text: str) -> list[str]:
     """The base form of every word, in order; of a word that no dictionary has the word itself."""
-    return [_stem(word) for word in _WORD.findall(text.lower())]
+    return [_stem(word) if word.isalpha() else word for word in _WORD.findall(text.lower())]
 
 
 @lru_cache(100_000)
