@@ -15,6 +15,7 @@ from planner_service.composition.compose import compose, script_of
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, METHODS, Request
 from planner_service.grounding.furnish import Furnished, furnish
 from planner_service.grounding.keyframes_to_actions import act
+from planner_service.grounding.room_assignment import usual_furniture
 from planner_service.library.library import Shelves
 from planner_service.llm.client import for_story
 from planner_service.llm.protocol import LanguageModel, ModelError
@@ -201,8 +202,16 @@ class Pipeline:
         """The long script of a theme; what the user wrote as keyframes is only checked and repaired."""
         if request.keyframes:
             return given_script(request)
-        asked = Request(request.short_scripts, _rooms(request), request.seed, request.method, _furniture(request))  # type: ignore[arg-type]
+        asked = Request(request.short_scripts, _rooms(request), request.seed, request.method, self._furniture(request))  # type: ignore[arg-type]
         return compose(request.theme, self.shelves.scripts(), asked, self.model, self.insist)
+
+    def _furniture(self, request: StoryRequest) -> dict[str, frozenset[str]]:
+        """Categories of furniture that the story's rooms will have: of the user's home, else of rooms as they mostly are."""
+        rooms = _rooms(request) or ROOM_TYPES
+        if own := [room.layout for room in request.home.rooms] if request.home else request.layouts:
+            there = frozenset(placed.category for layout in own for placed in layout.objects)
+            return dict.fromkeys(map(canonical_room, rooms), there)
+        return {room: usual_furniture(self.shelves.layouts().layouts, room) for room in map(canonical_room, rooms)}
 
     def furnish(self, request: StoryRequest, script: LongScript) -> Furnished:
         """The home of a script, and every keyframe's place in it."""
@@ -261,12 +270,6 @@ def _rooms(request: StoryRequest) -> tuple[str, ...]:
     """The room types a story is looked for in."""
     own = [room.layout for room in request.home.rooms] if request.home else request.layouts
     return request.rooms or types_of(own)
-
-
-def _furniture(request: StoryRequest) -> frozenset[str] | None:
-    """Categories of the furniture that the user's own home has; None where rooms are retrieved."""
-    own = [room.layout for room in request.home.rooms] if request.home else request.layouts
-    return frozenset(placed.category for layout in own for placed in layout.objects) or None
 
 
 def types_of(layouts: Sequence[Layout]) -> tuple[str, ...]:

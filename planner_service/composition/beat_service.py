@@ -50,7 +50,9 @@ def serve_beats(
         else:
             writer.write(index, read)
     if not writer.keyframes:
-        told = "; ".join(f"“{one.text[:60]}”: {writer.why.get(index, UNSHOWN)}" for index, one in list(enumerate(read))[:4])
+        told = "; ".join(
+            f"“{one.text[:60]}”: {writer.why.get(index, UNSHOWN)}" for index, one in list(enumerate(read))[:4]
+        )
         raise ThemeError(f"nothing in it can be acted by a body at home. {told}. {LANGUAGE}")
     acted, repairs = repair(writer.keyframes)
     return LongScript(
@@ -73,7 +75,8 @@ def _by_model(
     """The beats as the model plans them; None without a model or a usable answer."""
     if model is None:
         return None
-    there = None if request.furniture is None else sorted(furniture.display_name(word) for word in request.furniture)
+    known = None if request.furniture is None else frozenset[str]().union(*request.furniture.values())
+    there = None if known is None else sorted(furniture.display_name(word) for word in known)
     try:
         planned = plan_beats(model, clean(theme), library, there)
     except ModelError as error:
@@ -94,7 +97,10 @@ def felt(read: Sequence[ReadBeat], library: ScriptLibrary) -> tuple[ReadBeat, ..
     blank = [
         index
         for index, one in enumerate(read)
-        if one.felt is None and one.beat.kind == "deed" and one.beat.emotion is Emotion.NEUTRAL and not deed_of(one.clause)
+        if one.felt is None
+        and one.beat.kind == "deed"
+        and one.beat.emotion is Emotion.NEUTRAL
+        and not deed_of(one.clause)
     ]
     if not blank:
         return tuple(read)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Final
@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 
 from motion_backend.motion import Emotion, Skill
-from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, deed_table, names_things
+from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, deed_table, names_things, room_of
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_fallbacks import WALKS, usual
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
@@ -62,8 +62,8 @@ class KeyframeWriter:
     """Writes the keyframes of one long script, beat by beat."""
 
     seed: int = 0
-    home: Collection[str] | None = None
-    """Categories of furniture that a given home has; None: any."""
+    home: Mapping[str, Collection[str]] | None = None
+    """Categories of furniture that there will be, by room type; None: any."""
     part_of: Callable[[int], Part | None] = lambda _index: None
     """The part of a short script that may be taken for a beat, by the beat's place."""
     keyframes: list[PlannedKeyframe] = field(default_factory=list)
@@ -234,33 +234,46 @@ class KeyframeWriter:
     ) -> None:
         """A keyframe at furniture: a part of a script where one does the same, else written."""
         part = self.part_of(index) if mood is read.beat.emotion else None
-        if part is not None and all(self._has(keyframe.piece[0]) for keyframe in part.keyframes):
+        if part is not None and all(self._has(one.piece[0], read.room or part.script.room) for one in part.keyframes):
             self.parts.append((index, part))
             for keyframe in part.keyframes:
                 update = {"beat": index, "short_script": len(self.parts) - 1, "room": read.room or part.script.room}
                 self.keyframes.append(keyframe.model_copy(update=update))
             return
-        piece = self._piece(index, deed, skill)
+        room, piece = self._piece(read, deed, skill)
         if not piece:
             self.why[index] = f"the home has nothing to {NEEDS[skill]} {'at' if skill is Skill.TOUCH else 'on'} for it"
             return
-        self._put(index, skill, mood, self._one_of(captions, mood, index, skill), piece, read.room)
+        self._put(index, skill, mood, self._one_of(captions, mood, index, skill), piece, room)
 
-    def _piece(self, index: int, deed: Deed, skill: Skill) -> str:
-        """Where it is done: as the beat says, else as is usual, of what the home has."""
-        need = NEEDS[skill]
-        usual_ones = [piece for those in deed_table().usual.values() for piece in those[need]]
-        room = next((keyframe.room for keyframe in reversed(self.keyframes) if keyframe.room), None)
-        local = deed_table().usual[room][need] if room and not deed.pieces else ()
+    def _piece(self, read: ReadBeat, deed: Deed, skill: Skill) -> tuple[str | None, str]:
+        """Room and furniture where it is done: as the beat says, else as is usual, of what there will be."""
+        need, usual = NEEDS[skill], deed_table().usual
+        here = next((keyframe.room for keyframe in reversed(self.keyframes) if keyframe.room), None)
+        rooms = [room for room in dict.fromkeys((read.room, room_of(read.clause), here)) if room in self._rooms]
         last = [k.furniture for k in self.keyframes[-2:] if k.furniture in deed.pieces and not deed.named]
-        options = [*last, *deed.pieces, *local, *(("sofa", "table") if not deed.pieces else ()), *usual_ones]
-        return next((piece for piece in options if affords(piece, need) and self._has(piece)), "")
+        if deed.named:  # what is named and not there has a stand-in, which the story says
+            wanted = [piece for piece in deed.pieces if affords(piece, need)]
+            piece = next((one for one in wanted if self._has(one)), wanted[0] if wanted else "")
+            return next((room for room in rooms if self._has(piece, room)), None), piece
+        for room in rooms:
+            options = [*last, *deed.pieces, *usual[room][need]]
+            if piece := next((one for one in options if affords(one, need) and self._has(one, room)), ""):
+                return room, piece
+        general = [piece for those in usual.values() for piece in those[need]]
+        options = [*last, *deed.pieces, *(() if deed.pieces else usual["living_room"][need]), *general]
+        return None, next((piece for piece in options if affords(piece, need) and self._has(piece)), "")
 
-    def _has(self, word: str) -> bool:
+    @property
+    def _rooms(self) -> Collection[str]:
+        return deed_table().usual if self.home is None else self.home
+
+    def _has(self, word: str, room: str | None = None) -> bool:
+        """Whether there will be such furniture: in a room, or anywhere."""
         if self.home is None or word == "floor":
             return True
         kinds = furniture.categories_of(word)
-        return any(category in kinds for category in self.home)
+        return any(category in kinds for name, those in self.home.items() if room in (None, name) for category in those)
 
     def _put(self, index: int, skill: Skill, mood: Emotion, caption: str, piece: str, room: str | None) -> None:
         self.keyframes.append(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final, Literal, get_args
 
@@ -26,8 +27,8 @@ class Request:
     """Room types to stay in; empty for all."""
     seed: int = 0
     method: Method = "auto"
-    furniture: frozenset[str] | None = None
-    """Categories that a given home has; None: any."""
+    furniture: Mapping[str, frozenset[str]] | None = None
+    """Categories of furniture that there will be, by room type; None: any."""
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 from planner_service.scripts.script import LongScript
 from scene_graphs.furniture import canonical, categories_of
 from scene_graphs.layout import Layout
 
+FOUND = 0.1
+"""Furniture that so many rooms of a type have is found where it is asked for."""
 USUAL = 0.3
 """A room type of which this share has a piece is a place for it; a body need not go elsewhere."""
 
@@ -36,6 +39,13 @@ def housed(script: LongScript, layouts: Sequence[Layout], types: Sequence[str]) 
         rooms[index] = rooms[index] or following
     keyframes = [k.model_copy(update={"room": name}) for k, name in zip(script.keyframes, rooms, strict=True)]
     return script.model_copy(update={"keyframes": tuple(keyframes)})
+
+
+def usual_furniture(layouts: Sequence[Layout], room_type: str) -> frozenset[str]:
+    """Categories that at least `FOUND` of the rooms of a type have."""
+    own = [layout for layout in layouts if layout.room_type == room_type]
+    having = Counter(category for layout in own for category in {placed.category for placed in layout.objects})
+    return frozenset(category for category, count in having.items() if count >= FOUND * len(own))
 
 
 def shares_of(word: str, layouts: Sequence[Layout], types: Sequence[str]) -> dict[str, float]:
