@@ -146,7 +146,7 @@ def alike(texts: Sequence[Vectors]) -> float:
 
 
 def write_pairs(
-    first: Method, second: Method, labels: Sequence[LabelledTheme], count: int, folder: Path, seed: int = 0
+    methods: tuple[Method, Method], labels: Sequence[LabelledTheme], count: int, folder: Path, seed: int = 0
 ) -> Iterator[str]:
     """Films of up to `count` themes by two methods, as 01-A.glb and 01-B.glb, yielding the id of each theme done.
 
@@ -160,7 +160,7 @@ def write_pairs(
     for label in (one for one in labels if not one.refuse):
         if len(key) > count:
             break
-        pair = [first, second] if luck.random() < 0.5 else [second, first]
+        pair = methods if luck.random() < 0.5 else methods[::-1]
         try:
             made = [one.pipeline.make(StoryRequest(label.theme, method=one.name, seed=seed)) for one in pair]
         except UserError:

@@ -15,7 +15,7 @@ SITS, READS, NO_SUPPER = Beat(text="sits down"), Beat(text="reads"), Beat(text="
 def shot(beat: int | None, reached: bool | None = None, **more: object) -> Shot:
     """A deed of a second."""
     fields = {"mood": Emotion.NEUTRAL, "connects": False, "seconds": 1.0, **more}
-    return Shot(beat=beat, reached=reached, **fields)  # type: ignore[arg-type]
+    return Shot(beat=beat, reached=reached, **fields)
 
 
 SHOTS = st.builds(
@@ -71,7 +71,7 @@ def test_a_beat_whose_deeds_the_body_did_not_reach_is_not_acted_and_says_so() ->
 
 def test_a_feeling_is_acted_by_the_mood_of_other_beats_and_a_deed_is_not() -> None:
     for kind, acted in (("feeling", True), ("deed", False)):
-        beat = Beat(text="is sad", kind=kind, emotion=Emotion.SAD)  # type: ignore[arg-type]
+        beat = Beat(text="is sad", kind=kind, emotion=Emotion.SAD)
         assert acted_beats([SITS, beat], [shot(0, mood=Emotion.SAD)]).outcomes[1].acted is acted
         assert not acted_beats([SITS, beat], [shot(0)]).outcomes[1].acted
 

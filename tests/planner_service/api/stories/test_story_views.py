@@ -95,7 +95,7 @@ def test_a_beat_is_acted_as_planned_until_the_body_does_not_reach_it() -> None:
     made[0].summary["beats"] = [
         {"text": "sits"}, {"text": "reads"}, {"text": "flies", "why": "nobody can"}, {"text": "dozes", "kind": "undone"},
     ]  # fmt: skip
-    made[-1].summary |= {"reached": False, "reason": "too far"}
+    made[-1].summary.update(reached=False, reason="too far")
     planned, moved = (StoryShown.model_validate(story_shown(record(some, "PENDING"))) for some in (made[:1], made))
     assert [beat.acted for beat in planned.beats] == [True, True, False, False]
     assert [beat.acted for beat in moved.beats] == [True, False, False, False]
