@@ -15,7 +15,7 @@ SITS, READS, NO_SUPPER = Beat(text="sits down"), Beat(text="reads"), Beat(text="
 def shot(beat: int | None, reached: bool | None = None, **more: object) -> Shot:
     """A deed of a second."""
     fields = {"mood": Emotion.NEUTRAL, "connects": False, "seconds": 1.0, **more}
-    return Shot(beat=beat, reached=reached, **fields)
+    return Shot(beat=beat, reached=reached, **fields)  # type: ignore[arg-type]
 
 
 SHOTS = st.builds(

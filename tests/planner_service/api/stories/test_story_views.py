@@ -93,7 +93,7 @@ def test_a_beat_is_acted_as_planned_until_the_body_does_not_reach_it() -> None:
     for row in made[0].summary["keyframes"]:
         row["beat"] = row["index"]
     made[0].summary["beats"] = [
-        {"text": "sits"}, {"text": "reads"}, {"text": "flies", "why": "nobody can"}, {"text": "dozes", "kind": "undone"},
+        {"text": "sits"}, {"text": "reads"}, {"text": "flies", "why": "nobody can"}, {"text": "naps", "kind": "undone"},
     ]  # fmt: skip
     made[-1].summary.update(reached=False, reason="too far")
     planned, moved = (StoryShown.model_validate(story_shown(record(some, "PENDING"))) for some in (made[:1], made))
