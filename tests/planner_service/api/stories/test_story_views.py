@@ -19,7 +19,7 @@ ENDINGS = {"succeeded": "done", "failed": "failed", "cancelled": "cancelled"}
 def keyframe(index: int) -> dict[str, object]:
     return {
         "index": index, "skill": "loco", "emotion": "unhappy", "mood": "sad", "caption": "walk", "furniture": "floor",
-        "object_id": None, "room": "study", "short_script_id": None, "beat": None,
+        "object_id": None, "room": "study", "short_script_id": None, "beat": None, "also": [],
     }  # fmt: skip
 
 
