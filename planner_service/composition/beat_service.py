@@ -50,7 +50,9 @@ def serve_beats(
         else:
             writer.write(index, read)
     if not writer.keyframes:
-        told = "; ".join(f"“{one.text[:60]}”: {writer.why.get(index, UNSHOWN)}" for index, one in list(enumerate(read))[:4])
+        told = "; ".join(
+            f"“{one.text[:60]}”: {writer.why.get(index, UNSHOWN)}" for index, one in list(enumerate(read))[:4]
+        )
         raise ThemeError(f"nothing in it can be acted by a body at home. {told}. {LANGUAGE}")
     acted, repairs = repair(writer.keyframes)
     return LongScript(
@@ -94,7 +96,10 @@ def felt(read: Sequence[ReadBeat], library: ScriptLibrary) -> tuple[ReadBeat, ..
     blank = [
         index
         for index, one in enumerate(read)
-        if one.felt is None and one.beat.kind == "deed" and one.beat.emotion is Emotion.NEUTRAL and not deed_of(one.clause)
+        if one.felt is None
+        and one.beat.kind == "deed"
+        and one.beat.emotion is Emotion.NEUTRAL
+        and not deed_of(one.clause)
     ]
     if not blank:
         return tuple(read)

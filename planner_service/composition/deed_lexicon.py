@@ -138,7 +138,9 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
         pieces = [piece for piece in named if furniture.affordances(piece)]
         return Deed(found, skill, tuple(pieces), bool(pieces))
     fitting = [piece for piece in named if affords(piece, need)]
-    if skill is Skill.SITDOWN and not re.search(r"\bon (?:the|a|his|her|their) (?:\w+ )?(?:table|desk|counter)", clause.text):
+    if skill is Skill.SITDOWN and not re.search(
+        r"\bon (?:the|a|his|her|their) (?:\w+ )?(?:table|desk|counter)", clause.text
+    ):
         seats = [seat for piece in named for seat in deed_table().seats_at.get(piece, ())]
         fitting = seats or fitting
     if need in ("sit", "lie") and _FLOOR.search(clause.text):

@@ -89,6 +89,8 @@ def methods_of(pipeline: Pipeline) -> tuple[Method, ...]:
 
 def compare(method: Method, labels: Sequence[LabelledTheme], encoder: SentenceEncoder, seed: int = 0) -> Compared:
     """Plan every theme by one method. A model's mistakes are the method's: where it fails, the rules step in."""
+    if method.pipeline.model is None:  # what is loaded once is no part of its seconds
+        _plan(method, labels[0], seed)
     plans = [_plan(method, label, seed) for label in labels]
     judged = [plan.judgement for plan in plans]
     stories = [narrate(one.script, Character(), seed).text for one in judged if one.script is not None]

@@ -91,7 +91,12 @@ def left_undone(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
 
 def _own_clause(text: str) -> list[str]:
     """Words up to a clause with a subject of its own, and without what joins them to those before."""
-    words = re.sub(r"^(?:(?![\"“\ue001])\W|(?:and|but|then|so(?=,| (?:he|she|they|i)\b))\b)+", "", text.strip(), flags=re.IGNORECASE).split()
+    words = re.sub(
+        r"^(?:(?![\"“\ue001])\W|(?:and|but|then|so(?=,| (?:he|she|they|i)\b))\b)+",
+        "",
+        text.strip(),
+        flags=re.IGNORECASE,
+    ).split()
     words = [word[:1].lower() + word[1:] if not at else word for at, word in enumerate(words)]
     for at, word in enumerate(words[1:], start=1):
         later = [_bare(one) for one in words[at + 1 :]]

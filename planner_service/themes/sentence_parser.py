@@ -287,7 +287,11 @@ def _pieces(sentence: str) -> list[_Piece]:
             if token.low in _WITH_GERUND:
                 current.append(token)
         else:
-            led = (current and (current[0].low in _WITH_GERUND or current[0].low == "to")) or joint in _EARLIER | {"before", "until", "while"}
+            led = (current and (current[0].low in _WITH_GERUND or current[0].low == "to")) or joint in _EARLIER | {
+                "before",
+                "until",
+                "while",
+            }
             if led and token.low in ("he", "she", "they", "i", "we") and verb_place(current) is not None:
                 cut.append(_Piece(joint, tuple(current), source))
                 joint, current = ",", []
@@ -427,7 +431,12 @@ def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> l
             low.endswith("ing") and bool(verb_of(low)) and before not in _MARKS - {"to"} and not is_adjective(before)
         )
         gerund = gerund and before not in _PREPOSITIONS - {"on", "off", "down", "up", "around", "there", "back"}
-        purpose = before == "to" and verb_of(low) == low and low not in _NOT_VERBS_AFTER_TO and _is_purpose(clause, words, place)
+        purpose = (
+            before == "to"
+            and verb_of(low) == low
+            and low not in _NOT_VERBS_AFTER_TO
+            and _is_purpose(clause, words, place)
+        )
         if gerund or purpose:
             stop = place - 1 if purpose else place
             if stop <= main:
@@ -449,7 +458,11 @@ def _is_purpose(clause: Clause, words: Sequence[Token], place: int) -> bool:
     if place + 1 == len(words):
         return clause.verb in ("sit", "lie", "stop", "stay", "settle", "kneel")
     after = words[place + 1].low
-    return after in _MARKS | _PREPOSITIONS - {"and"} or after in ("him", "them", "me", "himself", "herself") or is_noun(after)
+    return (
+        after in _MARKS | _PREPOSITIONS - {"and"}
+        or after in ("him", "them", "me", "himself", "herself")
+        or is_noun(after)
+    )
 
 
 def _main_verb(words: Sequence[Token]) -> tuple[int, bool, bool, bool]:
