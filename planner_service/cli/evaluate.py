@@ -292,7 +292,7 @@ def methods(
             compared.append(compare(method, labels, pipeline.shelves.scripts().encoder, seed))
             bar.advance(task)
         if films:
-            for done in write_pairs(*(known[title] for title in pair), labels, films, out, seed):  # type: ignore[misc]
+            for done in write_pairs((known[pair[0]], known[pair[1]]), labels, films, out, seed):
                 bar.update(task, advance=1, description=f"filmed {done}")
     console = Console(markup=False, highlight=False)
     if as_json:

@@ -89,6 +89,8 @@ def methods_of(pipeline: Pipeline) -> tuple[Method, ...]:
 
 def compare(method: Method, labels: Sequence[LabelledTheme], encoder: SentenceEncoder, seed: int = 0) -> Compared:
     """Plan every theme by one method. A model's mistakes are the method's: where it fails, the rules step in."""
+    if method.pipeline.model is None:  # what is loaded once is no part of its seconds
+        _plan(method, labels[0], seed)
     plans = [_plan(method, label, seed) for label in labels]
     judged = [plan.judgement for plan in plans]
     stories = [narrate(one.script, Character(), seed).text for one in judged if one.script is not None]
@@ -146,7 +148,7 @@ def alike(texts: Sequence[Vectors]) -> float:
 
 
 def write_pairs(
-    first: Method, second: Method, labels: Sequence[LabelledTheme], count: int, folder: Path, seed: int = 0
+    methods: tuple[Method, Method], labels: Sequence[LabelledTheme], count: int, folder: Path, seed: int = 0
 ) -> Iterator[str]:
     """Films of up to `count` themes by two methods, as 01-A.glb and 01-B.glb, yielding the id of each theme done.
 
@@ -160,7 +162,7 @@ def write_pairs(
     for label in (one for one in labels if not one.refuse):
         if len(key) > count:
             break
-        pair = [first, second] if luck.random() < 0.5 else [second, first]
+        pair = methods if luck.random() < 0.5 else methods[::-1]
         try:
             made = [one.pipeline.make(StoryRequest(label.theme, method=one.name, seed=seed)) for one in pair]
         except UserError:

@@ -197,7 +197,7 @@ def beat_figures(themes: Sequence[Judgement]) -> list[Figure]:
     stories = [narrate(one.script, Character()).text if one.script else "" for one in played]
     told = [(len(one.told(text)), len(one.missing)) for one, text in zip(played, stories, strict=True)]
     unasked = share("screen time: unasked", [(one.unasked_seconds, one.seconds) for one in played])
-    deeds = share("keyframes a beat, without walks to furniture", [(one.deeds, len(one.actable)) for one in played])
+    deeds = share("keyframes a beat", [(one.deeds, len(one.actable)) for one in played])
     forbidden = figure("keyframes: forbidden", labels, [len(one.forbidden) for one in played], sum, 0.0, "held_out")
     refused = [(float(one.script is None), 1.0) for one in themes]
     nonsense = [(one.label, part) for one, part in zip(themes, refused, strict=True) if one.label.refuse]

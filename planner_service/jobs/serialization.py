@@ -146,6 +146,7 @@ def _keyframes(script: LongScript) -> list[Json]:
         {
             "index": index,
             "beat": keyframe.beat,
+            "also": list(keyframe.also),
             "skill": keyframe.skill.value,
             "emotion": keyframe.emotion,
             "mood": keyframe.mood.value,

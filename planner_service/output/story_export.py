@@ -6,6 +6,7 @@ import json
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from motion_backend.formats.npz import write_npz
 from planner_service.grounding.keyframes_to_actions import action_to_dict
 from planner_service.output.storyboard import storyboard
 from planner_service.pipeline import Planned, Story
-from planner_service.scripts.acted_beats import ActedBeats, Shot, acted_beats, connects
+from planner_service.scripts.acted_beats import ActedBeats, acted_beats, shot_of
 from planner_service.scripts.caption_actions import look_of
 from scene_graphs.errors import UserError
 from scene_graphs.home import home_to_dict
@@ -192,12 +193,11 @@ def beats_of(story: Story) -> ActedBeats:
     """What became of the theme's beats, now that the body has moved."""
     keyframes = story.planned.script.keyframes
     shots = [
-        Shot(
-            keyframes[figure.keyframe].beat, keyframes[figure.keyframe].mood, connects(keyframes[figure.keyframe]),
-            figure.reached, figure.reason, figure.seconds,
+        replace(
+            shot_of(keyframes[figure.keyframe]), reached=figure.reached, reason=figure.reason, seconds=figure.seconds
         )
         for figure in story.figures
-    ]  # fmt: skip
+    ]
     return acted_beats(story.planned.script.beats, shots)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from motion_backend.motion import Emotion, Skill
-from planner_service.scripts.script import Beat, Keyframe, LongScript
+from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe
 from planner_service.scripts.script_words import is_floor
 from scene_graphs.json_fields import Json
 
@@ -27,10 +27,10 @@ def leads(skill: Skill, furniture: str) -> bool:
 
 @dataclass(frozen=True)
 class Shot:
-    """What of a keyframe says whether its beat is acted."""
+    """What of a keyframe says whether its beats are acted."""
 
-    beat: int | None
-    """Index of the beat it serves."""
+    beats: tuple[int, ...]
+    """Indices of the beats it serves."""
     mood: Emotion
     connects: bool
     """Whether it only leads to what is done next."""
@@ -113,23 +113,32 @@ class ActedBeats:
 def acted_beats(beats: Sequence[Beat], shots: Sequence[Shot]) -> ActedBeats:
     """What became of the beats by the keyframes that there are, moved or still to be moved."""
     whole = sum(shot.seconds for shot in shots)
-    spare = sum(shot.seconds for shot in shots if shot.beat is None)
+    spare = sum(shot.seconds for shot in shots if not shot.beats)
     outcomes = (Outcome(beat, _why(beat, index, shots)) for index, beat in enumerate(beats))
     return ActedBeats(tuple(outcomes), spare / whole if whole else 0.0)
 
 
 def planned_beats(script: LongScript) -> ActedBeats:
     """What will become of a script's beats if the body reaches everything."""
-    shots = [Shot(keyframe.beat, keyframe.mood, connects(keyframe)) for keyframe in script.keyframes]
-    return acted_beats(script.beats, shots)
+    return acted_beats(script.beats, [shot_of(keyframe) for keyframe in script.keyframes])
+
+
+def shot_of(keyframe: PlannedKeyframe) -> Shot:
+    """A keyframe that is still to be moved."""
+    return Shot(beats_in(keyframe.beat, keyframe.also), keyframe.mood, connects(keyframe))
+
+
+def beats_in(beat: int | None, also: Sequence[int]) -> tuple[int, ...]:
+    """All beats that a keyframe serves."""
+    return (() if beat is None else (beat,)) + tuple(also)
 
 
 def _why(beat: Beat, index: int, shots: Sequence[Shot]) -> str:
     """Why a beat is not acted; empty where it is."""
     if beat.why or not beat.asked:
         return beat.why or UNDONE
-    own = [shot for shot in shots if shot.beat == index]
-    if beat.kind == "feeling" and not own and beat.emotion is not Emotion.NEUTRAL:
+    own = [shot for shot in shots if index in shot.beats]
+    if not own and beat.emotion is not Emotion.NEUTRAL:  # "grins" is shown in the mood of what is done then
         own = [shot for shot in shots if shot.mood is beat.emotion]
     if not own:
         return "no keyframe is left that shows it"

@@ -31,6 +31,8 @@ export interface Keyframe {
   readonly index: number;
   /** Which beat of the theme it serves. */
   readonly beat: number | null;
+  /** Further beats that it shows. */
+  readonly also: readonly number[];
   readonly skill: Skill;
   /** As it was written. */
   readonly emotion: string;

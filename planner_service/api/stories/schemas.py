@@ -142,6 +142,7 @@ class KeyframeShown(BaseModel):
 
     index: int
     beat: int | None = Field(description="The beat it serves; null: it connects two others, or nobody asked for it.")
+    also: list[int] = Field([], description="Further beats that it shows.")
     skill: Skill
     emotion: str = Field(description="As it was written.")
     mood: Emotion = Field(description="What that means: how it is told and acted.")

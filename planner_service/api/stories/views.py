@@ -13,7 +13,7 @@ from typing import Final
 
 from motion_backend.motion import FPS, Emotion, Motion, Skill, join
 from planner_service.jobs.story_stages import STAGES, read_segments
-from planner_service.scripts.acted_beats import Shot, acted_beats, leads
+from planner_service.scripts.acted_beats import Shot, acted_beats, beats_in, leads
 from planner_service.scripts.script import Beat
 from planner_service.store.story_store import Artifact, Record, Stories
 from planner_service.store.tables import GIVEN_UP, state_of
@@ -96,11 +96,14 @@ def _beats(made: Json, keyframes: list[Json], segments: list[Json]) -> list[Json
     reasons = {segment["keyframe"]: segment.get("reason", "") for segment in segments}
     shots = [
         Shot(
-            row["beat"], Emotion(row["mood"]), leads(Skill(row["skill"]), row["furniture"]), row["reached"],
+            beats_in(row["beat"], row["also"]),
+            Emotion(row["mood"]),
+            leads(Skill(row["skill"]), row["furniture"]),
+            row["reached"],
             reasons.get(row["index"], ""),
         )
         for row in keyframes
-    ]  # fmt: skip
+    ]
     beats = [Beat.model_validate(row) for row in made.get("beats", [])]
     return [one.to_dict() for one in acted_beats(beats, shots).outcomes]
 

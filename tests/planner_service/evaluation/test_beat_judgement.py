@@ -121,7 +121,7 @@ def test_a_walk_about_the_room_leads_nowhere_and_so_does_a_last_rising() -> None
 
 
 def test_a_mood_asks_for_one_deed_in_it_and_not_for_all() -> None:
-    theme = LabelledTheme(id="a", theme="t", split="tune", beats=(beat("grins", Alternative(mood=("happy",))),))  # type: ignore[arg-type]
+    theme = LabelledTheme(id="a", theme="t", split="tune", beats=(beat("grins", Alternative(mood=("happy",))),))
     happy = keyframe("loco", "dancing steps", emotion="happy")
     judged = Judgement(theme, script([happy, happy]))
     assert (judged.acted, judged.unasked) == ((0,), (1,))

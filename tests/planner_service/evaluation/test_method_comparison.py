@@ -24,7 +24,7 @@ from planner_service.evaluation.method_comparison import (
 from planner_service.llm.fake_model import ScriptedModel
 from planner_service.pipeline import METHODS, Pipeline, RequestError, Story, StoryRequest
 
-SITS = LabelledBeat(text="sits down", actable=True, shown_by=(Alternative(skill=("sitdown",)),))  # type: ignore[arg-type]
+SITS = LabelledBeat(text="sits down", actable=True, shown_by=(Alternative(skill=("sitdown",)),))
 LABELS = tuple(
     LabelledTheme(id=name, theme=text, split="tune", beats=(SITS,))
     for name, text in (("a", "She sits down on the sofa."), ("b", "He sits down at the table and reads."))
@@ -85,7 +85,7 @@ def test_films_are_told_apart_by_the_key_alone_and_a_theme_that_one_cannot_make_
     monkeypatch.setattr(method_comparison, "_write_film", write)
     many = [*LABELS, *(LABELS[1].model_copy(update={"id": f"b{number}"}) for number in range(12)), NONSENSE]
     pair = Method("matching", Pipeline()), Method("direct", Pipeline())
-    assert list(write_pairs(*pair, many, 10, tmp_path)) == ["b", *(f"b{number}" for number in range(9))]
+    assert list(write_pairs(pair, many, 10, tmp_path)) == ["b", *(f"b{number}" for number in range(9))]
     sheet, key = (
         list(csv.DictReader((tmp_path / name).read_text(encoding="utf-8").splitlines()))
         for name in ("sheet.csv", "key.csv")

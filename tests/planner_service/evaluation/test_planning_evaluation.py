@@ -108,7 +108,7 @@ def test_a_figure_is_summed_over_each_half_and_missed_only_where_it_is_judged() 
 
 def theme(name: str, split: str, text: str = "She sits down.", **more: object) -> LabelledTheme:
     """A theme of one beat, or one to be refused."""
-    sits = LabelledBeat(text="sits down", actable=True, shown_by=(Alternative(skill=("sitdown",)),))  # type: ignore[arg-type]
+    sits = LabelledBeat(text="sits down", actable=True, shown_by=(Alternative(skill=("sitdown",)),))
     beats = {} if more.get("refuse") else {"beats": (sits,)}
     return LabelledTheme.model_validate({"id": name, "theme": text, "split": split, **beats, **more})
 
@@ -117,7 +117,7 @@ def planned(text: str) -> LongScript:
     """She sits where the theme says so; what is no English is refused."""
     if "xq" in text:
         raise ThemeError("nothing is understood")
-    sitting = PlannedKeyframe(skill="sitdown", caption="sitting still", furniture="chair", beat=0)  # type: ignore[arg-type]
+    sitting = PlannedKeyframe(skill="sitdown", caption="sitting still", furniture="chair", beat=0)
     kept = (sitting,) if "sits" in text else (sitting.model_copy(update={"skill": "liedown", "furniture": "bed"}),)
     return LongScript(theme=text, beats=(Beat(text="sits down"),), short_scripts=(), keyframes=kept)
 

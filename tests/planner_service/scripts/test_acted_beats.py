@@ -15,12 +15,12 @@ SITS, READS, NO_SUPPER = Beat(text="sits down"), Beat(text="reads"), Beat(text="
 def shot(beat: int | None, reached: bool | None = None, **more: object) -> Shot:
     """A deed of a second."""
     fields = {"mood": Emotion.NEUTRAL, "connects": False, "seconds": 1.0, **more}
-    return Shot(beat=beat, reached=reached, **fields)  # type: ignore[arg-type]
+    return Shot(beats=() if beat is None else (beat,), reached=reached, **fields)  # type: ignore[arg-type]
 
 
 SHOTS = st.builds(
     Shot,
-    beat=st.none() | st.integers(0, 3),
+    beats=st.lists(st.integers(0, 3), max_size=2).map(tuple),
     mood=st.sampled_from(Emotion),
     connects=st.booleans(),
     reached=st.none() | st.booleans(),
@@ -69,11 +69,16 @@ def test_a_beat_whose_deeds_the_body_did_not_reach_is_not_acted_and_says_so() ->
     assert acted_beats([Beat(text="walks to the window")], [walk]).acted == 1
 
 
-def test_a_feeling_is_acted_by_the_mood_of_other_beats_and_a_deed_is_not() -> None:
-    for kind, acted in (("feeling", True), ("deed", False)):
-        beat = Beat(text="is sad", kind=kind, emotion=Emotion.SAD)  # type: ignore[arg-type]
-        assert acted_beats([SITS, beat], [shot(0, mood=Emotion.SAD)]).outcomes[1].acted is acted
-        assert not acted_beats([SITS, beat], [shot(0)]).outcomes[1].acted
+def test_a_feeling_is_acted_by_the_mood_of_other_beats() -> None:
+    cries = Beat(text="cries", emotion=Emotion.SAD)
+    assert acted_beats([SITS, cries], [shot(0, mood=Emotion.SAD)]).outcomes[1].acted
+    assert not acted_beats([SITS, cries], [shot(0)]).outcomes[1].acted
+
+
+def test_one_keyframe_may_serve_several_beats() -> None:
+    keyframe = PlannedKeyframe(skill=Skill.SITDOWN, caption="reading", furniture="sofa", beat=0, also=(1,))
+    script = LongScript(theme="t", beats=(SITS, READS), short_scripts=(), keyframes=(keyframe,))
+    assert planned_beats(script).acted == 2
 
 
 def test_the_words_name_what_is_missing_and_apart_from_it_what_is_left_undone() -> None:

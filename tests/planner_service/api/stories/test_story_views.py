@@ -19,7 +19,7 @@ ENDINGS = {"succeeded": "done", "failed": "failed", "cancelled": "cancelled"}
 def keyframe(index: int) -> dict[str, object]:
     return {
         "index": index, "skill": "loco", "emotion": "unhappy", "mood": "sad", "caption": "walk", "furniture": "floor",
-        "object_id": None, "room": "study", "short_script_id": None, "beat": None,
+        "object_id": None, "room": "study", "short_script_id": None, "beat": None, "also": [],
     }  # fmt: skip
 
 
@@ -93,9 +93,9 @@ def test_a_beat_is_acted_as_planned_until_the_body_does_not_reach_it() -> None:
     for row in made[0].summary["keyframes"]:
         row["beat"] = row["index"]
     made[0].summary["beats"] = [
-        {"text": "sits"}, {"text": "reads"}, {"text": "flies", "why": "nobody can"}, {"text": "dozes", "kind": "undone"},
+        {"text": "sits"}, {"text": "reads"}, {"text": "flies", "why": "nobody can"}, {"text": "naps", "kind": "undone"},
     ]  # fmt: skip
-    made[-1].summary |= {"reached": False, "reason": "too far"}
+    made[-1].summary.update(reached=False, reason="too far")
     planned, moved = (StoryShown.model_validate(story_shown(record(some, "PENDING"))) for some in (made[:1], made))
     assert [beat.acted for beat in planned.beats] == [True, True, False, False]
     assert [beat.acted for beat in moved.beats] == [True, False, False, False]
