@@ -16,6 +16,7 @@ from motion_backend.backends import load_backend
 from motion_backend.formats.glb_film import film_glb
 from motion_backend.metrics.story_metrics import summarise
 from planner_service.grounding.keyframes_to_actions import act
+from planner_service.output.story_export import beats_of
 from planner_service.output.storyboard import storyboard
 from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, judge, move
 
@@ -120,10 +121,10 @@ def quality_figures(made: Sequence[Timed]) -> list[Figure]:
     rows = np.array([quality(report) for report in reports])
     whole = quality(summarise([figure for one in made for figure in one.story.figures]))
     keyframes, reached = (sum(report[name] for report in reports) for name in ("keyframes", "reached"))
-    uncovered = sum(len(one.story.planned.script.uncovered) for one in made)
-    events = sum(len(one.story.planned.script.events) for one in made)
+    beats = [beats_of(one.story) for one in made]
+    asked = sum(one.asked for one in beats)
     return [
-        Figure("events not covered", uncovered, "", 0, note=f"of {events}", digits=0),
+        Figure("beats not acted", asked - sum(one.acted for one in beats), "", 0, note=f"of {asked}", digits=0),
         Figure("keyframes reached", rows[:, 0].min(), "%", REACHED, "least", f"all: {reached} of {keyframes}"),
         Figure("contact error", rows[:, 1].max(), "cm", CONTACT_CM, note=f"all: {whole[1]:.2f} cm", digits=2),
         Figure("pen_mean", rows[:, 2].max(), "cm", PEN_MEAN_CM, note=f"all: {whole[2]:.2f} cm", digits=2),

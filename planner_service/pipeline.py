@@ -12,7 +12,7 @@ from motion_backend.metrics import story_metrics
 from motion_backend.metrics.smoothness import seam_jump, seam_speed_jump
 from motion_backend.motion import Action, BodyState, Character, Motion, MotionBackend, join
 from planner_service.composition.compose import compose, script_of
-from planner_service.composition.request import MAX_SHORT_SCRIPTS, Request
+from planner_service.composition.request import MAX_SHORT_SCRIPTS, METHODS, Request
 from planner_service.grounding.furnish import Furnished, furnish
 from planner_service.grounding.keyframes_to_actions import act
 from planner_service.library.library import Shelves
@@ -32,7 +32,6 @@ from scene_graphs.layout import Layout, layout_from_dict, layout_to_dict
 Progress = Callable[[str, float], None]
 """Called with a stage's name and the share of it that is done, 0 to 1."""
 STAGES = ("plan", "furnish", "narrate", "act", "move", "judge")
-METHODS = ("matching", "direct")
 PRONOUNS = get_args(Pronouns)
 MAX_SEED = 2**53 - 1
 """The largest whole number that every JSON reader keeps exactly."""
@@ -61,7 +60,7 @@ class StoryRequest:
     keyframes: tuple[Keyframe, ...] = ()
     """A script of the user's own: nothing is planned, and the story is not told."""
     short_scripts: int | None = None
-    method: str = "matching"
+    method: str = "auto"
     backend: str = DEFAULT_BACKEND
     seed: int = 0
     character: Character = field(default_factory=Character)

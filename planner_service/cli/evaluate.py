@@ -1,4 +1,4 @@
-"""`sims evaluate planning|scripts|walks`: how well scripts are found, woven and acted, beside the limits.
+"""`sims evaluate planning|methods|scripts|walks`: how well scripts are found, planned and acted, beside the limits.
 
 `sims evaluate walks`: made walks beside recorded ones, feature by feature and as one distance.
 
@@ -21,15 +21,18 @@ from rich.table import Table
 
 from planner_service.cli.console import plain_table
 from planner_service.cli.evaluate_body import body
-from planner_service.settings import read_settings
+from planner_service.llm.factory import load_model
+from planner_service.settings import Settings, read_settings
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from motion_backend.metrics.kernel_mmd import Distance
+    from planner_service.evaluation.method_comparison import Compared
     from planner_service.evaluation.planning_evaluation import Figure
     from planner_service.evaluation.script_evaluation import ScriptFigure
     from planner_service.evaluation.walk_evaluation import WalkReport
+    from planner_service.library.library import Shelves
 
 
 SHOWN = {"m": (100.0, "cm"), "rad": (180 / np.pi, "°"), "m/s": (1.0, "m/s"), "1/s": (1.0, "1/s"), "": (1.0, "")}
@@ -200,23 +203,18 @@ def evaluate() -> None:
 def planning(
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of a table.")] = False,
     held_out: Annotated[
-        bool, typer.Option("--all", help="List what is missed of the held-out half too; never tune on it.")
+        bool, typer.Option("--show-held-out", help="List what is missed of the held-out half too; never tune on it.")
     ] = False,
 ) -> None:
-    """Find and weave our short scripts for labelled queries and themes, without a language model.
+    """Find scripts for labelled queries and plan labelled themes, without a language model: how much of what was asked
+    is found and acted, and how much is acted that was not.
 
     Your own scripts have no part in it, since nobody has labelled them. Exit code 1 when a limit is missed.
     """
     from planner_service.evaluation.planning_evaluation import evaluate_planning
-    from planner_service.evaluation.story_evaluation import RememberingEncoder
-    from planner_service.scripts.built_in_scripts import built_in
-    from planner_service.scripts.script_embeddings import load_by_heart
-    from planner_service.scripts.script_library import Features, ScriptLibrary
-    from scene_graphs.layout_library import built_in_index
 
-    cache = read_settings().cache_dir
-    library = ScriptLibrary(built_in(), Features(RememberingEncoder(load_by_heart(cache)), cache))
-    found = evaluate_planning(library, built_in_index())
+    shelves = _as_shipped(read_settings())
+    found = evaluate_planning(shelves.scripts(), shelves.layouts())
     misses = [miss for miss in found.misses if held_out or miss.split == "tune"]
     console = Console(markup=False, highlight=False)
     if as_json:
@@ -229,9 +227,16 @@ def planning(
         for miss in misses:
             console.print(f"{miss.split} {miss.id}: {miss.text}", soft_wrap=True)
         if len(misses) < len(found.misses):
-            console.print(f"and {len(found.misses) - len(misses)} in the held-out half (--all)")
+            console.print(f"and {len(found.misses) - len(misses)} in the held-out half (--show-held-out)")
     if any(figure.missed for figure in found.figures):
         raise typer.Exit(1)
+
+
+def _as_shipped(settings: Settings) -> Shelves:
+    """The library without anybody's own scripts and rooms: nobody has labelled those."""
+    from planner_service.library.library import Shelves
+
+    return Shelves(cache=settings.cache_dir)
 
 
 def _planning_table(figures: Sequence[Figure]) -> Table:
@@ -240,8 +245,80 @@ def _planning_table(figures: Sequence[Figure]) -> Table:
     for figure in figures:
         parts = {"all": figure.all, "tune": figure.tune, "held_out": figure.held_out}
         judged = figure.judged if figure.limit is not None else ""
-        cells = [f"{'*' if part == judged else ''}{value:.1%}" for part, value in parts.items()]
+        cells = [f"{'*' if part == judged else ''}{_measured(value, figure)}" for part, value in parts.items()]
         sense = {"least": "≥", "below": "<", "most": "≤"}[figure.sense]
-        limit = "" if figure.limit is None else f"{sense} {figure.limit:.1%}"
+        limit = "" if figure.limit is None else f"{sense} {_measured(figure.limit, figure)}"
         table.add_row(figure.name, *cells, limit, "missed" if figure.missed else "")
+    return table
+
+
+def _measured(value: float, figure: Figure) -> str:
+    return f"{value:.1%}" if figure.unit == "%" else f"{value:.3g}"
+
+
+@app.command()
+def methods(
+    half: Annotated[str, typer.Option(help="Which labelled themes: tune, held_out or all.")] = "tune",
+    seed: Annotated[int, typer.Option(min=0, help="The same seed plans the same.")] = 0,
+    films: Annotated[int, typer.Option(min=0, max=100, help="Write pairs of films of so many themes.")] = 0,
+    out: Annotated[Path, typer.Option(help="Folder for the films, their marking sheet and its key.")] = Path(
+        "out/pairs"
+    ),
+    between: Annotated[str, typer.Option(help="The two methods that are filmed, as the table names them.")] = "",
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of a table.")] = False,
+) -> None:
+    """Plan the labelled themes by every method side by side, by rules and, where one is set, by a language model.
+
+    With --films, themes are also filmed by two of them under neutral names, for people to mark: sheet.csv asks five
+    questions of each film, and only key.csv says which method made it.
+    """
+    from planner_service.evaluation.labels import SPLITS, labelled_themes
+    from planner_service.evaluation.method_comparison import compare, methods_of, write_pairs
+    from planner_service.pipeline import Pipeline, RequestError
+
+    if half not in (*SPLITS, "all"):
+        raise RequestError(f"{half!r:.40} is none of tune, held_out, all", at="--half")
+    settings = read_settings()
+    pipeline = Pipeline(_as_shipped(settings), load_model(settings))
+    known = {method.title: method for method in methods_of(pipeline)}
+    pair = [title.strip() for title in between.split(",")] if between else list(known)[:2]
+    if len(pair) != 2 or not set(pair) <= set(known):
+        raise RequestError(f"{between!r:.80} is not two of {', '.join(known)}, parted by a comma", at="--between")
+    labels = [label for label in labelled_themes() if half in (label.split, "all")]
+    compared = []
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("planning", total=len(known) + films)
+        for method in known.values():
+            compared.append(compare(method, labels, pipeline.shelves.scripts().encoder, seed))
+            bar.advance(task)
+        if films:
+            for done in write_pairs(*(known[title] for title in pair), labels, films, out, seed):  # type: ignore[misc]
+                bar.update(task, advance=1, description=f"filmed {done}")
+    console = Console(markup=False, highlight=False)
+    if as_json:
+        console.print_json(json.dumps({"themes": len(labels), "half": half, "methods": list(map(asdict, compared))}))
+        return
+    console.print(_methods_table(compared))
+    console.print(f"{len(labels)} themes ({half}), seed {seed}, encoder {pipeline.shelves.scripts().encoder.name}")
+    if films:
+        console.print(f"{' and '.join(pair)} filmed in {out}/: mark sheet.csv before you open key.csv", soft_wrap=True)
+
+
+def _methods_table(compared: Sequence[Compared]) -> Table:
+    titles = [one.method for one in compared]
+    table = plain_table("", *titles, right=titles)
+    rows: dict[str, list[str]] = {
+        "beats acted in order": [f"{one.acted:.1%}" for one in compared],
+        "not acted, and named": [f"{one.named:.1%}" for one in compared],
+        "forbidden keyframes": [f"{one.forbidden}" for one in compared],
+        "screen time unasked": [f"{one.unasked:.1%}" for one in compared],
+        "keyframes a beat": [f"{one.deeds:.2f}" for one in compared],
+        "stories alike": [f"{one.alike:.1%}" for one in compared],
+        "wrongly played or refused": [f"{one.wrong}" for one in compared],
+        "calls a theme": [f"{one.calls:.2f}" for one in compared],
+        "tokens a theme": [f"{one.tokens:.0f}" for one in compared],
+        "seconds a theme": [f"{one.seconds:.3f}" for one in compared],
+    }
+    for name, cells in rows.items():
+        table.add_row(name, *cells)
     return table

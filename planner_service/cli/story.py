@@ -127,7 +127,9 @@ def _bar(console: Console) -> Progress:
 
 
 def _close(console: Console, made: Story, files: list[Path]) -> None:
-    """The closing table: what was reached, and how well."""
+    """The closing table: what was reached, and how well; and which beats of the theme were acted."""
+    from planner_service.output.story_export import beats_of
+
     console.print(f"\n{made.planned.told.title}\n", style="bold", highlight=False)
     console.print(made.planned.told.text + "\n", highlight=False)
     figures = ("seconds", "reached", "contact", "inside")
@@ -159,9 +161,8 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
         f"encoder: {made.planned.script.encoder}",
         highlight=False,
     )
-    for beat in made.planned.script.beats:
-        if beat.why:
-            console.print(f"not acted: {beat.text} ({beat.why})", highlight=False)
+    for line in beats_of(made).lines():
+        console.print(line, highlight=False, soft_wrap=True)
     for note in made.motion.notes:
         console.print(f"done otherwise: keyframe {note.keyframe}: {note.words}", highlight=False)
     console.print(f"\nwritten to {files[0].parent}/: {', '.join(file.name for file in files)}", highlight=False)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from motion_backend.motion import Emotion
 from planner_service.composition import llm_planner
+from planner_service.composition.beat_service import serve_beats
 from planner_service.composition.direct_generation import direct_by_rules
 from planner_service.composition.request import RULES, Record, Request
 from planner_service.composition.script_matching import match
@@ -13,7 +13,7 @@ from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import repair
-from planner_service.themes.beats import Clause, clauses_of, moods_of
+from planner_service.themes.beats import beats_of
 
 
 def compose(
@@ -31,20 +31,20 @@ def compose(
     Raises ThemeError when no event of the theme is understood.
     """
     request = request or Request()
-    by_rules = clauses_of(theme)
     record = Record(insist=insist)
+    if request.method == "auto":
+        return serve_beats(theme, library, request, model, record)
+    by_rules = [read.beat for read in beats_of(theme)]
     if request.method == "direct":
         return _direct(theme, by_rules, model, request, record)
     return match(theme, by_rules, library, request, model, record)
 
 
 def _direct(
-    theme: str, by_rules: Sequence[Clause], model: LanguageModel | None, request: Request, record: Record
+    theme: str, by_rules: Sequence[Beat], model: LanguageModel | None, request: Request, record: Record
 ) -> LongScript:
     """Keyframes without the library: a model's, whose captions the body reads word by word, else those of the rules."""
-    moods = moods_of(by_rules, [None] * len(by_rules))
-    events = tuple(Beat(text=clause.text, emotion=Emotion(mood)) for clause, mood in zip(by_rules, moods, strict=True))
-    keyframes, planner = direct_by_rules(events), RULES
+    keyframes, planner = direct_by_rules(by_rules), RULES
     if model is not None:
         try:
             written = llm_planner.direct(model, theme)
@@ -56,7 +56,7 @@ def _direct(
     acted, repairs = repair(keyframes)
     return LongScript(
         theme=theme,
-        beats=events,
+        beats=tuple(by_rules),
         short_scripts=(),
         keyframes=acted,
         repairs=(*record.notes, *repairs),

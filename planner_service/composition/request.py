@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Final, Literal
+from typing import Final, Literal, get_args
 
 from planner_service.llm.protocol import ModelError
 from scene_graphs.furniture import ROOM_TYPES, canonical_room
 
-Method = Literal["matching", "direct"]
+Method = Literal["auto", "matching", "direct"]
+METHODS: Final[tuple[Method, ...]] = get_args(Method)
 MAX_SHORT_SCRIPTS: Final = 12
 """Short scripts in a long one."""
 RULES: Final = "rules"
@@ -24,11 +25,13 @@ class Request:
     rooms: tuple[str, ...] = ()
     """Room types to stay in; empty for all."""
     seed: int = 0
-    method: Method = "matching"
+    method: Method = "auto"
+    furniture: frozenset[str] | None = None
+    """Categories that a given home has; None: any."""
 
     def __post_init__(self) -> None:
-        if self.method not in ("matching", "direct"):
-            raise ValueError(f"method: {self.method!r} is neither 'matching' nor 'direct'")
+        if self.method not in METHODS:
+            raise ValueError(f"method: {self.method!r} is none of {', '.join(METHODS)}")
         if self.short_scripts is not None and not 1 <= self.short_scripts <= MAX_SHORT_SCRIPTS:
             raise ValueError(f"short_scripts: {self.short_scripts} is not a number from 1 to {MAX_SHORT_SCRIPTS}")
         for room in self.rooms:

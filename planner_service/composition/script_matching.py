@@ -2,35 +2,61 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
+import itertools
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
 
+from motion_backend.motion import Emotion
 from planner_service.composition import llm_planner
-from planner_service.composition.event_retrieval import Reading, read
+from planner_service.composition.keyframe_writer import NOT_ACTED
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, RULES, Record, Request
-from planner_service.composition.sequence_search import cast
 from planner_service.llm.protocol import LanguageModel, ModelError
-from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe, Retrieved
+from planner_service.scripts.emotion_classifier import clear_moods
+from planner_service.scripts.script import EMOTIONS, Beat, LongScript, PlannedKeyframe, Retrieved
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import repair
-from planner_service.scripts.script_search import Found
-from planner_service.scripts.suitability import Limits, Scores
-from planner_service.themes.beats import LANGUAGE, Clause, ThemeError, clause_of, grouped, rooms_in
-from scene_graphs.furniture import canonical_room
+from planner_service.scripts.script_search import ABOUT, Found, Scores, rank
+from planner_service.themes.beats import LANGUAGE, ThemeError, rooms_in
+from scene_graphs.furniture import ROOM_TYPES, canonical_room
 
 MIN_SHORT_SCRIPTS: Final = 2
 """Short scripts when the number is not asked for."""
+NEAR_TIE: Final = 0.05
+"""Scripts this close together may change places: the seed chooses."""
+_FEELING, _ROOM = 0.1, 0.05
+"""What it counts that a script feels as the event does, and plays in a room that event or theme names."""
 _OFFERED: Final = 6
 """Candidates an event that a language model chooses from."""
-_ENGLISH: Final = re.compile(r"[a-z]", re.IGNORECASE)
+
+Choice = tuple[int, int]
+"""Places of an event and of the script that plays it."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """The events of a theme and what the library has for them."""
+
+    events: tuple[Beat, ...]
+    scores: Scores
+    """How well each script answers the event, (events, scripts)."""
+    suits: Scores
+    """The same with feeling and room weighed in, those that are about the event first; -1 for what is in no room
+    that was asked for."""
+
+    @property
+    def covered(self) -> tuple[int, ...]:
+        """Events that some script is about."""
+        return tuple(index for index, row in enumerate(self.suits) if row.max(initial=-1.0) >= 1)
 
 
 def match(
     theme: str,
-    by_rules: Sequence[Clause],
+    by_rules: Sequence[Beat],
     library: ScriptLibrary,
     request: Request,
     model: LanguageModel | None,
@@ -41,19 +67,17 @@ def match(
     A model finds the events and arranges what was retrieved for them; without one `by_rules` are the events.
     Raises ThemeError when no event of the theme is understood.
     """
-    clauses = grouped(_events(theme, by_rules, model, record), request.short_scripts or MAX_SHORT_SCRIPTS)
-    if not any(_ENGLISH.search(clause.text) for clause in clauses):
-        raise ThemeError(f"no word of {theme[:60]!r} is in Latin letters. {LANGUAGE}")
-    limits = Limits(tuple(map(canonical_room, request.rooms)), rooms_in(theme))
-    reading = read(theme, clauses, library, limits)
+    reading = _read(theme, _events(theme, by_rules, model, record), library, request)
     if not reading.covered:
         raise ThemeError(_not_understood(reading, library, request))
-    rows = _rows(reading, request.short_scripts or min(MAX_SHORT_SCRIPTS, max(MIN_SHORT_SCRIPTS, len(reading.covered))))
-    chosen = _arranged(theme, reading, rows, library, model, record) or _matched(reading, rows, library, request.seed)
+    covered = reading.covered[: request.short_scripts or MAX_SHORT_SCRIPTS]
+    count = request.short_scripts or max(MIN_SHORT_SCRIPTS, len(covered))
+    rows = sorted(itertools.islice(itertools.cycle(covered), count))
+    chosen = _arranged(theme, reading, rows, library, model, record) or _assigned(reading, rows, request.seed)
     return _long_script(theme, reading, chosen, library, request, record)
 
 
-def _events(theme: str, by_rules: Sequence[Clause], model: LanguageModel | None, record: Record) -> Sequence[Clause]:
+def _events(theme: str, by_rules: Sequence[Beat], model: LanguageModel | None, record: Record) -> Sequence[Beat]:
     """What happens in the theme: as the model reads it, else as the rules do."""
     if model is not None:
         try:
@@ -62,41 +86,42 @@ def _events(theme: str, by_rules: Sequence[Clause], model: LanguageModel | None,
             record.failed("events found", error)
         else:
             record.planners.append(f"llm:{model.name}")
-            return [clause_of(event.text, event.emotion) for event in planned]
+            return planned
     record.planners.append(RULES)
     return by_rules
 
 
-def _rows(reading: Reading, count: int) -> list[int]:
-    """The event of each short script, in order: each covered event once, then those with most to choose from."""
-    rows = list(reading.covered)
-    if len(rows) >= count:
-        return rows
-    ranked = np.sort(_largest(reading.suits, count), axis=1)  # the best last
-    while len(rows) < count:
-        spare = {event: _spare(ranked[event], rows.count(event)) for event in reading.covered}
-        spare = {event: score for event, score in spare.items() if score > 0}
-        if not spare:
-            break
-        rows.append(min(spare, key=lambda event: (rows.count(event), -spare[event], event)))
-    return sorted(rows)
+def _read(theme: str, beats: Sequence[Beat], library: ScriptLibrary, request: Request) -> Reading:
+    """Every event held against every script."""
+    queries = [beat.text for beat in beats]
+    vectors = library.encoder.encode(queries)
+    scores = rank(queries, library, vectors)
+    judged = clear_moods(library.moods(vectors))
+    events = tuple(
+        beat.model_copy(update={"emotion": mood}) if mood and beat.emotion is Emotion.NEUTRAL else beat
+        for beat, mood in zip(beats, judged, strict=True)
+    )
+    felt = np.array([[EMOTIONS.index(event.emotion)] for event in events]) == library.emotions
+    named = np.array([_in_rooms(rooms_in(event.text) or rooms_in(theme), library) for event in events])
+    about = scores >= ABOUT.get(library.encoder.name, ABOUT[""])
+    suits = scores + about + _FEELING * felt + _ROOM * named
+    suits[[event.kind not in ("deed", "feeling") for event in events]] = -1
+    if request.rooms:
+        suits[:, ~_in_rooms(map(canonical_room, request.rooms), library)] = -1
+    return Reading(events, scores, suits)
 
 
-def _largest(suits: Scores, count: int) -> Scores:
-    """The largest `count` of each row, in any order."""
-    return np.partition(suits, -count, axis=1)[:, -count:] if count < suits.shape[1] else suits
+def _in_rooms(rooms: Iterable[str], library: ScriptLibrary) -> NDArray[np.bool_]:
+    """Scripts that play in one of these rooms. (scripts,)."""
+    return np.isin(library.rooms, [ROOM_TYPES.index(room) for room in rooms])
 
 
-def _spare(ranked: Scores, taken: int) -> float:
-    """How well the best script suits that is left after so many were taken; negative when none is."""
-    return float(ranked[-1 - taken]) if taken < len(ranked) else -1.0
-
-
-def _matched(reading: Reading, rows: Sequence[int], library: ScriptLibrary, seed: int) -> list[tuple[int, int]]:
-    """Event and script for each row that found one, by the rules."""
-    moods = [reading.events[event].emotion for event in rows]
-    scripts = cast(reading.suits[list(rows)], rows, moods, library, seed)
-    chosen = [(event, script) for event, script in zip(rows, scripts, strict=True) if script is not None]
+def _assigned(reading: Reading, rows: Sequence[int], seed: int) -> list[Choice]:
+    """The script for each row's event by the rules: the best sum, no script twice, among near ties the seed's."""
+    suits = reading.suits[rows]
+    luck = np.random.default_rng(seed).uniform(0, NEAR_TIE, suits.shape)
+    drawn = linear_sum_assignment((suits + luck).round(6), maximize=True)
+    chosen = [(rows[row], int(script)) for row, script in zip(*drawn, strict=True) if suits[row, script] >= 0]
     return sorted(chosen, key=lambda one: (one[0], -reading.suits[one]))  # of one event's, the nearest comes first
 
 
@@ -107,7 +132,7 @@ def _arranged(
     library: ScriptLibrary,
     model: LanguageModel | None,
     record: Record,
-) -> list[tuple[int, int]]:
+) -> list[Choice]:
     """Event and script as the model arranges what was retrieved; empty where there is no model or usable answer."""
     if model is not None:
         offers = {event: _offers(reading, event, library) for event in sorted(set(rows))}
@@ -126,15 +151,15 @@ def _arranged(
 
 def _offers(reading: Reading, event: int, library: ScriptLibrary) -> list[Found]:
     """The scripts that suit an event best."""
-    suits = reading.suits[event]
-    best = sorted(np.flatnonzero(suits > 0), key=lambda index: (-suits[index], library.scripts[index].id))
-    return [Found(library.scripts[index], float(reading.scores[event, index])) for index in best[:_OFFERED]]
+    best = np.argsort(-reading.suits[event], kind="stable")[:_OFFERED]
+    allowed = [int(index) for index in best if reading.suits[event, index] >= 0]
+    return [Found(library.scripts[index], float(reading.scores[event, index])) for index in allowed]
 
 
 def _long_script(
     theme: str,
     reading: Reading,
-    chosen: Sequence[tuple[int, int]],
+    chosen: Sequence[Choice],
     library: ScriptLibrary,
     request: Request,
     record: Record,
@@ -150,26 +175,29 @@ def _long_script(
             for keyframe in script.keyframes
         ]
     acted, repairs = repair(keyframes)
-    told = reading.told(chosen)
     return LongScript(
         theme=theme,
-        beats=_beats(reading, told),
+        beats=_beats(reading, chosen),
         short_scripts=tuple(
             Retrieved(script=library.scripts[index], beat=event, score=float(reading.scores[event, index]))
             for event, index in chosen
         ),
         keyframes=acted,
         repairs=(*record.notes, *repairs),
+        method="matching",
         planner=record.planner,
         encoder=library.encoder.name,
         seed=request.seed,
     )
 
 
-def _beats(reading: Reading, told: frozenset[int]) -> tuple[Beat, ...]:
+def _beats(reading: Reading, chosen: Sequence[Choice]) -> tuple[Beat, ...]:
     """The beats, those that no chosen script is about with the reason."""
+    told = {event for event, script in chosen if reading.suits[event, script] >= 1}
     return tuple(
-        beat if index in told else beat.model_copy(update={"why": "no short script is about it"})
+        beat
+        if index in told
+        else beat.model_copy(update={"why": NOT_ACTED.get(beat.kind, "no short script is about it")})
         for index, beat in enumerate(reading.events)
     )
 

@@ -42,6 +42,8 @@ class Spending:
     """The ledger of one story; not for several threads at once."""
 
     limits: Limits = field(default_factory=Limits)
+    calls: int = 0
+    """Questions that were asked, answered or not."""
     tokens: int = 0
     dollars: float = 0.0
     seconds: float = 0.0

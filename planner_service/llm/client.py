@@ -47,6 +47,7 @@ class ServedModel:
         """Ask, and read the answer. InvalidAnswerError, BudgetError, ModelError."""
         question = question_of(prompt, schema, images, self.seed)
         tokens, seconds = self.spending.allowance(question)
+        self.spending.calls += 1
         begun = time.monotonic()
         try:
             reply = self.source.reply(question, tokens, seconds)

@@ -15,6 +15,7 @@ from motion_backend.formats.npz import write_npz
 from planner_service.grounding.keyframes_to_actions import action_to_dict
 from planner_service.output.storyboard import storyboard
 from planner_service.pipeline import Planned, Story
+from planner_service.scripts.acted_beats import ActedBeats, Shot, acted_beats, connects
 from planner_service.scripts.caption_actions import look_of
 from scene_graphs.errors import UserError
 from scene_graphs.home import home_to_dict
@@ -117,7 +118,7 @@ def story_to_markdown(story: Story) -> str:
     rooms = [f"- {line}" for line in planned.stage.explain()]
     notes = [f"- keyframe {note.keyframe}: {note.words}" for note in story.motion.notes] or ["- nothing"]
     repairs = [f"- {line}" for line in script.repairs] or ["- none"]
-    missed = [f"- not acted: {beat.text} ({beat.why})" for beat in script.beats if beat.why]
+    beats = [f"- {line}" for line in beats_of(story).lines()]
     return "\n".join(
         [
             f"# {planned.told.title}",
@@ -131,7 +132,7 @@ def story_to_markdown(story: Story) -> str:
             _makers(planned),
             "",
             *[f"- {chosen.script.id} ({chosen.score:.2f}): {chosen.script.summary}" for chosen in script.short_scripts],
-            *missed,
+            *beats,
             "",
             "Rooms:",
             "",
@@ -187,6 +188,19 @@ def story_to_dict(story: Story) -> dict[str, Any]:
     }
 
 
+def beats_of(story: Story) -> ActedBeats:
+    """What became of the theme's beats, now that the body has moved."""
+    keyframes = story.planned.script.keyframes
+    shots = [
+        Shot(
+            keyframes[figure.keyframe].beat, keyframes[figure.keyframe].mood, connects(keyframes[figure.keyframe]),
+            figure.reached, figure.reason, figure.seconds,
+        )
+        for figure in story.figures
+    ]  # fmt: skip
+    return acted_beats(story.planned.script.beats, shots)
+
+
 def report_to_dict(story: Story) -> dict[str, Any]:
     """How well every step went."""
     planned = story.planned
@@ -196,7 +210,7 @@ def report_to_dict(story: Story) -> dict[str, Any]:
         "backend": planned.request.backend,
         "physics_mode": "none",
         "seed": planned.request.seed,
-        "beats": [beat.model_dump() for beat in planned.script.beats],
+        **beats_of(story).to_dict(),
         "repairs": list(planned.script.repairs),
         "rooms": planned.stage.rooms_to_dicts(),
         "motion": story.report,

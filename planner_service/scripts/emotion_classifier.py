@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from motion_backend.language.sentence_encoder import Vectors
 from motion_backend.motion import Emotion
 from planner_service.scripts.script import EMOTIONS, ShortScript
-from planner_service.scripts.suitability import Scores
+from planner_service.scripts.script_search import Scores
 
 TAUGHT: Final = 6_000
 """Texts that it learns from: those of our own library, which come first, and some more."""

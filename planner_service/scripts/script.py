@@ -137,6 +137,8 @@ class PlannedKeyframe(Keyframe):
     """Index into the long script's short scripts; None where it was written, or connects two others."""
     beat: int | None = None
     """Index of the theme's beat it serves; a walk or rising that leads to a deed serves the deed's beat."""
+    also: tuple[int, ...] = ()
+    """Further beats that it shows: who sits on the sofa and reads does both in one keyframe."""
     room: Room | None = None
 
 
@@ -204,7 +206,7 @@ class LongScript(BaseModel):
     """What checking changed, and why."""
     person: Person | None = None
     """Whom the model read in the theme; None where rules did."""
-    method: Literal["auto", "matching", "direct"] = "matching"
+    method: Literal["auto", "matching", "direct"] = "auto"
     planner: str = "rules"
     """What planned it: "rules" or "llm:<model>"."""
     encoder: str = ""

@@ -6,11 +6,9 @@ licence.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import log
 from pathlib import Path
 from threading import RLock
 from typing import Final
@@ -21,18 +19,12 @@ from numpy.typing import NDArray
 from motion_backend.language.sentence_encoder import CachedEncoder, SentenceEncoder, Vectors
 from planner_service.scripts.built_in_scripts import texts_of
 from planner_service.scripts.emotion_classifier import MoodReader, lessons
+from planner_service.scripts.keyword_index import KeywordIndex
 from planner_service.scripts.script import EMOTIONS, ShortScript
 from planner_service.scripts.script_embeddings import load_by_heart
-from planner_service.scripts.script_search import Found, answers
-from planner_service.scripts.suitability import Scores, Traits
+from planner_service.scripts.script_search import Found, Scores, rank
 from scene_graphs.errors import UserError
 from scene_graphs.furniture import ROOM_TYPES, canonical_room, categories_of, is_known
-
-_WORD: Final = re.compile(r"[^\W\d_]{3,}")
-_ENDING: Final = re.compile(r"(?:ing|ed|es|s|ly)$")
-_COMMON_WORDS: Final = """about all and are but character for from had has have her him his into its not out over she
-than that the their them then they this too very was were what when who with"""
-_COMMON: Final = frozenset(_COMMON_WORDS.split())
 
 
 class LibraryError(UserError):
@@ -100,11 +92,6 @@ class ScriptLibrary:
         """The script of that id, or None."""
         return self._by_id.get(script_id)
 
-    @cached_property
-    def traits(self) -> Traits:
-        """What of every script counts besides its meaning."""
-        return Traits(self.scripts)
-
     def search(
         self,
         query: str,
@@ -113,14 +100,14 @@ class ScriptLibrary:
         room: str | None = None,
         furniture: Sequence[str] = (),
     ) -> tuple[Found, ...]:
-        """The k scripts that answer the query best: nearest in meaning, with feeling and furniture weighed in.
+        """The k scripts that answer the query best, best first and by id among equals.
 
         Only those of one emotion, in one room and with all of this furniture, where these are given.
         """
         if k < 1 or not query.strip():
             raise LibraryError("ask for at least one script, with at least one word", at="query")
         fitting = np.flatnonzero(self.fitting(emotion, room, furniture))
-        scores = answers(query, self)[fitting]
+        scores = rank([query], self)[0][fitting]
         order = np.lexsort((self._by_name[fitting], -scores))[:k]
         return tuple(Found(self.scripts[fitting[place]], float(scores[place])) for place in order)
 
@@ -134,16 +121,43 @@ class ScriptLibrary:
             raise LibraryError(f"{room!r} is none of {', '.join(ROOM_TYPES)}", at="room")
         mask = np.ones(len(self), dtype=np.bool_)
         if emotion is not None:
-            mask &= self.traits.of_emotion(emotion)
+            mask &= self.emotions == EMOTIONS.index(emotion)
         if room is not None:
-            mask &= self.traits.in_rooms([canonical_room(room)])
+            mask &= self.rooms == ROOM_TYPES.index(canonical_room(room))
         for word in furniture:
             if not is_known(word):
                 raise LibraryError(
                     f"{word!r:.80} is not known", "say for example bed, sofa, desk or wardrobe", at="furniture"
                 )
-            mask &= self.traits.using(categories_of(word))
+            mask &= self._using(categories_of(word))
         return mask
+
+    @cached_property
+    def emotions(self) -> NDArray[np.intp]:
+        """The place of each script's emotion in `EMOTIONS`. (scripts,)."""
+        return np.array([EMOTIONS.index(script.emotion) for script in self.scripts], np.intp)
+
+    @cached_property
+    def rooms(self) -> NDArray[np.intp]:
+        """The place of each script's room in `ROOM_TYPES`. (scripts,)."""
+        return np.array([ROOM_TYPES.index(script.room) for script in self.scripts], np.intp)
+
+    def _using(self, categories: Iterable[str]) -> NDArray[np.bool_]:
+        """Scripts with furniture of any of these categories. (scripts,)."""
+        mask = np.zeros(len(self), dtype=np.bool_)
+        for category in categories:
+            mask[self._users.get(category, [])] = True
+        return mask
+
+    @cached_property
+    def _users(self) -> dict[str, list[int]]:
+        """The scripts that use furniture of a category."""
+        users: dict[str, list[int]] = {}
+        for index, script in enumerate(self.scripts):
+            words = {keyframe.piece[0] for keyframe in script.keyframes if not keyframe.on_floor}
+            for category in {category for word in words for category in categories_of(word)}:
+                users.setdefault(category, []).append(index)
+        return users
 
     @cached_property
     def _by_name(self) -> NDArray[np.intp]:
@@ -153,12 +167,12 @@ class ScriptLibrary:
         return places
 
     def scores(self, vectors: NDArray[np.float32]) -> Scores:
-        """How near each script is to each vector of `encoder`: by its summary, a sentence or caption. (N, scripts).
+        """How near each script is to each vector of `encoder`: by summary, sentence or cue. (N, scripts).
 
         Rounded to 1e-4, so that another machine ranks alike.
         """
-        rows, places, weights, owners = self._features
-        near = (vectors @ rows.T)[:, places] * weights  # (N, texts)
+        rows, places, owners = self._features
+        near = (vectors @ rows.T)[:, places]  # (N, texts)
         best: Scores = np.maximum.reduceat(near, owners, axis=1).astype(np.float64)
         return best.round(4)
 
@@ -175,46 +189,21 @@ class ScriptLibrary:
         """Vectors of these scripts' summaries. (N, D)."""
         return self.features.of([self.scripts[index].summary for index in indices])
 
-    def sharing(self, text: str) -> Scores:
-        """How much of a text's words each summary has, rare words for much more: 0 none, 1 all. (scripts,)."""
-        shared = np.zeros(len(self))
-        whole = 0.0
-        for word in sorted(_words(text)):
-            owners = self._owners.get(word, np.zeros(0, np.intp))
-            rarity = log(1 + len(self) / max(1, len(owners))) ** 2
-            whole += rarity
-            shared[owners] += rarity
-        return (shared / whole).round(4) if whole else shared
+    @cached_property
+    def keywords(self) -> KeywordIndex:
+        """The words of each script's summary and cues."""
+        return KeywordIndex([" ".join((script.summary, *script.cues)) for script in self.scripts])
 
     @cached_property
-    def _owners(self) -> dict[str, NDArray[np.intp]]:
-        """The scripts whose summary has a word."""
-        places: dict[str, list[int]] = {}
-        for index, script in enumerate(self.scripts):
-            for word in _words(script.summary):
-                places.setdefault(word, []).append(index)
-        return {word: np.array(owners, np.intp) for word, owners in places.items()}
-
-    @cached_property
-    def _features(self) -> tuple[Vectors, NDArray[np.intp], NDArray[np.float32], NDArray[np.intp]]:
-        """A vector for each distinct text; for each text of a script which, and its weight; where scripts begin."""
+    def _features(self) -> tuple[Vectors, NDArray[np.intp], NDArray[np.intp]]:
+        """A vector for each distinct text; which of them each text of a script is; and where scripts begin."""
         distinct: dict[str, int] = {}
         places: list[int] = []
-        weights: list[float] = []
         owners: list[int] = []
         for script in self.scripts:
             owners.append(len(places))
-            for text, weight in texts_of(script).items():
-                places.append(distinct.setdefault(text, len(distinct)))
-                weights.append(weight)
-        rows = self.features.of(list(distinct))
-        return rows, np.array(places, np.intp), np.array(weights, np.float32), np.array(owners, np.intp)
-
-
-def _words(text: str) -> set[str]:
-    """The words of three letters and more that tell something, without their endings."""
-    found = set(_WORD.findall(text.lower())) - _COMMON
-    return {_ENDING.sub("", word) if len(word) > 4 else word for word in found}
+            places += [distinct.setdefault(text, len(distinct)) for text in texts_of(script)]
+        return self.features.of(list(distinct)), np.array(places, np.intp), np.array(owners, np.intp)
 
 
 UNKNOWN: Final = "unknown"

@@ -93,7 +93,8 @@ class Mending(Generic[K]):
         skill, caption = RISES[self.posture]
         furniture_word = self._resting.furniture
         self._note(index, "skill", f"{_told(keyframe)} while {self.posture} on the {furniture_word}", f"{skill} put in")
-        update = {"skill": skill, "caption": caption, "emotion": "neutral, calm", "short_script": None}
+        update = {"skill": skill, "caption": caption, "emotion": "neutral, calm", "short_script": None, "also": ()}
+        update |= {"beat": getattr(keyframe, "beat", None)}  # rising leads to what comes next
         self._stand(self._resting.model_copy(update=fields(keyframe, update)))
 
     def _use(self, index: int, keyframe: K) -> None:
@@ -131,7 +132,7 @@ class Mending(Generic[K]):
             moods = [k.mood for k in (keyframe, *reversed(self.kept)) if _same_script(k, keyframe)]
             mood = next((mood for mood in moods if mood is not Emotion.NEUTRAL), Emotion.NEUTRAL)
             caption, emotion = WALKS[mood], mood.value
-        update = {"skill": Skill.LOCO, "caption": caption, "emotion": emotion, "short_script": None}
+        update = {"skill": Skill.LOCO, "caption": caption, "emotion": emotion, "short_script": None, "also": ()}
         return keyframe.model_copy(update=fields(keyframe, update))
 
 

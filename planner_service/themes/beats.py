@@ -32,6 +32,21 @@ _ROOMS: Final = {
 }
 _LOUDER: Final = {"stressed": ("drunk", "angry", "sad", "hurried")}
 """Moods that a mere hint of another one does not end within a sentence: who is angry paces with anger."""
+_QUOTED: Final = re.compile(r"«\d+»")
+_EXPRESSIONS: Final = {
+    verb: mood
+    for mood, verbs in {
+        Emotion.HAPPY: "laugh smile grin giggle chuckle beam sing hum whistle rejoice whoop",
+        Emotion.ANGRY: "yell scream curse growl scowl snarl shout rant grumble",
+        Emotion.SAD: "sigh frown sniffle",
+        Emotion.STRESSED: "tremble shake sweat panic flinch shudder gasp",
+        Emotion.TIRED: "yawn",
+        Emotion.DRUNK: "hiccup",
+    }.items()
+    for verb in verbs.split()
+}
+"""Verbs that say how somebody feels who does it."""
+_CODE: Final = re.compile(r"[{}<>;=\[\]_|\\^*/+]")
 _FIRST_PERSON: Final = frozenset(("i", "we", "me", "my"))
 _PRONOUNS: Final = {"he": "he", "she": "she", "they": "they", "who": ""}
 
@@ -54,6 +69,10 @@ class ThemeWords:
     """Endings of nouns for people who do something: "-er" only where what is left is a verb."""
     memory_verbs: str
     speech_verbs: str
+    unable_verbs: str
+    """What somebody who cannot do it is seen trying: "cannot sleep"."""
+    body: str
+    """Parts of a person: what these do, the person does."""
     thought_verbs: str
     """What goes on in a head; a body shows none of it but thinking."""
     state_verbs: str
@@ -118,25 +137,22 @@ def beats_of(theme: str) -> tuple[ReadBeat, ...]:
     _refuse_foreign(text)
     clauses = clauses_of_text(text)
     hero = _hero(clauses)
-    read: list[ReadBeat] = []
-    subject = ""
-    for place, clause in enumerate(clauses):
-        new = place == 0 or clause.sentence != clauses[place - 1].sentence
-        subject = clause.subject or ("" if new else subject)
-        read.append(_read(clause, subject, hero))
-    return tuple(_moods(read))
+    return tuple(_moods([_read(clause, hero) for clause in clauses]))
 
 
-def _read(clause: Clause, subject: str, hero: str) -> ReadBeat:
-    who = "" if is_hero(subject, hero) else subject
+def _read(clause: Clause, hero: str) -> ReadBeat:
+    who = "" if is_hero(clause.doer, hero) else clause.doer
     text = clause.text if not who else f"{who} {clause.text}" if clause.subject else clause.text
     if not clause.verb:
         text = clause.text
+    text = _QUOTED.sub(lambda match: f"“{clause.quotes[0]}”" if clause.quotes else "", text)
     kind = _kind(clause, who)
     emotion, sure = _emotion(clause.text if clause.verb else text)
     if not sure and clause.subject:
         named, of_subject = _emotion(f"{clause.subject} {clause.text}")  # "a tired student …"
         emotion, sure = (named, True) if of_subject else (emotion, sure)
+    if not sure and (shown := _EXPRESSIONS.get(clause.verb)):
+        emotion, sure = shown, True
     if kind in ("other", "undone") and not sure:
         emotion = None
     beat = Beat(text=_bounded(text), emotion=emotion or Emotion.NEUTRAL, kind=kind, who=_bounded(who, 80))
@@ -153,9 +169,9 @@ def _kind(clause: Clause, who: str) -> BeatKind:
         return "speech" if not who else "other"
     if who:
         return "other"
-    if clause.denied and not clause.unable:
+    if clause.denied and not (clause.unable and clause.verb in words["unable_verbs"]):
         return "undone"
-    if clause.perfect or clause.verb in words["memory_verbs"]:
+    if clause.perfect or clause.verb in words["memory_verbs"] or clause.joint == "since":
         return "memory"
     return "feeling" if is_feeling(clause) else "deed"
 
@@ -171,8 +187,12 @@ def is_feeling(clause: Clause) -> bool:
 
 def _hero(clauses: Sequence[Clause]) -> str:
     """Whom the theme is about: the first subject that is a person, as it is written; empty where none is named."""
-    named = [clause.subject for clause in clauses if clause.subject and is_person(clause.subject)]
-    return named[0] if named else ""
+    named = [clause.subject for clause in clauses if clause.subject]
+    people = [subject for subject in named if is_person(subject)]
+    if people and (people[0].lower() not in _PRONOUNS or not named[0].lower().startswith(("a ", "an "))):
+        return people[0]
+    living = named[:1] if named and named[0].lower().startswith(("a ", "an ", "one ", "my ", "our ")) else []
+    return next(iter([*living, *people]), "")
 
 
 def is_person(subject: str) -> bool:
@@ -213,6 +233,15 @@ def is_hero(subject: str, hero: str) -> bool:
         return main in _FIRST_PERSON or not main
     if low in _PRONOUNS:
         return main not in ("he", "she") or low == main or low in ("they", "who")
+    if head_of(subject).lower() in theme_words()["body"] and subject.split()[0].lower() in (
+        "his",
+        "her",
+        "their",
+        "my",
+    ):
+        return True
+    if hero and head_of(subject).lower() == head_of(hero).lower():
+        return True
     if not is_person(subject):
         return False
     if not hero or hero.lower() in _PRONOUNS:
@@ -228,6 +257,8 @@ def _refuse_foreign(text: str) -> None:
     foreign = [word for word in words if word in theme_words()["foreign"]]
     if not any(re.search(r"[a-z]", word) for word in words) or len(foreign) >= max(2, 0.2 * len(words)):
         raise ThemeError(f"{text[:60]!r} is not English. {LANGUAGE}")
+    if len(_CODE.findall(text)) > max(3, len(words) / 6):
+        raise ThemeError(f"{text[:60]!r} is no prose. {LANGUAGE}")
 
 
 def _moods(read: Sequence[ReadBeat]) -> list[ReadBeat]:

@@ -70,6 +70,8 @@ _POSTURES: Final = frozenset(
 )
 """Verbs beside which a second deed stands without a joint: "sits reading", "goes to the kitchen to eat"."""
 _DENIALS: Final = frozenset("not never n't without neither nor hardly barely nobody no-one instead".split())
+_UNCHANGING: Final = frozenset("hurt put set cut hit read let shut burst cost".split())
+"""Verbs whose past is their base form."""
 _REFUSALS: Final = frozenset("refuse forget avoid resist skip fail neglect decline forgo postpone".split())
 _WISHES: Final = frozenset(
     "want wish hope plan intend long dream consider mean promise expect imagine prefer think ought".split()
@@ -105,6 +107,8 @@ class Clause:
     """The base forms of its words from the verb on."""
     joint: str = ""
     """What joins it to the clause before: "and", "before", ","; "to" and "ing" for a second deed of one clause."""
+    doer: str = ""
+    """Who does it: `subject`, or whoever did what is told before in its sentence."""
     denied: bool = False
     """Whether it is not done, or only wished for."""
     unable: bool = False
@@ -124,19 +128,34 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
     def kept(match: re.Match[str]) -> str:
         quotes.append(match[1] or match[2])
         said = quotes[-1].rstrip()
-        return f"«{len(quotes) - 1}»" + (". " if said[-1:] in ".!?" and match.string[match.end() :].lstrip()[:1].isupper() else " ")
+        return f"«{len(quotes) - 1}»" + (
+            ". " if said[-1:] in ".!?" and match.string[match.end() :].lstrip()[:1].isupper() else " "
+        )
 
     found: list[Clause] = []
     for number, sentence in enumerate(sentences_of(_QUOTE.sub(kept, text))):
-        said = [_clause(piece, quotes, number) for piece in _in_time(_pieces(sentence))]
-        found += [part for clause in said for part in clause]
+        told: list[list[Clause]] = []
+        doer = ""
+        for piece in (pieces := _pieces(sentence)):
+            parts = _clause(piece, quotes, number)
+            main = parts[0].subject or (_next_subject(pieces, piece) if not told else "")
+            doer = main or doer
+            told.append([replace(part, doer=doer) for part in parts])
+        found += [part for place in _in_time(pieces) for part in told[place]]
     return tuple(found)
+
+
+def _next_subject(pieces: Sequence[_Piece], piece: _Piece) -> str:
+    """Who does what opens a sentence without a subject: "before going to bed, she brushes her teeth"."""
+    if piece.joint not in _EARLIER | _WITH_GERUND | {"before", "until", "while", "when"}:
+        return ""
+    return next((part.subject for other in pieces for part in _clause(other, (), 0)[:1] if part.subject), "")
 
 
 def sentences_of(text: str) -> list[str]:
     """The sentences, lines and list items of a text, without marks at their ends."""
     parts = [part for line in _SEMI.split(_BULLET.sub("", text)) if line.strip() for part in _segmenter().segment(line)]
-    return [part.strip(" \t.!?,;:-–—\"“”") for part in parts if re.search(r"\w", part)]
+    return [part.strip(' \t.!?,;:-–—"“”') for part in parts if re.search(r"\w", part)]
 
 
 @cache
@@ -163,7 +182,9 @@ def plain(text: str) -> str:
     text = _CONTRACTION.sub(lambda m: _SHORT.get(m[1].lower(), f"{m[1]} not"), text)
     for short, whole in _ENDS:
         text = re.sub(rf"(?i)(?<=\w){short}\b", whole, text)
-    return re.sub(r"\b(I|[Hh]e|[Ss]he|[Tt]hey|[Ww]e)'d\b", r"\1 had", re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s\b", r"\1 is", text))
+    return re.sub(
+        r"\b(I|[Hh]e|[Ss]he|[Tt]hey|[Ww]e)'d\b", r"\1 had", re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s\b", r"\1 is", text)
+    )
 
 
 @dataclass(frozen=True)
@@ -221,13 +242,18 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
             return not (is_noun(token.low) and verb_of(after) and not (is_noun(after) or after.endswith("ing")))
         return not is_noun(token.low) or (goes_on and bool(after))
     if token.low.endswith("ing"):
-        return before in _WITH_GERUND or tokens[0].low == "instead" or (before not in _PREPOSITIONS and not is_noun(token.low))
+        return (
+            before in _WITH_GERUND
+            or tokens[0].low == "instead"
+            or (before not in _PREPOSITIONS and not is_noun(token.low))
+        )
     if is_adjective(before) and not is_noun(before) and is_noun(token.low):
         return False
     if is_adjective(token.low) and (before in BE or before in ("feels", "felt", "seems", "looks", "gets", "becomes")):
         return False
     if token.low == base:
-        return _is_plural(before) and not is_noun(token.low)
+        same = base in _UNCHANGING and is_noun(before)
+        return same or (_is_plural(before) and not is_noun(token.low))
     if is_noun(token.low) and token.low.endswith("s"):
         return goes_on or is_adjective(after) or is_noun(after)
     return True
@@ -245,7 +271,9 @@ def _pieces(sentence: str) -> list[_Piece]:
     cut: list[_Piece] = []
     joint, current = "", list[Token]()
     for place, token in enumerate(tokens):
-        if token.text == "," or (token.low in _JOINTS and _joins(tokens, place)):
+        if token.text == "," or (
+            token.low in _JOINTS and _joins(tokens, place) and (not current or _may_end(token.low, current))
+        ):
             if current:
                 cut.append(_Piece(joint, tuple(current), source))
                 joint, current = "", []
@@ -267,13 +295,22 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
     """Whether a joining word joins clauses here: "as soon as", "so tired" and "before dinner" do not."""
     low = tokens[place].low
     rest = tokens[place + 1 :]
+    if low == "once" and place and tokens[place - 1].low in ("at", "for", "more", "all"):
+        return False
     if low == "as":
         return bool(rest) and rest[0].low in SUBJECTS | _MARKS and verb_place(rest[:6]) is not None
     if low in ("so", "yet", "once", "since", "then", "where", "or"):
-        return bool(rest) and (low == "then" or rest[0].low in SUBJECTS or (low in ("so", "or") and verb_place(rest[:2]) is not None) or (low in ("once", "since", "where") and verb_place(rest[:5]) not in (None, 0)))  # fmt: skip
+        return bool(rest) and (low == "then" or rest[0].low in SUBJECTS or (low in ("so", "or") and verb_place(rest[:2]) is not None) or (low in ("once", "since", "where") and (rest[0].low in _MARKS or rest[0].text[:1].isupper()) and verb_place(rest[:5]) not in (None, 0)))  # fmt: skip
     if low in ("after", "before", "until", "without", "instead"):
-        return bool(rest) and (_starts_gerund(rest) or rest[0].low in SUBJECTS or (low != "instead" and _clause_follows(rest)))
+        return bool(rest) and (
+            _starts_gerund(rest) or rest[0].low in SUBJECTS or (low != "instead" and _clause_follows(rest))
+        )
     return True
+
+
+def _may_end(joint: str, current: Sequence[Token]) -> bool:
+    """Whether what stands before a joint can be a clause of its own: not "a nurse" of "a nurse after a night shift"."""
+    return joint not in _EARLIER | {"before", "until", "without"} or verb_place(current) is not None
 
 
 def _starts_gerund(rest: Sequence[Token]) -> bool:
@@ -287,7 +324,12 @@ def _clause_follows(rest: Sequence[Token]) -> bool:
     end = next((i for i, token in enumerate(rest) if token.text == "," or token.low in ("and", "but")), len(rest))
     head = list(rest[: min(end, 6)])
     place = verb_place(head)
-    return place is not None and place > 0 and head[place - 1].low not in SUBJECTS | {","} or (place is not None and place > 0)
+    return (
+        place is not None
+        and place > 0
+        and head[place - 1].low not in SUBJECTS | {","}
+        or (place is not None and place > 0)
+    )
 
 
 def _whole(pieces: list[_Piece]) -> list[_Piece]:
@@ -319,20 +361,20 @@ def _is_noun_list(last: _Piece, piece: _Piece) -> bool:
     return is_noun(end) and word == verb_of(word)
 
 
-def _in_time(pieces: list[_Piece]) -> list[_Piece]:
-    """Pieces in the order they happen: "B after A" is A, B; "before B, A" is A, B."""
-    ordered: list[_Piece] = []
+def _in_time(pieces: Sequence[_Piece]) -> list[int]:
+    """Places of pieces in the order they happen: "B after A" is A, B; "before B, A" is A, B."""
+    ordered: list[int] = []
     first_is_later = len(pieces) > 1 and pieces[0].joint in ("before", "until", "instead", "without")
-    for piece in pieces:
-        if ordered and piece.joint in _EARLIER and piece is not pieces[0]:
-            main = ordered[-1]
+    for place, piece in enumerate(pieces):
+        if ordered and piece.joint in _EARLIER:
+            main = pieces[ordered[-1]]
             is_state = any(token.low in BE for token in main.tokens[:3])
             if piece.joint == "as" or (is_state and piece.joint != "after"):
-                ordered.append(piece)
+                ordered.append(place)
             else:
-                ordered.insert(len(ordered) - 1, piece)
+                ordered.insert(len(ordered) - 1, place)
         else:
-            ordered.append(piece)
+            ordered.append(place)
     return [*ordered[1:2], ordered[0], *ordered[2:]] if first_is_later else ordered
 
 
@@ -340,7 +382,12 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     """The clause of a piece, and second deeds in it that stand without a joint."""
     tokens = list(piece.tokens)
     joint = piece.joint
-    while tokens and tokens[0].low in _ADVERBS | {"and", "but", "or"} and tokens[0].low not in _DENIALS and len(tokens) > 1:
+    while (
+        tokens
+        and tokens[0].low in _ADVERBS | {"and", "but", "or"}
+        and tokens[0].low not in _DENIALS
+        and len(tokens) > 1
+    ):
         tokens.pop(0)
     place = verb_place(tokens)
     if place is None:
@@ -353,8 +400,8 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     main, denied, unable, perfect = _main_verb(words)
     lemmas = _lemmas(words[main:])
     first = Clause(
-        _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, joint, denied, unable, perfect,
-        _quotes(tokens, quotes), sentence,
+        _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, joint, denied=denied, unable=unable,
+        perfect=perfect, quotes=_quotes(tokens, quotes), sentence=sentence,
     )  # fmt: skip
     return [first] if denied and not unable else _parted(first, words, main, piece.source)
 
@@ -365,7 +412,9 @@ def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> l
         return [clause]
     for place in range(main + 1, len(words)):
         low, before = words[place].low, words[place - 1].low
-        gerund = low.endswith("ing") and bool(verb_of(low)) and before not in _MARKS - {"to"} and not is_adjective(before)
+        gerund = (
+            low.endswith("ing") and bool(verb_of(low)) and before not in _MARKS - {"to"} and not is_adjective(before)
+        )
         gerund = gerund and before not in _PREPOSITIONS - {"on", "off", "down", "up", "around", "there", "back"}
         purpose = before == "to" and verb_of(low) == low and low not in _NOT_VERBS_AFTER_TO and not is_pure_noun(low)
         if gerund or purpose:
@@ -402,9 +451,21 @@ def _main_verb(words: Sequence[Token]) -> tuple[int, bool, bool, bool]:
         elif low == "no" and ahead == "longer":
             denied, at = True, at + 1
         elif low in ("will", "would", "should", "must", "may", "might", "ought"):
-            denied = denied or (low in ("would", "should", "might") and bool(verb_place(words[at + 1 : at + 3]) is not None) and low != "would")
+            denied = denied or (
+                low in ("would", "should", "might")
+                and bool(verb_place(words[at + 1 : at + 3]) is not None)
+                and low != "would"
+            )
         elif low == "had" and _participle_follows(words, at):
             perfect = True
+        elif (
+            low == "going"
+            and ahead == "to"
+            and at + 2 < len(words)
+            and verb_of(words[at + 2].low) == words[at + 2].low
+            and words[at + 2].low not in _NOT_VERBS_AFTER_TO
+        ):
+            denied, at = True, at + 1
         elif low in AUXILIARIES and _verb_follows(words, at):
             pass
         elif low in ("unable", "about", "afraid", "too") and "to" in [token.low for token in words[at : at + 3]]:
@@ -453,7 +514,11 @@ def _aspect(words: Sequence[Token], at: int) -> int:
         low = words[place].low
         if low == "to" and place + 1 < len(words):
             after = words[place + 1].low
-            if place == at + 1 and base not in ("go", "come", "spend", "keep", "finish", "end", "resume") and verb_of(after) == after:
+            if (
+                place == at + 1
+                and base not in ("go", "come", "spend", "keep", "finish", "end", "resume")
+                and verb_of(after) == after
+            ):
                 return place + 1 if after not in _NOT_VERBS_AFTER_TO else 0
             return 0
         if low.endswith("ing") and verb_of(low) and base not in ("need", "have", "decide", "help", "use"):

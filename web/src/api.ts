@@ -29,6 +29,8 @@ export interface Summary {
 
 export interface Keyframe {
   readonly index: number;
+  /** Which beat of the theme it serves. */
+  readonly beat: number | null;
   readonly skill: Skill;
   /** As it was written. */
   readonly emotion: string;
@@ -44,11 +46,23 @@ export interface Keyframe {
   readonly reached: boolean | null;
 }
 
+/** One thing that the theme says, and what became of it. */
+export interface Beat {
+  readonly text: string;
+  /** "undone" for what the theme says is not done. */
+  readonly kind: string;
+  readonly emotion: Emotion;
+  /** As planned, while nothing is moved. */
+  readonly acted: boolean;
+  /** Why it is not acted. */
+  readonly why: string;
+}
+
 export interface FoundScript {
   readonly id: string;
   readonly summary: string;
   readonly score: number;
-  readonly event: number;
+  readonly beat: number;
 }
 
 export interface FoundRoom {
@@ -77,6 +91,8 @@ export interface Report {
   readonly encoder: string | null;
   readonly backend: string;
   readonly physics_mode: string;
+  /** Share of the film in which no beat of the theme is acted, 0 to 1; null where there is no theme. */
+  readonly screen_time_without_beat: number | null;
   readonly motion: {
     readonly reached: number;
     readonly keyframes: number;
@@ -101,8 +117,7 @@ export interface Story extends Summary {
   readonly encoder: string | null;
   readonly text: string | null;
   readonly spans: readonly Span[];
-  readonly events: readonly { readonly text: string; readonly emotion: Emotion }[];
-  readonly uncovered: readonly string[];
+  readonly beats: readonly Beat[];
   readonly repairs: readonly string[];
   readonly keyframes: readonly Keyframe[];
   readonly short_scripts: readonly FoundScript[];

@@ -1,40 +1,44 @@
-/** How a story was made: the scripts that were found, the rooms, what was put in, what was left out. */
+/** How a story was made: the beats of its theme, the scripts that were found, the rooms, what was put in. */
 
-import type { FoundRoom, FoundScript, Story } from "./api";
+import type { Beat, FoundRoom, FoundScript, Story } from "./api";
 import { fill, h } from "./dom";
 import { drawGraph } from "./graph";
-import { capital, count, noteWords, plain } from "./words";
+import { beatsWords, capital, noteWords, plain } from "./words";
 
 /** Fill a section; false while nothing is known. */
 export function showMaking(section: HTMLElement, story: Story): boolean {
-  if (!story.short_scripts.length && !story.home && !story.repairs.length) return false;
+  if (!story.beats.length && !story.home && !story.repairs.length) return false;
   fill(
     section,
     h("h2", {}, "How it was made"),
-    ...scripts(story),
+    ...beats(story),
     ...rooms(story),
     ...list("Put right", "What the script needed so that a body can act it.", story.repairs.map(noteWords)),
-    ...list("Left out", "Parts of the theme for which no short script was found.", story.uncovered),
   );
   return true;
 }
 
-function scripts(story: Story): HTMLElement[] {
-  if (!story.short_scripts.length) return [];
-  const events = story.events.map((event, index) =>
-    h(
-      "li",
-      { "data-emotion": event.emotion },
-      h("p", { class: "event" }, h("i", {}), `“${event.text}”`),
-      ...story.short_scripts.filter((script) => script.event === index).map(found),
-    ),
-  );
-  const loose = story.short_scripts.filter((script) => !story.events[script.event]);
+function beats(story: Story): HTMLElement[] {
+  if (!story.beats.length) return [];
+  const asked = story.beats.map((beat, index) => ({ beat, index })).filter(({ beat }) => beat.kind !== "undone");
+  const undone = story.beats.filter((beat) => beat.kind === "undone");
+  const loose = story.short_scripts.filter((script) => !story.beats[script.beat]);
   return [
-    h("h3", {}, "Short scripts"),
-    h("p", { class: "hint" }, `The theme was read as ${count(story.events.length, "event")}; for each the nearest scripts were taken. The score is how near in meaning, at most 1.`),
-    h("ol", { class: "events" }, ...events, ...loose.map((script) => h("li", {}, found(script)))),
+    h("h3", {}, "Beats"),
+    h("p", { class: "hint" }, `${beatsWords(story.beats)} Where a short script was taken for one, its score is how near in meaning it is, at most 1.`),
+    h("ol", { class: "beats" }, ...asked.map(({ beat, index }) => told(beat, story.short_scripts.filter((script) => script.beat === index))), ...loose.map((script) => h("li", {}, found(script)))),
+    ...list("Left undone", "What the theme says is not done.", undone.map((beat) => beat.text)),
   ];
+}
+
+function told(beat: Beat, scripts: readonly FoundScript[]): HTMLElement {
+  return h(
+    "li",
+    { "data-emotion": beat.emotion },
+    h("p", { class: "beat" }, h("i", {}), `“${beat.text}”`),
+    beat.acted ? null : h("p", { class: "missing" }, h("b", {}, "Not acted: "), beat.why),
+    ...scripts.map(found),
+  );
 }
 
 function found(script: FoundScript): HTMLElement {

@@ -2,7 +2,7 @@
 
 import type { Keyframe, KeyframeFigures, Story } from "./api";
 import { fill, h } from "./dom";
-import { capital, centimetres, percent, placeWords, SKILL_WORDS } from "./words";
+import { beatsWords, capital, centimetres, percent, placeWords, SKILL_WORDS } from "./words";
 
 /** From these on a moment is worth a remark, metres. */
 const WIDE_CONTACT = 0.03;
@@ -31,7 +31,10 @@ export function showReport(section: HTMLElement, story: Story, seek: (keyframe: 
   const { report } = story;
   if (!report) return false;
   const { motion } = report;
+  const spare = report.screen_time_without_beat;
+  const missing = story.beats.filter((beat) => beat.kind !== "undone" && !beat.acted);
   const figures: [string, string][] = [
+    ...(spare === null ? [] : ([[percent(spare), "of the film serves no beat of your theme"]] as [string, string][])),
     [`${motion.reached} of ${motion.keyframes}`, "moments reached their goal"],
     ...(motion.contact_error === null ? [] : ([[centimetres(motion.contact_error), "from where hands, seat and back should touch, on average"]] as [string, string][])),
     [centimetres(motion.pen_mean), `inside furniture on average; ${percent(motion.pen_share)} of the frames touch any`],
@@ -42,6 +45,8 @@ export function showReport(section: HTMLElement, story: Story, seek: (keyframe: 
   fill(
     section,
     h("h2", {}, "How well it went"),
+    story.beats.length ? h("p", { class: "acted" }, h("b", {}, beatsWords(story.beats))) : null,
+    missing.length ? h("ul", { class: "remarks missing" }, ...missing.map((beat) => h("li", {}, `“${beat.text}” is not acted: ${beat.why}.`))) : null,
     h("dl", { class: "figures" }, ...figures.flatMap(([value, words]) => [h("dt", {}, value), h("dd", {}, words)])),
     remarks.length ? h("ul", { class: "remarks" }, ...remarks) : h("p", { class: "fine" }, "Nothing stands out: every moment came out as it was meant to."),
     h("ul", { class: "labels" }, h("li", {}, plannerWords(report.planner)), h("li", {}, encoderWords(report.encoder)), h("li", {}, backendWords(report.backend))),

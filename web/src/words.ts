@@ -1,6 +1,6 @@
 /** Words that a person understands for what the service names in short. */
 
-import type { Keyframe, Skill, Stage } from "./api";
+import type { Beat, Keyframe, Skill, Stage } from "./api";
 
 export const STAGES: readonly Stage[] = ["plan", "furnish", "narrate", "act", "move", "judge", "film"];
 
@@ -67,4 +67,10 @@ export function noteWords(note: string): string {
   return note
     .replace(/keyframe (\d+)/g, (_, index: string) => `moment ${Number(index) + 1}`)
     .replace(/\b(loco|sitdown|standup|getup|liedown)\b/g, (skill) => SKILL_WORDS[skill as Skill]);
+}
+
+/** "6 of 7 beats of your theme are acted."; of what is asked for, since what is to be left undone is not acted. */
+export function beatsWords(beats: readonly Beat[]): string {
+  const asked = beats.filter((beat) => beat.kind !== "undone");
+  return `${asked.filter((beat) => beat.acted).length} of ${count(asked.length, "beat")} of your theme ${asked.length === 1 ? "is" : "are"} acted.`;
 }

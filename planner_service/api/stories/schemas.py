@@ -155,6 +155,12 @@ class KeyframeShown(BaseModel):
     reached: bool | None
 
 
+class BeatShown(Beat):
+    """One thing that the theme says, and what became of it; as planned while nothing has been moved."""
+
+    acted: bool = Field(description="Whether keyframes show it.")
+
+
 class ShortScriptChosen(BaseModel):
     """A short script that was retrieved, for which beat, and how near its summary is."""
 
@@ -279,7 +285,9 @@ class StoryShown(StorySummary):
     encoder: str | None = Field(description="The sentence encoder that ranked the library.")
     text: str | None
     spans: list[Span] = []
-    beats: list[Beat] = Field([], description="What the theme says happens, in order; `why` says why one is not acted.")
+    beats: list[BeatShown] = Field(
+        [], description="What the theme says, in order; `why` says why one is not acted, and `kind` what it is."
+    )
     repairs: list[str] = Field([], description="What checking changed, and why.")
     keyframes: list[KeyframeShown] = []
     short_scripts: list[ShortScriptChosen] = []

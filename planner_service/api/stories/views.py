@@ -11,8 +11,10 @@ from datetime import UTC, datetime
 from functools import cached_property
 from typing import Final
 
-from motion_backend.motion import FPS, Motion, join
+from motion_backend.motion import FPS, Emotion, Motion, Skill, join
 from planner_service.jobs.story_stages import STAGES, read_segments
+from planner_service.scripts.acted_beats import Shot, acted_beats, leads
+from planner_service.scripts.script import Beat
 from planner_service.store.story_store import Artifact, Record, Stories
 from planner_service.store.tables import GIVEN_UP, state_of
 from scene_graphs.json_fields import Json
@@ -62,6 +64,7 @@ def story_shown(record: Record) -> Json:
             made |= artifact.summary
     frames = segments[-1]["end"] if segments else 0
     complete = bool(made.get("count")) and len(segments) == made.get("count")
+    keyframes = _keyframes(made, segments)
     shown = {
         "method": record.method,
         "character": record.character,
@@ -70,11 +73,12 @@ def story_shown(record: Record) -> Json:
         "text": made.get("text"),
         "graph": made.get("graph", {}),
         "home": made.get("home"),
-        "keyframes": _keyframes(made, segments),
+        "beats": _beats(made, keyframes, segments),
+        "keyframes": keyframes,
         "motion": {"frames": frames, "duration": round(frames / FPS, 3), "complete": complete},
         "report": made.get("report"),
     }
-    lists = {name: made.get(name, []) for name in ("spans", "beats", "repairs", "short_scripts")}
+    lists = {name: made.get(name, []) for name in ("spans", "repairs", "short_scripts")}
     return story_summary(record, frames) | shown | lists
 
 
@@ -85,6 +89,20 @@ def _keyframes(made: Json, segments: list[Json]) -> list[Json]:
     for segment in segments:
         rows[segment["keyframe"]] |= {name: segment[name] for name in ("start", "end", "reached")}
     return rows
+
+
+def _beats(made: Json, keyframes: list[Json], segments: list[Json]) -> list[Json]:
+    """What became of the beats, as far as that is known."""
+    reasons = {segment["keyframe"]: segment.get("reason", "") for segment in segments}
+    shots = [
+        Shot(
+            row["beat"], Emotion(row["mood"]), leads(Skill(row["skill"]), row["furniture"]), row["reached"],
+            reasons.get(row["index"], ""),
+        )
+        for row in keyframes
+    ]  # fmt: skip
+    beats = [Beat.model_validate(row) for row in made.get("beats", [])]
+    return [one.to_dict() for one in acted_beats(beats, shots).outcomes]
 
 
 def failure_of(record: Record) -> Json | None:

@@ -93,14 +93,6 @@ def test_threads_that_search_at_once_find_the_same(tmp_path: Path) -> None:
     assert found == [ours().search(query, 3) for query in queries]
 
 
-def test_a_summary_finds_its_own_script_first() -> None:
-    library = ours()
-    for script in library.scripts[::10]:
-        found = library.search(script.summary, k=1)[0]
-        assert found.script.id == script.id
-        assert found.score > 0.9
-
-
 def test_search_keeps_to_the_emotion_and_room_asked_for() -> None:
     library = ours()
     found = library.search("drinks wine", k=4, emotion="sad", room="living room")
@@ -123,11 +115,10 @@ def test_a_search_for_nothing_is_refused(query: str, options: dict[str, Any], fa
         small(nap()).search(query, **options)
 
 
-def test_a_caption_counts_less_than_a_summary() -> None:
+def test_a_caption_is_no_text_that_a_script_is_found_by() -> None:
     library = small(nap(), nap(id="hands", summary="Hands on belly."))
     (scores,) = library.scores(HashingEncoder().encode(["hands on belly"]))
-    assert scores == pytest.approx([0.7, 1], abs=0.02)
-    assert [found.script.id for found in library.search("hands on belly")] == ["hands", "my-nap"]
+    assert scores[0] < 0.5 < scores[1] == 1
 
 
 def test_scores_are_rounded_so_that_machines_rank_alike() -> None:
@@ -135,15 +126,6 @@ def test_scores_are_rounded_so_that_machines_rank_alike() -> None:
     scores = library.scores(HashingEncoder().encode(["a nap", "a zebra"]))
     assert scores.shape == (2, 1)
     np.testing.assert_array_equal(scores, scores.round(4))
-
-
-def test_words_of_a_text_tell_which_summaries_share_them_and_rare_ones_tell_most() -> None:
-    library = ours()
-    shared = library.sharing("wins the lottery")
-    assert shared.min() == 0
-    assert "lottery" in library.scripts[int(shared.argmax())].summary
-    assert library.sharing("the character").max() == 0
-    assert library.sharing(library.scripts[3].summary)[3] == 1
 
 
 @for_each("odd", ["\x1b[31mred\x1b[0m", "a\x00b", "a\x9b31mb", "a\u202eb", "# a\n![x](http://evil/)", "a\u2028b"])

@@ -79,10 +79,17 @@ WALK_CAPTIONS_OF_THE_PAPER = {
     "walking drunkenly",
 }
 VERBS_THAT_ARE_NOUNS = {
-    *("circles", "drops", "gulps", "hammers", "jokes", "notes", "plans", "plants"),
-    *("records", "replies", "shops", "sips", "stamps", "steps", "tears"),
+    *("circles", "cracks", "drops", "gulps", "hammers", "jokes", "leaves", "notes", "plans", "plants"),
+    *("records", "replies", "shops", "sips", "slides", "stamps", "steps", "swallows", "tears"),
 }
 """Words in our summaries that look like a verb in the present and are none where they stand."""
+USUAL_FURNITURE = {
+    *("bed", "nightstand", "wardrobe", "dresser", "dressing table", "mirror", "table lamp"),
+    *("sofa", "loveseat", "armchair", "ottoman", "coffee table", "side table", "tv stand", "tv", "floor lamp", "plant"),
+    *("dining table", "dining chair", "sideboard", "refrigerator", "wine cabinet", "cabinet", "shelf", "stool"),
+    *("desk", "office chair", "chair", "bookshelf"),
+}
+"""What a home usually has, in the words of scripts. No shipped room has a stove, a sink or a piano."""
 SHORT_STEM = re.compile(r"[^aeiou][aeiou][bdgklmnprt]")
 
 
@@ -116,7 +123,7 @@ def test_a_body_can_act_a_script_out(script: ShortScript) -> None:
 
 
 def test_ids_and_summaries_are_unique() -> None:
-    assert len({script.id for script in SCRIPTS}) == len(SCRIPTS) >= 400
+    assert len({script.id for script in SCRIPTS}) == len(SCRIPTS) >= 560
     assert len({script.summary for script in SCRIPTS}) == len(SCRIPTS)
 
 
@@ -149,6 +156,41 @@ def test_captions_come_from_the_vocabulary_and_all_of_it_is_used() -> None:
     assert {skill: sorted(captions) for skill, captions in used.items()} == CAPTIONS
 
 
+def test_every_caption_is_shown_in_five_scripts_or_more() -> None:
+    shown = Counter(pair for script in SCRIPTS for pair in {(k.skill, k.caption) for k in script.keyframes})
+    assert {pair: count for pair, count in shown.items() if count < 5} == {}
+
+
+def test_furniture_that_a_home_usually_has_is_used_by_ten_scripts_or_more() -> None:
+    users = Counter(word for script in SCRIPTS for word in {keyframe.piece[0] for keyframe in script.keyframes})
+    assert {word: users[word] for word in USUAL_FURNITURE if users[word] < 10} == {}
+
+
+def test_what_is_in_every_tenth_room_of_a_kind_can_be_meant_by_some_word_of_ten_scripts() -> None:
+    """By its own name, by a generic word, or as the nearest of its class."""
+    rooms: dict[str, list[set[str]]] = {kind: [] for kind in ROOM_TYPES}
+    for layout in built_in_layouts():
+        rooms[layout.room_type].append({item.category for item in layout.objects})
+    usual = {
+        category
+        for kept in rooms.values()
+        for category, count in Counter(one for room in kept for one in room).items()
+        if count >= len(kept) / 10 and affordances(category)
+    }
+    users = Counter(
+        category
+        for script in SCRIPTS
+        for category in usual
+        if any(_in_class(category, k.piece[0]) for k in script.keyframes if not k.on_floor)
+    )
+    assert {category: users[category] for category in usual if users[category] < 10} == {}
+
+
+def test_most_touches_say_more_than_that_something_is_touched() -> None:
+    touches = [k.caption for script in SCRIPTS for k in script.keyframes if k.skill is Skill.TOUCH]
+    assert sum(caption.startswith("touch medium height") for caption in touches) < len(touches) / 4
+
+
 def test_the_captions_of_the_paper_are_all_there() -> None:
     assert set(CAPTIONS["sitdown"]) >= SIT_CAPTIONS_OF_THE_PAPER
     assert set(CAPTIONS["liedown"]) >= LIE_CAPTIONS_OF_THE_PAPER
@@ -165,7 +207,7 @@ def test_furniture_is_known_and_affords_what_is_done_with_it() -> None:
 
 
 def test_the_furniture_is_found_in_rooms_of_that_kind() -> None:
-    """In a fifth of the shipped rooms or more: itself, or else what a room search would take for it."""
+    """In a tenth of the shipped rooms or more: itself, or else what a room search would take for it."""
     rooms: dict[str, list[set[str]]] = {kind: [] for kind in ROOM_TYPES}
     for layout in built_in_layouts():
         rooms[layout.room_type].append({item.category for item in layout.objects})
@@ -181,7 +223,7 @@ def test_the_furniture_is_found_in_rooms_of_that_kind() -> None:
             sum(any(same(one, word) and need in affordances(one) for one in room) for room in rooms[kind])
             for same in (_is, _in_class, _in_group)
         ) / len(rooms[kind])
-        if share < 0.2:
+        if share < 0.1:
             rare[kind, word, need] = share
     assert rare == {}
 

@@ -19,7 +19,7 @@ ENDINGS = {"succeeded": "done", "failed": "failed", "cancelled": "cancelled"}
 def keyframe(index: int) -> dict[str, object]:
     return {
         "index": index, "skill": "loco", "emotion": "unhappy", "mood": "sad", "caption": "walk", "furniture": "floor",
-        "object_id": None, "room": "study", "short_script_id": None,
+        "object_id": None, "room": "study", "short_script_id": None, "beat": None,
     }  # fmt: skip
 
 
@@ -86,6 +86,20 @@ def test_every_story_fits_the_schema_it_is_answered_in(story: Record) -> None:
     assert shown.motion.frames == max([k.end or 0 for k in shown.keyframes], default=0)
     assert shown.motion.complete == (bool(shown.keyframes) and all(k.end is not None for k in shown.keyframes))
     assert (shown.error is not None) == (shown.state == "failed")
+
+
+def test_a_beat_is_acted_as_planned_until_the_body_does_not_reach_it() -> None:
+    made = artifacts(2, 2)
+    for row in made[0].summary["keyframes"]:
+        row["beat"] = row["index"]
+    made[0].summary["beats"] = [
+        {"text": "sits"}, {"text": "reads"}, {"text": "flies", "why": "nobody can"}, {"text": "dozes", "kind": "undone"},
+    ]  # fmt: skip
+    made[-1].summary |= {"reached": False, "reason": "too far"}
+    planned, moved = (StoryShown.model_validate(story_shown(record(some, "PENDING"))) for some in (made[:1], made))
+    assert [beat.acted for beat in planned.beats] == [True, True, False, False]
+    assert [beat.acted for beat in moved.beats] == [True, False, False, False]
+    assert [beat.why for beat in moved.beats[1:3]] == ["the body did not reach it: too far", "nobody can"]
 
 
 def test_a_segment_says_which_frames_can_be_had() -> None:

@@ -1,0 +1,241 @@
+"""What people do at home, and how a body shows it: the deed that the words of a beat tell of, from data/deeds.toml."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+from typing import Final
+
+from motion_backend.motion import Skill
+from planner_service.scripts.captions import captions
+from planner_service.scripts.script import EMOTIONS
+from planner_service.scripts.script_words import NEEDS, affords
+from planner_service.themes.lexicon import gerund, lemma_of
+from planner_service.themes.sentence_parser import Clause, tokens_of
+from scene_graphs import furniture
+from scene_graphs.data_tables import read_table, require_known, table
+
+_GAP: Final = "..."
+_MAX_GAP: Final = 4
+"""Words that a gap of a pattern may stand for."""
+_WAYS: Final = re.compile(
+    r"\b(?:to|into|through|around|about|along|across|towards?|down|up|out of|from room to|back)\b.*?"
+    r"\b(?:rooms?|kitchen|hall(?:way)?|corridor|bedroom|study|house|home|flat|apartment|stairs|door|window|bathroom)\b",
+    re.IGNORECASE,
+)
+"""A way through a home, whatever the verb that goes it."""
+_IT: Final = frozenset(("it", "there", "one", "them"))
+Pattern = tuple[frozenset[str], ...]
+"""Base forms of each word; an empty set is a gap."""
+
+
+@table
+class DeedRow:
+    """One thing that people do, and how a body shows it."""
+
+    says: tuple[str, ...]
+    skill: Skill
+    at: tuple[str, ...] = ()
+    captions: tuple[str, ...] = ()
+    lying: tuple[str, ...] = ()
+    seated: tuple[str, ...] = ()
+    rests: bool = False
+    things: bool = False
+    mood: str = ""
+
+
+@table
+class KeptThings:
+    """Things, and the furniture where they are, the likeliest first."""
+
+    things: str
+    at: tuple[str, ...]
+
+
+@table
+class DeedTable:
+    """data/deeds.toml."""
+
+    not_furniture: str
+    rooms: dict[str, tuple[str, ...]]
+    usual: dict[str, dict[str, tuple[str, ...]]]
+    kept: tuple[KeptThings, ...]
+    stands_on: dict[str, str]
+    seats_at: dict[str, tuple[str, ...]]
+    deed: tuple[DeedRow, ...]
+
+    def __post_init__(self) -> None:
+        known = captions()
+        for row in self.deed:
+            for skill, some in ((row.skill, row.captions), (Skill.LIEDOWN, row.lying), (Skill.SITDOWN, row.seated)):
+                require_known(f"deed {row.says[0]!r}", some, known.get(skill.value, ()))
+            if row.mood:
+                require_known(f"deed {row.says[0]!r}: mood", (row.mood,), [mood.value for mood in EMOTIONS])
+            for word in row.at:
+                if word != "floor" and not furniture.is_known(word):
+                    raise ValueError(f"deed {row.says[0]!r}: {word!r} is no furniture we know")
+
+    @cached_property
+    def patterns(self) -> tuple[tuple[Pattern, DeedRow], ...]:
+        """Every way to say a deed, in the order of the rows."""
+        return tuple((_pattern(says), row) for row in self.deed for says in row.says)
+
+    @cached_property
+    def places(self) -> Mapping[str, tuple[str, ...]]:
+        """Where each thing is."""
+        found: dict[str, tuple[str, ...]] = {}
+        for kept in self.kept:
+            for thing in kept.things.split():
+                found.setdefault(thing, kept.at)
+        return found
+
+
+@cache
+def deed_table() -> DeedTable:
+    """The deeds we know."""
+    known: DeedTable = read_table("planner_service", "deeds.toml", DeedTable)
+    return known
+
+
+@dataclass(frozen=True)
+class Deed:
+    """What a beat has a body do."""
+
+    row: DeedRow
+    skill: Skill
+    pieces: tuple[str, ...]
+    """Furniture where it may be done, the likeliest first; empty: wherever one is."""
+    named: bool
+    """Whether the beat itself names the furniture."""
+
+
+def deed_of(clause: Clause, about: str = "") -> Deed | None:
+    """The deed of a clause; None where nothing in its words is anything that a body does at home.
+
+    `about` are the words that "it" and "there" may mean furniture of.
+    """
+    found = _row(clause, about)
+    if found is None:
+        return None
+    named = _named(clause, about)
+    skill = found.skill
+    need = NEEDS.get(skill)
+    if skill is Skill.SITDOWN and not found.rests and any(_is_bed(piece) for piece in named) and clause.verb != "sit":
+        skill, need = Skill.LIEDOWN, "lie"
+    if skill is Skill.LIEDOWN and named and not any(affords(piece, "lie") for piece in named):
+        skill, need = Skill.SITDOWN, "sit"  # "collapses into the armchair"
+    if need is None:
+        pieces = [piece for piece in named if furniture.affordances(piece)]
+        return Deed(found, skill, tuple(pieces), bool(pieces))
+    fitting = [piece for piece in named if affords(piece, need)]
+    if skill is Skill.SITDOWN and not fitting:
+        fitting = [seat for piece in named for seat in deed_table().seats_at.get(piece, ())]
+    if skill is Skill.SITDOWN and re.search(r"\bon the (?:floor|ground|rug|carpet)\b", clause.text):
+        fitting = ["floor"]
+    if fitting:
+        return Deed(found, skill, tuple(fitting), True)
+    kept = [piece for piece in _kept(clause) if affords(piece, need)] if skill is Skill.TOUCH else []
+    if skill is Skill.TOUCH and not (kept or found.at):
+        return None
+    order = (*kept, *found.at) if found.things else (*found.at, *kept)
+    return Deed(found, skill, tuple(dict.fromkeys(order)), False)
+
+
+def _named(clause: Clause, about: str) -> list[str]:
+    """Furniture that a clause names, or means by "it" and "there"."""
+    return pieces_in(clause.text) or (pieces_in(about)[-1:] if _IT & set(clause.lemmas[1:]) else [])
+
+
+def _row(clause: Clause, about: str) -> DeedRow | None:
+    """The first row that the clause's words fit, from its verb on; else from a later -ing on; else by its things."""
+    table = deed_table()
+    for lemmas in _starts(clause):
+        for pattern, row in table.patterns:
+            if (pattern[0] or not clause.verb) and _fits(pattern, lemmas):
+                return row
+    return _by_things(clause, about)
+
+
+def _starts(clause: Clause) -> Iterator[tuple[str, ...]]:
+    yield ("cannot", *clause.lemmas) if clause.unable else clause.lemmas
+    words = {token.low for token in tokens_of(clause.text)}
+    for place, lemma in enumerate(clause.lemmas[1:], 1):
+        if gerund(lemma) in words and lemma not in ("be",):
+            yield clause.lemmas[place:]
+
+
+def _by_things(clause: Clause, about: str) -> DeedRow | None:
+    """What is done with things by a verb nobody foresaw: a hand is laid on them; or a way is gone."""
+    if not clause.verb or clause.verb in (
+        "be",
+        "have",
+        "become",
+        "need",
+        "like",
+        "love",
+        "hate",
+        "know",
+        "miss",
+        "own",
+    ):
+        return None
+    if any(affords(piece, "touch") for piece in _named(clause, about)) or _kept(clause):
+        return DeedRow((clause.verb,), Skill.TOUCH, things=True)
+    return DeedRow((clause.verb,), Skill.LOCO) if _WAYS.search(clause.text) else None
+
+
+def _kept(clause: Clause) -> tuple[str, ...]:
+    """Where the first thing is that a clause names after its verb."""
+    return next((deed_table().places[word] for word in clause.lemmas[1:] if word in deed_table().places), ())
+
+
+def _fits(pattern: Pattern, lemmas: Sequence[str]) -> bool:
+    """Whether words begin as a pattern says."""
+    if not pattern:
+        return True
+    first, rest = pattern[0], pattern[1:]
+    if not first:  # a gap
+        return any(_fits(rest, lemmas[skip:]) for skip in range(min(_MAX_GAP, len(lemmas)) + 1))
+    return bool(lemmas) and lemmas[0] in first and _fits(rest, lemmas[1:])
+
+
+def _pattern(says: str) -> Pattern:
+    return tuple(
+        frozenset() if word == _GAP else frozenset(form for one in word.split("|") for form in (one, lemma_of(one)))
+        for word in says.split()
+    )
+
+
+def pieces_in(text: str) -> list[str]:
+    """Furniture words of a text in its order, longest names first: "dining table", not "table"."""
+    words = [token.low for token in tokens_of(text) if token.text[:1].isalpha()]
+    others = deed_table().not_furniture.split()
+    found: list[str] = []
+    at = 0
+    while at < len(words):
+        size = next((size for size in (3, 2, 1) if _names(words[at : at + size], size)), 0)
+        if size and words[at] not in others:
+            piece = furniture.canonical(" ".join(words[at : at + size])).replace("_", " ")
+            found.append(deed_table().stands_on.get(piece, piece))
+        at += size or 1
+    return found
+
+
+def _names(words: Sequence[str], size: int) -> bool:
+    """Whether these very words, and not only the last of them, are a furniture word."""
+    whole = " ".join(words)
+    if len(words) < size or not furniture.is_known(whole):
+        return False
+    return size == 1 or furniture.canonical(whole) != furniture.canonical(" ".join(words[1:]))
+
+
+def _is_bed(piece: str) -> bool:
+    return furniture.group_of(piece) == "bed"
+
+
+def room_of(clause: Clause) -> str | None:
+    """The room type that the words of a clause make one think of: "cooks" is the kitchen's."""
+    words = {*clause.lemmas, *pieces_in(clause.text)}
+    return next((room for room, those in deed_table().rooms.items() if words & set(those)), None)

@@ -1,0 +1,332 @@
+"""Keyframes for the beats of a theme, written from the captions and furniture there are (SIMS 3.2).
+
+The writer keeps track of the body: what is done sitting goes on where one sits already, and two beats that one posture
+shows are one keyframe. A part of a library's short script is taken in place of what would be written where it does the
+same deed, in the same mood.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Final
+
+import numpy as np
+
+from motion_backend.motion import Emotion, Skill
+from planner_service.composition.deed_lexicon import Deed, deed_of, deed_table, pieces_in
+from planner_service.scripts.built_in_scripts import built_in
+from planner_service.scripts.caption_fallbacks import WALKS, usual
+from planner_service.scripts.script import Beat, PlannedKeyframe, ShortScript
+from planner_service.scripts.script_words import NEEDS, affords
+from planner_service.themes.beats import ReadBeat
+from scene_graphs import furniture
+
+NOT_ACTED: Final = {
+    "undone": "it is not done",
+    "memory": "it is remembered, not done now",
+    "other": "somebody or something else does it",
+    "speech": "it is said; the body does not speak",
+}
+"""Why beats of these kinds are not acted."""
+_UNSHOWN: Final = "none of the captions shows it"
+_MOODY: Final = {
+    Emotion.HAPPY: "walk excitedly with arms opened",
+    Emotion.STRESSED: "pacing back and forth",
+    Emotion.RELAXED: "strolling with hands in pockets",
+    Emotion.TIRED: "shuffling sleepily forward",
+}
+"""How a mood alone is shown on one's feet, where it is not the mood's usual walk."""
+_MIN_SHARE: Final = 0.3
+"""Share of a caption's uses in the library that must be of a mood for it to be one of the mood's."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A stretch of a short script that shows a deed."""
+
+    script: ShortScript
+    score: float
+    keyframes: tuple[PlannedKeyframe, ...]
+    """The deed's, with the walk that leads to it."""
+
+
+Finder = Callable[[ReadBeat, Deed], Part | None]
+"""Looks for a part of a library's script that shows a beat's deed."""
+
+
+@dataclass
+class KeyframeWriter:
+    """Writes the keyframes of one long script, beat by beat."""
+
+    seed: int = 0
+    home: Collection[str] | None = None
+    """Categories of furniture that a given home has; None: any."""
+    find: Finder = lambda _beat, _deed: None
+    keyframes: list[PlannedKeyframe] = field(default_factory=list)
+    why: dict[int, str] = field(default_factory=dict)
+    """Beats that are not acted, with the reason."""
+    parts: list[tuple[int, Part]] = field(default_factory=list)
+    """Beats that are served by a part of a script."""
+    _resting: PlannedKeyframe | None = None
+    _about: str = ""
+    """The words that named furniture last."""
+    _plain: bool = False
+    """Whether the posture shows nothing yet but that one rests."""
+
+    def write(self, beats: Sequence[ReadBeat]) -> None:
+        """Keyframes for all of them, in order; every beat is shown by one or is in `why`."""
+        for index, read in enumerate(beats):
+            beat = read.beat
+            deed = deed_of(read.clause, self._about) if beat.kind == "deed" else None
+            self._about = read.text if pieces_in(read.text) else self._about
+            if beat.kind in NOT_ACTED:
+                self.why[index] = NOT_ACTED[beat.kind]
+            elif deed is not None:
+                self._do(index, read, deed)
+            elif beat.kind == "feeling" or (read.felt is not None and read.sure):
+                self._feel(index, beats)
+            else:
+                self.why[index] = _UNSHOWN
+
+    def _do(self, index: int, read: ReadBeat, deed: Deed) -> None:
+        mood = read.beat.emotion
+        if deed.row.mood and mood is Emotion.NEUTRAL:
+            mood = Emotion(deed.row.mood)
+        match deed.skill:
+            case Skill.STANDUP | Skill.GETUP:
+                self._rise(index, deed, mood)
+            case Skill.LOCO if deed.row.seated and self._resting is not None and self._resting.skill is Skill.SITDOWN:
+                self._rest(index, read, deed, mood, Skill.SITDOWN, deed.row.seated)
+            case Skill.LOCO:
+                self._walk(index, read, deed, mood)
+            case Skill.TOUCH:
+                self._add(index, read, deed, mood, Skill.TOUCH, self._touching(index, deed, mood))
+                self._resting = None
+            case Skill.SITDOWN if self._lies() and deed.row.lying and not deed.named:
+                self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)
+            case _:
+                shown = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
+                self._rest(index, read, deed, mood, deed.skill, shown)
+
+    def _lies(self) -> bool:
+        return self._resting is not None and self._resting.skill is Skill.LIEDOWN
+
+    def _rest(
+        self, index: int, read: ReadBeat, deed: Deed, mood: Emotion, skill: Skill, captions: Sequence[str]
+    ) -> None:
+        """Sit or lie: where one rests already if that does, with the caption of what is done there."""
+        resting = self._resting
+        here = resting is not None and self._same_place(resting, deed, skill)
+        shown = captions or self._of_mood(skill, mood)
+        if resting is not None and here and resting.skill is skill:
+            generic = deed.row.rests or deed.row.captions
+            if self._plain or not generic or resting.caption in captions:
+                if self._plain and generic:
+                    self.keyframes[-1] = self._resting = resting.model_copy(
+                        update={"caption": self._one_of(shown, mood, index, skill), "emotion": mood.value}
+                    )
+                    self._plain = False
+                self._show(index)
+                return
+        if resting is not None and here and skill is Skill.LIEDOWN and resting.skill is Skill.SITDOWN:
+            deed = Deed(deed.row, skill, (resting.furniture,), True)
+        elif resting is not None and here and not deed.named:
+            deed = Deed(deed.row, skill, (resting.furniture,), True)
+        self._add(index, read, deed, mood, skill, shown)
+        self._resting, self._plain = self.keyframes[-1], not (deed.row.rests or captions)
+
+    def _same_place(self, resting: PlannedKeyframe, deed: Deed, skill: Skill) -> bool:
+        kinds = furniture.categories_of(resting.furniture)
+        same = resting.furniture in deed.pieces or any(
+            not kinds.isdisjoint(furniture.categories_of(piece)) for piece in deed.pieces if piece != "floor"
+        )
+        return (same or not deed.named) and affords(resting.furniture, NEEDS[skill])
+
+    def _rise(self, index: int, deed: Deed, mood: Emotion) -> None:
+        """Get up; who does so first of all was lying or sitting before."""
+        if self._resting is None:
+            last = self.keyframes[-1] if self.keyframes else None
+            if last is not None and last.skill in (Skill.STANDUP, Skill.GETUP):
+                self._show(index)
+                return
+            skill = Skill.LIEDOWN if deed.skill is Skill.GETUP else Skill.SITDOWN
+            need = NEEDS[skill]
+            piece = next((one for one in (*deed.pieces, "bed", "chair") if affords(one, need) and self._has(one)), "")
+            if not piece:
+                self.why[index] = "there is nothing to get up from"
+                return
+            self._put(index, skill, mood, self._one_of(self._of_mood(skill, mood), mood, index, skill), piece, None)
+            self._resting = self.keyframes[-1]
+        resting = self._resting
+        skill = Skill.GETUP if resting.skill is Skill.LIEDOWN else Skill.STANDUP
+        pace = {"hurried": "quickly", "angry": "quickly", "tired": "slowly", "sad": "slowly", "drunk": "slowly"}.get(
+            mood.value, ""
+        )
+        self._put(index, skill, mood, usual(skill, mood, pace), resting.furniture, resting.room)
+        self._resting = None
+
+    def _walk(self, index: int, read: ReadBeat, deed: Deed, mood: Emotion) -> None:
+        captions = deed.row.captions or _manner(read) or self._of_mood(Skill.LOCO, mood)
+        caption = self._one_of(captions, mood, index, Skill.LOCO)
+        last = self.keyframes[-1] if self.keyframes else None
+        piece = next((one for one in deed.pieces if self._has(one)), "floor")
+        if last is not None and last.skill is Skill.LOCO and (last.caption, last.furniture) == (caption, piece):
+            others = [one for one in captions if one != caption]
+            if not others:
+                self._show(index)
+                return
+            caption = others[0]
+        self._put(index, Skill.LOCO, mood, caption, piece, read.room)
+        self._resting = None
+
+    def _feel(self, index: int, beats: Sequence[ReadBeat]) -> None:
+        """A mood alone: shown by what is done in it next, or was just done; else by a walk."""
+        mood = beats[index].beat.emotion
+        for later in range(index + 1, len(beats)):
+            if beats[later].beat.emotion is not mood or beats[later].clause.sentence > beats[index].clause.sentence + 1:
+                break
+            if beats[later].beat.kind == "deed" and deed_of(beats[later].clause) is not None:
+                return
+        last = self.keyframes[-1] if self.keyframes else None
+        if last is not None and last.mood is mood:
+            self._show(index)
+        elif last is not None and self._resting is not None and self._plain:
+            caption = self._one_of(self._of_mood(last.skill, mood), mood, index, last.skill)
+            self.keyframes[-1] = self._resting = last.model_copy(update={"caption": caption, "emotion": mood.value})
+            self._show(index)
+        else:
+            self._put(index, Skill.LOCO, mood, _MOODY.get(mood, WALKS[mood]), "floor", beats[index].room)
+            self._resting = None
+
+    def _add(
+        self, index: int, read: ReadBeat, deed: Deed, mood: Emotion, skill: Skill, captions: Sequence[str]
+    ) -> None:
+        """A keyframe at furniture: a part of a script where one does the same, else written."""
+        part = self.find(read, deed) if mood is read.beat.emotion else None
+        if part is not None and all(self._has(keyframe.piece[0]) for keyframe in part.keyframes):
+            self.parts.append((index, part))
+            for keyframe in part.keyframes:
+                update = {"beat": index, "short_script": len(self.parts) - 1, "room": read.room or part.script.room}
+                self.keyframes.append(keyframe.model_copy(update=update))
+            return
+        piece = self._piece(index, deed, skill)
+        if not piece:
+            self.why[index] = f"the home has nothing to {NEEDS[skill]} {'at' if skill is Skill.TOUCH else 'on'} for it"
+            return
+        self._put(index, skill, mood, self._one_of(captions, mood, index, skill), piece, read.room)
+
+    def _piece(self, index: int, deed: Deed, skill: Skill) -> str:
+        """Where it is done: as the beat says, else as is usual, of what the home has."""
+        need = NEEDS[skill]
+        usual_ones = [piece for those in deed_table().usual.values() for piece in those[need]]
+        room = next((keyframe.room for keyframe in reversed(self.keyframes) if keyframe.room), None)
+        local = deed_table().usual[room][need] if room and not deed.pieces else ()
+        last = [k.furniture for k in self.keyframes[-2:] if k.furniture in deed.pieces and not deed.named]
+        options = [*last, *deed.pieces, *local, *(("sofa", "table") if not deed.pieces else ()), *usual_ones]
+        return next((piece for piece in options if affords(piece, need) and self._has(piece)), "")
+
+    def _has(self, word: str) -> bool:
+        if self.home is None or word == "floor":
+            return True
+        kinds = furniture.categories_of(word)
+        return any(category in kinds for category in self.home)
+
+    def _put(self, index: int, skill: Skill, mood: Emotion, caption: str, piece: str, room: str | None) -> None:
+        self.keyframes.append(
+            PlannedKeyframe.model_validate(
+                {
+                    "skill": skill,
+                    "emotion": mood.value,
+                    "caption": caption,
+                    "furniture": piece,
+                    "beat": index,
+                    "room": room,
+                }
+            )
+        )
+
+    def _show(self, index: int) -> None:
+        """The last keyframe shows this beat too."""
+        last = self.keyframes[-1]
+        self.keyframes[-1] = last.model_copy(update={"also": (*last.also, index)})
+        if self._resting is not None:
+            self._resting = self.keyframes[-1]
+
+    def _touching(self, index: int, deed: Deed, mood: Emotion) -> Sequence[str]:
+        if deed.row.captions:
+            return deed.row.captions
+        return (
+            "touch medium height with the right hand",
+            "touch medium height",
+            "touch medium height with the left hand",
+        )
+
+    def _of_mood(self, skill: Skill, mood: Emotion) -> Sequence[str]:
+        """Captions that the library uses in a mood mostly, and that show nothing else."""
+        return _captions_of(skill, mood) or (usual(skill, mood),)
+
+    def _one_of(self, captions: Sequence[str], mood: Emotion, index: int, skill: Skill) -> str:
+        """One caption by the seed, of those that the library uses in the mood if there are some."""
+        fitting = [caption for caption in captions if _shares().get((skill, caption), {}).get(mood, 0.0) >= 0.15]
+        options = fitting or list(captions)
+        return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
+
+
+def _manner(read: ReadBeat) -> tuple[str, ...]:
+    """How a walk is gone that the words describe."""
+    words = set(read.clause.lemmas)
+    for names, caption in _MANNERS.items():
+        if words & set(names.split()):
+            return (caption,)
+    return ()
+
+
+_MANNERS: Final = {
+    "tiptoe quietly silently softly": "walk on tiptoes",
+    "quickly fast hastily hurriedly": "walking quickly",
+    "slowly thoughtfully": "walking slowly, hands behind back",
+    "carefully cautiously": "walking carefully, arms out for balance",
+    "wearily heavily": "walk wearily, dragging the feet",
+    "angrily furiously": "angrily walking",
+    "proudly": "uplifted head walking",
+    "cheerfully happily merrily": "excited walk",
+}
+
+
+@cache
+def _shares() -> dict[tuple[Skill, str], dict[Emotion, float]]:
+    """How the library's keyframes of each caption are shared among the moods."""
+    counts: dict[tuple[Skill, str], Counter[Emotion]] = {}
+    for script in built_in():
+        for keyframe in script.keyframes:
+            counts.setdefault((keyframe.skill, keyframe.caption), Counter())[keyframe.mood] += 1
+    return {key: {mood: n / moods.total() for mood, n in moods.items()} for key, moods in counts.items()}
+
+
+@cache
+def _captions_of(skill: Skill, mood: Emotion) -> tuple[str, ...]:
+    """Captions of a skill that show a mood and no deed, in the order of the alphabet."""
+    deeds = {caption for row in deed_table().deed for caption in (*row.captions, *row.lying, *row.seated) if row.rests or row.skill is Skill.LOCO}  # fmt: skip
+    shares = _shares()
+    return tuple(
+        sorted(
+            caption
+            for (of, caption), moods in shares.items()
+            if of is skill
+            and caption not in deeds
+            and not re.search("phone|to the front|hips", caption)
+            and moods.get(mood, 0.0) >= _MIN_SHARE
+        )
+    )
+
+
+def beats_with_reasons(beats: Sequence[ReadBeat], why: dict[int, str], shown: Collection[int]) -> tuple[Beat, ...]:
+    """The beats as they are planned: those that no keyframe shows with the reason."""
+    return tuple(
+        read.beat if index in shown else read.beat.model_copy(update={"why": why.get(index, _UNSHOWN)})
+        for index, read in enumerate(beats)
+    )

@@ -1,0 +1,139 @@
+"""Which beats of a theme its keyframes show: as they were planned, and once the body has done them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from motion_backend.motion import Emotion, Skill
+from planner_service.scripts.script import Beat, Keyframe, LongScript
+from planner_service.scripts.script_words import is_floor
+from scene_graphs.json_fields import Json
+
+UNDONE: Final = "left undone, as the theme asks"
+_RISINGS: Final = (Skill.STANDUP, Skill.GETUP)
+
+
+def connects(keyframe: Keyframe) -> bool:
+    """Whether it only leads to what is done next: a walk to a piece of furniture, or a rising."""
+    return leads(keyframe.skill, keyframe.furniture)
+
+
+def leads(skill: Skill, furniture: str) -> bool:
+    """The same of a keyframe's words."""
+    return skill in _RISINGS or (skill is Skill.LOCO and not is_floor(furniture))
+
+
+@dataclass(frozen=True)
+class Shot:
+    """What of a keyframe says whether its beat is acted."""
+
+    beat: int | None
+    """Index of the beat it serves."""
+    mood: Emotion
+    connects: bool
+    """Whether it only leads to what is done next."""
+    reached: bool | None = None
+    """None while it has not been moved."""
+    reason: str = ""
+    """Why it was not reached."""
+    seconds: float = 0.0
+    """How long it is on the screen."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one beat."""
+
+    beat: Beat
+    why: str
+    """Why it is not acted; empty where it is."""
+
+    @property
+    def acted(self) -> bool:
+        """Whether the film shows it."""
+        return not self.why
+
+    def to_dict(self) -> Json:
+        """Plain values for JSON."""
+        return {**self.beat.model_dump(mode="json"), "acted": self.acted, "why": self.why}
+
+
+@dataclass(frozen=True)
+class ActedBeats:
+    """What became of all beats of a theme."""
+
+    outcomes: tuple[Outcome, ...]
+    """One a beat, in order."""
+    spare_share: float
+    """Share of the screen time that serves no beat, 0 to 1; 0 while nothing has been moved."""
+
+    @property
+    def asked(self) -> int:
+        """How many beats the theme asks for."""
+        return sum(one.beat.asked for one in self.outcomes)
+
+    @property
+    def acted(self) -> int:
+        """How many of those are acted."""
+        return sum(one.acted for one in self.outcomes)
+
+    @property
+    def missing(self) -> tuple[Outcome, ...]:
+        """Those that are asked for and not acted."""
+        return tuple(one for one in self.outcomes if one.beat.asked and not one.acted)
+
+    @property
+    def undone(self) -> tuple[Outcome, ...]:
+        """Those that are left undone, as asked."""
+        return tuple(one for one in self.outcomes if not one.beat.asked)
+
+    def lines(self) -> list[str]:
+        """In words: how many are acted, the missing ones and why, and what is left undone; none without beats."""
+        if not self.outcomes:
+            return []
+        share = f"{self.spare_share:.0%} of the screen time serves none of them"
+        return [
+            f"{self.acted} of {self.asked} beats of your theme are acted; {share}",
+            *(f"not acted: {one.beat.text} ({one.why})" for one in self.missing),
+            *(f"left undone, as asked: {one.beat.text}" for one in self.undone),
+        ]
+
+    def to_dict(self) -> Json:
+        """Plain values for JSON."""
+        return {
+            "beats": [one.to_dict() for one in self.outcomes],
+            "beats_asked": self.asked,
+            "beats_acted": self.acted,
+            "screen_time_without_beat": round(self.spare_share, 4) if self.outcomes else None,
+        }
+
+
+def acted_beats(beats: Sequence[Beat], shots: Sequence[Shot]) -> ActedBeats:
+    """What became of the beats by the keyframes that there are, moved or still to be moved."""
+    whole = sum(shot.seconds for shot in shots)
+    spare = sum(shot.seconds for shot in shots if shot.beat is None)
+    outcomes = (Outcome(beat, _why(beat, index, shots)) for index, beat in enumerate(beats))
+    return ActedBeats(tuple(outcomes), spare / whole if whole else 0.0)
+
+
+def planned_beats(script: LongScript) -> ActedBeats:
+    """What will become of a script's beats if the body reaches everything."""
+    shots = [Shot(keyframe.beat, keyframe.mood, connects(keyframe)) for keyframe in script.keyframes]
+    return acted_beats(script.beats, shots)
+
+
+def _why(beat: Beat, index: int, shots: Sequence[Shot]) -> str:
+    """Why a beat is not acted; empty where it is."""
+    if beat.why or not beat.asked:
+        return beat.why or UNDONE
+    own = [shot for shot in shots if shot.beat == index]
+    if beat.kind == "feeling" and not own and beat.emotion is not Emotion.NEUTRAL:
+        own = [shot for shot in shots if shot.mood is beat.emotion]
+    if not own:
+        return "no keyframe is left that shows it"
+    # What only leads there shows a beat just where nothing else does: "walks to the window".
+    own = [shot for shot in own if not shot.connects] or own
+    lost = [shot for shot in own if shot.reached is False]
+    return f"the body did not reach it: {lost[0].reason or 'no reason is known'}" if len(lost) == len(own) else ""

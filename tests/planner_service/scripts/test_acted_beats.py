@@ -1,0 +1,107 @@
+"""What became of a theme's beats, by the keyframes that there are and by what the body did."""
+
+from __future__ import annotations
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from motion_backend.motion import Emotion, Skill
+from planner_service.scripts.acted_beats import Shot, acted_beats, connects, planned_beats
+from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe
+
+SITS, READS, NO_SUPPER = Beat(text="sits down"), Beat(text="reads"), Beat(text="eats no supper", kind="undone")
+
+
+def shot(beat: int | None, reached: bool | None = None, **more: object) -> Shot:
+    """A deed of a second."""
+    fields = {"mood": Emotion.NEUTRAL, "connects": False, "seconds": 1.0, **more}
+    return Shot(beat=beat, reached=reached, **fields)  # type: ignore[arg-type]
+
+
+SHOTS = st.builds(
+    Shot,
+    beat=st.none() | st.integers(0, 3),
+    mood=st.sampled_from(Emotion),
+    connects=st.booleans(),
+    reached=st.none() | st.booleans(),
+    seconds=st.floats(0, 9),
+)
+BEATS = st.builds(
+    Beat,
+    text=st.just("sits"),
+    emotion=st.sampled_from(Emotion),
+    kind=st.sampled_from(["deed", "feeling", "undone", "other"]),
+    why=st.sampled_from(["", "nobody can fly"]),
+)
+
+
+@given(st.lists(BEATS, max_size=4), st.lists(SHOTS, max_size=8))
+def test_every_beat_is_acted_or_there_is_a_reason_and_shares_are_shares(beats: list[Beat], shots: list[Shot]) -> None:
+    found = acted_beats(beats, shots)
+    assert len(found.outcomes) == len(beats)
+    assert all(one.acted == (not one.why) for one in found.outcomes)
+    assert found.acted + len(found.missing) == found.asked
+    assert found.asked + len(found.undone) == len(beats)
+    assert 0 <= found.spare_share <= 1
+    assert not any(one.acted for one in found.undone)
+    assert all(one.why == one.beat.why for one in found.outcomes if one.beat.why)
+
+
+@given(st.lists(BEATS, max_size=4), st.lists(SHOTS, min_size=1, max_size=8), st.data())
+def test_nothing_more_is_acted_when_a_keyframe_is_dropped(
+    beats: list[Beat], shots: list[Shot], data: st.DataObject
+) -> None:
+    lost = data.draw(st.integers(0, len(shots) - 1))
+    left = shots[:lost] + shots[lost + 1 :]
+    if shots[lost].reached is not False and not shots[lost].connects:
+        assert acted_beats(beats, left).acted <= acted_beats(beats, shots).acted
+
+
+def test_a_beat_without_a_keyframe_is_not_acted_though_nobody_said_why() -> None:
+    assert [one.acted for one in acted_beats([SITS, READS], [shot(0)]).outcomes] == [True, False]
+
+
+def test_a_beat_whose_deeds_the_body_did_not_reach_is_not_acted_and_says_so() -> None:
+    walk = shot(0, True, connects=True)
+    (lost,) = acted_beats([SITS], [walk, shot(0, False, reason="the chair is behind a wall")]).outcomes
+    assert lost.why == "the body did not reach it: the chair is behind a wall"
+    assert acted_beats([SITS], [walk, shot(0, False), shot(0, True)]).acted == 1
+    assert acted_beats([Beat(text="walks to the window")], [walk]).acted == 1
+
+
+def test_a_feeling_is_acted_by_the_mood_of_other_beats_and_a_deed_is_not() -> None:
+    for kind, acted in (("feeling", True), ("deed", False)):
+        beat = Beat(text="is sad", kind=kind, emotion=Emotion.SAD)  # type: ignore[arg-type]
+        assert acted_beats([SITS, beat], [shot(0, mood=Emotion.SAD)]).outcomes[1].acted is acted
+        assert not acted_beats([SITS, beat], [shot(0)]).outcomes[1].acted
+
+
+def test_the_words_name_what_is_missing_and_apart_from_it_what_is_left_undone() -> None:
+    found = acted_beats([SITS, READS, NO_SUPPER], [shot(0, seconds=3.0), shot(None, seconds=1.0)])
+    assert found.lines() == [
+        "1 of 2 beats of your theme are acted; 25% of the screen time serves none of them",
+        "not acted: reads (no keyframe is left that shows it)",
+        "left undone, as asked: eats no supper",
+    ]
+    told = found.to_dict()
+    assert (told["beats_asked"], told["beats_acted"], told["screen_time_without_beat"]) == (2, 1, 0.25)
+    assert [(one["text"], one["acted"]) for one in told["beats"]] == [
+        ("sits down", True), ("reads", False), ("eats no supper", False),
+    ]  # fmt: skip
+
+
+def test_without_a_theme_nothing_is_said() -> None:
+    found = acted_beats([], [shot(None)])
+    assert (found.lines(), found.to_dict()["screen_time_without_beat"]) == ([], None)
+
+
+def test_walks_to_furniture_and_risings_connect_and_what_is_done_does_not() -> None:
+    rows = [(Skill.LOCO, "sofa"), (Skill.LOCO, "floor"), (Skill.GETUP, "floor"), (Skill.TOUCH, "table")]
+    told = [connects(Keyframe(skill=skill, caption="x", furniture=furniture)) for skill, furniture in rows]
+    assert told == [True, False, True, False]
+
+
+def test_a_plan_is_judged_as_if_the_body_reached_everything() -> None:
+    keyframe = PlannedKeyframe(skill=Skill.SITDOWN, caption="sitting still", furniture="sofa", beat=1)
+    script = LongScript(theme="t", beats=(SITS, READS), short_scripts=(), keyframes=(keyframe,))
+    assert [one.acted for one in planned_beats(script).outcomes] == [False, True]
