@@ -201,7 +201,7 @@ class Pipeline:
         """The long script of a theme; what the user wrote as keyframes is only checked and repaired."""
         if request.keyframes:
             return given_script(request)
-        asked = Request(request.short_scripts, _rooms(request), request.seed, request.method)  # type: ignore[arg-type]
+        asked = Request(request.short_scripts, _rooms(request), request.seed, request.method, _furniture(request))  # type: ignore[arg-type]
         return compose(request.theme, self.shelves.scripts(), asked, self.model, self.insist)
 
     def furnish(self, request: StoryRequest, script: LongScript) -> Furnished:
@@ -261,6 +261,12 @@ def _rooms(request: StoryRequest) -> tuple[str, ...]:
     """The room types a story is looked for in."""
     own = [room.layout for room in request.home.rooms] if request.home else request.layouts
     return request.rooms or types_of(own)
+
+
+def _furniture(request: StoryRequest) -> frozenset[str] | None:
+    """Categories of the furniture that the user's own home has; None where rooms are retrieved."""
+    own = [room.layout for room in request.home.rooms] if request.home else request.layouts
+    return frozenset(placed.category for layout in own for placed in layout.objects) or None
 
 
 def types_of(layouts: Sequence[Layout]) -> tuple[str, ...]:

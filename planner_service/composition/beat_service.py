@@ -1,56 +1,64 @@
-"""Retrieve, edit, write (SIMS 3.2): every beat of a theme is served by a short script, a part of one, or keyframes
-written for it.
+"""Retrieve, edit, write: every beat of a theme is served by a short script, a part of one, or keyframes written for it.
 
-A short script only enriches where it agrees in act, mood, room and furniture; so nothing is acted that nobody asked for.
+A short script only enriches where it agrees in act, mood, room and furniture; so nothing is acted that nobody asked
+for (SIMS 3.2).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-from motion_backend.motion import Skill
-from planner_service.composition.deed_lexicon import Deed
-from planner_service.composition.keyframe_writer import KeyframeWriter, Part, beats_with_reasons
+import numpy as np
+
+from motion_backend.motion import Emotion, Skill
+from planner_service.composition.deed_lexicon import Deed, deed_of
+from planner_service.composition.keyframe_writer import NOT_ACTED, UNSHOWN, KeyframeWriter, Part
+from planner_service.composition.llm_beats import PlannedTheme, plan_beats
 from planner_service.composition.request import RULES, Record, Request
-from planner_service.llm.protocol import LanguageModel
-from planner_service.scripts.script import LongScript, PlannedKeyframe, Retrieved
+from planner_service.llm.protocol import LanguageModel, ModelError
+from planner_service.scripts.emotion_classifier import clear_moods
+from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe, Retrieved, ShortScript
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import repair
-from planner_service.themes.beats import LANGUAGE, ReadBeat, ThemeError, beats_of
+from planner_service.scripts.script_search import rank
+from planner_service.themes.beats import LANGUAGE, ReadBeat, ThemeError, beats_of, clean, read_beat
 from scene_graphs import furniture
+from scene_graphs.furniture import canonical_room
 
-_OFFERED: Final = 8
+_OFFERED: Final = 6
 """Short scripts that are looked at for a beat."""
-_MIN_SCORE: Final = 0.4
-"""How near a short script must be in meaning to be one about the beat."""
+_MIN_SCORE: Final = 0.3
+"""How well a short script must answer a beat for a part of it to be taken."""
 
 
 def serve_beats(
     theme: str, library: ScriptLibrary, request: Request, model: LanguageModel | None, record: Record
 ) -> LongScript:
     """The long script of a theme, beat by beat. ThemeError when nothing of it can be acted."""
-    read = beats_of(theme)
-    writer = KeyframeWriter(request.seed, request.furniture, PartFinder(library).find)
-    writer.write(read)
-    record.planners.append(RULES)
+    planned = _by_model(theme, library, request, model, record)
+    read = _read_anew(planned) if planned else felt(beats_of(theme), library)
+    writer = KeyframeWriter(request.seed, request.furniture, PartFinder(library, request.rooms).all_of(read).get)
+    if planned is None or any(one.keyframes is None for one in planned.beats):
+        record.planners.append(RULES)
+    for index in range(len(read)):
+        served = planned.beats[index] if planned else None
+        if served is not None and served.keyframes is not None:
+            writer.take(index, served.keyframes, served.beat.why, library.find(served.script or ""))
+        else:
+            writer.write(index, read)
     if not writer.keyframes:
-        told = "; ".join(f"“{one.text[:60]}”: {writer.why[index]}" for index, one in list(enumerate(read))[:4])
+        told = "; ".join(f"“{one.text[:60]}”: {writer.why.get(index, UNSHOWN)}" for index, one in list(enumerate(read))[:4])
         raise ThemeError(f"nothing in it can be acted by a body at home. {told}. {LANGUAGE}")
     acted, repairs = repair(writer.keyframes)
-    shown = {beat for keyframe in acted for beat in (keyframe.beat, *keyframe.also) if beat is not None}
-    moods = {keyframe.mood for keyframe in acted}
-    shown |= {
-        i
-        for i, one in enumerate(read)
-        if one.beat.kind == "feeling" and one.beat.emotion in moods and i not in writer.why
-    }
     return LongScript(
         theme=theme,
-        beats=beats_with_reasons(read, writer.why, shown),
+        beats=_with_reasons(read, writer, acted),
         short_scripts=tuple(Retrieved(script=part.script, beat=beat, score=part.score) for beat, part in writer.parts),
         keyframes=acted,
         repairs=(*record.notes, *repairs),
+        person=planned.person if planned else None,
         method="auto",
         planner=record.planner,
         encoder=library.encoder.name,
@@ -58,23 +66,107 @@ def serve_beats(
     )
 
 
+def _by_model(
+    theme: str, library: ScriptLibrary, request: Request, model: LanguageModel | None, record: Record
+) -> PlannedTheme | None:
+    """The beats as the model plans them; None without a model or a usable answer."""
+    if model is None:
+        return None
+    there = None if request.furniture is None else sorted(furniture.display_name(word) for word in request.furniture)
+    try:
+        planned = plan_beats(model, clean(theme), library, there)
+    except ModelError as error:
+        record.failed("beats planned", error)
+        return None
+    record.planners.append(f"llm:{model.name}")
+    record.notes.extend([*planned.notes, *(one.note for one in planned.beats if one.note)])
+    return planned
+
+
+def _read_anew(planned: PlannedTheme) -> tuple[ReadBeat, ...]:
+    """The model's beats with what of their words the rules go by."""
+    return tuple(read_beat(one.beat) for one in planned.beats)
+
+
+def felt(read: Sequence[ReadBeat], library: ScriptLibrary) -> tuple[ReadBeat, ...]:
+    """Beats whose words show no mood and no deed, with the mood that their meaning clearly has, if it has one."""
+    blank = [
+        index
+        for index, one in enumerate(read)
+        if one.felt is None and one.beat.kind == "deed" and one.beat.emotion is Emotion.NEUTRAL and not deed_of(one.clause)
+    ]
+    if not blank:
+        return tuple(read)
+    judged = clear_moods(library.moods(library.encoder.encode([read[index].text for index in blank])))
+    moods = {index: mood for index, mood in zip(blank, judged, strict=True) if mood and mood is not Emotion.NEUTRAL}
+    return tuple(one.in_mood(moods[index]) if index in moods else one for index, one in enumerate(read))
+
+
+def _with_reasons(
+    read: Sequence[ReadBeat], writer: KeyframeWriter, keyframes: Sequence[PlannedKeyframe]
+) -> tuple[Beat, ...]:
+    """The beats as they are planned: those that no keyframe shows with the reason."""
+    shown = {beat for keyframe in keyframes for beat in (keyframe.beat, *keyframe.also) if beat is not None}
+    moods = {keyframe.mood for keyframe in keyframes}
+    beats = []
+    for index, one in enumerate(read):
+        is_felt = index not in writer.why and one.beat.kind not in NOT_ACTED and one.beat.emotion in moods
+        known = index in shown or (is_felt and one.felt is not None)
+        beats.append(one.beat.model_copy(update={"why": "" if known else writer.why.get(index, UNSHOWN)}))
+    return tuple(beats)
+
+
 @dataclass
 class PartFinder:
-    """Finds the part of a short script that does a beat's deed as the beat says."""
+    """Finds parts of short scripts that do beats' deeds as the beats say."""
 
     library: ScriptLibrary
+    rooms: Sequence[str] = ()
     _used: set[str] = field(default_factory=set)
 
-    def find(self, read: ReadBeat, deed: Deed) -> Part | None:
-        """The nearest script's walk and deed, where deed, mood, room and furniture agree; None without one."""
-        return None
+    def all_of(self, read: Sequence[ReadBeat]) -> dict[int, Part]:
+        """For each beat the part of the nearest script in which deed, mood, room and furniture agree, if there is one."""
+        deeds = {
+            index: deed
+            for index, one in enumerate(read)
+            if one.beat.kind == "deed" and (deed := deed_of(one.clause)) is not None and deed.skill is not Skill.LOCO
+        }
+        if not deeds:
+            return {}
+        scores = rank([read[index].text for index in deeds], self.library)
+        found = {}
+        for row, (index, deed) in zip(scores, deeds.items(), strict=True):
+            for place in np.argsort(-row, kind="stable")[:_OFFERED]:
+                script = self.library.scripts[int(place)]
+                if row[place] >= _MIN_SCORE and script.id not in self._used and self._plays(script, read[index]):
+                    if keyframes := _part(script, read[index], deed):
+                        found[index] = Part(script, float(row[place]), keyframes)
+                        self._used.add(script.id)
+                        break
+        return found
+
+    def _plays(self, script: ShortScript, read: ReadBeat) -> bool:
+        """Whether a script plays in the beat's mood, and where it may."""
+        allowed = (read.room,) if read.room else tuple(map(canonical_room, self.rooms))
+        return script.emotion is read.beat.emotion and (not allowed or script.room in allowed)
 
 
-def agrees(keyframe: PlannedKeyframe, deed: Deed) -> bool:
-    """Whether a script's keyframe does a deed, where the deed may be done."""
-    if keyframe.skill is not deed.skill or keyframe.skill is Skill.LOCO:
+def _part(script: ShortScript, read: ReadBeat, deed: Deed) -> tuple[PlannedKeyframe, ...]:
+    """The walk and the keyframe of a script that do a deed in a mood; empty where none does."""
+    for place, keyframe in enumerate(script.keyframes):
+        if agrees(keyframe.skill, keyframe.caption, keyframe.piece[0], deed) and keyframe.mood is read.beat.emotion:
+            walk = script.keyframes[place - 1] if place else None
+            leads = walk is not None and walk.skill is Skill.LOCO and walk.furniture == keyframe.furniture
+            taken = [walk, keyframe] if walk is not None and leads else [keyframe]
+            return tuple(PlannedKeyframe.model_validate(one.model_dump()) for one in taken)
+    return ()
+
+
+def agrees(skill: Skill, caption: str, piece: str, deed: Deed) -> bool:
+    """Whether a script's keyframe does a deed, with the caption that shows it, where the deed may be done."""
+    if skill is not deed.skill or not (deed.pieces or deed.row.captions):
         return False
-    shown = deed.row.captions if not deed.row.rests else (*deed.row.captions, *deed.row.lying)
-    kinds = furniture.categories_of(keyframe.furniture)
-    there = any(not kinds.isdisjoint(furniture.categories_of(piece)) for piece in deed.pieces)
-    return (keyframe.caption in shown if shown else True) and (there or not deed.pieces)
+    kinds = furniture.categories_of(piece)
+    there = any(not kinds.isdisjoint(furniture.categories_of(one)) for one in deed.pieces if one != "floor")
+    shown = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
+    return (caption in shown if shown else True) and (there or not deed.pieces)

@@ -20,7 +20,7 @@ from motion_backend.motion import Emotion, Skill
 from planner_service.composition.deed_lexicon import Deed, deed_of, deed_table, pieces_in
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_fallbacks import WALKS, usual
-from planner_service.scripts.script import Beat, PlannedKeyframe, ShortScript
+from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import ReadBeat
 from scene_graphs import furniture
@@ -32,7 +32,7 @@ NOT_ACTED: Final = {
     "speech": "it is said; the body does not speak",
 }
 """Why beats of these kinds are not acted."""
-_UNSHOWN: Final = "none of the captions shows it"
+UNSHOWN: Final = "none of the captions shows it"
 _MOODY: Final = {
     Emotion.HAPPY: "walk excitedly with arms opened",
     Emotion.STRESSED: "pacing back and forth",
@@ -54,10 +54,6 @@ class Part:
     """The deed's, with the walk that leads to it."""
 
 
-Finder = Callable[[ReadBeat, Deed], Part | None]
-"""Looks for a part of a library's script that shows a beat's deed."""
-
-
 @dataclass
 class KeyframeWriter:
     """Writes the keyframes of one long script, beat by beat."""
@@ -65,7 +61,8 @@ class KeyframeWriter:
     seed: int = 0
     home: Collection[str] | None = None
     """Categories of furniture that a given home has; None: any."""
-    find: Finder = lambda _beat, _deed: None
+    part_of: Callable[[int], Part | None] = lambda _index: None
+    """The part of a short script that may be taken for a beat, by the beat's place."""
     keyframes: list[PlannedKeyframe] = field(default_factory=list)
     why: dict[int, str] = field(default_factory=dict)
     """Beats that are not acted, with the reason."""
@@ -77,20 +74,36 @@ class KeyframeWriter:
     _plain: bool = False
     """Whether the posture shows nothing yet but that one rests."""
 
-    def write(self, beats: Sequence[ReadBeat]) -> None:
-        """Keyframes for all of them, in order; every beat is shown by one or is in `why`."""
-        for index, read in enumerate(beats):
-            beat = read.beat
-            deed = deed_of(read.clause, self._about) if beat.kind == "deed" else None
-            self._about = read.text if pieces_in(read.text) else self._about
-            if beat.kind in NOT_ACTED:
-                self.why[index] = NOT_ACTED[beat.kind]
-            elif deed is not None:
-                self._do(index, read, deed)
-            elif beat.kind == "feeling" or (read.felt is not None and read.sure):
-                self._feel(index, beats)
-            else:
-                self.why[index] = _UNSHOWN
+    def write(self, index: int, beats: Sequence[ReadBeat]) -> None:
+        """Keyframes for the beat at a place; it is shown by one, by another beat's in its mood, or is in `why`."""
+        read = beats[index]
+        beat = read.beat
+        deed = deed_of(read.clause, self._about) if beat.kind == "deed" else None
+        self._about = read.text if pieces_in(read.text) else self._about
+        if beat.kind in NOT_ACTED:
+            self.why[index] = NOT_ACTED[beat.kind]
+        elif deed is not None:
+            self._do(index, read, deed)
+        elif beat.kind == "feeling" or (read.felt is not None and read.sure):
+            self._feel(index, beats)
+        else:
+            self.why[index] = UNSHOWN
+
+    def take(self, index: int, keyframes: Sequence[Keyframe], why: str, script: ShortScript | None) -> None:
+        """Keyframes that somebody else planned for a beat, of a short script where they are of one."""
+        if not keyframes:
+            self.why[index] = why or UNSHOWN
+            return
+        number = None
+        if script is not None:
+            self.parts.append((index, Part(script, 1.0, ())))
+            number = len(self.parts) - 1
+        for keyframe in keyframes:
+            row = {**keyframe.model_dump(), "beat": index, "short_script": number}
+            self.keyframes.append(PlannedKeyframe.model_validate(row))
+        last = self.keyframes[-1]
+        self._resting = last if last.skill in (Skill.SITDOWN, Skill.LIEDOWN) else None
+        self._plain = False
 
     def _do(self, index: int, read: ReadBeat, deed: Deed) -> None:
         mood = read.beat.emotion
@@ -206,7 +219,7 @@ class KeyframeWriter:
         self, index: int, read: ReadBeat, deed: Deed, mood: Emotion, skill: Skill, captions: Sequence[str]
     ) -> None:
         """A keyframe at furniture: a part of a script where one does the same, else written."""
-        part = self.find(read, deed) if mood is read.beat.emotion else None
+        part = self.part_of(index) if mood is read.beat.emotion else None
         if part is not None and all(self._has(keyframe.piece[0]) for keyframe in part.keyframes):
             self.parts.append((index, part))
             for keyframe in part.keyframes:
@@ -321,12 +334,4 @@ def _captions_of(skill: Skill, mood: Emotion) -> tuple[str, ...]:
             and not re.search("phone|to the front|hips", caption)
             and moods.get(mood, 0.0) >= _MIN_SHARE
         )
-    )
-
-
-def beats_with_reasons(beats: Sequence[ReadBeat], why: dict[int, str], shown: Collection[int]) -> tuple[Beat, ...]:
-    """The beats as they are planned: those that no keyframe shows with the reason."""
-    return tuple(
-        read.beat if index in shown else read.beat.model_copy(update={"why": why.get(index, _UNSHOWN)})
-        for index, read in enumerate(beats)
     )

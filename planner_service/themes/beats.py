@@ -113,6 +113,10 @@ class ReadBeat:
         """The theme's words."""
         return self.beat.text
 
+    def in_mood(self, mood: Emotion) -> ReadBeat:
+        """The beat with the mood that its meaning shows."""
+        return replace(self, beat=self.beat.model_copy(update={"emotion": mood}), felt=mood, sure=True)
+
 
 def clean(theme: object) -> str:
     """The theme without stray white space; ThemeError when it is empty, too long or not text."""
@@ -157,6 +161,14 @@ def _read(clause: Clause, hero: str) -> ReadBeat:
         emotion = None
     beat = Beat(text=_bounded(text), emotion=emotion or Emotion.NEUTRAL, kind=kind, who=_bounded(who, 80))
     return ReadBeat(beat, clause, sure, emotion, next(iter(rooms_in(text)), None))
+
+
+def read_beat(beat: Beat) -> ReadBeat:
+    """A beat that somebody else found, with what of its words the planning goes by."""
+    clauses = clauses_of_text(beat.text)
+    clause = clauses[0] if clauses else Clause(beat.text, "", "", ())
+    felt = beat.emotion if beat.emotion is not Emotion.NEUTRAL else None
+    return ReadBeat(beat, clause, felt is not None, felt, next(iter(rooms_in(beat.text)), None))
 
 
 def _bounded(text: str, most: int = 300) -> str:
