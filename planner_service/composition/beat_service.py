@@ -42,6 +42,7 @@ def serve_beats(
     writer = KeyframeWriter(request.seed, request.furniture, PartFinder(library, request.rooms).all_of(read).get)
     if planned is None or any(one.keyframes is None for one in planned.beats):
         record.planners.append(RULES)
+    writer.avoid(read)
     for index in range(len(read)):
         served = planned.beats[index] if planned else None
         if served is not None and served.keyframes is not None:
@@ -169,4 +170,6 @@ def agrees(skill: Skill, caption: str, piece: str, deed: Deed) -> bool:
     kinds = furniture.categories_of(piece)
     there = any(not kinds.isdisjoint(furniture.categories_of(one)) for one in deed.pieces if one != "floor")
     shown = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
+    if skill is Skill.TOUCH and not shown and not caption.startswith("touch medium"):
+        return False
     return (caption in shown if shown else True) and (there or not deed.pieces)

@@ -26,6 +26,7 @@ _WAYS: Final = re.compile(
     re.IGNORECASE,
 )
 """A way through a home, whatever the verb that goes it."""
+_AT: Final = re.compile(r"\b(?:at|by|near|beside|before|behind|in front of|next to)\b")
 _IT: Final = frozenset(("it", "there", "one", "them"))
 Pattern = tuple[frozenset[str], ...]
 """Base forms of each word; an empty set is a gap."""
@@ -151,10 +152,11 @@ def _named(clause: Clause, about: str) -> list[str]:
 def _row(clause: Clause, about: str) -> DeedRow | None:
     """The first row that the clause's words fit, from its verb on; else from a later -ing on; else by its things."""
     table = deed_table()
-    for lemmas in _starts(clause):
-        for pattern, row in table.patterns:
-            if (pattern[0] or not clause.verb) and _fits(pattern, lemmas):
-                return row
+    for anchored in (True, False):  # patterns that begin with a gap fit any verb, where no other does
+        for lemmas in _starts(clause):
+            for pattern, row in table.patterns:
+                if bool(pattern[0]) is anchored and _fits(pattern, lemmas):
+                    return row
     return _by_things(clause, about)
 
 
@@ -168,6 +170,8 @@ def _starts(clause: Clause) -> Iterator[tuple[str, ...]]:
 
 def _by_things(clause: Clause, about: str) -> DeedRow | None:
     """What is done with things by a verb nobody foresaw: a hand is laid on them; or a way is gone."""
+    if clause.verb in ("be", "end", "stand", "stay", "appear") and _AT.search(clause.text) and _named(clause, about):
+        return DeedRow((clause.verb,), Skill.LOCO)
     if not clause.verb or clause.verb in (
         "be",
         "have",

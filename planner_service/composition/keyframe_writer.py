@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 
 from motion_backend.motion import Emotion, Skill
-from planner_service.composition.deed_lexicon import Deed, deed_of, deed_table, pieces_in
+from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, deed_table, pieces_in
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_fallbacks import WALKS, usual
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
@@ -42,6 +42,9 @@ _MOODY: Final = {
 """How a mood alone is shown on one's feet, where it is not the mood's usual walk."""
 _MIN_SHARE: Final = 0.3
 """Share of a caption's uses in the library that must be of a mood for it to be one of the mood's."""
+
+
+_STANDING: Final = DeedRow(("stand",), Skill.LOCO, captions=("stand still",))
 
 
 @dataclass(frozen=True)
@@ -69,6 +72,7 @@ class KeyframeWriter:
     parts: list[tuple[int, Part]] = field(default_factory=list)
     """Beats that are served by a part of a script."""
     _resting: PlannedKeyframe | None = None
+    _avoided: set[Skill] = field(default_factory=set)
     _about: str = ""
     """The words that named furniture last."""
     _plain: bool = False
@@ -105,8 +109,16 @@ class KeyframeWriter:
         self._resting = last if last.skill in (Skill.SITDOWN, Skill.LIEDOWN) else None
         self._plain = False
 
+    def avoid(self, beats: Sequence[ReadBeat]) -> None:
+        """Neither sit nor lie for other deeds where the theme says that this is not done."""
+        for one in beats:
+            if one.beat.kind == "undone" and (deed := deed_of(one.clause)) is not None and not deed.row.captions:
+                self._avoided |= {deed.skill} & {Skill.SITDOWN, Skill.LIEDOWN}
+
     def _do(self, index: int, read: ReadBeat, deed: Deed) -> None:
         mood = read.beat.emotion
+        if deed.skill in self._avoided and deed.row.rests:
+            deed = Deed(_STANDING, Skill.LOCO, deed.pieces if deed.named else (), deed.named)
         if deed.row.mood and mood is Emotion.NEUTRAL:
             mood = Emotion(deed.row.mood)
         match deed.skill:

@@ -70,9 +70,8 @@ def match(
     reading = _read(theme, _events(theme, by_rules, model, record), library, request)
     if not reading.covered:
         raise ThemeError(_not_understood(reading, library, request))
-    covered = reading.covered[: request.short_scripts or MAX_SHORT_SCRIPTS]
-    count = request.short_scripts or max(MIN_SHORT_SCRIPTS, len(covered))
-    rows = sorted(itertools.islice(itertools.cycle(covered), count))
+    few = min(MAX_SHORT_SCRIPTS, max(MIN_SHORT_SCRIPTS, len(reading.covered)))
+    rows = _rows(reading, request.short_scripts or few)
     chosen = _arranged(theme, reading, rows, library, model, record) or _assigned(reading, rows, request.seed)
     return _long_script(theme, reading, chosen, library, request, record)
 
@@ -109,6 +108,12 @@ def _read(theme: str, beats: Sequence[Beat], library: ScriptLibrary, request: Re
     if request.rooms:
         suits[:, ~_in_rooms(map(canonical_room, request.rooms), library)] = -1
     return Reading(events, scores, suits)
+
+
+def _rows(reading: Reading, count: int) -> list[int]:
+    """The event of each short script, in order: the best answered ones, and all again where scripts are left."""
+    best = sorted(reading.covered, key=lambda event: -reading.suits[event].max())
+    return sorted(itertools.islice(itertools.cycle(best), count))
 
 
 def _in_rooms(rooms: Iterable[str], library: ScriptLibrary) -> NDArray[np.bool_]:
@@ -195,11 +200,14 @@ def _beats(reading: Reading, chosen: Sequence[Choice]) -> tuple[Beat, ...]:
     """The beats, those that no chosen script is about with the reason."""
     told = {event for event, script in chosen if reading.suits[event, script] >= 1}
     return tuple(
-        beat
-        if index in told
-        else beat.model_copy(update={"why": NOT_ACTED.get(beat.kind, "no short script is about it")})
+        beat if index in told else beat.model_copy(update={"why": _why(reading, index)})
         for index, beat in enumerate(reading.events)
     )
+
+
+def _why(reading: Reading, event: int) -> str:
+    left = "no short script was taken for it" if event in reading.covered else "no short script is about it"
+    return NOT_ACTED.get(reading.events[event].kind, left)
 
 
 def _not_understood(reading: Reading, library: ScriptLibrary, request: Request) -> str:

@@ -20,7 +20,7 @@ from planner_service.extraction.script_writer import Draft, Maker, Span
 from planner_service.extraction.text_scenes import Line, TextScene
 from planner_service.llm.protocol import LanguageModel
 from planner_service.llm.structured_output import ask, problems_of
-from planner_service.narration.narrative_voice import Voice, retell
+from planner_service.narration.narrative_voice import tells_of_one
 from planner_service.scripts.captions import captions_offered, furniture_offered
 from planner_service.scripts.script import EMOTIONS, MAX_PIECES
 from planner_service.scripts.script_repair import check, read_keyframe
@@ -184,7 +184,7 @@ def faults_of(script: FoundScript, scenes: Collection[int]) -> Iterator[str]:
         yield f"scene: there is no scene {script.scene}; there are {', '.join(map(str, scenes))}"
     if not 1 <= len(summary) <= 400:
         yield f"summary: {len(summary)} letters, it must have 1 to 400"
-    elif "character" not in summary.lower() or retell(summary, Voice("Sam", "they")) is None:
+    elif "character" not in summary.lower() or not tells_of_one(summary):
         yield 'summary: tell it in the present tense of "the character" alone, in English'
     if emotion_of(script.emotion) is None:
         yield f"emotion: {script.emotion!r:.60} is none of {', '.join(EMOTIONS)}"

@@ -13,7 +13,7 @@ from typing import Final
 
 from motion_backend.language.sentence_encoder import SentenceEncoder
 from motion_backend.motion import Skill
-from planner_service.narration.narrative_voice import Voice, retell
+from planner_service.narration.narrative_voice import tells_of_one
 from planner_service.scripts.captions import Vocabulary
 from planner_service.scripts.script import MAX_PIECES, Keyframe, ShortScript, Source
 from planner_service.scripts.script_duplicates import Likeness, slug_of
@@ -99,7 +99,7 @@ def in_present(clause: str, names: Collection[str] = ()) -> str:
 
 
 def _tells(told: str) -> bool:
-    return retell(f"The character {told}.", Voice("Sam", "they")) is not None
+    return tells_of_one(f"The character {told}.")
 
 
 def _listed(clauses: Sequence[str]) -> str:

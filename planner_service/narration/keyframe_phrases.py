@@ -1,24 +1,24 @@
-"""What keyframes do, worded: each becomes a verb phrase, and phrases become sentences tied to their keyframes."""
+"""What keyframes do, worded: each becomes a verb phrase that knows which keyframes it tells."""
 
 from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
 from typing import Final, Literal
 
 import numpy as np
 
 from motion_backend.motion import Skill
 from planner_service.narration.narrative_voice import Voice, require_blanks
+from planner_service.narration.tense import gerund, past
 from planner_service.scripts.script import Keyframe, PlannedKeyframe
-from planner_service.themes.lexicon import gerund, past
 from scene_graphs.data_tables import read_table, require_known, table
 from scene_graphs.furniture import class_of, display_name
 
-_BLANKS: Final = ("to", "about", "back", "on", "onto", "the", "hand")
+_BLANKS: Final = ("to", "about", "back", "on", "onto", "the", "room")
 
 
 @table
@@ -37,13 +37,16 @@ class Phrases:
 
     They start with a verb in its base form; further verbs are marked with ~. Blanks: {to} "to the sofa", {about}
     "around the bedroom", {back} "up and down in the bedroom", {on} "on the sofa" or "in the armchair", {onto}, {the}
-    "the sofa", {hand} "a hand", and the pronouns of `Voice.fill`.
+    "the sofa", and the pronouns of `Voice.fill`.
     """
 
     idle_walks: tuple[str, ...]
     """Captions of walks that say little."""
     neutral_walks: tuple[str, ...]
     """Captions of the walks that a walk to furniture is usually done in."""
+    to: tuple[str, ...]
+    about: tuple[str, ...]
+    back: tuple[str, ...]
     further: tuple[str, ...]
     """Where a walk with no goal goes after another one."""
     walks: dict[str, Walk]
@@ -85,14 +88,14 @@ Places = Mapping[int, tuple[str, str]]
 """Index of a keyframe to how its furniture and its room are called in the home it is acted out in."""
 _IN = ("armchair", "lounge chair", "lazy sofa", "rocking chair")
 _DEEP = (*_IN, "chair")
+_IN: Final = ("armchair", "lounge chair", "lazy sofa", "rocking chair")
+_DEEP: Final = (*_IN, "chair")
 """What one sits on but drops into."""
-_CONTENT = re.compile(r"(?<!\{)\b(?:\w{4,}|lay|put|run|lie|sit)\b(?!\})")
-_VERB = re.compile(r"(?:^|~)(\w+)")
-_MANNER = re.compile(r"\{\w+\}|\b(?:both|their|with|over|about|from|into|then|without)\b|^\w+")
-"""What is left out of a template to find the words for the manner in which something is done."""
-_RISES = (Skill.STANDUP, Skill.GETUP)
-_MAX_MOMENT_WORDS = 24
-"""Words of a sentence after which no more is added to it."""
+_VERB: Final = re.compile(r"(?:^|~)(\w+)")
+_SEATED: Final = re.compile(r"\b(?:down|out|back|seat|comfortably)\b")
+"""After such a word no furniture need be named that just was."""
+RISES: Final = (Skill.STANDUP, Skill.GETUP)
+RESTS: Final = (Skill.SITDOWN, Skill.LIEDOWN)
 
 
 @dataclass(frozen=True)
@@ -102,29 +105,26 @@ class Phrase:
     base: str
     """With verbs in their base form, further ones marked: "bend down and ~reach under the bed"."""
     keyframes: tuple[int, ...]
-    mood: str = "neutral"
-    rises: bool = False
-    anew: bool = False
-    """Begins a sentence: a rising that is not told comes before it."""
-    arrives: bool = False
-    """A walk whose purpose follows in the next phrase: the two stay in one sentence."""
-    skill: Skill = Skill.LOCO
-    at: str = ""
+    skill: Skill
+    mood: str
+    manner: str = ""
+    """How the body rests, or what it does there: ", chin in hand", ", then ~write"."""
+    the: str = ""
     """What it is done at, "the sofa"; empty on the floor."""
+    word: str = ""
+    """The script's word for that."""
+    leads: bool = False
+    """Whether the next phrase is what it is done for."""
+    deeds: frozenset[str] = frozenset()
+    """Base forms of the verbs for what its caption says is done at rest."""
 
-    @cached_property
-    def bare(self) -> str:
-        """ "sit down on the sofa with bowed head"."""
-        return self.base.replace("~", "")
+    def text(self, manner: bool = True) -> str:
+        """In the past: "sat down on the sofa, chin in hand"."""
+        return _VERB.sub(lambda verb: past(verb[1]), self.base + (self.manner if manner else ""))
 
-    @cached_property
-    def text(self) -> str:
-        """In the past: "sat down on the sofa with bowed head"."""
-        return _VERB.sub(lambda verb: past(verb[1]), self.base)
-
-    @cached_property
+    @property
     def gerund(self) -> str:
-        """ "sitting down on the sofa with bowed head"."""
+        """ "sitting down on the sofa"."""
         return _VERB.sub(lambda verb: gerund(verb[1]), self.base)
 
 
@@ -133,19 +133,15 @@ class Variety:
 
     def __init__(self, *seeds: int) -> None:
         self._rng = np.random.default_rng(seeds)
-        self._used: Counter[str] = Counter()
+        self.used: Counter[str] = Counter()
 
     def pick(self, options: Sequence[str]) -> str:
         """One of the options; it counts as used."""
-        fewest = min(self._used[option] for option in options)
-        fresh = [option for option in options if self._used[option] == fewest]
+        fewest = min(self.used[option] for option in options)
+        fresh = [option for option in options if self.used[option] == fewest]
         chosen = fresh[int(self._rng.integers(len(fresh)))]
-        self._used[chosen] += 1
+        self.used[chosen] += 1
         return chosen
-
-    def index(self, count: int) -> int:
-        """A number below `count`."""
-        return int(self._rng.integers(count))
 
     def chance(self, share: float) -> bool:
         """True in that share of cases."""
@@ -153,210 +149,107 @@ class Variety:
 
 
 class Wording:
-    """Words one story's keyframes, remembering where the body is so that "it" can stand for the furniture."""
+    """Words one story's keyframes."""
 
-    def __init__(self, voice: Voice, variety: Variety, places: Places, brief: bool = False) -> None:
+    def __init__(self, voice: Voice, variety: Variety, places: Places) -> None:
         self.voice = voice
-        self.brief = brief
-        """Whether to leave out how the body walks and rests where that says little."""
         self.variety = variety
         self.places = places
-        self.say_room = True
-        """Whether the room may be called by its name; not where it was already."""
-        self._at: str | None = None
-        self._said: str | None = None  # what "it" stands for
+        self._named = ""  # what "it" stands for
         self._wandering = False
-        self.doing: frozenset[str] = frozenset()
-        """Verbs that the scene's events tell, so that no posture need to."""
-        self._manners: list[frozenset[str]] = []
-        self._recent: tuple[str, ...] = ()  # the templates of the two phrases before
 
-    def phrases(self, keyframes: Iterable[tuple[int, PlannedKeyframe]], risen: bool = False) -> list[Phrase]:
-        """Keyframes of one event as phrases in order; every index is in exactly one of them.
-
-        Where the body has just `risen`, the way to what it does next is told.
-        """
-        rows = list(keyframes)
-        self._wandering, self._said = False, None
+    def phrases(self, rows: Sequence[tuple[int, PlannedKeyframe]]) -> list[Phrase]:
+        """Keyframes in order as phrases; every index is in exactly one of them."""
         told: list[Phrase] = []
         untold: tuple[int, ...] = ()
-        for position, (index, keyframe) in enumerate(rows):
-            before = rows[position - 1][1] if position else None
-            following = rows[position + 1][1] if position + 1 < len(rows) else None
-            arrives = keyframe.skill == Skill.LOCO and _goes_on(keyframe, following)
-            if arrives and (self._is_here(index, keyframe) or (not risen and self._is_plain(keyframe))):
+        self._named, self._wandering = "", False
+        for (index, keyframe), following in zip(rows, [*(row[1] for row in rows[1:]), None], strict=True):
+            leads = _leads(keyframe, following)
+            plain = templates().neutral_walks if leads else templates().idle_walks if keyframe.on_floor else ()
+            onward = leads or (following is not None and following.skill == Skill.LOCO)
+            if onward and keyframe.skill == Skill.LOCO and keyframe.caption in plain and self.variety.chance(0.5):
                 untold = (*untold, index)
                 continue
-            if following is not None and self._goes_without_saying(
-                before, keyframe, [row[1] for row in rows[position + 1 :]]
-            ):
-                untold = (*untold, index)
-                continue
-            text = self._text(index, keyframe)
-            rises = keyframe.skill in _RISES
-            at = "" if keyframe.on_floor else self._the(index, keyframe)
-            anew = any(rows[i][1].skill in _RISES for i in range(position) if rows[i][0] in untold)
-            told.append(Phrase(text, (*untold, index), keyframe.mood, rises, anew, arrives, keyframe.skill, at))
-            untold, risen = (), rises
+            told.append(self._phrase((*untold, index), keyframe, leads))
+            untold = ()
         return told
 
-    def _is_plain(self, keyframe: Keyframe) -> bool:
-        """Whether walking there goes without saying."""
-        return self.variety.chance(0.5 + 0.5 * self.brief if keyframe.caption in templates().neutral_walks else 0.3)
-
-    def _goes_without_saying(self, before: Keyframe | None, keyframe: Keyframe, following: Sequence[Keyframe]) -> bool:
-        """Whether a keyframe says little: strolling about between two things done, or rising to rest there again."""
-        if keyframe.skill in _RISES:
-            after = following[1] if len(following) > 1 and _goes_on(following[0], following[1]) else following[0]
-            rests = after.skill in (Skill.SITDOWN, Skill.LIEDOWN)
-            return rests and before is not None and keyframe.piece == after.piece
-        idle = keyframe.skill == Skill.LOCO and keyframe.on_floor and keyframe.caption in templates().idle_walks
-        return idle and before is not None and self.variety.chance(0.6)
-
-    def _is_here(self, index: int, keyframe: Keyframe) -> bool:
-        return not keyframe.on_floor and self._at == self._the(index, keyframe)
-
-    def _text(self, index: int, keyframe: PlannedKeyframe) -> str:
-        mood = keyframe.mood
-        match keyframe.skill:
-            case Skill.LOCO:
-                template = self._fresh(self._walks(keyframe, mood))
-                self._note(template)
-            case Skill.SITDOWN:
-                template = self._posture(keyframe, templates().sits_in_mood[mood], templates().sits)
-            case Skill.LIEDOWN:
-                template = self._posture(keyframe, templates().lies_in_mood[mood], templates().lies)
-            case Skill.TOUCH:
-                template = self._fresh(touches(keyframe))
-            case _:
-                template = self.variety.pick(templates().rises[_pace(keyframe.caption)])
-        self._recent = (*self._recent[-1:], template)
-        filled = self._fill(template, index, keyframe)
+    def _phrase(self, indices: tuple[int, ...], keyframe: PlannedKeyframe, leads: bool) -> Phrase:
+        index, mood, known, manners = indices[-1], keyframe.mood, templates(), ()
+        if keyframe.skill == Skill.LOCO:
+            walk = known.walks.get(keyframe.caption, known.walks_in_mood[mood])
+            ways = walk.about if keyframe.on_floor else walk.to
+        elif keyframe.skill in RESTS:
+            sits = keyframe.skill == Skill.SITDOWN
+            ways = (known.sits_in_mood if sits else known.lies_in_mood)[mood]
+            manners = (known.sits if sits else known.lies).get(keyframe.caption, ())
+        elif keyframe.skill == Skill.TOUCH:
+            ways = touches(keyframe)
+        else:
+            ways = known.rises[_pace(keyframe.caption)]
+        the = self.the(index, keyframe)
+        base = " ".join(self._fill(self.variety.pick(ways), the, self.room(index, keyframe)).split())
         self._wandering = keyframe.skill == Skill.LOCO and keyframe.on_floor
-        self._at = self._said = None if keyframe.on_floor else self._the(index, keyframe)
-        return " ".join(filled.split()).replace(" ,", ",")
+        self._named = the if leads else ""
+        word = "" if keyframe.on_floor else keyframe.piece[0]
+        deeds = frozenset(verb for way in manners for verb in re.findall(r"~(\w+)", way))
+        manner = self._manner(manners)
+        return Phrase(base, indices, keyframe.skill, mood, manner, the if word else "", word, leads, deeds)
 
-    def _walks(self, keyframe: Keyframe, mood: str) -> tuple[str, ...]:
-        plain = templates().walks_in_mood[mood]
-        walk = templates().walks.get(keyframe.caption, plain)
-        ways, others = (walk.about, plain.about) if keyframe.on_floor else (walk.to, plain.to)
-        ways = self._unheard(ways) or self._unheard(others) or others
-        short = tuple(way for way in ways if "," not in way)
-        return short if self.brief and short else ways
+    def _manner(self, ways: Sequence[str]) -> str:
+        """How the body rests, unless the story has told of that already."""
+        fresh = [way for way in ways if not self.variety.used[way]]
+        if not fresh or not self.variety.chance(0.7):
+            return ""
+        way = self.variety.pick(fresh)
+        joint = "" if way.startswith(",") else " " if way.startswith(("with ", "on ", "flat ")) else ", "
+        return joint + self.voice.fill(way)
 
-    def _unheard(self, templates: Sequence[str]) -> tuple[str, ...]:
-        """Those whose manner no phrase of the story had."""
-        return tuple(template for template in templates if not self._repeats(_manner_of(template)))
-
-    def _repeats(self, manner: frozenset[str]) -> bool:
-        return bool(manner) and any(len(manner & had) >= min(2, len(manner), len(had)) for had in self._manners)
-
-    def _posture(self, keyframe: Keyframe, verbs: tuple[str, ...], manners: Mapping[str, tuple[str, ...]]) -> str:
-        known = [
-            way for way in self._unheard(manners.get(keyframe.caption, ())) if not self.doing & set(_VERB.findall(way))
-        ]
-        manner = self.variety.pick(known) if known and self.variety.chance(0.45 if self.brief else 0.65) else ""
-        comma = "" if manner.startswith(("with ", "on ", "flat ", ",")) or not manner else ","
-        self._note(manner)
-        return f"{self._fresh(verbs)}{comma} {manner}"
-
-    def _note(self, template: str) -> None:
-        if manner := _manner_of(template):
-            self._manners.append(manner)
-
-    def _fresh(self, options: Sequence[str]) -> str:
-        """One of the options, if possible none with a word of the two phrases before it."""
-        heard = {word for template in self._recent for word in _CONTENT.findall(template)}
-        shared = [len(heard.intersection(_CONTENT.findall(option))) for option in options]
-        return self.variety.pick(
-            [option for option, count in zip(options, shared, strict=True) if count == min(shared)]
-        )
-
-    def _fill(self, template: str, index: int, keyframe: PlannedKeyframe) -> str:
-        the = self._the(index, keyframe)
-        here = not keyframe.on_floor and self._said == the
-        inside = the.endswith(_IN)
-        name = "it" if here else the
-        if here and re.search(r"\b(?:down|out|back|seat|comfortably)\b", template.split("{on}")[0]):
+    def _fill(self, template: str, the: str, room: str) -> str:
+        here = self._named == the
+        if here and _SEATED.search(template.partition("{on}")[0]):
             template = template.replace(" {on}", "")
         if here:
             template = re.sub(r"the (\w+(?: \w+)?) of \{the\}", r"its \1", template)
-        hand = _hand(keyframe.caption, self.voice)
-        if hand == "a hand":
-            template = template.replace(" with {hand}", "")
-        room = self._room(index, keyframe)
-        ways = templates().further if self._wandering else (f"around {room}", f"about {room}", f"through {room}")
+        name = "it" if here else the
+        known = templates()
+        blanks = {"to": known.to, "about": known.further if self._wandering else known.about, "back": known.back}
+        ways = {blank: self.variety.pick(way) for blank, way in blanks.items() if f"{{{blank}}}" in template}
         return self.voice.fill(
             template,
             the=name,
-            on=f"{'in' if inside else 'on'} {name}",
+            on=f"{'in' if the.endswith(_IN) else 'on'} {name}",
             onto=f"{'into' if the.endswith(_DEEP) else 'onto'} {name}",
-            to=f"{self.variety.pick(('to', 'over to', 'across to'))} {the}" if "{to}" in template else "",
-            about=self.variety.pick(ways) if "{about}" in template else "",
-            back=self.variety.pick(("up and down", "back and forth")) + f" in {room}" if "{back}" in template else "",
-            hand=hand,
+            **{blank: way.format(the=the, room=room) for blank, way in ways.items()},
         )
 
-    def _the(self, index: int, keyframe: Keyframe) -> str:
+    def the(self, index: int, keyframe: Keyframe) -> str:
+        """How the furniture of a keyframe is called: "the other chair"."""
         if keyframe.on_floor:
             return "the floor"
         word, instance = keyframe.piece
         name = self.places[index][0] if index in self.places else display_name(word)
         return f"the {'other ' if instance > 1 else ''}{name.removeprefix('the ')}"
 
-    def room_of(self, index: int, keyframe: PlannedKeyframe) -> str:
-        """How the keyframe's room is called, "room" where it has none."""
+    def room(self, index: int, keyframe: PlannedKeyframe) -> str:
+        """How its room is called, "the room" where it has none."""
         room = self.places[index][1] if index in self.places else (keyframe.room or "room")
-        return room.replace("_", " ").lower().removeprefix("the ")
-
-    def _room(self, index: int, keyframe: PlannedKeyframe) -> str:
-        name = self.room_of(index, keyframe)
-        chosen = self.variety.pick((name, "room")) if self.say_room else "room"
-        self.say_room = self.say_room and chosen != name
-        return f"the {chosen}"
+        return f"the {room.replace('_', ' ').lower().removeprefix('the ')}"
 
 
 def touches(keyframe: Keyframe) -> tuple[str, ...]:
     """Ways to word a touch: by what its caption says is done, else by its height and what is touched."""
-    known = templates()
-    if keyframe.caption in known.touches_doing:
-        return known.touches_doing[keyframe.caption]
-    caption = keyframe.caption.lower()
-    height = next((h for h in ("prone", "low", "high") if re.search(rf"\b{h}\b", caption)), "medium")
+    known, caption = templates(), keyframe.caption
+    if caption in known.touches_doing:
+        return known.touches_doing[caption]
+    height = next((h for h in ("prone", "low", "high") if re.search(rf"\b{h}\b", caption.lower())), "medium")
     return known.touches_at.get(class_of(keyframe.piece[0]), {}).get(height) or known.touches[height]
 
 
-def joined(told: Sequence[Phrase]) -> list[Piece]:
-    """Phrases as one predicate, piece by piece: "stood up, crossed to the bed, and lay down"."""
-    pieces: list[Piece] = []
-    for position, phrase in enumerate(told):
-        last = position == len(told) - 1
-        if position and last:
-            crowded = len(told) > 2 or "," in told[0].text
-            pieces.append((", and " if crowded else " and ", ()))
-        elif position:
-            pieces.append((", ", ()))
-        pieces.append((phrase.text, phrase.keyframes))
-    return pieces
-
-
-def sentences_of(told: Sequence[Phrase], variety: Variety) -> list[tuple[Phrase, ...]]:
-    """Two to four phrases a sentence: a walk stays with its purpose, rising and a change of mood start a new one."""
-    groups: list[list[Phrase]] = []
-    most = 3
-    for phrase, following in zip(told, [*told[1:], None], strict=True):
-        current = groups[-1] if groups else []
-        tied = bool(current) and (current[-1].arrives or current[-1].rises)
-        purpose = [following] if phrase.arrives and following is not None else []
-        words = sum(len(p.text.split()) for p in [*current, phrase, *purpose])
-        room = 0 < len(current) < most and words <= _MAX_MOMENT_WORDS and not (phrase.rises or phrase.anew)
-        turns = len(current) >= 2 and (phrase.arrives or phrase.mood != current[-1].mood)
-        if tied or (room and not turns):
-            current.append(phrase)
-        else:
-            groups.append([phrase])
-            most = 2 + variety.index(3)
-    return [tuple(group) for group in groups]
+def _leads(walk: Keyframe, following: Keyframe | None) -> bool:
+    """Whether what follows is done at the piece this walk goes to."""
+    purpose = following is not None and following.skill in (*RESTS, Skill.TOUCH) and walk.piece == following.piece
+    return purpose and walk.skill == Skill.LOCO and not walk.on_floor
 
 
 def _pace(caption: str) -> Literal["neutral", "slow", "fast"]:
@@ -364,39 +257,3 @@ def _pace(caption: str) -> Literal["neutral", "slow", "fast"]:
     if re.search(r"slow|weari", caption):
         return "slow"
     return "fast" if re.search(r"quick|abrupt|jump", caption) else "neutral"
-
-
-def _goes_on(walk: Keyframe, following: Keyframe | None) -> bool:
-    """Whether what follows is done at the piece this walk leads to."""
-    return (
-        following is not None
-        and following.skill in (Skill.SITDOWN, Skill.LIEDOWN, Skill.TOUCH)
-        and not walk.on_floor
-        and walk.piece == following.piece
-    )
-
-
-def _manner_of(template: str) -> frozenset[str]:
-    """The words of a template that say in which manner, none where it tells of two deeds."""
-    told = "" if "~" in template else _MANNER.sub(" ", template)
-    return frozenset(re.findall(r"[a-z]{4,}", told))
-
-
-def without_room(told: Sequence[Phrase], room: str, named: bool) -> tuple[Phrase, ...]:
-    """The phrases of one sentence with the room said once, or not at all where it is `named` besides."""
-    phrases_: list[Phrase] = []
-    here = re.compile(rf" (around|about|through|in) the (?:room|{re.escape(room)})\b")
-    for phrase in told:
-        base = phrase.base
-        if named:
-            base = here.sub(
-                lambda way: "" if way[1] == "in" else " about" if way[1] == "through" else f" {way[1]}", base
-            )
-        named = named or bool(here.search(base))
-        phrases_.append(replace(phrase, base=base))
-    return tuple(phrases_)
-
-
-def _hand(caption: str, voice: Voice) -> str:
-    side = re.search(r"\b(left|right)\b", caption)
-    return f"{voice['their']} {side[1]} hand" if side else "a hand"

@@ -15,9 +15,8 @@ from planner_service.llm.protocol import LanguageModel
 from planner_service.llm.structured_output import ask
 from planner_service.narration.keyframe_phrases import Places
 from planner_service.narration.narrative_voice import Voice
-from planner_service.narration.narrator import Told
-from planner_service.narration.story_scenes import Span
-from planner_service.scripts.script import LongScript, PlannedKeyframe, legible
+from planner_service.narration.narrator import Span, Told
+from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe, legible
 from scene_graphs.furniture import catalogue, display_name, is_minor
 
 _SHOWN: Final = 8
@@ -66,13 +65,20 @@ def narrate_with_model(
         name=voice.name,
         pronouns=voice.pronouns,
         theme=script.theme,
-        events="\n".join(f"- {script.beats[r.beat].text}: {r.script.summary}" for r in script.short_scripts),
+        beats="\n".join(f"- {beat.kind}, {_how_told(beat)}: {_whole(beat)}" for beat in script.beats),
         keyframes="\n".join(f"- {moment}" for moment in moments),
     )
-    said = " ".join([script.theme, *(r.script.summary for r in script.short_scripts)])
-    answer = ask(model, prompt, _ModelStory, lambda story: _problems(story.text, voice, moments, said)[:_SHOWN])
+    answer = ask(model, prompt, _ModelStory, lambda story: _problems(story.text, voice, moments, script.theme)[:_SHOWN])
     text = "\n\n".join(str(legible(part)) for part in re.split(r"\n\s*\n", answer.text.strip()))
     return Told(str(legible(answer.title)), text, _found_spans(text, [moment.furniture for moment in moments]))
+
+
+def _how_told(beat: Beat) -> str:
+    return "acted" if beat.asked and not beat.why and not beat.who else "not acted"
+
+
+def _whole(beat: Beat) -> str:
+    return beat.text + (f" ({beat.who})" if beat.who and beat.who.lower() not in beat.text.lower() else "")
 
 
 def _problems(text: str, voice: Voice, moments: Sequence[_Moment], said: str) -> list[str]:

@@ -1,4 +1,7 @@
-"""A long script told as a story: prose that follows the keyframes in order and knows which words tell which."""
+"""A long script told as a story: its beats in the theme's own words beside what the keyframes show, and no more.
+
+What no keyframe shows is told as a thought, as left undone, or not at all.
+"""
 
 from __future__ import annotations
 
@@ -6,56 +9,39 @@ import re
 import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import groupby, pairwise
+from typing import Final
 
 from motion_backend.motion import Character, Skill
-from planner_service.narration.event_sentences import fragment, happening, link_before, told_together
-from planner_service.narration.keyframe_phrases import (
-    Phrase,
-    Places,
-    Variety,
-    Wording,
-    joined,
-    sentences_of,
-    without_room,
-)
-from planner_service.narration.narrative_voice import Voice, retell
-from planner_service.narration.openings_and_endings import (
-    ANY_OTHER,
-    STANDS_ALONE,
-    gainsaid,
-    story_texts,
-    tells_time,
-    time_of,
-    title_of,
-)
-from planner_service.narration.sentence_frames import Ear, Manner, Sentence, framed, said
-from planner_service.narration.story_scenes import (
-    RESTS,
-    SENTENCES,
-    Lead,
-    Scene,
-    Span,
-    balanced,
-    deeds_in,
-    finds,
-    laid_out,
-    leads_of,
-    scenes_of,
-)
-from planner_service.scripts.script import Beat, LongScript
+from planner_service.narration.beat_clause import WAS, Predicate, event, left_undone, thought
+from planner_service.narration.keyframe_phrases import RESTS, RISES, Phrase, Places, Variety, Wording
+from planner_service.narration.narrative_voice import Voice
+from planner_service.narration.story_words import story_words, title_of
+from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe
+from planner_service.themes.protagonist import cast_by
+from scene_graphs.furniture import class_of, display_name, is_known
 
 __all__ = ["Places", "Span", "Told", "narrate"]
-_UNFIT = r"[,;:]|\b(?:when|that|this|first)\b"
-"""What an event does not have that begins a story."""
-_AN = re.compile(r"\ba (?=[aeiou])")
-_DEED = re.compile(r"(?:He|She|They) (?!was|were|had|could|did not|felt|stayed|kept|became|got|grew)")
-"""How a sentence begins that time can have passed before."""
-_BEGINS = 14
-"""Words of what happens first, in a story's first sentence."""
-_JOINED = 22
-"""Words of a sentence that tells what happens and what the body does."""
-_MANY = 22
-"""Keyframes above which a story leaves out what says little."""
+MAX_SENTENCES = 5
+"""Sentences in a paragraph."""
+SENTENCES_A_JOINT = 8
+"""At most every such sentence begins by saying that time has passed."""
+_MAX_MOVES: Final = 3
+_MAX_WORDS: Final = 22
+"""Words of a sentence after which no more is added to it."""
+_SHORT: Final = 9
+"""Words of two beats that may stand in one sentence."""
+_PLACE: Final = re.compile(r"\b(?:on|in|at|by|into|onto|under|beside|near|to|from|around|against|before|behind) \w+")
+Rows = Sequence[tuple[int, PlannedKeyframe]]
+
+
+@dataclass(frozen=True)
+class Span:
+    """A stretch of a told text, end exclusive, and the keyframes it tells."""
+
+    start: int
+    end: int
+    keyframes: tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -67,296 +53,274 @@ class Told:
     spans: tuple[Span, ...]
 
 
+@dataclass(frozen=True)
+class _Move:
+    """Something told of the story's person, without its subject."""
+
+    text: str
+    keyframes: tuple[int, ...] = ()
+    gerund: str = ""
+    """The same before another one, "crossing to the sofa"; empty where that would not do."""
+    adjective: str = ""
+    mood: str = "neutral"
+    begins: bool = False
+    """Whether a beat begins with it."""
+    leads: bool = False
+    """Whether the next one is what it is done for."""
+    ends: bool = False
+    """Whether a sentence ends with it."""
+    negated: bool = False
+
+    @property
+    def words(self) -> int:
+        """How long it is."""
+        return len(self.text.split())
+
+
 def narrate(script: LongScript, character: Character, seed: int = 0, places: Places | None = None) -> Told:
     """The story of a script by rules; the same seed tells it in the same words."""
-    return _Narrator(script, Voice.of(character), seed, places or {}).tell()
+    voice = Voice.of(character)
+    variety = Variety(seed, zlib.crc32(script.theme.encode()))
+    moves = _Teller(script, voice, variety, places or {}).moves()
+    text, spans = _Writer(voice, variety, _introduction(script.theme, voice)).write(_sentences(moves, variety))
+    others = _others(script, voice, variety)
+    text = " ".join(filter(None, (text, others)))
+    return Told(title_of(script.theme, script.beats[-1].emotion if script.beats else "neutral"), text, spans)
 
 
-def _names_it(sentence: Sequence[Phrase]) -> bool:
-    """Whether a sentence begins with what the one before it named."""
-    return bool(re.search(r"\bits?\b", sentence[0].text))
+class _Teller:
+    """Says what is told of every beat, and in which of its words the keyframes are."""
 
-
-def _last_of(skills: Sequence[Skill], sentences: Sequence[Sequence[Phrase]]) -> int:
-    """Which is the last of the sentences to tell one of the skills; the first that tells of a touch."""
-    places = [i for i, sentence in enumerate(sentences) if any(phrase.skill in skills for phrase in sentence)]
-    return (min if Skill.TOUCH in skills else max)(places, default=len(sentences) - 1)
-
-
-Remark = tuple[str, str | None]
-"""A sentence about what happens, and the theme's own "so" or "but" before it; None of what a summary adds."""
-
-
-def _skills(scene: Scene, remark: Remark) -> tuple[Skill, ...]:
-    """What the body does first of what a remark tells; nothing where that goes before."""
-    sentence, link = remark
-    return scene.tells(sentence) or ((Skill.TOUCH,) if link is None and finds(sentence) else ())
-
-
-class _Narrator:
-    """Writes one story from its opening to its closing sentence."""
-
-    def __init__(self, script: LongScript, voice: Voice, seed: int, places: Places) -> None:
+    def __init__(self, script: LongScript, voice: Voice, variety: Variety, places: Places) -> None:
         self.script = script
         self.voice = voice
-        self.variety = Variety(seed, zlib.crc32(script.theme.encode()))
-        self.ear = Ear(self.variety)
-        self.wording = Wording(voice, self.variety, places, brief=len(script.keyframes) > _MANY)
-        events = script.beats
-        self.first, self.last = (events[0], events[-1]) if events else (Beat(text=script.theme),) * 2
-        self.time = time_of(self.first.text, *(r.script.summary for r in script.short_scripts[:1]))
-        self.rooms: list[str] = []
-        self.arrival = ""
-        """The room that the next sentence about the body names."""
-        self.visits = -1
-        """How often the story was in this room before; -1 in its first."""
-        self.mood = ""
-        """The mood of the scene before."""
-        self.risen: tuple[Phrase, ...] = ()
-        """The rising that leads from the scene before to this one."""
-        self.setting = ""
-        """What the theme says of when or how the next event is."""
-        self.turned = False
-        """Whether the mood turned since something happened."""
-        self.later = False
-        """Whether something was told already."""
-        self.scene: list[Sentence] = []
+        self.variety = variety
+        self.wording = Wording(voice, variety, places)
+        self.hero = cast_by(script.theme, Character()).pronouns
+        self.told: set[int] = set()
 
-    def tell(self) -> Told:
-        """The whole story."""
-        scenes = scenes_of(self.script)
-        theme, events = self.script.theme, self.script.beats
-        tellable = {number for number, event in enumerate(events) if happening(event.text, theme, self.voice)}
-        told: list[list[Sentence]] = []
-        leads = leads_of(self.script, scenes, tellable, self.variety)
-        for number, (scene, lead) in enumerate(zip(scenes, leads, strict=True)):
-            self.scene, self.later = [], number > 0
-            self._tell_scene(scene, lead, final=number == len(scenes) - 1)
-            told.append(self.scene)
-        self.scene = [] if scenes else [self.ear.choose(self._opening())]
-        reached = max((scene.event + 1 for scene in scenes if scene.event is not None), default=0)
-        self._say_all(self._happens(range(reached, len(events))))
-        self.scene.append(self.ear.choose(self._framed(self._closings([*told[-1:], self.scene]))))
-        if told and len(self.scene) == 1:
-            self.scene = told.pop() + self.scene
-        text, spans = laid_out(balanced([*told, self.scene]))
-        title = title_of(self.script.theme, self.last.emotion, self.time)
-        return Told(title, text, spans)
+    def moves(self) -> list[_Move]:
+        """Everything that is told, in order; beats without keyframes stand where the theme has them."""
+        runs = _runs(self.script.keyframes)
+        shown = {beat for beat, _ in runs}
+        moves: list[_Move] = []
+        for beat, rows in runs:
+            for earlier in range(min(beat or 0, len(self.script.beats))):
+                moves += self._unshown(earlier) if earlier not in shown else []
+            moves += self._shown(beat, rows)
+        for late in range(len(self.script.beats)):
+            moves += self._unshown(late)
+        return moves
 
-    def _tell_scene(self, scene: Scene, head: Lead, final: bool) -> None:
-        """What happens (the lead) and what the body does; sleep comes after what leads to it."""
-        lead = self._headed(scene, head)
-        asleep = scene.sleeps(" ".join(sentence for sentence, _ in lead))
-        rest = [] if asleep else [remark for remark in lead if _skills(scene, remark)]
-        lead = [remark for remark in lead if remark not in rest]
-        self.wording.doing = deeds_in(" ".join(sentence for sentence, _ in rest))
-        late = [] if asleep or len(lead) < 2 or self.variety.chance(0.6) else [lead.pop()]
-        if not asleep:
-            self._say_all(lead[:-1])
-        self._enter(scene, "" if asleep else lead[-1][0] if lead else "")
-        sentences = self._sentences(scene, asleep, final)
-        at = next((i for i, told in enumerate(sentences[1:]) if not _names_it(told)), len(sentences) - 1)
-        joined = not asleep and bool(lead) and self.variety.chance(0.25) and self._joined(lead[-1], sentences[0])
-        if not asleep and not joined:
-            self._say_all(lead[-1:])
-        shown = {remark: _last_of(_skills(scene, remark), sentences) for remark in rest}
-        falls_asleep = _last_of(RESTS, sentences) if asleep else None
-        for position, sentence in enumerate(sentences):
-            woken = falls_asleep is not None and position == falls_asleep + 1
-            if position or not joined:
-                self._act(sentence, last=position == len(sentences) - 1 > 0 and not (rest or late), woken=woken)
-            self._say_there(scene, [remark for remark in rest if shown[remark] == position])
-            if position == falls_asleep:
-                self._say_all(lead)
-            if position == at:
-                self._say_all(late)
-
-    def _headed(self, scene: Scene, head: Lead) -> list[Remark]:
-        """What is still to be told of a scene's lead after the story's first sentence, or one between two moods."""
-        if self.rooms:
-            self._turn_to(scene)
-            return self._told(scene, head)
-        self.mood = self._emotion(scene)
-        setting = self.setting
-        lead = self._told(scene, head)
-        if (
-            head.events
-            and lead
-            and not scene.tells(lead[0][0])
-            and self.variety.chance(0.5)
-            and (options := self._beginnings(lead[0][0]))
-        ):
-            self.scene.append(self.ear.choose(options))
-            return lead[1:]
-        self.scene.append(self.ear.choose(self._opening()))
-        self.setting = setting
-        return self._told(scene, head)
-
-    def _beginnings(self, event: str) -> list[Sentence]:
-        """Ways to begin with an event, none where it is not short and plain."""
-        if not event.endswith(".") or re.search(_UNFIT, event[:-1]) or len(event.split()) > _BEGINS:
+    def _unshown(self, number: int) -> list[_Move]:
+        """A beat without keyframes: its feeling, what is thought, what is not done."""
+        beat = self.script.beats[number]
+        if number in self.told or beat.who:
             return []
-        is_state = re.search(r"\b(?:was|were|had)\b", event)
-        shapes = story_texts().beginnings + (() if is_state else story_texts().sudden_beginnings)
-        fitting = [shape for shape in shapes if "{time}" not in shape or not tells_time(event)]
-        told = [self.voice.fill(shape, time=self.time, event=self._inner(event)) for shape in fitting]
-        return [said(_AN.sub("an ", text)) for text in told]
-
-    def _opening(self) -> list[Sentence]:
-        """First sentences that the first event does not gainsay."""
-        openings = story_texts().openings[self.first.emotion]
-        fitting = [text for text in openings if not gainsaid(text, self.first.text)]
-        return self._framed(fitting or story_texts().openings["neutral"][3:4])
-
-    def _turn_to(self, scene: Scene) -> None:
-        """A sentence that leads from the mood of the scene before to that of this one."""
-        emotion = self._emotion(scene)
-        turns = story_texts().mood_changes.get(emotion, {})
-        fits = scene.event is None or self.script.beats[scene.event].emotion == emotion
-        if self.mood and emotion != self.mood and fits and self.variety.chance(0.75):
-            options = self._framed(turns.get(self.mood, turns.get(ANY_OTHER, ())))
-            if options and not self.ear.heard(options):
-                self.scene.append(self.ear.choose(options))
-                self.turned = True
-        self.mood = emotion
-
-    def _emotion(self, scene: Scene) -> str:
-        if scene.script is not None:
-            return self.script.short_scripts[scene.script].script.emotion
-        return scene.keyframes[-1][1].mood
-
-    def _happens(self, events: Sequence[int]) -> list[Remark]:
-        """Events in the theme's own words, each sentence with the theme's "so" or "but" before it."""
-        texts = [self.script.beats[event].text for event in events]
-        theme = self.script.theme
-        together = told_together([text for text in texts if not fragment(text)], theme, self.voice, self._named())
-        sentences = [sentence for text in together for sentence in SENTENCES.split(text)]
-        links: list[str | None] = [link_before(theme, texts[0]) if texts else "", *([""] * len(sentences))]
-        settings = [setting for text in texts if (setting := fragment(text))]
-        if sentences and (settings or self.setting):
-            sentences[0] = f"{[self.setting, *settings][-1]}, {self._inner(sentences[0])}"
-            self.setting, links[0] = "", ""
-        elif settings:
-            self.setting = settings[-1]
-        return list(zip(sentences, links, strict=False))
-
-    def _told(self, scene: Scene, lead: Lead) -> list[Remark]:
-        """The sentences of a lead."""
-        told = self._happens(lead.events)
-        if scene.script is None or not lead.details:
-            return told
-        summary = self.script.short_scripts[scene.script].script.summary
-        chosen = [sentence for place, sentence in enumerate(SENTENCES.split(summary)) if place in lead.details]
-        more = retell(" ".join(chosen), self.voice, bool(told) or self._named())
-        return told + [(text, None) for text in SENTENCES.split(more or "") if text]
-
-    def _say_all(self, lead: Sequence[Remark]) -> None:
-        """Sentences of a lead; some of those that tell of a deed say that time has passed.
-
-        What a summary adds is left out where something began with the same words.
-        """
-        for sentence, link in lead:
-            deed = _DEED.match(re.sub(rf"^{re.escape(self.voice.name)}\b", "They", sentence))
-            timed = bool(deed) and link is not None and self.later and not self.turned and self.variety.chance(0.35)
-            if link is not None or not self.ear.heard([said(sentence)]):
-                self._say(sentence, "" if self.turned else link or "", timed)
-            self.turned = False
-
-    def _say_there(self, scene: Scene, rest: Sequence[Remark]) -> None:
-        """What keyframes tell too, once the body has come to it."""
-        for remark in rest:
-            skills, sentence = _skills(scene, remark), remark[0]
-            if Skill.TOUCH in skills:
-                self._say_all([remark])
-                continue
-            who = self.voice["they"] if self._named() and self.voice.pronouns != "they" else self.voice.name
-            inner = self._inner(re.sub(rf"^{re.escape(self.voice.name)} ", f"{who} ", sentence))
-            words = story_texts().there if skills == RESTS and not re.search(r" to bed\b", inner) else story_texts().so
-            options = [said(f"{word} {inner}", f"{word} {{who}}", "there") for word in words]
-            self.scene.append(self.ear.choose(options, first=True))
-
-    def _joined(self, lead: Remark, sentence: Sequence[Phrase]) -> bool:
-        """Tell an event and what the body does first as one sentence, where both are short; whether that was done."""
-        event, link = lead
-        words = len(event.split()) + sum(len(phrase.text.split()) for phrase in sentence)
-        if self.arrival or link or words > _JOINED or re.search(r"[,;:!?]", event) or sentence[0].rises:
-            return False
-        name = self.voice.name in event or (self._named() and self.voice.pronouns != "they")
-        who = self.voice["they"] if name else self.voice.name
-        options = [
-            Sentence(((shape.format(event=event[:-1], who=who), ()), *joined(sentence), (".", ())), shape, "joint")
-            for shape in story_texts().joints
-        ]
-        if self.ear.heard(options):
-            return False
-        self.scene.append(self.ear.choose(options))
-        return True
-
-    def _inner(self, sentence: str) -> str:
-        """A sentence as it goes on after other words."""
-        return sentence if sentence.startswith(self.voice.name) else sentence[:1].lower() + sentence[1:]
-
-    def _enter(self, scene: Scene, next_told: str) -> None:
-        """Note a room that is new and not named yet; the first sentence about the body will name it."""
-        room = self.wording.room_of(*scene.keyframes[0])
-        named = room == "room" or any(room in text for text in (next_told, *(sentence.text for sentence in self.scene)))
-        new = room not in self.rooms[-1:]
-        self.arrival = room if new and not named else ""
-        self.visits = -1 if not self.rooms else self.rooms.count(room)
-        self.wording.say_room = not named and not self.arrival
-        self.rooms.append(room)
-
-    def _sentences(self, scene: Scene, asleep: bool, final: bool) -> list[tuple[Phrase, ...]]:
-        """The scene's keyframes worded; leaving a seat at its end is told with the next."""
-        phrases = [*self.risen, *self.wording.phrases(scene.keyframes, risen=bool(self.risen))]
-        self.risen = ()
-        if len(phrases) > 1 and phrases[-1].rises and not asleep:
-            rising = phrases.pop()
-            if final:
-                phrases[-1] = replace(phrases[-1], keyframes=phrases[-1].keyframes + rising.keyframes)
-            else:
-                self.risen = (rising,)
-        return sentences_of(phrases, self.variety)
-
-    def _act(self, sentence: Sequence[Phrase], last: bool = False, woken: bool = False) -> None:
-        """One sentence about the body, in the frame that sounds freshest."""
-        who = self.voice["they"] if self._named() else self.voice.name
-        manner = Manner(self.time, last=last, woken=woken)
-        if len(sentence) > 1 or not sentence[0].rises:
-            sentence = without_room(sentence, self.rooms[-1], named=bool(self.arrival))
-            manner, self.arrival = replace(manner, room=self.arrival, visits=self.visits), ""
-        options = framed(sentence, who, self.voice, manner)
-        self.scene.append(self.ear.choose(options))
-
-    def _named(self) -> bool:
-        """Whether a pronoun would be understood: the name was said a sentence or two ago in this scene."""
-        recent = [sentence.text for sentence in self.scene[-2:]]
-        if not any(self.voice.name in text for text in recent):
-            return False
-        return self.voice.pronouns != "they" or bool(re.search(rf"\b(?:{self.voice.name}|[Tt]hey)\b", recent[-1]))
-
-    def _say(self, sentence: str, link: str = "", timed: bool = False) -> None:
-        """Add a sentence that is not about the body, after a word for the time where it needs one or is `timed`."""
-        inner = self._inner(sentence)
-        if link and sentence.startswith((self.voice.name, "The ", "A ", "An ", "He ", "She ", "They ")):
-            options = [said(f"{link} {inner}")]
+        self.told.add(number)
+        if beat.kind == "memory":
+            return [_Move(text, begins=True, ends=True) for text in self._thought(beat)]
+        if beat.kind == "undone":
+            told = left_undone(beat, self.hero, self.voice)
         else:
-            turns = story_texts().notes if STANDS_ALONE.match(sentence) else story_texts().turns
-            turns = story_texts().cries if sentence.endswith("!") else turns
-            options = [said(sentence), *(said(f"{turn} {inner}", turn, "after") for turn in turns)]
-        self.scene.append(self.ear.choose(options, first=not (link or timed)))
+            told = None if beat.why or beat.kind == "other" else event(beat, self.hero, self.voice)
+        return [_Move(told.text, adjective=told.adjective, begins=True, negated=told.negated)] if told else []
 
-    def _closings(self, told: Sequence[Sequence[Sentence]]) -> tuple[str, ...]:
-        if not self.script.keyframes:
-            return story_texts().closings["neutral"]
-        last = self.script.keyframes[-1]
-        mood = last.mood
-        asleep = re.search(r"sleep|awake", " ".join(sentence.text for part in told for sentence in part))
-        lying = story_texts().lying_closings.get(mood) if last.skill == Skill.LIEDOWN and not asleep else None
-        turned = story_texts().turned_closings.get(self.first.emotion, {}).get(mood)
-        return lying or turned or story_texts().closings[mood]
+    def _thought(self, beat: Beat) -> list[str]:
+        told = thought(beat, self.hero, self.voice)
+        if told and told.split()[0] == self.voice["they"]:
+            told = self.voice.fill(self.variety.pick(story_words().thoughts), clause=told)
+        return [told] if told else []
 
-    def _framed(self, templates: Sequence[str]) -> list[Sentence]:
-        they, their = self.voice["they"].capitalize(), self.voice["their"].capitalize()
-        told = [self.voice.fill(template, time=self.time, They=they, Their=their) for template in templates]
-        return [said(_AN.sub("an ", text), text, "turn") for text in told]
+    def _shown(self, number: int | None, rows: Rows) -> list[_Move]:
+        """A beat and its keyframes."""
+        phrases = self.wording.phrases(rows)
+        if number is None or number >= len(self.script.beats) or number in self.told:
+            return _begun([_move(phrase) for phrase in phrases])
+        beat = self.script.beats[number]
+        if beat.kind not in ("deed", "feeling", "speech") or beat.why or beat.who:
+            return [*self._unshown(number), *_begun([_move(phrase) for phrase in phrases])]
+        self.told.add(number)
+        told = event(beat, self.hero, self.voice)
+        if told is None:
+            return _begun([_move(phrase) for phrase in phrases])
+        if beat.kind == "feeling":
+            return [_Move(told.text, adjective=told.adjective, begins=True), *(_move(phrase) for phrase in phrases)]
+        return _begun(self._with_deed(told, phrases, all(row.short_script is None for _, row in rows)))
+
+    def _with_deed(self, told: Predicate, phrases: list[Phrase], written: bool) -> list[_Move]:
+        """A deed and how the body does it; once, where a phrase says the same or was written for it."""
+        at = next((at for at in reversed(range(len(phrases))) if _same(told, phrases[at])), None)
+        if at is not None:
+            return self._once(told, phrases, at)
+        doing = next((at for at, phrase in enumerate(phrases) if phrase.deeds & told.verbs), None)
+        acts = [phrase for phrase in phrases if phrase.skill in (*RESTS, Skill.TOUCH)]
+        if doing is None and (not written or len(acts) > 1):
+            return [_Move(told.text, ends=True), *(_move(phrase) for phrase in phrases)]
+        at = len(phrases) - 1 if doing is None else doing
+        before, last, after = phrases[:at], phrases[at], [_move(phrase) for phrase in phrases[at + 1 :]]
+        if last.skill != Skill.TOUCH:
+            told_there = _Move(told.text, mood=last.mood)
+            return [*(_move(one) for one in before), _move(last, manner=False), told_there, *after]
+        place = "" if (before and before[-1].leads) or _PLACE.search(told.text) else f" at {last.the}"
+        return [*(_move(one) for one in before), _Move(told.text + place, last.keyframes, mood=last.mood), *after]
+
+    def _once(self, told: Predicate, phrases: list[Phrase], at: int) -> list[_Move]:
+        """A deed in place of the phrase that says the same; of the way there at most one of them tells where it is."""
+        before, phrase, text = phrases[:at], phrases[at], told.text
+        keyframes = phrase.keyframes
+        if before and before[-1].leads and (there := _furniture_in(text, phrase.word)):
+            at_it = re.search(rf" (on|in|into|onto|from|at) (?:the|an?|his|her|their) (?:\w+ )??{there}\b", text)
+            if at_it and self.variety.chance(0.6):
+                it = "" if at_it[1] == "at" else f" {at_it[1]} it"
+                text = text[: at_it.start()] + it + text[at_it.end() :]
+            else:
+                keyframes = (*before.pop().keyframes, *keyframes)
+        text += "" if _PLACE.search(text) or phrase.skill not in RESTS else _at(phrase)
+        same = _Move(text, keyframes, mood=phrase.mood)
+        return [*(_move(one) for one in before), same, *(_move(one) for one in phrases[at + 1 :])]
+
+
+def _same(told: Predicate, phrase: Phrase) -> bool:
+    """Whether a deed says what a phrase does."""
+    if phrase.leads:
+        return False
+    if phrase.skill in RISES and "get" in told.verbs and not re.search(r" up\b| out of bed\b", told.text):
+        return False
+    named = phrase.skill not in RISES and _furniture_in(told.text, phrase.word)
+    return bool(named or told.verbs & frozenset(story_words().deeds.get(phrase.skill, "").split()))
+
+
+def _furniture_in(text: str, word: str) -> str:
+    """How a text calls a piece of furniture: by its name, or that of another of its class; empty where it does not."""
+    words = re.findall(r"[a-z]+", text.lower())
+    two = [" ".join(pair) for pair in pairwise(words)]
+    names = (word.lower(), display_name(word).lower())
+    alike = (one for one in (*two, *words) if one in names or (is_known(one) and class_of(one) == class_of(word)))
+    return next(alike, "") if word else ""
+
+
+def _runs(keyframes: Sequence[PlannedKeyframe]) -> list[tuple[int | None, Rows]]:
+    """Keyframes with the beat they are told with; one of none goes with what follows it, the last with those before."""
+    owners = [keyframe.beat for keyframe in keyframes]
+    for order in (reversed(range(len(owners) - 1)), range(1, len(owners))):
+        for at in order:
+            near = (
+                at + 1 if owners[at] is None and owners[at + 1 : at + 2] != [None] and at + 1 < len(owners) else at - 1
+            )
+            if owners[at] is None and near >= 0:
+                owners[at] = owners[near]
+    rows = groupby(enumerate(keyframes), key=lambda row: owners[row[0]])
+    return [(owner, list(run)) for owner, run in rows]
+
+
+def _move(phrase: Phrase, manner: bool = True) -> _Move:
+    gerund = phrase.gerund if phrase.skill in (Skill.LOCO, *RISES) else ""
+    text = phrase.text(manner)
+    rises = phrase.skill in RISES
+    return _Move(text, phrase.keyframes, gerund, "", phrase.mood, rises, phrase.leads, ends="," in text)
+
+
+def _begun(moves: list[_Move]) -> list[_Move]:
+    return [replace(move, begins=move.begins or at == 0) for at, move in enumerate(moves)]
+
+
+def _at(phrase: Phrase) -> str:
+    found = re.search(r" (?:on|in|onto|into) (the .+)$", phrase.base)
+    return "" if not found else f" {'in' if re.search(rf' in(?:to)? {found[1]}', phrase.base) else 'on'} {found[1]}"
+
+
+def _sentences(moves: Sequence[_Move], variety: Variety) -> list[list[_Move]]:
+    """Up to three moves a sentence; a walk stays with its purpose, a beat seldom shares one with another."""
+    told: list[list[_Move]] = []
+    for move in moves:
+        last = told[-1] if told else []
+        words = sum(one.words for one in last) + move.words
+        together = len(last) == 1 and words <= 2 * _SHORT and variety.chance(0.5)
+        most = 2 if any(one.negated for one in (*last, move)) else _MAX_MOVES
+        room = last and len(last) < most and words <= _MAX_WORDS and not last[-1].ends
+        crowded = any(" and " in one.text for one in (*last, move)) and len(last) > 1
+        fits = room and not crowded and (together if move.begins else not last[0].adjective or len(last) < 2)
+        if last and (last[-1].leads or fits):
+            last.append(move)
+        else:
+            told.append([move])
+    return told
+
+
+class _Writer:
+    """Writes sentences with their subjects, and notes where they tell of which keyframes."""
+
+    def __init__(self, voice: Voice, variety: Variety, introduction: str) -> None:
+        self.voice = voice
+        self.variety = variety
+        self.first = introduction
+        self.text = ""
+        self.spans: list[Span] = []
+
+    def write(self, sentences: Sequence[Sequence[_Move]]) -> tuple[str, tuple[Span, ...]]:
+        """The text of all sentences in paragraphs as long as each other."""
+        count = -(-len(sentences) // MAX_SENTENCES)
+        starts = {round(number * len(sentences) / count) for number in range(count)} if count else set()
+        joint, people = 0, story_words().lists["people"]
+        for at, moves in enumerate(sentences):
+            self.text += "" if not at else "\n\n" if at in starts else " "
+            before = {*re.findall(r"[a-z]+", self.text.rpartition(". ")[2].lower())} - {self.voice["they"]}
+            named = at in starts or bool(people & before)
+            late = at + 1 - joint >= SENTENCES_A_JOINT and moves[0].begins and at not in starts
+            joint = at + 1 if late else joint
+            self._sentence(moves, named, self.variety.pick(story_words().joints) if late else "")
+        return self.text, tuple(self.spans)
+
+    def _sentence(self, moves: Sequence[_Move], named: bool, opening: str) -> None:
+        start = len(self.text)
+        first = moves[0]
+        if len(moves) > 1 and not opening and not self.first:
+            if first.adjective and self.variety.chance(0.6):
+                opening, moves = f"{first.adjective},", moves[1:]
+            elif first.gerund and self.variety.chance(0.4):
+                self._say(first.gerund, first.keyframes)
+                opening, moves = ",", moves[1:]
+        moods = story_words().moods.get(first.mood, ())
+        fresh = [words for words in moods if not self.variety.used[words]]
+        if not opening and not self.first and first.keyframes and fresh and self.variety.chance(0.25):
+            opening = f"{self.variety.pick(fresh)},"
+        who = self.voice.name if named else self.voice["they"]
+        was = "were" if who == "they" else "was"
+        self._say(f"{opening} {who}{self.first} ".lstrip())
+        self.first = ""
+        for at, move in enumerate(moves):
+            crowded = len(moves) > 2 or any(re.search(r",| and ", one.text) for one in moves[:-1])
+            if at:
+                link = "but" if moves[0].negated else "and"
+                self._say(f", {link} " if crowded else f" {link} ") if at == len(moves) - 1 else self._say(", ")
+            self._say(move.text.replace(WAS, was), move.keyframes)
+        self.text = f"{self.text[:start]}{self.text[start:][:1].upper()}{self.text[start + 1 :]}."
+
+    def _say(self, words: str, keyframes: tuple[int, ...] = ()) -> None:
+        if keyframes:
+            self.spans.append(Span(len(self.text), len(self.text) + len(words), keyframes))
+        self.text += words
+
+
+def _introduction(theme: str, voice: Voice) -> str:
+    """Who the person is, as the theme has it where it gives no name: ", an old widower,"."""
+    known = story_words().lists
+    words = theme.lower().split()[:4]
+    at = next((at for at, word in enumerate(words) if word in known["people"]), 0)
+    if not at or words[0] not in ("a", "an") or voice.name in theme or (words[at] in known["plain_people"] and at < 2):
+        return ""
+    return f", {' '.join(words[: at + 1])},"
+
+
+def _others(script: LongScript, voice: Voice, variety: Variety) -> str:
+    """A sentence about the people whose deeds the theme has and nobody shows."""
+    people = story_words().lists["people"] - {"they", "he", "she"}
+    who = [
+        re.sub(r"^(?:The|An?|His|Her|Their) ", lambda one: one[0].lower(), beat.who)
+        for beat in script.beats
+        if beat.who.istitle() or people & {*beat.who.lower().split()}
+    ]
+    *most, last = list(dict.fromkeys(who))[:3] or [""]
+    others = " and ".join(filter(None, (", ".join(most), last)))
+    return voice.fill(variety.pick(story_words().others), others=others) if others else ""

@@ -1,95 +1,83 @@
-"""A present-tense sentence told in the past, and the base forms of the verbs that stand in it."""
+"""Forms of English verbs: the past, the -ing form, the base form of any of them."""
 
 from __future__ import annotations
 
-import re
 from functools import cache
-from typing import Final
+from typing import Final, Literal
 
-from planner_service.themes.lexicon import english_verbs, gerund, past
-
-_SHIFTED: Final = (
-    (r"\btomorrow (morning|afternoon|evening|night)\b", r"the next \1"),
-    (r"(?<!about )\btomorrow\b", "the next day"),
-    (r"\btonight\b", "that night"),
-    (r"\btoday\b", "that day"),
-    (r"\byesterday\b", "the day before"),
-)
-"""Days named from the teller's present, named from the story's."""
-
-
-def is_past(word: str) -> bool:
-    """Whether a word is a simple past we know."""
-    return word in _pasts()
+Form = Literal["VBD", "VBG", "VBN", "VBZ"]
+"""Simple past, -ing, past participle, present of he and she."""
+_CHOSEN: Final = {
+    ("wake", "VBN"): "woken", ("lie", "VBN"): "lain", ("get", "VBN"): "got", ("quit", "VBN"): "quit",
+    ("weave", "VBD"): "wove", ("spit", "VBN"): "spat", ("spit", "VBD"): "spat", ("wed", "VBD"): "wed",
+    ("program", "VBD"): "programmed", ("program", "VBG"): "programming",
+}  # fmt: skip
+"""Where the first of the forms in the dictionary is not ours."""
+_NO_VERBS: Final = "a an and as at but by for he her his i in it my no of on or she so the they to we"
+"""Small words that a dictionary also has as verbs."""
 
 
-def base_of(present: str) -> str | None:
-    """The base of a third-person present form, a regular guess for an unknown word in -s; None for anything else."""
-    presents = english_verbs().presents
-    if present in presents:
-        return presents[present]
-    if not present.endswith("s") or present.endswith("ss") or len(present) < 4:
+@cache
+def inflected(base: str, form: Form) -> str:
+    """A base form in another form, spelt as in Britain where it can be: travel → travelled."""
+    from lemminflect import getInflection
+
+    if (base, form) in _CHOSEN:
+        return _CHOSEN[base, form]
+    forms = getInflection(base, form) or (base,)
+    return str(next((one for one in forms if base.endswith("l") and "ll" in one), forms[0]))
+
+
+def past(base: str) -> str:
+    """Sit → sat."""
+    return inflected(base, "VBD")
+
+
+def gerund(base: str) -> str:
+    """Sit → sitting."""
+    return inflected(base, "VBG")
+
+
+@cache
+def bases(word: str, guessed: bool = False) -> tuple[str, ...]:
+    """The base forms of the verbs that a word in small letters may be a form of; a guess, if wanted, for one in -s, -ed
+    or -ing that no dictionary has: facetimes → facetime."""
+    from lemminflect import getAllLemmas, getAllLemmasOOV
+
+    if word in _NO_VERBS.split():
+        return ()
+    known = getAllLemmas(word, upos="VERB")
+    if not known and guessed and len(word) > 4 and word.endswith(("s", "ed", "ing")):
+        known = getAllLemmasOOV(word, upos="VERB")
+    return tuple(known.get("VERB", ()))
+
+
+def is_adjective(word: str) -> bool:
+    """Whether a word can say how somebody is: tired, exhausted, lonely."""
+    from lemminflect import getAllLemmas
+
+    adjective = "ADJ" in getAllLemmas(word)
+    return adjective or any(inflected(base, "VBN") == word != base for base in bases(word))
+
+
+def form_of(word: str) -> Form | None:
+    """Which form a word in small letters is of a verb; None for a base form and for what is no verb."""
+    for base in bases(word, guessed=True):
+        for form in ("VBD", "VBZ", "VBG", "VBN"):
+            if word != base and (inflected(base, form) == word or (form == "VBD" and _also_past(base, word))):
+                return form
+    return None
+
+
+def _also_past(base: str, word: str) -> bool:
+    from lemminflect import getInflection
+
+    return word in getInflection(base, "VBD")
+
+
+def in_past(word: str) -> str | None:
+    """Any form of a verb in the simple past, None for what is no verb: sits, sit, sitting and sat are all "sat"."""
+    known = bases(word, guessed=True)
+    if not known:
         return None
-    if present.endswith("ies"):
-        return present[:-3] + "y"
-    return present[:-2] if present.endswith(("sses", "shes", "ches", "xes", "zzes")) else present[:-1]
-
-
-def base_of_gerund(word: str) -> str | None:
-    """The base of an -ing form we know: losing → lose, having → have; None for anything else."""
-    return _base_of_gerund().get(word)
-
-
-def stem(word: str) -> str:
-    """What the forms of a verb have in common, and a word with its plural: cries, cried, crying → cry; keys → key."""
-    known = english_verbs().presents.get(word) or _base_of_past().get(word) or _base_of_gerund().get(word)
-    return known or (word[:-1] if word.endswith("s") and not word.endswith("ss") and len(word) > 3 else word)
-
-
-def before_past(told: str) -> str:
-    """The past perfect of a simple past of a deed: won → had won; any other word as it is."""
-    base, verbs = _base_of_past().get(told), english_verbs()
-    return told if base is None or base in verbs.lasting.split() else f"had {verbs.participles.get(base, told)}"
-
-
-def word_to_past(word: str, before: str, after_subject: bool = False) -> str:
-    """One word of a present-tense sentence in the past; `before` is the word in front of it, lower case.
-
-    Right after the subject any word in -s counts as a verb, and so does a base form after "they".
-    """
-    lower, verbs = word.lower(), english_verbs()
-    if lower in verbs.auxiliary and not (lower == "do" and before == "to"):
-        return _match_case(verbs.auxiliary[lower], word)
-    if after_subject:
-        base = lower if before == "they" and lower in verbs.bases else base_of(lower)
-        return past(base) if base else word
-    if lower in verbs.presents and before not in verbs.before_nouns_told.split() and before not in verbs.presents:
-        return _match_case(past(verbs.presents[lower]), word)
-    return word
-
-
-def days_to_past(text: str) -> str:
-    """Tomorrow → the next day, tonight → that night."""
-    for pattern, told in _SHIFTED:
-        text = re.sub(pattern, told, text)
-        text = re.sub(pattern.replace(r"\bt", r"\bT"), told[:1].upper() + told[1:], text)
-    return text
-
-
-@cache
-def _pasts() -> frozenset[str]:
-    return frozenset(past(base) for base in english_verbs().bases) | {"was", "were", "could", "would", "might"}
-
-
-@cache
-def _base_of_past() -> dict[str, str]:
-    return {past(base): base for base in english_verbs().bases}
-
-
-@cache
-def _base_of_gerund() -> dict[str, str]:
-    return {gerund(base): base for base in english_verbs().bases}
-
-
-def _match_case(told: str, word: str) -> str:
-    return told[:1].upper() + told[1:] if word[:1].isupper() else told
+    return word if form_of(word) == "VBD" else past(known[0])

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from functools import lru_cache
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from planner_service.themes.lexicon import lemma_of
+
 _SATURATION, _LENGTH = 1.2, 0.75  # k1 and b as Robertson and Zaragoza (2009) advise
 _WORD: Final = re.compile(r"[^\W_]+(?:'[a-z]+)?")
-_PARTS_OF_SPEECH: Final = ("VERB", "NOUN", "ADJ", "AUX", "ADV")
-"""Whose base form stands for a word that may be several: "drinks" is to drink wherever it is read."""
 
 
 class KeywordIndex:
@@ -51,12 +50,4 @@ class KeywordIndex:
 
 def stems(text: str) -> list[str]:
     """The base form of every word, in order; of a word that no dictionary has the word itself."""
-    return [_stem(word) for word in _WORD.findall(text.lower())]
-
-
-@lru_cache(100_000)
-def _stem(word: str) -> str:
-    from lemminflect import getAllLemmas  # which reads its tables on import
-
-    forms = getAllLemmas(word)
-    return next((str(forms[part][0]) for part in _PARTS_OF_SPEECH if part in forms), word)
+    return [lemma_of(word) if word.isalpha() else word for word in _WORD.findall(text.lower())]

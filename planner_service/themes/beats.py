@@ -13,6 +13,7 @@ from motion_backend.motion import Emotion
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
 from planner_service.themes.lexicon import is_third_person, lemma_of
+from planner_service.themes.protagonist import is_name
 from planner_service.themes.sentence_parser import Clause, clauses_of_text, tokens_of
 from scene_graphs.data_tables import read_table, table
 from scene_graphs.errors import UserError
@@ -115,7 +116,7 @@ class ReadBeat:
 
     def in_mood(self, mood: Emotion) -> ReadBeat:
         """The beat with the mood that its meaning shows."""
-        return replace(self, beat=self.beat.model_copy(update={"emotion": mood}), felt=mood, sure=True)
+        return replace(self, beat=self.beat.model_copy(update={"emotion": mood}), felt=mood)
 
 
 def clean(theme: object) -> str:
@@ -139,8 +140,12 @@ def beats_of(theme: str) -> tuple[ReadBeat, ...]:
     """What a theme says happens, in the order of time. Raises ThemeError as `clean` does, and for other languages."""
     text = clean(theme)
     _refuse_foreign(text)
-    clauses = clauses_of_text(text)
-    hero = _hero(clauses)
+    return read_beats(clauses_of_text(text))
+
+
+def read_beats(clauses: Sequence[Clause]) -> tuple[ReadBeat, ...]:
+    """What clauses say happens to whom they are about."""
+    hero = hero_of(clauses)
     return tuple(_moods([_read(clause, hero) for clause in clauses]))
 
 
@@ -197,14 +202,23 @@ def is_feeling(clause: Clause) -> bool:
     return clause.verb in words["state_verbs"] and bool(feelings(clause.text)) and len(rest) <= 4
 
 
-def _hero(clauses: Sequence[Clause]) -> str:
+def hero_of(clauses: Sequence[Clause]) -> str:
     """Whom the theme is about: the first subject that is a person, as it is written; empty where none is named."""
     named = [clause.subject for clause in clauses if clause.subject]
     people = [subject for subject in named if is_person(subject)]
-    if people and (people[0].lower() not in _PRONOUNS or not named[0].lower().startswith(("a ", "an "))):
-        return people[0]
+    if any(subject.lower() == "i" for subject in named):
+        return "I"
+    pronoun = next((subject for subject in people if subject.lower() in ("he", "she")), "")
+    one = [subject for subject in people if not (pronoun and _is_plural(subject))]
+    if one and (one[0].lower() not in _PRONOUNS or not named[0].lower().startswith(("a ", "an "))):
+        return one[0]
     living = named[:1] if named and named[0].lower().startswith(("a ", "an ", "one ", "my ", "our ")) else []
-    return next(iter([*living, *people]), "")
+    return next(iter([*living, *one, *people]), "")
+
+
+def _is_plural(subject: str) -> bool:
+    head = head_of(subject).lower()
+    return head.endswith("s") and lemma_of(head) != head
 
 
 def is_person(subject: str) -> bool:
@@ -218,7 +232,7 @@ def is_person(subject: str) -> bool:
     people = theme_words()["people"]
     if head.lower() in people or lemma_of(head) in people:
         return True
-    if head[:1].isupper() and words[0].lower() not in ("the", "a", "an"):
+    if any(is_name(word) for word in words) and words[0].lower() not in ("the", "a", "an"):
         return True
     if len(head) > 4 and head.endswith(("er", "or")):  # a "baker" is one who bakes
         stem = head.lower()[:-2]
@@ -245,12 +259,7 @@ def is_hero(subject: str, hero: str) -> bool:
         return main in _FIRST_PERSON or not main
     if low in _PRONOUNS:
         return main not in ("he", "she") or low == main or low in ("they", "who")
-    if head_of(subject).lower() in theme_words()["body"] and subject.split()[0].lower() in (
-        "his",
-        "her",
-        "their",
-        "my",
-    ):
+    if head_of(subject).lower() in theme_words()["body"]:
         return True
     if hero and head_of(subject).lower() == head_of(hero).lower():
         return True
@@ -307,4 +316,5 @@ def _emotion(text: str) -> tuple[Emotion | None, bool]:
     named = [feeling.emotion for feeling in found if feeling.sure]
     if named:
         return (Emotion.DRUNK if Emotion.DRUNK in named else named[-1]), True
-    return (found[-1].emotion, False) if found else (None, False)
+    first = [feeling for feeling in found if feeling.start == 0]  # what is done hints more than what it is done to
+    return ([*first, *found[-1:]][0].emotion, False) if found else (None, False)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Final
 
 from motion_backend.motion import Character
-from planner_service.themes.lexicon import is_verb, is_verb_form
+from planner_service.themes.lexicon import is_verb, kinds_of
 
 _NAMES: Final = {
     "she": """
@@ -34,7 +34,7 @@ _PRONOUNS_OF: Final = {name: pronouns for pronouns, names in _NAMES.items() for 
 _PRONOUN: Final = re.compile(r"\b(?:(?P<she>she|her|herself)|(?P<he>he|him|his|himself))\b", re.IGNORECASE)
 _SUBJECT: Final = re.compile(r"\b(?:(?P<she>she)|(?P<he>he))\b", re.IGNORECASE)
 _KINDS: Final = re.compile(
-    r"^(?:\W*(?:an?|the|this|one|our|some|old|young|tired|little|lonely|happy|sad|elderly|busy|single)\s+)*(?:"
+    r"^(?:\W*(?:an?|the|this|one|our|my|his|her|their|some|old|young|tired|little|lonely|happy|sad|elderly|busy|single)\s+)*(?:"
     r"(?P<she>woman|girl|lady|mother|mum|mom|grandmother|grandma|granny|widow|wife|daughter|sister|aunt|nun|actress"
     r"|queen|bride|waitress)"
     r"|(?P<he>man|boy|guy|gentleman|father|dad|grandfather|grandpa|widower|husband|son|brother|uncle|monk|king|groom))\b",
@@ -56,57 +56,42 @@ def cast_by(theme: str, character: Character) -> Character:
 
 
 def name_in(theme: str) -> str:
-    """The first name that does something, or "".
-
-    A word that opens a sentence must be known as a name, or go with its verb as only a name can: "Zora waters".
-    """
-    for found in _CAPITALISED.finditer(theme):
-        name, verb = found["name"], found["verb"]
-        inside = found["before"].strip() not in ("", ".", "!", "?") and found["before"].strip()[-1] not in ".!?\"'"
-        if not (is_verb(verb) or is_verb_form(verb) or verb in _MODALS):
-            continue
-        if name.lower() in _PRONOUNS_OF or (inside and not _NOT_NAMES.fullmatch(name)):
-            return name
-        if inside:
-            return ""
-        if _agrees(name.lower(), verb):
-            return name
-    return ""
+    """The first name that does something, or ""."""
+    doing = (one["name"] for one in _CAPITALISED.finditer(theme) if is_verb(one["verb"]))
+    return next((name for name in doing if is_name(name)), "")
 
 
-def _agrees(word: str, verb: str) -> bool:
-    """Whether a word that opens a sentence and is no known name can be nothing else beside this verb."""
-    singular = verb in _MODALS or (is_verb_form(verb) and verb.endswith("s"))
-    other = word in _NOUNS or is_verb(word) or _NOUN_ENDING.search(word) or _NOT_NAMES.fullmatch(word.title())
-    return singular and not other
+def is_name(word: str) -> bool:
+    """Whether a word is a name: one that we know, or one with a capital that no dictionary has."""
+    low = word.lower()
+    return word[:1].isupper() and (low in _PRONOUNS_OF or not (kinds_of(low) or low in _NOT_NAMES))
 
 
-_MODALS: Final = frozenset(("can", "cannot", "could", "must", "will", "would", "may", "might", "was"))
-_NOUN_ENDING: Final = re.compile(
-    r"(?:ness|ment|tion|sion|ing|ity|ism|ance|ship|hood|dom|ly|ed|body|one|thing|day|light)$"
+def pronouns_of(subject: str) -> str:
+    """ "he" or "she" for a person whose name or noun tells: "Anna", "the old man", "Mrs. Hill"; else ""."""
+    words = re.findall(r"[^\W\d_]+", subject.lower())
+    known = (_TITLES.get(word) or _PRONOUNS_OF.get(word) for word in words)
+    told = next((pronouns for pronouns in known if pronouns), "") or _pronouns_by(_KINDS, subject)
+    return told if told in ("he", "she") else ""
+
+
+_TITLES: Final = {"mr": "he", "sir": "he", "mrs": "she", "miss": "she", "ms": "she", "madame": "she"}
+_NOT_NAMES: Final = frozenset(
+    """a an the this that these those some any no all both each every he she it they we you i who what which his her its
+    their my our your and but so or nor yet if as at by for from in into of off on onto out over since than to until up
+    with without when where while though although because can could may might must shall should will would everyone
+    everybody everything english french german christmas easter halloween monday tuesday wednesday thursday friday
+    saturday sunday january february april june july august september october november december""".split()
 )
-_NOUN_WORDS: Final = """
-after all anger another anxiety as at autumn beer before bread breakfast business cake cash champagne cheese chocolate
-christmas coffee cold darkness dawn dessert dinner dust each either electricity even every excitement fate father fear
-fever fire fog food frost fury grandma grandpa gravity grief hail happiness heat hope how hunger if in insomnia it
-jazz joy laundry laziness life lightning love luck lunch mail midnight milk mom money mother mum music nature neither
-news night no noise noon nostalgia not now once one only pain paint panic paper peace pizza post rage rain rock
-sadness silence sleep smoke snow so somehow soup spring stress summer sun sunrise sunset supper tea that then there
-thirst this though thunder time today tomorrow tonight traffic train trouble until war water weather what when where
-while who whoever wind wine winter work worry yesterday yoga
-"""
-_NOUNS: Final = frozenset(_NOUN_WORDS.split())
-"""Words that open a sentence without an article and are nobody's name."""
-_NOT_NAMES: Final = re.compile(
-    r"(?:Mon|Tues|Wednes|Thurs|Fri|Satur|Sun)day|January|February|March|April|May|June|July|August|September|October"
-    r"|November|December|Christmas|Easter|Halloween|English|God|He|She|They|It|We|You|Then|And|But|So|Later|Finally"
-)
+"""Words that begin with a capital, are in no dictionary of nouns and verbs, and are nobody's name."""
 
 
 def _pronouns_in(theme: str, named: bool) -> str:
     """The pronouns of the theme's person: those of the noun that opens it, else the first that stands in it."""
-    for pattern in ([] if named else [_KINDS]) + [_SUBJECT, _PRONOUN]:
-        found = pattern.search(theme)
-        if found:
-            return "she" if found["she"] else "he"
-    return ""
+    patterns = ([] if named else [_KINDS]) + [_SUBJECT, _PRONOUN]
+    return next((told for pattern in patterns if (told := _pronouns_by(pattern, theme))), "")
+
+
+def _pronouns_by(pattern: re.Pattern[str], text: str) -> str:
+    found = pattern.search(text)
+    return "" if found is None else "she" if found["she"] else "he"

@@ -43,7 +43,7 @@ _ADVERBS: Final = frozenset(
     hardly barely later suddenly simply both first next eventually meanwhile afterwards instead rather really quite
     together alone ever too there here nearly perhaps maybe usually sometimes""".split()
 )
-_WORD: Final = re.compile(r"«\d+»|[^\W_]+(?:['’-][^\W_]+)*|[^\w\s]", re.UNICODE)
+_WORD: Final = re.compile(r"«\d+»|\b(?:Mrs?|Ms|Dr|Prof)\.|[^\W_]+(?:['’-][^\W_]+)*|[^\w\s]", re.UNICODE)
 _CONTRACTION: Final = re.compile(r"(?i)\b(ca|wo|sha|[a-z]+?)n['’]t\b")
 _SHORT: Final = {"ca": "can not", "wo": "will not", "sha": "shall not"}
 _ENDS: Final = (("'ll", " will"), ("'ve", " have"), ("'re", " are"), ("'m", " am"))
@@ -296,6 +296,8 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
     low = tokens[place].low
     rest = tokens[place + 1 :]
     if low == "once" and place and tokens[place - 1].low in ("at", "for", "more", "all"):
+        return False
+    if low == "while" and place and tokens[place - 1].low in ("a", "long", "little", "short"):
         return False
     if low == "as":
         return bool(rest) and rest[0].low in SUBJECTS | _MARKS and verb_place(rest[:6]) is not None

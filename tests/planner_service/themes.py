@@ -56,7 +56,7 @@ THEMES = (
         "A person is dressing up and feels excited about the picnic tomorrow.",
         (
             Expected(("dressing",), ("happy", "neutral"), r"outfit|dress|suit|wardrobe|clothes"),
-            Expected(("excited", "picnic"), ("happy",), r"picnic"),
+            Expected(("excited", "picnic"), ("happy",), r"picnic|[Ee]xcited about tomorrow"),
         ),
     ),
     Theme(

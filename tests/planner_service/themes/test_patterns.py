@@ -12,7 +12,7 @@ from for_each import for_each
 
 from planner_service.extraction.deed_parser import deed_patterns
 from planner_service.narration.keyframe_phrases import templates
-from planner_service.narration.openings_and_endings import story_texts
+from planner_service.narration.story_words import story_words
 from planner_service.tasks.household_knowledge import Deed, household
 from planner_service.themes.lexicon import Idiom, Idioms, english_verbs, idiom_in, is_verb
 from planner_service.themes.patterns import MAX_PATTERN_LENGTH, expanded, with_parts
@@ -22,14 +22,14 @@ IDIOMS = read_table("planner_service", "idioms.toml", Idioms)
 
 
 def every_pattern() -> dict[str, re.Pattern[str]]:
-    deeds, texts = deed_patterns(), story_texts()
+    deeds, words = deed_patterns(), story_words().patterns
     rows = {
         "idiom": [pattern for pattern, _ in IDIOMS.patterns],
         "kind": [pattern for _, pattern in deeds.kinds],
         "kept": [pattern for pattern, _ in deeds.things],
         "lead": [deeds.lead, deeds.no_furniture],
-        "times": [pattern for pattern, _ in texts.time_patterns],
-        "titles": [pattern for pattern, _ in texts.title_patterns],
+        "times": [pattern for pattern, _ in words["times"]],
+        "titles": [pattern for pattern, _ in words["titles"]],
     }
     return {f"{name}.{at}": pattern for name, patterns in rows.items() for at, pattern in enumerate(patterns)}
 
@@ -82,7 +82,7 @@ def test_parts_are_put_in_and_what_is_wrong_with_a_pattern_is_said_by_its_place(
         (lambda: replace(deed_patterns(), stands_on={"tv": "altar"}), "stands_on: 'altar' is no furniture"),
         (lambda: replace(templates(), further=("to {nowhere}",)), "further: there is no blank {nowhere}"),
         (lambda: replace(templates(), touches_at={"bed": {"knee": ()}}), "touches_at.bed: knee is none"),
-        (lambda: replace(story_texts(), openings={"sad": ("Oh {dear}",)}), "openings.sad: there is no blank {dear}"),
+        (lambda: replace(story_words(), thoughts=("Oh {dear}",)), "thoughts: there is no blank {dear}"),
     ],
 )
 def test_a_table_that_does_not_hold_together_is_refused_by_its_place(change: Callable[[], object], fault: str) -> None:

@@ -1,0 +1,177 @@
+"""What a theme says, told again: the words of a beat, which have no subject, as a predicate in the past."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from planner_service.narration.narrative_voice import Voice
+from planner_service.narration.story_words import story_words
+from planner_service.narration.tense import bases, form_of, in_past, inflected, is_adjective, past
+from planner_service.scripts.script import Beat
+
+WAS: Final = "\ue000"
+"""Stands for was or were until the subject is known; no theme has it."""
+_SAID: Final = "\ue001"
+"""Stands for what is quoted."""
+_QUOTE: Final = re.compile(r'"[^"]*"|“[^”]*”')
+_PERSON: Final = {
+    "he": {"he": "they", "him": "them", "his": "their", "himself": "themself"},
+    "she": {"she": "they", "her": "their", "hers": "theirs", "herself": "themself"},
+    "they": {"they": "they", "them": "them", "their": "their", "themselves": "themself", "themself": "themself"},
+}
+_FIRST: Final = {"i": "they", "me": "them", "my": "their", "mine": "theirs", "myself": "themself"}
+_OBJECT: Final = re.compile(r"\s+(?:and|to|in|on|at|with|from|for)\b|\W*$")
+"""What follows "her" where it does not own what follows."""
+
+
+@dataclass(frozen=True)
+class Predicate:
+    """A clause in the past without its subject, `WAS` for was and were."""
+
+    text: str
+    verbs: frozenset[str]
+    """Base forms that its verb may have."""
+    adjective: str = ""
+    """ "exhausted", where that is all it says of somebody."""
+
+    @property
+    def negated(self) -> bool:
+        """Whether it says that something is not done."""
+        return bool(_of("negated") & {*re.findall(r"\w+", self.text.lower())})
+
+
+def event(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
+    """A beat as it happens, None where its grammar is not sure; `hero` are the theme's own pronouns for its person."""
+    quotes = iter(_QUOTE.findall(beat.text))
+    words = _own_clause(_QUOTE.sub(_SAID, beat.text))
+    at = next((at for at, word in enumerate(words) if not _is_adverb(word)), 0)
+    told = _head(words[at:], beat.kind == "feeling")
+    if told is None:
+        return None
+    verb, rest, ing = told
+    text = _of_voice(" ".join([*words[:at], verb, *_shifted(rest, ing)]), hero, voice).rstrip(" .,;:!?")
+    for day, instead in story_words().days.items():
+        text = re.sub(rf"\b{day}\b", instead, text)
+    says_how = text.removeprefix(f"{WAS} ")
+    plain = says_how != text and len(says_how.split()) <= 2 and is_adjective(says_how.split()[-1])
+    head = _bare((rest if verb == "did not" else words[at:])[0])
+    text = re.sub(_SAID, lambda _: next(quotes), text)
+    return Predicate(text, frozenset(bases(head, guessed=True)), says_how if plain else "")
+
+
+def thought(beat: Beat, hero: str, voice: Voice) -> str | None:
+    """A memory: what its person thinks of, "remembered her mother", or a clause "she had lost the key"."""
+    told = event(beat, hero, voice)
+    if told is None or told.verbs & _of("minds"):
+        return told and told.text
+    words = told.text.split()
+    at = next((at for at, word in enumerate(words) if not _is_adverb(word)), 0)
+    verb, rest = words[at], words[at + 1 :]
+    base = "be" if verb == WAS else next((base for base in sorted(told.verbs) if past(base) == verb), "")
+    if verb == "did" and rest[:1] == ["not"] and len(rest) > 1:
+        rest, done = rest[2:], ["not", inflected(rest[1], "VBN")]
+    elif not base or base in ("can", "may", "will"):
+        return None
+    elif verb == "used" or (verb == "had" and form_of(_bare((rest or [""])[0]))):
+        done = []
+    else:
+        done = [inflected(base, "VBN")]
+    had = verb if verb == "used" else "had"
+    return " ".join([voice["they"], had, *words[:at], *done, *rest])
+
+
+def left_undone(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
+    """What is not done, or only wished for, as a predicate; None where its words do not say so themselves."""
+    told = event(beat, hero, voice)
+    return told if told and (told.negated or told.verbs & _of("wishes")) else None
+
+
+def _own_clause(text: str) -> list[str]:
+    """Words up to a clause with a subject of its own, and without what joins them to those before."""
+    words = re.sub(r"^(?:(?![\"“\ue001])\W|(?:and|but|then|so(?=,| (?:he|she|they|i)\b))\b)+", "", text.strip(), flags=re.IGNORECASE).split()
+    words = [word[:1].lower() + word[1:] if not at else word for at, word in enumerate(words)]
+    for at, word in enumerate(words[1:], start=1):
+        later = [_bare(one) for one in words[at + 1 :]]
+        finite = (form_of(one) in ("VBZ", "VBD") or one in _of("subjects") or one in _helpers() for one in later)
+        if word.lower() in _of("cut") and any(finite):
+            return words[:at]
+    return words
+
+
+def _head(words: Sequence[str], feeling: bool) -> tuple[str, Sequence[str], bool] | None:
+    """The verb in the past, what follows it, and whether it was an -ing form; None where it is no verb."""
+    first, after = [*map(_bare, words[:2]), "", ""][:2]
+    rest = words[1:]
+    if feeling and first == "not" and is_adjective(after):
+        return WAS, words, False
+    if first in ("not", "without") or (first, after) == ("instead", "of"):
+        rest = words[2:] if first == "instead" else rest
+        base = bases(_bare(rest[0])) if rest and form_of(_bare(rest[0])) == "VBG" else ()
+        return ("did not", [base[0], *rest[1:]], False) if base else None
+    if first == "to" and rest:
+        return _head(rest, feeling)
+    if first in _helpers():
+        goes_on = _helpers()[first] == WAS and form_of(after) == "VBG" and not feeling
+        return _head(rest, feeling) if goes_on else (_helpers()[first], rest, False)
+    adjective = form_of(first) not in ("VBZ", "VBG") and is_adjective(first) and after not in ("down", "up", "out")
+    if feeling and (adjective or (first in ("in", "at") and rest)):
+        return WAS, words, False
+    told = in_past(first)
+    return (told, rest, form_of(first) == "VBG") if told else None
+
+
+def _shifted(words: Sequence[str], ing: bool) -> list[str]:
+    """What follows the verb, with the further verbs in it in the past too."""
+    bare = ["", *map(_bare, words), ""]
+    told = []
+    for at, word in enumerate(words):
+        new = _later(bare[at], bare[at + 1], bare[at + 2], at <= 1, ing)
+        told.append(word.replace(_bare(word), new) if new else word)
+    return told
+
+
+def _later(before: str, word: str, follows: str, early: bool, ing: bool) -> str | None:
+    """A verb after a subject of its own, or after "and", in the past; None for any other word."""
+    form, subject, was = form_of(word), before in _of("subjects"), "were" if word in ("are", "aren't") else "was"
+    if word in ("is", "has", "isn't", "hasn't", "doesn't", "cannot", "can't", "won't", "are", "aren't") or (
+        subject and word in _helpers() and word not in ("was", "were")
+    ):
+        return _helpers()[word].replace(WAS, was)
+    if subject:
+        return in_past(word) if form == "VBZ" or before in ("i", "they", "we") else None
+    alone = bool(_of("alone") & {*bases(word)})
+    joined = before in ("and", "or", "then") and (alone or early or follows in _of("after_verbs"))
+    takes = (form == "VBZ" and joined) or (form == "VBG" and ing) or (form is None and alone and not ing)
+    return in_past(word) if takes and before in ("and", "or", "then") else None
+
+
+def _of_voice(text: str, hero: str, voice: Voice) -> str:
+    """Pronouns for the theme's person made the voice's: its writer, "I", and he, she or they where that differs."""
+    blanks = _FIRST | (_PERSON[hero] if hero != voice.pronouns else {})
+
+    def pronoun(match: re.Match[str]) -> str:
+        word = match[0].lower()
+        owner = word != "her" or not _OBJECT.match(text[match.end() :])
+        return voice[blanks[word] if owner else "them"] if word in blanks else match[0]
+
+    return re.sub(r"\b[A-Za-z]+\b(?!['’]\w)", pronoun, text)
+
+
+def _is_adverb(word: str) -> bool:
+    lower = _bare(word)
+    return lower in _of("adverbs") or (lower.endswith("ly") and not bases(lower) and not is_adjective(lower))
+
+
+def _of(name: str) -> frozenset[str]:
+    return story_words().lists[name]
+
+
+def _helpers() -> dict[str, str]:
+    return {word: told.format(was=WAS) for word, told in story_words().helpers.items()}
+
+
+def _bare(word: str) -> str:
+    return word.strip(".,;:!?\"“”()'’—–-").lower().replace("’", "'")

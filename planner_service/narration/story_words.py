@@ -1,0 +1,104 @@
+"""Words that stories are told with besides those of themes and keyframes, and titles: both are data."""
+
+from __future__ import annotations
+
+import re
+from functools import cache, cached_property
+
+from motion_backend.motion import Skill
+from planner_service.narration.narrative_voice import require_blanks
+from planner_service.themes.patterns import compiled, with_parts
+from scene_graphs.data_tables import read_table, require_known, table
+
+
+@table
+class Said:
+    """A pattern for what a theme says, and the words for it: a time of day, or a title."""
+
+    pattern: str
+    words: str
+
+
+@table
+class StoryWords:
+    """data/story_words.toml."""
+
+    joints: tuple[str, ...]
+    """Before a sentence: that time has passed."""
+    moods: dict[str, tuple[str, ...]]
+    """Before a sentence: in which mood the body is."""
+    others: tuple[str, ...]
+    """A sentence about those whose deeds nobody shows, {others}."""
+    thoughts: tuple[str, ...]
+    """How what happened before is told, {clause} "they had lost the key"."""
+    people: str
+    """Nouns for people, apart by spaces; so the next."""
+    plain_people: str
+    """Those that say nothing but that."""
+    minds: str
+    """Verbs for what nobody can see: thinking and remembering."""
+    wishes: str
+    """Verbs by which a thing is not done."""
+    alone: str
+    """Verbs that can stand alone after "and"."""
+    cut: str
+    """Words that begin a clause of its own, which is not told."""
+    adverbs: str
+    """Words before a verb that belong to it."""
+    negated: str
+    """Words that say no."""
+    subjects: str
+    after_verbs: str
+    """Words that follow a verb rather than a noun."""
+    helpers: dict[str, str]
+    """Helping verbs in the past; {was} is was or were."""
+    days: dict[str, str]
+    """Days named from the writer's present, named from the story's."""
+    deeds: dict[str, str]
+    """By skill, verbs that say what a body does there."""
+    mood_titles: dict[str, str]
+    """Where no title fits."""
+    times: tuple[Said, ...]
+    """The first that is found is taken; so for titles."""
+    titles: tuple[Said, ...]
+
+    def __post_init__(self) -> None:
+        require_blanks("others", self.others, ("others",))
+        require_blanks("thoughts", self.thoughts, ("clause",))
+        require_blanks("mood_titles", self.mood_titles, ("time",))
+        require_blanks("helpers", self.helpers, ("was",))
+        require_known("deeds", self.deeds, tuple(Skill))
+
+    @cached_property
+    def patterns(self) -> dict[str, tuple[tuple[re.Pattern[str], str], ...]]:
+        """Of times and titles, what to look for and the words for it."""
+        rows = {"times": self.times, "titles": self.titles}
+        return {
+            name: tuple(
+                (compiled(with_parts(f"{name}.{at}.pattern", row.pattern, {})), row.words)
+                for at, row in enumerate(said)
+            )
+            for name, said in rows.items()
+        }
+
+    @cached_property
+    def lists(self) -> dict[str, frozenset[str]]:
+        """The lists of words as sets."""
+        return {name: frozenset(words.split()) for name, words in vars(self).items() if isinstance(words, str)}
+
+
+@cache
+def story_words() -> StoryWords:
+    """The words, from data/story_words.toml."""
+    known: StoryWords = read_table("planner_service", "story_words.toml", StoryWords)
+    return known
+
+
+def title_of(theme: str, mood: str) -> str:
+    """A short title: after what the theme is about, else after its mood and the time of day it speaks of."""
+    found = {
+        name: next((words for pattern, words in rows if pattern.search(theme)), "")
+        for name, rows in story_words().patterns.items()
+    }
+    plain = story_words().mood_titles[mood].format(time=found["times"] or "Day")
+    return found["titles"] or re.sub(r"^A (?=[AEIOU])", "An ", plain)
