@@ -168,7 +168,7 @@ def agrees(skill: Skill, caption: str, piece: str, deed: Deed) -> bool:
     if skill is not deed.skill or not (deed.pieces or deed.row.captions):
         return False
     kinds = furniture.categories_of(piece)
-    there = any(not kinds.isdisjoint(furniture.categories_of(one)) for one in deed.pieces if one != "floor")
+    there = any(not kinds.isdisjoint(furniture.categories_of(one)) for one in deed.pieces[:3] if one != "floor")
     shown = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
     if skill is Skill.TOUCH and not shown and not caption.startswith("touch medium"):
         return False

@@ -12,12 +12,15 @@ from motion_backend.motion import Skill
 from planner_service.scripts.captions import captions
 from planner_service.scripts.script import EMOTIONS
 from planner_service.scripts.script_words import NEEDS, affords
+from planner_service.themes.beats import EXPRESSIONS
 from planner_service.themes.lexicon import gerund, lemma_of
 from planner_service.themes.sentence_parser import Clause, tokens_of
 from scene_graphs import furniture
 from scene_graphs.data_tables import read_table, require_known, table
 
 _GAP: Final = "..."
+_END: Final = frozenset(("$",))
+"""The end of a clause in a pattern."""
 _MAX_GAP: Final = 4
 """Words that a gap of a pattern may stand for."""
 _WAYS: Final = re.compile(
@@ -26,7 +29,9 @@ _WAYS: Final = re.compile(
     re.IGNORECASE,
 )
 """A way through a home, whatever the verb that goes it."""
+_FLOOR: Final = re.compile(r"\bon the (?:\w+ )?(?:floor|ground|rug|carpet)\b")
 _AT: Final = re.compile(r"\b(?:at|by|near|beside|before|behind|in front of|next to)\b")
+_EXPRESSED: Final = frozenset(EXPRESSIONS)
 _IT: Final = frozenset(("it", "there", "one", "them"))
 Pattern = tuple[frozenset[str], ...]
 """Base forms of each word; an empty set is a gap."""
@@ -45,6 +50,8 @@ class DeedRow:
     rests: bool = False
     things: bool = False
     mood: str = ""
+    why: str = ""
+    """Why a body at home does not do it."""
 
 
 @table
@@ -131,13 +138,14 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
         pieces = [piece for piece in named if furniture.affordances(piece)]
         return Deed(found, skill, tuple(pieces), bool(pieces))
     fitting = [piece for piece in named if affords(piece, need)]
-    if skill is Skill.SITDOWN and not fitting:
-        fitting = [seat for piece in named for seat in deed_table().seats_at.get(piece, ())]
-    if skill is Skill.SITDOWN and re.search(r"\bon the (?:floor|ground|rug|carpet)\b", clause.text):
+    if skill is Skill.SITDOWN and not re.search(r"\bon (?:the|a|his|her|their) (?:\w+ )?(?:table|desk|counter)", clause.text):
+        seats = [seat for piece in named for seat in deed_table().seats_at.get(piece, ())]
+        fitting = seats or fitting
+    if need in ("sit", "lie") and _FLOOR.search(clause.text):
         fitting = ["floor"]
     if fitting:
         return Deed(found, skill, tuple(fitting), True)
-    kept = [piece for piece in _kept(clause) if affords(piece, need)] if skill is Skill.TOUCH else []
+    kept = [piece for piece in _kept(clause, about) if affords(piece, need)] if skill is Skill.TOUCH else []
     if skill is Skill.TOUCH and not (kept or found.at):
         return None
     order = (*kept, *found.at) if found.things else (*found.at, *kept)
@@ -172,6 +180,8 @@ def _by_things(clause: Clause, about: str) -> DeedRow | None:
     """What is done with things by a verb nobody foresaw: a hand is laid on them; or a way is gone."""
     if clause.verb in ("be", "end", "stand", "stay", "appear") and _AT.search(clause.text) and _named(clause, about):
         return DeedRow((clause.verb,), Skill.LOCO)
+    if clause.verb in _EXPRESSED:
+        return None
     if not clause.verb or clause.verb in (
         "be",
         "have",
@@ -185,14 +195,27 @@ def _by_things(clause: Clause, about: str) -> DeedRow | None:
         "own",
     ):
         return None
-    if any(affords(piece, "touch") for piece in _named(clause, about)) or _kept(clause):
+    if any(affords(piece, "touch") for piece in _named(clause, about)) or _kept(clause, about):
         return DeedRow((clause.verb,), Skill.TOUCH, things=True)
     return DeedRow((clause.verb,), Skill.LOCO) if _WAYS.search(clause.text) else None
 
 
-def _kept(clause: Clause) -> tuple[str, ...]:
-    """Where the first thing is that a clause names after its verb."""
-    return next((deed_table().places[word] for word in clause.lemmas[1:] if word in deed_table().places), ())
+def _kept(clause: Clause, about: str) -> tuple[str, ...]:
+    """Where the first thing is that a clause names after its verb, or means by "it"."""
+    places = deed_table().places
+    found = next((places[word] for word in clause.lemmas[1:] if word in places), ())
+    if found or not _IT & set(clause.lemmas[1:]):
+        return found
+    return next((places[word] for word in reversed(_lemmas(about)) if word in places), ())
+
+
+def _lemmas(text: str) -> list[str]:
+    return [lemma_of(token.text) for token in tokens_of(text)]
+
+
+def names_things(clause: Clause) -> bool:
+    """Whether a clause names furniture or things, which "it" may mean later."""
+    return bool(pieces_in(clause.text)) or any(word in deed_table().places for word in clause.lemmas)
 
 
 def _fits(pattern: Pattern, lemmas: Sequence[str]) -> bool:
@@ -200,6 +223,8 @@ def _fits(pattern: Pattern, lemmas: Sequence[str]) -> bool:
     if not pattern:
         return True
     first, rest = pattern[0], pattern[1:]
+    if first == _END:
+        return not lemmas
     if not first:  # a gap
         return any(_fits(rest, lemmas[skip:]) for skip in range(min(_MAX_GAP, len(lemmas)) + 1))
     return bool(lemmas) and lemmas[0] in first and _fits(rest, lemmas[1:])

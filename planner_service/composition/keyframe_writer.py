@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 
 from motion_backend.motion import Emotion, Skill
-from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, deed_table, pieces_in
+from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, deed_table, names_things
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_fallbacks import WALKS, usual
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
@@ -83,9 +83,11 @@ class KeyframeWriter:
         read = beats[index]
         beat = read.beat
         deed = deed_of(read.clause, self._about) if beat.kind == "deed" else None
-        self._about = read.text if pieces_in(read.text) else self._about
+        self._about = read.text if names_things(read.clause) else self._about
         if beat.kind in NOT_ACTED:
             self.why[index] = NOT_ACTED[beat.kind]
+        elif deed is not None and deed.row.why:
+            self.why[index] = deed.row.why
         elif deed is not None:
             self._do(index, read, deed)
         elif beat.kind == "feeling" or (read.felt is not None and read.sure):

@@ -34,7 +34,7 @@ _ROOMS: Final = {
 _LOUDER: Final = {"stressed": ("drunk", "angry", "sad", "hurried")}
 """Moods that a mere hint of another one does not end within a sentence: who is angry paces with anger."""
 _QUOTED: Final = re.compile(r"«\d+»")
-_EXPRESSIONS: Final = {
+EXPRESSIONS: Final = {
     verb: mood
     for mood, verbs in {
         Emotion.HAPPY: "laugh smile grin giggle chuckle beam sing hum whistle rejoice whoop",
@@ -151,7 +151,8 @@ def read_beats(clauses: Sequence[Clause]) -> tuple[ReadBeat, ...]:
 
 def _read(clause: Clause, hero: str) -> ReadBeat:
     who = "" if is_hero(clause.doer, hero) else clause.doer
-    text = clause.text if not who else f"{who} {clause.text}" if clause.subject else clause.text
+    led = bool(who) and bool(clause.subject) and not clause.text.lower().startswith(who.lower())
+    text = f"{who} {clause.text}" if led else clause.text
     if not clause.verb:
         text = clause.text
     text = _QUOTED.sub(lambda match: f"“{clause.quotes[0]}”" if clause.quotes else "", text)
@@ -160,7 +161,7 @@ def _read(clause: Clause, hero: str) -> ReadBeat:
     if not sure and clause.subject:
         named, of_subject = _emotion(f"{clause.subject} {clause.text}")  # "a tired student …"
         emotion, sure = (named, True) if of_subject else (emotion, sure)
-    if not sure and (shown := _EXPRESSIONS.get(clause.verb)):
+    if not sure and (shown := EXPRESSIONS.get(clause.verb)):
         emotion, sure = shown, True
     if kind in ("other", "undone") and not sure:
         emotion = None
@@ -210,6 +211,9 @@ def hero_of(clauses: Sequence[Clause]) -> str:
         return "I"
     pronoun = next((subject for subject in people if subject.lower() in ("he", "she")), "")
     one = [subject for subject in people if not (pronoun and _is_plural(subject))]
+    own = [subject for subject in one if subject.split()[0].lower() not in ("his", "her", "their", "my", "its")]
+    if pronoun in own and (before := own[: own.index(pronoun)]):
+        return before[-1]
     if one and (one[0].lower() not in _PRONOUNS or not named[0].lower().startswith(("a ", "an "))):
         return one[0]
     living = named[:1] if named and named[0].lower().startswith(("a ", "an ", "one ", "my ", "our ")) else []
@@ -228,8 +232,10 @@ def is_person(subject: str) -> bool:
         return False
     if words[-1].lower() in _PRONOUNS or words[-1].lower() in _FIRST_PERSON:
         return True
-    head = head_of(subject)
     people = theme_words()["people"]
+    if words[0].lower() in people:  # "someone sick with the flu"
+        return True
+    head = head_of(subject)
     if head.lower() in people or lemma_of(head) in people:
         return True
     if any(is_name(word) for word in words) and words[0].lower() not in ("the", "a", "an"):
@@ -252,7 +258,7 @@ def head_of(subject: str) -> str:
 
 def is_hero(subject: str, hero: str) -> bool:
     """Whether a subject is whom the theme is about. Nobody named: it goes on with who it was about."""
-    if not subject:
+    if not subject or subject.lower() == hero.lower():
         return True
     low, main = subject.split()[-1].lower(), hero.split()[-1].lower() if hero else ""
     if low in _FIRST_PERSON:

@@ -251,6 +251,12 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
         return False
     if is_adjective(token.low) and (before in BE or before in ("feels", "felt", "seems", "looks", "gets", "becomes")):
         return False
+    if base in ("name", "call") and token.low != base and at >= 0 and after and tokens[place + 1].text[:1].isupper():
+        return False  # "a teacher named Edith"
+    if before.endswith("ing") and not is_noun(before) and tokens[0].low in _MARKS | _NUMBERS and at <= 1:
+        return False  # "some jumping jacks"
+    if tokens[0].low in _PREPOSITIONS and tokens[at].text[:1].islower() and before not in SUBJECTS:
+        return False  # "under the sofa cushions"
     if token.low == base:
         same = base in _UNCHANGING and is_noun(before)
         return same or (_is_plural(before) and not is_noun(token.low))
@@ -281,7 +287,7 @@ def _pieces(sentence: str) -> list[_Piece]:
             if token.low in _WITH_GERUND:
                 current.append(token)
         else:
-            led = (current and current[0].low in _WITH_GERUND) or joint in _EARLIER | {"before", "until", "while"}
+            led = (current and (current[0].low in _WITH_GERUND or current[0].low == "to")) or joint in _EARLIER | {"before", "until", "while"}
             if led and token.low in ("he", "she", "they", "i", "we") and verb_place(current) is not None:
                 cut.append(_Piece(joint, tuple(current), source))
                 joint, current = ",", []
@@ -366,7 +372,8 @@ def _is_noun_list(last: _Piece, piece: _Piece) -> bool:
 def _in_time(pieces: Sequence[_Piece]) -> list[int]:
     """Places of pieces in the order they happen: "B after A" is A, B; "before B, A" is A, B."""
     ordered: list[int] = []
-    first_is_later = len(pieces) > 1 and pieces[0].joint in ("before", "until", "instead", "without")
+    later = len(pieces) > 1 and pieces[0].joint == "before"
+    first_is_later = len(pieces) > 1 and pieces[0].joint in ("until", "instead", "without")
     for place, piece in enumerate(pieces):
         if ordered and piece.joint in _EARLIER:
             main = pieces[ordered[-1]]
@@ -377,6 +384,8 @@ def _in_time(pieces: Sequence[_Piece]) -> list[int]:
                 ordered.insert(len(ordered) - 1, place)
         else:
             ordered.append(place)
+    if later:
+        return [*ordered[1:], ordered[0]]
     return [*ordered[1:2], ordered[0], *ordered[2:]] if first_is_later else ordered
 
 
@@ -418,7 +427,7 @@ def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> l
             low.endswith("ing") and bool(verb_of(low)) and before not in _MARKS - {"to"} and not is_adjective(before)
         )
         gerund = gerund and before not in _PREPOSITIONS - {"on", "off", "down", "up", "around", "there", "back"}
-        purpose = before == "to" and verb_of(low) == low and low not in _NOT_VERBS_AFTER_TO and not is_pure_noun(low)
+        purpose = before == "to" and verb_of(low) == low and low not in _NOT_VERBS_AFTER_TO and _is_purpose(clause, words, place)
         if gerund or purpose:
             stop = place - 1 if purpose else place
             if stop <= main:
@@ -426,13 +435,21 @@ def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> l
             head, tail = words[:stop], words[place:]
             lemmas = _lemmas(tail)
             second = replace(clause, text=_text(source, tail), subject="", verb=lemmas[0], lemmas=lemmas, joint="to" if purpose else "ing")  # fmt: skip
+            if len(head) - main == 1 and clause.verb in ("go", "come", "get") and purpose:
+                return [replace(second, subject=clause.subject, joint=clause.joint)]  # "goes to make a coffee"
             return [replace(clause, text=_text(source, head), lemmas=_lemmas(head[main:])), second]
     return [clause]
 
 
-def is_pure_noun(word: str) -> bool:
-    """Whether a word after "to" is the place one goes to rather than a deed."""
-    return is_noun(word) and word in ("table", "door", "window", "garden", "floor", "study", "sofa", "desk", "bath")
+def _is_purpose(clause: Clause, words: Sequence[Token], place: int) -> bool:
+    """Whether a word after "to" is a second deed ("to drink a glass") rather than where one goes ("from room to room")."""
+    low = words[place].low
+    if not is_noun(low):
+        return True
+    if place + 1 == len(words):
+        return clause.verb in ("sit", "lie", "stop", "stay", "settle", "kneel")
+    after = words[place + 1].low
+    return after in _MARKS | _PREPOSITIONS - {"and"} or after in ("him", "them", "me", "himself", "herself") or is_noun(after)
 
 
 def _main_verb(words: Sequence[Token]) -> tuple[int, bool, bool, bool]:
@@ -479,6 +496,8 @@ def _main_verb(words: Sequence[Token]) -> tuple[int, bool, bool, bool]:
             denied, at = True, at + (ahead == "to")
         elif base == "stop" and ahead.endswith("ing"):
             denied = True
+        elif base in ("decide", "try", "choose", "prefer", "promise") and ahead == "not":
+            denied, at = True, at + 1 + (at + 2 < len(words) and words[at + 2].low == "to")
         elif base in _ASPECTS and (jump := _aspect(words, at)):
             at = jump - 1
         elif low in _ADVERBS or (low.endswith("ly") and not base):
@@ -539,6 +558,8 @@ def _subject(tokens: Sequence[Token]) -> str:
         words.pop()
     if words and words[-1].lower() in SUBJECTS:
         return words[-1]
+    if words and words[0].lower() == "to":
+        return ""
     while words and (words[0].lower() in _ADVERBS or words[0].lower() in _JOINTS):
         words.pop(0)
     if words and words[0].lower() in _PREPOSITIONS:  # "in the kitchen Anna …"
