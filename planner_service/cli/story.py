@@ -163,6 +163,8 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
     )
     for line in beats_of(made).lines():
         console.print(line, highlight=False, soft_wrap=True)
+    if made.planned.spent is not None:
+        console.print(f"language model: {made.planned.spent}", highlight=False)
     for note in made.motion.notes:
         console.print(f"done otherwise: keyframe {note.keyframe}: {note.words}", highlight=False)
     console.print(f"\nwritten to {files[0].parent}/: {', '.join(file.name for file in files)}", highlight=False)

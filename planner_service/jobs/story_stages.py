@@ -10,7 +10,7 @@ import json
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import Final
 
@@ -23,11 +23,13 @@ from motion_backend.motion import Action, Motion, MotionBackend
 from planner_service.grounding.furnish import Furnished
 from planner_service.jobs import serialization
 from planner_service.jobs.serialization import summary_of_home, summary_of_script
+from planner_service.llm.budget import Spent
+from planner_service.llm.client import spent_on
 from planner_service.narration.narrator import Told
 from planner_service.output.story_export import report_to_dict
 from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, actor, judge
 from planner_service.scripts.script import LongScript
-from planner_service.store.story_store import Made, Stories
+from planner_service.store.story_store import Made, Stories, count_spent
 from scene_graphs.json_fields import Json
 
 STAGES: Final = ("plan", "furnish", "narrate", "act", "move", "judge", "film")
@@ -85,7 +87,8 @@ class OpenStory:
             return Planned(self.request, self.stage.script, self.stage, Told("", "", ()))
         told = self._json(TOLD)
         script = self.stage.script.model_copy(update={"repairs": tuple(told["repairs"])})
-        return Planned(self.request, script, self.stage, serialization.told_from_dict(told))
+        spent = Spent(**told["spent"]) if told["spent"] else None
+        return Planned(self.request, script, self.stage, serialization.told_from_dict(told), spent)
 
     def script(self) -> LongScript:
         """The long script, as planning left it."""
@@ -192,7 +195,9 @@ class Maker:
 
     def _told(self, story: OpenStory) -> tuple[bytes, Json]:
         stage, told = story.pipeline.tell(story.request, story.stage)
+        spent = spent_on(story.pipeline.model)
         row = serialization.told_to_dict(told) | {"repairs": list(stage.script.repairs)}
+        row["spent"] = asdict(spent) if spent else None
         return _to_bytes(row), row
 
     def _actions(self, story: OpenStory) -> tuple[bytes, Json]:
@@ -208,8 +213,9 @@ class Maker:
     def _record(
         self, story: OpenStory, stage: str, position: int, kind: str, make: Callable[[], tuple[bytes, Json]]
     ) -> None:
-        started = time.perf_counter()
+        started, before = time.perf_counter(), spent_on(story.pipeline.model) or Spent()
         data, summary = make()
+        spent = (spent_on(story.pipeline.model) or Spent()) - before
         following = STAGES[STAGES.index(stage) + 1] if stage != STAGES[-1] else None
         if following == "narrate" and story.request.keyframes:
             following = "act"
@@ -217,7 +223,7 @@ class Maker:
             kind, position, data, summary, following, _DONE[stage], time.perf_counter() - started,
             title=summary.get("title"),
         )  # fmt: skip
-        self.store.record(story.id, made, self.worker)
+        self.store.record(story.id, made, self.worker, lambda connection: count_spent(connection, self.worker, spent))
 
     def _opened(self, story_id: str) -> OpenStory:
         if story_id not in self.open:
