@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import io
 import json
+import threading
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import Final
@@ -37,7 +39,9 @@ SCRIPT, HOME, TOLD, ACTIONS, FIRST_SEGMENT = range(5)
 """Positions of what the stages make; the report and the film follow the last segment."""
 _DONE: Final = {"plan": 0.05, "furnish": 0.10, "narrate": 0.12, "act": 0.20, "move": 0.85, "judge": 0.92, "film": 1.0}
 """Share of the whole that is done after a stage."""
-_OPEN: Final = 4
+AT_ONCE: Final = 4
+"""Stories that a worker has in the making where a language model is waited for."""
+_OPEN: Final = AT_ONCE
 """Stories whose home and actions a worker keeps at hand."""
 
 
@@ -113,6 +117,9 @@ class Maker:
     worker: str
     open: OrderedDict[str, OpenStory] = field(default_factory=OrderedDict)
     backends: dict[str, MotionBackend] = field(default_factory=dict)
+    turn: threading.RLock = field(default_factory=threading.RLock)
+    """Held by whoever computes: stories take turns, and only those that wait for a language model let others go on."""
+    _opening: threading.Lock = field(default_factory=threading.Lock)
 
     def plan(self, story_id: str) -> None:
         """Theme to long script."""
@@ -138,8 +145,11 @@ class Maker:
 
     def move(self, story_id: str, index: int) -> None:
         """The motion of one action, from the state the one before left."""
-        story = self._opened(story_id)
-        started = time.perf_counter()
+        with self.turn:
+            self._move(self._opened(story_id), index)
+
+    def _move(self, story: OpenStory, index: int) -> None:
+        story_id, started = story.id, time.perf_counter()
         backend = self._backend(story.request.backend)
         home, action = story.stage.home, story.actions[index]
         position = FIRST_SEGMENT + index
@@ -214,7 +224,8 @@ class Maker:
         self, story: OpenStory, stage: str, position: int, kind: str, make: Callable[[], tuple[bytes, Json]]
     ) -> None:
         started, before = time.perf_counter(), spent_on(story.pipeline.model) or Spent()
-        data, summary = make()
+        with self._turn_of(stage):
+            data, summary = make()
         spent = (spent_on(story.pipeline.model) or Spent()) - before
         following = STAGES[STAGES.index(stage) + 1] if stage != STAGES[-1] else None
         if following == "narrate" and story.request.keyframes:
@@ -225,13 +236,19 @@ class Maker:
         )  # fmt: skip
         self.store.record(story.id, made, self.worker, lambda connection: count_spent(connection, self.worker, spent))
 
+    def _turn_of(self, stage: str) -> AbstractContextManager[object]:
+        """What a stage holds while it is made."""
+        asks = stage in ("plan", "narrate") and self.pipeline.model is not None
+        return nullcontext() if asks else self.turn
+
     def _opened(self, story_id: str) -> OpenStory:
-        if story_id not in self.open:
-            self.open[story_id] = OpenStory(self.store, story_id, self.pipeline)
-        self.open.move_to_end(story_id)
-        while len(self.open) > _OPEN:
-            self.open.popitem(last=False)
-        return self.open[story_id]
+        with self._opening:
+            if story_id not in self.open:
+                self.open[story_id] = OpenStory(self.store, story_id, self.pipeline)
+            self.open.move_to_end(story_id)
+            while len(self.open) > _OPEN:
+                self.open.popitem(last=False)
+            return self.open[story_id]
 
     def _backend(self, name: str) -> MotionBackend:
         if name not in self.backends:
