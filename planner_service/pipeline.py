@@ -17,7 +17,8 @@ from planner_service.grounding.furnish import Furnished, furnish
 from planner_service.grounding.keyframes_to_actions import act
 from planner_service.grounding.room_assignment import usual_furniture
 from planner_service.library.library import Shelves
-from planner_service.llm.client import for_story
+from planner_service.llm.budget import Spent
+from planner_service.llm.client import for_story, spent_on
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.narration.llm_narrator import narrate_with_model
 from planner_service.narration.narrator import Told, narrate
@@ -149,6 +150,8 @@ class Planned:
     script: LongScript
     stage: Furnished
     told: Told
+    spent: Spent | None = None
+    """On the language model; None without one."""
 
     @property
     def home(self) -> Home:
@@ -196,7 +199,7 @@ class Pipeline:
         stage = pipeline.furnish(request, script)
         progress("narrate", 0.0)
         stage, told = pipeline.tell(request, stage)
-        return Planned(request, stage.script, stage, told)
+        return Planned(request, stage.script, stage, told, spent_on(pipeline.model))
 
     def script(self, request: StoryRequest) -> LongScript:
         """The long script of a theme; what the user wrote as keyframes is only checked and repaired."""

@@ -55,6 +55,10 @@ class Settings(BaseSettings):
     """Dollars a million tokens read, and a million written: "1.25/10"."""
     llm_cache_mb: int = Field(64, ge=0, le=100_000)
     """Answers kept on disk; 0 keeps none."""
+    prompts: Path | None = None
+    """A folder with prompts of your own, NAME.md, in place of those of the same name."""
+    ollama_url: str = "http://127.0.0.1:11434"
+    """Where `sims story` and `sims models list` look for an Ollama server; empty looks nowhere."""
     asr_model: str = ""
     """The model that turns a film's speech into words, such as "whisper-1"; empty for none."""
     asr_base_url: str = ""

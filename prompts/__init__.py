@@ -1,5 +1,7 @@
 """What we say to language models: one Markdown file a prompt, with named blanks, read and filled here.
 
+A user's own folder may hold others in place of these (`use`).
+
 A file starts with front matter between two `---` lines: `name`, `version`, `variables` (comma separated, ours) and
 `data` (comma separated, words of users or models). A blank is `{{name}}`. Data is fenced as
 `<data name="…">…</data>`, and a fence inside it is defused, so that what a user wrote cannot end it.
@@ -11,6 +13,7 @@ import re
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
+from pathlib import Path
 
 _BLANK = re.compile(r"\{\{\s*([a-z_]+)\s*\}\}")
 _FENCE = re.compile(r"<(?=\s*/?\s*data\b)", re.IGNORECASE)
@@ -94,9 +97,39 @@ def names() -> tuple[str, ...]:
     return tuple(sorted(file.name.removesuffix(".md") for file in files if file.name.endswith(".md")))
 
 
-@cache
+_OWN: dict[str, Prompt] = {}
+"""A user's own, by name, for the whole process."""
+
+
+def use(folder: Path | None) -> None:
+    """Let the prompts in a folder, NAME.md each, take the place of ours; None: ours again.
+
+    PromptError for one that we do not have, whose blanks are others than ours, or that says something else under our
+    version: what was answered to a version must stay the answer to one text.
+    """
+    own = {}
+    for file in sorted(folder.glob("*.md")) if folder is not None else ():
+        prompt, ours = parse(file.read_text(encoding="utf-8"), str(file)), shipped(file.stem)
+        if (prompt.name, set(prompt.variables), set(prompt.data)) != (ours.name, set(ours.variables), set(ours.data)):
+            taken = f"variables {', '.join(ours.variables) or 'none'} and data {', '.join(ours.data) or 'none'}"
+            raise PromptError(f"{file}: it must be called {ours.name} and have our blanks, {taken}")
+        if prompt.version == ours.version and prompt.text != ours.text:
+            raise PromptError(f"{file}: version {ours.version} is ours; a changed text needs a number of its own")
+        own[prompt.name] = prompt
+    if folder is not None and not own:
+        raise PromptError(f"{folder}: there is no prompt in it, NAME.md for one of {', '.join(names())}")
+    _OWN.clear()
+    _OWN.update(own)
+
+
 def read(name: str) -> Prompt:
-    """The prompt of that name, or PromptError listing the names there are."""
+    """The prompt of that name, a user's own where there is one, or PromptError listing the names there are."""
+    return _OWN.get(name) or shipped(name)
+
+
+@cache
+def shipped(name: str) -> Prompt:
+    """Our prompt of that name."""
     if name not in names():
         raise PromptError(f"there is no prompt {name!r}; there are {', '.join(names())}")
     source = resources.files(__package__).joinpath(f"{name}.md").read_text(encoding="utf-8")

@@ -9,13 +9,24 @@ from typing import Annotated
 
 import typer
 
-from planner_service.cli import clips, evaluate, extract_command, layouts, scripts, service, story, tasks
+from planner_service.cli import (
+    clips,
+    evaluate,
+    extract_command,
+    layouts,
+    record_command,
+    scripts,
+    service,
+    story,
+    tasks,
+)
 from planner_service.user_errors import explain
 from scene_graphs.errors import UserError
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 app.command("story")(story.story)
 app.command("extract")(extract_command.extract)
+app.command("record")(record_command.record)
 app.command("task")(tasks.task)
 app.command("routine")(tasks.routine)
 app.command("serve")(service.serve)

@@ -4,10 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
+from typing import Annotated
 
+import typer
 from rich.table import Table
 
 from planner_service.settings import SettingsError
+
+ModelOption = Annotated[
+    str | None,
+    typer.Option("--model", help='The language model (SIMS_LLM_MODEL), such as "ollama:qwen3"; "rules" for none.'),
+]
 
 
 @contextmanager

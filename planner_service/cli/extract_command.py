@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Final
 import typer
 from rich.console import Console
 
-from planner_service.cli.console import plain_table
+from planner_service.cli.console import ModelOption, plain_table
 from planner_service.cli.scripts import keep_scripts
 from planner_service.library.library import RESERVED, open_shelves
 from planner_service.llm.client import for_story
@@ -39,6 +39,7 @@ def extract(
     out: Annotated[Path | None, typer.Option(help="Write them to this file, as JSON lines.")] = None,
     add: Annotated[bool, typer.Option("--add", help="Keep them in your library, all or none.")] = False,
     every: Annotated[bool, typer.Option("--all", help="List all that no keyframe shows.")] = False,
+    model: ModelOption = None,
 ) -> None:
     """Take short scripts out of a film, subtitles or a text: by the language model if one is set, else by rules."""
     from planner_service.extraction.extract import extract
@@ -50,8 +51,8 @@ def extract(
         raise RequestError(f"{title[:60]!r} is no title", "give 1 to 200 letters", at="--name")
     if not 0 < len(licence.strip()) <= 200 or not licence.isprintable():
         raise RequestError("give 1 to 200 letters, such as CC-BY-4.0", at="--licence")
-    settings = read_settings()
-    model = for_story(load_model(settings), 0)
+    settings = read_settings(llm_model=model)
+    reader = for_story(load_model(settings), 0)
     if out is not None:
         check_writable(out.parent, [out.name])
     shelves = open_shelves(settings, writes=add)
@@ -59,7 +60,7 @@ def extract(
     with _progress(Console(stderr=True, markup=False, highlight=False)) as progress:
         means = Means(
             library=shelves.scripts(),
-            model=model,
+            model=reader,
             transcriber=load_transcriber(settings),
             strict=settings.llm_on_failure == "error",
             taken=RESERVED,

@@ -16,7 +16,7 @@ import typer
 from pydantic import ValidationError
 from rich.console import Console
 
-from planner_service.cli.console import plain_table, writing_database
+from planner_service.cli.console import ModelOption, plain_table, writing_database
 from planner_service.cli.layouts import chosen_layouts
 from planner_service.composition.script_imitation import MAX_WANTED, Wish
 from planner_service.library.library import FixedError, Shelves, TakenError, UnfitError, open_shelves
@@ -131,13 +131,14 @@ def imitate(
     seed: Annotated[int, typer.Option(min=0, help="Another seed shows the model other examples.")] = 0,
     add: Annotated[bool, typer.Option("--add", help="Keep them in your library.")] = False,
     out: Annotated[Path | None, typer.Option(help="Write them to this file, as JSON lines.")] = None,
+    model: ModelOption = None,
 ) -> None:
     """Have the language model write new short scripts in the manner of those in the library."""
     from planner_service.composition.script_imitation import imitate as imitated
     from planner_service.scripts.caption_paraphrases import FILE, all_synonyms
 
-    settings = read_settings()
-    model = _model(settings, seed, "imitating")
+    settings = read_settings(llm_model=model)
+    writer = _model(settings, seed, "imitating")
     if out is not None:
         check_writable(out.parent, [out.name])
     shelves = open_shelves(settings, writes=add)
@@ -145,7 +146,7 @@ def imitate(
     wish = Wish(emotion, room, count, words_of(furniture) or _furniture_of(shelves, room))
     said = all_synonyms(settings.data_dir / FILE)
     known = {skill: {one: said.get(skill, {}).get(one, []) for one in some} for skill, some in captions().items()}
-    made = imitated(model, shelves.scripts(), wish, known, seed)
+    made = imitated(writer, shelves.scripts(), wish, known, seed)
     console = Console(markup=False, highlight=False, soft_wrap=True)
     for script in made.scripts:
         console.print(f"{script.id}: {script.summary}")
@@ -197,7 +198,9 @@ def _model(settings: Settings, seed: int, deed: str) -> LanguageModel:
     model = for_story(load_model(settings), seed)
     if model is None:
         raise SettingsError(
-            f"{deed} needs a language model, rules do not imagine", f"set it to {KINDS}", at="SIMS_LLM_MODEL"
+            f"{deed} needs a language model, rules do not imagine",
+            f"set it, or --model, to {KINDS}",
+            at="SIMS_LLM_MODEL",
         )
     return model
 

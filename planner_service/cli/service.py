@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 import time
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
 
@@ -18,6 +19,7 @@ import prompts
 from planner_service.cli.console import plain_table
 from planner_service.llm.client import ServedModel
 from planner_service.llm.factory import KINDS, Late, load_model
+from planner_service.llm.ollama_server import ollama_models
 from planner_service.llm.protocol import LanguageModel
 from planner_service.llm.structured_output import ask
 from planner_service.settings import read_settings
@@ -100,6 +102,37 @@ class Trial(BaseModel):
 @app.callback()
 def models() -> None:
     """The language model that plans and tells, where one is set."""
+
+
+EXTRAS = {
+    "llm": ("pydantic_ai", "models over HTTP"),
+    "llamacpp": ("llama_cpp", "weights of your own, in a GGUF file"),
+    "video": ("av", "films"),
+    "asr": ("faster_whisper", "the speech of films, on this machine"),
+}
+"""Extras of the package: what each installs, and for what."""
+
+
+@app.command("list")
+def list_models() -> None:
+    """Say which language model is set, what an Ollama server on this machine has, and which extras are installed."""
+    settings = read_settings()
+    console = Console(markup=False, highlight=False, soft_wrap=True)
+    model = load_model(settings)
+    price = f", {settings.llm_price} dollars a million tokens read/written" if settings.llm_price else ""
+    chosen = f"{model.name}{price}" if model is not None else "none, rules plan and tell"
+    console.print(f"chosen (SIMS_LLM_MODEL, --model): {chosen}")
+    found = ollama_models(settings.ollama_url)
+    if found is None:
+        console.print(f"no Ollama server answers at {settings.ollama_url or '(nowhere: SIMS_OLLAMA_URL is empty)'}")
+    else:
+        console.print(f"Ollama server at {settings.ollama_url}: {len(found)} models")
+        for name in found:
+            console.print(f"  ollama:{name}")
+    for extra, (library, purpose) in EXTRAS.items():
+        there = "installed" if find_spec(library) is not None else f'pip install "sims-stories[{extra}]"'
+        console.print(f"{extra} ({purpose}): {there}")
+    console.print(f"--model and SIMS_LLM_MODEL take {KINDS}, or rules")
 
 
 @app.command()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -12,9 +13,10 @@ from rich.text import Text
 
 from motion_backend.backends import about
 from motion_backend.motion import Character
-from planner_service.cli.console import plain_table
+from planner_service.cli.console import ModelOption, plain_table
 from planner_service.library.library import open_shelves
 from planner_service.llm.factory import load_model
+from planner_service.llm.ollama_server import ollama_models
 from planner_service.pipeline import STAGES, Pipeline, RequestError, Story, StoryRequest
 from planner_service.settings import read_settings
 from planner_service.themes.beats import clean
@@ -51,12 +53,13 @@ def story(
     name: Annotated[str, typer.Option(help="The character's name; left out: the theme's own, else Sam.")] = "Sam",
     pronouns: Annotated[str, typer.Option(help="he, she or they; left out: as in the theme.")] = "they",
     height: Annotated[float, typer.Option(help="The character's height in metres, 1.2 to 2.2.")] = 1.70,
+    model: ModelOption = None,
 ) -> None:
     """Turn a story theme into a script, a home, a told story and an animated film."""
     from planner_service.cli.layouts import chosen_layouts
     from planner_service.output.story_export import FILES, check_writable, write_story
 
-    settings = read_settings()
+    settings = read_settings(llm_model=model)
     check_writable(out, FILES)
     pipeline = Pipeline(open_shelves(settings), load_model(settings), settings.llm_on_failure == "error")
     request = StoryRequest(
@@ -68,6 +71,8 @@ def story(
         character=Character(name, pronouns, height),
     )
     console = Console(markup=False)
+    if not settings.llm_model and (line := hint(ollama_models(settings.ollama_url))):
+        console.print(line, highlight=False, soft_wrap=True)
     with _bar(console) as bar:
         task = bar.add_task(TOLD["plan"], total=1.0)
 
@@ -80,6 +85,13 @@ def story(
         files = write_story(made, out)
         bar.update(task, completed=1.0, description="done")
     _close(console, made, files)
+
+
+def hint(models: Sequence[str] | None) -> str:
+    """What to say where a server on this machine could plan and nobody chose it; empty where there is none."""
+    if not models:
+        return ""
+    return f"planned by rules; an Ollama server is running here, --model ollama:{models[0]} would let its model plan"
 
 
 def read_theme(argument: str) -> str:
@@ -151,6 +163,8 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
     )
     for line in beats_of(made).lines():
         console.print(line, highlight=False, soft_wrap=True)
+    if made.planned.spent is not None:
+        console.print(f"language model: {made.planned.spent}", highlight=False)
     for note in made.motion.notes:
         console.print(f"done otherwise: keyframe {note.keyframe}: {note.words}", highlight=False)
     console.print(f"\nwritten to {files[0].parent}/: {', '.join(file.name for file in files)}", highlight=False)

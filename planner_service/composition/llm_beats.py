@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import zip_longest
@@ -36,6 +37,7 @@ from planner_service.scripts.script import (
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import read_keyframe
 from planner_service.scripts.script_words import Fitting
+from planner_service.themes.beats import ThemeError, beats_of
 from scene_graphs.furniture import affordances, categories_of
 
 MAX_OFFERED: Final = 12
@@ -113,13 +115,13 @@ def plan_beats(
 
     def problems(answer: BeatsAnswer) -> list[str]:
         beats, notes = reader.beats(answer)
-        if any(one.keyframes for one in beats) or (beats and all(one.beat.kind in _NOT_SHOWN for one in beats)):
+        if any(one.keyframes for one in beats):
             return []
         return list(dict.fromkeys(["beats: none of them can be used", *notes, *filter(None, (b.note for b in beats))]))
 
     answer = ask(model, prompt, answer_type(offered, there), problems, repairs=1)
     beats, notes = reader.beats(answer)
-    return PlannedTheme(_person(answer.person, theme), tuple(_bounded(beats)), tuple(notes))
+    return PlannedTheme(_person(answer.person, theme), tuple(_bounded(_completed(beats, theme))), tuple(notes))
 
 
 def _prompt(theme: str, library: ScriptLibrary, furniture: Sequence[str]) -> tuple[prompts.Filled, list[ShortScript]]:
@@ -337,6 +339,25 @@ def _may_be_denied(text: str, theme: str) -> bool:
     """Whether the sentence that these words are of has a word that denies something, or only wishes for it."""
     nearest = max(_SENTENCE.split(theme), key=lambda sentence: len(_stems(text) & _stems(sentence)))
     return _MAY_DENY.search(nearest) is not None
+
+
+def _completed(beats: Sequence[PlannedBeat], theme: str) -> list[PlannedBeat]:
+    """The beats, with those of sentences that the model left out: the rules read and serve these."""
+    whole, place = list(beats), 0
+    for sentence in _SENTENCE.split(theme):
+        of_it = [number for number, one in enumerate(whole) if _is_of(one.beat.text, sentence)]
+        if of_it or not _stems(sentence):
+            place = max([place, *(number + 1 for number in of_it)])
+            continue
+        with suppress(ThemeError):
+            left = [PlannedBeat(read.beat, None, note=_left_out(read.beat)) for read in beats_of(sentence)]
+            whole[place:place] = left
+            place += len(left)
+    return whole
+
+
+def _left_out(beat: Beat) -> str:
+    return f"“{beat.text[:60]}” by rules: the model left it out"
 
 
 def _person(row: object, theme: str) -> Person:

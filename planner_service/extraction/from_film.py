@@ -15,7 +15,7 @@ from planner_service.extraction.extraction_result import (
 )
 from planner_service.extraction.from_text import read_by_rules, refuse_other_languages, scenes_read
 from planner_service.extraction.script_writer import RULES, Maker
-from planner_service.extraction.shot_detection import Scene, scenes_of
+from planner_service.extraction.shot_detection import scenes_of
 from planner_service.extraction.speech_to_text import hear
 from planner_service.extraction.subtitles import MAX_SUBTITLE_BYTES, Subtitles, embedded_cues, read_subtitles
 from planner_service.extraction.text_files import ExtractionError, first_bytes
@@ -23,7 +23,7 @@ from planner_service.extraction.text_rules import SceneRead
 from planner_service.extraction.text_scenes import scenes_of_cues
 from planner_service.extraction.video import Film, open_film
 from planner_service.extraction.video_frames import Album
-from planner_service.extraction.vision_model import Watched, watch_film
+from planner_service.extraction.vision_model import Audience, Watched, watch_film, watch_next
 
 
 def extract_film(source: Source, means: Means) -> Extraction:
@@ -42,7 +42,8 @@ def extract_film(source: Source, means: Means) -> Extraction:
     read: list[PieceRead] = []
     with Album() as album:
         scenes = scenes_of(film, cues, means.progress, album)
-        for watched in watch_film(means.model, film, scenes, maker, means.strict, means.progress, album):
+        audience = Audience(means.model, film, scenes, album)
+        for watched in watch_film(audience, maker, means.strict, means.progress):
             read.append(_told(watched, maker, read[-1].after if read else Before(), f"llm:{means.model.name}"))
     whole = told_once(joined(read), maker.encoder).read
     return Extraction(whole.drafts, whole.scenes, (*notes, *whole.notes, *film.notes), readers(whole.scenes))
@@ -82,16 +83,10 @@ def notes_of(subtitles: Subtitles | None, source: Source, means: Means) -> tuple
     return tuple(f"{source.name}: {note}" for note in (*notes, *unseen))
 
 
-def read_film_scene(
-    film: Film, scene: Scene, maker: Maker, means: Means, before: Before, album: Album | None = None
-) -> PieceRead:
-    """One scene of a film by the model that the means have, as `extract_film` reads it among the others.
-
-    An album that has the frames saves decoding them again. FilmError, ModelError.
-    """
-    assert means.model is not None
-    (watched,) = watch_film(means.model, film, (scene,), maker, means.strict, None, album, before.failures)
-    return _told(watched, maker, before, f"llm:{means.model.name}")
+def read_film_scene(audience: Audience, index: int, maker: Maker, means: Means, before: Before) -> PieceRead:
+    """One scene of a film, as `extract_film` reads it among the others. FilmError, ModelError."""
+    watched = watch_next(audience, index, maker, means.strict, before.failures)
+    return _told(watched, maker, before, f"llm:{audience.model.name}")
 
 
 def _told(watched: Watched, maker: Maker, before: Before, by: str) -> PieceRead:

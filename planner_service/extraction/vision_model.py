@@ -6,6 +6,7 @@ A scene's outline to short scripts: a model writes them in known words, and they
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Final
 
@@ -18,7 +19,7 @@ from planner_service.extraction.scene_outline import LEEWAY, SceneAnswer, SceneO
 from planner_service.extraction.script_writer import Draft, Maker
 from planner_service.extraction.shot_detection import Progress, Scene
 from planner_service.extraction.subtitles import Cue
-from planner_service.extraction.video import Film, frames_at
+from planner_service.extraction.video import Film, FilmError, Frame, frames_at
 from planner_service.extraction.video_frames import Album
 from planner_service.llm.client import for_story
 from planner_service.llm.protocol import LanguageModel, ModelError
@@ -46,8 +47,8 @@ class FilmedScripts(BaseModel):
     scripts: list[FilmedScript]
 
 
-def scripts_of(model: LanguageModel, outline: SceneOutline, maker: Maker) -> tuple[Draft, ...]:
-    """The short scripts that the model makes of a scene, mended so that a body can act them out. Raises ModelError.
+def scripts_of(model: LanguageModel, outline: SceneOutline) -> tuple[FilmedScript, ...]:
+    """The short scripts that the model makes of a scene, in its own words. Raises ModelError.
 
     A scene in which nobody does anything is not asked about.
     """
@@ -65,11 +66,7 @@ def scripts_of(model: LanguageModel, outline: SceneOutline, maker: Maker) -> tup
         captions=captions_offered(),
         outline=outline.model_dump_json(exclude={"notes", "number"}, indent=1),
     )
-    answer = ask(model, prompt, FilmedScripts, lambda found: list(_problems(found, outline)))
-    return tuple(
-        draft_of(script, (inside(script.start, outline), inside(script.end, outline)), maker, model.name)
-        for script in answer.scripts
-    )
+    return tuple(ask(model, prompt, FilmedScripts, lambda found: list(_problems(found, outline))).scripts)
 
 
 def _problems(answer: FilmedScripts, outline: SceneOutline) -> Iterator[str]:
@@ -85,6 +82,8 @@ def _problems(answer: FilmedScripts, outline: SceneOutline) -> Iterator[str]:
 
 _MAX_SAID_LENGTH: Final = 4000
 """Letters of a scene's subtitles that a model reads."""
+AT_ONCE: Final = 4
+"""Scenes that a model is asked about at the same time."""
 _MAX_FAILURES: Final = 3
 """Scenes in a row without an answer, after which a model is not asked again."""
 
@@ -102,9 +101,8 @@ class Watched:
     """Scenes in a row up to this one that the model did not answer."""
 
 
-def watch(model: LanguageModel, film: Film, scene: Scene, album: Album | None = None) -> SceneOutline:
-    """What the model sees in a scene, checked; the frames come from the album, or the film. ModelError, FilmError."""
-    frames = tuple(frames_at(film, scene.times) if album is None else album.frames(film, scene.times))
+def watch(model: LanguageModel, film: Film, scene: Scene, frames: Sequence[Frame]) -> SceneOutline:
+    """What the model sees in a scene of which it is shown these frames, checked. ModelError."""
     prompt = prompts.render(
         "watch_scene",
         number=str(scene.number),
@@ -122,42 +120,88 @@ def watch(model: LanguageModel, film: Film, scene: Scene, album: Album | None = 
     return outline_of(answer, scene)
 
 
-def watch_film(
-    model: LanguageModel,
-    film: Film,
-    scenes: Sequence[Scene],
-    maker: Maker,
-    strict: bool = False,
-    progress: Progress | None = None,
-    album: Album | None = None,
-    failures: int = 0,
-) -> Iterator[Watched]:
-    """Every scene in order, as it is done. A model of one's own has the budget of a story for each scene.
+class Audience:
+    """A model before a film: some scenes are asked about at once, and their answers fetched one after the other.
 
-    A scene that the model does not answer gives a note and no script, and after some such scenes it is not asked again;
-    with `strict` the ModelError is raised. `failures` is how many scenes before these it did not answer. FilmError.
+    Frames are read by whoever asks, since a film is read by one thread. A model of one's own has the budget of a story
+    for each scene.
     """
-    wrong, failure = failures, "as it failed before"
-    for done, scene in enumerate(scenes, 1):
-        outline: SceneOutline | None = None
-        drafts: tuple[Draft, ...] = ()
-        notes: tuple[str, ...] = ()
-        if wrong < _MAX_FAILURES:
-            own = for_story(model, scene.number) or model
-            try:
-                outline = watch(own, film, scene, album)
-                drafts = scripts_of(own, outline, maker)
-                notes, wrong = (*outline.notes, *_unshown(scene)), 0
-            except ModelError as error:
-                if strict:
-                    raise
-                wrong, failure = wrong + 1, str(error)
-        if wrong:
-            again = "not asked any more: " if wrong >= _MAX_FAILURES and not notes else ""
-            notes = (f"scene {scene.number}: the model gave no answer ({again}{failure})",)
-        yield Watched(scene, outline, drafts, notes, wrong)
-        if progress is not None:
-            progress("watching", done / len(scenes))
+
+    def __init__(self, model: LanguageModel, film: Film, scenes: Sequence[Scene], album: Album | None = None) -> None:
+        self.model, self.film, self.scenes, self.album = model, film, scenes, album
+        self._threads = ThreadPoolExecutor(AT_ONCE, thread_name_prefix="watching")
+        self._asked: dict[int, Future[tuple[SceneOutline, tuple[FilmedScript, ...]]]] = {}
+
+    def answer(self, index: int) -> tuple[SceneOutline, tuple[FilmedScript, ...]]:
+        """What the model saw in a scene, and the scripts that it made of it; meanwhile the next are asked about.
+
+        ModelError, FilmError.
+        """
+        for ahead in range(index, min(index + AT_ONCE, len(self.scenes))):
+            if ahead not in self._asked:
+                self._asked[ahead] = self._ask(self.scenes[ahead])
+        return self._asked.pop(index).result()
+
+    def close(self) -> None:
+        """Nobody waits for what was not fetched."""
+        self._threads.shutdown(wait=False, cancel_futures=True)
+
+    def _ask(self, scene: Scene) -> Future[tuple[SceneOutline, tuple[FilmedScript, ...]]]:
+        frames_of = self.album.frames if self.album is not None else frames_at
+        try:
+            frames = tuple(frames_of(self.film, scene.times))
+        except FilmError as error:  # told when it is this scene's turn
+            failed: Future[tuple[SceneOutline, tuple[FilmedScript, ...]]] = Future()
+            failed.set_exception(error)
+            return failed
+        own = for_story(self.model, scene.number) or self.model
+
+        def work() -> tuple[SceneOutline, tuple[FilmedScript, ...]]:
+            outline = watch(own, self.film, scene, frames)
+            return outline, scripts_of(own, outline)
+
+        return self._threads.submit(work)
+
+
+def watch_film(
+    audience: Audience, maker: Maker, strict: bool = False, progress: Progress | None = None
+) -> Iterator[Watched]:
+    """Every scene in order, as it is done. FilmError; with `strict` ModelError."""
+    failures = 0
+    try:
+        for index in range(len(audience.scenes)):
+            watched = watch_next(audience, index, maker, strict, failures)
+            failures = watched.failures
+            yield watched
+            if progress is not None:
+                progress("watching", (index + 1) / len(audience.scenes))
+    finally:
+        audience.close()
+
+
+def watch_next(audience: Audience, index: int, maker: Maker, strict: bool, failures: int) -> Watched:
+    """One scene of a film, after so many in a row that the model did not answer.
+
+    A scene that it does not answer gives a note and no script, and after some such scenes no answer counts any more.
+    """
+    scene = audience.scenes[index]
+    failure = "not asked any more: as it failed before"
+    if failures < _MAX_FAILURES:
+        try:
+            outline, scripts = audience.answer(index)
+        except ModelError as error:
+            if strict:
+                raise
+            failure = str(error)
+        else:
+            drafts = tuple(_draft(script, outline, maker, audience.model.name) for script in scripts)
+            return Watched(scene, outline, drafts, (*outline.notes, *_unshown(scene)))
+    notes = (f"scene {scene.number}: the model gave no answer ({failure})",)
+    return Watched(scene, None, (), notes, failures + 1)
+
+
+def _draft(script: FilmedScript, outline: SceneOutline, maker: Maker, model: str) -> Draft:
+    return draft_of(script, (inside(script.start, outline), inside(script.end, outline)), maker, model)
 
 
 def _unshown(scene: Scene) -> tuple[str, ...]:

@@ -42,6 +42,7 @@ from planner_service.extraction.text_files import ExtractionError
 from planner_service.extraction.text_scenes import TextScene, scenes_of_cues
 from planner_service.extraction.video import Film, open_film
 from planner_service.extraction.video_frames import Album
+from planner_service.extraction.vision_model import Audience
 from planner_service.jobs.uploads import Uploads
 from planner_service.library.library import RESERVED, Shelves, TakenError
 from planner_service.llm.protocol import LanguageModel
@@ -146,6 +147,8 @@ class OpenExtraction:
     store: Stories
     album: Album | None = None
     """Its frames, where this very worker cut it."""
+    audience: Audience | None = None
+    """The model that watches its scenes, some of them at once."""
     read: list[PieceRead] = field(default_factory=list)
     """The pieces that are known to be stored, in order."""
     fresh: tuple[int, PieceRead] | None = None
@@ -182,7 +185,9 @@ class OpenExtraction:
         return self.read[:count]
 
     def close(self) -> None:
-        """Let go of the frames."""
+        """Let go of the frames, and of what is still asked about them."""
+        if self.audience is not None:
+            self.audience.close()
         if self.album is not None:
             self.album.close()
 
@@ -285,7 +290,9 @@ class Reader:
                 f"{one.request.name}: was begun by a language model, and none is set now",
                 "set SIMS_LLM_MODEL, or send the film again",
             )
-        return read_film_scene(one.film, one.pieces.scenes[index], one.maker, one.means, before, one.album)
+        if one.audience is None:
+            one.audience = Audience(self.model, one.film, one.pieces.scenes, one.album)
+        return read_film_scene(one.audience, index, one.maker, one.means, before)
 
     def gather(self, extraction_id: str) -> None:
         """All scripts together, each once, kept in the library if asked for, all or none. ShelfError, LibraryError."""

@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import io
 import json
+import threading
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import Final
 
@@ -23,11 +25,13 @@ from motion_backend.motion import Action, Motion, MotionBackend
 from planner_service.grounding.furnish import Furnished
 from planner_service.jobs import serialization
 from planner_service.jobs.serialization import summary_of_home, summary_of_script
+from planner_service.llm.budget import Spent
+from planner_service.llm.client import spent_on
 from planner_service.narration.narrator import Told
 from planner_service.output.story_export import report_to_dict
 from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, actor, judge
 from planner_service.scripts.script import LongScript
-from planner_service.store.story_store import Made, Stories
+from planner_service.store.story_store import Made, Stories, count_spent
 from scene_graphs.json_fields import Json
 
 STAGES: Final = ("plan", "furnish", "narrate", "act", "move", "judge", "film")
@@ -35,7 +39,9 @@ SCRIPT, HOME, TOLD, ACTIONS, FIRST_SEGMENT = range(5)
 """Positions of what the stages make; the report and the film follow the last segment."""
 _DONE: Final = {"plan": 0.05, "furnish": 0.10, "narrate": 0.12, "act": 0.20, "move": 0.85, "judge": 0.92, "film": 1.0}
 """Share of the whole that is done after a stage."""
-_OPEN: Final = 4
+AT_ONCE: Final = 4
+"""Stories that a worker has in the making where a language model is waited for."""
+_OPEN: Final = AT_ONCE
 """Stories whose home and actions a worker keeps at hand."""
 
 
@@ -85,7 +91,8 @@ class OpenStory:
             return Planned(self.request, self.stage.script, self.stage, Told("", "", ()))
         told = self._json(TOLD)
         script = self.stage.script.model_copy(update={"repairs": tuple(told["repairs"])})
-        return Planned(self.request, script, self.stage, serialization.told_from_dict(told))
+        spent = Spent(**told["spent"]) if told["spent"] else None
+        return Planned(self.request, script, self.stage, serialization.told_from_dict(told), spent)
 
     def script(self) -> LongScript:
         """The long script, as planning left it."""
@@ -110,6 +117,9 @@ class Maker:
     worker: str
     open: OrderedDict[str, OpenStory] = field(default_factory=OrderedDict)
     backends: dict[str, MotionBackend] = field(default_factory=dict)
+    turn: threading.RLock = field(default_factory=threading.RLock)
+    """Held by whoever computes: stories take turns, and only those that wait for a language model let others go on."""
+    _opening: threading.Lock = field(default_factory=threading.Lock)
 
     def plan(self, story_id: str) -> None:
         """Theme to long script."""
@@ -135,8 +145,11 @@ class Maker:
 
     def move(self, story_id: str, index: int) -> None:
         """The motion of one action, from the state the one before left."""
-        story = self._opened(story_id)
-        started = time.perf_counter()
+        with self.turn:
+            self._move(self._opened(story_id), index)
+
+    def _move(self, story: OpenStory, index: int) -> None:
+        story_id, started = story.id, time.perf_counter()
         backend = self._backend(story.request.backend)
         home, action = story.stage.home, story.actions[index]
         position = FIRST_SEGMENT + index
@@ -192,7 +205,9 @@ class Maker:
 
     def _told(self, story: OpenStory) -> tuple[bytes, Json]:
         stage, told = story.pipeline.tell(story.request, story.stage)
+        spent = spent_on(story.pipeline.model)
         row = serialization.told_to_dict(told) | {"repairs": list(stage.script.repairs)}
+        row["spent"] = asdict(spent) if spent else None
         return _to_bytes(row), row
 
     def _actions(self, story: OpenStory) -> tuple[bytes, Json]:
@@ -208,8 +223,10 @@ class Maker:
     def _record(
         self, story: OpenStory, stage: str, position: int, kind: str, make: Callable[[], tuple[bytes, Json]]
     ) -> None:
-        started = time.perf_counter()
-        data, summary = make()
+        started, before = time.perf_counter(), spent_on(story.pipeline.model) or Spent()
+        with self._turn_of(stage):
+            data, summary = make()
+        spent = (spent_on(story.pipeline.model) or Spent()) - before
         following = STAGES[STAGES.index(stage) + 1] if stage != STAGES[-1] else None
         if following == "narrate" and story.request.keyframes:
             following = "act"
@@ -217,15 +234,21 @@ class Maker:
             kind, position, data, summary, following, _DONE[stage], time.perf_counter() - started,
             title=summary.get("title"),
         )  # fmt: skip
-        self.store.record(story.id, made, self.worker)
+        self.store.record(story.id, made, self.worker, lambda connection: count_spent(connection, self.worker, spent))
+
+    def _turn_of(self, stage: str) -> AbstractContextManager[object]:
+        """What a stage holds while it is made."""
+        asks = stage in ("plan", "narrate") and self.pipeline.model is not None
+        return nullcontext() if asks else self.turn
 
     def _opened(self, story_id: str) -> OpenStory:
-        if story_id not in self.open:
-            self.open[story_id] = OpenStory(self.store, story_id, self.pipeline)
-        self.open.move_to_end(story_id)
-        while len(self.open) > _OPEN:
-            self.open.popitem(last=False)
-        return self.open[story_id]
+        with self._opening:
+            if story_id not in self.open:
+                self.open[story_id] = OpenStory(self.store, story_id, self.pipeline)
+            self.open.move_to_end(story_id)
+            while len(self.open) > _OPEN:
+                self.open.popitem(last=False)
+            return self.open[story_id]
 
     def _backend(self, name: str) -> MotionBackend:
         if name not in self.backends:

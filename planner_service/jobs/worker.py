@@ -1,4 +1,7 @@
-"""One worker process: takes stories and extractions from their queues, one of each at a time, and makes them."""
+"""One worker process: takes stories and extractions from their queues, one of each at a time, and makes them.
+
+While a story waits for its language model, up to three others go on.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ from sqlalchemy.exc import InterfaceError, OperationalError
 from planner_service.extraction.speech_to_text import load_transcriber
 from planner_service.jobs.extraction_stages import Reader
 from planner_service.jobs.queue import APPLICATION, EXTRACTIONS, QUEUE, VERSION
-from planner_service.jobs.story_stages import Maker
+from planner_service.jobs.story_stages import AT_ONCE, Maker
 from planner_service.jobs.uploads import Uploads
 from planner_service.jobs.worker_lock import hold_name
 from planner_service.library.library import Shelves
@@ -73,8 +76,10 @@ def run_worker(settings: Settings, supervised: bool = False) -> None:
     if not _wait_for(engine, stop):
         os._exit(0)
     DBOS.launch()
-    for queue, poll in ((QUEUE, POLL), (EXTRACTIONS, RARELY)):
-        DBOS.register_queue(queue, worker_concurrency=1, polling_interval_sec=poll)
+    # Without a model nobody waits, and the stories would only hold each other up.
+    stories = AT_ONCE if pipeline.model is not None else 1
+    for queue, poll, at_once in ((QUEUE, POLL, stories), (EXTRACTIONS, RARELY, 1)):
+        DBOS.register_queue(queue, worker_concurrency=at_once, polling_interval_sec=poll)
     log.info("worker ready", worker=settings.worker_id, pid=os.getpid())
     while not stop.wait(KEEP):
         if not hold.keep():

@@ -37,6 +37,26 @@ class Limits:
         return (reading * tokens_in + writing * tokens_out) / 1e6
 
 
+@dataclass(frozen=True)
+class Spent:
+    """What was asked of a language model, and what that took."""
+
+    calls: int = 0
+    tokens: int = 0
+    seconds: float = 0.0
+    dollars: float | None = None
+    """None where there is no price."""
+
+    def __sub__(self, before: Spent) -> Spent:
+        dollars = None if self.dollars is None else self.dollars - (before.dollars or 0.0)
+        seconds = round(self.seconds - before.seconds, 3)
+        return Spent(self.calls - before.calls, self.tokens - before.tokens, seconds, dollars)
+
+    def __str__(self) -> str:
+        cost = "" if self.dollars is None else f", {self.dollars:.4f} dollars"
+        return f"{self.calls} calls, {self.tokens} tokens, {self.seconds:.1f} s{cost}"
+
+
 @dataclass
 class Spending:
     """The ledger of one story; not for several threads at once."""
@@ -48,6 +68,12 @@ class Spending:
     dollars: float = 0.0
     seconds: float = 0.0
     """Spent waiting for the model."""
+
+    @property
+    def so_far(self) -> Spent:
+        """What was spent until now."""
+        priced = self.limits.price is not None
+        return Spent(self.calls, self.tokens, round(self.seconds, 3), round(self.dollars, 6) if priced else None)
 
     def allowance(self, question: Question) -> tuple[int, float]:
         """Tokens and seconds that an answer may still take. BudgetError when too little is left to ask."""

@@ -11,7 +11,7 @@ from typing import Final
 from pydantic import ValidationError
 
 from planner_service.llm.answer_cache import Memory
-from planner_service.llm.budget import Spending
+from planner_service.llm.budget import Spending, Spent
 from planner_service.llm.messages import Source, question_of
 from planner_service.llm.protocol import InvalidAnswerError, LanguageModel, T
 from planner_service.llm.structured_output import read_answer
@@ -83,6 +83,11 @@ class ServedModel:
     def close(self) -> None:
         """Give up what is still waited for: the process is about to end."""
         self.source.close()
+
+
+def spent_on(model: LanguageModel | None) -> Spent | None:
+    """What a story spent on its model; None where nobody counts."""
+    return model.spending.so_far if isinstance(model, ServedModel) else None
 
 
 def for_story(model: LanguageModel | None, seed: int) -> LanguageModel | None:

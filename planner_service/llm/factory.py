@@ -9,11 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 from urllib.parse import urlsplit
 
+import prompts
 from planner_service.llm.answer_cache import Memory
 from planner_service.llm.budget import Limits, Spending
 from planner_service.llm.client import ServedModel
 from planner_service.llm.fake_model import ScriptedModel
-from planner_service.llm.messages import Question, Reply
+from planner_service.llm.llama_file import LlamaFile
+from planner_service.llm.messages import Question, Reply, Source
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.llm.replay_model import Recorder, Replay
 from planner_service.settings import Settings, SettingsError
@@ -22,22 +24,29 @@ if TYPE_CHECKING:
     from planner_service.llm.providers import Vendor
 
 INSTALL: Final = 'pip install "sims-stories[llm]"'
+INSTALL_LLAMA: Final = 'pip install "sims-stories[llamacpp]"'
+LLAMA: Final = "llamacpp"
 LIBRARIES: Final = {"openai": "openai", "ollama": "openai", "anthropic": "anthropic"}
 """Kinds of servers, and the library that speaks with them."""
-KINDS: Final = "openai:MODEL, ollama:MODEL, anthropic:MODEL, scripted:FILE, replay:FILE or record:FILE=openai:MODEL"
+KINDS: Final = (
+    "openai:MODEL, ollama:MODEL, anthropic:MODEL, llamacpp:FILE, scripted:FILE, replay:FILE or record:FILE=openai:MODEL"
+)
+RULES: Final = ("", "rules")
+"""Names for no model at all."""
 _NAME: Final = re.compile(r"[\w./:@+-]{1,200}\Z")
-_RECORD: Final = re.compile(r"(?P<file>.+?)=(?P<model>(?:openai|ollama|anthropic):.+)\Z", re.DOTALL)
+_RECORD: Final = re.compile(r"(?P<file>.+?)=(?P<model>(?:openai|ollama|anthropic|llamacpp):.+)\Z", re.DOTALL)
 
 
 def load_model(settings: Settings) -> LanguageModel | None:
-    """The model of `SIMS_LLM_MODEL`; None for an empty name, which means: rules plan and tell.
+    """The model of `SIMS_LLM_MODEL`; None for an empty name and for "rules", which plan and tell then.
 
     "scripted:FILE" answers from a JSON object that maps words of a prompt to the answer (an object, or text);
     "replay:FILE" from a recording, "record:FILE=openai:MODEL" makes one. SettingsError says what cannot be used;
     nothing is imported and nobody is asked yet.
     """
+    use_prompts(settings.prompts)
     name = settings.llm_model
-    if not name:
+    if name in RULES:
         return None
     kind, _, rest = name.partition(":")
     if kind == "scripted" and rest:
@@ -50,13 +59,38 @@ def load_model(settings: Settings) -> LanguageModel | None:
                 file, model = chosen["file"], chosen["model"]
             return ServedModel(Replay(Path(file), model), spending)
         if kind == "record" and (wanted := _RECORD.match(rest)) is not None:
-            return ServedModel(Recorder(Path(wanted["file"]), served(wanted["model"], settings)), spending)
+            return ServedModel(Recorder(Path(wanted["file"]), source_of(wanted["model"], settings)), spending)
     except ModelError as error:
         raise SettingsError(f"{error}", at="SIMS_LLM_MODEL") from error
-    if kind in LIBRARIES and rest:
+    if kind in (*LIBRARIES, LLAMA) and rest:
         memory = Memory(settings.cache_dir / "answers", settings.llm_cache_mb * 1_000_000)
-        return ServedModel(served(name, settings), spending, memory if settings.llm_cache_mb else None)
+        return ServedModel(source_of(name, settings), spending, memory if settings.llm_cache_mb else None)
     raise SettingsError(f"{name!r:.80} is not known", f"leave it empty for rules, or {KINDS}", at="SIMS_LLM_MODEL")
+
+
+def use_prompts(folder: Path | None) -> None:
+    """Let prompts of a user's own take the place of ours. SettingsError says what is wrong with one."""
+    try:
+        prompts.use(folder)
+    except (prompts.PromptError, OSError, UnicodeDecodeError) as error:
+        raise SettingsError(f"{error}", at="SIMS_PROMPTS") from error
+
+
+def source_of(name: str, settings: Settings) -> Source:
+    """What gives the answers of "openai:MODEL", "llamacpp:FILE" and their like. SettingsError."""
+    kind, _, rest = name.partition(":")
+    return weights(Path(rest), settings) if kind == LLAMA else served(name, settings)
+
+
+def weights(file: Path, settings: Settings) -> LlamaFile:
+    """The source of a user's own weights. SettingsError."""
+    if not file.is_file():
+        raise SettingsError(f"{file} is no file", "give the path of a GGUF file", at="SIMS_LLM_MODEL")
+    if find_spec("llama_cpp") is None:
+        raise SettingsError(
+            f"{LLAMA}:… needs a library that is not installed", f"install it: {INSTALL_LLAMA}", at="SIMS_LLM_MODEL"
+        )
+    return LlamaFile(file, settings.llm_temperature)
 
 
 class Late:

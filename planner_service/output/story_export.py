@@ -6,7 +6,7 @@ import json
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -206,6 +206,7 @@ def report_to_dict(story: Story) -> dict[str, Any]:
     planned = story.planned
     return {
         "planner": planned.script.planner,
+        "language_model": asdict(planned.spent) if planned.spent else None,
         "encoder": planned.script.encoder,
         "backend": planned.request.backend,
         "physics_mode": "none",

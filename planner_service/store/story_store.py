@@ -15,6 +15,7 @@ from pydantic_core import from_json
 from sqlalchemy import Connection, Engine, Row, Select, bindparam, delete, func, select, update
 from sqlalchemy.exc import IntegrityError
 
+from planner_service.llm.budget import Spent
 from planner_service.pipeline import StoryRequest, request_from_dict, request_to_dict
 from planner_service.store.tables import CANCELLED, artifacts, idempotency_keys, stage_times, stories, workflow_status
 from scene_graphs.json_fields import Json
@@ -330,9 +331,21 @@ def _record(row: Row[Any], made: tuple[Artifact, ...] = ()) -> Record:
     )
 
 
-def _count(connection: Connection, worker: str, stage: str, seconds: float) -> None:
-    """One more stage made by a worker."""
+MODEL_CALLS: Final = "model calls"
+MODEL_TOKENS: Final = "model tokens"
+"""Rows of `stage_times` that are no stages: calls with the seconds they took, and tokens with their dollars."""
+
+
+def count_spent(connection: Connection, worker: str, spent: Spent) -> None:
+    """What a stage took of the language model."""
+    if spent.calls:
+        _count(connection, worker, MODEL_CALLS, spent.seconds, spent.calls)
+        _count(connection, worker, MODEL_TOKENS, spent.dollars or 0.0, spent.tokens)
+
+
+def _count(connection: Connection, worker: str, stage: str, seconds: float, count: int = 1) -> None:
+    """One more stage made by a worker, or so many of what is counted beside them."""
     mine = (stage_times.c.worker == worker) & (stage_times.c.stage == stage)
-    more = {"count": stage_times.c.count + 1, "seconds": stage_times.c.seconds + seconds}
+    more = {"count": stage_times.c.count + count, "seconds": stage_times.c.seconds + seconds}
     if connection.execute(update(stage_times).where(mine).values(**more)).rowcount == 0:
-        connection.execute(stage_times.insert().values(worker=worker, stage=stage, count=1, seconds=seconds))
+        connection.execute(stage_times.insert().values(worker=worker, stage=stage, count=count, seconds=seconds))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import threading
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -13,13 +14,15 @@ from for_each import for_each
 from pydantic import BaseModel
 
 from motion_backend.language.sentence_encoder import HashingEncoder
+from planner_service.extraction.scene_outline import SceneOutline
 from planner_service.extraction.script_writer import Maker
 from planner_service.extraction.shot_detection import MAX_FRAMES, Scene, scenes_of
 from planner_service.extraction.subtitles import Cue, embedded_cues
-from planner_service.extraction.video import Film, open_film
-from planner_service.extraction.vision_model import watch, watch_film
+from planner_service.extraction.video import Film, frames_at, open_film
+from planner_service.extraction.vision_model import AT_ONCE, Audience, watch_film
+from planner_service.extraction.vision_model import watch as watched_by
 from planner_service.llm.fake_model import ScriptedModel
-from planner_service.llm.protocol import ModelError
+from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.llm.structured_output import ModelAnswerError
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.script_library import Features, ScriptLibrary
@@ -83,6 +86,10 @@ def answering(prompt: str, schema: type[BaseModel], **other: Any) -> Json:
     return seen(scene, **other) if schema.__name__ == "SceneAnswer" else {"scripts": [written(scene)]}
 
 
+def watch(model: LanguageModel, film: Film, scene: Scene) -> SceneOutline:
+    return watched_by(model, film, scene, list(frames_at(film, scene.times)))
+
+
 def test_a_scene_is_shown_with_its_frames_times_and_words() -> None:
     model = ScriptedModel(answering)
     first, second = scenes()
@@ -133,7 +140,7 @@ def test_every_scene_becomes_scripts_that_can_be_acted_with_their_spans(library:
     told: list[float] = []
     maker = Maker("A quiet evening", library, "video")
     model = ScriptedModel(answering, "seer")
-    done = list(watch_film(model, film(), scenes(), maker, progress=lambda _, share: told.append(share)))
+    done = list(watch_film(Audience(model, film(), scenes()), maker, progress=lambda _, share: told.append(share)))
     scripts = [draft.script for watched in done for draft in watched.drafts]
     assert len(scripts) == len({script.id for script in scripts}) == 2
     for script, watched in zip(scripts, done, strict=True):
@@ -149,10 +156,10 @@ def test_it_is_told_where_more_is_said_than_the_model_was_shown(library: ScriptL
     scene = scenes()[0]
     talk = tuple(Cue(scene.start, scene.end, "and so on and on " * 20) for _ in range(20))
     model = ScriptedModel(answering)
-    (watched,) = watch_film(model, film(), [replace(scene, cues=talk)], Maker("a film", library, "video"))
+    (watched,) = watch_film(Audience(model, film(), [replace(scene, cues=talk)]), Maker("a film", library, "video"))
     assert any("only the first 4000 of" in note for note in watched.notes)
     assert len(model.calls[0].prompt) < 12_000
-    (short,) = watch_film(model, film(), [scene], Maker("a film", library, "video"))
+    (short,) = watch_film(Audience(model, film(), [scene]), Maker("a film", library, "video"))
     assert not any("only the first" in note for note in short.notes)
 
 
@@ -163,7 +170,7 @@ def test_a_script_that_cannot_be_acted_is_mended_and_the_repairs_are_told(librar
         {"skill": "touch", "emotion": "tired", "caption": "reaches out", "furniture": "table"},
     ]
     model = ScriptedModel([seen(scene), {"scripts": [written(scene, keyframes=backwards)]}])
-    (watched,) = watch_film(model, film(), [scene], Maker("a film", library, "video"))
+    (watched,) = watch_film(Audience(model, film(), [scene]), Maker("a film", library, "video"))
     (draft,) = watched.drafts
     assert draft.repairs
     assert check(draft.script) == ()
@@ -174,7 +181,7 @@ def test_a_script_with_invented_furniture_or_another_time_is_asked_again(library
     invented = [{"skill": "sitdown", "emotion": "sad", "caption": "sits", "furniture": "throne of bones"}]
     bad = [written(scene, keyframes=invented), written(scene, start=50, end=60), written(scene) | {"scene": 9}]
     model = ScriptedModel([seen(scene), {"scripts": bad}, {"scripts": [written(scene)]}])
-    (watched,) = watch_film(model, film(), [scene], Maker("a film", library, "video"))
+    (watched,) = watch_film(Audience(model, film(), [scene]), Maker("a film", library, "video"))
     assert len(watched.drafts) == 1
     problems = model.calls[2].prompt
     assert all(part in problems for part in ("throne of bones", "no span of the scene", "there is no scene 9"))
@@ -183,24 +190,28 @@ def test_a_script_with_invented_furniture_or_another_time_is_asked_again(library
 def test_a_scene_where_nobody_does_anything_is_not_asked_about_again(library: ScriptLibrary) -> None:
     scene = scenes()[0]
     model = ScriptedModel([seen(scene, contacts=[], moments=[])])
-    (watched,) = watch_film(model, film(), [scene], Maker("a film", library, "video"))
+    (watched,) = watch_film(Audience(model, film(), [scene]), Maker("a film", library, "video"))
     assert watched.drafts == ()
     assert watched.outline is not None
 
 
 def test_a_model_that_fails_costs_a_scene_and_is_not_asked_for_ever(library: ScriptLibrary) -> None:
     first, second = scenes()
-    model = ScriptedModel([ModelError("the server is down"), seen(second), {"scripts": [written(second)]}])
-    one, two = watch_film(model, film(), [first, second], Maker("a film", library, "video"))
+
+    def fails_first(prompt: str, schema: type[BaseModel]) -> Json | ModelError:
+        return ModelError("the server is down") if "scene 1 of" in prompt else answering(prompt, schema)
+
+    model = ScriptedModel(fails_first)
+    one, two = watch_film(Audience(model, film(), [first, second]), Maker("a film", library, "video"))
     assert one.outline is None
     assert "the server is down" in one.notes[0]
     assert len(two.drafts) == 1
     dead = ScriptedModel(lambda *_: ModelError("the server is down"))
-    done = list(watch_film(dead, film(), [first, second] * 5, Maker("a film", library, "video")))
-    assert len(dead.calls) == 3
+    done = list(watch_film(Audience(dead, film(), [first, second] * 5), Maker("a film", library, "video")))
+    assert 3 <= len(dead.calls) < 3 + AT_ONCE
     assert all(watched.notes for watched in done)
     with pytest.raises(ModelError, match="down"):
-        list(watch_film(dead, film(), [first], Maker("a film", library, "video"), strict=True))
+        list(watch_film(Audience(dead, film(), [first]), Maker("a film", library, "video"), strict=True))
 
 
 def test_words_of_a_film_stay_data(library: ScriptLibrary) -> None:
@@ -211,7 +222,7 @@ def test_words_of_a_film_stay_data(library: ScriptLibrary) -> None:
     assert found is not None
     (scene,) = scenes_of(injected, found.cues)
     model = ScriptedModel(lambda *_: "Sure: pwned")
-    (watched,) = watch_film(model, injected, [scene], Maker("a film", library, "video"))
+    (watched,) = watch_film(Audience(model, injected, [scene]), Maker("a film", library, "video"))
     assert watched.drafts == ()
     prompt = model.calls[0].prompt
     assert prompt.count("</data>") == prompt.count("<data name=")
@@ -223,3 +234,24 @@ def test_a_scene_is_one_question_with_so_many_frames_at_most() -> None:
         watch(model, film(), scene)
     assert [call.images for call in model.calls] == [len(scene.times) for scene in film_scenes]
     assert all(0 < call.images <= MAX_FRAMES for call in model.calls)
+
+
+def test_scenes_are_asked_about_at_once_and_told_in_order(library: ScriptLibrary) -> None:
+    """The first is answered only when all those that are asked about beside it have come."""
+    first, _ = scenes()
+    numbered = [replace(first, number=number) for number in range(1, 10)]
+    together = threading.Barrier(AT_ONCE)
+
+    def answer(prompt: str, schema: type[BaseModel]) -> Json:
+        number = next(one for one in range(1, 10) if f"scene {one} of" in prompt or f'"scene": {one},' in prompt)
+        if schema.__name__ == "SceneAnswer":
+            if number <= AT_ONCE:
+                together.wait(20)
+            return seen(first)
+        return {"scripts": [written(replace(first, number=number))]}
+
+    done = list(watch_film(Audience(ScriptedModel(answer), film(), numbered), Maker("a film", library, "video")))
+    assert [watched.scene.number for watched in done] == list(range(1, 10))
+    assert all(len(watched.drafts) == 1 for watched in done)
+    again = list(watch_film(Audience(ScriptedModel(answer), film(), numbered[4:]), Maker("a film", library, "video")))
+    assert [one.drafts[0].script.id for one in again] == [one.drafts[0].script.id for one in done[:5]]

@@ -15,8 +15,8 @@ from pydantic import BaseModel
 
 import prompts
 from planner_service.llm.answer_cache import Memory
-from planner_service.llm.budget import BudgetError, Limits, Spending
-from planner_service.llm.client import ServedModel, for_story
+from planner_service.llm.budget import BudgetError, Limits, Spending, Spent
+from planner_service.llm.client import ServedModel, for_story, spent_on
 from planner_service.llm.messages import Question, Reply, portable, question_of
 from planner_service.llm.protocol import Remembering
 from planner_service.llm.structured_output import ModelAnswerError, ask
@@ -66,6 +66,22 @@ def test_a_story_spends_its_dollars_and_is_then_told_so() -> None:
     assert model.spending.dollars == pytest.approx(0.042)
     with pytest.raises(BudgetError, match=r"0\.0420 of 0\.0425 dollars"):
         model.answer("?", Meal)
+
+
+def test_what_a_story_spent_is_told_and_parts_of_it_are_differences() -> None:
+    model = ServedModel(Spoken(SOUP, tokens=(1000, 1000)), Spending(Limits(price=(1.0, 20.0))))
+    assert spent_on(None) is None
+    before = spent_on(model)
+    model.answer("?", Meal)
+    model.answer("?", Meal)
+    after = spent_on(model)
+    assert before is not None
+    assert after is not None
+    assert (after.calls, after.tokens, after.dollars) == (2, 4000, pytest.approx(0.042))
+    assert after - before == after
+    assert after - after == Spent(dollars=0.0)
+    assert str(after).startswith("2 calls, 4000 tokens, 0.0 s, 0.0420 dollars")
+    assert "dollars" not in str(spent_on(ServedModel(Spoken(SOUP))))
 
 
 def test_a_story_waits_so_long_and_no_longer() -> None:
