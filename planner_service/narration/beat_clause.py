@@ -42,6 +42,11 @@ class Predicate:
         """Whether it says that something is not done."""
         return bool(_of("negated") & {*re.findall(r"\w+", self.text.lower())})
 
+    @property
+    def is_state(self) -> bool:
+        """Whether it says how somebody is, not what is done."""
+        return self.text.startswith(WAS) or (bool(self.verbs & _of("states")) and " up" not in self.text)
+
 
 def event(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
     """A beat as it happens, None where its grammar is not sure; `hero` are the theme's own pronouns for its person."""
@@ -91,7 +96,12 @@ def left_undone(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
 
 def _own_clause(text: str) -> list[str]:
     """Words up to a clause with a subject of its own, and without what joins them to those before."""
-    words = re.sub(r"^(?:(?![\"“\ue001])\W|(?:and|but|then|so(?=,| (?:he|she|they|i)\b))\b)+", "", text.strip(), flags=re.IGNORECASE).split()
+    words = re.sub(
+        r"^(?:(?![\"“\ue001])\W|(?:and|but|then|so(?=,| (?:he|she|they|i)\b))\b)+",
+        "",
+        text.strip(),
+        flags=re.IGNORECASE,
+    ).split()
     words = [word[:1].lower() + word[1:] if not at else word for at, word in enumerate(words)]
     for at, word in enumerate(words[1:], start=1):
         later = [_bare(one) for one in words[at + 1 :]]
