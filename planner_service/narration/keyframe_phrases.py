@@ -13,8 +13,8 @@ import numpy as np
 
 from motion_backend.motion import Skill
 from planner_service.narration.narrative_voice import Voice, require_blanks
-from planner_service.narration.tense import gerund, past
 from planner_service.scripts.script import Keyframe, PlannedKeyframe
+from planner_service.themes.lexicon import gerund, past
 from scene_graphs.data_tables import read_table, require_known, table
 from scene_graphs.furniture import class_of, display_name
 

@@ -14,7 +14,7 @@ from typing import Final
 
 from motion_backend.motion import Character, Skill
 from planner_service.narration.beat_clause import WAS, Predicate, event, left_undone, thought
-from planner_service.narration.keyframe_phrases import RESTS, RISES, Phrase, Places, Variety, Wording
+from planner_service.narration.keyframe_phrases import RESTS, Phrase, Places, Variety, Wording
 from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.story_words import story_words, title_of
 from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe
