@@ -58,7 +58,7 @@ def event(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
     if told is None:
         return None
     verb, rest, ing = told
-    text = _of_voice(" ".join([*words[:at], verb, *_shifted(rest, ing)]), hero, voice).rstrip(" .,;:!?")
+    text = of_voice(" ".join([*words[:at], verb, *_shifted(rest, ing)]), hero, voice).rstrip(" .,;:!?")
     for day, instead in story_words().days.items():
         text = re.sub(rf"\b{day}\b", instead, text)
     state = text.removeprefix(f"{WAS} ")
@@ -159,7 +159,7 @@ def _later(before: str, word: str, follows: str, early: bool, ing: bool) -> str 
     return in_past(word) if takes and before in ("and", "or", "then") else None
 
 
-def _of_voice(text: str, hero: str, voice: Voice) -> str:
+def of_voice(text: str, hero: str, voice: Voice) -> str:
     """Pronouns for the theme's person made the voice's: its writer, "I", and he, she or they where that differs."""
     blanks = _FIRST | (_PERSON[hero] if hero != voice.pronouns else {})
 

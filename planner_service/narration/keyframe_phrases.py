@@ -124,9 +124,11 @@ class Phrase:
     stays: bool = False
     """Whether the body rests there already."""
     begins: bool = False
-    """Whether a sentence should begin with it, or end with it."""
+    """Whether a sentence should begin with it."""
     ends: bool = False
+    """Whether it should end with it."""
     negated: bool = False
+    """Whether it says that something is not done."""
 
     @property
     def whole(self) -> str:

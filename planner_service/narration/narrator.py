@@ -13,12 +13,12 @@ from itertools import groupby, pairwise
 from typing import Final
 
 from motion_backend.motion import Character, Skill
-from planner_service.narration.beat_clause import WAS, Predicate, event, left_undone, thought
+from planner_service.narration.beat_clause import WAS, Predicate, event, left_undone, of_voice, thought
 from planner_service.narration.keyframe_phrases import RESTS, Phrase, Places, Variety, Wording
 from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.story_words import story_words, title_of
 from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe
-from planner_service.themes.protagonist import cast_by
+from planner_service.themes.protagonist import cast_by, name_in
 from scene_graphs.furniture import class_of, display_name, is_known
 
 __all__ = ["Places", "Span", "Told", "narrate"]
@@ -57,22 +57,22 @@ def narrate(script: LongScript, character: Character, seed: int = 0, places: Pla
     """The story of a script by rules; the same seed tells it in the same words."""
     voice = Voice.of(character)
     variety = Variety(seed, zlib.crc32(script.theme.encode()))
-    phrases = _Teller(script, voice, variety, places or {}).phrases()
+    hero = cast_by(script.theme, Character()).pronouns
+    phrases = _Teller(script, hero, voice, variety, places or {}).phrases()
     text, spans = _Writer(voice, variety, _introduction(script.theme, voice)).write(_sentences(phrases, variety))
-    others = _others(script, voice, variety)
-    text = " ".join(filter(None, (text, others)))
+    text = " ".join(filter(None, (text, _others(script, hero, voice, variety))))
     return Told(title_of(script.theme, script.beats[-1].emotion if script.beats else "neutral"), text, spans)
 
 
 class _Teller:
     """Says what is told of every beat, and in which of its words the keyframes are."""
 
-    def __init__(self, script: LongScript, voice: Voice, variety: Variety, places: Places) -> None:
+    def __init__(self, script: LongScript, hero: str, voice: Voice, variety: Variety, places: Places) -> None:
         self.script = script
         self.voice = voice
         self.variety = variety
         self.wording = Wording(voice, variety, places)
-        self.hero = cast_by(script.theme, Character()).pronouns
+        self.hero = hero
         self.told: set[int] = set()
         self.here = ""
         """At which furniture the beat before ended."""
@@ -128,8 +128,8 @@ class _Teller:
         plain = Phrase(told.text, adjective=told.adjective)
         if told.is_state:
             return [plain, *phrases]
-        at = next((at for at in reversed(range(len(phrases))) if _same(told, phrases[at])), None)
-        if at is not None:
+        if alike := [at for at, phrase in enumerate(phrases) if _same(told, phrase)]:
+            at = next((at for at in alike if phrases[at].deeds & told.verbs), alike[0])
             return self._once(told.text, phrases, at)
         at = next((at for at, phrase in enumerate(phrases) if phrase.deeds & told.verbs), None)
         if at is None and (not written or sum(phrase.skill in (*RESTS, Skill.TOUCH) for phrase in phrases) > 1):
@@ -197,6 +197,10 @@ def _begun(phrases: Sequence[Phrase]) -> list[Phrase]:
     return [replace(phrase, begins=phrase.begins or at == 0) for at, phrase in enumerate(phrases)]
 
 
+def _is_state(phrase: Phrase) -> bool:
+    return bool(phrase.adjective) or phrase.text.startswith(WAS)
+
+
 def _sentences(phrases: Sequence[Phrase], variety: Variety) -> list[list[Phrase]]:
     """Up to three phrases a sentence; a walk stays with its purpose, a beat seldom shares one with another."""
     told: list[list[Phrase]] = []
@@ -204,11 +208,12 @@ def _sentences(phrases: Sequence[Phrase], variety: Variety) -> list[list[Phrase]
         last = told[-1] if told else []
         words = sum(len(one.whole.split()) for one in (*last, phrase))
         doubled = any(" and " in one.text for one in (*last, phrase))
-        most = 2 if doubled or (last and (last[0].negated or last[0].adjective)) else _MAX_PHRASES
+        most = 2 if doubled or any(one.negated or _is_state(one) for one in last) else _MAX_PHRASES
         room = last and len(last) < most and words <= _MAX_WORDS and not last[-1].ends
         gainsaid = any(one.negated for one in last) and not phrase.keyframes
-        state = bool(phrase.adjective) or phrase.text.startswith(WAS)
-        begins = state or (phrase.begins and not (len(last) == 1 and words <= _SHORT and variety.chance(0.6)))
+        begins = _is_state(phrase) or (
+            phrase.begins and not (len(last) == 1 and words <= _SHORT and variety.chance(0.6))
+        )
         if last and (last[-1].leads or (room and not begins and not gainsaid)):
             last.append(phrase)
         else:
@@ -246,7 +251,7 @@ class _Writer:
         if len(phrases) > 1 and not opening and not self.first:
             if first.adjective and self.variety.chance(0.6):
                 opening, phrases = f"{first.adjective},", phrases[1:]
-            elif first.gerund and self.variety.chance(0.4):
+            elif first.gerund and (first.rises or first.leads) and self.variety.chance(0.4):
                 self._say(first.gerund, first.keyframes)
                 opening, phrases = ",", phrases[1:]
         moods = story_words().moods.get(first.mood, ())
@@ -281,14 +286,12 @@ def _introduction(theme: str, voice: Voice) -> str:
     return f", {' '.join(words[: at + 1])},"
 
 
-def _others(script: LongScript, voice: Voice, variety: Variety) -> str:
+def _others(script: LongScript, hero: str, voice: Voice, variety: Variety) -> str:
     """A sentence about the people whose deeds the theme has and nobody shows."""
-    people = story_words().lists["people"] - {"they", "he", "she"}
-    who = [
-        re.sub(r"^(?:The|An?|His|Her|Their) ", lambda one: one[0].lower(), beat.who)
-        for beat in script.beats
-        if beat.who.istitle() or people & {*beat.who.lower().split()}
-    ]
-    *most, last = list(dict.fromkeys(who))[:3] or [""]
-    others = " and ".join(filter(None, (", ".join(most), last)))
+    known = story_words().lists["people"] - {"they", "he", "she"}
+    theirs = [beat.who for beat in script.beats if beat.who != voice.name]
+    who = [re.sub(r"^(?:The|An?|His|Her|Their|My) ", lambda one: one[0].lower(), one) for one in theirs]
+    people = [one for one in who if known & {*one.lower().split()} or name_in(f"{one} sits")]
+    *most, last = list(dict.fromkeys(people))[:3] or [""]
+    others = of_voice(" and ".join(filter(None, (", ".join(most), last))), hero, voice)
     return voice.fill(variety.pick(story_words().others), others=others) if others else ""
