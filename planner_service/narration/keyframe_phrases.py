@@ -7,12 +7,14 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import takewhile
 from typing import Final, Literal
 
 import numpy as np
 
 from motion_backend.motion import Skill
 from planner_service.narration.narrative_voice import Voice, require_blanks
+from planner_service.narration.tense import bases
 from planner_service.scripts.script import Keyframe, PlannedKeyframe
 from planner_service.themes.lexicon import gerund, past
 from scene_graphs.data_tables import read_table, require_known, table
@@ -118,7 +120,7 @@ class Phrase:
     word: str = ""
     """The script's word for that."""
     deeds: frozenset[str] = frozenset()
-    """Base forms of the verbs for what its caption says is done at rest."""
+    """Base forms of the verbs in its caption: "drinking from a cup"."""
     leads: bool = False
     """Whether the next phrase is what it is done for."""
     stays: bool = False
@@ -176,13 +178,14 @@ class Wording:
         told: list[Phrase] = []
         untold: tuple[int, ...] = ()
         self._named, self._wandering, stays = "", False, False
-        for (index, keyframe), following in zip(rows, [*(row[1] for row in rows[1:]), None], strict=True):
-            rests = following is not None and following.skill in RESTS
-            there = following is not None and not keyframe.on_floor and keyframe.piece == following.piece
-            leads = there and keyframe.skill == Skill.LOCO
-            again = there and rests and keyframe.skill in RISES
-            if again or (leads and rests and self._goes_without_saying(keyframe)):
-                untold, stays = (*untold, index), again
+        for at, (index, keyframe) in enumerate(rows):
+            here = takewhile(lambda row: not row[1].on_floor and row[1].piece == keyframe.piece, rows[at + 1 :])
+            goal = next((row[1] for row in here if row[1].skill != Skill.LOCO), None)
+            leads = keyframe.skill == Skill.LOCO and goal is not None
+            rests = goal is not None and goal.skill in RESTS
+            stays = stays or (keyframe.skill in RISES and rests)
+            if (rests and stays) or (leads and rests and self._goes_without_saying(keyframe)):
+                untold = (*untold, index)
                 continue
             told.append(self._phrase((*untold, index), keyframe, leads, stays))
             untold, stays = (), False
@@ -219,7 +222,7 @@ class Wording:
             mood=mood,
             at="" if keyframe.on_floor else the,
             word="" if keyframe.on_floor else keyframe.piece[0],
-            deeds=frozenset(verb for way in manners for verb in re.findall(r"~(\w+)", way)),
+            deeds=frozenset(base for word in re.findall(r"\w+ing\b", keyframe.caption) for base in bases(word)),
             leads=leads,
             stays=stays,
             begins=keyframe.skill in RISES,

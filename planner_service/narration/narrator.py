@@ -120,19 +120,20 @@ class _Teller:
                 return [*self._unshown(number), *_begun(phrases)]
             self.told.add(number)
             if told := event(beat, self.hero, self.voice):
-                return _begun(self._with_event(told, phrases, all(row.short_script is None for _, row in rows)))
+                return _begun(self._with_event(told, phrases))
         return _begun(phrases)
 
-    def _with_event(self, told: Predicate, phrases: list[Phrase], written: bool) -> list[Phrase]:
+    def _with_event(self, told: Predicate, phrases: list[Phrase]) -> list[Phrase]:
         """What happens and how the body does it; once, where a phrase says the same or was written for it."""
         plain = Phrase(told.text, adjective=told.adjective)
         if told.is_state:
             return [plain, *phrases]
-        if alike := [at for at, phrase in enumerate(phrases) if _same(told, phrase)]:
-            at = next((at for at in alike if phrases[at].deeds & told.verbs), alike[0])
-            return self._once(told.text, phrases, at)
+        alike = [_likeness(told, phrase) for phrase in phrases]
+        if any(alike):
+            return self._once(told.text, phrases, alike.index(max(alike)))
         at = next((at for at, phrase in enumerate(phrases) if phrase.deeds & told.verbs), None)
-        if at is None and (not written or sum(phrase.skill in (*RESTS, Skill.TOUCH) for phrase in phrases) > 1):
+        whole_scripts = self.script.method == "matching"
+        if at is None and (whole_scripts or sum(phrase.skill in (*RESTS, Skill.TOUCH) for phrase in phrases) > 1):
             return [replace(plain, ends=True), *phrases]
         at = len(phrases) - 1 if at is None else at
         before, last, after = phrases[:at], phrases[at], phrases[at + 1 :]
@@ -160,12 +161,14 @@ class _Teller:
         return [*before, Phrase(text, keyframes, mood=phrase.mood), *phrases[at + 1 :]]
 
 
-def _same(told: Predicate, phrase: Phrase) -> bool:
-    """Whether a deed says what a phrase does."""
+def _likeness(told: Predicate, phrase: Phrase) -> int:
+    """How well a deed says what a phrase does: in its verb, in its furniture; 0 where it says something else."""
     if phrase.leads or (phrase.rises and "get" in told.verbs and not re.search(r" up\b| out of bed\b", told.text)):
-        return False
-    named = not phrase.rises and _furniture_in(told.text, phrase.word)
-    return bool(named or told.verbs & {*story_words().deeds.get(phrase.skill or "", "").split()})
+        return 0
+    moves = not told.verbs.isdisjoint(story_words().deeds.get(phrase.skill or "", "").split())
+    named = not phrase.rises and bool(_furniture_in(told.text, phrase.word))
+    does = not told.verbs.isdisjoint(phrase.deeds)
+    return (moves or named) * (1 + 2 * moves + 2 * does)
 
 
 def _furniture_in(text: str, word: str) -> str:
