@@ -9,8 +9,9 @@ from typing import Final
 
 from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.story_words import story_words
-from planner_service.narration.tense import bases, form_of, in_past, inflected, is_adjective, past
+from planner_service.narration.tense import bases, form_of, in_past, says_how
 from planner_service.scripts.script import Beat
+from planner_service.themes.lexicon import participle, past
 
 WAS: Final = "\ue000"
 """Stands for was or were until the subject is known; no theme has it."""
@@ -42,6 +43,11 @@ class Predicate:
         """Whether it says that something is not done."""
         return bool(_of("negated") & {*re.findall(r"\w+", self.text.lower())})
 
+    @property
+    def is_state(self) -> bool:
+        """Whether it says how somebody is, not what is done."""
+        return self.text.startswith(WAS) or (bool(self.verbs & _of("states")) and " up" not in self.text)
+
 
 def event(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
     """A beat as it happens, None where its grammar is not sure; `hero` are the theme's own pronouns for its person."""
@@ -52,14 +58,14 @@ def event(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
     if told is None:
         return None
     verb, rest, ing = told
-    text = _of_voice(" ".join([*words[:at], verb, *_shifted(rest, ing)]), hero, voice).rstrip(" .,;:!?")
+    text = of_voice(" ".join([*words[:at], verb, *_shifted(rest, ing)]), hero, voice).rstrip(" .,;:!?")
     for day, instead in story_words().days.items():
         text = re.sub(rf"\b{day}\b", instead, text)
-    says_how = text.removeprefix(f"{WAS} ")
-    plain = says_how != text and len(says_how.split()) <= 2 and is_adjective(says_how.split()[-1])
+    state = text.removeprefix(f"{WAS} ")
+    plain = state != text and len(state.split()) <= 2 and says_how(state.split()[-1])
     head = _bare((rest if verb == "did not" else words[at:])[0])
     text = re.sub(_SAID, lambda _: next(quotes), text)
-    return Predicate(text, frozenset(bases(head, guessed=True)), says_how if plain else "")
+    return Predicate(text, frozenset(bases(head)), state if plain else "")
 
 
 def thought(beat: Beat, hero: str, voice: Voice) -> str | None:
@@ -72,13 +78,13 @@ def thought(beat: Beat, hero: str, voice: Voice) -> str | None:
     verb, rest = words[at], words[at + 1 :]
     base = "be" if verb == WAS else next((base for base in sorted(told.verbs) if past(base) == verb), "")
     if verb == "did" and rest[:1] == ["not"] and len(rest) > 1:
-        rest, done = rest[2:], ["not", inflected(rest[1], "VBN")]
+        rest, done = rest[2:], ["not", participle(rest[1])]
     elif not base or base in ("can", "may", "will"):
         return None
     elif verb == "used" or (verb == "had" and form_of(_bare((rest or [""])[0]))):
         done = []
     else:
-        done = [inflected(base, "VBN")]
+        done = [participle(base)]
     had = verb if verb == "used" else "had"
     return " ".join([voice["they"], had, *words[:at], *done, *rest])
 
@@ -100,7 +106,7 @@ def _own_clause(text: str) -> list[str]:
     words = [word[:1].lower() + word[1:] if not at else word for at, word in enumerate(words)]
     for at, word in enumerate(words[1:], start=1):
         later = [_bare(one) for one in words[at + 1 :]]
-        finite = (form_of(one) in ("VBZ", "VBD") or one in _of("subjects") or one in _helpers() for one in later)
+        finite = (form_of(one) in ("present", "past") or one in _of("subjects") or one in _helpers() for one in later)
         if word.lower() in _of("cut") and any(finite):
             return words[:at]
     return words
@@ -110,22 +116,22 @@ def _head(words: Sequence[str], feeling: bool) -> tuple[str, Sequence[str], bool
     """The verb in the past, what follows it, and whether it was an -ing form; None where it is no verb."""
     first, after = [*map(_bare, words[:2]), "", ""][:2]
     rest = words[1:]
-    if feeling and first == "not" and is_adjective(after):
+    if feeling and first == "not" and says_how(after):
         return WAS, words, False
     if first in ("not", "without") or (first, after) == ("instead", "of"):
         rest = words[2:] if first == "instead" else rest
-        base = bases(_bare(rest[0])) if rest and form_of(_bare(rest[0])) == "VBG" else ()
+        base = bases(_bare(rest[0])) if rest and form_of(_bare(rest[0])) == "ing" else ()
         return ("did not", [base[0], *rest[1:]], False) if base else None
     if first == "to" and rest:
         return _head(rest, feeling)
     if first in _helpers():
-        goes_on = _helpers()[first] == WAS and form_of(after) == "VBG" and not feeling
+        goes_on = _helpers()[first] == WAS and form_of(after) == "ing" and not feeling
         return _head(rest, feeling) if goes_on else (_helpers()[first], rest, False)
-    adjective = form_of(first) not in ("VBZ", "VBG") and is_adjective(first) and after not in ("down", "up", "out")
+    adjective = form_of(first) not in ("present", "ing") and says_how(first) and after not in ("down", "up", "out")
     if feeling and (adjective or (first in ("in", "at") and rest)):
         return WAS, words, False
     told = in_past(first)
-    return (told, rest, form_of(first) == "VBG") if told else None
+    return (told, rest, form_of(first) == "ing") if told else None
 
 
 def _shifted(words: Sequence[str], ing: bool) -> list[str]:
@@ -146,14 +152,14 @@ def _later(before: str, word: str, follows: str, early: bool, ing: bool) -> str 
     ):
         return _helpers()[word].replace(WAS, was)
     if subject:
-        return in_past(word) if form == "VBZ" or before in ("i", "they", "we") else None
+        return in_past(word) if form == "present" or before in ("i", "they", "we") else None
     alone = bool(_of("alone") & {*bases(word)})
     joined = before in ("and", "or", "then") and (alone or early or follows in _of("after_verbs"))
-    takes = (form == "VBZ" and joined) or (form == "VBG" and ing) or (form is None and alone and not ing)
+    takes = (form == "present" and joined) or (form == "ing" and ing) or (form is None and alone and not ing)
     return in_past(word) if takes and before in ("and", "or", "then") else None
 
 
-def _of_voice(text: str, hero: str, voice: Voice) -> str:
+def of_voice(text: str, hero: str, voice: Voice) -> str:
     """Pronouns for the theme's person made the voice's: its writer, "I", and he, she or they where that differs."""
     blanks = _FIRST | (_PERSON[hero] if hero != voice.pronouns else {})
 
@@ -167,7 +173,7 @@ def _of_voice(text: str, hero: str, voice: Voice) -> str:
 
 def _is_adverb(word: str) -> bool:
     lower = _bare(word)
-    return lower in _of("adverbs") or (lower.endswith("ly") and not bases(lower) and not is_adjective(lower))
+    return lower in _of("adverbs") or (lower.endswith("ly") and not bases(lower) and not says_how(lower))
 
 
 def _of(name: str) -> frozenset[str]:

@@ -7,14 +7,16 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import takewhile
 from typing import Final, Literal
 
 import numpy as np
 
 from motion_backend.motion import Skill
 from planner_service.narration.narrative_voice import Voice, require_blanks
-from planner_service.narration.tense import gerund, past
+from planner_service.narration.tense import bases
 from planner_service.scripts.script import Keyframe, PlannedKeyframe
+from planner_service.themes.lexicon import gerund, past
 from scene_graphs.data_tables import read_table, require_known, table
 from scene_graphs.furniture import class_of, display_name
 
@@ -40,8 +42,6 @@ class Phrases:
     "the sofa", and the pronouns of `Voice.fill`.
     """
 
-    idle_walks: tuple[str, ...]
-    """Captions of walks that say little."""
     neutral_walks: tuple[str, ...]
     """Captions of the walks that a walk to furniture is usually done in."""
     to: tuple[str, ...]
@@ -58,6 +58,8 @@ class Phrases:
     """By caption the manner that may follow; so for lying."""
     lies_in_mood: dict[str, tuple[str, ...]]
     lies: dict[str, tuple[str, ...]]
+    rests_again: tuple[str, ...]
+    """Where the body has just rested."""
     rises: dict[Literal["neutral", "slow", "fast"], tuple[str, ...]]
     """By pace."""
     touches: dict[str, tuple[str, ...]]
@@ -70,7 +72,6 @@ class Phrases:
     def __post_init__(self) -> None:
         require_blanks("", vars(self), _BLANKS)
         require_known("neutral_walks", self.neutral_walks, self.walks)
-        require_known("idle_walks", self.idle_walks, self.walks)
         for class_, heights in self.touches_at.items():
             require_known(f"touches_at.{class_}", heights, self.touches)
 
@@ -100,32 +101,46 @@ RESTS: Final = (Skill.SITDOWN, Skill.LIEDOWN)
 
 @dataclass(frozen=True)
 class Phrase:
-    """A verb phrase without its subject and the keyframes it tells."""
+    """Something told of the story's person, without its subject, and the keyframes it tells."""
 
-    base: str
-    """With verbs in their base form, further ones marked: "bend down and ~reach under the bed"."""
-    keyframes: tuple[int, ...]
-    skill: Skill
-    mood: str
+    text: str
+    """In the past: "sat down on the sofa"."""
+    keyframes: tuple[int, ...] = ()
+    gerund: str = ""
+    """The same before another deed, "crossing to the sofa"; empty where that would not do."""
     manner: str = ""
-    """How the body rests, or what it does there: ", chin in hand", ", then ~write"."""
-    the: str = ""
+    """How the body rests, or what it does there: ", chin in hand", ", then wrote"."""
+    adjective: str = ""
+    """ "exhausted", where it says nothing else."""
+    skill: Skill | None = None
+    """None for what the theme says."""
+    mood: str = "neutral"
+    at: str = ""
     """What it is done at, "the sofa"; empty on the floor."""
     word: str = ""
     """The script's word for that."""
+    deeds: frozenset[str] = frozenset()
+    """Base forms of the verbs in its caption: "drinking from a cup"."""
     leads: bool = False
     """Whether the next phrase is what it is done for."""
-    deeds: frozenset[str] = frozenset()
-    """Base forms of the verbs for what its caption says is done at rest."""
-
-    def text(self, manner: bool = True) -> str:
-        """In the past: "sat down on the sofa, chin in hand"."""
-        return _VERB.sub(lambda verb: past(verb[1]), self.base + (self.manner if manner else ""))
+    stays: bool = False
+    """Whether the body rests there already."""
+    begins: bool = False
+    """Whether a sentence should begin with it."""
+    ends: bool = False
+    """Whether it should end with it."""
+    negated: bool = False
+    """Whether it says that something is not done."""
 
     @property
-    def gerund(self) -> str:
-        """ "sitting down on the sofa"."""
-        return _VERB.sub(lambda verb: gerund(verb[1]), self.base)
+    def whole(self) -> str:
+        """With its manner."""
+        return self.text + self.manner
+
+    @property
+    def rises(self) -> bool:
+        """Whether the body stands up."""
+        return self.skill in RISES
 
 
 class Variety:
@@ -162,26 +177,31 @@ class Wording:
         """Keyframes in order as phrases; every index is in exactly one of them."""
         told: list[Phrase] = []
         untold: tuple[int, ...] = ()
-        self._named, self._wandering = "", False
-        for (index, keyframe), following in zip(rows, [*(row[1] for row in rows[1:]), None], strict=True):
-            leads = _leads(keyframe, following)
-            plain = templates().neutral_walks if leads else templates().idle_walks if keyframe.on_floor else ()
-            onward = leads or (following is not None and following.skill == Skill.LOCO)
-            if onward and keyframe.skill == Skill.LOCO and keyframe.caption in plain and self.variety.chance(0.5):
+        self._named, self._wandering, stays = "", False, False
+        for at, (index, keyframe) in enumerate(rows):
+            here = takewhile(lambda row: not row[1].on_floor and row[1].piece == keyframe.piece, rows[at + 1 :])
+            goal = next((row[1] for row in here if row[1].skill != Skill.LOCO), None)
+            leads = keyframe.skill == Skill.LOCO and goal is not None
+            rests = goal is not None and goal.skill in RESTS
+            stays = stays or (keyframe.skill in RISES and rests)
+            if (rests and stays) or (leads and rests and self._goes_without_saying(keyframe)):
                 untold = (*untold, index)
                 continue
-            told.append(self._phrase((*untold, index), keyframe, leads))
-            untold = ()
+            told.append(self._phrase((*untold, index), keyframe, leads, stays))
+            untold, stays = (), False
         return told
 
-    def _phrase(self, indices: tuple[int, ...], keyframe: PlannedKeyframe, leads: bool) -> Phrase:
+    def _goes_without_saying(self, walk: Keyframe) -> bool:
+        return walk.caption in templates().neutral_walks and self.variety.chance(0.5)
+
+    def _phrase(self, indices: tuple[int, ...], keyframe: PlannedKeyframe, leads: bool, stays: bool) -> Phrase:
         index, mood, known, manners = indices[-1], keyframe.mood, templates(), ()
-        if keyframe.skill == Skill.LOCO:
+        walks, sits = keyframe.skill == Skill.LOCO, keyframe.skill == Skill.SITDOWN
+        if walks:
             walk = known.walks.get(keyframe.caption, known.walks_in_mood[mood])
             ways = walk.about if keyframe.on_floor else walk.to
         elif keyframe.skill in RESTS:
-            sits = keyframe.skill == Skill.SITDOWN
-            ways = (known.sits_in_mood if sits else known.lies_in_mood)[mood]
+            ways = known.rests_again if stays else (known.sits_in_mood if sits else known.lies_in_mood)[mood]
             manners = (known.sits if sits else known.lies).get(keyframe.caption, ())
         elif keyframe.skill == Skill.TOUCH:
             ways = touches(keyframe)
@@ -189,12 +209,25 @@ class Wording:
             ways = known.rises[_pace(keyframe.caption)]
         the = self.the(index, keyframe)
         base = " ".join(self._fill(self.variety.pick(ways), the, self.room(index, keyframe)).split())
-        self._wandering = keyframe.skill == Skill.LOCO and keyframe.on_floor
+        self._wandering = walks and keyframe.on_floor
         self._named = the if leads else ""
-        word = "" if keyframe.on_floor else keyframe.piece[0]
-        deeds = frozenset(verb for way in manners for verb in re.findall(r"~(\w+)", way))
-        manner = self._manner(manners)
-        return Phrase(base, indices, keyframe.skill, mood, manner, the if word else "", word, leads, deeds)
+        goes = walks or keyframe.skill in RISES
+        manner = _VERB.sub(lambda verb: past(verb[1]), self._manner(manners))
+        return Phrase(
+            text=_VERB.sub(lambda verb: past(verb[1]), base),
+            keyframes=indices,
+            gerund=_VERB.sub(lambda verb: gerund(verb[1]), base) if goes else "",
+            manner=manner,
+            skill=keyframe.skill,
+            mood=mood,
+            at="" if keyframe.on_floor else the,
+            word="" if keyframe.on_floor else keyframe.piece[0],
+            deeds=frozenset(base for word in re.findall(r"\w+ing\b", keyframe.caption) for base in bases(word)),
+            leads=leads,
+            stays=stays,
+            begins=keyframe.skill in RISES,
+            ends="," in base + manner,
+        )
 
     def _manner(self, ways: Sequence[str]) -> str:
         """How the body rests, unless the story has told of that already."""
@@ -244,12 +277,6 @@ def touches(keyframe: Keyframe) -> tuple[str, ...]:
         return known.touches_doing[caption]
     height = next((h for h in ("prone", "low", "high") if re.search(rf"\b{h}\b", caption.lower())), "medium")
     return known.touches_at.get(class_of(keyframe.piece[0]), {}).get(height) or known.touches[height]
-
-
-def _leads(walk: Keyframe, following: Keyframe | None) -> bool:
-    """Whether what follows is done at the piece this walk goes to."""
-    purpose = following is not None and following.skill in (*RESTS, Skill.TOUCH) and walk.piece == following.piece
-    return purpose and walk.skill == Skill.LOCO and not walk.on_floor
 
 
 def _pace(caption: str) -> Literal["neutral", "slow", "fast"]:

@@ -59,4 +59,4 @@ def tells_of_one(summary: str) -> bool:
     """Whether a summary tells, in the present, of one person: it speaks to nobody and has no second one."""
     words = re.findall(r"[a-z]+", summary.lower())
     two = bool({"he", "his", "him"} & {*words}) and bool({"she", "her", "hers"} & {*words})
-    return not two and not _NOT_OURS.search(summary) and any(form_of(word) == "VBZ" for word in words)
+    return not two and not _NOT_OURS.search(summary) and any(form_of(word) == "present" for word in words)

@@ -13,12 +13,12 @@ from itertools import groupby, pairwise
 from typing import Final
 
 from motion_backend.motion import Character, Skill
-from planner_service.narration.beat_clause import WAS, Predicate, event, left_undone, thought
-from planner_service.narration.keyframe_phrases import RESTS, RISES, Phrase, Places, Variety, Wording
+from planner_service.narration.beat_clause import WAS, Predicate, event, left_undone, of_voice, thought
+from planner_service.narration.keyframe_phrases import RESTS, Phrase, Places, Variety, Wording
 from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.story_words import story_words, title_of
 from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe
-from planner_service.themes.protagonist import cast_by
+from planner_service.themes.protagonist import cast_by, name_in
 from scene_graphs.furniture import class_of, display_name, is_known
 
 __all__ = ["Places", "Span", "Told", "narrate"]
@@ -26,10 +26,10 @@ MAX_SENTENCES = 5
 """Sentences in a paragraph."""
 SENTENCES_A_JOINT = 8
 """At most every such sentence begins by saying that time has passed."""
-_MAX_MOVES: Final = 3
+_MAX_PHRASES: Final = 3
 _MAX_WORDS: Final = 22
 """Words of a sentence after which no more is added to it."""
-_SHORT: Final = 9
+_SHORT: Final = 18
 """Words of two beats that may stand in one sentence."""
 _PLACE: Final = re.compile(r"\b(?:on|in|at|by|into|onto|under|beside|near|to|from|around|against|before|behind) \w+")
 Rows = Sequence[tuple[int, PlannedKeyframe]]
@@ -53,121 +53,101 @@ class Told:
     spans: tuple[Span, ...]
 
 
-@dataclass(frozen=True)
-class _Move:
-    """Something told of the story's person, without its subject."""
-
-    text: str
-    keyframes: tuple[int, ...] = ()
-    gerund: str = ""
-    """The same before another one, "crossing to the sofa"; empty where that would not do."""
-    adjective: str = ""
-    mood: str = "neutral"
-    begins: bool = False
-    """Whether a beat begins with it."""
-    leads: bool = False
-    """Whether the next one is what it is done for."""
-    ends: bool = False
-    """Whether a sentence ends with it."""
-    negated: bool = False
-
-    @property
-    def words(self) -> int:
-        """How long it is."""
-        return len(self.text.split())
-
-
 def narrate(script: LongScript, character: Character, seed: int = 0, places: Places | None = None) -> Told:
     """The story of a script by rules; the same seed tells it in the same words."""
     voice = Voice.of(character)
     variety = Variety(seed, zlib.crc32(script.theme.encode()))
-    moves = _Teller(script, voice, variety, places or {}).moves()
-    text, spans = _Writer(voice, variety, _introduction(script.theme, voice)).write(_sentences(moves, variety))
-    others = _others(script, voice, variety)
-    text = " ".join(filter(None, (text, others)))
+    hero = cast_by(script.theme, Character()).pronouns
+    phrases = _Teller(script, hero, voice, variety, places or {}).phrases()
+    text, spans = _Writer(voice, variety, _introduction(script.theme, voice)).write(_sentences(phrases, variety))
+    text = " ".join(filter(None, (text, _others(script, hero, voice, variety))))
     return Told(title_of(script.theme, script.beats[-1].emotion if script.beats else "neutral"), text, spans)
 
 
 class _Teller:
     """Says what is told of every beat, and in which of its words the keyframes are."""
 
-    def __init__(self, script: LongScript, voice: Voice, variety: Variety, places: Places) -> None:
+    def __init__(self, script: LongScript, hero: str, voice: Voice, variety: Variety, places: Places) -> None:
         self.script = script
         self.voice = voice
         self.variety = variety
         self.wording = Wording(voice, variety, places)
-        self.hero = cast_by(script.theme, Character()).pronouns
+        self.hero = hero
         self.told: set[int] = set()
+        self.here = ""
+        """At which furniture the beat before ended."""
 
-    def moves(self) -> list[_Move]:
+    def phrases(self) -> list[Phrase]:
         """Everything that is told, in order; beats without keyframes stand where the theme has them."""
         runs = _runs(self.script.keyframes)
         shown = {beat for beat, _ in runs}
-        moves: list[_Move] = []
+        told: list[Phrase] = []
         for beat, rows in runs:
             for earlier in range(min(beat or 0, len(self.script.beats))):
-                moves += self._unshown(earlier) if earlier not in shown else []
-            moves += self._shown(beat, rows)
+                told += self._unshown(earlier) if earlier not in shown else []
+            told += self._shown(beat, rows)
+            self.here = self.wording.the(*rows[-1])
         for late in range(len(self.script.beats)):
-            moves += self._unshown(late)
-        return moves
+            told += self._unshown(late)
+        return told
 
-    def _unshown(self, number: int) -> list[_Move]:
-        """A beat without keyframes: its feeling, what is thought, what is not done."""
+    def _unshown(self, number: int) -> list[Phrase]:
+        """A beat without keyframes of its own: what is felt, done besides, thought, or left undone."""
         beat = self.script.beats[number]
         if number in self.told or beat.who:
             return []
         self.told.add(number)
         if beat.kind == "memory":
-            return [_Move(text, begins=True, ends=True) for text in self._thought(beat)]
+            return self._thought(beat)
         if beat.kind == "undone":
             told = left_undone(beat, self.hero, self.voice)
         else:
             told = None if beat.why or beat.kind == "other" else event(beat, self.hero, self.voice)
-        return [_Move(told.text, adjective=told.adjective, begins=True, negated=told.negated)] if told else []
+        return [Phrase(told.text, adjective=told.adjective, begins=True, negated=told.negated)] if told else []
 
-    def _thought(self, beat: Beat) -> list[str]:
+    def _thought(self, beat: Beat) -> list[Phrase]:
         told = thought(beat, self.hero, self.voice)
         if told and told.split()[0] == self.voice["they"]:
             told = self.voice.fill(self.variety.pick(story_words().thoughts), clause=told)
-        return [told] if told else []
+        return [Phrase(told, begins=True, ends=True)] if told else []
 
-    def _shown(self, number: int | None, rows: Rows) -> list[_Move]:
+    def _shown(self, number: int | None, rows: Rows) -> list[Phrase]:
         """A beat and its keyframes."""
         phrases = self.wording.phrases(rows)
-        if number is None or number >= len(self.script.beats) or number in self.told:
-            return _begun([_move(phrase) for phrase in phrases])
-        beat = self.script.beats[number]
-        if beat.kind not in ("deed", "feeling", "speech") or beat.why or beat.who:
-            return [*self._unshown(number), *_begun([_move(phrase) for phrase in phrases])]
-        self.told.add(number)
-        told = event(beat, self.hero, self.voice)
-        if told is None:
-            return _begun([_move(phrase) for phrase in phrases])
-        if beat.kind == "feeling":
-            return [_Move(told.text, adjective=told.adjective, begins=True), *(_move(phrase) for phrase in phrases)]
-        return _begun(self._with_deed(told, phrases, all(row.short_script is None for _, row in rows)))
+        beat = None if number is None or number >= len(self.script.beats) else self.script.beats[number]
+        if number is not None and beat and number not in self.told:
+            if beat.kind not in ("deed", "feeling", "speech") or beat.why or beat.who:
+                return [*self._unshown(number), *_begun(phrases)]
+            self.told.add(number)
+            if told := event(beat, self.hero, self.voice):
+                return _begun(self._with_event(told, phrases))
+        return _begun(phrases)
 
-    def _with_deed(self, told: Predicate, phrases: list[Phrase], written: bool) -> list[_Move]:
-        """A deed and how the body does it; once, where a phrase says the same or was written for it."""
-        at = next((at for at in reversed(range(len(phrases))) if _same(told, phrases[at])), None)
-        if at is not None:
-            return self._once(told, phrases, at)
-        doing = next((at for at, phrase in enumerate(phrases) if phrase.deeds & told.verbs), None)
-        acts = [phrase for phrase in phrases if phrase.skill in (*RESTS, Skill.TOUCH)]
-        if doing is None and (not written or len(acts) > 1):
-            return [_Move(told.text, ends=True), *(_move(phrase) for phrase in phrases)]
-        at = len(phrases) - 1 if doing is None else doing
-        before, last, after = phrases[:at], phrases[at], [_move(phrase) for phrase in phrases[at + 1 :]]
-        if last.skill != Skill.TOUCH:
-            told_there = _Move(told.text, mood=last.mood)
-            return [*(_move(one) for one in before), _move(last, manner=False), told_there, *after]
-        place = "" if (before and before[-1].leads) or _PLACE.search(told.text) else f" at {last.the}"
-        return [*(_move(one) for one in before), _Move(told.text + place, last.keyframes, mood=last.mood), *after]
+    def _with_event(self, told: Predicate, phrases: list[Phrase]) -> list[Phrase]:
+        """What happens and how the body does it; once, where a phrase says the same or was written for it."""
+        plain = Phrase(told.text, adjective=told.adjective)
+        if told.is_state:
+            return [plain, *phrases]
+        alike = [_likeness(told, phrase) for phrase in phrases]
+        if any(alike):
+            return self._once(told.text, phrases, alike.index(max(alike)))
+        at = next((at for at, phrase in enumerate(phrases) if phrase.deeds & told.verbs), None)
+        whole_scripts = self.script.method == "matching"
+        if at is None and (whole_scripts or sum(phrase.skill in (*RESTS, Skill.TOUCH) for phrase in phrases) > 1):
+            return [replace(plain, ends=True), *phrases]
+        at = len(phrases) - 1 if at is None else at
+        before, last, after = phrases[:at], phrases[at], phrases[at + 1 :]
+        if last.skill == Skill.LOCO:
+            return [*before, plain, last, *after]
+        if last.skill == Skill.TOUCH or last.stays:
+            known = last.stays or _PLACE.search(told.text) or (before and before[-1].leads)
+            text = told.text if known else f"{told.text} at {last.at}"
+            return [*before, replace(plain, text=text, keyframes=last.keyframes, mood=last.mood), *after]
+        return [*before, replace(last, manner="", ends=False, leads=True), replace(plain, mood=last.mood), *after]
 
-    def _once(self, told: Predicate, phrases: list[Phrase], at: int) -> list[_Move]:
-        """A deed in place of the phrase that says the same; of the way there at most one of them tells where it is."""
-        before, phrase, text = phrases[:at], phrases[at], told.text
+    def _once(self, text: str, phrases: list[Phrase], at: int) -> list[Phrase]:
+        """A deed in place of the phrase that says the same; of the two, the way there or the deed says where it is."""
+        before, phrase = phrases[:at], phrases[at]
         keyframes = phrase.keyframes
         if before and before[-1].leads and (there := _furniture_in(text, phrase.word)):
             at_it = re.search(rf" (on|in|into|onto|from|at) (?:the|an?|his|her|their) (?:\w+ )??{there}\b", text)
@@ -176,75 +156,71 @@ class _Teller:
                 text = text[: at_it.start()] + it + text[at_it.end() :]
             else:
                 keyframes = (*before.pop().keyframes, *keyframes)
-        text += "" if _PLACE.search(text) or phrase.skill not in RESTS else _at(phrase)
-        same = _Move(text, keyframes, mood=phrase.mood)
-        return [*(_move(one) for one in before), same, *(_move(one) for one in phrases[at + 1 :])]
+        elif phrase.skill in RESTS and not phrase.stays and phrase.at != self.here and not _PLACE.search(text):
+            text += _place_of(phrase)
+        return [*before, Phrase(text, keyframes, mood=phrase.mood), *phrases[at + 1 :]]
 
 
-def _same(told: Predicate, phrase: Phrase) -> bool:
-    """Whether a deed says what a phrase does."""
-    if phrase.leads:
-        return False
-    if phrase.skill in RISES and "get" in told.verbs and not re.search(r" up\b| out of bed\b", told.text):
-        return False
-    named = phrase.skill not in RISES and _furniture_in(told.text, phrase.word)
-    return bool(named or told.verbs & frozenset(story_words().deeds.get(phrase.skill, "").split()))
+def _likeness(told: Predicate, phrase: Phrase) -> int:
+    """How well a deed says what a phrase does: in its verb, in its furniture; 0 where it says something else."""
+    if phrase.leads or (phrase.rises and "get" in told.verbs and not re.search(r" up\b| out of bed\b", told.text)):
+        return 0
+    moves = not told.verbs.isdisjoint(story_words().deeds.get(phrase.skill or "", "").split())
+    named = not phrase.rises and bool(_furniture_in(told.text, phrase.word))
+    does = not told.verbs.isdisjoint(phrase.deeds)
+    return (moves or named) * (1 + 2 * moves + 2 * does)
 
 
 def _furniture_in(text: str, word: str) -> str:
     """How a text calls a piece of furniture: by its name, or that of another of its class; empty where it does not."""
     words = re.findall(r"[a-z]+", text.lower())
-    two = [" ".join(pair) for pair in pairwise(words)]
     names = (word.lower(), display_name(word).lower())
+    two = map(" ".join, pairwise(words))
     alike = (one for one in (*two, *words) if one in names or (is_known(one) and class_of(one) == class_of(word)))
     return next(alike, "") if word else ""
 
 
+def _place_of(phrase: Phrase) -> str:
+    """Where a phrase has the body rest: " in the armchair"; empty where the way there has said so."""
+    found = re.search(rf" (on|in)(?:to)? ({re.escape(phrase.at)})", phrase.text) if phrase.at else None
+    return f" {found[1]} {found[2]}" if found else ""
+
+
 def _runs(keyframes: Sequence[PlannedKeyframe]) -> list[tuple[int | None, Rows]]:
     """Keyframes with the beat they are told with; one of none goes with what follows it, the last with those before."""
-    owners = [keyframe.beat for keyframe in keyframes]
-    for order in (reversed(range(len(owners) - 1)), range(1, len(owners))):
-        for at in order:
-            near = (
-                at + 1 if owners[at] is None and owners[at + 1 : at + 2] != [None] and at + 1 < len(owners) else at - 1
-            )
-            if owners[at] is None and near >= 0:
-                owners[at] = owners[near]
-    rows = groupby(enumerate(keyframes), key=lambda row: owners[row[0]])
-    return [(owner, list(run)) for owner, run in rows]
+    owners: list[int | None] = []
+    for keyframe in reversed(keyframes):
+        owners.append(keyframe.beat if keyframe.beat is not None or not owners else owners[-1])
+    last = next((owner for owner in owners if owner is not None), None)
+    known = iter([last if owner is None else owner for owner in reversed(owners)])
+    return [(owner, list(run)) for owner, run in groupby(enumerate(keyframes), key=lambda _: next(known))]
 
 
-def _move(phrase: Phrase, manner: bool = True) -> _Move:
-    gerund = phrase.gerund if phrase.skill in (Skill.LOCO, *RISES) else ""
-    text = phrase.text(manner)
-    rises = phrase.skill in RISES
-    return _Move(text, phrase.keyframes, gerund, "", phrase.mood, rises, phrase.leads, ends="," in text)
+def _begun(phrases: Sequence[Phrase]) -> list[Phrase]:
+    return [replace(phrase, begins=phrase.begins or at == 0) for at, phrase in enumerate(phrases)]
 
 
-def _begun(moves: list[_Move]) -> list[_Move]:
-    return [replace(move, begins=move.begins or at == 0) for at, move in enumerate(moves)]
+def _is_state(phrase: Phrase) -> bool:
+    return bool(phrase.adjective) or phrase.text.startswith(WAS)
 
 
-def _at(phrase: Phrase) -> str:
-    found = re.search(r" (?:on|in|onto|into) (the .+)$", phrase.base)
-    return "" if not found else f" {'in' if re.search(rf' in(?:to)? {found[1]}', phrase.base) else 'on'} {found[1]}"
-
-
-def _sentences(moves: Sequence[_Move], variety: Variety) -> list[list[_Move]]:
-    """Up to three moves a sentence; a walk stays with its purpose, a beat seldom shares one with another."""
-    told: list[list[_Move]] = []
-    for move in moves:
+def _sentences(phrases: Sequence[Phrase], variety: Variety) -> list[list[Phrase]]:
+    """Up to three phrases a sentence; a walk stays with its purpose, a beat seldom shares one with another."""
+    told: list[list[Phrase]] = []
+    for phrase in phrases:
         last = told[-1] if told else []
-        words = sum(one.words for one in last) + move.words
-        together = len(last) == 1 and words <= 2 * _SHORT and variety.chance(0.5)
-        most = 2 if any(one.negated for one in (*last, move)) else _MAX_MOVES
+        words = sum(len(one.whole.split()) for one in (*last, phrase))
+        doubled = any(" and " in one.text for one in (*last, phrase))
+        most = 2 if doubled or any(one.negated or _is_state(one) for one in last) else _MAX_PHRASES
         room = last and len(last) < most and words <= _MAX_WORDS and not last[-1].ends
-        crowded = any(" and " in one.text for one in (*last, move)) and len(last) > 1
-        fits = room and not crowded and (together if move.begins else not last[0].adjective or len(last) < 2)
-        if last and (last[-1].leads or fits):
-            last.append(move)
+        gainsaid = any(one.negated for one in last) and not phrase.keyframes
+        begins = _is_state(phrase) or (
+            phrase.begins and not (len(last) == 1 and words <= _SHORT and variety.chance(0.6))
+        )
+        if last and (last[-1].leads or (room and not begins and not gainsaid)):
+            last.append(phrase)
         else:
-            told.append([move])
+            told.append([phrase])
     return told
 
 
@@ -258,29 +234,29 @@ class _Writer:
         self.text = ""
         self.spans: list[Span] = []
 
-    def write(self, sentences: Sequence[Sequence[_Move]]) -> tuple[str, tuple[Span, ...]]:
+    def write(self, sentences: Sequence[Sequence[Phrase]]) -> tuple[str, tuple[Span, ...]]:
         """The text of all sentences in paragraphs as long as each other."""
         count = -(-len(sentences) // MAX_SENTENCES)
         starts = {round(number * len(sentences) / count) for number in range(count)} if count else set()
         joint, people = 0, story_words().lists["people"]
-        for at, moves in enumerate(sentences):
+        for at, phrases in enumerate(sentences):
             self.text += "" if not at else "\n\n" if at in starts else " "
             before = {*re.findall(r"[a-z]+", self.text.rpartition(". ")[2].lower())} - {self.voice["they"]}
             named = at in starts or bool(people & before)
-            late = at + 1 - joint >= SENTENCES_A_JOINT and moves[0].begins and at not in starts
+            late = at + 1 - joint >= SENTENCES_A_JOINT and phrases[0].begins and at not in starts
             joint = at + 1 if late else joint
-            self._sentence(moves, named, self.variety.pick(story_words().joints) if late else "")
+            self._sentence(phrases, named, self.variety.pick(story_words().joints) if late else "")
         return self.text, tuple(self.spans)
 
-    def _sentence(self, moves: Sequence[_Move], named: bool, opening: str) -> None:
+    def _sentence(self, phrases: Sequence[Phrase], named: bool, opening: str) -> None:
         start = len(self.text)
-        first = moves[0]
-        if len(moves) > 1 and not opening and not self.first:
+        first = phrases[0]
+        if len(phrases) > 1 and not opening and not self.first:
             if first.adjective and self.variety.chance(0.6):
-                opening, moves = f"{first.adjective},", moves[1:]
-            elif first.gerund and self.variety.chance(0.4):
+                opening, phrases = f"{first.adjective},", phrases[1:]
+            elif first.gerund and (first.rises or first.leads) and self.variety.chance(0.4):
                 self._say(first.gerund, first.keyframes)
-                opening, moves = ",", moves[1:]
+                opening, phrases = ",", phrases[1:]
         moods = story_words().moods.get(first.mood, ())
         fresh = [words for words in moods if not self.variety.used[words]]
         if not opening and not self.first and first.keyframes and fresh and self.variety.chance(0.25):
@@ -289,12 +265,12 @@ class _Writer:
         was = "were" if who == "they" else "was"
         self._say(f"{opening} {who}{self.first} ".lstrip())
         self.first = ""
-        for at, move in enumerate(moves):
-            crowded = len(moves) > 2 or any(re.search(r",| and ", one.text) for one in moves[:-1])
+        for at, phrase in enumerate(phrases):
+            crowded = len(phrases) > 2 or any(re.search(r",| and ", one.whole) for one in phrases[:-1])
             if at:
-                link = "but" if moves[0].negated else "and"
-                self._say(f", {link} " if crowded else f" {link} ") if at == len(moves) - 1 else self._say(", ")
-            self._say(move.text.replace(WAS, was), move.keyframes)
+                link = "but" if phrases[0].negated else "and"
+                self._say(f", {link} " if crowded else f" {link} ") if at == len(phrases) - 1 else self._say(", ")
+            self._say(phrase.whole.replace(WAS, was), phrase.keyframes)
         self.text = f"{self.text[:start]}{self.text[start:][:1].upper()}{self.text[start + 1 :]}."
 
     def _say(self, words: str, keyframes: tuple[int, ...] = ()) -> None:
@@ -313,14 +289,12 @@ def _introduction(theme: str, voice: Voice) -> str:
     return f", {' '.join(words[: at + 1])},"
 
 
-def _others(script: LongScript, voice: Voice, variety: Variety) -> str:
+def _others(script: LongScript, hero: str, voice: Voice, variety: Variety) -> str:
     """A sentence about the people whose deeds the theme has and nobody shows."""
-    people = story_words().lists["people"] - {"they", "he", "she"}
-    who = [
-        re.sub(r"^(?:The|An?|His|Her|Their) ", lambda one: one[0].lower(), beat.who)
-        for beat in script.beats
-        if beat.who.istitle() or people & {*beat.who.lower().split()}
-    ]
-    *most, last = list(dict.fromkeys(who))[:3] or [""]
-    others = " and ".join(filter(None, (", ".join(most), last)))
+    known = story_words().lists["people"] - {"they", "he", "she"}
+    theirs = [beat.who for beat in script.beats if beat.who != voice.name]
+    who = [re.sub(r"^(?:The|An?|His|Her|Their|My) ", lambda one: one[0].lower(), one) for one in theirs]
+    people = [one for one in who if known & {*one.lower().split()} or name_in(f"{one} sits")]
+    *most, last = list(dict.fromkeys(people))[:3] or [""]
+    others = of_voice(" and ".join(filter(None, (", ".join(most), last))), hero, voice)
     return voice.fill(variety.pick(story_words().others), others=others) if others else ""

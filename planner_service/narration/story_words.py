@@ -37,6 +37,8 @@ class StoryWords:
     """Those that say nothing but that."""
     minds: str
     """Verbs for what nobody can see: thinking and remembering."""
+    states: str
+    """Verbs for how somebody is."""
     wishes: str
     """Verbs by which a thing is not done."""
     alone: str

@@ -79,7 +79,11 @@ def past(base: str) -> str:
 
 def participle(base: str) -> str:
     """The past participle of a base form: go → gone."""
-    return {"lie": "lain", "get": "got"}.get(base) or _inflected(base, "VBN")
+    return _CHOSEN_PARTICIPLES.get(base) or _inflected(base, "VBN")
+
+
+_CHOSEN_PARTICIPLES: Final = {"lie": "lain", "get": "got", "wake": "woken", "quit": "quit"}
+"""Where the first of the dictionary's forms is not the usual one."""
 
 
 def gerund(base: str) -> str:
@@ -94,7 +98,8 @@ def third_person(base: str) -> str:
 
 @cache
 def _inflected(base: str, tag: str) -> str:
+    """A form of a verb, as in Britain where there are two: travelled."""
     from lemminflect import getInflection
 
-    found: tuple[str, ...] = getInflection(base, tag=tag)
-    return found[0] if found else base
+    found: tuple[str, ...] = getInflection(base, tag=tag) or (base,)
+    return next((form for form in found if base.endswith("l") and "ll" in form), found[0])

@@ -33,8 +33,9 @@ from planner_service.narration.llm_narrator import narrate_with_model
 from planner_service.narration.narrative_voice import Voice, tells_of_one
 from planner_service.narration.narrator import SENTENCES_A_JOINT, Told, narrate
 from planner_service.narration.story_words import story_words, title_of
-from planner_service.narration.tense import bases, gerund, in_past, inflected, past
+from planner_service.narration.tense import bases, in_past
 from planner_service.scripts.script import BeatKind, Keyframe, LongScript, PlannedKeyframe
+from planner_service.themes.lexicon import gerund, past, third_person
 from planner_service.themes.protagonist import cast_by
 from scene_graphs.furniture import display_name
 
@@ -221,7 +222,7 @@ def test_a_span_of_use_names_the_furniture_or_what_stands_for_it(script: LongScr
     ],
 )
 def test_verbs_are_inflected_as_in_a_grammar(base: str, simple_past: str, ing: str, present: str) -> None:
-    assert (past(base), gerund(base), inflected(base, "VBZ")) == (simple_past, ing, present)
+    assert (past(base), gerund(base), third_person(base)) == (simple_past, ing, present)
     assert {in_past(form) for form in (base, simple_past, ing, present)} == {simple_past}
 
 
