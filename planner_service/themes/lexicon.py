@@ -102,6 +102,7 @@ def is_adjective(word: str) -> bool:
     return "ADJ" in kinds_of(word)
 
 
+@lru_cache(maxsize=20_000)
 def lemma_of(word: str) -> str:
     """The base form by which a word is compared with others: of the verb it may be, else of the noun."""
     low = word.lower()
