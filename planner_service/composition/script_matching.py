@@ -126,7 +126,8 @@ def _assigned(reading: Reading, rows: Sequence[int], seed: int) -> list[Choice]:
     suits = reading.suits[rows]
     luck = np.random.default_rng(seed).uniform(0, NEAR_TIE, suits.shape)
     drawn = linear_sum_assignment((suits + luck).round(6), maximize=True)
-    chosen = [(rows[row], int(script)) for row, script in zip(*drawn, strict=True) if suits[row, script] >= 0]
+    pairs = [(int(row), int(script)) for row, script in zip(*drawn, strict=True)]
+    chosen = [(rows[row], script) for row, script in pairs if suits[row, script] >= 0]
     return sorted(chosen, key=lambda one: (one[0], -reading.suits[one]))  # of one event's, the nearest comes first
 
 

@@ -5,21 +5,63 @@ All of it is lemminflect's, a dictionary of English inflection; it is imported w
 
 from __future__ import annotations
 
-from functools import cache, lru_cache
-from typing import Final
+from functools import cache, cached_property, lru_cache
+from typing import Annotated, Final
 
-BE: Final = frozenset("be am is are was were been being 'm 's 're".split())
-HAVE: Final = frozenset("have has had having 've".split())
-DO: Final = frozenset("do does did".split())
-MODALS: Final = frozenset("can could will would shall should may might must cannot 'll 'd".split())
-AUXILIARIES: Final = BE | HAVE | DO | MODALS
-_NEVER_VERBS: Final = frozenset(
-    """a an the and or but so yet of in on at by for with from into onto off up down out over under about after before
-    until while as if than then when where there here not no now very too just still even again back home her his their
-    its my our your this that these those all both each some any one two three more most less least well long like near
-    past round outside inside upstairs downstairs away tonight today tomorrow tv ok""".split()
-)
-"""Words that the dictionary knows as verbs too, but that themes hardly ever mean so."""
+from pydantic import BeforeValidator
+
+from scene_graphs.data_tables import read_table, table
+
+Words = Annotated[frozenset[str], BeforeValidator(lambda words: frozenset(words.split()))]
+"""Words apart by blanks."""
+
+
+@table
+class EnglishGrammar:
+    """data/english_grammar.toml: words that tell one clause from the next."""
+
+    subjects: Words
+    """What does something, in one word."""
+    marks: Words
+    """What stands before a noun."""
+    numbers: Words
+    prepositions: Words
+    adverbs: Words
+    joints: Words
+    earlier: Words
+    """Joints after which stands what happened first."""
+    with_gerund: Words
+    """Joints that deny the gerund after them."""
+    aspects: Words
+    """Verbs that only say how the deed of the next verb is done."""
+    postures: Words
+    """Verbs beside which a second deed stands without a joint."""
+    denials: Words
+    unchanging: Words
+    """Verbs whose past is their base form."""
+    refusals: Words
+    """Verbs that deny the deed after them."""
+    wishes: Words
+    """Verbs that only wish for the deed after them."""
+    not_verbs_after_to: Words
+    be: Words
+    have: Words
+    do: Words
+    modals: Words
+    never_verbs: Words
+    """What the dictionary knows as verbs too, and themes hardly ever mean so."""
+
+    @cached_property
+    def auxiliaries(self) -> frozenset[str]:
+        """Forms of be, have and do, and modals."""
+        return self.be | self.have | self.do | self.modals
+
+
+@cache
+def grammar() -> EnglishGrammar:
+    """The words we know."""
+    known: EnglishGrammar = read_table("planner_service", "english_grammar.toml", EnglishGrammar)
+    return known
 
 
 @lru_cache(maxsize=20_000)
@@ -34,7 +76,7 @@ def kinds_of(word: str) -> dict[str, tuple[str, ...]]:
 def verb_of(word: str) -> str:
     """The base form of a word that may be a verb, else "": "slept" is sleep, "lay" is lie."""
     low = word.lower()
-    if low in _NEVER_VERBS:
+    if low in grammar().never_verbs:
         return ""
     return _IRREGULAR.get(low) or next(iter(kinds_of(low).get("VERB", ())), "")
 
@@ -47,7 +89,7 @@ _IRREGULAR: Final = {"found": "find", "felt": "feel", "saw": "see", "lay": "lie"
 
 def is_verb(word: str) -> bool:
     """Whether a word may be a form of a verb."""
-    return bool(verb_of(word)) or word.lower() in AUXILIARIES
+    return bool(verb_of(word)) or word.lower() in grammar().auxiliaries
 
 
 def is_noun(word: str) -> bool:
@@ -60,6 +102,7 @@ def is_adjective(word: str) -> bool:
     return "ADJ" in kinds_of(word)
 
 
+@lru_cache(maxsize=20_000)
 def lemma_of(word: str) -> str:
     """The base form by which a word is compared with others: of the verb it may be, else of the noun."""
     low = word.lower()

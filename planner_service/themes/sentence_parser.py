@@ -13,36 +13,15 @@ from functools import cache
 from typing import Any, Final
 
 from planner_service.themes.lexicon import (
-    AUXILIARIES,
-    BE,
-    HAVE,
-    MODALS,
+    grammar,
     is_adjective,
     is_noun,
     is_third_person,
-    is_verb,
     kinds_of,
     lemma_of,
     verb_of,
 )
 
-SUBJECTS: Final = frozenset("he she they it i we you who nobody somebody someone everyone everything nothing".split())
-_MARKS: Final = frozenset(
-    """the a an his her their its my our your this that these those some any no every each another both all few many
-    several more other own such what whose which to""".split()
-)
-_NUMBERS: Final = frozenset("two three four five six seven eight nine ten eleven twelve thirteen sixteen".split())
-"""What stands before a noun."""
-_PREPOSITIONS: Final = frozenset(
-    """in on at by for with from into onto of off over under about around across along behind beside between beyond
-    down inside near outside past through toward towards up upon within without against among during after before until
-    since like as than despite except""".split()
-)
-_ADVERBS: Final = frozenset(
-    """then just never always also still finally again now soon even once not n't quickly often only almost already
-    hardly barely later suddenly simply both first next eventually meanwhile afterwards instead rather really quite
-    together alone ever too there here nearly perhaps maybe usually sometimes""".split()
-)
 _WORD: Final = re.compile(r"«\d+»|\b(?:Mrs?|Ms|Dr|Prof)\.|[^\W_]+(?:['’-][^\W_]+)*|[^\w\s]", re.UNICODE)
 _CONTRACTION: Final = re.compile(r"(?i)\b(ca|wo|sha|[a-z]+?)n['’]t\b")
 _SHORT: Final = {"ca": "can not", "wo": "will not", "sha": "shall not"}
@@ -50,33 +29,6 @@ _ENDS: Final = (("'ll", " will"), ("'ve", " have"), ("'re", " are"), ("'m", " am
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
 _SEMI: Final = re.compile(r"\n+|;\s+|:\s+|\s+[–—]\s*|\s*[–—]\s+|\s+-{1,2}\s+|…\s*|\.{2,}\s*|\s*[()\[\]]\s*")
 _BULLET: Final = re.compile(r"^\s*(?:\d{1,2}[.)]|[-*•])\s+", re.MULTILINE)
-_LATER: Final = "then afterwards later finally eventually suddenly next soon meanwhile"
-_JOINTS: Final = frozenset(
-    """and but so yet or before after until when whenever while because once since although though if unless whereas
-    without instead then as where plus nor""".split()
-)
-_EARLIER: Final = frozenset("after when whenever because once since as".split())
-"""What follows these happened first."""
-_WITH_GERUND: Final = frozenset("without instead".split())
-_ASPECTS: Final = frozenset(
-    """start begin continue keep try manage proceed spend end go come get finish resume happen decide help need have
-    attempt use""".split()
-)
-"""Verbs that only say how the deed of the next verb is done: "starts to read", "spends the evening reading"."""
-_POSTURES: Final = frozenset(
-    """sit lie stand kneel walk run go come stay lean rest wander pace wait crouch hurry rush head move return stop curl
-    settle slump sink get wake rise crawl climb collapse fall drop march storm tiptoe shuffle stroll sneak creep
-    jump dance stretch slouch lounge perch huddle stumble stagger trudge dash spring leap hop skip""".split()
-)
-"""Verbs beside which a second deed stands without a joint: "sits reading", "goes to the kitchen to eat"."""
-_DENIALS: Final = frozenset("not never n't without neither nor hardly barely nobody no-one instead".split())
-_UNCHANGING: Final = frozenset("hurt put set cut hit read let shut burst cost".split())
-"""Verbs whose past is their base form."""
-_REFUSALS: Final = frozenset("refuse forget avoid resist skip fail neglect decline forgo postpone".split())
-_WISHES: Final = frozenset(
-    "want wish hope plan intend long dream consider mean promise expect imagine prefer think ought".split()
-)
-_NOT_VERBS_AFTER_TO: Final = frozenset("bed sleep work school church kitchen class town dinner lunch breakfast".split())
 
 
 @dataclass(frozen=True)
@@ -147,7 +99,7 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
 
 def _next_subject(pieces: Sequence[_Piece], piece: _Piece) -> str:
     """Who does what opens a sentence without a subject: "before going to bed, she brushes her teeth"."""
-    if piece.joint not in _EARLIER | _WITH_GERUND | {"before", "until", "while", "when"}:
+    if piece.joint not in grammar().earlier | grammar().with_gerund | {"before", "until", "while", "when"}:
         return ""
     return next((part.subject for other in pieces for part in _clause(other, (), 0)[:1] if part.subject), "")
 
@@ -203,7 +155,7 @@ class _Piece:
 def verb_place(tokens: Sequence[Token]) -> int | None:
     """Where the first verb or auxiliary of a clause stands; None where it has none."""
     for place, token in enumerate(tokens):
-        if token.low in AUXILIARIES or _acts(tokens, place):
+        if token.low in grammar().auxiliaries or _acts(tokens, place):
             return place
     return None
 
@@ -220,45 +172,58 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
     if not base:
         return False
     at = place - 1
-    while at >= 0 and (tokens[at].low in _ADVERBS or (tokens[at].low.endswith("ly") and not is_noun(tokens[at].low))):
+    while at >= 0 and (
+        tokens[at].low in grammar().adverbs or (tokens[at].low.endswith("ly") and not is_noun(tokens[at].low))
+    ):
         at -= 1
     before = tokens[at].low if at >= 0 else ""
     after = tokens[place + 1].low if place + 1 < len(tokens) else ""
-    if before in SUBJECTS or before in MODALS or before in ("do", "does", "did"):
+    if before in grammar().subjects or before in grammar().modals or before in ("do", "does", "did"):
         return True
     if before in ("to",):
-        return token.low == base and base not in _NOT_VERBS_AFTER_TO
-    if before in _NUMBERS and at and tokens[at - 1].low == "of":
+        return token.low == base and base not in grammar().not_verbs_after_to
+    if before in grammar().numbers and at and tokens[at - 1].low == "of":
         return is_third_person(token.low)
-    if before in _MARKS | _NUMBERS or (before in _PREPOSITIONS and not token.low.endswith("ing")):
+    if before in grammar().marks | grammar().numbers or (
+        before in grammar().prepositions and not token.low.endswith("ing")
+    ):
         return False
-    goes_on = not after or after in _MARKS or after in _PREPOSITIONS or after in _ADVERBS or after in SUBJECTS | {"him", "them", "me", "himself", "herself", "back", "home", "and"} or after.endswith("ly")  # fmt: skip
+    goes_on = not after or after in grammar().marks or after in grammar().prepositions or after in grammar().adverbs or after in grammar().subjects | {"him", "them", "me", "himself", "herself", "back", "home", "and"} or after.endswith("ly")  # fmt: skip
     if at < 0:
         if token.low.endswith("ing"):
             return not is_noun(token.low) or bool(after)
-        if is_adjective(token.low) and not (after in _MARKS or after in _PREPOSITIONS or is_third_person(token.low)):
+        if is_adjective(token.low) and not (
+            after in grammar().marks or after in grammar().prepositions or is_third_person(token.low)
+        ):
             return False
         if is_third_person(token.low) or token.low != base:
             return not (is_noun(token.low) and verb_of(after) and not (is_noun(after) or after.endswith("ing")))
         return not is_noun(token.low) or (goes_on and bool(after))
     if token.low.endswith("ing"):
         return (
-            before in _WITH_GERUND
+            before in grammar().with_gerund
             or tokens[0].low == "instead"
-            or (before not in _PREPOSITIONS and not is_noun(token.low))
+            or (before not in grammar().prepositions and not is_noun(token.low))
         )
     if is_adjective(before) and not is_noun(before) and is_noun(token.low):
         return False
-    if is_adjective(token.low) and (before in BE or before in ("feels", "felt", "seems", "looks", "gets", "becomes")):
+    if is_adjective(token.low) and (
+        before in grammar().be or before in ("feels", "felt", "seems", "looks", "gets", "becomes")
+    ):
         return False
     if base in ("name", "call") and token.low != base and at >= 0 and after and tokens[place + 1].text[:1].isupper():
         return False  # "a teacher named Edith"
-    if before.endswith("ing") and not is_noun(before) and tokens[0].low in _MARKS | _NUMBERS and at <= 1:
+    if (
+        before.endswith("ing")
+        and not is_noun(before)
+        and tokens[0].low in grammar().marks | grammar().numbers
+        and at <= 1
+    ):
         return False  # "some jumping jacks"
-    if tokens[0].low in _PREPOSITIONS and tokens[at].text[:1].islower() and before not in SUBJECTS:
+    if tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and before not in grammar().subjects:
         return False  # "under the sofa cushions"
     if token.low == base:
-        same = base in _UNCHANGING and is_noun(before)
+        same = base in grammar().unchanging and is_noun(before)
         return same or (_is_plural(before) and not is_noun(token.low))
     if is_noun(token.low) and token.low.endswith("s"):
         return goes_on or is_adjective(after) or is_noun(after)
@@ -278,16 +243,18 @@ def _pieces(sentence: str) -> list[_Piece]:
     joint, current = "", list[Token]()
     for place, token in enumerate(tokens):
         if token.text == "," or (
-            token.low in _JOINTS and _joins(tokens, place) and (not current or _may_end(token.low, current))
+            token.low in grammar().joints and _joins(tokens, place) and (not current or _may_end(token.low, current))
         ):
             if current:
                 cut.append(_Piece(joint, tuple(current), source))
                 joint, current = "", []
             joint = token.low if joint in ("", ",", "and", "but") and token.text != "," else joint or ","
-            if token.low in _WITH_GERUND:
+            if token.low in grammar().with_gerund:
                 current.append(token)
         else:
-            led = (current and (current[0].low in _WITH_GERUND or current[0].low == "to")) or joint in _EARLIER | {
+            led = (
+                current and (current[0].low in grammar().with_gerund or current[0].low == "to")
+            ) or joint in grammar().earlier | {
                 "before",
                 "until",
                 "while",
@@ -310,19 +277,19 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
     if low == "while" and place and tokens[place - 1].low in ("a", "long", "little", "short"):
         return False
     if low == "as":
-        return bool(rest) and rest[0].low in SUBJECTS | _MARKS and verb_place(rest[:6]) is not None
+        return bool(rest) and rest[0].low in grammar().subjects | grammar().marks and verb_place(rest[:6]) is not None
     if low in ("so", "yet", "once", "since", "then", "where", "or"):
-        return bool(rest) and (low == "then" or rest[0].low in SUBJECTS or (low in ("so", "or") and verb_place(rest[:2]) is not None) or (low in ("once", "since", "where") and (rest[0].low in _MARKS or rest[0].text[:1].isupper()) and verb_place(rest[:5]) not in (None, 0)))  # fmt: skip
+        return bool(rest) and (low == "then" or rest[0].low in grammar().subjects or (low in ("so", "or") and verb_place(rest[:2]) is not None) or (low in ("once", "since", "where") and (rest[0].low in grammar().marks or rest[0].text[:1].isupper()) and verb_place(rest[:5]) not in (None, 0)))  # fmt: skip
     if low in ("after", "before", "until", "without", "instead"):
         return bool(rest) and (
-            _starts_gerund(rest) or rest[0].low in SUBJECTS or (low != "instead" and _clause_follows(rest))
+            _starts_gerund(rest) or rest[0].low in grammar().subjects or (low != "instead" and _clause_follows(rest))
         )
     return True
 
 
 def _may_end(joint: str, current: Sequence[Token]) -> bool:
     """Whether what stands before a joint can be a clause of its own: not "a nurse" of "a nurse after a night shift"."""
-    return joint not in _EARLIER | {"before", "until", "without"} or verb_place(current) is not None
+    return joint not in grammar().earlier | {"before", "until", "without"} or verb_place(current) is not None
 
 
 def _starts_gerund(rest: Sequence[Token]) -> bool:
@@ -339,7 +306,7 @@ def _clause_follows(rest: Sequence[Token]) -> bool:
     return (
         place is not None
         and place > 0
-        and head[place - 1].low not in SUBJECTS | {","}
+        and head[place - 1].low not in grammar().subjects | {","}
         or (place is not None and place > 0)
     )
 
@@ -369,7 +336,7 @@ def _is_noun_list(last: _Piece, piece: _Piece) -> bool:
         return False
     end, word = last.tokens[-1].low, words[0].low
     if is_third_person(word):
-        return _is_plural(end) and len(last.tokens) > 2 and last.tokens[-2].low not in _MARKS
+        return _is_plural(end) and len(last.tokens) > 2 and last.tokens[-2].low not in grammar().marks
     return is_noun(end) and word == verb_of(word)
 
 
@@ -379,9 +346,9 @@ def _in_time(pieces: Sequence[_Piece]) -> list[int]:
     later = len(pieces) > 1 and pieces[0].joint == "before"
     first_is_later = len(pieces) > 1 and pieces[0].joint in ("until", "instead", "without")
     for place, piece in enumerate(pieces):
-        if ordered and piece.joint in _EARLIER:
+        if ordered and piece.joint in grammar().earlier:
             main = pieces[ordered[-1]]
-            is_state = any(token.low in BE for token in main.tokens[:3])
+            is_state = any(token.low in grammar().be for token in main.tokens[:3])
             if piece.joint == "as" or (is_state and piece.joint != "after"):
                 ordered.append(place)
             else:
@@ -399,8 +366,8 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     joint = piece.joint
     while (
         tokens
-        and tokens[0].low in _ADVERBS | {"and", "but", "or"}
-        and tokens[0].low not in _DENIALS
+        and tokens[0].low in grammar().adverbs | {"and", "but", "or"}
+        and tokens[0].low not in grammar().denials
         and len(tokens) > 1
     ):
         tokens.pop(0)
@@ -408,9 +375,9 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     if place is None:
         return [Clause(piece.text, "", "", _lemmas(tokens), joint, quotes=_quotes(tokens, quotes), sentence=sentence)]
     subject = _subject(tokens[:place])
-    lead = tokens[:place] if not subject else [t for t in tokens[:place] if t.low in _DENIALS]
-    words = (lead if any(token.low in _DENIALS for token in lead) else []) + tokens[place:]
-    if words and words[0].low in _ADVERBS - _DENIALS and len(words) > 1:
+    lead = tokens[:place] if not subject else [t for t in tokens[:place] if t.low in grammar().denials]
+    words = (lead if any(token.low in grammar().denials for token in lead) else []) + tokens[place:]
+    if words and words[0].low in grammar().adverbs - grammar().denials and len(words) > 1:
         words = words[1:]
     main, denied, unable, perfect = _main_verb(words)
     lemmas = _lemmas(words[main:])
@@ -423,18 +390,29 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
 
 def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> list[Clause]:
     """A clause and the second deed of it: "sits reading a letter", "goes to the kitchen to make tea"."""
-    if clause.verb not in _POSTURES or clause.quotes:
+    if clause.verb not in grammar().postures or clause.quotes:
         return [clause]
     for place in range(main + 1, len(words)):
         low, before = words[place].low, words[place - 1].low
         gerund = (
-            low.endswith("ing") and bool(verb_of(low)) and before not in _MARKS - {"to"} and not is_adjective(before)
+            low.endswith("ing")
+            and bool(verb_of(low))
+            and before not in grammar().marks - {"to"}
+            and not is_adjective(before)
         )
-        gerund = gerund and before not in _PREPOSITIONS - {"on", "off", "down", "up", "around", "there", "back"}
+        gerund = gerund and before not in grammar().prepositions - {
+            "on",
+            "off",
+            "down",
+            "up",
+            "around",
+            "there",
+            "back",
+        }
         purpose = (
             before == "to"
             and verb_of(low) == low
-            and low not in _NOT_VERBS_AFTER_TO
+            and low not in grammar().not_verbs_after_to
             and _is_purpose(clause, words, place)
         )
         if gerund or purpose:
@@ -459,7 +437,7 @@ def _is_purpose(clause: Clause, words: Sequence[Token], place: int) -> bool:
         return clause.verb in ("sit", "lie", "stop", "stay", "settle", "kneel")
     after = words[place + 1].low
     return (
-        after in _MARKS | _PREPOSITIONS - {"and"}
+        after in grammar().marks | grammar().prepositions - {"and"}
         or after in ("him", "them", "me", "himself", "herself")
         or is_noun(after)
     )
@@ -473,10 +451,10 @@ def _main_verb(words: Sequence[Token]) -> tuple[int, bool, bool, bool]:
         low = words[at].low
         base = verb_of(low)
         ahead = words[at + 1].low if at + 1 < len(words) else ""
-        if low in _DENIALS:
+        if low in grammar().denials:
             denied = True
             unable = unable or (at > 0 and words[at - 1].low in ("can", "could", "cannot"))
-            if low in _WITH_GERUND and ahead == "of":
+            if low in grammar().with_gerund and ahead == "of":
                 at += 1
         elif low == "cannot":
             denied = unable = True
@@ -495,25 +473,27 @@ def _main_verb(words: Sequence[Token]) -> tuple[int, bool, bool, bool]:
             and ahead == "to"
             and at + 2 < len(words)
             and verb_of(words[at + 2].low) == words[at + 2].low
-            and words[at + 2].low not in _NOT_VERBS_AFTER_TO
+            and words[at + 2].low not in grammar().not_verbs_after_to
         ):
             denied, at = True, at + 1
-        elif low in AUXILIARIES and _verb_follows(words, at):
+        elif low in grammar().auxiliaries and _verb_follows(words, at):
             pass
         elif low in ("unable", "about", "afraid", "too") and "to" in [token.low for token in words[at : at + 3]]:
             denied, unable = True, low == "unable"
             at += [token.low for token in words[at : at + 3]].index("to")
-        elif base in _REFUSALS and (ahead == "to" or ahead.endswith("ing")):
+        elif base in grammar().refusals and (ahead == "to" or ahead.endswith("ing")):
             denied, at = True, at + (ahead == "to")
-        elif base in _WISHES and (ahead == "to" or (base in ("consider", "imagine") and ahead.endswith("ing"))):
+        elif base in grammar().wishes and (
+            ahead == "to" or (base in ("consider", "imagine") and ahead.endswith("ing"))
+        ):
             denied, at = True, at + (ahead == "to")
         elif base == "stop" and ahead.endswith("ing"):
             denied = True
         elif base in ("decide", "try", "choose", "prefer", "promise") and ahead == "not":
             denied, at = True, at + 1 + (at + 2 < len(words) and words[at + 2].low == "to")
-        elif base in _ASPECTS and (jump := _aspect(words, at)):
+        elif base in grammar().aspects and (jump := _aspect(words, at)):
             at = jump - 1
-        elif low in _ADVERBS or (low.endswith("ly") and not base):
+        elif low in grammar().adverbs or (low.endswith("ly") and not base):
             pass
         else:
             break
@@ -525,13 +505,18 @@ def _verb_follows(words: Sequence[Token], at: int) -> bool:
     """Whether an auxiliary is followed by the verb it helps: "is reading", "does sit", not "is tired" or "has a bath"."""
     for token in words[at + 1 : at + 4]:
         low = token.low
-        if low in _DENIALS or low in _ADVERBS or low in AUXILIARIES or (low.endswith("ly") and not verb_of(low)):
+        if (
+            low in grammar().denials
+            or low in grammar().adverbs
+            or low in grammar().auxiliaries
+            or (low.endswith("ly") and not verb_of(low))
+        ):
             continue
         base = verb_of(low)
         helper = words[at].low
-        if helper in BE:
+        if helper in grammar().be:
             return bool(base) and low.endswith("ing")
-        if helper in HAVE:
+        if helper in grammar().have:
             return bool(base) and low != base and not low.endswith("ing")
         return bool(base)
     return False
@@ -553,11 +538,15 @@ def _aspect(words: Sequence[Token], at: int) -> int:
                 and base not in ("go", "come", "spend", "keep", "finish", "end", "resume")
                 and verb_of(after) == after
             ):
-                return place + 1 if after not in _NOT_VERBS_AFTER_TO else 0
+                return place + 1 if after not in grammar().not_verbs_after_to else 0
             return 0
         if low.endswith("ing") and verb_of(low) and base not in ("need", "have", "decide", "help", "use"):
             before = words[place - 1].low
-            if place == at + 1 or (base == "end" and before == "up") or (base == "spend" and before not in _MARKS):
+            if (
+                place == at + 1
+                or (base == "end" and before == "up")
+                or (base == "spend" and before not in grammar().marks)
+            ):
                 return place
         if base not in ("spend", "end", "keep", "try") or low in ("and",):
             return 0
@@ -567,15 +556,15 @@ def _aspect(words: Sequence[Token], at: int) -> int:
 def _subject(tokens: Sequence[Token]) -> str:
     """Who does it, of the words before the verb: those after the last comma-like stretch of time or place."""
     words = [token.text for token in tokens]
-    while words and (words[-1].lower() in _ADVERBS or words[-1].lower().endswith("ly")):
+    while words and (words[-1].lower() in grammar().adverbs or words[-1].lower().endswith("ly")):
         words.pop()
-    if words and words[-1].lower() in SUBJECTS:
+    if words and words[-1].lower() in grammar().subjects:
         return words[-1]
     if words and words[0].lower() == "to":
         return ""
-    while words and (words[0].lower() in _ADVERBS or words[0].lower() in _JOINTS):
+    while words and (words[0].lower() in grammar().adverbs or words[0].lower() in grammar().joints):
         words.pop(0)
-    if words and words[0].lower() in _PREPOSITIONS:  # "in the kitchen Anna …"
+    if words and words[0].lower() in grammar().prepositions:  # "in the kitchen Anna …"
         names = [word for word in words[1:] if word[:1].isupper()]
         return names[-1] if names else ""
     return " ".join(words)
