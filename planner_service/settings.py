@@ -58,7 +58,7 @@ class Settings(BaseSettings):
     prompts: Path | None = None
     """A folder with prompts of your own, NAME.md, in place of those of the same name."""
     ollama_url: str = "http://127.0.0.1:11434"
-    """Where `sims story` and `sims models list` look for an Ollama server; empty looks nowhere."""
+    """Where `sims story` and `sims models list` look for an Ollama server; "none" looks nowhere."""
     asr_model: str = ""
     """The model that turns a film's speech into words, such as "whisper-1"; empty for none."""
     asr_base_url: str = ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import os
 import shutil
 import sys
 import tempfile
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 # A traceback with pictures of all variables takes seconds.
 *_PROCESSORS, _ = structlog.get_config()["processors"]
 structlog.configure([*_PROCESSORS, structlog.dev.ConsoleRenderer(exception_formatter=structlog.dev.plain_traceback)])
+# No test depends on what runs on this machine.
+os.environ.setdefault("SIMS_OLLAMA_URL", "none")
 settings.register_profile("ours", tries(100), derandomize=True)
 settings.load_profile("ours")
 

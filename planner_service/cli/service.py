@@ -124,7 +124,7 @@ def list_models() -> None:
     console.print(f"chosen (SIMS_LLM_MODEL, --model): {chosen}")
     found = ollama_models(settings.ollama_url)
     if found is None:
-        console.print(f"no Ollama server answers at {settings.ollama_url or '(nowhere: SIMS_OLLAMA_URL is empty)'}")
+        console.print(f"no Ollama server answers at {settings.ollama_url} (SIMS_OLLAMA_URL)")
     else:
         console.print(f"Ollama server at {settings.ollama_url}: {len(found)} models")
         for name in found:

@@ -370,7 +370,7 @@ def _person(row: object, theme: str) -> Person:
     old = isinstance(age, int) and not isinstance(age, bool) and 0 <= age <= 120
     return Person(
         name=str(name) if named else "",
-        pronouns=said if said in get_args(Pronouns) else "",  # type: ignore[arg-type]
+        pronouns=said if said in get_args(Pronouns) else "",
         age=age if old else None,
     )
 

@@ -19,7 +19,8 @@ from planner_service.extraction.scene_outline import LEEWAY, SceneAnswer, SceneO
 from planner_service.extraction.script_writer import Draft, Maker
 from planner_service.extraction.shot_detection import Progress, Scene
 from planner_service.extraction.subtitles import Cue
-from planner_service.extraction.video import Film, FilmError, Frame, frames_at
+from planner_service.extraction.video import Film, Frame, frames_at
+from planner_service.extraction.video_container import FilmError
 from planner_service.extraction.video_frames import Album
 from planner_service.llm.client import for_story
 from planner_service.llm.protocol import LanguageModel, ModelError

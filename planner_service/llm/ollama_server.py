@@ -17,7 +17,7 @@ _NAME: Final = re.compile(r"[\w./:@+-]{1,200}\Z")
 
 
 def ollama_models(url: str, seconds: float = PATIENCE) -> tuple[str, ...] | None:
-    """The names of the models that the server at that address has; None where none answers, or the address is empty."""
+    """The names of the models that the server at that address has; None where none answers, or there is no address."""
     found: list[tuple[str, ...] | None] = []
     # A server that drips keeps every single wait short, and the whole one long.
     asking = threading.Thread(target=lambda: found.append(_asked(url, seconds)), daemon=True)

@@ -1,0 +1,58 @@
+"""`--model`, `sims models list` and `sims record`: which model there is, and what it answered."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from for_each import for_each
+from typer.testing import CliRunner
+
+from planner_service.cli import app
+from planner_service.cli.record_command import read_lines
+from planner_service.pipeline import RequestError
+
+RUN = CliRunner()
+
+
+@pytest.fixture(autouse=True)
+def _alone(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("SIMS_DATA_DIR", str(tmp_path))
+    monkeypatch.delenv("SIMS_LLM_MODEL", raising=False)
+
+
+def test_what_is_set_and_installed_is_listed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    said = RUN.invoke(app, ["models", "list"]).output
+    assert "none, rules plan and tell" in said
+    assert "no Ollama server answers at none" in said
+    assert "llamacpp (weights of your own, in a GGUF file): " in said
+    (tmp_path / "answers.json").write_text(json.dumps({"x": "y"}))
+    monkeypatch.setenv("SIMS_LLM_MODEL", f"scripted:{tmp_path / 'answers.json'}")
+    monkeypatch.setenv("SIMS_LLM_PRICE", "1/2")
+    assert "chosen (SIMS_LLM_MODEL, --model): scripted, 1/2 dollars" in RUN.invoke(app, ["models", "list"]).output
+
+
+@for_each(
+    "command",
+    [["story", "He sits."], ["extract", "a.txt"], ["scripts", "imitate", "--emotion", "sad", "--room", "study"]],
+)
+def test_a_model_is_named_for_one_command(command: list[str]) -> None:
+    failed = RUN.invoke(app, [*command, "--model", "gpt-5"])
+    assert "'gpt-5' is not known" in str(failed.exception)
+
+
+def test_a_recording_wants_a_model_and_themes(tmp_path: Path) -> None:
+    themes = tmp_path / "themes.txt"
+    themes.write_text("# ours\n\nHe sits.\n She sleeps. \n", encoding="utf-8")
+    assert read_lines(themes) == ["He sits.", "She sleeps."]
+    for model in ([], ["--model", "rules"]):
+        failed = RUN.invoke(app, ["record", str(themes), "--out", "talk.jsonl", *model])
+        assert "there is no model to record" in str(failed.exception)
+    themes.write_bytes(b"\xff")
+    with pytest.raises(RequestError, match="cannot be read"):
+        read_lines(themes)
+    themes.write_text("# nothing")
+    with pytest.raises(RequestError, match="0 themes"):
+        read_lines(themes)
