@@ -44,6 +44,11 @@ _MIN_SHARE: Final = 0.3
 """Share of a caption's uses in the library that must be of a mood for it to be one of the mood's."""
 
 
+_TOUCHES: Final = (
+    "touch medium height with the right hand",
+    "touch medium height",
+    "touch medium height with the left hand",
+)
 _STANDING: Final = DeedRow(("stand",), Skill.LOCO, captions=("stand still",))
 
 
@@ -131,7 +136,7 @@ class KeyframeWriter:
             case Skill.LOCO:
                 self._walk(index, read, deed, mood)
             case Skill.TOUCH:
-                self._add(index, read, deed, mood, Skill.TOUCH, self._touching(index, deed, mood))
+                self._add(index, read, deed, mood, Skill.TOUCH, deed.row.captions or _TOUCHES)
                 self._resting = None
             case Skill.SITDOWN if self._lies() and deed.row.lying and not deed.named:
                 self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)
@@ -295,15 +300,6 @@ class KeyframeWriter:
         self.keyframes[-1] = last.model_copy(update={"also": (*last.also, index)})
         if self._resting is not None:
             self._resting = self.keyframes[-1]
-
-    def _touching(self, index: int, deed: Deed, mood: Emotion) -> Sequence[str]:
-        if deed.row.captions:
-            return deed.row.captions
-        return (
-            "touch medium height with the right hand",
-            "touch medium height",
-            "touch medium height with the left hand",
-        )
 
     def _of_mood(self, skill: Skill, mood: Emotion) -> Sequence[str]:
         """Captions that the library uses in a mood mostly, and that show nothing else."""

@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from itertools import takewhile
 from typing import Final, Literal
 
 import numpy as np
@@ -83,12 +82,8 @@ def templates() -> Phrases:
     return known
 
 
-Piece = tuple[str, tuple[int, ...]]
-"""Words and the keyframes they tell, none for connecting words."""
 Places = Mapping[int, tuple[str, str]]
 """Index of a keyframe to how its furniture and its room are called in the home it is acted out in."""
-_IN = ("armchair", "lounge chair", "lazy sofa", "rocking chair")
-_DEEP = (*_IN, "chair")
 _IN: Final = ("armchair", "lounge chair", "lazy sofa", "rocking chair")
 _DEEP: Final = (*_IN, "chair")
 """What one sits on but drops into."""
@@ -179,8 +174,7 @@ class Wording:
         untold: tuple[int, ...] = ()
         self._named, self._wandering, stays = "", False, False
         for at, (index, keyframe) in enumerate(rows):
-            here = takewhile(lambda row: not row[1].on_floor and row[1].piece == keyframe.piece, rows[at + 1 :])
-            goal = next((row[1] for row in here if row[1].skill != Skill.LOCO), None)
+            goal = _goal(keyframe, [row[1] for row in rows[at + 1 :]])
             leads = keyframe.skill == Skill.LOCO and goal is not None
             rests = goal is not None and goal.skill in RESTS
             stays = stays or (keyframe.skill in RISES and rests)
@@ -195,7 +189,8 @@ class Wording:
         return walk.caption in templates().neutral_walks and self.variety.chance(0.5)
 
     def _phrase(self, indices: tuple[int, ...], keyframe: PlannedKeyframe, leads: bool, stays: bool) -> Phrase:
-        index, mood, known, manners = indices[-1], keyframe.mood, templates(), ()
+        index, mood, known = indices[-1], keyframe.mood, templates()
+        manners: tuple[str, ...] = ()
         walks, sits = keyframe.skill == Skill.LOCO, keyframe.skill == Skill.SITDOWN
         if walks:
             walk = known.walks.get(keyframe.caption, known.walks_in_mood[mood])
@@ -277,6 +272,16 @@ def touches(keyframe: Keyframe) -> tuple[str, ...]:
         return known.touches_doing[caption]
     height = next((h for h in ("prone", "low", "high") if re.search(rf"\b{h}\b", caption.lower())), "medium")
     return known.touches_at.get(class_of(keyframe.piece[0]), {}).get(height) or known.touches[height]
+
+
+def _goal(keyframe: Keyframe, later: Sequence[Keyframe]) -> Keyframe | None:
+    """What the body does next without leaving the piece of furniture; walks there aside."""
+    for one in later:
+        if one.on_floor or one.piece != keyframe.piece:
+            return None
+        if one.skill != Skill.LOCO:
+            return one
+    return None
 
 
 def _pace(caption: str) -> Literal["neutral", "slow", "fast"]:

@@ -12,7 +12,7 @@ from typing import Final
 from motion_backend.motion import Emotion
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
-from planner_service.themes.lexicon import is_third_person, lemma_of
+from planner_service.themes.lexicon import grammar, is_third_person, lemma_of
 from planner_service.themes.protagonist import is_name
 from planner_service.themes.sentence_parser import Clause, clauses_of_text, tokens_of
 from scene_graphs.data_tables import read_table, table
@@ -246,7 +246,7 @@ def head_of(subject: str) -> str:
     """The noun of a subject: "the old nurse after her shift" is "nurse", "a boy of six" is "boy"."""
     words: list[str] = []
     for token in tokens_of(subject):
-        if words and token.low in ("of", "with", "in", "on", "at", "from", "after", "who", "and", ",", "without", "by"):
+        if words and (token.low in grammar().prepositions or token.low in ("of", "who", "and", ",")):
             break
         words.append(token.text)
     return words[-1] if words else ""

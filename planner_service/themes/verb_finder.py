@@ -1,0 +1,153 @@
+"""Words of an English sentence, and which of them act as verbs: told by their forms, and by the words before them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from planner_service.themes.lexicon import (
+    grammar,
+    is_adjective,
+    is_noun,
+    is_third_person,
+    kinds_of,
+    verb_of,
+)
+
+_WORD: Final = re.compile(r"«\d+»|\b(?:Mrs?|Ms|Dr|Prof)\.|[^\W_]+(?:['’-][^\W_]+)*|[^\w\s]", re.UNICODE)
+_CONTRACTION: Final = re.compile(r"(?i)\b(ca|wo|sha|[a-z]+?)n['’]t\b")
+_SHORT: Final = {"ca": "can not", "wo": "will not", "sha": "shall not"}
+_ENDS: Final = (("'ll", " will"), ("'ve", " have"), ("'re", " are"), ("'m", " am"))
+_SLANG: Final = {
+    "n": "and", "n'": "and", "'n'": "and", "cant": "can not", "wont": "will not", "gonna": "going to", "&": "and",
+    "wanna": "want to", "gotta": "have to", "cuz": "because", "bc": "because", "w/": "with",
+}  # fmt: skip
+_SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|had|have|should)nt\b")
+
+
+_SEEMS: Final = frozenset(("feels", "felt", "seems", "looks", "gets", "becomes"))
+"""Verbs after which an adjective stands, besides the forms of be."""
+_OBJECTS: Final = frozenset(("him", "them", "me", "himself", "herself", "back", "home", "and"))
+
+
+@dataclass(frozen=True)
+class Token:
+    """A word or mark of a sentence."""
+
+    text: str
+    start: int
+    end: int
+
+    @property
+    def low(self) -> str:
+        """In small letters."""
+        return self.text.lower()
+
+
+def tokens_of(text: str) -> list[Token]:
+    """Words and marks; "can't" is "can not"."""
+    return [Token(match[0], match.start(), match.end()) for match in _WORD.finditer(text)]
+
+
+def plain(text: str) -> str:
+    """A text with its contractions and the commonest slang written out: "doesn't" is "does not"."""
+    text = _SLANG_NOT.sub(r"\1 not", text.replace("’", "'").replace("‘", "'"))
+    text = " ".join(_SLANG.get(word.lower(), word) for word in text.split(" "))
+    text = _CONTRACTION.sub(lambda m: _SHORT.get(m[1].lower(), f"{m[1]} not"), text)
+    for short, whole in _ENDS:
+        text = re.sub(rf"(?i)(?<=\w){short}\b", whole, text)
+    return re.sub(
+        r"\b(I|[Hh]e|[Ss]he|[Tt]hey|[Ww]e)'d\b", r"\1 had", re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s\b", r"\1 is", text)
+    )
+
+
+def verb_place(tokens: Sequence[Token]) -> int | None:
+    """Where the first verb or auxiliary of a clause stands; None where it has none."""
+    for place, token in enumerate(tokens):
+        if token.low in grammar().auxiliaries or _acts(tokens, place):
+            return place
+    return None
+
+
+def has_verb(text: str) -> bool:
+    """Whether some word of the text acts as a verb."""
+    return verb_place(tokens_of(plain(text))) is not None
+
+
+def is_plural(word: str) -> bool:
+    """Whether a word may be the plural of a noun."""
+    nouns = kinds_of(word).get("NOUN", ())
+    return bool(nouns) and word not in nouns
+
+
+def is_adverb(word: str) -> bool:
+    """Whether a word may stand between a subject and its verb."""
+    return word in grammar().adverbs or (word.endswith("ly") and not verb_of(word) and not is_noun(word))
+
+
+def _acts(tokens: Sequence[Token], place: int) -> bool:
+    """Whether the word there acts as a verb, going by its form and the words about it."""
+    word, base = tokens[place].low, verb_of(tokens[place].text)
+    if not base:
+        return False
+    at = place - 1
+    while at >= 0 and is_adverb(tokens[at].low):
+        at -= 1
+    if at < 0:
+        return _opens(word, base, tokens[place + 1].low if place + 1 < len(tokens) else "")
+    before = tokens[at].low
+    if before in grammar().subjects or before in grammar().modals or before in ("do", "does", "did"):
+        return True
+    if before == "to":
+        return word == base and base not in grammar().not_verbs_after_to
+    if before in grammar().numbers and at and tokens[at - 1].low == "of":
+        return is_third_person(word)  # "a boy of six hides"
+    if before in grammar().marks | grammar().numbers:
+        return False
+    if word.endswith("ing"):
+        led = before in grammar().with_gerund or tokens[0].low == "instead"
+        return led or (before not in grammar().prepositions and not is_noun(word))
+    return before not in grammar().prepositions and _follows(tokens, at, place, base)
+
+
+def _opens(word: str, base: str, after: str) -> bool:
+    """Whether a word that opens a clause acts as a verb, before another word."""
+    if word.endswith("ing"):
+        return not is_noun(word) or bool(after)
+    if is_adjective(word) and not (after in grammar().marks | grammar().prepositions or is_third_person(word)):
+        return False
+    if is_third_person(word) or word != base:
+        return not (is_noun(word) and verb_of(after) and not (is_noun(after) or after.endswith("ing")))
+    return not is_noun(word) or (_goes_on(after) and bool(after))
+
+
+def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
+    """Whether a word acts as the verb of the noun that stands before it, at `at`."""
+    word, before = tokens[place].low, tokens[at].low
+    after = tokens[place + 1] if place + 1 < len(tokens) else None
+    if is_adjective(before) and not is_noun(before) and is_noun(word):
+        return False
+    if is_adjective(word) and before in grammar().be | _SEEMS:
+        return False
+    if base in ("name", "call") and word != base and after is not None and after.text[:1].isupper():
+        return False  # "a teacher named Edith"
+    opens_noun = tokens[0].low in grammar().marks | grammar().numbers
+    if before.endswith("ing") and not is_noun(before) and opens_noun and at <= 1:
+        return False  # "some jumping jacks"
+    if tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower():
+        return False  # "under the sofa cushions"
+    if word == base:
+        return (base in grammar().unchanging and is_noun(before)) or (is_plural(before) and not is_noun(word))
+    if is_noun(word) and word.endswith("s"):
+        follower = after.low if after is not None else ""
+        return _goes_on(follower) or is_adjective(follower) or is_noun(follower)
+    return True
+
+
+def _goes_on(after: str) -> bool:
+    """Whether a verb may go on with a word, or end there."""
+    known = grammar()
+    goes = known.marks | known.prepositions | known.adverbs | known.subjects | _OBJECTS
+    return not after or after in goes or after.endswith("ly")

@@ -1,0 +1,127 @@
+"""The verbs of a clause from the first auxiliary to the deed: "has not wanted to start reading" is reading, denied."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from planner_service.themes.lexicon import grammar, verb_of
+from planner_service.themes.verb_finder import Token, verb_place
+
+_MAX_WORDS: Final = 6
+"""Words within which the deed of an aspect stands: "spends the whole long evening reading"."""
+
+
+@dataclass
+class VerbGroup:
+    """What the verbs before a deed say of it."""
+
+    place: int = 0
+    """Where the verb of the deed stands."""
+    denied: bool = False
+    """Whether it is not done, or only wished for."""
+    unable: bool = False
+    """Whether it cannot be done."""
+    perfect: bool = False
+    """Whether it had been done before."""
+
+
+def verb_group(words: Sequence[Token]) -> VerbGroup:
+    """The verbs that a clause without its subject begins with."""
+    group = VerbGroup()
+    while group.place < len(words) and (step := _step(words, group)):
+        group.place += step
+    group.place = min(group.place, len(words) - 1)
+    return group
+
+
+def _step(words: Sequence[Token], group: VerbGroup) -> int:
+    """How many words to go on by, noting what they say; 0 where the deed itself stands."""
+    at = group.place
+    low, base = words[at].low, verb_of(words[at].low)
+    ahead = words[at + 1].low if at + 1 < len(words) else ""
+    if low in grammar().denials or low == "cannot":
+        group.unable |= low == "cannot" or (at > 0 and words[at - 1].low in ("can", "could"))
+        group.denied = True
+        return 2 if low in grammar().with_gerund and ahead == "of" else 1
+    if low == "no" and ahead == "longer":
+        group.denied = True
+        return 2
+    if low in ("should", "might") and verb_place(words[at + 1 : at + 3]) is not None:
+        group.denied = True
+        return 1
+    if low in grammar().auxiliaries and (low in grammar().modals or _verb_follows(words, at)):
+        group.perfect |= low == "had"
+        return 1
+    if low == "had" and ahead == "been":
+        group.perfect = True
+        return 1
+    return _denying_step(words, group, low, base, ahead) or _passing_step(words, at, low, base)
+
+
+def _denying_step(words: Sequence[Token], group: VerbGroup, low: str, base: str, ahead: str) -> int:
+    """Verbs that deny the deed after them, or only wish for it."""
+    at = group.place
+    near = [token.low for token in words[at : at + 3]]
+    if low == "going" and ahead == "to" and len(near) > 2 and _is_deed(near[2]):
+        step = 2
+    elif low in ("unable", "about", "afraid", "too") and "to" in near:
+        group.unable |= low == "unable"
+        step = near.index("to") + 1
+    elif base in ("decide", "try", "choose", "prefer", "promise") and ahead == "not":
+        step = 3 if len(near) > 2 and near[2] == "to" else 2
+    elif base in grammar().refusals and (ahead == "to" or ahead.endswith("ing")):
+        step = 2 if ahead == "to" else 1
+    elif base in grammar().wishes and (ahead == "to" or (base in ("consider", "imagine") and ahead.endswith("ing"))):
+        step = 2 if ahead == "to" else 1
+    elif base == "stop" and ahead.endswith("ing"):
+        step = 1
+    else:
+        return 0
+    group.denied = True
+    return step
+
+
+def _passing_step(words: Sequence[Token], at: int, low: str, base: str) -> int:
+    """Verbs that only say how the deed is done, and adverbs."""
+    if base in grammar().aspects and (place := _aspect(words, at)):
+        return place - at
+    return 1 if low in grammar().adverbs or (low.endswith("ly") and not base) else 0
+
+
+def _is_deed(word: str) -> bool:
+    return verb_of(word) == word and word not in grammar().not_verbs_after_to
+
+
+def _verb_follows(words: Sequence[Token], at: int) -> bool:
+    """Whether an auxiliary is followed by the verb it helps: "is reading", not "is tired" or "has a bath"."""
+    known, helper = grammar(), words[at].low
+    for token in words[at + 1 : at + 4]:
+        low, base = token.low, verb_of(token.low)
+        if low in known.denials | known.adverbs | known.auxiliaries or (low.endswith("ly") and not base):
+            continue
+        if helper in known.be:
+            return bool(base) and low.endswith("ing")
+        if helper in known.have:
+            return bool(base) and low != base and not low.endswith("ing")
+        return bool(base)
+    return False
+
+
+def _aspect(words: Sequence[Token], at: int) -> int:
+    """Where the deed of an aspect stands, 0 where the verb is the deed itself ("goes home", "tries a new recipe")."""
+    base = verb_of(words[at].low)
+    for place in range(at + 1, min(at + _MAX_WORDS + 1, len(words))):
+        low, before = words[place].low, words[place - 1].low
+        if low == "to":
+            after = words[place + 1].low if place + 1 < len(words) else ""
+            able = place == at + 1 and base not in ("go", "come", "spend", "keep", "finish", "end", "resume")
+            return place + 1 if able and _is_deed(after) else 0
+        if low.endswith("ing") and verb_of(low) and base not in ("need", "have", "decide", "help", "use"):
+            near = place == at + 1 or (base == "end" and before == "up")
+            if near or (base == "spend" and before not in grammar().marks):
+                return place
+        if base not in ("spend", "end", "keep", "try") or low == "and":
+            return 0
+    return 0
