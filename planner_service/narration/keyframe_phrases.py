@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from itertools import takewhile
 from typing import Final, Literal
 
 import numpy as np
@@ -179,8 +178,7 @@ class Wording:
         untold: tuple[int, ...] = ()
         self._named, self._wandering, stays = "", False, False
         for at, (index, keyframe) in enumerate(rows):
-            here = takewhile(lambda row: not row[1].on_floor and row[1].piece == keyframe.piece, rows[at + 1 :])
-            goal = next((row[1] for row in here if row[1].skill != Skill.LOCO), None)
+            goal = _goal(keyframe, [row[1] for row in rows[at + 1 :]])
             leads = keyframe.skill == Skill.LOCO and goal is not None
             rests = goal is not None and goal.skill in RESTS
             stays = stays or (keyframe.skill in RISES and rests)
@@ -277,6 +275,16 @@ def touches(keyframe: Keyframe) -> tuple[str, ...]:
         return known.touches_doing[caption]
     height = next((h for h in ("prone", "low", "high") if re.search(rf"\b{h}\b", caption.lower())), "medium")
     return known.touches_at.get(class_of(keyframe.piece[0]), {}).get(height) or known.touches[height]
+
+
+def _goal(keyframe: Keyframe, later: Sequence[Keyframe]) -> Keyframe | None:
+    """What the body does next without leaving the piece of furniture; walks there aside."""
+    for one in later:
+        if one.on_floor or one.piece != keyframe.piece:
+            return None
+        if one.skill != Skill.LOCO:
+            return one
+    return None
 
 
 def _pace(caption: str) -> Literal["neutral", "slow", "fast"]:

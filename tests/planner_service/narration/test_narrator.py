@@ -176,6 +176,23 @@ def test_what_is_acted_is_told_in_the_themes_own_words_and_once(seed: int) -> No
 
 
 @for_each("seed", range(5))
+def test_a_body_that_goes_on_sitting_is_not_told_to_rise(seed: int) -> None:
+    script = made(
+        "He plays a game on the sofa and drinks cola.",
+        [beat("plays a game on the sofa"), beat("drinks cola")],
+        [
+            frame("sitdown", "playing a game, controller held in both hands", "sofa", 0),
+            frame("standup", "stand up", "sofa", 1),
+            frame("loco", "walking quickly", "sofa", 1),
+            frame("sitdown", "drinking from a cup in the right hand", "sofa", 1),
+        ],
+    )
+    told = narrate(script, JAMES, seed)
+    assert spoken(told) == [0, 1, 2, 3]
+    assert re.fullmatch(r"James played a game on the sofa(?: and|\. He) drank cola\.", told.text)
+
+
+@for_each("seed", range(5))
 def test_what_is_not_acted_is_no_event(seed: int) -> None:
     assert re.search(r"\bdid not sit down\b", as_cast(NEGATION, seed))
     memory = as_cast(MEMORY, seed)
