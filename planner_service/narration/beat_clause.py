@@ -71,8 +71,10 @@ def event(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
 def thought(beat: Beat, hero: str, voice: Voice) -> str | None:
     """A memory: what its person thinks of, "remembered her mother", or a clause "she had lost the key"."""
     told = event(beat, hero, voice)
-    if told is None or told.verbs & _of("minds"):
-        return told and told.text
+    if told is None:
+        return None
+    if told.verbs & _of("minds"):
+        return told.text
     words = told.text.split()
     at = next((at for at, word in enumerate(words) if not _is_adverb(word)), 0)
     verb, rest = words[at], words[at + 1 :]

@@ -82,12 +82,8 @@ def templates() -> Phrases:
     return known
 
 
-Piece = tuple[str, tuple[int, ...]]
-"""Words and the keyframes they tell, none for connecting words."""
 Places = Mapping[int, tuple[str, str]]
 """Index of a keyframe to how its furniture and its room are called in the home it is acted out in."""
-_IN = ("armchair", "lounge chair", "lazy sofa", "rocking chair")
-_DEEP = (*_IN, "chair")
 _IN: Final = ("armchair", "lounge chair", "lazy sofa", "rocking chair")
 _DEEP: Final = (*_IN, "chair")
 """What one sits on but drops into."""
@@ -193,7 +189,8 @@ class Wording:
         return walk.caption in templates().neutral_walks and self.variety.chance(0.5)
 
     def _phrase(self, indices: tuple[int, ...], keyframe: PlannedKeyframe, leads: bool, stays: bool) -> Phrase:
-        index, mood, known, manners = indices[-1], keyframe.mood, templates(), ()
+        index, mood, known = indices[-1], keyframe.mood, templates()
+        manners: tuple[str, ...] = ()
         walks, sits = keyframe.skill == Skill.LOCO, keyframe.skill == Skill.SITDOWN
         if walks:
             walk = known.walks.get(keyframe.caption, known.walks_in_mood[mood])

@@ -143,7 +143,10 @@ class _Teller:
             known = last.stays or _PLACE.search(told.text) or (before and before[-1].leads)
             text = told.text if known else f"{told.text} at {last.at}"
             return [*before, replace(plain, text=text, keyframes=last.keyframes, mood=last.mood), *after]
-        return [*before, replace(last, manner="", ends=False, leads=True), replace(plain, mood=last.mood), *after]
+        place = re.search(r" (?:on|in)(?:to)? (the .+)$", last.text)
+        text = last.text[: place.start()] if place and f" {place[1]}" in told.text else last.text
+        there = replace(last, text=text, manner="", ends=False, leads=True)
+        return [*before, there, replace(plain, mood=last.mood), *after]
 
     def _once(self, text: str, phrases: list[Phrase], at: int) -> list[Phrase]:
         """A deed in place of the phrase that says the same; of the two, the way there or the deed says where it is."""
