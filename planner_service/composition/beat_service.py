@@ -12,13 +12,12 @@ from typing import Final
 
 import numpy as np
 
-from motion_backend.motion import Emotion, Skill
+from motion_backend.motion import Skill
 from planner_service.composition.deed_lexicon import Deed, deed_of
 from planner_service.composition.keyframe_writer import NOT_ACTED, UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedTheme, plan_beats
 from planner_service.composition.request import RULES, Record, Request
 from planner_service.llm.protocol import LanguageModel, ModelError
-from planner_service.scripts.emotion_classifier import clear_moods
 from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe, Retrieved, ShortScript
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import repair
@@ -38,7 +37,7 @@ def serve_beats(
 ) -> LongScript:
     """The long script of a theme, beat by beat. ThemeError when nothing of it can be acted."""
     planned = _by_model(theme, library, request, model, record)
-    read = _read_anew(planned) if planned else felt(beats_of(theme), library)
+    read = _read_anew(planned) if planned else beats_of(theme)
     writer = KeyframeWriter(request.seed, request.furniture, PartFinder(library, request.rooms).all_of(read).get)
     if planned is None or any(one.keyframes is None for one in planned.beats):
         record.planners.append(RULES)
@@ -90,23 +89,6 @@ def _by_model(
 def _read_anew(planned: PlannedTheme) -> tuple[ReadBeat, ...]:
     """The model's beats with what of their words the rules go by."""
     return tuple(read_beat(one.beat) for one in planned.beats)
-
-
-def felt(read: Sequence[ReadBeat], library: ScriptLibrary) -> tuple[ReadBeat, ...]:
-    """Beats whose words show no mood and no deed, with the mood that their meaning clearly has, if it has one."""
-    blank = [
-        index
-        for index, one in enumerate(read)
-        if one.felt is None
-        and one.beat.kind == "deed"
-        and one.beat.emotion is Emotion.NEUTRAL
-        and not deed_of(one.clause)
-    ]
-    if not blank:
-        return tuple(read)
-    judged = clear_moods(library.moods(library.encoder.encode([read[index].text for index in blank])))
-    moods = {index: mood for index, mood in zip(blank, judged, strict=True) if mood and mood is not Emotion.NEUTRAL}
-    return tuple(one.in_mood(moods[index]) if index in moods else one for index, one in enumerate(read))
 
 
 def _with_reasons(

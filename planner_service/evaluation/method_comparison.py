@@ -19,12 +19,13 @@ import numpy as np
 from motion_backend.formats.glb_film import film_glb
 from motion_backend.language.sentence_encoder import SentenceEncoder, Vectors
 from motion_backend.motion import Character
+from planner_service.composition.request import METHODS
 from planner_service.evaluation.beat_judgement import Judgement
 from planner_service.evaluation.labels import LabelledTheme
 from planner_service.evaluation.planning_evaluation import fulfilled, ratio
 from planner_service.llm.client import ServedModel
 from planner_service.narration.narrator import narrate
-from planner_service.pipeline import METHODS, Pipeline, Story, StoryRequest
+from planner_service.pipeline import Pipeline, Story, StoryRequest
 from planner_service.themes.beats import ThemeError
 from scene_graphs.errors import UserError
 

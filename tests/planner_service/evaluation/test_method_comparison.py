@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from motion_backend.language.sentence_encoder import HashingEncoder, Vectors
+from planner_service.composition.request import METHODS
 from planner_service.evaluation import method_comparison
 from planner_service.evaluation.labels import Alternative, LabelledBeat, LabelledTheme
 from planner_service.evaluation.method_comparison import (
@@ -22,7 +23,7 @@ from planner_service.evaluation.method_comparison import (
     write_pairs,
 )
 from planner_service.llm.fake_model import ScriptedModel
-from planner_service.pipeline import METHODS, Pipeline, RequestError, Story, StoryRequest
+from planner_service.pipeline import Pipeline, RequestError, Story, StoryRequest
 
 SITS = LabelledBeat(text="sits down", actable=True, shown_by=(Alternative(skill=("sitdown",)),))
 LABELS = tuple(
