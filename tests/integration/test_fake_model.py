@@ -34,7 +34,7 @@ def shelves() -> Shelves:
 
 def test_a_model_finds_the_events_arranges_the_scripts_and_tells_the_story(shelves: Shelves) -> None:
     model = ScriptedModel(answer_well, name="scripted-a")
-    planned = plan(model, shelves)
+    planned = plan(model, shelves, method="matching")
     script = planned.script
     assert [call.schema for call in model.calls] == ["PlannedEvents", "Arrangement", "_ModelStory"]
     assert tuple(event.text for event in script.beats) == EVENTS
@@ -45,11 +45,21 @@ def test_a_model_finds_the_events_arranges_the_scripts_and_tells_the_story(shelv
     assert (planned.told.title, planned.told.text) == ("A Letter of Glass", f"{TEXT} {told_in(model.calls[2].prompt)}")
 
 
+def test_a_model_plans_every_beat_in_one_call_and_tells_the_story(shelves: Shelves) -> None:
+    model = ScriptedModel(answer_well, name="scripted-a")
+    planned = plan(model, shelves)
+    assert [call.schema for call in model.calls] == ["PlannedBeats", "_ModelStory"]
+    assert tuple(beat.text for beat in planned.script.beats) == EVENTS
+    assert planned.script.acted == planned.script.asked == len(EVENTS)
+    assert planned.told.title == "A Letter of Glass"
+    assert planned.character.name == "Sam"
+
+
 def test_a_model_changes_what_is_played(shelves: Shelves) -> None:
     by_model = plan(ScriptedModel(answer_well), shelves)
     by_rules = Pipeline(shelves).plan(StoryRequest(THEME))
     assert by_rules.script.planner == "rules"
-    assert [r.script.id for r in by_model.script.short_scripts] != [r.script.id for r in by_rules.script.short_scripts]
+    assert by_model.script.keyframes != by_rules.script.keyframes
 
 
 def test_the_theme_and_the_character_reach_the_model(shelves: Shelves) -> None:
@@ -77,7 +87,7 @@ def test_a_model_that_talks_nonsense_is_done_without_and_this_is_said(nonsense: 
     assert planned.script.keyframes == by_rules.script.keyframes
     assert planned.told == by_rules.told
     said = " ".join(planned.script.repairs)
-    for stage in ("events found by rules", "short scripts arranged by rules", "told by rules"):
+    for stage in ("beats planned by rules", "told by rules"):
         assert stage in said
 
 
@@ -85,7 +95,7 @@ def test_a_lost_connection_costs_only_the_stage_it_happened_in(shelves: Shelves)
     def answer(prompt: str, schema: type[BaseModel]) -> Answer:
         return ModelError("no connection") if schema.__name__ == "Arrangement" else answer_well(prompt, schema)
 
-    planned = plan(ScriptedModel(answer, name="half"), shelves)
+    planned = plan(ScriptedModel(answer, name="half"), shelves, method="matching")
     assert planned.script.planner == "llm:half, rules"
     assert any("arranged by rules: no connection" in note for note in planned.script.repairs)
     assert planned.told.title == "A Letter of Glass"
