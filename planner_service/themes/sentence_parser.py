@@ -19,6 +19,8 @@ from planner_service.themes.lexicon import (
     is_third_person,
     kinds_of,
     lemma_of,
+    participle,
+    past,
     verb_of,
 )
 
@@ -134,6 +136,7 @@ def plain(text: str) -> str:
     text = _CONTRACTION.sub(lambda m: _SHORT.get(m[1].lower(), f"{m[1]} not"), text)
     for short, whole in _ENDS:
         text = re.sub(rf"(?i)(?<=\w){short}\b", whole, text)
+    text = re.sub(r"(?i)\bby the time\b", "when", text)
     return re.sub(
         r"\b(I|[Hh]e|[Ss]he|[Tt]hey|[Ww]e)'d\b", r"\1 had", re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s\b", r"\1 is", text)
     )
@@ -192,9 +195,8 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
     if at < 0:
         if token.low.endswith("ing"):
             return not is_noun(token.low) or bool(after)
-        if is_adjective(token.low) and not (
-            after in grammar().marks or after in grammar().prepositions or is_third_person(token.low)
-        ):
+        sure = is_third_person(token.low) or participle(base) != past(base) == token.low  # "fell", "woke"
+        if is_adjective(token.low) and not (sure or after in grammar().marks | grammar().prepositions):
             return False
         if is_third_person(token.low) or token.low != base:
             return not (is_noun(token.low) and verb_of(after) and not (is_noun(after) or after.endswith("ing")))
@@ -205,7 +207,8 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
             or tokens[0].low == "instead"
             or (before not in grammar().prepositions and not is_noun(token.low))
         )
-    if is_adjective(before) and not is_noun(before) and is_noun(token.low):
+    beside = token.start == tokens[at].end + 1
+    if beside and is_adjective(before) and not is_noun(before) and is_noun(token.low):
         return False
     if is_adjective(token.low) and (
         before in grammar().be or before in ("feels", "felt", "seems", "looks", "gets", "becomes")
@@ -220,10 +223,11 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
         and at <= 1
     ):
         return False  # "some jumping jacks"
-    if tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and before not in grammar().subjects:
+    lower = tokens[at].text[:1].islower() and before not in grammar().subjects
+    if tokens[0].low in grammar().prepositions and lower and is_noun(token.low):
         return False  # "under the sofa cushions"
     if token.low == base:
-        same = base in grammar().unchanging and is_noun(before)
+        same = base in grammar().unchanging and (is_noun(before) or not kinds_of(before))  # "Anna put …"
         return same or (_is_plural(before) and not is_noun(token.low))
     if is_noun(token.low) and token.low.endswith("s"):
         return goes_on or is_adjective(after) or is_noun(after)
@@ -375,7 +379,8 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     if place is None:
         return [Clause(piece.text, "", "", _lemmas(tokens), joint, quotes=_quotes(tokens, quotes), sentence=sentence)]
     subject = _subject(tokens[:place])
-    lead = tokens[:place] if not subject else [t for t in tokens[:place] if t.low in grammar().denials]
+    denials = grammar().denials - grammar().subjects
+    lead = tokens[:place] if not subject else [t for t in tokens[:place] if t.low in denials]
     words = (lead if any(token.low in grammar().denials for token in lead) else []) + tokens[place:]
     if words and words[0].low in grammar().adverbs - grammar().denials and len(words) > 1:
         words = words[1:]
@@ -565,9 +570,26 @@ def _subject(tokens: Sequence[Token]) -> str:
     while words and (words[0].lower() in grammar().adverbs or words[0].lower() in grammar().joints):
         words.pop(0)
     if words and words[0].lower() in grammar().prepositions:  # "in the kitchen Anna …"
-        names = [word for word in words[1:] if word[:1].isupper()]
-        return names[-1] if names else ""
+        starts = [place for place in range(2, len(words)) if _starts_subject(words, place)]
+        return " ".join(words[starts[-1] :]) if starts else next((one for one in words[1:] if one[:1].isupper()), "")
+    timed = bool(words) and (words[0][:1].islower() or words[0] in ("One", "Every", "Each", "That", "This"))
+    starts = [place for place in range(1, len(words)) if _starts_subject(words, place)]
+    starts = [place for place in starts if (timed and words[place].islower()) or _is_called(words[place:])]
+    words = words[starts[-1] :] if starts else words  # "after dinner Jonas …", "that night the man …"
     return " ".join(words)
+
+
+def _starts_subject(words: Sequence[str], place: int) -> bool:
+    """Whether a noun with its mark, or a name, begins there that no preposition goes before: "at last the news"."""
+    before, word = words[place - 1], words[place]
+    is_start = word.lower() in grammar().marks or (word[:1].isupper() and not before[:1].isupper())
+    return is_start and before.lower() not in grammar().marks | grammar().prepositions
+
+
+def _is_called(words: Sequence[str]) -> bool:
+    """Whether a name begins there that is no part of a longer noun: "Jonas", not "German" of "German tourist"."""
+    rest = next((word for word in words if not word[:1].isupper()), "of")
+    return words[0][:1].isupper() and rest.lower() in grammar().prepositions
 
 
 def _lemmas(tokens: Sequence[Token]) -> tuple[str, ...]:
