@@ -185,9 +185,9 @@ class KeyframeWriter:
             if last is not None and last.skill in (Skill.STANDUP, Skill.GETUP):
                 self._show(index)
                 return
-            skill = Skill.LIEDOWN if deed.skill is Skill.GETUP else Skill.SITDOWN
+            skill, usually = (Skill.LIEDOWN, "bed") if deed.skill is Skill.GETUP else (Skill.SITDOWN, "chair")
             need = NEEDS[skill]
-            piece = next((one for one in (*deed.pieces, "bed", "chair") if affords(one, need) and self._has(one)), "")
+            piece = next((one for one in (*deed.pieces, usually, "bed") if affords(one, need) and self._has(one)), "")
             if not piece:
                 self.why[index] = "there is nothing to get up from"
                 return
@@ -256,7 +256,8 @@ class KeyframeWriter:
         need, usual = NEEDS[skill], deed_table().usual
         here = next((keyframe.room for keyframe in reversed(self.keyframes) if keyframe.room), None)
         rooms = [room for room in dict.fromkeys((read.room, room_of(read.clause), here)) if room in self._rooms]
-        last = [k.furniture for k in self.keyframes[-2:] if k.furniture in deed.pieces and not deed.named]
+        last = [k.furniture for k in self.keyframes[:-3:-1] if k.furniture in deed.pieces and not deed.named]
+        last = [*last, *self._there(deed)]
         if deed.named:  # what is named and not there has a stand-in, which the story says
             wanted = [piece for piece in deed.pieces if affords(piece, need)]
             piece = next((one for one in wanted if self._has(one)), wanted[0] if wanted else "")
@@ -268,6 +269,13 @@ class KeyframeWriter:
         general = [piece for those in usual.values() for piece in those[need]]
         options = [*last, *deed.pieces, *(() if deed.pieces else usual["living_room"][need]), *general]
         return None, next((piece for piece in options if affords(piece, need) and self._has(piece)), "")
+
+    def _there(self, deed: Deed) -> Sequence[str]:
+        """Where one has just gone, and what is sat on there: "walks to the desk and sits down"."""
+        last = self.keyframes[-1] if self.keyframes else None
+        if deed.named or deed.skill is Skill.TOUCH or "floor" in deed.pieces or last is None or last.on_floor:
+            return ()
+        return (*deed_table().seats_at.get(last.furniture, ()), last.furniture) if last.skill is Skill.LOCO else ()
 
     @property
     def _rooms(self) -> Collection[str]:
@@ -354,7 +362,7 @@ def _captions_of(skill: Skill, mood: Emotion) -> tuple[str, ...]:
             for (of, caption), moods in shares.items()
             if of is skill
             and caption not in deeds
-            and not re.search("phone|to the front|hips", caption)
+            and not re.search("phone|to the front|hips|sidestep", caption)
             and moods.get(mood, 0.0) >= _MIN_SHARE
         )
     )

@@ -57,8 +57,8 @@ def _parts(block: list[str], cast: set[str]) -> Iterator[Part]:
     speaker = _name(block[0])
     for aside, lines in groupby(_asides(" ".join(block[1:])), key=lambda part: part.startswith("(")):
         words = " ".join(lines).strip("() ")
-        # "(sinks onto the sofa)" is done; "(angrily)" is how something is said.
-        if aside and is_verb(words.split()[0] if words.split() else "") and has_verb(words):
+        # "(sinks onto the sofa)" is done; "(angrily)" and "(sighing)" are how something is said.
+        if aside and is_verb(words.partition(" ")[0]) and has_verb(words) and not re.fullmatch(r"\w+ing", words):
             yield Part("action", f"{speaker} {words}.", speaker)
         elif words:
             yield Part("speech", words, speaker)

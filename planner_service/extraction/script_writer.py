@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Final
 
 from motion_backend.language.sentence_encoder import SentenceEncoder
@@ -19,18 +19,17 @@ from planner_service.scripts.script import MAX_PIECES, Keyframe, ShortScript, So
 from planner_service.scripts.script_duplicates import Likeness, slug_of
 from planner_service.scripts.script_library import UNKNOWN, ScriptLibrary
 from planner_service.scripts.script_repair import repair
-from planner_service.themes.lexicon import english_verbs, gerund, is_verb_form, past, third_person
+from planner_service.themes.lexicon import is_verb, third_person, verb_of
 
 _MAX_CLAUSE_LENGTH: Final = 110
 """Letters of one clause in a summary."""
 _A_SENTENCE: Final = 3
 """Clauses of one sentence."""
 _NOW: Final = {
-    "was": "is", "were": "is", "are": "is", "am": "is", "had": "has", "have": "has", "did": "does", "do": "does",
-    "could": "can", "would": "will", "might": "may", "couldn't": "cannot", "didn't": "does not", "wasn't": "is not",
-    "weren't": "is not", "hadn't": "has not", "wouldn't": "will not", "can't": "cannot",
-    "can": "can", "cannot": "cannot",
+    **dict.fromkeys(("was", "were", "are", "am"), "is"), "could": "can", "would": "will", "might": "may",
+    **{modal: modal for modal in ("can", "cannot", "will", "may", "must", "should", "shall")},
 }  # fmt: skip
+"""The present of words that no dictionary inflects so."""
 _OURS: Final = (
     (r"\b(?:him|her|my|them)(?:self|selves)\b", "themself"),
     (r"\b(?:his|my|our)\b", "their"),
@@ -39,14 +38,10 @@ _OURS: Final = (
     (r"\b(?:I|he|she|we)\b", "they"),
 )
 _UNSAFE: Final = re.compile(r"[^\w\s,;'’.&%-]")
-_HOW: Final = {"drunk": "drunk", "angry": "angry", "hurried": "hurried", "sad": "sad", "stressed": "stressed",
-               "tired": "tired", "happy": "happy", "relaxed": "relaxed"}  # fmt: skip
 _PLAINLY: Final = {
     Skill.LOCO: "walks about", Skill.SITDOWN: "sits on the {}", Skill.LIEDOWN: "lies on the {}",
     Skill.TOUCH: "reaches for the {}", Skill.STANDUP: "stands up", Skill.GETUP: "gets up",
 }  # fmt: skip
-_SMALL_WORDS: Final = "then just still also finally again now soon even once always often"
-_SMALL: Final = frozenset(_SMALL_WORDS.split())
 
 
 def summarise(clauses: Sequence[str], keyframes: Sequence[Keyframe], emotion: str, names: Collection[str] = ()) -> str:
@@ -59,7 +54,7 @@ def summarise(clauses: Sequence[str], keyframes: Sequence[Keyframe], emotion: st
     if not told:
         told = [_PLAINLY[keyframe.skill].format(keyframe.piece[0]) for keyframe in keyframes]
     told = list(dict.fromkeys(told))[: 2 * _A_SENTENCE]
-    how = f"{_HOW[emotion]} " if emotion in _HOW and not re.search(rf"\b{_HOW[emotion][:4]}", " ".join(told)) else ""
+    how = f"{emotion} " if emotion != "neutral" and not re.search(rf"\b{emotion[:4]}", " ".join(told)) else ""
     first, second = told[:_A_SENTENCE], told[_A_SENTENCE:]
     whole = f"The {how}character {_listed(first)}." + (f" Then the character {_listed(second)}." if second else "")
     while len(whole) > 400:
@@ -77,25 +72,13 @@ def in_present(clause: str, names: Collection[str] = ()) -> str:
     text = " ".join(_UNSAFE.sub(" ", clause).split()).strip(" .,;-'’&")
     for name in names:
         text = re.sub(rf"\b{re.escape(name)}(?P<own>['’]s)?\b", lambda m: "their" if m["own"] else "them", text)
+    text = re.sub(r"\b(can|could) not\b", "cannot", text)
     for pattern, instead in _OURS:
         text = re.sub(pattern, instead, text, flags=re.IGNORECASE)
-    words = _cut(text).split()
-    at = next(
-        (index for index, word in enumerate(words) if not word.lower().endswith("ly") and word.lower() not in _SMALL), 0
-    )
-    if not words:
+    verb = re.match(r"\w+|", text)
+    if verb is None or not is_verb(verb[0]):
         return ""
-    now = _present(words[at].lower())
-    if now is None:
-        return ""
-    words[at] = now
-    for index in range(at + 1, len(words)):
-        if words[index - 1].lower() in ("and", "then", "who", "but"):
-            word = words[index].lower()
-            if word.endswith("ed") and word not in _pasts():
-                return " ".join(words[: index - 1]).rstrip(",")
-            words[index] = _pasts().get(word, words[index])
-    return " ".join([words[0].lower() if words[0].lower() in _SMALL else words[0], *words[1:]])
+    return f"{_NOW.get(verb[0].lower()) or third_person(verb_of(verb[0]))}{_cut(text)[verb.end() :]}"
 
 
 def _tells(told: str) -> bool:
@@ -105,7 +88,7 @@ def _tells(told: str) -> bool:
 def _listed(clauses: Sequence[str]) -> str:
     if len(clauses) < 2:
         return "".join(clauses)
-    comma = "," if len(clauses) > 2 or " and " in clauses[0] else ""
+    comma = "," if len(clauses) > 2 or re.search(", | and ", clauses[0]) else ""
     return f"{', '.join(clauses[:-1])}{comma} and {clauses[-1]}"
 
 
@@ -117,31 +100,6 @@ def _cut(text: str) -> str:
     comma = short.rfind(",")
     short = short[:comma] if comma > _MAX_CLAUSE_LENGTH // 3 else short
     return re.sub(r"(?:\s+(?:and|or|the|a|an|of|to|in|on|at|with|for|from|into|their|that|who|which|by))+$", "", short)
-
-
-def _present(word: str) -> str | None:
-    """The present of he and she: sat, sit, sitting and sits are all "sits"; None for what is no verb we know."""
-    if word in _NOW:
-        return _NOW[word]
-    if word in _pasts():
-        return _pasts()[word]
-    if is_verb_form(word):
-        return word
-    if word.endswith("ied"):
-        return f"{word[:-1]}s"
-    return _gerunds().get(word) or (third_person(word) if word in english_verbs().bases else None)
-
-
-@cache
-def _pasts() -> dict[str, str]:
-    """The present of every simple past; "lay" and "found" are those of "lie" and "find"."""
-    forms = {past(base): third_person(base) for base in sorted(english_verbs().bases) if past(base) != base}
-    return forms | {"lay": "lies", "found": "finds", "fell": "falls", "left": "leaves", "saw": "sees", "wound": "winds"}
-
-
-@cache
-def _gerunds() -> dict[str, str]:
-    return {gerund(base): third_person(base) for base in sorted(english_verbs().bases)}
 
 
 RULES: Final = "rules"

@@ -13,7 +13,7 @@ from motion_backend.motion import Emotion
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
 from planner_service.themes.lexicon import grammar, is_third_person, lemma_of
-from planner_service.themes.protagonist import is_name
+from planner_service.themes.protagonist import is_name, pronouns_of
 from planner_service.themes.sentence_parser import Clause, clauses_of_text, tokens_of
 from scene_graphs.data_tables import read_table, table
 from scene_graphs.errors import UserError
@@ -260,7 +260,7 @@ def is_hero(subject: str, hero: str) -> bool:
     if low in _FIRST_PERSON:
         return main in _FIRST_PERSON or not main
     if low in _PRONOUNS:
-        return main not in ("he", "she") or low == main or low in ("they", "who")
+        return low in ("they", "who") or pronouns_of(hero) in ("", low)
     if head_of(subject).lower() in theme_words()["body"]:
         return True
     if hero and head_of(subject).lower() == head_of(hero).lower():
@@ -268,7 +268,8 @@ def is_hero(subject: str, hero: str) -> bool:
     if not is_person(subject):
         return False
     if not hero or hero.lower() in _PRONOUNS:
-        return subject[:1].isupper() and " " not in subject and subject not in ("It", "Everything", "Nothing")
+        called = pronouns_of(subject) in ("", hero.lower()) or hero.lower() not in ("he", "she")
+        return subject[:1].isupper() and " " not in subject and called
     if main in _FIRST_PERSON:
         return False
     mine, theirs = head_of(subject).lower(), head_of(hero).lower()

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from functools import cache
 from typing import Final
 
 from motion_backend.motion import Character
-from planner_service.themes.lexicon import is_verb, kinds_of
+from planner_service.themes.lexicon import grammar, is_verb, kinds_of
 
 _NAMES: Final = {
     "she": """
@@ -64,26 +65,31 @@ def name_in(theme: str) -> str:
 def is_name(word: str) -> bool:
     """Whether a word is a name: one that we know, or one with a capital that no dictionary has."""
     low = word.lower()
-    return word[:1].isupper() and (low in _PRONOUNS_OF or not (kinds_of(low) or low in _NOT_NAMES))
+    return word[:1].isupper() and (low in _PRONOUNS_OF or not (kinds_of(low) or low in _not_names()))
 
 
 def pronouns_of(subject: str) -> str:
     """ "he" or "she" for a person whose name or noun tells: "Anna", "the old man", "Mrs. Hill"; else ""."""
     words = re.findall(r"[^\W\d_]+", subject.lower())
-    known = (_TITLES.get(word) or _PRONOUNS_OF.get(word) for word in words)
+    known = (word if word in ("he", "she") else _TITLES.get(word) or _PRONOUNS_OF.get(word) for word in words)
     told = next((pronouns for pronouns in known if pronouns), "") or _pronouns_by(_KINDS, subject)
     return told if told in ("he", "she") else ""
 
 
 _TITLES: Final = {"mr": "he", "sir": "he", "mrs": "she", "miss": "she", "ms": "she", "madame": "she"}
-_NOT_NAMES: Final = frozenset(
-    """a an the this that these those some any no all both each every he she it they we you i who what which his her its
-    their my our your and but so or nor yet if as at by for from in into of off on onto out over since than to until up
-    with without when where while though although because can could may might must shall should will would everyone
-    everybody everything english french german christmas easter halloween monday tuesday wednesday thursday friday
-    saturday sunday january february april june july august september october november december""".split()
-)
+_CAPITALS: Final = """
+english french german christmas easter halloween monday tuesday wednesday thursday friday saturday sunday january
+february april june july august september october november december everyone everybody everything although though
+"""
 """Words that begin with a capital, are in no dictionary of nouns and verbs, and are nobody's name."""
+
+
+@cache
+def _not_names() -> frozenset[str]:
+    words = grammar()
+    return frozenset(_CAPITALS.split()).union(
+        words.marks, words.subjects, words.prepositions, words.joints, words.adverbs, words.auxiliaries
+    )
 
 
 def _pronouns_in(theme: str, named: bool) -> str:

@@ -249,7 +249,8 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     if place is None:
         return [Clause(piece.text, "", "", _lemmas(tokens), joint, quotes=_quotes(tokens, quotes), sentence=sentence)]
     subject = _subject(tokens[:place])
-    lead = tokens[:place] if not subject else [t for t in tokens[:place] if t.low in grammar().denials]
+    denials = grammar().denials - grammar().subjects
+    lead = tokens[:place] if not subject else [t for t in tokens[:place] if t.low in denials]
     words = (lead if any(token.low in grammar().denials for token in lead) else []) + tokens[place:]
     if words and words[0].low in grammar().adverbs - grammar().denials and len(words) > 1:
         words = words[1:]
@@ -319,9 +320,26 @@ def _subject(tokens: Sequence[Token]) -> str:
     while words and (words[0].lower() in grammar().adverbs or words[0].lower() in grammar().joints):
         words.pop(0)
     if words and words[0].lower() in grammar().prepositions:  # "in the kitchen Anna …"
-        names = [word for word in words[1:] if word[:1].isupper()]
-        return names[-1] if names else ""
+        starts = [place for place in range(2, len(words)) if _starts_subject(words, place)]
+        return " ".join(words[starts[-1] :]) if starts else next((one for one in words[1:] if one[:1].isupper()), "")
+    timed = bool(words) and (words[0][:1].islower() or words[0] in ("One", "Every", "Each", "That", "This"))
+    starts = [place for place in range(1, len(words)) if _starts_subject(words, place)]
+    starts = [place for place in starts if (timed and words[place].islower()) or _is_called(words[place:])]
+    words = words[starts[-1] :] if starts else words  # "after dinner Jonas …", "that night the man …"
     return " ".join(words)
+
+
+def _starts_subject(words: Sequence[str], place: int) -> bool:
+    """Whether a noun with its mark, or a name, begins there that no preposition goes before: "at last the news"."""
+    before, word = words[place - 1], words[place]
+    is_start = word.lower() in grammar().marks or (word[:1].isupper() and not before[:1].isupper())
+    return is_start and before.lower() not in grammar().marks | grammar().prepositions
+
+
+def _is_called(words: Sequence[str]) -> bool:
+    """Whether a name begins there that is no part of a longer noun: "Jonas", not "German" of "German tourist"."""
+    rest = next((word for word in words if not word[:1].isupper()), "of")
+    return words[0][:1].isupper() and rest.lower() in grammar().prepositions
 
 
 def _lemmas(tokens: Sequence[Token]) -> tuple[str, ...]:

@@ -13,6 +13,8 @@ from planner_service.themes.lexicon import (
     is_noun,
     is_third_person,
     kinds_of,
+    participle,
+    past,
     verb_of,
 )
 
@@ -58,6 +60,7 @@ def plain(text: str) -> str:
     text = _CONTRACTION.sub(lambda m: _SHORT.get(m[1].lower(), f"{m[1]} not"), text)
     for short, whole in _ENDS:
         text = re.sub(rf"(?i)(?<=\w){short}\b", whole, text)
+    text = re.sub(r"(?i)\bby the time\b", "when", text)
     return re.sub(
         r"\b(I|[Hh]e|[Ss]he|[Tt]hey|[Ww]e)'d\b", r"\1 had", re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s\b", r"\1 is", text)
     )
@@ -116,7 +119,8 @@ def _opens(word: str, base: str, after: str) -> bool:
     """Whether a word that opens a clause acts as a verb, before another word."""
     if word.endswith("ing"):
         return not is_noun(word) or bool(after)
-    if is_adjective(word) and not (after in grammar().marks | grammar().prepositions or is_third_person(word)):
+    sure = is_third_person(word) or participle(base) != past(base) == word  # "fell", "woke"
+    if is_adjective(word) and not (sure or after in grammar().marks | grammar().prepositions):
         return False
     if is_third_person(word) or word != base:
         return not (is_noun(word) and verb_of(after) and not (is_noun(after) or after.endswith("ing")))
@@ -127,7 +131,8 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
     """Whether a word acts as the verb of the noun that stands before it, at `at`."""
     word, before = tokens[place].low, tokens[at].low
     after = tokens[place + 1] if place + 1 < len(tokens) else None
-    if is_adjective(before) and not is_noun(before) and is_noun(word):
+    beside = tokens[place].start == tokens[at].end + 1
+    if beside and is_adjective(before) and not is_noun(before) and is_noun(word):
         return False
     if is_adjective(word) and before in grammar().be | _SEEMS:
         return False
@@ -136,10 +141,11 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
     opens_noun = tokens[0].low in grammar().marks | grammar().numbers
     if before.endswith("ing") and not is_noun(before) and opens_noun and at <= 1:
         return False  # "some jumping jacks"
-    if tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower():
+    if tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word):
         return False  # "under the sofa cushions"
     if word == base:
-        return (base in grammar().unchanging and is_noun(before)) or (is_plural(before) and not is_noun(word))
+        named = is_noun(before) or not kinds_of(before)  # "Anna put …"
+        return (base in grammar().unchanging and named) or (is_plural(before) and not is_noun(word))
     if is_noun(word) and word.endswith("s"):
         follower = after.low if after is not None else ""
         return _goes_on(follower) or is_adjective(follower) or is_noun(follower)
