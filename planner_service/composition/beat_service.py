@@ -114,7 +114,7 @@ class PartFinder:
     _used: set[str] = field(default_factory=set)
 
     def all_of(self, read: Sequence[ReadBeat]) -> dict[int, Part]:
-        """For each beat the part of the nearest script in which deed, mood, room and furniture agree, if there is one."""
+        """For each beat the part of the nearest script in which deed, mood, room and furniture agree, if any does."""
         deeds = {
             index: deed
             for index, one in enumerate(read)
@@ -127,11 +127,11 @@ class PartFinder:
         for row, (index, deed) in zip(scores, deeds.items(), strict=True):
             for place in np.argsort(-row, kind="stable")[:_OFFERED]:
                 script = self.library.scripts[int(place)]
-                if row[place] >= _MIN_SCORE and script.id not in self._used and self._plays(script, read[index]):
-                    if keyframes := _part(script, read[index], deed):
-                        found[index] = Part(script, float(row[place]), keyframes)
-                        self._used.add(script.id)
-                        break
+                able = row[place] >= _MIN_SCORE and script.id not in self._used and self._plays(script, read[index])
+                if able and (keyframes := _part(script, read[index], deed)):
+                    found[index] = Part(script, float(row[place]), keyframes)
+                    self._used.add(script.id)
+                    break
         return found
 
     def _plays(self, script: ShortScript, read: ReadBeat) -> bool:

@@ -14,7 +14,8 @@ from planner_service.scripts.script import EMOTIONS
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS
 from planner_service.themes.lexicon import gerund, lemma_of
-from planner_service.themes.sentence_parser import Clause, tokens_of
+from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.verb_finder import tokens_of
 from scene_graphs import furniture
 from scene_graphs.data_tables import read_table, require_known, table
 

@@ -8,7 +8,7 @@ from itertools import groupby
 from typing import Final, NamedTuple
 
 from planner_service.themes.lexicon import is_verb
-from planner_service.themes.sentence_parser import has_verb
+from planner_service.themes.verb_finder import has_verb
 from scene_graphs import furniture
 
 _SLUG: Final = re.compile(

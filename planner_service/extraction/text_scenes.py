@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 
 from planner_service.extraction.screenplay import is_screenplay, parts_of
 from planner_service.extraction.subtitles import Cue
-from planner_service.themes.sentence_parser import has_verb
+from planner_service.themes.verb_finder import has_verb
 
 PAUSE: Final = 5.0
 """Seconds without a subtitle after which another scene begins."""

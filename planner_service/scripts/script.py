@@ -153,8 +153,8 @@ class Retrieved(BaseModel):
 
 
 BeatKind = Literal["deed", "feeling", "undone", "memory", "other", "speech"]
-"""What a beat is: something done at home now · how somebody feels · what is not done, or only wished for · what happened
-before and is only thought of · what somebody else or the world does · what is said."""
+"""What a beat is: something done at home now · how somebody feels · what is not done, or only wished for · what
+happened before and is only thought of · what somebody else or the world does · what is said."""
 
 
 class Beat(BaseModel):

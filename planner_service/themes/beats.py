@@ -14,7 +14,8 @@ from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
 from planner_service.themes.lexicon import grammar, is_third_person, lemma_of
 from planner_service.themes.protagonist import is_name, pronouns_of
-from planner_service.themes.sentence_parser import Clause, clauses_of_text, tokens_of
+from planner_service.themes.sentence_parser import Clause, clauses_of_text
+from planner_service.themes.verb_finder import tokens_of
 from scene_graphs.data_tables import read_table, table
 from scene_graphs.errors import UserError
 
@@ -151,7 +152,7 @@ def _read(clause: Clause, hero: str) -> ReadBeat:
     text = f"{who} {clause.text}" if led else clause.text
     if not clause.verb:
         text = clause.text
-    text = _QUOTED.sub(lambda match: f"“{clause.quotes[0]}”" if clause.quotes else "", text)
+    text = _QUOTED.sub(f"“{clause.quotes[0]}”".replace("\\", "/") if clause.quotes else "", text)
     kind = _kind(clause, who)
     emotion, sure = _emotion(clause.text if clause.verb else text)
     if not sure and clause.subject:

@@ -71,11 +71,9 @@ def _denying_step(words: Sequence[Token], group: VerbGroup, low: str, base: str,
         step = near.index("to") + 1
     elif base in ("decide", "try", "choose", "prefer", "promise") and ahead == "not":
         step = 3 if len(near) > 2 and near[2] == "to" else 2
-    elif base in grammar().refusals and (ahead == "to" or ahead.endswith("ing")):
-        step = 2 if ahead == "to" else 1
-    elif base in grammar().wishes and (ahead == "to" or (base in ("consider", "imagine") and ahead.endswith("ing"))):
-        step = 2 if ahead == "to" else 1
-    elif base == "stop" and ahead.endswith("ing"):
+    elif ahead == "to" and base in grammar().refusals | grammar().wishes:
+        step = 2
+    elif ahead.endswith("ing") and base in grammar().refusals | {"consider", "imagine", "stop"}:
         step = 1
     else:
         return 0

@@ -8,9 +8,9 @@ import pytest
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
+from planner_service.extraction.deed_parser import clauses_in, deed_of, pieces_in
 from stories import GERMAN, NARRATIVE, SCREENPLAY
 
-from planner_service.extraction.deed_parser import clauses_in, deed_of, pieces_in
 from planner_service.extraction.script_writer import in_present
 from planner_service.extraction.subtitles import Cue
 from planner_service.extraction.text_files import MAX_TEXT_LENGTH, ExtractionError, language_of, read_text

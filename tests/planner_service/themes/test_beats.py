@@ -13,7 +13,7 @@ from motion_backend.emotion_words import emotion_of
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import EMOTIONS
 from planner_service.themes.beats import ThemeError, clause_of, clauses_of, grouped, moods_of, rooms_in
-from planner_service.themes.sentence_parser import has_verb
+from planner_service.themes.verb_finder import has_verb
 
 
 def read(theme: str) -> list[tuple[str, str]]:

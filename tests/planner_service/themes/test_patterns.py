@@ -9,8 +9,8 @@ from dataclasses import replace
 
 import pytest
 from for_each import for_each
-
 from planner_service.extraction.deed_parser import deed_patterns
+
 from planner_service.narration.keyframe_phrases import templates
 from planner_service.narration.story_words import story_words
 from planner_service.tasks.household_knowledge import Deed, household
