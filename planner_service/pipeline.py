@@ -209,7 +209,7 @@ class Pipeline:
         return compose(request.theme, self.shelves.scripts(), asked, self.model, self.insist)
 
     def _furniture(self, request: StoryRequest) -> dict[str, frozenset[str]]:
-        """Categories of furniture that there will be, by room type: the user's home's, else those of rooms as they are."""
+        """Categories of furniture that there will be, by room type: of the user's home, else of rooms as they are."""
         rooms = _rooms(request) or ROOM_TYPES
         if own := [room.layout for room in request.home.rooms] if request.home else request.layouts:
             there = frozenset(placed.category for layout in own for placed in layout.objects)

@@ -236,7 +236,7 @@ class KeyframeWriter:
     def _add(
         self, index: int, read: ReadBeat, deed: Deed, mood: Emotion, skill: Skill, captions: Sequence[str]
     ) -> bool:
-        """A keyframe at furniture: a part of a script where one does the same, else written; False where none can be."""
+        """A keyframe at furniture: of a script where one does the same, else written; False where there is none."""
         part = self.part_of(index) if mood is read.beat.emotion else None
         if part is not None and all(self._has(one.piece[0], read.room or part.script.room) for one in part.keyframes):
             self.parts.append((index, part))
@@ -255,7 +255,8 @@ class KeyframeWriter:
         """Room and furniture where it is done: as the beat says, else as is usual, of what there will be."""
         need, usual = NEEDS[skill], deed_table().usual
         here = next((keyframe.room for keyframe in reversed(self.keyframes) if keyframe.room), None)
-        rooms = [room for room in dict.fromkeys((read.room, room_of(read.clause), here)) if room in self._rooms]
+        asked = dict.fromkeys((read.room, room_of(read.clause), here))
+        rooms = [room for room in asked if room is not None and room in self._rooms]
         last = [k.furniture for k in self.keyframes[:-3:-1] if k.furniture in deed.pieces and not deed.named]
         last = [*last, *self._there(deed)]
         if deed.named:  # what is named and not there has a stand-in, which the story says

@@ -115,6 +115,10 @@ class ReadBeat:
         """The theme's words."""
         return self.beat.text
 
+    def in_mood(self, mood: Emotion) -> ReadBeat:
+        """The beat in a mood that was found otherwise."""
+        return replace(self, beat=self.beat.model_copy(update={"emotion": mood}), felt=mood)
+
 
 def clean(theme: object) -> str:
     """The theme without stray white space; ThemeError when it is empty, too long or not text."""
