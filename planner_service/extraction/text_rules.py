@@ -17,9 +17,10 @@ from planner_service.scripts.emotion_classifier import clear_moods
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import EMOTIONS, Keyframe, PlannedKeyframe
 from planner_service.scripts.script_repair import repair
-from planner_service.themes.beats import ReadBeat, hero_of, is_person, read_beats, rooms_in
+from planner_service.themes.beats import ReadBeat, head_of, hero_of, is_person, read_beats, rooms_in
 from planner_service.themes.protagonist import pronouns_of
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
+from planner_service.themes.verb_finder import is_plural
 
 _MAX_DEEDS: Final = 6
 """Deeds of one short script; a scene with more is told in several."""
@@ -112,7 +113,7 @@ def _named(clauses: Sequence[Clause]) -> list[Clause]:
         the_only = clause.doer.lower().startswith("the ") and called and len({*known}) == 1
         if known and (is_pronoun or the_only):
             clause = replace(clause, doer=known[-1], subject=clause.subject and known[-1])
-        elif is_person(clause.doer) and not is_pronoun:
+        elif is_person(clause.doer) and not is_pronoun and not is_plural(head_of(clause.doer).lower()):
             people.append(clause.doer)
         named.append(clause)
     return named
