@@ -181,7 +181,7 @@ class KeyframeWriter:
         """Get up; who does so first of all was lying or sitting before."""
         if self._resting is None:
             last = self.keyframes[-1] if self.keyframes else None
-            if last is not None and last.skill in (Skill.STANDUP, Skill.GETUP):
+            if last is not None and (last.skill in (Skill.STANDUP, Skill.GETUP) or self._has_risen()):
                 self._show(index)
                 return
             skill, usually = (Skill.LIEDOWN, "bed") if deed.skill is Skill.GETUP else (Skill.SITDOWN, "chair")
@@ -199,6 +199,11 @@ class KeyframeWriter:
         )
         self._put(index, skill, mood, usual(skill, mood, pace), resting.furniture, resting.room)
         self._resting = None
+
+    def _has_risen(self) -> bool:
+        """Whether a seat was left for what was touched last: "pushes the plate away and gets up"."""
+        last = [keyframe.skill for keyframe in self.keyframes[-2:]]
+        return len(last) == 2 and last[0] in (Skill.SITDOWN, Skill.LIEDOWN) and last[1] is Skill.TOUCH
 
     def _walk(self, index: int, read: ReadBeat, deed: Deed, mood: Emotion) -> None:
         captions = deed.row.captions or _manner(read) or self._of_mood(Skill.LOCO, mood)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import Final
@@ -17,9 +17,10 @@ from planner_service.scripts.emotion_classifier import clear_moods
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import EMOTIONS, Keyframe, PlannedKeyframe
 from planner_service.scripts.script_repair import repair
-from planner_service.themes.beats import ReadBeat, hero_of, is_person, read_beats, rooms_in
+from planner_service.themes.beats import ReadBeat, head_of, hero_of, is_person, read_beats, rooms_in
 from planner_service.themes.protagonist import pronouns_of
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
+from planner_service.themes.verb_finder import is_plural
 
 _MAX_DEEDS: Final = 6
 """Deeds of one short script; a scene with more is told in several."""
@@ -56,7 +57,7 @@ def read_scene(scene: TextScene, maker: Maker, room: str = "") -> SceneRead:
     if not any(_is_deed(read) for at, read in enumerate(beats) if at not in writer.why):
         return SceneRead((), unused, _NOTHING if beats else "there is only speech in it", room)
     drafts: list[Draft] = []
-    stretches = list(_cut(writer))
+    stretches = _cut(writer)
     firsts = [0, *(stretch[0].beat or 0 for stretch in stretches[1:]), len(beats)]
     for stretch, first, end in zip(stretches, firsts, firsts[1:], strict=False):
         acted = _in_moods(repair(stretch)[0])  # walks and risings between deeds are no news
@@ -87,7 +88,7 @@ def _draft(
     starts = [line.start for _, line in told if line.start is not None]
     ends = [line.end for _, line in told if line.end is not None]
     span = (min(starts, default=None), max(ends, default=None))
-    clauses = [read.clause.text for read, _ in told if read.clause.verb]
+    clauses = [one.text for one in (read.clause for read, _ in told) if one.verb and _is_own(one)]
     return maker.by_rules(clauses, keyframes, emotion, room, span, (hero,) if hero else ())
 
 
@@ -102,15 +103,17 @@ def _clauses_in(scene: TextScene) -> tuple[list[Line], list[Clause]]:
 
 
 def _named(clauses: Sequence[Clause]) -> list[Clause]:
-    """With "he" and "she" as whom they stand for: the last that was named and may be called so."""
+    """With "he", "she" and "the man" as whom they stand for: the last that was named and may be called so."""
     people: list[str] = []
     named: list[Clause] = []
     for clause in clauses:
-        low = clause.doer.lower()
-        if low in _PRONOUNS:
-            who = next((one for one in reversed(people) if pronouns_of(one) in ("", low)), clause.doer)
-            clause = replace(clause, doer=who, subject=clause.subject and who)
-        elif is_person(clause.doer):
+        called = pronouns_of(clause.doer)
+        is_pronoun = clause.doer.lower() in _PRONOUNS
+        known = [one for one in people if pronouns_of(one) == called or (is_pronoun and not pronouns_of(one))]
+        the_only = clause.doer.lower().startswith("the ") and called and len({*known}) == 1
+        if known and (is_pronoun or the_only):
+            clause = replace(clause, doer=known[-1], subject=clause.subject and known[-1])
+        elif is_person(clause.doer) and not is_pronoun and not is_plural(head_of(clause.doer).lower()):
             people.append(clause.doer)
         named.append(clause)
     return named
@@ -146,20 +149,22 @@ def _mood_of(scene: TextScene, beats: Sequence[ReadBeat], maker: Maker) -> Emoti
     return clear_moods(maker.library.moods(whole[None]))[0] or Emotion.NEUTRAL
 
 
-def _cut(writer: KeyframeWriter) -> Iterator[list[PlannedKeyframe]]:
-    """Its keyframes in stretches of about as many deeds each."""
+def _cut(writer: KeyframeWriter) -> list[list[PlannedKeyframe]]:
+    """Its keyframes in as few stretches as hold so many deeds each, all about as long."""
     groups = [list(group) for _, group in groupby(writer.keyframes, key=lambda keyframe: keyframe.beat)]
-    sizes = [1 + sum(len(keyframe.also) for keyframe in group) for group in groups]
-    enough = -(-sum(sizes) // -(-sum(sizes) // _MAX_DEEDS))
-    stretch: list[PlannedKeyframe] = []
-    deeds = 0
-    for group, size in zip(groups, sizes, strict=True):
-        if stretch and (deeds >= enough or deeds + size > _MAX_DEEDS):
-            yield stretch
-            stretch, deeds = [], 0
-        stretch += group
-        deeds += size
-    yield stretch
+    deeds = [1 + sum(len(keyframe.also) for keyframe in group) for group in groups]
+    for parts in range(1, len(groups) + 1):
+        share = [sum(deeds[:at]) * parts // sum(deeds) for at in range(len(groups))]
+        sizes = [sum(deeds[at] for at in range(len(groups)) if share[at] == part) for part in range(parts)]
+        if max(sizes) <= _MAX_DEEDS:
+            break
+    numbered = zip(share, groups, strict=True)
+    return [[one for _, group in some for one in group] for _, some in groupby(numbered, key=lambda pair: pair[0])]
+
+
+def _is_own(clause: Clause) -> bool:
+    """Whether it is the person's deed, and not their hands' or tears'."""
+    return not clause.subject or is_person(clause.subject)
 
 
 def _in_moods(keyframes: Sequence[PlannedKeyframe]) -> list[PlannedKeyframe]:

@@ -151,6 +151,8 @@ def read_beats(clauses: Sequence[Clause]) -> tuple[ReadBeat, ...]:
 
 
 def _read(clause: Clause, hero: str) -> ReadBeat:
+    if head_of(clause.doer).lower() in ("tear", "tears"):  # they run where somebody weeps
+        clause = replace(clause, verb="weep", lemmas=("weep", *clause.lemmas[1:]))
     who = "" if is_hero(clause.doer, hero) else clause.doer
     led = bool(who) and bool(clause.subject) and not clause.text.lower().startswith(who.lower())
     text = f"{who} {clause.text}" if led else clause.text

@@ -315,6 +315,8 @@ def _subject(tokens: Sequence[Token]) -> str:
         words.pop()
     if words and words[-1].lower() in grammar().subjects:
         return words[-1]
+    while len(words) > 1 and words[-2].lower() not in grammar().marks and _only_describes(words[-1]):
+        words.pop()  # "Daniel, unshaven, …"
     if words and words[0].lower() == "to":
         return ""
     while words and (words[0].lower() in grammar().adverbs or words[0].lower() in grammar().joints):
@@ -327,6 +329,10 @@ def _subject(tokens: Sequence[Token]) -> str:
     starts = [place for place in starts if (timed and words[place].islower()) or _is_called(words[place:])]
     words = words[starts[-1] :] if starts else words  # "after dinner Jonas …", "that night the man …"
     return " ".join(words)
+
+
+def _only_describes(word: str) -> bool:
+    return word[:1].islower() and is_adjective(word) and not is_noun(word)
 
 
 def _starts_subject(words: Sequence[str], place: int) -> bool:
