@@ -50,6 +50,8 @@ class EnglishGrammar:
     modals: Words
     never_verbs: Words
     """What the dictionary knows as verbs too, and themes hardly ever mean so."""
+    more_verbs: Words
+    """Verbs that the dictionary does not know."""
 
     @cached_property
     def auxiliaries(self) -> frozenset[str]:
@@ -78,7 +80,13 @@ def verb_of(word: str) -> str:
     low = word.lower()
     if low in grammar().never_verbs:
         return ""
-    return _IRREGULAR.get(low) or next(iter(kinds_of(low).get("VERB", ())), "")
+    return _IRREGULAR.get(low) or next(iter(kinds_of(low).get("VERB", ())), "") or _more_forms().get(low, "")
+
+
+@cache
+def _more_forms() -> dict[str, str]:
+    """Base forms of the forms of verbs that the dictionary does not know."""
+    return {form(base): base for base in sorted(grammar().more_verbs) for form in (str, third_person, past, gerund)}
 
 
 _IRREGULAR: Final = {"found": "find", "felt": "feel", "saw": "see", "lay": "lie", "laid": "lay", "wound": "wind",
