@@ -375,12 +375,38 @@ def open_shelf(w: float, h: float, d: float) -> list[Part]:
 
 
 def counter(w: float, h: float, d: float) -> list[Part]:
-    """A straight kitchen run: worktop over closed cupboards with room for toes."""
+    """A straight kitchen run: worktop over drawers and closed cupboards with room for toes."""
+    drawers = 0.8 * h
     return [
         box("top", (-w / 2, w / 2), (h - 0.04, h), (-d / 2, d / 2)),
-        box("doors", (-w / 2, w / 2), (0.1, h - 0.04), (-d / 2, d / 2 - 0.03)),
+        box("drawers", (-w / 2, w / 2), (drawers, h - 0.04), (-d / 2, d / 2 - 0.03)),
+        box("doors", (-w / 2, w / 2), (0.1, drawers), (-d / 2, d / 2 - 0.03)),
         box("panel", (-w / 2, w / 2), (0, 0.1), (-d / 2, d / 2 - 0.08)),
     ]
+
+
+def stove(w: float, h: float, d: float) -> list[Part]:
+    """A plate to cook on over an oven."""
+    return [
+        box("hob", (-w / 2, w / 2), (h - 0.03, h), (-d / 2, d / 2)),
+        box("oven", (-w / 2, w / 2), (0.1, h - 0.03), (-d / 2, d / 2 - 0.015)),
+        box("panel", (-w / 2, w / 2), (0, 0.1), (-d / 2, d / 2 - 0.08)),
+    ]
+
+
+def sink(w: float, h: float, d: float) -> list[Part]:
+    """What of a sink stands above a worktop: its rim, and a tap behind it that reaches over its middle."""
+    back = 0.03 - d / 2
+    return [
+        box("basin", (-w / 2, w / 2), (0, min(0.015, h)), (-d / 2, d / 2)),
+        box("pole", (-0.012, 0.012), (0.015, h), (back, back + 0.024)),
+        box("spout", (-0.01, 0.01), (h - 0.02, h), (back + 0.02, 0.0)),
+    ]
+
+
+def microwave(w: float, h: float, d: float) -> list[Part]:
+    """One box with a door in front."""
+    return [box("oven", (-w / 2, w / 2), (0, h), (-d / 2, d / 2))]
 
 
 def _heights(low: float, high: float) -> list[float]:
@@ -411,11 +437,14 @@ _MEMBERS: tuple[tuple[Form, str], ...] = (
     (nightstand, "nightstand"),
     (
         low_storage,
-        "dresser sideboard tv_stand shoe_cabinet chest console children_cabinet kitchen_cabinet bathroom_cabinet",
+        "dresser sideboard tv_stand shoe_cabinet chest console children_cabinet bathroom_cabinet",
     ),
-    (tall_storage, "wardrobe cabinet wine_cabinet refrigerator"),
+    (tall_storage, "wardrobe cabinet wine_cabinet refrigerator kitchen_cabinet dishwasher"),
     (open_shelf, "bookshelf shelf wall_shelf"),
     (counter, "kitchen_counter"),
+    (stove, "stove"),
+    (sink, "kitchen_sink"),
+    (microwave, "microwave"),
     (floor_lamp, "lamp floor_lamp"),
     (table_lamp, "table_lamp"),
     (pendant_lamp, "pendant_lamp"),

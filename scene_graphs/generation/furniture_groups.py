@@ -5,6 +5,7 @@ Chairs stand pulled out, so that one can step between seat and table.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import cos, pi, sin
 
 import numpy as np
@@ -28,6 +29,11 @@ BEHIND_CHAIR = 0.2
 """Space behind a chair at a table."""
 TO_PASS = 0.68
 """The same where one can get to a chair from behind alone."""
+
+JOINT = 0.005
+"""Gap between pieces of a kitchen that stand side by side."""
+BEFORE_KITCHEN = 0.9
+"""Free floor before a kitchen."""
 
 
 def standing_alone(rng: Rng, category: str, front: float = 0.6) -> Group:
@@ -192,6 +198,49 @@ def _around(w: float, d: float, out: float) -> tuple[Rect, Rect]:
 
 def _vase(rng: Rng, table: Point3) -> Item:
     return Item("vase", 0.0, 0.0, size_of(rng, "vase"), 0.0, table[1], 0)
+
+
+def kitchen(rng: Rng, corner: int, goes_round: bool, microwave: bool, dishwasher: bool) -> Group:
+    """A level line of counters, a sink and a stove between a cupboard and a refrigerator, from that end of a wall on.
+
+    One that goes round the corner there (-1, 1) has a part of its line along the next wall.
+    """
+    (wide, h, d), (cupboard, *_) = size_of(rng, "kitchen_counter"), size_of(rng, "kitchen_cabinet")
+    (_, tall, deep), (_, top, _) = size_of(rng, "refrigerator"), size_of(rng, "kitchen_cabinet")
+    main = ("kitchen_counter", (max(wide, 1.0) + (d if goes_round else 0.0), h, d))
+    other = ("kitchen_counter", (round(wide - 0.2, 2), h, d))
+    fridge = ("refrigerator", (round(cupboard + 0.1, 2), tall, deep))
+    store, stove = ("kitchen_cabinet", (cupboard, top, d)), ("stove", (size_of(rng, "stove")[0], h, d))
+    washer = [("dishwasher", (size_of(rng, "dishwasher")[0], h, d))] * dishwasher
+    line = [main, stove, store] if goes_round else [fridge, main, *washer, stove, other, store]
+    turned = [*washer, other, fridge] if goes_round else []
+    items, x, z = [], 0.0, d + BEHIND + JOINT
+    for category, size in line:
+        items.append(Item(category, x + size[0] / 2, size[2] / 2 + BEHIND, size))
+        x += size[0] + JOINT
+    for category, size in turned:
+        items.append(Item(category, size[2] / 2, z + size[0] / 2, size, pi / 2))
+        z += size[0] + JOINT
+    side, front = (
+        max((item.size[2] for item in part), default=0.0) for part in (items[len(line) :], items[: len(line)])
+    )
+    clear = [(side, x, front + BEHIND, front + BEHIND + BEFORE_KITCHEN)]
+    clear += [(side, side + BEFORE_KITCHEN, front + BEHIND, z)] if turned else []
+    counters = [number for number, item in enumerate(items) if item.category == "kitchen_counter"]
+    # In the corner nobody stands before the near half of the counter.
+    sink_x = items[counters[0]].x + (d / 2 if goes_round else 0.0)
+    items.append(replace(_on(rng, items, counters[0], "kitchen_sink"), x=sink_x))
+    items += [_on(rng, items, counters[1], "microwave")] if microwave else []
+    if corner > 0:
+        items = [replace(item, x=-item.x, yaw=-item.yaw) for item in items]
+        clear = [(-x1, -x0, z0, z1) for x0, x1, z0, z1 in clear]
+    return Group(tuple(items), tuple(clear))
+
+
+def _on(rng: Rng, items: list[Item], index: int, category: str) -> Item:
+    """Something in the middle of a piece's top."""
+    below = items[index]
+    return replace(below, category=category, size=size_of(rng, category), y=below.size[1], on=index)
 
 
 def work_place(rng: Rng, seat: str, lamp: bool) -> Group:

@@ -30,9 +30,10 @@ DINERS = 4
 def generate_room(room_type: str, seed: int) -> Layout:
     """A furnished room of one of `ROOM_TYPES`, some of them L-shaped; the same type and seed give the same room.
 
-    Living rooms of odd seeds are living-dining rooms. What falls to a room follows real rooms (`room_recipes`)
-    within every `random_choices.BLOCK` seeds. Nothing overlaps or blocks a door, and everything to sit, lie or touch
-    can be walked to from the door (`RoomCheck.problems` finds nothing). ValueError for another room type.
+    Of odd seeds living rooms also dine and dining rooms have a kitchen. What falls to a room follows real rooms
+    (`room_recipes`) within every `random_choices.BLOCK` seeds. Nothing overlaps or blocks a door, and everything to
+    sit, lie or touch can be walked to from the door (`RoomCheck.problems` finds nothing). ValueError for another room
+    type.
     """
     if room_type not in ROOM_TYPES:
         raise ValueError(f"room_type must be one of {', '.join(ROOM_TYPES)}, got {room_type!r}")
@@ -64,9 +65,11 @@ def generate_rooms(count: int, seed: int = 0, processes: int = 1) -> Iterator[La
 
 def luck_of(room_type: str, seed: int) -> Luck:
     """What falls to the room of that type and seed."""
-    if room_type != "living_room":
-        return Luck(room_type, seed)
-    return Luck("living_dining" if seed % 2 else "living_room", seed // 2)
+    if room_type == "living_room":
+        return Luck("living_dining" if seed % 2 else "living_room", seed // 2)
+    if room_type == "dining_room" and seed % 2:
+        return Luck("kitchen_diner", seed // 2)
+    return Luck(room_type, seed)
 
 
 def _library_room(seed: int, index: int) -> Layout:

@@ -93,6 +93,7 @@ class Recipes:
     living_room: Recipe
     living_dining: Recipe
     dining_room: Recipe
+    kitchen_diner: Recipe
     study: Recipe
 
 
@@ -177,6 +178,8 @@ def furnished(luck: Luck) -> list[Step]:
             return _study(fate)
         case "dining_room":
             return [_dining(fate, spread=0.25), *fate.extras()]
+        case "kitchen_diner":
+            return [_kitchen(fate), _dining(fate), *fate.extras()]
         case "living_dining":
             return [_lounge(fate), _dining(fate), *fate.extras()]
         case _:
@@ -247,6 +250,22 @@ def _lounge(fate: Fate) -> Step:
     if sofa == "armchairs":
         return at_wall(furniture_groups.two_armchairs, 12)
     return before_tv if tv else at_a_wall
+
+
+def _kitchen(fate: Fate) -> Step:
+    """A line of kitchen furniture from a corner on along one wall or both; one that fits no corner stands elsewhere."""
+    goes_round = fate.choose("kitchen") == "round a corner"
+    microwave, dishwasher = fate.has("microwave"), fate.has("dishwasher")
+
+    def put(room: Arrangement) -> bool:
+        corners = [1, -1] if room.rng.random() < 0.5 else [-1, 1]
+        for corner in corners if goes_round else [*corners, 0]:
+            group = furniture_groups.kitchen(room.rng, corner or 1, goes_round, microwave, dishwasher)
+            if room.against_wall(group, corner=corner) is not None:
+                return True
+        return False
+
+    return put
 
 
 def _dining(fate: Fate, spread: float = 0.85) -> Step:

@@ -6,7 +6,7 @@ Each role of each form is drawn its own way: cushions with soft edges, doors wit
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 
@@ -200,6 +200,48 @@ def _rug(canvas: Canvas, part: Part) -> None:
     canvas.add(field_, block((x0 + 0.12, 0.0, z0 + 0.12), (x1 - 0.12, y1, z1 - 0.12)))
 
 
+def _worktop(canvas: Canvas, part: Part) -> None:
+    canvas.add(m.WOODS[0], block(part.low, part.high, 0.006))
+
+
+def _hob(canvas: Canvas, part: Part) -> None:
+    """Four round plates on black glass, which lies a little deeper than they."""
+    (x0, _, z0), (x1, y1, z1) = part.low, part.high
+    glass = y1 - 0.008
+    canvas.add(m.BLACK, block(part.low, (x1, glass, z1), 0.004))
+    radius = 0.16 * min(x1 - x0, z1 - z0)
+    for x, z in product((x0 + 0.27 * (x1 - x0), x0 + 0.73 * (x1 - x0)), (z0 + 0.3 * (z1 - z0), z0 + 0.72 * (z1 - z0))):
+        canvas.add(m.STEEL, cylinder((x - radius, glass, z - radius), (x + radius, y1, z + radius), 20))
+        inner = 0.8 * radius
+        canvas.add(m.METAL, cylinder((x - inner, y1, z - inner), (x + inner, y1 + 0.001, z + inner), 20))
+
+
+def _oven(canvas: Canvas, part: Part) -> None:
+    """Steel around a dark window; a stove's has a bar to open it and knobs above, a microwave's buttons beside it."""
+    (x0, y0, z0), (x1, y1, z1) = part.low, part.high
+    w, h, face = x1 - x0, y1 - y0, z1 - 0.012
+    canvas.add(m.STEEL, block((x0, y0, z0), (x1, y1, face), 0.006))
+    cooks = form_of(canvas.placed.category) == "stove"
+    low, high = ((0.08, 0.3), (0.92, 0.76)) if cooks else ((0.05, 0.12), (0.72, 0.88))
+    canvas.add(
+        m.SCREEN, block((x0 + low[0] * w, y0 + low[1] * h, face), (x0 + high[0] * w, y0 + high[1] * h, z1), 0.004)
+    )
+    if cooks:
+        y = y0 + 0.8 * h
+        canvas.add(m.METAL, block((x0 + 0.1 * w, y, face), (x1 - 0.1 * w, y + 0.02, z1 + 0.02), 0.006))
+    for step in range(5):
+        share = 0.14 + 0.18 * step
+        x, y = (x0 + share * w, y0 + 0.92 * h) if cooks else (x0 + 0.86 * w, y0 + share * h)
+        canvas.add(m.METAL, block((x - 0.015, y - 0.015, face), (x + 0.015, y + 0.015, z1), 0.004))
+
+
+def _basin(canvas: Canvas, part: Part) -> None:
+    """A steel rim around a dark hollow, as seen from above."""
+    (x0, _, z0), (x1, y1, z1) = part.low, part.high
+    canvas.add(m.STEEL, block(part.low, (x1, y1 - 0.002, z1), 0.004))
+    canvas.add(m.METAL, block((x0 + 0.04, y1 - 0.004, z0 + 0.08), (x1 - 0.04, y1, z1 - 0.03)))
+
+
 def _panel(canvas: Canvas, part: Part) -> None:
     """What has no form of its own: a plain painted box."""
     canvas.add(canvas.pick((m.CERAMIC, *m.WOODS)), block(part.low, part.high, 0.015))
@@ -246,6 +288,14 @@ _STYLES: dict[tuple[str, str], Style] = {
     ("screen", "pole"): _metal_block,
     ("picture", "picture"): _picture,
     ("rug", "rug"): _rug,
+    ("counter", "top"): _worktop,
+    ("counter", "panel"): _metal_block,
+    ("stove", "panel"): _metal_block,
+    ("stove", "hob"): _hob,
+    ("stove", "oven"): _oven,
+    ("microwave", "oven"): _oven,
+    ("sink", "basin"): _basin,
+    ("sink", "spout"): _metal_block,
     ("panel", "panel"): _panel,
 }
 

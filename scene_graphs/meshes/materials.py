@@ -31,6 +31,14 @@ def _paint(name: str, code: str, roughness: float = 0.8, alpha: float = 1.0) -> 
 WOODS = (_paint("oak", "c39c6b", 0.6), _paint("walnut", "8a6244", 0.55), _paint("birch", "d9c3a0", 0.65))
 CARCASSES = (*WOODS, _paint("white lacquer", "ece8e1", 0.45))
 """For wardrobes, cabinets and dressers."""
+STEEL = _paint("steel", "c9cdd0", 0.35)
+FRONTS = {
+    "refrigerator": STEEL,
+    "dishwasher": STEEL,
+    "kitchen_counter": CARCASSES[3],
+    "kitchen_cabinet": CARCASSES[3],
+}
+"""Of what stands side by side in a kitchen, whatever its size."""
 FABRICS = (
     _paint("sage fabric", "8fa58f", 0.95),
     _paint("terracotta fabric", "c07a5c", 0.95),
@@ -70,7 +78,6 @@ BLACK = _paint("black frame", "2a2a2c", 0.5)
 SCREEN = _paint("screen", "15181c", 0.2)
 GLASS = _paint("mirror glass", "c4d4da", 0.1)
 PANE = _paint("window pane", "bfdcea", 0.1, alpha=0.35)
-STEEL = _paint("steel", "c9cdd0", 0.35)
 WHITE = _paint("white paint", "f3f1ec", 0.7)
 CANVASES = (_paint("warm canvas", "e9d7b9"), _paint("cool canvas", "c9d8dd"), _paint("blush canvas", "ecd3c6"))
 INKS = (_paint("ink", "39506b"), _paint("sun", "d9803f"), _paint("moss", "6f8a5e"))

@@ -131,7 +131,7 @@ def doors(canvas: Canvas, part: Part) -> None:
 
 def _fronts(canvas: Canvas, part: Part, rows: int, columns: int, *, knob: bool) -> None:
     """A body and its fronts, which reach to the part's own front; handles stand out a little."""
-    material = m.STEEL if canvas.placed.category == "refrigerator" else canvas.pick(m.CARCASSES)
+    material = m.FRONTS.get(canvas.placed.category) or canvas.pick(m.CARCASSES)
     (x0, y0, z0), (x1, y1, z1) = part.low, part.high
     face = z1 - 0.016
     canvas.add(material, block((x0, y0, z0), (x1, y1, face)))

@@ -61,15 +61,17 @@ MEANT = {
     "shelf": {"shelf"},
 }
 """What a word of the count means beyond or short of what it means in scripts; desks and sideboards have their own."""
-UNCOUNTED = {"rug", "picture", "vase", "tv", "mirror"}
-"""What real rooms were not counted for."""
+KITCHEN = {"kitchen_counter", "kitchen_cabinet", "kitchen_sink", "stove", "dishwasher", "microwave"}
+UNCOUNTED = {"rug", "picture", "vase", "tv", "mirror"} | KITCHEN
+"""What real rooms were not counted for. Their kitchens are a part of the walls there, no furniture."""
 
 
 @lru_cache(maxsize=1)
 def kinds() -> dict[str, list[Layout]]:
     found: dict[str, list[Layout]] = {kind: [] for kind in ROOMS}
     for layout in built_in_layouts():
-        found[luck_of(layout.room_type, int(layout.id.rsplit("-", 1)[1])).kind].append(layout)
+        kind = luck_of(layout.room_type, int(layout.id.rsplit("-", 1)[1])).kind
+        found["dining_room" if kind == "kitchen_diner" else kind].append(layout)
     return found
 
 
