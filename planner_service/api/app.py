@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from functools import cache
 from importlib.metadata import version
 from typing import Any
 
-from fastapi import Depends, FastAPI
+from fastapi import APIRouter, Depends, FastAPI
 from fastapi.routing import APIRoute
 from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import MutableHeaders
 from starlette.middleware import Middleware
+from starlette.routing import BaseRoute
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from planner_service.api.authentication import Access, Cors, Gate
@@ -53,13 +55,21 @@ def create_app(parts: Parts) -> FastAPI:
         lifespan=_closing,
         middleware=_middleware(gate, figures, parts),
         dependencies=[Depends(only_known_parameters)],
+        routes=list(_routes()),
     )
     app.state.parts, app.state.gate, app.state.figures = parts, gate, figures
     register_handlers(app)
-    for router in ROUTERS:
-        app.include_router(router)
     app.mount("/assets", assets())
     return app
+
+
+@cache
+def _routes() -> tuple[BaseRoute, ...]:
+    """All routes. FastAPI looks over what every one of them takes when it first meets it, which lasts: once a process."""
+    front = APIRouter(dependencies=[Depends(only_known_parameters)], generate_unique_id_function=_operation_id)
+    for router in ROUTERS:
+        front.include_router(router)
+    return tuple(front.routes)
 
 
 @asynccontextmanager

@@ -11,7 +11,10 @@ import json
 from typing import Annotated, TypeVar
 
 from fastapi import Depends, Request
+from fastapi.dependencies.utils import get_flat_params
 from fastapi.exceptions import RequestValidationError
+from fastapi.params import ParamTypes
+from fastapi.routing import APIRoute
 from pydantic import BaseModel, ValidationError
 from starlette.requests import HTTPConnection
 
@@ -30,12 +33,11 @@ PartsDep = Annotated[Parts, Depends(parts_of)]
 
 async def only_known_parameters(request: Request) -> None:
     """Unprocessable names the parameter that the call lacks, and those it has; async, since it waits for nothing."""
-    if not request.query_params:
+    route = request.scope["route"]
+    if not (request.query_params and isinstance(route, APIRoute) and route.include_in_schema):
         return
-    operation = request.app.openapi()["paths"].get(request.scope["route"].path, {}).get(request.method.lower())
-    if operation is None:
-        return
-    known = [parameter["name"] for parameter in operation.get("parameters", ()) if parameter["in"] == "query"]
+    taken = get_flat_params(route.dependant)
+    known = [field.alias for field in taken if field.field_info.in_ is ParamTypes.query]
     for name in request.query_params:
         if name not in known:
             raise Unprocessable(f"?{name}", f"there is no such parameter here; there are {', '.join(known) or 'none'}")

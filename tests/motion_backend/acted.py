@@ -14,7 +14,7 @@ from motion_backend.motion import Action, BodyState, Character, Emotion, Motion,
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.skeleton import INDEX
 from scene_graphs.affordances.affordances import floor_spot, spots
-from scene_graphs.home import Home, home_from_layouts
+from scene_graphs.home import home_from_layouts
 from scene_graphs.layout import Layout, Placed
 
 SMALL = small_home()
@@ -34,7 +34,8 @@ HALL = home_from_layouts(
 )  # fmt: skip
 """Larger, and everything stands in it otherwise."""
 HOMES = {"small": SMALL, "hall": HALL}
-BACKEND = ProceduralBackend()
+BACKENDS = {name: ProceduralBackend() for name in HOMES}
+"""One a home: a backend knows its way in the home that it was in last."""
 WAYS = {"small": ((3.0, 1.0), (3.2, 4.5)), "hall": ((3.0, 1.0), (3.6, 8.0))}
 """Where walks start and end."""
 
@@ -113,33 +114,44 @@ class Body:
         return np.degrees(np.arctan2(trunk @ front, trunk[:, 1]))
 
 
-def _stood(home: Home, goal: tuple[float, float], facing: float, seed: int, height: float) -> BodyState:
-    state = BACKEND.begin(home, Character(height=height), seed)
+@cache
+def _stood(home: str, goal: tuple[float, float], facing: float, seed: int, height: float) -> BodyState:
+    state = BACKENDS[home].begin(HOMES[home], Character(height=height), seed)
     walk = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=goal, facing=facing)
-    return BACKEND.advance(home, walk, state)[1]
+    return _advanced(home, walk, state)[1]
+
+
+def _advanced(home: str, action: Action, state: BodyState) -> tuple[Motion, BodyState]:
+    return BACKENDS[home].advance(HOMES[home], action, state)
 
 
 @cache
 def walked(caption: str, emotion: str = "neutral", home: str = "small", seed: int = 3, height: float = 1.70) -> Body:
     """From one end of a home to the other, begun facing the way."""
     start, goal = WAYS[home]
-    state = _stood(HOMES[home], start, float(np.arctan2(goal[0] - start[0], goal[1] - start[1])), seed, height)
+    state = _stood(home, start, float(np.arctan2(goal[0] - start[0], goal[1] - start[1])), seed, height)
     action = Action(Skill.LOCO, caption, Emotion(emotion), goal=goal)
-    return Body(BACKEND.advance(HOMES[home], action, state)[0], action)
+    return Body(_advanced(home, action, state)[0], action)
+
+
+@cache
+def _arrived(skill: Skill, name: str, home: str, seed: int) -> tuple[Action, BodyState]:
+    """Before a thing, whatever is then done on it: the action without its words, and the body."""
+    if name == "floor":
+        need = {Skill.SITDOWN: "sit", Skill.LIEDOWN: "lie"}[skill]
+        action = Action(skill, "", Emotion.NEUTRAL, "floor", "floor", floor_spot(need, (3.4, 3.2), 0.0))
+    else:
+        action = contact(HOMES[home], skill, name, "")
+    state = BACKENDS[home].begin(HOMES[home], Character(), seed)
+    return action, _advanced(home, to(action), state)[1]
 
 
 @cache
 def _rested(skill: Skill, name: str, caption: str, emotion: str, home: str, seed: int) -> tuple[Body, BodyState]:
-    where = HOMES[home]
-    if name == "floor":
-        need = {Skill.SITDOWN: "sit", Skill.LIEDOWN: "lie"}[skill]
-        action = Action(skill, caption, Emotion(emotion), "floor", "floor", floor_spot(need, (3.4, 3.2), 0.0))
-    else:
-        action = contact(where, skill, name, caption, Emotion(emotion))
-    state = BACKEND.begin(where, Character(), seed)
-    _, state = BACKEND.advance(where, to(action), state)
-    motion, state = BACKEND.advance(where, replace(action, keyframe=1), state)
-    return Body(motion, replace(action, keyframe=1)), state
+    action, state = _arrived(skill, name, home, seed)
+    action = replace(action, caption=caption, emotion=Emotion(emotion), keyframe=1)
+    motion, state = _advanced(home, action, state)
+    return Body(motion, action), state
 
 
 def sat(name: str, caption: str, emotion: str = "neutral", home: str = "small", seed: int = 3) -> Body:
@@ -157,7 +169,7 @@ def risen_from(name: str, caption: str, emotion: str = "neutral", home: str = "s
     """Standing up from a thing that was sat on."""
     body, state = _rested(Skill.SITDOWN, name, "sitting still", emotion, home, seed)
     action = replace(rise(body.action), caption=caption, emotion=Emotion(emotion), keyframe=2)
-    return Body(BACKEND.advance(HOMES[home], action, state)[0], action)
+    return Body(_advanced(home, action, state)[0], action)
 
 
 @cache
@@ -165,7 +177,7 @@ def got_up(name: str, caption: str, emotion: str = "neutral", home: str = "small
     """Getting up from a thing, or the floor, that was lain on."""
     body, state = _rested(Skill.LIEDOWN, name, caption, emotion, home, seed)
     action = replace(rise(body.action, Skill.GETUP), caption="get up", emotion=Emotion(emotion), keyframe=2)
-    return Body(BACKEND.advance(HOMES[home], action, state)[0], action)
+    return Body(_advanced(home, action, state)[0], action)
 
 
 @cache
@@ -173,6 +185,6 @@ def touched(name: str, height: str, caption: str, hand: str = "right", home: str
     """Touching a thing at a height ("low", "medium", "high"), walked to before."""
     where = HOMES[home]
     spot = next(one for one in spots(where.object(f"0/{name}"), "touch") if one.height == height)
-    state = _stood(where, spot.standing, spot.facing, seed, 1.70)
+    state = _stood(home, spot.standing, spot.facing, seed, 1.70)
     action = Action(Skill.TOUCH, caption, Emotion.NEUTRAL, name, f"0/{name}", spot, hand=hand)
-    return Body(BACKEND.advance(where, action, state)[0], action)
+    return Body(_advanced(home, action, state)[0], action)

@@ -6,7 +6,9 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import httpx
@@ -23,10 +25,23 @@ OTHER_KEY = "fedcba9876543210-other-key"
 Adding = Callable[[FastAPI], None]
 
 
+@cache
+def _empty_database() -> bytes:
+    """A SQLite file with all tables; to make them takes longer than many a test."""
+    with TemporaryDirectory() as folder:
+        settings = Settings(_env_file=None, data_dir=folder)
+        open_parts(settings).close()
+        return settings.database_file.read_bytes()
+
+
 @contextmanager
-def parts_on(folder: Path, **settings: Any) -> Iterator[Parts]:
+def parts_on(folder: Path, **given: Any) -> Iterator[Parts]:
     """Real parts on a SQLite file in a folder."""
-    parts = open_parts(Settings(_env_file=None, **{"data_dir": folder, **settings}))
+    settings = Settings(_env_file=None, **{"data_dir": folder, **given})
+    if not settings.database_url and not settings.database_file.exists():
+        settings.database_file.parent.mkdir(parents=True, exist_ok=True)
+        settings.database_file.write_bytes(_empty_database())
+    parts = open_parts(settings)
     try:
         yield parts
     finally:
