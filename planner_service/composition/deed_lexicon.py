@@ -198,7 +198,9 @@ def _by_things(clause: Clause, about: str) -> DeedRow | None:
         "own",
     ):
         return None
-    if any(affords(piece, "touch") for piece in _named(clause, about)) or _kept(clause, about):
+    if any(affords(piece, "touch") for piece in _named(clause, "" if "them" in clause.lemmas else about)) or _kept(
+        clause, about
+    ):
         return DeedRow((clause.verb,), Skill.TOUCH, things=True)
     return DeedRow((clause.verb,), Skill.LOCO) if _WAYS.search(clause.text) else None
 

@@ -91,9 +91,9 @@ class KeyframeWriter:
         self._about = read.text if names_things(read.clause) else self._about
         if beat.kind in NOT_ACTED:
             self.why[index] = NOT_ACTED[beat.kind]
-        elif deed is not None and deed.row.why:
+        elif deed is not None and deed.row.why and not (read.felt is not None and read.sure):
             self.why[index] = deed.row.why
-        elif deed is not None:
+        elif deed is not None and not deed.row.why:
             self._do(index, read, deed)
         elif beat.kind == "feeling" or (read.felt is not None and read.sure):
             self._feel(index, beats)

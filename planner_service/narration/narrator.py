@@ -17,6 +17,7 @@ from planner_service.narration.beat_clause import WAS, Predicate, event, left_un
 from planner_service.narration.keyframe_phrases import RESTS, Phrase, Places, Variety, Wording
 from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.story_words import story_words, title_of
+from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe
 from planner_service.themes.protagonist import cast_by, name_in
 from scene_graphs.furniture import class_of, display_name, is_known
@@ -261,7 +262,8 @@ class _Writer:
                 self._say(first.gerund, first.keyframes)
                 opening, phrases = ",", phrases[1:]
         moods = story_words().moods.get(first.mood, ())
-        fresh = [words for words in moods if not self.variety.used[words]]
+        says_so = any(feelings(phrase.whole) for phrase in phrases)
+        fresh = [] if says_so else [words for words in moods if not self.variety.used[words]]
         if not opening and not self.first and first.keyframes and fresh and self.variety.chance(0.25):
             opening = f"{self.variety.pick(fresh)},"
         who = self.voice.name if named else self.voice["they"]

@@ -49,6 +49,8 @@ EXPRESSIONS: Final = {
 }
 """Verbs that say how somebody feels who does it."""
 _CODE: Final = re.compile(r"[{}<>;=\[\]_|\\^*/+]")
+_MAIN_JOINTS: Final = frozenset(("", ",", "and", "but", "so", "then", "to", "ing"))
+"""What joins main clauses: whom a theme is about does what these tell."""
 _FIRST_PERSON: Final = frozenset(("i", "we", "me", "my"))
 _PRONOUNS: Final = {"he": "he", "she": "she", "they": "they", "who": ""}
 
@@ -208,7 +210,10 @@ def is_feeling(clause: Clause) -> bool:
 
 def hero_of(clauses: Sequence[Clause]) -> str:
     """Whom the theme is about: the first subject that is a person, as it is written; empty where none is named."""
-    named = [clause.subject for clause in clauses if clause.subject]
+    mains = sorted(
+        (clause for clause in clauses if clause.subject), key=lambda clause: clause.joint not in _MAIN_JOINTS
+    )
+    named = [clause.subject for clause in mains]
     people = [subject for subject in named if is_person(subject)]
     if any(subject.lower() == "i" for subject in named):
         return "I"
@@ -262,6 +267,8 @@ def head_of(subject: str) -> str:
 def is_hero(subject: str, hero: str) -> bool:
     """Whether a subject is whom the theme is about. Nobody named: it goes on with who it was about."""
     if not subject or subject.lower() == hero.lower():
+        return True
+    if subject.lower() == "one" and _is_plural(hero):  # of several people the one is played who does something
         return True
     low, main = subject.split()[-1].lower(), hero.split()[-1].lower() if hero else ""
     if low in _FIRST_PERSON:

@@ -19,6 +19,8 @@ from planner_service.themes.verb_group import verb_group
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
 _SEMI: Final = re.compile(r"\n+|;\s+|:\s+|\s+[–—]\s*|\s*[–—]\s+|\s+-{1,2}\s+|…\s*|\.{2,}\s*|\s*[()\[\]]\s*")
 _HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
+_THAT: Final = frozenset(("that", "how", "what", "why", "if", "whether", "which", "who"))
+"""What joins a clause that is an object: "finds that he won"."""
 _LATER_JOINTS: Final = frozenset(("before", "until", "while"))
 _NO_JOINTS: Final = {"once": ("at", "for", "more", "all"), "while": ("a", "long", "little", "short")}
 """What joining words stand after where they join nothing: "at once", "for a while"."""
@@ -71,9 +73,10 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
         doer = ""
         for piece in (pieces := _pieces(sentence)):
             parts = _clause(piece, quotes, number)
-            main = parts[0].subject or (_next_subject(pieces, piece) if not told else "")
-            doer = main or doer
-            told.append([replace(part, doer=doer) for part in parts])
+            own = parts[0].subject or (_next_subject(pieces, piece) if not told else "")
+            told.append([replace(part, doer=own or doer) for part in parts])
+            if not doer or not _is_led(piece.joint, ()):  # who does what "because guests are coming" is not the guests
+                doer = own or doer
         found += [part for place in _in_time(pieces) for part in told[place]]
     return tuple(found)
 
@@ -128,7 +131,8 @@ def _pieces(sentence: str) -> list[_Piece]:
             if token.low in grammar().with_gerund:
                 current.append(token)
         else:
-            if token.low in _HEROES and _is_led(joint, current) and verb_place(current) is not None:
+            led = token.low in _HEROES and _is_led(joint, current) and current[-1:] and current[-1].low not in _THAT
+            if led and verb_place(current) is not None:
                 cut.append(_Piece(joint, tuple(current), source))
                 joint, current = ",", []
             current.append(token)
@@ -286,7 +290,7 @@ def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> l
 
 def _is_beside(word: str, before: str) -> bool:
     """Whether a gerund is a second deed beside a posture or way: "lies there crying", not "the dining table"."""
-    if not (word.endswith("ing") and verb_of(word)) or is_adjective(before):
+    if not (word.endswith("ing") and verb_of(word)) or (is_adjective(before) and before not in _PARTICLES):
         return False
     return before not in (grammar().marks - {"to"}) | (grammar().prepositions - _PARTICLES)
 

@@ -145,11 +145,17 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
         return False  # "under the sofa cushions"
     if word == base:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
-        return (base in grammar().unchanging and named) or (is_plural(before) and not is_noun(word))
+        return (base in grammar().unchanging and named) or (
+            is_plural(before) and (not is_noun(word) or _has_object(after))
+        )
     if is_noun(word) and word.endswith("s"):
         follower = after.low if after is not None else ""
         return _goes_on(follower) or is_adjective(follower) or is_noun(follower)
     return True
+
+
+def _has_object(after: Token | None) -> bool:
+    return after is not None and after.low in grammar().marks
 
 
 def _goes_on(after: str) -> bool:
