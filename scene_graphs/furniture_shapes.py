@@ -395,11 +395,11 @@ def stove(w: float, h: float, d: float) -> list[Part]:
 
 
 def sink(w: float, h: float, d: float) -> list[Part]:
-    """What of a sink stands above a worktop: its rim, and a tap behind it that reaches over its middle."""
-    back = 0.03 - d / 2
+    """A rim on a worktop, or a body where it is as high as one, and a tap behind it that reaches over its middle."""
+    back, rim = 0.03 - d / 2, max(min(0.015, h), h - 0.3)
     return [
-        box("basin", (-w / 2, w / 2), (0, min(0.015, h)), (-d / 2, d / 2)),
-        box("pole", (-0.012, 0.012), (0.015, h), (back, back + 0.024)),
+        box("basin", (-w / 2, w / 2), (0, rim), (-d / 2, d / 2)),
+        box("pole", (-0.012, 0.012), (rim, h), (back, back + 0.024)),
         box("spout", (-0.01, 0.01), (h - 0.02, h), (back + 0.02, 0.0)),
     ]
 

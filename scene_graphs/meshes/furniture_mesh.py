@@ -121,7 +121,8 @@ def _headboard(canvas: Canvas, part: Part) -> None:
 
 
 def _carcass(canvas: Canvas, part: Part) -> None:
-    canvas.add(canvas.pick(m.CARCASSES), block(part.low, part.high, 0.004))
+    material = m.FRONTS.get(canvas.placed.category) or canvas.pick(m.CARCASSES)
+    canvas.add(material, block(part.low, part.high, 0.004))
 
 
 def _board(canvas: Canvas, part: Part) -> None:
