@@ -16,7 +16,7 @@ import psycopg
 import pytest
 import structlog
 from databases import new_database
-from encoded import forget
+from encoded import forget, hash_libraries_once
 from examples import tries
 from hypothesis import settings
 from running import RunningService
@@ -31,6 +31,7 @@ gc.disable()
 structlog.configure([*_PROCESSORS, structlog.dev.ConsoleRenderer(exception_formatter=structlog.dev.plain_traceback)])
 settings.register_profile("ours", tries(100), derandomize=True)
 settings.load_profile("ours")
+hash_libraries_once()
 
 
 @pytest.fixture(scope="session")
