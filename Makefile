@@ -82,11 +82,12 @@ test-all: $(READY_DEV) page $(NODE_TESTS)
 mutants: $(READY_DEV)
 	@PYTHONPATH=tests $(BIN)/python -m mutants --seed $(SEED)
 
+# The page is looked at beside mypy, which hardly ever has both of its processes at work.
 lint: $(READY_DEV) web/node_modules/.ready
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
-	@$(BIN)/mypy
-	@if $(NODE_20); then npm run --silent check --prefix web; fi
+	@checking=; if $(NODE_20); then npm run --silent check --prefix web & checking=$$!; fi; \
+	$(BIN)/mypy && if [ -n "$$checking" ]; then wait $$checking; fi
 
 format: $(READY_DEV)
 	@$(BIN)/ruff check --fix .

@@ -17,7 +17,7 @@ import psycopg
 import pytest
 import structlog
 from databases import new_database
-from encoded import forget
+from encoded import forget, hash_libraries_once
 from examples import tries
 from hypothesis import settings
 from running import RunningService
@@ -34,6 +34,7 @@ structlog.configure([*_PROCESSORS, structlog.dev.ConsoleRenderer(exception_forma
 os.environ.setdefault("SIMS_OLLAMA_URL", "none")
 settings.register_profile("ours", tries(100), derandomize=True)
 settings.load_profile("ours")
+hash_libraries_once()
 
 
 @pytest.fixture(scope="session")

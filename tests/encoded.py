@@ -9,11 +9,14 @@ import fcntl
 import os
 import shutil
 import tempfile
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 NAME = "SIMS_TEST_CACHE"
 OURS = NAME not in os.environ
 """Whether this process has made the folder, for itself and those that it starts."""
+LIBRARY = 100
+"""No test of the encoder itself asks for so many sentences."""
 FOLDER = Path(os.environ.setdefault(NAME, f"{tempfile.gettempdir()}/sims-test-cache-{os.getpid()}"))
 
 
@@ -37,6 +40,24 @@ def lend(data: Path) -> None:
     for file in (*encoded().glob("sentences-*.npz"), *FOLDER.glob("verified-*")):
         if not (cache / file.name).exists():
             shutil.copy2(file, cache / file.name)
+
+
+def hash_libraries_once() -> None:
+    """The sentences of a whole library are hashed once a process, however many tests open it without MiniLM."""
+    from motion_backend.language.sentence_encoder import HashingEncoder, Vectors
+
+    plain: Callable[[HashingEncoder, Sequence[str]], Vectors] = HashingEncoder.encode
+    known: dict[tuple[int, str], Vectors] = {}
+
+    def encode(self: HashingEncoder, texts: Sequence[str]) -> Vectors:
+        if len(texts) < LIBRARY:
+            return plain(self, texts)
+        key = self.dimension, "\n".join(texts)
+        if key not in known:
+            known[key] = plain(self, texts)
+        return known[key].copy()
+
+    HashingEncoder.encode = encode  # type: ignore[method-assign]
 
 
 def forget() -> None:

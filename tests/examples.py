@@ -7,9 +7,9 @@ from typing import Any
 
 from hypothesis import settings
 
-SCALES = {"few": 0.3, "many": 5.0}
+SCALES = {"few": 0.2, "many": 5.0}
 SCALE = SCALES[os.environ.get("SIMS_TEST_EXAMPLES") or "few"]
-MIN_COUNT = 5
+MIN_COUNT = 4
 """No property is tried with fewer, unless it asks for fewer."""
 
 

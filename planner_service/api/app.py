@@ -65,7 +65,7 @@ def create_app(parts: Parts) -> FastAPI:
 
 @cache
 def _routes() -> tuple[BaseRoute, ...]:
-    """All routes. FastAPI looks over what every one of them takes when it first meets it: once a process."""
+    """All routes. FastAPI looks over what each of them takes when it first meets it, which lasts: once a process."""
     front = APIRouter(dependencies=[Depends(only_known_parameters)], generate_unique_id_function=_operation_id)
     for router in ROUTERS:
         front.include_router(router)

@@ -13,7 +13,7 @@ from typing import Annotated, TypeVar
 from fastapi import Depends, Request
 from fastapi.dependencies.utils import get_flat_params
 from fastapi.exceptions import RequestValidationError
-from fastapi.params import ParamTypes
+from fastapi.params import Query
 from fastapi.routing import APIRoute
 from pydantic import BaseModel, ValidationError
 from starlette.requests import HTTPConnection
@@ -37,7 +37,7 @@ async def only_known_parameters(request: Request) -> None:
     if not (request.query_params and isinstance(route, APIRoute) and route.include_in_schema):
         return
     taken = get_flat_params(route.dependant)
-    known = [field.alias for field in taken if field.field_info.in_ is ParamTypes.query]
+    known = [field.alias for field in taken if isinstance(field.field_info, Query)]
     for name in request.query_params:
         if name not in known:
             raise Unprocessable(f"?{name}", f"there is no such parameter here; there are {', '.join(known) or 'none'}")

@@ -22,12 +22,12 @@ from planner_service.store.database import database_url, open_engine
 
 pytestmark = pytest.mark.service
 KILLS = int(os.environ.get("SIMS_TEST_KILLS", "2"))
-"""Moments at which processes are killed, on each database: the whole service, then its worker."""
+"""Moments at which processes are killed: the whole service, then its worker."""
 STORIES = 2
 """Stories that wait at the beginning; more are posted as these are made."""
 
 
-@pytest.mark.parametrize("database", ["sqlite", "postgresql"])
+@pytest.mark.parametrize("database", [pytest.param("sqlite", marks=pytest.mark.sweep), "postgresql"])
 def test_a_story_that_is_killed_at_any_moment_becomes_the_same_film(
     database: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:

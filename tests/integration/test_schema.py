@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 import schemathesis
+from examples import tries
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from running import PATIENCE, SHORT, RunningService, finished
@@ -25,7 +26,8 @@ CHECKS = (
     response_headers_conformance,
     response_schema_conformance,
 )
-EXAMPLES = 20
+EXAMPLES = tries(25).max_examples
+"""For each call: eight day by day."""
 
 
 @pytest.fixture(scope="module")

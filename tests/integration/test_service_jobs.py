@@ -1,4 +1,4 @@
-"""Many stories at once, one key for one story, and stopping one: over real HTTP, on both databases.
+"""Many stories at once, one key for one story, and stopping one: over real HTTP, on both databases before a release.
 
 `SIMS_TEST_STORIES` sets how many are posted at once: 50 before a release.
 """
@@ -29,7 +29,8 @@ LONG = (
 )
 
 
-@pytest.fixture(scope="module", params=["sqlite", "postgresql"])
+# Day by day one database each: that of the tests of killing is PostgreSQL.
+@pytest.fixture(scope="module", params=["sqlite", pytest.param("postgresql", marks=pytest.mark.sweep)])
 def running(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningService]:
     url = ""
     if request.param == "postgresql":

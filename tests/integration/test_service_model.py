@@ -84,6 +84,7 @@ def test_events_that_a_model_finds_are_woven(well: RunningService) -> None:
     assert story["title"] == "A Letter of Glass"
 
 
+@pytest.mark.sweep
 @pytest.mark.parametrize("method", ["matching", "direct"])
 def test_a_model_that_talks_nonsense_costs_no_story(badly: RunningService, method: str) -> None:
     story = made(badly, method=method)

@@ -6,12 +6,11 @@ from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 import numpy as np
-from small_home import contact, rise, small_home, to
+from small_home import after, backend_in, contact, rise, small_home, to
 
 from motion_backend import rotations
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Action, BodyState, Character, Emotion, Motion, Part, Skill
-from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.motion import Action, BodyState, Emotion, Motion, Part, Skill
 from motion_backend.skeleton import INDEX
 from scene_graphs.affordances.affordances import floor_spot, spots
 from scene_graphs.home import home_from_layouts
@@ -34,8 +33,6 @@ HALL = home_from_layouts(
 )  # fmt: skip
 """Larger, and everything stands in it otherwise."""
 HOMES = {"small": SMALL, "hall": HALL}
-BACKENDS = {name: ProceduralBackend() for name in HOMES}
-"""One a home: a backend knows its way in the home that it was in last."""
 WAYS = {"small": ((3.0, 1.0), (3.2, 4.5)), "hall": ((3.0, 1.0), (3.6, 8.0))}
 """Where walks start and end."""
 
@@ -114,15 +111,13 @@ class Body:
         return np.degrees(np.arctan2(trunk @ front, trunk[:, 1]))
 
 
-@cache
 def _stood(home: str, goal: tuple[float, float], facing: float, seed: int, height: float) -> BodyState:
-    state = BACKENDS[home].begin(HOMES[home], Character(height=height), seed)
     walk = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=goal, facing=facing)
-    return _advanced(home, walk, state)[1]
+    return after(HOMES[home], walk, seed=seed, height=height)
 
 
 def _advanced(home: str, action: Action, state: BodyState) -> tuple[Motion, BodyState]:
-    return BACKENDS[home].advance(HOMES[home], action, state)
+    return backend_in(HOMES[home]).advance(HOMES[home], action, state)
 
 
 @cache
@@ -135,22 +130,15 @@ def walked(caption: str, emotion: str = "neutral", home: str = "small", seed: in
 
 
 @cache
-def _arrived(skill: Skill, name: str, home: str, seed: int) -> tuple[Action, BodyState]:
-    """Before a thing, whatever is then done on it: the action without its words, and the body."""
+def _rested(skill: Skill, name: str, caption: str, emotion: str, home: str, seed: int) -> tuple[Body, BodyState]:
     if name == "floor":
         need = {Skill.SITDOWN: "sit", Skill.LIEDOWN: "lie"}[skill]
-        action = Action(skill, "", Emotion.NEUTRAL, "floor", "floor", floor_spot(need, (3.4, 3.2), 0.0))
+        action = Action(skill, caption, Emotion(emotion), "floor", "floor", floor_spot(need, (3.4, 3.2), 0.0))
     else:
-        action = contact(HOMES[home], skill, name, "")
-    state = BACKENDS[home].begin(HOMES[home], Character(), seed)
-    return action, _advanced(home, to(action), state)[1]
-
-
-@cache
-def _rested(skill: Skill, name: str, caption: str, emotion: str, home: str, seed: int) -> tuple[Body, BodyState]:
-    action, state = _arrived(skill, name, home, seed)
-    action = replace(action, caption=caption, emotion=Emotion(emotion), keyframe=1)
-    motion, state = _advanced(home, action, state)
+        action = contact(HOMES[home], skill, name, caption, Emotion(emotion))
+    arrived = after(HOMES[home], to(action), seed=seed)
+    action = replace(action, keyframe=1)
+    motion, state = _advanced(home, action, arrived)
     return Body(motion, action), state
 
 

@@ -11,15 +11,14 @@ from itertools import combinations
 import numpy as np
 import pytest
 from layers import sampled
-from small_home import contact, rise, small_home
+from small_home import after, backend_in, contact, rise, small_home
 
 from motion_backend.body.capsules import placed
 from motion_backend.body.joint_limits import limits_share
 from motion_backend.body.self_collision import self_penetration
 from motion_backend.metrics.foot_skate import skate_ratio
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Action, BodyState, Character, Emotion, Motion, Part, Skill
-from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.motion import Action, BodyState, Emotion, Motion, Part, Skill
 from motion_backend.procedural.lie.lie_pose import Bed, place_to_lie
 from motion_backend.procedural.lie.lie_styles import lie_style, wanted_edge
 from motion_backend.skeleton import INDEX
@@ -33,12 +32,10 @@ CAPTIONS: list[str] = json.loads(
 
 @cache
 def lie(caption: str, name: str = "sofa", which: int = 0, height: float = 1.70) -> Motion:
-    backend = ProceduralBackend()
-    state = backend.begin(HOME, Character(height=height), 2)
     action = contact(HOME, Skill.LIEDOWN, name, caption, which=which)
     if caption.endswith("foot on the floor"):
         action = replace(action, spot=place_to_lie([action.spot], caption) if action.spot else None)
-    return backend.advance(HOME, action, state)[0]
+    return backend_in(HOME).advance(HOME, action, after(HOME, seed=2, height=height))[0]
 
 
 def held(caption: str, name: str = "sofa", which: int = 0) -> dict[str, np.ndarray]:
@@ -152,16 +149,15 @@ def test_short_and_tall_bodies_lie_as_well(height: float) -> None:
 @cache
 def on_the_floor(caption: str) -> tuple[Action, Motion, BodyState]:
     """Lying down on the floor."""
-    backend = ProceduralBackend()
     action = Action(Skill.LIEDOWN, caption, Emotion.NEUTRAL, "floor", "floor", floor_spot("lie", (3.2, 2.6), 0.7))
-    return action, *backend.advance(HOME, action, backend.begin(HOME, Character(), 2))
+    return action, *backend_in(HOME).advance(HOME, action, after(HOME, seed=2))
 
 
 @cache
 def up_again(caption: str, how: str) -> Motion:
     """Getting up from the floor."""
     action, _, state = on_the_floor(caption)
-    return ProceduralBackend().advance(HOME, replace(rise(action, Skill.GETUP), caption=how), state)[0]
+    return backend_in(HOME).advance(HOME, replace(rise(action, Skill.GETUP), caption=how), state)[0]
 
 
 def during(motion: Motion, *parts: Part) -> slice:

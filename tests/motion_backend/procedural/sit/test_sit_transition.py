@@ -13,14 +13,13 @@ from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from layers import sampled
-from small_home import contact, rise, small_home, to
+from small_home import after, backend_in, contact, rise, small_home, to
 
 from motion_backend.body.joint_limits import CLEARLY, beyond_limits
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.body.self_collision import self_penetration
 from motion_backend.metrics import story_metrics
-from motion_backend.motion import Action, Character, Emotion, Motion, Skill
-from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.motion import Action, Emotion, Motion, Skill
 from motion_backend.procedural.collision_avoidance.body_collision import hands_round_body
 from motion_backend.procedural.emotion_style import Bearing, arm_poses
 from motion_backend.procedural.held_poses import Seat, standing
@@ -64,10 +63,7 @@ def seated(
         action = Action(Skill.SITDOWN, caption, emotion, "floor", "floor", floor_spot("sit", (3.0, 3.0), 0.0))
     else:
         action = contact(home, Skill.SITDOWN, name, caption, emotion)
-    backend = ProceduralBackend()
-    state = backend.begin(home, Character(), 3)
-    _, state = backend.advance(home, to(action), state)
-    motion, _ = backend.advance(home, replace(action, keyframe=1, hold=2.5), state)
+    motion, _ = backend_in(home).advance(home, replace(action, keyframe=1, hold=2.5), after(home, to(action)))
     return motion, motion.joint_positions().astype(np.float64)
 
 
@@ -186,11 +182,8 @@ def test_who_rises_passes_hands_round_the_thighs_and_stays_within_limits(caption
         )
     else:
         action = contact(HOME, Skill.SITDOWN, name, "sitting still")
-    backend = ProceduralBackend()
-    state = backend.begin(HOME, Character(), 3)
-    _, state = backend.advance(HOME, to(action), state)
-    _, state = backend.advance(HOME, replace(action, keyframe=1), state)
-    motion, _ = backend.advance(HOME, replace(rise(action), caption=caption, keyframe=2), state)
+    state = after(HOME, to(action), replace(action, keyframe=1))
+    motion, _ = backend_in(HOME).advance(HOME, replace(rise(action), caption=caption, keyframe=2), state)
     positions, world = motion.skeleton.forward_kinematics(motion.root_positions, motion.local_rotations)
     assert self_penetration(motion.skeleton, positions.astype(np.float64), world).max() < 0.05
     assert beyond_limits(motion.local_rotations).max() < CLEARLY
@@ -232,11 +225,8 @@ def test_slow_rising_leans_on_the_knees_and_abrupt_rising_is_quicker() -> None:
     times, near = {}, {}
     for caption in ("stand up", "stand up abruptly", "stand up slowly"):
         action = contact(HOME, Skill.SITDOWN, "chair", "crossing arms")
-        backend = ProceduralBackend()
-        state = backend.begin(HOME, Character(), 3)
-        _, state = backend.advance(HOME, to(action), state)
-        _, state = backend.advance(HOME, replace(action, keyframe=1), state)
-        motion, _ = backend.advance(HOME, replace(rise(action), caption=caption, keyframe=2), state)
+        state = after(HOME, to(action), replace(action, keyframe=1))
+        motion, _ = backend_in(HOME).advance(HOME, replace(rise(action), caption=caption, keyframe=2), state)
         joints = motion.joint_positions().astype(np.float64)
         times[caption] = len(motion)
         near[caption] = np.linalg.norm(joints[:, INDEX["left_wrist"]] - joints[:, INDEX["left_knee"]], axis=1).min()

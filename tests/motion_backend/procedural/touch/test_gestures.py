@@ -8,12 +8,11 @@ from functools import cache
 import numpy as np
 import pytest
 from for_each import for_each
-from small_home import contact, small_home, to
+from small_home import after, backend_in, contact, small_home, to
 
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.metrics import story_metrics
 from motion_backend.motion import Action, Character, Emotion, Motion, Skill
-from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.procedural.emotion_style import Bearing, arm_poses
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.lie.lie_styles import lie_style
@@ -53,11 +52,8 @@ TOUCHING = {
 @cache
 def performed(action: Action) -> tuple[Motion, np.ndarray]:
     """The action after the walk to it: its motion and world joints (T, 22, 3)."""
-    backend = ProceduralBackend()
-    state = backend.begin(HOME, Character(), 3)
-    if action.skill is not Skill.LOCO:
-        _, state = backend.advance(HOME, to(action), state)
-    motion, _ = backend.advance(HOME, replace(action, keyframe=1), state)
+    state = after(HOME) if action.skill is Skill.LOCO else after(HOME, to(action))
+    motion, _ = backend_in(HOME).advance(HOME, replace(action, keyframe=1), state)
     return motion, motion.joint_positions().astype(np.float64)
 
 
@@ -162,7 +158,7 @@ def test_what_is_picked_up_is_held_before_the_body() -> None:
 
 
 def test_what_is_picked_up_is_carried_on_the_way_until_it_is_put_down() -> None:
-    backend, pick = ProceduralBackend(), contact(HOME, Skill.TOUCH, "table", "pick up with the right hand")
+    backend, pick = backend_in(HOME), contact(HOME, Skill.TOUCH, "table", "pick up with the right hand")
     put = contact(HOME, Skill.TOUCH, "shelf", "put down with the right hand")
     state = backend.begin(HOME, Character(), 3)
     least = []
@@ -187,9 +183,8 @@ def test_who_writes_types_or_eats_has_it_on_the_lap(caption: str) -> None:
 
 @pytest.mark.parametrize("height", [1.5, 1.9])
 def test_a_body_of_other_height_steps_straight_to_where_it_sits_down(height: float) -> None:
-    backend, action = ProceduralBackend(), contact(HOME, Skill.SITDOWN, "chair", "sitting still")
-    _, state = backend.advance(HOME, to(action), backend.begin(HOME, Character(height=height), 3))
-    motion, _ = backend.advance(HOME, action, state)
+    action = contact(HOME, Skill.SITDOWN, "chair", "sitting still")
+    motion, _ = backend_in(HOME).advance(HOME, action, after(HOME, to(action), height=height))
     steps = np.linalg.norm(np.diff(motion.root_positions[:, [0, 2]], axis=0), axis=1)
     assert steps.sum() < 0.42 * height / 1.7 + 0.12
 

@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from small_home import ROOM, small_home
+from small_home import ROOM, after, backend_in, small_home
 
 from motion_backend import rotations
 from motion_backend.body.scene_collision import Obstacles
-from motion_backend.motion import Action, Character, Emotion, Motion, Skill
-from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.motion import Action, Emotion, Motion, Skill
 from motion_backend.procedural.touch.hand_captions import FINGER, FINGERS, Laid
 from motion_backend.procedural.touch.hand_contacts import free_stroke, palm_on, suits
 from motion_backend.skeleton import HAND_REST, INDEX
@@ -29,11 +28,9 @@ WRIST = INDEX["right_wrist"]
 
 def act(home: Home, name: str, caption: str, height: str = "medium") -> Motion:
     spot = next(s for s in spots(home.object(f"0/{name}"), "touch") if s.height == height)
-    backend = ProceduralBackend()
     walk = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=spot.standing, facing=spot.approach)
-    state = backend.advance(home, walk, backend.begin(home, Character(), 3))[1]
     action = Action(Skill.TOUCH, caption, Emotion.NEUTRAL, name, f"0/{name}", spot, hold=2.5)
-    return backend.advance(home, action, state)[0]
+    return backend_in(home).advance(home, action, after(home, walk))[0]
 
 
 @cache

@@ -7,11 +7,10 @@ from functools import cache
 
 import numpy as np
 from for_each import for_each
-from small_home import ROOM
+from small_home import ROOM, after, backend_in
 
 from motion_backend.body.joint_limits import limits_share
-from motion_backend.motion import Action, Character, Emotion, Motion, Skill
-from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.motion import Action, Emotion, Motion, Skill
 from motion_backend.skeleton import INDEX
 from scene_graphs.affordances.affordances import spots
 from scene_graphs.home import home_from_layouts
@@ -26,12 +25,9 @@ HOME = home_from_layouts(
 @cache
 def act(caption: str, name: str, height: str, hand: str = "right", body: float = 1.70) -> Motion:
     spot = next(s for s in spots(HOME.object(f"0/{name}"), "touch") if s.height == height)
-    backend = ProceduralBackend()
-    state = backend.begin(HOME, Character(height=body), 4)
     walk = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=spot.standing, facing=spot.facing)
-    state = backend.advance(HOME, walk, state)[1]
     action = Action(Skill.TOUCH, caption, Emotion.NEUTRAL, name, f"0/{name}", spot, hand=hand)
-    return backend.advance(HOME, action, state)[0]
+    return backend_in(HOME).advance(HOME, action, after(HOME, walk, seed=4, height=body))[0]
 
 
 def gap(motion: Motion) -> np.ndarray:

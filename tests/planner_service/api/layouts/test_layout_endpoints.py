@@ -223,7 +223,7 @@ WANTING = {
 
 
 @pytest.mark.anyio
-@pytest.mark.parametrize("most", [1, 2, 4])
+@pytest.mark.parametrize("most", [1, 2, pytest.param(4, marks=pytest.mark.sweep)])
 async def test_a_match_says_what_every_part_of_its_distance_is_for(app: FastAPI, most: int) -> None:
     asked = {"graph": WANTING, "k": 4, "max_rooms": most}
     answer = LayoutMatches.model_validate((await ask(app, "/v1/layouts/retrieve", "POST", json=asked)).json())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from examples import tries
 
 from planner_service.api.layouts import views
 from planner_service.api.layouts.views import retrieved
@@ -32,13 +33,16 @@ def query(rng: np.random.Generator) -> FurnitureGraph:
     return graph_from_uses([(WORDS[int(rng.integers(3))], int(rng.integers(1, 4))) for _ in range(8)])
 
 
+ROUNDS = tries(100).max_examples
+
+
 @pytest.mark.parametrize("k", [1, 2])
 @pytest.mark.parametrize("types", [pytest.param(TYPES[:1], marks=pytest.mark.sweep), TYPES])
 def test_what_is_called_proven_is_what_is_found_without_a_limit(
     types: tuple[str, ...], k: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rng, proven = np.random.default_rng(0), 0
-    for _ in range(60):
+    for _ in range(ROUNDS):
         index, graph = library(rng), query(rng)
         right = retrieved(index, graph, k, types)
         for steps in (2, 5, 8, 12):
