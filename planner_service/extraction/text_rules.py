@@ -127,7 +127,7 @@ def _tells(read: ReadBeat) -> bool:
 def _why(read: ReadBeat, hero: str, why: str) -> str:
     """Why a beat is not shown; somebody else's deed would be, were the script about them."""
     if read.beat.who and is_person(read.beat.who) and hero and deed_of(read.clause) is not None:
-        return f"{read.beat.who} does it, and the script follows {hero if hero.lower() not in _PRONOUNS else 'another'}"
+        return f"the script follows {'somebody else' if hero.lower() in _PRONOUNS else hero}"
     return why
 
 

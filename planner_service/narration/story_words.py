@@ -7,7 +7,7 @@ from functools import cache, cached_property
 
 from motion_backend.motion import Skill
 from planner_service.narration.narrative_voice import require_blanks
-from planner_service.themes.patterns import compiled, with_parts
+from planner_service.themes.patterns import pattern_at
 from scene_graphs.data_tables import read_table, require_known, table
 
 
@@ -76,10 +76,7 @@ class StoryWords:
         """Of times and titles, what to look for and the words for it."""
         rows = {"times": self.times, "titles": self.titles}
         return {
-            name: tuple(
-                (compiled(with_parts(f"{name}.{at}.pattern", row.pattern, {})), row.words)
-                for at, row in enumerate(said)
-            )
+            name: tuple((pattern_at(f"{name}.{at}.pattern", row.pattern), row.words) for at, row in enumerate(said))
             for name, said in rows.items()
         }
 
