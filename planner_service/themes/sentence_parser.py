@@ -189,18 +189,26 @@ def _whole(pieces: list[_Piece]) -> list[_Piece]:
     """Pieces without a verb put to the one before ("bread and butter"), or to the one after ("one evening, …")."""
     whole: list[_Piece] = []
     waiting: _Piece | None = None
-    for piece in pieces:
+    for place, piece in enumerate(pieces):
         if waiting is not None:
             joint = waiting.joint if waiting.joint not in (",", "") else piece.joint if piece.joint != "," else ""
             piece = replace(piece, joint=joint, tokens=waiting.tokens + piece.tokens)
             waiting = None
         if verb_place(piece.tokens) is not None and not (whole and _is_noun_list(whole[-1], piece)):
             whole.append(piece)
-        elif whole:
+        elif whole and not _opens(piece, pieces[place + 1 :]):
             whole[-1] = replace(whole[-1], tokens=whole[-1].tokens + piece.tokens)
         else:
             waiting = piece
     return [*whole, waiting] if waiting is not None else whole
+
+
+def _opens(piece: _Piece, after: Sequence[_Piece]) -> bool:
+    """Whether a place or time belongs to the clause after it: "…, and in the kitchen, she cooks"."""
+    if piece.joint == "," or piece.tokens[0].low not in grammar().prepositions or not after:
+        return False
+    first = after[0].tokens[0]
+    return after[0].joint == "," and (first.low in grammar().subjects or first.text[:1].isupper())
 
 
 def _is_noun_list(last: _Piece, piece: _Piece) -> bool:
@@ -260,7 +268,26 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
         _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, joint, denied=group.denied,
         unable=group.unable, perfect=group.perfect, quotes=_quotes(tokens, quotes), sentence=sentence,
     )  # fmt: skip
-    return [first] if group.denied and not group.unable else _parted(first, words, group.place, piece.source)
+    parted = not group.denied or group.unable
+    parts = _parted(first, words, group.place, piece.source) if parted else [first]
+    return [_placed(parts[0], _before(tokens[:place], subject), piece.source), *parts[1:]]
+
+
+def _before(tokens: Sequence[Token], subject: str) -> Sequence[Token]:
+    """Where, when or how it is done, where that stands before who does it: "in the kitchen Anna reads"."""
+    if not subject or tokens[0].low not in grammar().prepositions:
+        return ()
+    size = len(subject.split())
+    texts = [token.text for token in tokens]
+    return tokens[: next((at for at in range(len(texts) - size, -1, -1) if texts[at : at + size] == subject.split()), 0)]
+
+
+def _placed(clause: Clause, before: Sequence[Token], source: str) -> Clause:
+    """The clause with what stands before its subject at its end."""
+    if not before or clause.quotes:
+        return clause
+    text = _text(source, before)
+    return replace(clause, text=f"{clause.text} {text[0].lower()}{text[1:]}", lemmas=(*clause.lemmas, *_lemmas(before)))
 
 
 def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> list[Clause]:
