@@ -119,7 +119,7 @@ def _pieces(sentence: str) -> list[_Piece]:
     joint, current = "", list[Token]()
     for place, token in enumerate(tokens):
         if token.text == "," or (
-            token.low in grammar().joints and _joins(tokens, place) and (not current or _may_end(token.low, current))
+            token.low in grammar().joints and _joins(tokens, place) and (not current or _may_end(token.low, [*(word for piece in cut for word in piece.tokens), *current]))
         ):
             if current:
                 cut.append(_Piece(joint, tuple(current), source))
@@ -166,9 +166,11 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
     return True
 
 
-def _may_end(joint: str, current: Sequence[Token]) -> bool:
-    """Whether what stands before a joint can be a clause of its own: not "a nurse" of "a nurse after a night shift"."""
-    return joint not in grammar().earlier | {"before", "until", "without"} or verb_place(current) is not None
+def _may_end(joint: str, before: Sequence[Token]) -> bool:
+    """Whether what stands before a joint can be a clause, or the end of one that lists things: not "a nurse" of
+    "a nurse after a night shift", but "a pear" of "eats a plum and a pear after dinner is cooked"."""
+    leads = joint in grammar().earlier | {"before", "until", "without"}
+    return not leads or verb_place(before) is not None
 
 
 def _starts_gerund(rest: Sequence[Token]) -> bool:
@@ -230,7 +232,8 @@ def _in_time(pieces: Sequence[_Piece]) -> list[int]:
     for place, piece in enumerate(pieces):
         if ordered and piece.joint in grammar().earlier:
             main = pieces[ordered[-1]]
-            is_state = any(token.low in grammar().be for token in main.tokens[:3])
+            verb = verb_place(main.tokens)
+            is_state = verb is not None and main.tokens[verb].low in grammar().be
             if piece.joint == "as" or (is_state and piece.joint != "after"):
                 ordered.append(place)
             else:
