@@ -122,7 +122,7 @@ def _pieces(sentence: str) -> list[_Piece]:
     joint, current = "", list[Token]()
     for place, token in enumerate(tokens):
         if token.text == "," or (
-            token.low in grammar().joints and _joins(tokens, place) and (not current or _may_end(token.low, current))
+            token.low in grammar().joints and _joins(tokens, place) and (not current or _may_end(token.low, [*(word for piece in cut for word in piece.tokens), *current]))
         ):
             if current:
                 cut.append(_Piece(joint, tuple(current), source))
@@ -170,9 +170,11 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
     return True
 
 
-def _may_end(joint: str, current: Sequence[Token]) -> bool:
-    """Whether what stands before a joint can be a clause of its own: not "a nurse" of "a nurse after a night shift"."""
-    return joint not in grammar().earlier | {"before", "until", "without"} or verb_place(current) is not None
+def _may_end(joint: str, before: Sequence[Token]) -> bool:
+    """Whether what stands before a joint can be a clause, or the end of one that lists things: not "a nurse" of
+    "a nurse after a night shift", but "a pear" of "eats a plum and a pear after dinner is cooked"."""
+    leads = joint in grammar().earlier | {"before", "until", "without"}
+    return not leads or verb_place(before) is not None
 
 
 def _starts_gerund(rest: Sequence[Token]) -> bool:
@@ -193,18 +195,26 @@ def _whole(pieces: list[_Piece]) -> list[_Piece]:
     """Pieces without a verb put to the one before ("bread and butter"), or to the one after ("one evening, …")."""
     whole: list[_Piece] = []
     waiting: _Piece | None = None
-    for piece in pieces:
+    for place, piece in enumerate(pieces):
         if waiting is not None:
             joint = waiting.joint if waiting.joint not in (",", "") else piece.joint if piece.joint != "," else ""
             piece = replace(piece, joint=joint, tokens=waiting.tokens + piece.tokens)
             waiting = None
         if verb_place(piece.tokens) is not None and not (whole and _is_noun_list(whole[-1], piece)):
             whole.append(piece)
-        elif whole:
+        elif whole and not _opens(piece, pieces[place + 1 :]):
             whole[-1] = replace(whole[-1], tokens=whole[-1].tokens + piece.tokens)
         else:
             waiting = piece
     return [*whole, waiting] if waiting is not None else whole
+
+
+def _opens(piece: _Piece, after: Sequence[_Piece]) -> bool:
+    """Whether a place or time belongs to the clause after it: "…, and in the kitchen, she cooks"."""
+    if piece.joint == "," or piece.tokens[0].low not in grammar().prepositions or not after:
+        return False
+    first = after[0].tokens[0]
+    return after[0].joint == "," and (first.low in grammar().subjects or first.text[:1].isupper())
 
 
 def _is_noun_list(last: _Piece, piece: _Piece) -> bool:
@@ -226,7 +236,8 @@ def _in_time(pieces: Sequence[_Piece]) -> list[int]:
     for place, piece in enumerate(pieces):
         if ordered and piece.joint in grammar().earlier:
             main = pieces[ordered[-1]]
-            is_state = any(token.low in grammar().be for token in main.tokens[:3])
+            verb = verb_place(main.tokens)
+            is_state = verb is not None and main.tokens[verb].low in grammar().be
             if piece.joint == "as" or (is_state and piece.joint != "after"):
                 ordered.append(place)
             else:
@@ -264,7 +275,26 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
         _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, joint, denied=group.denied,
         unable=group.unable, perfect=group.perfect, quotes=_quotes(tokens, quotes), sentence=sentence,
     )  # fmt: skip
-    return [first] if group.denied and not group.unable else _parted(first, words, group.place, piece.source)
+    parted = not group.denied or group.unable
+    parts = _parted(first, words, group.place, piece.source) if parted else [first]
+    return [_placed(parts[0], _before(tokens[:place], subject), piece.source), *parts[1:]]
+
+
+def _before(tokens: Sequence[Token], subject: str) -> Sequence[Token]:
+    """Where, when or how it is done, where that stands before who does it: "in the kitchen Anna reads"."""
+    if not subject or tokens[0].low not in grammar().prepositions:
+        return ()
+    size = len(subject.split())
+    texts = [token.text for token in tokens]
+    return tokens[: next((at for at in range(len(texts) - size, -1, -1) if texts[at : at + size] == subject.split()), 0)]
+
+
+def _placed(clause: Clause, before: Sequence[Token], source: str) -> Clause:
+    """The clause with what stands before its subject at its end."""
+    if not before or clause.quotes:
+        return clause
+    text = _text(source, before)
+    return replace(clause, text=f"{clause.text} {text[0].lower()}{text[1:]}", lemmas=(*clause.lemmas, *_lemmas(before)))
 
 
 def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> list[Clause]:

@@ -51,7 +51,7 @@ def _step(words: Sequence[Token], group: VerbGroup) -> int:
     if low in ("should", "might") and verb_place(words[at + 1 : at + 3]) is not None:
         group.denied = True
         return 1
-    if low in grammar().auxiliaries and (low in grammar().modals or _verb_follows(words, at)):
+    if low in grammar().auxiliaries and (low in grammar().modals or _verb_follows(words, at) or _hinders(words, at)):
         group.perfect |= low == "had"
         return 1
     if low == "had" and ahead == "been":
@@ -66,6 +66,9 @@ def _denying_step(words: Sequence[Token], group: VerbGroup, low: str, base: str,
     near = [token.low for token in words[at : at + 3]]
     if low == "going" and ahead == "to" and len(near) > 2 and _is_deed(near[2]):
         step = 2
+    elif low == "able" and ahead == "to":
+        group.unable |= group.denied
+        return 2
     elif low in ("unable", "about", "afraid", "too") and "to" in near:
         group.unable |= low == "unable"
         step = near.index("to") + 1
@@ -90,6 +93,12 @@ def _passing_step(words: Sequence[Token], at: int, low: str, base: str) -> int:
 
 def _is_deed(word: str) -> bool:
     return verb_of(word) == word and word not in grammar().not_verbs_after_to
+
+
+def _hinders(words: Sequence[Token], at: int) -> bool:
+    """Whether "to be" only tells whether the deed after it can be done: "is not able to sleep"."""
+    ahead = [token.low for token in words[at + 1 : at + 4] if token.low not in grammar().adverbs | grammar().denials]
+    return words[at].low in grammar().be and ahead[:1] in (["able"], ["unable"], ["about"], ["afraid"]) and "to" in ahead
 
 
 def _verb_follows(words: Sequence[Token], at: int) -> bool:
