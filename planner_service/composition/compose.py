@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from planner_service.composition import llm_planner
-from planner_service.composition.beat_service import serve_beats
+from planner_service.composition.beat_planner import serve_beats
 from planner_service.composition.direct_generation import direct_by_rules
 from planner_service.composition.request import RULES, Record, Request
-from planner_service.composition.script_matching import match
+from planner_service.composition.script_retrieval import match
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe
 from planner_service.scripts.script_library import ScriptLibrary

@@ -9,7 +9,7 @@ from for_each import for_each
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from planner_service.composition.request import Record, Request
-from planner_service.composition.script_matching import match
+from planner_service.composition.script_retrieval import match
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.script import Beat, LongScript
 from planner_service.scripts.script_library import Features, ScriptLibrary
