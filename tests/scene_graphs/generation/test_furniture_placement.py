@@ -78,6 +78,50 @@ def test_no_wing_of_a_room_is_too_narrow(shell: Shell) -> None:
             assert 2 * (wall - cut) >= MIN_WING_WIDTH - 1e-6
 
 
+kitchens = st.tuples(st.integers(0, 10_000), st.booleans(), st.booleans(), st.booleans())
+
+
+@given(kitchens)
+def test_a_kitchen_stands_in_level_lines_that_one_can_stand_before(kitchen: tuple[int, bool, bool, bool]) -> None:
+    seed, goes_round, microwave, dishwasher = kitchen
+    group = furniture_groups.kitchen(np.random.default_rng(seed), -1, goes_round, microwave, dishwasher)
+    standing = [item for item in group.items if item.stands]
+    covered = [rectangle((item.x, item.z), item.size[0], item.size[2], item.yaw) for item in standing]
+    clear = shapely.union_all([shapely.box(x0, z0, x1, z1) for x0, x1, z0, z1 in group.clear])
+    assert len({item.size[1] for item in standing if item.size[1] < 1.0}) == 1
+    assert {item.yaw for item in standing} == ({0.0, pi / 2} if goes_round else {0.0})
+    for number, (item, piece) in enumerate(zip(standing, covered, strict=True)):
+        assert not any(piece.meets(other) for other in covered[:number])
+        assert polygon(piece).intersection(clear).area < 1e-6
+        # The far end of the counter in a corner is stood at, of all others the middle.
+        along = item.size[0] / 2 - 0.3 if item is standing[0] and goes_round else 0.0
+        before = polygon(rectangle(piece.at(along, piece.half_depth + 0.45), 0.4, 0.7, item.yaw))
+        assert clear.buffer(1e-6).covers(before)
+
+
+@given(kitchens)
+def test_what_is_on_a_counter_of_a_kitchen_lies_within_its_top(kitchen: tuple[int, bool, bool, bool]) -> None:
+    seed, *details = kitchen
+    items = furniture_groups.kitchen(np.random.default_rng(seed), 1, *details).items
+    laid = [item for item in items if item.on is not None]
+    assert [item.category for item in laid] == ["kitchen_sink", *["microwave"] * details[1]]
+    for item in laid:
+        below = items[item.on or 0]
+        top, piece = (rectangle((one.x, one.z), one.size[0], one.size[2], one.yaw) for one in (below, item))
+        assert (below.category, below.size[1], below.yaw) == ("kitchen_counter", item.y, item.yaw)
+        assert polygon(top).covers(polygon(piece))
+
+
+@given(kitchens)
+def test_a_kitchen_at_the_other_end_of_a_wall_is_its_mirror_image(kitchen: tuple[int, bool, bool, bool]) -> None:
+    seed, *details = kitchen
+    left, right = (furniture_groups.kitchen(np.random.default_rng(seed), end, *details) for end in (-1, 1))
+    assert left.span == pytest.approx((-right.span[1], -right.span[0]))
+    assert [(item.category, -item.x, item.z, -item.yaw) for item in left.items] == [
+        (item.category, item.x, item.z, item.yaw) for item in right.items
+    ]
+
+
 @given(st.integers(0, 10_000), st.sampled_from([2, 3, 4, 5, 6]))
 def test_chairs_at_a_table_stand_apart(seed: int, seats: int) -> None:
     items = furniture_groups.dining(np.random.default_rng(seed), seats).items

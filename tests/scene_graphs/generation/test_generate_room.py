@@ -24,6 +24,7 @@ WORDS = (
     "sofa", "bed", "armchair", "chair", "cabinet", "table", "shelf", "lamp", "closet", "desk", "stool", "loveseat",
     "bookshelf", "dressing table", "coffee table", "tv stand", "dining table", "nightstand", "wardrobe",
 )  # fmt: skip
+KITCHEN = {*("kitchen_counter", "kitchen_cabinet", "kitchen_sink", "stove", "refrigerator", "dishwasher", "microwave")}
 
 
 @tries(40)
@@ -96,6 +97,23 @@ def test_dining_rooms_seat_four_and_studies_have_a_desk_with_a_seat_or_books_wit
         there = {placed.category for placed in layout.objects}
         assert there & {"desk", "bookshelf"}, layout.id
         assert any("sit" in affordances(category) for category in there), layout.id
+
+
+def test_half_of_the_dining_rooms_hold_a_kitchen_at_which_a_body_can_cook_and_wash_up() -> None:
+    kitchens = [room for room in of_type("dining_room") if any(placed.category == "stove" for placed in room.objects)]
+    assert len(kitchens) == 50
+    for layout in kitchens:
+        there = Counter(placed.category for placed in layout.objects)
+        once = {name: there[name] for name in ("stove", "refrigerator", "kitchen_cabinet", "kitchen_sink")}
+        assert once == dict.fromkeys(once, 1), layout.id
+        assert there["kitchen_counter"] == 2, layout.id
+    for layout in kitchens[::7]:
+        check = RoomCheck(layout)
+        for placed in layout.objects:
+            if placed.category in KITCHEN:
+                touched = next(check.usable(placed, "touch"), None)
+                assert touched is not None, (layout.id, placed.id)
+                assert 0.85 < touched.point[1] < 1.1, (layout.id, placed.id)
 
 
 def test_half_of_the_living_rooms_hold_a_lounge_and_a_table_to_dine_at() -> None:

@@ -62,7 +62,7 @@ MEANT = {
 }
 """What a word of the count means beyond or short of what it means in scripts; desks and sideboards have their own."""
 KITCHEN = {"kitchen_counter", "kitchen_cabinet", "kitchen_sink", "stove", "dishwasher", "microwave"}
-UNCOUNTED = {"rug", "picture", "vase", "tv", "mirror"} | KITCHEN
+UNCOUNTED = {"rug", "picture", "vase", "tv", "mirror", *KITCHEN}
 """What real rooms were not counted for. Their kitchens are a part of the walls there, no furniture."""
 
 
