@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import groupby
+from itertools import accumulate, groupby
 from typing import Final
 
 from motion_backend.motion import Emotion
@@ -153,10 +153,13 @@ def _cut(writer: KeyframeWriter) -> list[list[PlannedKeyframe]]:
     """Its keyframes in as few stretches as hold so many deeds each, all about as long."""
     groups = [list(group) for _, group in groupby(writer.keyframes, key=lambda keyframe: keyframe.beat)]
     deeds = [1 + sum(len(keyframe.also) for keyframe in group) for group in groups]
-    for parts in range(1, len(groups) + 1):
-        share = [sum(deeds[:at]) * parts // sum(deeds) for at in range(len(groups))]
-        sizes = [sum(deeds[at] for at in range(len(groups)) if share[at] == part) for part in range(parts)]
-        if max(sizes) <= _MAX_DEEDS:
+    *before, total = accumulate(deeds, initial=0)
+    for parts in range(min(-(-total // _MAX_DEEDS), len(groups)), len(groups) + 1):
+        share = [done * parts // total for done in before]
+        sizes = Counter[int]()
+        for part, size in zip(share, deeds, strict=True):
+            sizes[part] += size
+        if max(sizes.values()) <= _MAX_DEEDS:
             break
     numbered = zip(share, groups, strict=True)
     return [[one for _, group in some for one in group] for _, some in groupby(numbered, key=lambda pair: pair[0])]
