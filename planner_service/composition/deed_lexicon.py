@@ -87,9 +87,14 @@ class DeedTable:
                     raise ValueError(f"deed {row.says[0]!r}: {word!r} is no furniture we know")
 
     @cached_property
-    def patterns(self) -> tuple[tuple[Pattern, DeedRow], ...]:
-        """Every way to say a deed, in the order of the rows."""
-        return tuple((_pattern(says), row) for row in self.deed for says in row.says)
+    def ways(self) -> Mapping[str, Sequence[tuple[Pattern, DeedRow]]]:
+        """Every way to say a deed by each word that may begin it, "" for a gap, in the order of the rows."""
+        found: dict[str, list[tuple[Pattern, DeedRow]]] = {}
+        for row in self.deed:
+            for pattern in map(_pattern, row.says):
+                for first in pattern[0] or ("",):
+                    found.setdefault(first, []).append((pattern, row))
+        return found
 
     @cached_property
     def places(self) -> Mapping[str, tuple[str, ...]]:
@@ -162,11 +167,11 @@ def _named(clause: Clause, about: str) -> list[str]:
 
 def _row(clause: Clause, about: str) -> DeedRow | None:
     """The first row that the clause's words fit, from its verb on; else from a later -ing on; else by its things."""
-    table = deed_table()
+    ways, starts = deed_table().ways, list(_starts(clause))
     for anchored in (True, False):  # patterns that begin with a gap fit any verb, where no other does
-        for lemmas in _starts(clause):
-            for pattern, row in table.patterns:
-                if bool(pattern[0]) is anchored and _fits(pattern, lemmas):
+        for lemmas in starts:
+            for pattern, row in ways.get("".join(lemmas[:1]) if anchored else "", ()):
+                if _fits(pattern, lemmas):
                     return row
     return _by_things(clause, about)
 

@@ -64,7 +64,7 @@ def _packed(scene: TextScene) -> Iterator[tuple[Line, ...]]:
     packed: list[Line] = []
     letters = 0
     for line in scene.lines:
-        for text in _fitting(line.text, most - _ROUND_A_LINE):
+        for text in fitting(line.text, most - _ROUND_A_LINE):
             size = len(text) + _ROUND_A_LINE
             if packed and letters + size > most:
                 yield tuple(packed)
@@ -75,7 +75,7 @@ def _packed(scene: TextScene) -> Iterator[tuple[Line, ...]]:
         yield tuple(packed)
 
 
-def _fitting(text: str, most: int) -> Iterator[str]:
+def fitting(text: str, most: int) -> Iterator[str]:
     """The text in parts of at most so many letters: whole sentences, else whole words, else letters."""
     while len(text) > most:
         head = text[:most]

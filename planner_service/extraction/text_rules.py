@@ -5,19 +5,20 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import groupby
+from itertools import accumulate, groupby
 from typing import Final
 
 from motion_backend.motion import Emotion
 from planner_service.composition.deed_lexicon import deed_of, room_of
 from planner_service.composition.keyframe_writer import KeyframeWriter
+from planner_service.extraction.llm_text import fitting
 from planner_service.extraction.script_writer import Draft, Maker
 from planner_service.extraction.text_scenes import Line, TextScene
 from planner_service.scripts.emotion_classifier import clear_moods
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import EMOTIONS, Keyframe, PlannedKeyframe
 from planner_service.scripts.script_repair import repair
-from planner_service.themes.beats import ReadBeat, head_of, hero_of, is_person, read_beats, rooms_in
+from planner_service.themes.beats import MAX_THEME_LENGTH, ReadBeat, head_of, hero_of, is_person, read_beats, rooms_in
 from planner_service.themes.protagonist import pronouns_of
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.verb_finder import is_plural
@@ -96,25 +97,28 @@ def _clauses_in(scene: TextScene) -> tuple[list[Line], list[Clause]]:
     """What the scene tells, clause by clause, each with its line."""
     found: list[tuple[Line, Clause]] = []
     for line in scene.lines:
-        first = found[-1][1].sentence + 1 if found else 0
-        clauses = () if line.spoken else clauses_of_text(line.text)
-        found += [(line, replace(clause, sentence=first + clause.sentence)) for clause in clauses]
+        # The time that finding sentences takes grows with the square of a text's length.
+        for text in () if line.spoken else fitting(line.text, MAX_THEME_LENGTH):
+            first = found[-1][1].sentence + 1 if found else 0
+            found += [(line, replace(one, sentence=first + one.sentence)) for one in clauses_of_text(text)]
     return [line for line, _ in found], _named([clause for _, clause in found])
 
 
 def _named(clauses: Sequence[Clause]) -> list[Clause]:
     """With "he", "she" and "the man" as whom they stand for: the last that was named and may be called so."""
-    people: list[str] = []
+    people: dict[str, str] = {}
+    """Their names and pronouns, the last that was named last."""
     named: list[Clause] = []
     for clause in clauses:
-        called = pronouns_of(clause.doer)
-        is_pronoun = clause.doer.lower() in _PRONOUNS
-        known = [one for one in people if pronouns_of(one) == called or (is_pronoun and not pronouns_of(one))]
-        the_only = clause.doer.lower().startswith("the ") and called and len({*known}) == 1
+        who, called = clause.doer, pronouns_of(clause.doer)
+        is_pronoun = who.lower() in _PRONOUNS
+        known = [one for one, pronouns in people.items() if pronouns == called or (is_pronoun and not pronouns)]
+        the_only = who.lower().startswith("the ") and called and len(known) == 1
         if known and (is_pronoun or the_only):
             clause = replace(clause, doer=known[-1], subject=clause.subject and known[-1])
-        elif is_person(clause.doer) and not is_pronoun and not is_plural(head_of(clause.doer).lower()):
-            people.append(clause.doer)
+        elif is_person(who) and not is_pronoun and not is_plural(head_of(who).lower()):
+            people.pop(who, None)
+            people[who] = called
         named.append(clause)
     return named
 
@@ -153,10 +157,13 @@ def _cut(writer: KeyframeWriter) -> list[list[PlannedKeyframe]]:
     """Its keyframes in as few stretches as hold so many deeds each, all about as long."""
     groups = [list(group) for _, group in groupby(writer.keyframes, key=lambda keyframe: keyframe.beat)]
     deeds = [1 + sum(len(keyframe.also) for keyframe in group) for group in groups]
-    for parts in range(1, len(groups) + 1):
-        share = [sum(deeds[:at]) * parts // sum(deeds) for at in range(len(groups))]
-        sizes = [sum(deeds[at] for at in range(len(groups)) if share[at] == part) for part in range(parts)]
-        if max(sizes) <= _MAX_DEEDS:
+    *before, total = accumulate(deeds, initial=0)
+    for parts in range(min(-(-total // _MAX_DEEDS), len(groups)), len(groups) + 1):
+        share = [done * parts // total for done in before]
+        sizes = Counter[int]()
+        for part, size in zip(share, deeds, strict=True):
+            sizes[part] += size
+        if max(sizes.values()) <= _MAX_DEEDS:
             break
     numbered = zip(share, groups, strict=True)
     return [[one for _, group in some for one in group] for _, some in groupby(numbered, key=lambda pair: pair[0])]

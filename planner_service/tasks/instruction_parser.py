@@ -11,6 +11,7 @@ from typing import Final, cast
 from motion_backend.planners.markov_planner import Hand
 from planner_service.tasks.household_knowledge import Deed, deeds
 from planner_service.tasks.task_plan import MAX_ACTION_LENGTH, TaskError
+from planner_service.themes.lexicon import gerund, third_person
 from scene_graphs import furniture
 
 MAX_CLAUSES: Final = 12
@@ -242,25 +243,10 @@ def _verbs() -> dict[str, Deed]:
 
 @cache
 def _forms() -> dict[str, str]:
-    """Every form of every verb, and its base form."""
+    """Every present and -ing form of every verb, and its base form."""
     found = dict[str, str]()
     for verb in _verbs():
         head, _, tail = verb.partition(" ")
-        for form in _inflected(head):
+        for form in (head, third_person(head), gerund(head)):
             found.setdefault(f"{form} {tail}".strip(), verb)
     return found
-
-
-def _inflected(verb: str) -> Iterator[str]:
-    """Base form, -s and -ing."""
-    yield verb
-    yield verb + ("es" if re.search(r"(?:s|x|z|ch|sh|o)$", verb) else "s")
-    if re.search(r"[^aeiou]y$", verb):
-        yield verb[:-1] + "ies"
-    if verb == "lie":
-        yield "lying"
-    elif verb.endswith("e") and not verb.endswith("ee"):
-        yield verb[:-1] + "ing"
-    elif re.search(r"(?:^|[^aeiou])[aeiou][bdgmnpt]$", verb):
-        yield verb + verb[-1] + "ing"
-    yield verb + "ing"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from functools import cache
+from functools import cache, lru_cache
 from typing import Final
 
 from motion_backend.motion import Character
@@ -68,6 +68,7 @@ def is_name(word: str) -> bool:
     return word[:1].isupper() and (low in _PRONOUNS_OF or not (kinds_of(low) or low in _not_names()))
 
 
+@lru_cache(maxsize=2_000)
 def pronouns_of(subject: str) -> str:
     """ "he" or "she" for a person whose name or noun tells: "Anna", "the old man", "Mrs. Hill"; else ""."""
     words = re.findall(r"[^\W\d_]+", subject.lower())

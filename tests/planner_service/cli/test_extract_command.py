@@ -56,7 +56,7 @@ def test_a_text_gives_a_table_and_says_what_is_not_shown_and_who_read_it(story: 
     shown = told(sims("extract", story, "--name", "Martha's day"))
     assert "hurries-into-study-grabs-phone-desk" in shown
     assert "scene 4: nothing: nobody in it does what a body can act" in shown
-    assert "watched the rain through the window: doors and windows are no furniture" in shown
+    assert "turned until the morning: none of the captions shows it" in shown
     assert "7 short scripts of 8 scenes; by rules" in shown
     assert shown.endswith("none is kept; --add keeps them in your library, --out writes them to a file\n")
 
