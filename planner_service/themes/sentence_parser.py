@@ -121,9 +121,9 @@ def _pieces(sentence: str) -> list[_Piece]:
     cut: list[_Piece] = []
     joint, current = "", list[Token]()
     for place, token in enumerate(tokens):
-        if token.text == "," or (
-            token.low in grammar().joints and _joins(tokens, place) and (not current or _may_end(token.low, [*(word for piece in cut for word in piece.tokens), *current]))
-        ):
+        told = [*(word for piece in cut for word in piece.tokens), *current]
+        is_joint = token.low in grammar().joints and _joins(tokens, place)
+        if token.text == "," or (is_joint and (not current or _may_end(token.low, told))):
             if current:
                 cut.append(_Piece(joint, tuple(current), source))
                 joint, current = "", []
@@ -286,7 +286,8 @@ def _before(tokens: Sequence[Token], subject: str) -> Sequence[Token]:
         return ()
     size = len(subject.split())
     texts = [token.text for token in tokens]
-    return tokens[: next((at for at in range(len(texts) - size, -1, -1) if texts[at : at + size] == subject.split()), 0)]
+    starts = (at for at in range(len(texts) - size, -1, -1) if texts[at : at + size] == subject.split())
+    return tokens[: next(starts, 0)]
 
 
 def _placed(clause: Clause, before: Sequence[Token], source: str) -> Clause:

@@ -82,7 +82,7 @@ USUAL_FURNITURE = {
     *("dining table", "dining chair", "sideboard", "refrigerator", "wine cabinet", "cabinet", "shelf", "stool"),
     *("desk", "office chair", "chair", "bookshelf"),
 }
-"""What a home usually has, in the words of scripts. No shipped room has a piano, and half of the dining rooms a stove and a sink."""
+"""What a home usually has, in the words of scripts. No shipped room has a piano, half of the dining rooms a stove."""
 
 
 def why_not_executable(script: ShortScript) -> str | None:
