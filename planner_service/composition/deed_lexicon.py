@@ -30,7 +30,7 @@ _WAYS: Final = re.compile(
     re.IGNORECASE,
 )
 """A way through a home, whatever the verb that goes it."""
-_FLOOR: Final = re.compile(r"\bon the (?:\w+ )?(?:floor|ground|rug|carpet)\b")
+_FLOOR: Final = re.compile(r"(?<!feet )(?<!foot )\bon the (?:\w+ )?(?:floor|ground|rug|carpet)\b")
 _AT: Final = re.compile(r"\b(?:at|by|near|beside|before|behind|in front of|next to)\b")
 _EXPRESSED: Final = frozenset(EXPRESSIONS)
 _IT: Final = frozenset(("it", "there", "one", "them"))
@@ -138,7 +138,8 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     need = NEEDS.get(skill)
     if skill is Skill.SITDOWN and not found.rests and any(_is_bed(piece) for piece in named) and clause.verb != "sit":
         skill, need = Skill.LIEDOWN, "lie"
-    if skill is Skill.LIEDOWN and named and not any(affords(piece, "lie") for piece in named):
+    seated = named and not any(affords(piece, "lie") for piece in named) and not _FLOOR.search(clause.text)
+    if skill is Skill.LIEDOWN and seated:
         skill, need = Skill.SITDOWN, "sit"  # "collapses into the armchair"
     if need is None:
         pieces = [piece for piece in named if furniture.affordances(piece)]

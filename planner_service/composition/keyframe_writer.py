@@ -49,6 +49,7 @@ _TOUCHES: Final = (
     "touch medium height",
     "touch medium height with the left hand",
 )
+_ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
 _STANDING: Final = DeedRow(("stand",), Skill.LOCO, captions=("stand still",))
 
 
@@ -124,7 +125,7 @@ class KeyframeWriter:
 
     def _do(self, index: int, read: ReadBeat, deed: Deed) -> None:
         mood = read.beat.emotion
-        if deed.skill in self._avoided and deed.row.rests:
+        if deed.row.rests and (deed.skill in self._avoided or _ON_FEET.search(read.text)):
             deed = Deed(_STANDING, Skill.LOCO, deed.pieces if deed.named else (), deed.named)
         if deed.row.mood and mood is Emotion.NEUTRAL:
             mood = Emotion(deed.row.mood)
@@ -253,7 +254,15 @@ class KeyframeWriter:
         if not piece:
             self.why[index] = f"the home has nothing to {NEEDS[skill]} {'at' if skill is Skill.TOUCH else 'on'} for it"
             return False
-        self._put(index, skill, mood, self._one_of(captions, mood, index, skill), piece, room)
+        caption = self._one_of(captions, mood, index, skill)
+        last = self.keyframes[-1] if self.keyframes else None
+        if last is not None and (last.skill, last.furniture, last.caption) == (skill, piece, caption):
+            others = [one for one in captions if one != caption]
+            if not others:
+                self._show(index)
+                return True
+            caption = others[0]
+        self._put(index, skill, mood, caption, piece, room)
         return True
 
     def _piece(self, read: ReadBeat, deed: Deed, skill: Skill) -> tuple[str | None, str]:
@@ -360,7 +369,7 @@ def _shares() -> dict[tuple[Skill, str], dict[Emotion, float]]:
 @cache
 def _captions_of(skill: Skill, mood: Emotion) -> tuple[str, ...]:
     """Captions of a skill that show a mood and no deed, in the order of the alphabet."""
-    rows = [row for row in deed_table().deed if row.rests or row.skill is Skill.LOCO]
+    rows = [row for row in deed_table().deed if row.rests or row.skill is Skill.LOCO or row.at == ("floor",)]
     deeds = {caption for row in rows for caption in (*row.captions, *row.lying, *row.seated)}
     shares = _shares()
     return tuple(

@@ -18,6 +18,7 @@ from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.verb_finder import tokens_of
 from scene_graphs.data_tables import read_table, table
 from scene_graphs.errors import UserError
+from scene_graphs.furniture import is_known
 
 MAX_THEME_LENGTH: Final = 2000
 """Letters of a theme."""
@@ -51,7 +52,7 @@ EXPRESSIONS: Final = {
 _CODE: Final = re.compile(r"[{}<>;=\[\]_|\\^*/+]")
 _MAIN_JOINTS: Final = frozenset(("", ",", "and", "but", "so", "then", "to", "ing"))
 """What joins main clauses: whom a theme is about does what these tell."""
-_FIRST_PERSON: Final = frozenset(("i", "we", "me", "my"))
+_FIRST_PERSON: Final = frozenset(("i", "we", "me", "my", "you"))
 _PRONOUNS: Final = {"he": "he", "she": "she", "they": "they", "who": ""}
 
 
@@ -166,7 +167,7 @@ def _read(clause: Clause, hero: str) -> ReadBeat:
     if not sure and clause.subject:
         named, of_subject = _emotion(f"{clause.subject} {clause.text}")  # "a tired student …"
         emotion, sure = (named, True) if of_subject else (emotion, sure)
-    if not sure and (shown := EXPRESSIONS.get(clause.verb)):
+    if not sure and not who and (shown := EXPRESSIONS.get(clause.verb)):
         emotion, sure = shown, True
     if kind in ("other", "undone") and not sure:
         emotion = None
@@ -217,15 +218,23 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     people = [subject for subject in named if is_person(subject)]
     if any(subject.lower() == "i" for subject in named):
         return "I"
+    if named and named[0].lower() == "you":
+        return "you"
     pronoun = next((subject for subject in people if subject.lower() in ("he", "she")), "")
     one = [subject for subject in people if not (pronoun and _is_plural(subject))]
     own = [subject for subject in one if subject.split()[0].lower() not in ("his", "her", "their", "my", "its")]
-    if pronoun in own and (before := own[: own.index(pronoun)]):
-        return before[-1]
+    nouns = [subject for subject in own[: own.index(pronoun) if pronoun in own else 0] if not _is_pronoun(subject)]
+    if nouns:
+        return nouns[-1]
     if one and (one[0].lower() not in _PRONOUNS or not named[0].lower().startswith(("a ", "an "))):
         return one[0]
-    living = named[:1] if named and named[0].lower().startswith(("a ", "an ", "one ", "my ", "our ")) else []
+    opens = ("a ", "an ", "one ", "my ", "our ", *(() if people else ("the ",)))
+    living = named[:1] if named and named[0].lower().startswith(opens) and not is_known(head_of(named[0])) else []
     return next(iter([*living, *one, *people]), "")
+
+
+def _is_pronoun(subject: str) -> bool:
+    return subject.lower() in grammar().subjects
 
 
 def _is_plural(subject: str) -> bool:

@@ -153,6 +153,15 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
     rest = tokens[place + 1 :]
     if place and tokens[place - 1].low in _NO_JOINTS.get(low, ()):
         return False
+    ahead = rest[0].low if rest else ""
+    if (
+        low == "as"
+        and ahead in ("though", "if")
+        or (place and tokens[place - 1].low == "as" and low in ("though", "if"))
+    ):
+        return False
+    if low == "so" and ahead not in grammar().subjects and (is_adjective(ahead) or ahead.endswith("ly")):
+        return False  # "so fast that he forgets"
     if low == "as":
         return bool(rest) and rest[0].low in grammar().subjects | grammar().marks and verb_place(rest[:6]) is not None
     if low == "then":
@@ -384,7 +393,10 @@ def _is_called(words: Sequence[str]) -> bool:
 
 
 def _lemmas(tokens: Sequence[Token]) -> tuple[str, ...]:
-    return tuple(lemma_of(token.text) for token in tokens if token.text[:1].isalnum())
+    found = [lemma_of(token.text) for token in tokens if token.text[:1].isalnum()]
+    if len(tokens) > 1 and tokens[0].low == "lay" and tokens[1].low in grammar().marks | grammar().numbers:
+        found[0] = "lay"  # "I lay the table"
+    return tuple(found)
 
 
 def _quotes(tokens: Sequence[Token], quotes: Sequence[str]) -> tuple[str, ...]:
