@@ -154,12 +154,10 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
     if place and tokens[place - 1].low in _NO_JOINTS.get(low, ()):
         return False
     ahead = rest[0].low if rest else ""
-    if (
-        low == "as"
-        and ahead in ("though", "if")
-        or (place and tokens[place - 1].low == "as" and low in ("though", "if"))
-    ):
+    if low in ("though", "if") and place and tokens[place - 1].low == "as":
         return False
+    if low == "as" and ahead in ("though", "if"):
+        return True
     if low == "so" and ahead not in grammar().subjects and (is_adjective(ahead) or ahead.endswith("ly")):
         return False  # "so fast that he forgets"
     if low == "as":
