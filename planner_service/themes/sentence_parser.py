@@ -57,6 +57,7 @@ class Clause:
 def clauses_of_text(text: str) -> tuple[Clause, ...]:
     """What a text tells, in the order of time."""
     quotes: list[str] = []
+    text = text.replace("«", "“").replace("»", "”")  # which stand for what is said below
 
     def kept(match: re.Match[str]) -> str:
         quotes.append(match[1] or match[2])
@@ -119,7 +120,9 @@ def _pieces(sentence: str) -> list[_Piece]:
     joint, current = "", list[Token]()
     for place, token in enumerate(tokens):
         if token.text == "," or (
-            token.low in grammar().joints and _joins(tokens, place) and (not current or _may_end(token.low, [*(word for piece in cut for word in piece.tokens), *current]))
+            token.low in grammar().joints
+            and _joins(tokens, place)
+            and (not current or _may_end(token.low, [*(word for piece in cut for word in piece.tokens), *current]))
         ):
             if current:
                 cut.append(_Piece(joint, tuple(current), source))
@@ -259,6 +262,7 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     place = verb_place(tokens)
     if place is None:
         return [Clause(piece.text, "", "", _lemmas(tokens), joint, quotes=_quotes(tokens, quotes), sentence=sentence)]
+    place -= 2 * ([token.low for token in tokens[max(place - 2, 0) : place]] == ["no", "longer"])
     subject = _subject(tokens[:place])
     denials = grammar().denials - grammar().subjects
     lead = tokens[:place] if not subject else [t for t in tokens[:place] if t.low in denials]
@@ -282,7 +286,9 @@ def _before(tokens: Sequence[Token], subject: str) -> Sequence[Token]:
         return ()
     size = len(subject.split())
     texts = [token.text for token in tokens]
-    return tokens[: next((at for at in range(len(texts) - size, -1, -1) if texts[at : at + size] == subject.split()), 0)]
+    return tokens[
+        : next((at for at in range(len(texts) - size, -1, -1) if texts[at : at + size] == subject.split()), 0)
+    ]
 
 
 def _placed(clause: Clause, before: Sequence[Token], source: str) -> Clause:
@@ -316,7 +322,7 @@ def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> l
 
 def _is_beside(word: str, before: str) -> bool:
     """Whether a gerund is a second deed beside a posture or way: "lies there crying", not "the dining table"."""
-    if not (word.endswith("ing") and verb_of(word)) or is_adjective(before):
+    if not (word.endswith("ing") and verb_of(word)) or (is_adjective(before) and before not in _PARTICLES):
         return False
     return before not in (grammar().marks - {"to"}) | (grammar().prepositions - _PARTICLES)
 

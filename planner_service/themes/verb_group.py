@@ -99,8 +99,9 @@ def _is_deed(word: str) -> bool:
 
 def _hinders(words: Sequence[Token], at: int) -> bool:
     """Whether "to be" only tells whether the deed after it can be done: "is not able to sleep"."""
-    ahead = [token.low for token in words[at + 1 : at + 4] if token.low not in grammar().adverbs | grammar().denials]
-    return words[at].low in grammar().be and ahead[:1] in (["able"], ["unable"], ["about"], ["afraid"]) and "to" in ahead
+    known = grammar()
+    ahead = [token.low for token in words[at + 1 : at + 4] if token.low not in known.adverbs | known.denials]
+    return words[at].low in known.be and ahead[:1] in (["able"], ["unable"], ["about"], ["afraid"]) and "to" in ahead
 
 
 def _verb_follows(words: Sequence[Token], at: int) -> bool:
