@@ -136,8 +136,8 @@ class KeyframeWriter:
             case Skill.LOCO:
                 self._walk(index, read, deed, mood)
             case Skill.TOUCH:
-                self._add(index, read, deed, mood, Skill.TOUCH, deed.row.captions or _TOUCHES)
-                self._resting = None
+                if self._add(index, read, deed, mood, Skill.TOUCH, deed.row.captions or _TOUCHES):
+                    self._resting = None
             case Skill.SITDOWN if self._lies() and deed.row.lying and not deed.named:
                 self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)
             case _:
@@ -168,8 +168,8 @@ class KeyframeWriter:
             deed = Deed(deed.row, skill, (resting.furniture,), True)
         elif resting is not None and here and not deed.named:
             deed = Deed(deed.row, skill, (resting.furniture,), True)
-        self._add(index, read, deed, mood, skill, shown)
-        self._resting, self._plain = self.keyframes[-1], not (deed.row.rests or captions)
+        if self._add(index, read, deed, mood, skill, shown):
+            self._resting, self._plain = self.keyframes[-1], not (deed.row.rests or captions)
 
     def _same_place(self, resting: PlannedKeyframe, deed: Deed, skill: Skill) -> bool:
         kinds = furniture.categories_of(resting.furniture)
@@ -236,20 +236,21 @@ class KeyframeWriter:
 
     def _add(
         self, index: int, read: ReadBeat, deed: Deed, mood: Emotion, skill: Skill, captions: Sequence[str]
-    ) -> None:
-        """A keyframe at furniture: a part of a script where one does the same, else written."""
+    ) -> bool:
+        """A keyframe at furniture: a part of a script where one does the same, else written; whether there is any."""
         part = self.part_of(index) if mood is read.beat.emotion else None
         if part is not None and all(self._has(one.piece[0], read.room or part.script.room) for one in part.keyframes):
             self.parts.append((index, part))
             for keyframe in part.keyframes:
                 update = {"beat": index, "short_script": len(self.parts) - 1, "room": read.room or part.script.room}
                 self.keyframes.append(keyframe.model_copy(update=update))
-            return
+            return True
         room, piece = self._piece(read, deed, skill)
         if not piece:
             self.why[index] = f"the home has nothing to {NEEDS[skill]} {'at' if skill is Skill.TOUCH else 'on'} for it"
-            return
+            return False
         self._put(index, skill, mood, self._one_of(captions, mood, index, skill), piece, room)
+        return True
 
     def _piece(self, read: ReadBeat, deed: Deed, skill: Skill) -> tuple[str | None, str]:
         """Room and furniture where it is done: as the beat says, else as is usual, of what there will be."""
