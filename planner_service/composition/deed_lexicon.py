@@ -130,7 +130,7 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
 
     `about` are the words that "it" and "there" may mean furniture of.
     """
-    found = _row(clause, about)
+    found = row_of(clause, about)
     if found is None:
         return None
     named = _named(clause, about)
@@ -166,7 +166,7 @@ def _named(clause: Clause, about: str) -> list[str]:
     return pieces_in(clause.text) or (pieces_in(about)[-1:] if _IT & set(clause.lemmas[1:]) else [])
 
 
-def _row(clause: Clause, about: str) -> DeedRow | None:
+def row_of(clause: Clause, about: str) -> DeedRow | None:
     """The first row that the clause's words fit, from its verb on; else from a later -ing on; else by its things."""
     ways, starts = deed_table().ways, list(_starts(clause))
     for anchored in (True, False):  # patterns that begin with a gap fit any verb, where no other does

@@ -33,8 +33,10 @@ _ROOMS: Final = {
     "dining_room": r"dining[ -]?room|kitchen",
     "study": r"study room|(?:in|into|to|from|of) (?:the|his|her|their) (?:study|library|office)|home office",
 }
-_LOUDER: Final = {"stressed": ("drunk", "angry", "sad", "hurried")}
+_LOUDER: Final = {"stressed": ("drunk", "angry", "sad", "hurried"), "relaxed": ("drunk",)}
 """Moods that a mere hint of another one does not end within a sentence: who is angry paces with anger."""
+_ASIDE: Final = frozenset(("while", "until", "when", "after", "before", "because", "as", "since"))
+"""Joints of clauses that tell more often than others of somebody else."""
 _QUOTED: Final = re.compile(r"«\d+»")
 EXPRESSIONS: Final = {
     verb: mood
@@ -223,9 +225,12 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     pronoun = next((subject for subject in people if subject.lower() in ("he", "she")), "")
     one = [subject for subject in people if not (pronoun and _is_plural(subject))]
     own = [subject for subject in one if subject.split()[0].lower() not in ("his", "her", "their", "my", "its")]
-    nouns = [subject for subject in own[: own.index(pronoun) if pronoun in own else 0] if not _is_pronoun(subject)]
-    if nouns:
-        return nouns[-1]
+    before = [subject for subject in own[: own.index(pronoun) if pronoun in own else 0] if not _is_pronoun(subject)]
+    if before:
+        called = [subject for subject in before if pronouns_of(subject) == pronoun.lower()]
+        may_be = [subject for subject in before if not pronouns_of(subject)]
+        main = {clause.subject for clause in clauses if clause.joint not in _ASIDE}
+        return [*before, *may_be, *(subject for subject in may_be if subject in main), *called[:1]][-1]
     if one and (one[0].lower() not in _PRONOUNS or not named[0].lower().startswith(("a ", "an "))):
         return one[0]
     opens = ("a ", "an ", "one ", "my ", "our ", *(() if people else ("the ",)))

@@ -59,6 +59,7 @@ class Clause:
 def clauses_of_text(text: str) -> tuple[Clause, ...]:
     """What a text tells, in the order of time."""
     quotes: list[str] = []
+    text = text.replace("«", "“").replace("»", "”")  # which stand for what is said below
 
     def kept(match: re.Match[str]) -> str:
         quotes.append(match[1] or match[2])
@@ -270,6 +271,7 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     place = verb_place(tokens)
     if place is None:
         return [Clause(piece.text, "", "", _lemmas(tokens), joint, quotes=_quotes(tokens, quotes), sentence=sentence)]
+    place -= 2 * ([token.low for token in tokens[max(place - 2, 0) : place]] == ["no", "longer"])
     subject = _subject(tokens[:place])
     denials = grammar().denials - grammar().subjects
     lead = tokens[:place] if not subject else [t for t in tokens[:place] if t.low in denials]

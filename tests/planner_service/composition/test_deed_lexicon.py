@@ -1,0 +1,198 @@
+"""What people do at home: each saying of the table is understood, and where a deed is done follows from its words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import pytest
+from for_each import for_each
+
+from motion_backend.motion import Skill
+from planner_service.composition.deed_lexicon import (
+    Deed,
+    DeedRow,
+    deed_of,
+    deed_table,
+    names_things,
+    pieces_in,
+    room_of,
+    row_of,
+)
+from planner_service.themes.lexicon import past, third_person
+from planner_service.themes.sentence_parser import Clause, clauses_of_text
+from scene_graphs import furniture
+
+FILLINGS = ("the old", "the", "", "herself", "a")
+"""What a gap of a saying stands for."""
+
+
+def clause(text: str) -> Clause:
+    return clauses_of_text(f"She {text}.")[0]
+
+
+def deed(text: str, about: str = "") -> Deed:
+    found = deed_of(clause(text), about)
+    assert found is not None, text
+    return found
+
+
+def ways(says: str) -> Iterator[list[str]]:
+    """The saying with each of its words once."""
+    slots = [word.split("|") for word in says.split()]
+    for place, slot in enumerate(slots):
+        for word in slot if len(slot) > 1 else slot[: place == 0]:
+            yield [word if other == place else those[0] for other, those in enumerate(slots)]
+
+
+def told(words: list[str]) -> Iterator[str]:
+    """Clauses that say it, in the present and the past."""
+    if words[0] in ("cannot", "..."):
+        said = [" ".join(words if words[0] == "cannot" else [helper, *words]) for helper in ("has", "does")]
+    else:
+        said = [" ".join([form(words[0]), *words[1:]]) for form in (third_person, past)]
+    for filling in FILLINGS:
+        yield from (" ".join(one.replace("...", filling).replace("$", "").split()) for one in said)
+
+
+def test_every_saying_is_understood_as_its_row_or_an_earlier_one_of_its_skill() -> None:
+    """Else the saying can never be met, and whoever added it believes that it is."""
+    rows = deed_table().deed
+    place_of = {id(row): place for place, row in enumerate(rows)}
+    dead = []
+    for place, row in enumerate(rows):
+        for says in row.says:
+            for words in ways(says):
+                found = (place_of.get(id(one)) for text in told(words) for one in rows_of(text))
+                if not any(
+                    at is not None
+                    and at <= place
+                    and (at == place or (rows[at].skill is row.skill and bool(rows[at].why) == bool(row.why)))
+                    for at in found
+                ):
+                    dead.append((row.says[0], " ".join(words)))
+    assert dead == []
+
+
+def rows_of(text: str) -> Iterator[DeedRow | None]:
+    for one in clauses_of_text(f"She {text}."):
+        yield row_of(one, "")
+
+
+@for_each(
+    ("text", "skill", "piece"),
+    [
+        ("reads on the bed", Skill.LIEDOWN, "bed"),
+        ("reads a book at the desk", Skill.SITDOWN, "office chair"),
+        ("sleeps on the sofa", Skill.LIEDOWN, "sofa"),
+        ("lies on the floor", Skill.LIEDOWN, "floor"),
+        ("collapses into the armchair", Skill.SITDOWN, "armchair"),
+        ("sinks onto the bed", Skill.LIEDOWN, "bed"),
+        ("watches television on the loveseat", Skill.SITDOWN, "loveseat sofa"),
+        ("puts the key on the nightstand", Skill.TOUCH, "nightstand"),
+        ("walks to the wardrobe", Skill.LOCO, "wardrobe"),
+        ("dances around the coffee table", Skill.LOCO, "coffee table"),
+        ("looks for the ring under the bed", Skill.TOUCH, "bed"),
+    ],
+)
+def test_furniture_that_is_named_wins(text: str, skill: Skill, piece: str) -> None:
+    found = deed(text)
+    assert (found.skill, found.pieces[0], found.named) == (skill, piece, True)
+
+
+@for_each(
+    ("text", "about", "piece"),
+    [
+        ("sits on it", "walks to the armchair", "armchair"),
+        ("lies down there", "goes to the sofa", "sofa"),
+        ("opens it", "walks to the wardrobe", "wardrobe"),
+        ("puts it down", "takes the coat", "wardrobe"),
+        ("opens it", "takes the letter", "desk"),
+    ],
+)
+def test_it_is_what_was_named_before(text: str, about: str, piece: str) -> None:
+    assert deed(text, about).pieces[0] == piece
+    assert names_things(clause(about))
+
+
+@for_each(
+    ("text", "caption"),
+    [
+        ("works out", "skip steps running"),
+        ("works", "typing, both hands on the keyboard"),
+        ("walks up and down", "pacing back and forth"),
+        ("can't sleep", "lying with hands under head, legs crossed"),
+        ("washes the dishes", "wash with both hands"),
+        ("is sneaking to the kitchen", "walk on tiptoes"),
+        ("listens at the door", "stand still"),
+        ("tosses her coat on the bed", "put down with the right hand"),
+    ],
+)
+def test_captions_show_what_is_done(text: str, caption: str) -> None:
+    assert caption in deed(text).row.captions
+
+
+@for_each("text", ["returns to the living room", "moves to the window", "takes the tray to the kitchen", "goes home"])
+def test_ways_are_gone(text: str) -> None:
+    assert (deed(text).skill, deed(text).row.why) == (Skill.LOCO, "")
+
+
+@for_each("text", ["governs the universe", "is hot", "expands", "believes in ghosts", "knows the answer"])
+def test_what_no_body_does_at_home_is_no_deed(text: str) -> None:
+    assert deed_of(clause(text)) is None
+
+
+@for_each("text", ["leaves for work", "takes a shower", "misses the bus", "goes shopping"])
+def test_what_happens_elsewhere_has_a_reason_not_to_be_acted(text: str) -> None:
+    assert deed(text).row.why
+
+
+@for_each(
+    ("text", "pieces"),
+    [
+        ("sits at the dining table near the sofa", ["dining table", "sofa"]),
+        ("looks at the tv", ["tv stand"]),
+        ("hangs a picture, a clock and a mirror", []),
+        ("holds her chest", []),
+        ("", []),
+    ],
+)
+def test_furniture_words_are_found_in_their_order_the_longest_first(text: str, pieces: list[str]) -> None:
+    assert pieces_in(text) == pieces
+
+
+def test_words_make_one_think_of_a_room() -> None:
+    rooms = [room_of(clause(text)) for text in ("cooks", "does her homework", "sleeps in the bed", "sings")]
+    assert rooms == ["dining_room", "study", "bedroom", None]
+
+
+def test_every_furniture_word_of_the_table_is_known_and_affords_what_is_done_there() -> None:
+    table = deed_table()
+    words = {word for kept in table.kept for word in kept.at} | set(table.stands_on.values()) | set(table.seats_at)
+    words |= {seat for seats in table.seats_at.values() for seat in seats}
+    words |= {piece for those in table.usual.values() for pieces in those.values() for piece in pieces}
+    words |= {piece for row in table.deed for piece in row.at if piece != "floor"}
+    assert not {word for word in words if not furniture.is_known(word)}
+    for room, those in table.usual.items():
+        for need, pieces in those.items():
+            assert not [piece for piece in pieces if need not in furniture.affordances(piece)], (room, need)
+    for row in table.deed:
+        need = {Skill.SITDOWN: "sit", Skill.LIEDOWN: "lie", Skill.TOUCH: "touch"}.get(row.skill)
+        usable = [piece for piece in row.at if piece == "floor" or need is None or need in furniture.affordances(piece)]
+        assert len(usable) == len(row.at) or row.says[0] in ("nod off",), (row.says[0], row.at)
+
+
+@for_each(
+    ("change", "fault"),
+    [
+        (lambda row: replace(row, captions=("flies",)), "flies"),
+        (lambda row: replace(row, at=("throne of gold",)), "throne of gold"),
+        (lambda row: replace(row, mood="beige"), "beige"),
+        (lambda row: replace(row, lying=("flies",)), "flies"),
+        (lambda row: replace(row, seated=("flies",)), "flies"),
+    ],
+)
+def test_a_row_with_a_word_nobody_knows_is_refused_by_it(change: Callable[[DeedRow], DeedRow], fault: str) -> None:
+    table = deed_table()
+    with pytest.raises(ValueError, match=fault):
+        replace(table, deed=(change(table.deed[3]),))

@@ -1,0 +1,217 @@
+"""Keyframes written for beats: all that is asked for is shown or named, in order, and nothing else is acted."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+
+import pytest
+from examples import tries
+from for_each import for_each
+from hypothesis import given
+from hypothesis import strategies as st
+
+from motion_backend.language.sentence_encoder import HashingEncoder
+from motion_backend.motion import Emotion, Skill
+from planner_service.composition.beat_service import PartFinder
+from planner_service.composition.compose import compose
+from planner_service.composition.deed_lexicon import deed_of, pieces_in
+from planner_service.composition.keyframe_writer import NOT_ACTED
+from planner_service.composition.request import Request
+from planner_service.scripts.acted_beats import connects
+from planner_service.scripts.built_in_scripts import built_in
+from planner_service.scripts.caption_fallbacks import WALKS
+from planner_service.scripts.script import LongScript, PlannedKeyframe
+from planner_service.scripts.script_library import Features, ScriptLibrary
+from planner_service.scripts.script_repair import check
+from planner_service.themes.beats import ThemeError, beats_of
+from scene_graphs import furniture
+
+DEEDS = (
+    "sits down", "sits on the sofa", "reads a book", "drinks tea", "eats dinner", "falls asleep", "lies on the bed",
+    "gets up", "stands up", "walks to the window", "paces", "dances", "washes the dishes", "opens the wardrobe",
+    "searches for the keys", "types an email", "writes a letter", "watches television", "cries", "listens to music",
+    "wakes up", "cannot sleep", "phones a friend", "waters the plants", "looks out of the window", "puts the book down",
+    "is happy", "becomes very sad", "feels tired", "gets angry", "rests", "meditates", "sneaks to the kitchen",
+    "takes a shower", "remembers the war", "yodels", "goes to bed", "thinks", "waits", "lies awake",
+    "turns on the lamp",
+)  # fmt: skip
+UNDONE = ("does not sit down", "never lies down", "refuses to dance", "wants to sleep", "does not open the wardrobe")
+THEMES = st.lists(st.sampled_from(DEEDS + UNDONE), min_size=1, max_size=7).map(
+    lambda deeds: " ".join(f"She {deed}." for deed in deeds)
+)
+HOMES = st.fixed_dictionaries(
+    {},
+    optional={
+        "living_room": st.sampled_from(
+            [frozenset({"loveseat_sofa", "coffee_table"}), frozenset({"armchair", "bookshelf"})]
+        ),
+        "bedroom": st.sampled_from(
+            [frozenset({"double_bed", "wardrobe"}), frozenset({"single_bed", "nightstand", "lounge_chair"})]
+        ),
+        "study": st.sampled_from(
+            [frozenset({"desk", "office_chair"}), frozenset({"desk", "folding_chair", "cabinet"})]
+        ),
+    },
+).filter(bool)
+
+
+@cache
+def library() -> ScriptLibrary:
+    return ScriptLibrary(built_in(), Features(HashingEncoder()))
+
+
+def planned(theme: str, **asked: object) -> LongScript:
+    return compose(theme, library(), Request(**asked))  # type: ignore[arg-type]
+
+
+def planned_or_refused(theme: str, **asked: object) -> LongScript | None:
+    """None where the theme has nothing that can be acted, which is said."""
+    try:
+        return planned(theme, **asked)
+    except ThemeError:
+        return None
+
+
+def own(script: LongScript) -> list[PlannedKeyframe]:
+    """The keyframes that are more than ways to others."""
+    return [keyframe for keyframe in script.keyframes if not connects(keyframe)]
+
+
+@tries(120)
+@given(THEMES, st.integers(0, 3))
+def test_every_beat_is_shown_in_order_or_there_is_a_reason_and_a_body_can_act_it(theme: str, seed: int) -> None:
+    script = planned_or_refused(theme, seed=seed)
+    if script is None:
+        return
+    assert not check(script)
+    served = [keyframe.beat for keyframe in script.keyframes]
+    assert None not in served
+    assert served == sorted(beat for beat in served if beat is not None)
+    assert all(served.count(beat) <= 4 for beat in served)
+    shown = {beat for keyframe in script.keyframes for beat in (keyframe.beat, *keyframe.also)}
+    moods = {keyframe.mood for keyframe in script.keyframes}
+    for place, beat in enumerate(script.beats):
+        if beat.kind in NOT_ACTED:
+            assert beat.why == NOT_ACTED[beat.kind]
+            assert place not in shown
+        elif not beat.why:
+            assert place in shown or beat.emotion in moods
+        else:
+            assert place not in shown
+    assert planned(theme, seed=seed).model_dump_json() == script.model_dump_json()
+
+
+@tries(60)
+@given(THEMES)
+def test_keyframes_are_in_the_mood_of_their_beat(theme: str) -> None:
+    script = planned_or_refused(theme)
+    if script is None:
+        return
+    for keyframe in own(script):
+        assert keyframe.beat is not None
+        beat = script.beats[keyframe.beat]
+        moods = {beat.emotion, *(script.beats[also].emotion for also in keyframe.also)}
+        row = deed_of(beats_of(theme)[keyframe.beat].clause)
+        if beat.emotion is Emotion.NEUTRAL and row is not None and row.row.mood:
+            moods.add(Emotion(row.row.mood))
+        assert keyframe.mood in moods or keyframe.skill in (Skill.STANDUP, Skill.GETUP), (keyframe, beat)
+
+
+@tries(60)
+@given(THEMES)
+def test_what_is_not_done_is_not_acted_unless_another_beat_asks_for_it(theme: str) -> None:
+    script = planned_or_refused(theme)
+    if script is None:
+        return
+    done = {deed.skill for one in beats_of(theme) if one.beat.kind == "deed" and (deed := deed_of(one.clause))}
+    lying = re.search(r"wakes up|gets up", theme) or Skill.LIEDOWN in done
+    if "never lies down" in theme and not lying:
+        assert Skill.LIEDOWN not in {keyframe.skill for keyframe in script.keyframes}
+    if "does not sit down" in theme:
+        for keyframe in script.keyframes:
+            beat = script.beats[keyframe.beat or 0].text
+            assert keyframe.skill is not Skill.SITDOWN or re.search(r"sits|sofa|stands up|gets up", beat), beat
+
+
+@tries(60)
+@given(THEMES, HOMES)
+def test_in_a_given_home_only_its_furniture_is_used_unless_the_theme_names_a_piece(
+    theme: str, home: dict[str, frozenset[str]]
+) -> None:
+    script = planned_or_refused(theme, furniture=home)
+    if script is None:
+        return
+    assert not check(script)
+    known = frozenset[str]().union(*home.values())
+    named = {kind for word in pieces_in(theme) for kind in furniture.categories_of(word)}
+    for keyframe in script.keyframes:
+        if not keyframe.on_floor:
+            assert furniture.categories_of(keyframe.piece[0]) & (known | named), keyframe
+
+
+@tries(40)
+@given(THEMES, st.integers(1, 5))
+def test_seeds_change_captions_and_scripts_and_not_what_is_done(theme: str, seed: int) -> None:
+    first, other = planned_or_refused(theme), planned_or_refused(theme, seed=seed)
+    assert (first is None) == (other is None)
+    if first is None or other is None:
+        return
+    assert [(beat.text, beat.why) for beat in first.beats] == [(beat.text, beat.why) for beat in other.beats]
+    did = [[(keyframe.beat, keyframe.skill) for keyframe in own(script)] for script in (first, other)]
+    assert did[0] == did[1]
+
+
+@tries(40)
+@given(THEMES)
+def test_parts_of_scripts_do_the_beats_deed_in_its_mood_with_a_caption_that_shows_it(theme: str) -> None:
+    read = beats_of(theme)
+    for place, part in PartFinder(library()).all_of(read).items():
+        deed = deed_of(read[place].clause)
+        assert deed is not None
+        last = part.keyframes[-1]
+        assert last.skill is deed.skill
+        assert last.mood is read[place].beat.emotion is part.script.emotion
+        captions = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
+        assert not captions or last.caption in captions
+        assert all(keyframe.skill is Skill.LOCO for keyframe in part.keyframes[:-1])
+        assert len(part.keyframes) <= 2
+        named = [furniture.categories_of(piece) for piece in deed.pieces if piece != "floor"]
+        assert not named or any(furniture.categories_of(last.piece[0]) & kinds for kinds in named)
+
+
+@for_each(
+    ("theme", "told"),
+    [
+        ("She walks to the desk and sits down.", ["loco desk", "loco office chair", "sitdown office chair"]),
+        ("He sits on the sofa and reads.", ["loco sofa", "sitdown sofa"]),
+        ("He lies on the sofa and reads.", ["loco sofa", "liedown sofa"]),
+        ("She wakes up.", ["loco bed", "liedown bed", "getup bed"]),
+        ("He is sad.", ["loco floor"]),
+        ("She sits on the sofa. She is sad.", ["loco sofa", "sitdown sofa"]),
+        ("He dances.", ["loco floor"]),
+        ("She does not sit down. She reads.", ["loco floor"]),
+    ],
+)
+def test_as_few_keyframes_as_show_it_are_written(theme: str, told: list[str]) -> None:
+    script = planned(theme)
+    assert [f"{keyframe.skill.value} {keyframe.furniture}" for keyframe in script.keyframes] == told
+
+
+def test_two_beats_that_one_posture_shows_are_one_keyframe() -> None:
+    script = planned("He sits on the sofa and reads.")
+    sits = script.keyframes[-1]
+    assert ({sits.beat, *sits.also}, sits.caption) == ({0, 1}, "reading, book held in both hands")
+    assert script.acted == script.asked == 2
+
+
+def test_a_mood_alone_is_walked() -> None:
+    (walk,) = planned("He is drunk.").keyframes
+    assert (walk.skill, walk.caption, walk.mood) == (Skill.LOCO, WALKS["drunk"], Emotion.DRUNK)
+
+
+def test_what_cannot_be_done_in_a_home_is_named() -> None:
+    script = planned("She dances. She cooks dinner.", furniture={"study": frozenset({"office_chair"})})
+    assert [bool(beat.why) for beat in script.beats] == [False, True]
+    with pytest.raises(ThemeError, match="nothing to touch at"):
+        planned("She cooks dinner.", furniture={"study": frozenset()})

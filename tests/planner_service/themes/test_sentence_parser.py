@@ -1,0 +1,174 @@
+"""Sentences taken apart: nothing is lost, the order of time is right, and what is denied is known to be."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+
+from built_themes import PRONOUNS, BuiltTheme, themes
+from examples import tries
+from for_each import for_each
+from hypothesis import given
+from hypothesis import strategies as st
+
+from planner_service.themes.lexicon import grammar
+from planner_service.themes.sentence_parser import clauses_of_text, plain
+
+
+def words_of(text: str) -> Counter[str]:
+    """Its words, without those that stand for what is said."""
+    return Counter(re.findall(r"[^\W_]+", re.sub(r"«\d+»", "", text.lower())))
+
+
+def said(text: str) -> list[str]:
+    return [clause.text for clause in clauses_of_text(text)]
+
+
+@tries(300)
+@given(themes())
+def test_a_theme_built_of_clauses_is_read_back_as_those_clauses_in_the_order_of_time(theme: BuiltTheme) -> None:
+    read = clauses_of_text(theme.text)
+    assert [(clause.verb, clause.denied, clause.unable, clause.text) for clause in read] == [
+        (told.verb, told.denied, told.unable, plain(told.said)) for told in theme.told
+    ]
+    for clause, told in zip(read, theme.told, strict=True):
+        own = {theme.hero.lower(), PRONOUNS[theme.hero]}
+        assert clause.doer.lower() == told.doer.lower() or {clause.doer.lower(), told.doer.lower()} <= own
+
+
+@tries(100)
+@given(themes())
+def test_every_word_of_a_theme_is_in_one_clause_or_is_a_subject_or_a_joint(theme: BuiltTheme) -> None:
+    read = clauses_of_text(theme.text)
+    found = words_of(" ".join(f"{clause.subject} {clause.text}" for clause in read))
+    lost = words_of(plain(theme.text)) - found
+    assert not {word for word in lost if word not in grammar().joints | grammar().adverbs}
+    assert found <= words_of(plain(theme.text))
+
+
+SOUP = """he she Anna reads a book and but before after until when without eating the sofa sleeps not never sits reading
+to make tea goes , . tired is was cannot wants kitchen in on quickly then old had eaten “no” ; instead of"""
+
+
+@tries(100)
+@given(st.lists(st.sampled_from(SOUP.split()), max_size=24).map(" ".join))
+def test_no_word_of_any_text_is_read_twice(text: str) -> None:
+    read = clauses_of_text(text)
+    assert words_of(" ".join(clause.text for clause in read)) <= words_of(plain(text))
+    assert all(clause.text.strip() for clause in read)
+    assert all(clause.verb in ("", *clause.lemmas[:1]) for clause in read)
+    assert clauses_of_text(text) == read
+
+
+@for_each(
+    ("text", "told"),
+    [
+        # order
+        ("He washes up after he eats.", ["eats", "washes up"]),
+        ("Before going to bed, he reads and drinks tea.", ["reads", "drinks tea", "going to bed"]),
+        ("After eating, she sleeps.", ["eating", "sleeps"]),
+        ("He drops the glass when the phone rings.", ["the phone rings", "drops the glass"]),
+        ("He is reading when the phone rings.", ["is reading", "the phone rings"]),
+        ("A tired old student is reading when the phone rings.", ["is reading", "the phone rings"]),
+        ("She panics because guests arrive.", ["guests arrive", "panics"]),
+        ("She waits until the kettle boils.", ["waits", "the kettle boils"]),
+        # second deeds that no joint joins
+        ("She sits reading a letter.", ["sits", "reading a letter"]),
+        ("He goes to the kitchen to make tea.", ["goes to the kitchen", "make tea"]),
+        ("He lies there crying.", ["lies there", "crying"]),
+        ("She walks from room to room.", ["walks from room to room"]),
+        # lists, and where and when
+        ("He eats bread and butter, cheese and a pear.", ["eats bread and butter, cheese and a pear"]),
+        ("She eats a plum and a pear before she sleeps.", ["eats a plum and a pear", "sleeps"]),
+        ("He sits next to the window.", ["sits next to the window"]),
+        ("In the kitchen Anna reads.", ["reads in the kitchen"]),
+        ("She reads and then, in the kitchen, she cooks.", ["reads", "cooks in the kitchen"]),
+        ("1. wake up\n2. cook\n- go out", ["wake up", "cook", "go out"]),
+        ("The man then suddenly falls and finally he sleeps.", ["falls", "sleeps"]),
+        # slang
+        ("cant sleep so she gets up n makes tea", ["can not sleep", "gets up", "makes tea"]),
+        ("He wanna sleep but he doesnt lie down.", ["want to sleep", "does not lie down"]),
+        ("She hoovers the rug and texts her mother.", ["hoovers the rug", "texts her mother"]),
+    ],
+)
+def test_clauses_are_told_in_the_order_of_time(text: str, told: list[str]) -> None:
+    read = clauses_of_text(text)
+    assert [clause.text if clause.text in told else f"{clause.subject} {clause.text}" for clause in read] == told
+
+
+@for_each(
+    ("text", "verb"),
+    [
+        ("He does not sit down.", "sit"),
+        ("She doesn't eat.", "eat"),
+        ("She never eats breakfast.", "eat"),
+        ("He refuses to sleep.", "sleep"),
+        ("She decides not to read.", "read"),
+        ("He wants to sleep.", "sleep"),
+        ("He is not able to read.", "read"),
+        ("He is about to leave.", "leave"),
+        ("She is going to cook.", "cook"),
+        ("She no longer sings.", "sing"),
+        ("He avoids looking at her.", "look"),
+        ("He forgets to water the plants.", "water"),
+        ("She stops reading.", "read"),
+        ("He would not have slept.", "sleep"),
+        ("She has never danced.", "dance"),
+    ],
+)
+def test_what_is_denied_refused_or_wished_for_is_not_done(text: str, verb: str) -> None:
+    (clause,) = clauses_of_text(text)
+    assert (clause.verb, clause.denied) == (verb, True)
+
+
+@for_each(
+    ("text", "denied"),
+    [
+        ("She leaves the kitchen without eating.", [False, True]),
+        ("Without eating, he goes to bed.", [False, True]),
+        ("Instead of reading, she sleeps.", [False, True]),
+        ("He sleeps instead of working.", [False, True]),
+        ("She does not cook but reads.", [True, False]),
+        ("He begins to read and keeps on reading.", [False, False]),
+        ("He is able to read.", [False]),
+        ("He has to work.", [False]),
+    ],
+)
+def test_one_clause_that_is_denied_denies_no_other(text: str, denied: list[bool]) -> None:
+    assert [clause.denied for clause in clauses_of_text(text)] == denied
+
+
+@for_each("text", ["He cannot sleep.", "He can't sleep.", "He could not sleep.", "He is unable to sleep."])
+def test_who_cannot_do_a_thing_is_told_from_who_will_not(text: str) -> None:
+    (clause,) = clauses_of_text(text)
+    assert (clause.verb, clause.denied, clause.unable) == ("sleep", True, True)
+    assert not clauses_of_text("He does not sleep.")[0].unable
+
+
+def test_what_was_done_before_is_marked() -> None:
+    assert [clause.perfect for clause in clauses_of_text("He had eaten before he read. She has eaten.")] == [
+        True, False, False,
+    ]  # fmt: skip
+
+
+@for_each(
+    ("text", "quoted", "verbs"),
+    [
+        ('He says "I am tired." and lies down.', ["I am tired."], ["say", "lie"]),
+        ("“Where is it?” she asks. She searches.", ["Where is it?"], ["ask", "search"]),
+        ("She shouts «Come here!» and sits down.", ["Come here!"], ["shout", "sit"]),
+        ("He reads «7» to her.", ["7"], ["read"]),
+        ("She mutters 'Good night!' and goes to bed.", ["Good night!"], ["mutter", "go"]),
+    ],
+)
+def test_what_is_said_is_kept_and_its_words_are_no_clauses(text: str, quoted: list[str], verbs: list[str]) -> None:
+    read = clauses_of_text(text)
+    assert [quote for clause in read for quote in clause.quotes] == quoted
+    assert [clause.verb for clause in read] == verbs
+
+
+def test_who_does_it_lasts_to_the_end_of_the_sentence() -> None:
+    read = clauses_of_text("Her brother sings and dances while she reads and writes.")
+    assert [(clause.verb, clause.doer) for clause in read] == [
+        ("sing", "Her brother"), ("dance", "Her brother"), ("read", "she"), ("write", "she"),
+    ]  # fmt: skip
