@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Final
@@ -241,6 +241,12 @@ def _fits(pattern: Pattern, lemmas: Sequence[str]) -> bool:
     return bool(lemmas) and lemmas[0] in first and _fits(rest, lemmas[1:])
 
 
+def says(ways: Iterable[str], lemmas: Sequence[str]) -> bool:
+    """Whether words say what one of some patterns says."""
+    return any(_fits(_pattern(way), lemmas) for way in ways)
+
+
+@cache
 def _pattern(says: str) -> Pattern:
     return tuple(
         frozenset() if word == _GAP else frozenset(form for one in word.split("|") for form in (one, lemma_of(one)))

@@ -27,7 +27,7 @@ from planner_service.scripts.script_words import (
 
 K = TypeVar("K", bound=Keyframe)
 RISES: Final = {Posture.SEATED: (Skill.STANDUP, "stand up"), Posture.LYING: (Skill.GETUP, "get up")}
-_NO_WAY_TO_GO: Final = re.compile(r"\b(spin|danc|pacing|sidestep|tap |still|wav|to the front)", re.IGNORECASE)
+NO_WAY_TO_GO: Final = re.compile(r"\b(spin|danc|pacing|sidestep|tap |still|wav|to the front)", re.IGNORECASE)
 
 
 class Mending(Generic[K]):
@@ -126,7 +126,7 @@ class Mending(Generic[K]):
     def _walk(self, keyframe: K) -> K:
         """A connecting walk to a keyframe's object, in the manner of the walk just before, else of the mood."""
         before = next((k for k in reversed(self.kept) if _same_script(k, keyframe)), None)
-        if before is not None and before.skill is Skill.LOCO and not _NO_WAY_TO_GO.search(before.caption):
+        if before is not None and before.skill is Skill.LOCO and not NO_WAY_TO_GO.search(before.caption):
             caption, emotion = before.caption, before.emotion
         else:
             moods = [k.mood for k in (keyframe, *reversed(self.kept)) if _same_script(k, keyframe)]

@@ -1,88 +1,35 @@
-"""Steps to keyframes: what a body can do of each step, and with which captions (LINGO appendix C, SIMS 3.4).
-
-What furniture there is for a task, and what a body can really do at it.
-"""
+"""Steps to keyframes: what a body can do of each step, and with which captions (LINGO appendix C, SIMS 3.4)."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 
 from motion_backend.motion import Posture, Skill
-from planner_service.grounding.object_assignment import usable_offers
-from planner_service.grounding.seat_access import pullable_seats
 from planner_service.scripts.caption_actions import MAX_CAPTION_LENGTH, caption_of
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_repair import RISES
-from planner_service.tasks.household_knowledge import household, is_fixed, kept_at
-from planner_service.tasks.instruction_parser import Clause, clause_of, is_furniture
+from planner_service.tasks.household import household, kept_at
+from planner_service.tasks.instruction import Order, is_fixed, is_furniture, order_of
+from planner_service.tasks.surroundings import Surroundings
 from planner_service.tasks.task_plan import MAX_KEYFRAMES, Step, SubTask
-from scene_graphs import furniture
-from scene_graphs.home import Home
 
-
-class Surroundings:
-    """The furniture of a home; without one, anything we know may be there."""
-
-    def __init__(self, home: Home | None = None) -> None:
-        self.home = home
-        self._offers: dict[str, frozenset[str]] = {}
-        if home is not None:
-            usable = usable_offers(home)
-            seats = pullable_seats(home, usable)
-            for placed in home.objects:
-                offered = usable[placed.id] | ({"sit"} if placed.id in seats else set())
-                self._offers[placed.category] = self._offers.get(placed.category, frozenset()) | offered
-
-    def find(self, word: str, need: str = "touch", exactly: bool = False) -> str:
-        """The furniture that a word means and where a body can sit, lie or touch, as a keyframe calls it; "" if none.
-
-        Of the very kind if there is one, else, if that will do, of its class (a loveseat for a sofa); a plant is no
-        mirror, though.
-        """
-        if not furniture.is_known(word):
-            return ""
-        if self.home is None:
-            return furniture.display_name(word) if need in furniture.affordances(word) else ""
-        having = sorted(category for category, offered in self._offers.items() if need in offered)
-        exact = [category for category in having if category in furniture.categories_of(word)]
-        if not exact and not exactly and furniture.class_of(word) != "decor":
-            exact = [category for category in having if furniture.class_of(category) == furniture.class_of(word)]
-        return furniture.display_name(exact[0]) if exact else ""
-
-    def first(self, words: Iterable[str], need: str = "touch") -> str:
-        """The first of these that there is, of that very kind; "" if none."""
-        return next(filter(None, (self.find(word, need, exactly=True) for word in words)), "")
-
-    def missing(self, word: str, need: str = "touch") -> str:
-        """Why `find` found nothing."""
-        if not furniture.is_known(word):
-            return f"“{word}” is no furniture we know"
-        if need not in furniture.affordances(word):
-            return f"nobody can {need} {'the' if need == 'touch' else 'on the'} {word}"
-        return f"there is no {word} here that a body can {'touch' if need == 'touch' else need + ' on'}"
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Everything that can be sat or lain on or touched, as a person would call it."""
-        known = self._offers if self.home is not None else furniture_words()
-        return tuple(
-            sorted({furniture.display_name(word) for word in known if self.find(word) or self.find(word, "sit")})
-        )
-
-
-def furniture_words() -> tuple[str, ...]:
-    """Every kind of furniture we know."""
-    return tuple(sorted(furniture.catalogue().class_of))
-
-
-_RISES_FOR_IT: Final = "it rises for it: a hand reaches things standing"
 _MAX_PER_STEP: Final = 4
 """Keyframes that one step may take: rising, a walk, a touch or a rest."""
+_RISES_FOR_IT: Final = "it rises for it: a hand reaches things standing"
 _FROM_THERE: Final = "done from where it rests: the pose is held, and nothing moves"
 _UNDRAWN: Final = "nothing is drawn in the hands"
+_LEFT_OUT: Final = {
+    "take": "the hand is laid where it would lie; nothing is drawn in it",
+    "put": "the hand is laid where it would lie; nothing is drawn in it",
+    "carry": "the hand is laid where it would lie; nothing is drawn in it",
+    "operate": "the hand is laid on it; nothing moves",
+    "call": "a hand is held to the ear; no phone is drawn in it",
+    "use": "the pose is held; nothing is drawn in the hands",
+}
+"""What the acting of a kind of order leaves out."""
 
 
 def act_out(
@@ -136,58 +83,56 @@ class _Actor:
         """Add what a step needs; keyframes that it shares, and what its acting leaves out."""
         if len(self.keyframes) + _MAX_PER_STEP > self.most:
             raise _CannotError(f"a plan has at most {self.most} keyframes; act the rest as a plan of its own")
-        clause = clause_of(task.text)
-        if clause is None:
-            return self._unknown(task)
-        if clause.deed.kind == "never":
-            raise _CannotError(clause.deed.why)
-        word = task.furniture or clause.furniture or _furniture_of(task)
-        match clause.deed.kind:
+        order = order_of(task.text)
+        named = task.object if task.object and is_furniture(task.object) else ""
+        word = task.furniture or (order.furniture if order else "") or named
+        if order is None:
+            return self._unknown(task, word)
+        why = _LEFT_OUT.get(order.kind, "")
+        match order.kind:
+            case "never":
+                raise _CannotError(order.why_never)
             case "walk":
-                return self._walk(clause, word)
-            case "sit" | "lie" if task.category != "interaction":
-                need, skill = ("sit", Skill.SITDOWN) if clause.deed.kind == "sit" else ("lie", Skill.LIEDOWN)
-                return self._rest(skill, self._found(word or self.at, need) if word or self.at else "floor")
+                return self._walk(task, order, word), ""
+            case "rest":
+                need = "sit" if order.deed.skill is Skill.SITDOWN else "lie"
+                return self._rest(
+                    order.deed.skill, self._found(word or self.at, need) if word or self.at else "floor"
+                ), ""
             case "rise":
-                return self._rise()
-            case "take" | "put" | "carry" | "touch":
-                return self._handle(task, clause, word)
+                if self.posture is Posture.STANDING:
+                    raise _CannotError("it is on its feet already")
+                self.seat = None
+                return self._stand(), ""
+            case "take" | "put" | "carry":
+                return self._grasp(task, order, word, why)
             case "operate":
-                return self._operate(task, clause, word)
-            case "stand":
-                self._stand()
-                self.at, how = "", clause.deed.how[0]
-                return self._add(Skill.LOCO, caption_of([task.text], how), "floor"), clause.deed.why
-            case _:
-                return self._use(task, clause, word)
+                return self._operate(task, order, word, why)
+            case "use" | "call":
+                return self._use(task, order, word, why)
 
-    def _unknown(self, task: SubTask) -> tuple[list[int], str]:
+    def _unknown(self, task: SubTask, word: str) -> tuple[list[int], str]:
         """A step whose verb we do not know, by its category."""
-        word = task.furniture or _furniture_of(task)
         if task.category == "locomotion":
             raise _CannotError("no such movement is known; the body walks, sits, lies, rises and reaches")
         if self.seat is not None and task.category == "interaction":
             return self._while_resting(task.text, (), "the pose is held: the body knows no such movement")
-        where = self.room.find(word) if word else self._near()
-        if not where:
-            raise _CannotError(self.room.missing(word) if word else "there is no furniture near to do it at")
-        return self._touch(
-            task, where, household().captions.touch
-        ), "the body only lays a hand there: it knows no such movement"
+        return self._touch(task, word), "the body only lays a hand there: it knows no such movement"
 
     # Moving.
 
-    def _walk(self, clause: Clause, word: str) -> tuple[list[int], str]:
+    def _walk(self, task: SubTask, order: Order, word: str) -> list[int]:
         self.seat = None
-        self._stand()
-        caption = household().captions.walk_by_verb.get(clause.verb.split()[0])
+        captions = order.deed.row.captions
         if word:
-            return self._go(self._found(word, "touch"), caption), ""
-        named = [noun for preposition, noun in clause.places if preposition not in ("for", "with")]
-        if named:
-            raise _CannotError(f"“{named[0]}” is no furniture we know, so there is no place to walk to")
+            return self._go(self._found(word, "touch"), captions[0] if captions and order.goes else None)
+        target = next((words for preposition, words in order.places if preposition in ("to", "into")), "")
+        if target and order.goes:
+            raise _CannotError(f"“{target}” is no furniture we know, so there is no place to walk to")
+        self._stand()
         self.at = ""
-        return self._add(Skill.LOCO, caption or household().captions.walk, "floor"), ""
+        caption = captions[0] if captions else household().captions.walk
+        return self._add(Skill.LOCO, caption if order.goes else caption_of([task.text], caption), "floor")
 
     def _go(self, word: str, caption: str | None = None) -> list[int]:
         """Walk to a piece of furniture, unless the body is there."""
@@ -197,26 +142,19 @@ class _Actor:
         self.at = word
         return self._add(Skill.LOCO, caption or household().captions.walk, word)
 
-    def _rest(self, skill: Skill, word: str) -> tuple[list[int], str]:
+    def _rest(self, skill: Skill, word: str) -> list[int]:
         """Sit or lie down, or stay as one is."""
         posture = Posture.SEATED if skill is Skill.SITDOWN else Posture.LYING
         self.seat = (skill, word)
         if self.posture is posture and self.at == word:
-            return [len(self.keyframes) - 1], ""
+            return [len(self.keyframes) - 1]
         if word != "floor":
             self._go(word)
-        else:
-            self._stand()
+        self._stand()
         captions = household().captions
         self._add(skill, self._one_of(captions.sit if skill is Skill.SITDOWN else captions.lie), word)
         self.posture, self.at = posture, word
-        return [], ""
-
-    def _rise(self) -> tuple[list[int], str]:
-        if self.posture is Posture.STANDING:
-            raise _CannotError("it is on its feet already")
-        self.seat = None
-        return self._stand(), ""
+        return []
 
     def _stand(self) -> list[int]:
         """Leave what the body rests on."""
@@ -228,80 +166,71 @@ class _Actor:
 
     # Reaching.
 
-    def _handle(self, task: SubTask, clause: Clause, word: str) -> tuple[list[int], str]:
-        """A grasp: lay the named hand where the thing is, or is to be."""
-        thing = task.object if task.object and not is_furniture(task.object) else clause.thing
+    def _grasp(self, task: SubTask, order: Order, word: str, why: str) -> tuple[list[int], str]:
+        """Lay the named hand where a thing is, or is to be."""
+        thing = task.object if task.object and not is_furniture(task.object) else order.thing
         rises = self.posture is not Posture.STANDING
-        where = self._found(word, "touch") if word else self._keeper(thing)
-        how = clause.deed.how[0] if clause.deed.how else "pick up with the {hand} hand"
-        used = self._touch(task, where, how)
-        (self.held.discard if clause.deed.kind == "put" else self.held.add)(thing)
-        return used, "; ".join(filter(None, (_RISES_FOR_IT if rises else "", clause.deed.why)))
+        how = f"{'put down' if order.kind == 'put' else 'pick up'} with the {{hand}} hand"
+        used = self._touch(task, word or self._keeper(thing), how)
+        (self.held.discard if order.kind == "put" else self.held.add)(thing)
+        return used, "; ".join(filter(None, (_RISES_FOR_IT if rises else "", why)))
 
     def _keeper(self, thing: str) -> str:
         """Where a thing of which nobody says where it is may be: here, or where such things are kept."""
         options = kept_at(thing)
         if self.at and self.room.find(self.at) and (self.at in options or thing in self.held):
             return self.at
-        found = self.room.first(options) or self._near()
-        if not found:
-            raise _CannotError(f"there is no {', '.join(options[:3])} or the like here to have the {thing} on")
-        return found
+        if found := self.room.first(options) or self.room.find(self.at):
+            return found
+        raise _CannotError(f"there is no {', '.join(options[:3])} or the like here to have the {thing} on")
 
-    def _operate(self, task: SubTask, clause: Clause, word: str) -> tuple[list[int], str]:
+    def _operate(self, task: SubTask, order: Order, word: str, why: str) -> tuple[list[int], str]:
         """An interaction with something that stands there: a hand is laid on it, unless it is done from one's seat."""
-        if self.posture is not Posture.STANDING and (not word or word == self.at or "remote" in self.held):
+        here = self.posture is not Posture.STANDING and (not word or word == self.at)
+        if here or (self.seat is not None and "remote" in self.held):
             return self._while_resting(task.text, (), _FROM_THERE)
-        if self.seat is not None and "remote" in self.held:
-            self._rest(*self.seat)
-            return self._while_resting(task.text, (), _FROM_THERE)
-        thing = clause.thing
-        where = self._found(word, "touch") if word else self._near()
-        if not where or is_fixed(thing):
-            raise _CannotError(f"“{thing or task.text}” is no furniture with a surface that a hand could be laid on")
+        if is_fixed(order.thing) or not (word or self.room.find(self.at)):
+            raise _CannotError(f"“{order.thing or task.text}” is no furniture with a surface for a hand to be laid on")
         rises = self.posture is not Posture.STANDING
-        how = clause.deed.how[0]
-        if "{hand}" not in how and task.hand not in (None, "right", "both"):
-            how = household().captions.touch
-        used = self._touch(task, where, how)
-        return used, "; ".join(filter(None, (_RISES_FOR_IT if rises else "", clause.deed.why)))
+        shown = order.deed.row.captions[:1]
+        other = task.hand == "left" and any("right" in caption for caption in shown)
+        used = self._touch(task, word, "" if other else "".join(shown))
+        return used, "; ".join(filter(None, (_RISES_FOR_IT if rises else "", why)))
 
-    def _touch(self, task: SubTask, where: str, how: str) -> list[int]:
+    def _touch(self, task: SubTask, word: str, how: str = "") -> list[int]:
+        """Lay a hand on furniture, or on what the body is at."""
+        if not word and not self.room.find(self.at):
+            raise _CannotError("there is no furniture near to do it at")
+        where = self._found(word or self.at, "touch")
         self._stand()
         self._go(where)
         hand = "left" if task.hand == "left" else "right"
-        return self._add(Skill.TOUCH, caption_of([task.text], how.format(hand=hand)), where)
+        return self._add(
+            Skill.TOUCH, caption_of([task.text], (how or household().captions.touch).format(hand=hand)), where
+        )
 
     # Doing something for a while.
 
-    def _use(self, task: SubTask, clause: Clause, word: str) -> tuple[list[int], str]:
+    def _use(self, task: SubTask, order: Order, word: str, why: str) -> tuple[list[int], str]:
         """An interaction with a pose: at rest where the plan has the body, else where one does it, else standing."""
-        deed = clause.deed
-        on_the_phone = deed.takes == "phone"
-        if word and word != self.at and self.seat is None and not on_the_phone:
-            need = "touch" if self.room.find(word) and not self.room.find(word, "sit") else "sit"
-            where = self._found(word, need)
-            if need == "touch":
-                return self._touch(task, where, household().captions.touch), _UNDRAWN
-            self._rest(Skill.SITDOWN, where)
-        elif self.seat is not None and self.posture is Posture.STANDING:
+        row = order.deed.row
+        if word and word != self.at and self.seat is None and order.kind == "use":
+            if self.room.find(word) and not self.room.find(word, "sit"):
+                return self._touch(task, word), _UNDRAWN
+            self._rest(Skill.SITDOWN, self._found(word, "sit"))
+        elif self.seat is not None:
             self._rest(*self.seat)
-        if self.posture is not Posture.STANDING:
-            captions = household().captions
-            how = (captions.phone_by_hand["left" if task.hand == "left" else "right"],) if on_the_phone else deed.how
-            if self.posture is Posture.LYING:
-                how = tuple(filter(None, [captions.lie_by_verb.get(clause.verb)]))
-            right = any("right hand" in one for one in how)
-            other = "it is shown with the right hand" if task.hand == "left" and right else ""
-            return self._while_resting(task.text, how, "; ".join(filter(None, (deed.why, other))))
-        if on_the_phone:
-            hand = "left" if task.hand == "left" else "right"
+        if self.posture is Posture.STANDING and order.kind == "call":
             self.at = ""
-            return self._add(Skill.LOCO, caption_of([task.text], deed.how[0].format(hand=hand)), "floor"), deed.why
-        where = self._near()
-        if not where:
-            raise _CannotError("there is no seat and no furniture near to do it at")
-        return self._touch(task, where, household().captions.touch), _UNDRAWN
+            return self._add(Skill.LOCO, caption_of([task.text], self._by_hand(row.captions, task)[0]), "floor"), why
+        if self.posture is Posture.STANDING:
+            return self._touch(task, ""), _UNDRAWN
+        lying = self.posture is Posture.LYING
+        skill = Skill.LIEDOWN if lying else Skill.SITDOWN
+        shown = row.captions if order.deed.skill is skill else row.lying if lying else row.seated
+        shown = self._by_hand(shown, task)
+        other = "it is shown with the right hand" if task.hand == "left" and "right hand" in "".join(shown[:1]) else ""
+        return self._while_resting(task.text, shown, "; ".join(filter(None, (why if order.hands else "", other))))
 
     def _while_resting(self, text: str, how: Sequence[str], why: str) -> tuple[list[int], str]:
         """Do it in the rest the body is in; the caption names it, and a pose of its own shows it."""
@@ -319,6 +248,12 @@ class _Actor:
 
     # Smaller things.
 
+    @staticmethod
+    def _by_hand(captions: Sequence[str], task: SubTask) -> Sequence[str]:
+        """The captions that show it with the hand of the task, else all."""
+        hand = "left" if task.hand == "left" else "right"
+        return [caption for caption in captions if hand in caption.split()] or captions
+
     def _add(self, skill: Skill, caption: str, word: str) -> list[int]:
         """One more keyframe; the very same one after another would be acted once, so it is there once."""
         keyframe = Keyframe(skill=skill, emotion="neutral", caption=caption, furniture=word)
@@ -331,13 +266,5 @@ class _Actor:
             return found
         raise _CannotError(self.room.missing(word, need))
 
-    def _near(self) -> str:
-        """What the body stands at, if it can be touched."""
-        return self.room.find(self.at) if self.at else ""
-
     def _one_of(self, captions: Sequence[str]) -> str:
         return captions[int(self.rng.integers(len(captions)))]
-
-
-def _furniture_of(task: SubTask) -> str:
-    return task.object if task.object and is_furniture(task.object) else ""

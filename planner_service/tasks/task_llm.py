@@ -11,14 +11,13 @@ import prompts
 from motion_backend.planners.markov_planner import Category, Hand
 from planner_service.llm.protocol import LanguageModel
 from planner_service.llm.structured_output import ask
-from planner_service.tasks.household_knowledge import Kind
-from planner_service.tasks.instruction_parser import clause_of, misleading
-from planner_service.tasks.task_actions import Surroundings
+from planner_service.tasks.instruction import Kind, misleading, order_of
+from planner_service.tasks.surroundings import Surroundings
 from planner_service.tasks.task_plan import MAX_STEP_LENGTH, MAX_STEPS, SubTask
 
 CATEGORIES: Final = get_args(Category)
 HANDS: Final = get_args(Hand)
-_BY_HAND: Final[tuple[Kind, ...]] = ("take", "put", "carry", "touch", "operate")
+_BY_HAND: Final[tuple[Kind, ...]] = ("take", "put", "carry", "operate")
 _SHOWN: Final = 80
 """Kinds of furniture that the model is told of."""
 
@@ -87,13 +86,13 @@ def _faults_of_hand(step: TaskStep) -> list[str]:
     hand = _word(step.hand)
     if hand is not None and hand not in HANDS:
         return [f"hand: {step.hand!r:.40} is none of {', '.join(HANDS)}, null"]
-    clause = clause_of(_tidy(step.step))
+    order = order_of(_tidy(step.step))
     moves = step.category == "grasp" or (
-        step.category == "interaction" and clause is not None and clause.deed.kind in _BY_HAND
+        step.category == "interaction" and order is not None and order.kind in _BY_HAND
     )
     if moves and hand is None:
         return [f"hand: missing; a hand moves in this step, say which: {', '.join(HANDS)}"]
-    named = clause.hand if clause is not None else None
+    named = order.hand if order is not None else None
     return [f"hand: {hand!r}, but the step names the {named} hand"] if named and hand and named != hand else []
 
 

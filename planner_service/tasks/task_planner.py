@@ -12,8 +12,9 @@ from motion_backend.planners.motion_candidates import candidates_from_home
 from planner_service.grounding.object_assignment import usable_offers
 from planner_service.llm.client import for_story
 from planner_service.llm.protocol import LanguageModel, ModelError
-from planner_service.tasks.instruction_parser import tidy
-from planner_service.tasks.task_actions import Surroundings, act_out
+from planner_service.tasks.instruction import tidy
+from planner_service.tasks.surroundings import Surroundings
+from planner_service.tasks.task_actions import act_out
 from planner_service.tasks.task_llm import plan_with_model
 from planner_service.tasks.task_plan import SubTask, TaskError, TaskPlan
 from planner_service.tasks.task_rules import plan_by_rules

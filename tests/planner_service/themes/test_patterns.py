@@ -9,12 +9,12 @@ from dataclasses import replace
 
 import pytest
 from for_each import for_each
+from planner_service.tasks.household_knowledge import Deed, household
 
 from motion_backend.motion import Skill
 from planner_service.composition.deed_lexicon import DeedRow, deed_table
 from planner_service.narration.keyframe_phrases import templates
 from planner_service.narration.story_words import story_words
-from planner_service.tasks.household_knowledge import Deed, household
 from planner_service.themes.patterns import pattern_at
 
 
