@@ -82,7 +82,7 @@ test-all: $(READY_DEV) page $(NODE_TESTS)
 mutants: $(READY_DEV)
 	@PYTHONPATH=tests $(BIN)/python -m mutants --seed $(SEED)
 
-# The page is looked at beside mypy, which hardly ever has both of its processes at work.
+# The page is looked at beside mypy, which has one process: with several it gives up on a machine that is busy.
 lint: $(READY_DEV) web/node_modules/.ready
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .

@@ -26,7 +26,7 @@ CHECKS = (
     response_headers_conformance,
     response_schema_conformance,
 )
-EXAMPLES = tries(25).max_examples
+EXAMPLES = tries(40).max_examples
 """For each call: eight day by day."""
 
 
