@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from typing import Final, Literal, cast
@@ -233,7 +233,7 @@ def _addressed(text: str) -> str:
 @cache
 def _imperatives() -> frozenset[str]:
     """Base forms that a deed's words may begin with."""
-    ways = [pattern[0] for pattern, _ in deed_table().patterns]
+    ways: list[Iterable[str]] = [deed_table().ways]
     ways += [way.split()[0].split("|") for never in household().never for way in never.says]
     return frozenset(word for words in ways for word in words if lemma_of(word) == word)
 

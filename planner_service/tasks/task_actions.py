@@ -227,8 +227,8 @@ class _Actor:
             return self._touch(task, ""), _UNDRAWN
         lying = self.posture is Posture.LYING
         skill = Skill.LIEDOWN if lying else Skill.SITDOWN
-        shown = row.captions if order.deed.skill is skill else row.lying if lying else row.seated
-        shown = self._by_hand(shown, task)
+        rows = row.captions if order.deed.skill is skill else row.lying if lying else row.seated
+        shown = self._by_hand(rows, task)
         other = "it is shown with the right hand" if task.hand == "left" and "right hand" in "".join(shown[:1]) else ""
         return self._while_resting(task.text, shown, "; ".join(filter(None, (why if order.hands else "", other))))
 

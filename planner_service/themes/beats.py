@@ -78,6 +78,8 @@ class ThemeWords:
     speech_verbs: str
     unable_verbs: str
     """What somebody who cannot do it is seen trying: "cannot sleep"."""
+    no_heroes: str
+    """Nouns for what does things and is nobody a theme is about."""
     body: str
     """Parts of a person: what these do, the person does."""
     thought_verbs: str
@@ -234,7 +236,10 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     if one and (one[0].lower() not in _PRONOUNS or not named[0].lower().startswith(("a ", "an "))):
         return one[0]
     opens = ("a ", "an ", "one ", "my ", "our ", *(() if people else ("the ",)))
-    living = named[:1] if named and named[0].lower().startswith(opens) and not is_known(head_of(named[0])) else []
+    able = (
+        bool(named) and not is_known(head_of(named[0])) and head_of(named[0]).lower() not in theme_words()["no_heroes"]
+    )
+    living = named[:1] if able and named[0].lower().startswith(opens) else []
     return next(iter([*living, *one, *people]), "")
 
 

@@ -110,8 +110,8 @@ def sentences(draw: st.DrawFn, subject: str, hero: str) -> tuple[str, tuple[Told
         main = draw(deeds(again))
         pair = (main, opening) if joint == "Before" else (opening, main)
         name = subject if subject[0:4] in ("Anna", "Mr. ") else subject[0].lower() + subject[1:]
-        pair = tuple(replace(one, doer=name) if one is opening else one for one in pair)
-        return f"{joint} {name} {opening.said}, {again} {main.said}", pair
+        told = tuple(replace(one, doer=name) if one is opening else one for one in pair)
+        return f"{joint} {name} {opening.said}, {again} {main.said}", told
     joint = draw(st.sampled_from(("before", "after", "until", "when", "while")))
     pair = (second, first) if joint in ("after", "when") and not _is_state(first, joint) else (first, second)
     return f"{subject} {first.said} {joint} {again} {second.said}", pair
