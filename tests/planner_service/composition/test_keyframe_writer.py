@@ -10,10 +10,10 @@ from examples import tries
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
-from planner_service.composition.beat_service import PartFinder
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Emotion, Skill
+from planner_service.composition.beat_planner import PartFinder
 from planner_service.composition.compose import compose
 from planner_service.composition.deed_lexicon import deed_of, pieces_in
 from planner_service.composition.keyframe_writer import NOT_ACTED

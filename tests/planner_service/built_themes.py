@@ -106,11 +106,9 @@ def sentences(draw: st.DrawFn, subject: str, hero: str) -> tuple[str, tuple[Told
     second = draw(deeds(again, denials=False))
     if shape == "led":
         joint = draw(st.sampled_from(("After", "Before", "When", "While")))
-        opening = replace(second, doer=subject)
-        main = draw(deeds(again))
+        name = subject if subject.startswith(("Anna", "Mr.")) else subject[0].lower() + subject[1:]
+        opening, main = replace(second, doer=name), draw(deeds(again))
         pair = (main, opening) if joint == "Before" else (opening, main)
-        name = subject if subject[0:4] in ("Anna", "Mr. ") else subject[0].lower() + subject[1:]
-        pair = tuple(replace(one, doer=name) if one is opening else one for one in pair)
         return f"{joint} {name} {opening.said}, {again} {main.said}", pair
     joint = draw(st.sampled_from(("before", "after", "until", "when", "while")))
     pair = (second, first) if joint in ("after", "when") and not _is_state(first, joint) else (first, second)
