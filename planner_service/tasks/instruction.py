@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
+from itertools import chain
 from typing import Final, Literal, cast
 
 from motion_backend.motion import Skill
@@ -233,9 +234,9 @@ def _addressed(text: str) -> str:
 @cache
 def _imperatives() -> frozenset[str]:
     """Base forms that a deed's words may begin with."""
-    ways = [pattern[0] for pattern, _ in deed_table().patterns]
-    ways += [way.split()[0].split("|") for never in household().never for way in never.says]
-    return frozenset(word for words in ways for word in words if lemma_of(word) == word)
+    never = (way.split()[0].split("|") for row in household().never for way in row.says)
+    known = {*deed_table().ways, *chain.from_iterable(never)}
+    return frozenset(word for word in known if lemma_of(word) == word)
 
 
 def _orders(clause: Clause, before: Sequence[Order]) -> Iterator[Order]:
