@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field
 from functools import cache
 from typing import Final
@@ -14,16 +14,6 @@ from scene_graphs.data_tables import read_table, require_known, table
 from scene_graphs.furniture import is_known
 
 _NONE: Final = frozenset[str]()
-
-
-@table
-class Captions:
-    """How it looks, where the deed has no captions of its own."""
-
-    walk: str
-    touch: str
-    sit: tuple[str, ...]
-    lie: tuple[str, ...]
 
 
 @table
@@ -41,14 +31,6 @@ class Takes:
 
 
 @table
-class Never:
-    """What a body does not do, and why."""
-
-    says: tuple[str, ...]
-    why: str
-
-
-@table
 class Household:
     """data/household.toml."""
 
@@ -57,16 +39,23 @@ class Household:
     seats: tuple[str, ...]
     fixed: Words
     both_hands: tuple[str, ...]
-    captions: Captions
+    captions: dict[str, tuple[str, ...]]
+    """How it looks where the deed has no captions of its own."""
     takes: tuple[Takes, ...]
     tools: dict[str, tuple[str, ...]]
-    never: tuple[Never, ...]
+    """What hands work with, and the ways to say for what."""
+    never: dict[str, tuple[str, ...]]
+    """Why a body does not do it, and the ways to say what."""
 
     def __post_init__(self) -> None:
         if unknown := next((word for word in (*self.tables, *self.seats) if not is_known(word)), None):
             raise ValueError(f"household: {unknown!r} is no furniture we know")
         shown = {caption for of_skill in captions().values() for caption in of_skill}
         require_known("takes", (caption for takes in self.takes for caption in takes.shown), shown)
+
+    def takes_of(self, row: DeedRow) -> Takes | None:
+        """What a deed needs in hand."""
+        return next((takes for takes in self.takes if set(takes.shown) & set(row.captions)), None)
 
 
 @cache
@@ -83,28 +72,21 @@ def kept_at(thing: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys((*found, *household().tables)))
 
 
-def takes_of(row: DeedRow) -> Takes | None:
-    """What a deed needs in hand."""
-    return next((takes for takes in household().takes if set(takes.shown) & set(row.captions)), None)
-
-
-def in_hand(takes: Takes, thing: str) -> str:
+def in_hand(row: DeedRow, thing: str) -> str:
     """What one holds for a deed with a thing: a glass for water, the apple itself; "" for nothing."""
-    if is_one(thing, takes.itself):
-        return thing.split(" of ")[0]
-    named = (part for part in (thing.split(" of ")[0], thing.rpartition(" of ")[2]) if part)
-    return next((holder for part in named for holder, those in takes.comes_in.items() if is_one(part, those)),
-                takes.usual)  # fmt: skip
+    takes = household().takes_of(row)
+    if takes is None:
+        return ""
+    head, _, content = thing.partition(" of ")
+    if is_one(head, takes.itself):
+        return head
+    holders = takes.comes_in.items()
+    return next((holder for part in (head, content) for holder, those in holders if is_one(part, those)), takes.usual)
 
 
-def tool_for(lemmas: tuple[str, ...]) -> str:
-    """What hands work with; "" for nothing."""
-    return next((tool for tool, ways in household().tools.items() if says(ways, lemmas)), "")
-
-
-def why_never(lemmas: tuple[str, ...]) -> str:
-    """Why no body does it; "" where one may."""
-    return next((never.why for never in household().never if says(never.says, lemmas)), "")
+def told_by(ways: Mapping[str, Iterable[str]], lemmas: Sequence[str]) -> str:
+    """The first name whose ways to say it say what the words do; "" where none does."""
+    return next((name for name, those in ways.items() if says(those, lemmas)), "")
 
 
 def is_one(thing: str, names: Iterable[str]) -> bool:

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
+from itertools import chain
 from typing import Final, Literal, cast
 
 from motion_backend.motion import Skill
 from motion_backend.planners.markov_planner import Hand
 from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, deed_table, says
 from planner_service.scripts.script_repair import NO_WAY_TO_GO
-from planner_service.tasks.household import household, in_hand, is_one, takes_of, tool_for, why_never
+from planner_service.tasks.household import household, in_hand, is_one, told_by
 from planner_service.tasks.task_plan import MAX_ACTION_LENGTH, TaskError
 from planner_service.themes.lexicon import grammar, lemma_of
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
@@ -108,26 +109,27 @@ class Order:
     @cached_property
     def why_never(self) -> str:
         """Why no body does it; "" where one does."""
-        return self.deed.row.why or why_never(self.lemmas)
+        return self.deed.row.why or told_by(household().never, self.lemmas)
 
     @cached_property
     def tool(self) -> str:
         """What hands do it with: "with the sponge", or the usual thing."""
         if self.deed.skill is not Skill.TOUCH:
             return ""
-        return next((_noun(words) for word, words in self.places if word == "with"), "") or tool_for(self.lemmas)
+        return next((_noun(words) for word, words in self.places if word == "with"), "") or told_by(
+            household().tools, self.lemmas
+        )
 
     @cached_property
     def needs(self) -> str:
         """What must be in hand for it."""
-        takes = takes_of(self.deed.row)
-        return in_hand(takes, self.thing) if takes else self.tool
+        return in_hand(self.deed.row, self.thing) or self.tool
 
     @cached_property
     def hands(self) -> Hand | None:
         """The hands it takes, as its captions and the verb have it."""
         shown = " ".join(self.deed.row.captions[:1])
-        takes = takes_of(self.deed.row)
+        takes = household().takes_of(self.deed.row)
         if "both hands" in "".join(takes.shown[:1] if takes else shown) or (
             self.deed.skill is Skill.TOUCH and says(household().both_hands, self.lemmas)
         ):
@@ -233,9 +235,9 @@ def _addressed(text: str) -> str:
 @cache
 def _imperatives() -> frozenset[str]:
     """Base forms that a deed's words may begin with."""
-    ways: list[Iterable[str]] = [deed_table().ways]
-    ways += [way.split()[0].split("|") for never in household().never for way in never.says]
-    return frozenset(word for words in ways for word in words if lemma_of(word) == word)
+    never = (way.split()[0].split("|") for way in chain.from_iterable(household().never.values()))
+    known = {*deed_table().ways, *chain.from_iterable(never)}
+    return frozenset(word for word in known if lemma_of(word) == word)
 
 
 def _orders(clause: Clause, before: Sequence[Order]) -> Iterator[Order]:
@@ -269,7 +271,7 @@ def _order(verb: str, rest: str, before: Sequence[Order]) -> Order | None:
     if deed is None or deed.row not in deed_table().deed:
         fixed = next((lemma for lemma in lemmas if is_fixed(lemma)), "")
         nowhere = f"“{fixed}” is no furniture with a surface that a hand could be laid on" if fixed else ""
-        if not (why := why_never(lemmas) or nowhere):
+        if not (why := told_by(household().never, lemmas) or nowhere):
             return None
         deed = Deed(DeedRow((verb,), Skill.LOCO, why=why), Skill.LOCO, (), False)
     particle, rest = _particle(rest, deed.skill is Skill.TOUCH)

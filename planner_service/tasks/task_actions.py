@@ -131,7 +131,7 @@ class _Actor:
             raise _CannotError(f"“{target}” is no furniture we know, so there is no place to walk to")
         self._stand()
         self.at = ""
-        caption = captions[0] if captions else household().captions.walk
+        caption = captions[0] if captions else household().captions["walk"][0]
         return self._add(Skill.LOCO, caption if order.goes else caption_of([task.text], caption), "floor")
 
     def _go(self, word: str, caption: str | None = None) -> list[int]:
@@ -140,7 +140,7 @@ class _Actor:
             return [len(self.keyframes) - 1]
         self._stand()
         self.at = word
-        return self._add(Skill.LOCO, caption or household().captions.walk, word)
+        return self._add(Skill.LOCO, caption or household().captions["walk"][0], word)
 
     def _rest(self, skill: Skill, word: str) -> list[int]:
         """Sit or lie down, or stay as one is."""
@@ -151,8 +151,7 @@ class _Actor:
         if word != "floor":
             self._go(word)
         self._stand()
-        captions = household().captions
-        self._add(skill, self._one_of(captions.sit if skill is Skill.SITDOWN else captions.lie), word)
+        self._add(skill, self._one_of(household().captions["sit" if skill is Skill.SITDOWN else "lie"]), word)
         self.posture, self.at = posture, word
         return []
 
@@ -206,7 +205,7 @@ class _Actor:
         self._go(where)
         hand = "left" if task.hand == "left" else "right"
         return self._add(
-            Skill.TOUCH, caption_of([task.text], (how or household().captions.touch).format(hand=hand)), where
+            Skill.TOUCH, caption_of([task.text], (how or household().captions["touch"][0]).format(hand=hand)), where
         )
 
     # Doing something for a while.

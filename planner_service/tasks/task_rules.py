@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from motion_backend.motion import Posture, Skill
 from motion_backend.planners.markov_planner import Category, Hand
-from planner_service.tasks.household import household, kept_at, takes_of
+from planner_service.tasks.household import household, kept_at
 from planner_service.tasks.instruction import Order, is_fixed, is_furniture, orders_of
 from planner_service.tasks.surroundings import Surroundings
 from planner_service.tasks.task_plan import MAX_STEPS, SubTask, TaskError
@@ -111,7 +111,7 @@ class _Body:
             )
             if not keeps or order.deed.named:
                 self._settle(order, seat)
-            takes = takes_of(order.deed.row)
+            takes = household().takes_of(order.deed.row)
             if takes and takes.first and is_furniture(order.thing):
                 self._add(f"{takes.first} the {order.thing} {_with(hand or 'right')}", "interaction", hand or "right",
                           order.thing, self.at)  # fmt: skip
