@@ -167,8 +167,9 @@ def test_what_is_said_is_kept_and_its_words_are_no_clauses(text: str, quoted: li
     assert [clause.verb for clause in read] == verbs
 
 
-def test_who_does_it_lasts_to_the_end_of_the_sentence() -> None:
-    read = clauses_of_text("Her brother sings and dances while she reads and writes.")
+def test_who_does_it_lasts_to_the_end_of_the_sentence_but_not_who_does_it_meanwhile() -> None:
+    read = clauses_of_text("Her brother sings and dances while she reads. She cooks because guests come, and yawns.")
     assert [(clause.verb, clause.doer) for clause in read] == [
-        ("sing", "Her brother"), ("dance", "Her brother"), ("read", "she"), ("write", "she"),
+        ("sing", "Her brother"), ("dance", "Her brother"), ("read", "she"),
+        ("come", "guests"), ("cook", "She"), ("yawn", "She"),
     ]  # fmt: skip
