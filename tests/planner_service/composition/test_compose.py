@@ -108,7 +108,7 @@ def test_wrong_requests_name_the_field() -> None:
         ({"method": "x"}, "method"),
     ):
         with pytest.raises(ValueError, match=field):
-            Request(**wrong)  # type: ignore[arg-type]
+            Request(**wrong)
 
 
 WORDS = """he she becomes drunk sad and then but , . when before after reads a book the sofa sleeps not very because
@@ -127,7 +127,7 @@ def test_any_string_of_words_gives_an_executable_script_or_a_clear_refusal(words
 
 
 def test_keyframes_that_somebody_wrote_are_repaired_and_are_nobodys_plan() -> None:
-    written = [Keyframe(skill="sitdown", caption="sitting still", furniture="sofa")]  # type: ignore[arg-type]
+    written = [Keyframe(skill="sitdown", caption="sitting still", furniture="sofa")]
     script = script_of(written, "t")
     assert [keyframe.skill.value for keyframe in script.keyframes] == ["loco", "sitdown"]
     assert (script.planner, script.beats) == ("given", ())

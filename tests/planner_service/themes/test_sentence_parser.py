@@ -12,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planner_service.themes.lexicon import grammar
-from planner_service.themes.sentence_parser import clauses_of_text, plain
+from planner_service.themes.sentence_parser import clauses_of_text
+from planner_service.themes.verb_finder import plain
 
 
 def words_of(text: str) -> Counter[str]:
