@@ -314,7 +314,7 @@ def _refuse_foreign(text: str) -> None:
     foreign = [word for word in words if word in theme_words()["foreign"]]
     if not any(re.search(r"[a-z]", word) for word in words) or len(foreign) >= max(2, 0.2 * len(words)):
         raise ThemeError(f"{text[:60]!r} is not English. {LANGUAGE}")
-    if len(_CODE.findall(text)) > max(3, len(words) / 6):
+    if len(_CODE.findall(text)) > max(3, len(words) / 3):
         raise ThemeError(f"{text[:60]!r} is no prose. {LANGUAGE}")
 
 
