@@ -20,7 +20,7 @@ from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.verb_finder import tokens_of
 from scene_graphs import furniture
 
-Kind = Literal["walk", "rest", "use", "call", "rise", "take", "put", "carry", "operate", "never"]
+Kind = Literal["walk", "rest", "use", "call", "rise", "take", "put", "operate", "never"]
 MAX_ORDERS: Final = 12
 _POLITE: Final = (
     r"(?:please|kindly|now|first(?:ly)?|finally|next|also|just|again|slowly|quickly|carefully|go and|try to|"
@@ -84,7 +84,7 @@ class Order:
         if self.tool:
             return "operate"
         if verb in _CARRIES and self.target and self.thing and self.deed.skill in (Skill.LOCO, Skill.TOUCH):
-            return "carry"
+            return "put"  # where it is brought
         if verb in _PUTS and shown.startswith("put down") and not is_furniture(self.thing):
             return "put"
         if verb in _TAKES and self._taken(shown) and not is_furniture(self.thing):
@@ -102,9 +102,7 @@ class Order:
     def _taken(self, shown: str) -> bool:
         """Whether a verb of taking is meant so: not in "take a nap", though in "take the glass from the cabinet"."""
         used = bool(self.needs) and self.deed.skill is Skill.SITDOWN
-        return (
-            bool(self.source and self.thing) or used or shown.startswith("pick up") or self.verb in ("pick up", "hold")
-        )
+        return bool(used or (self.source and self.thing)) or "pick up" in (self.verb, shown[:7]) or self.verb == "hold"
 
     @cached_property
     def why_never(self) -> str:
@@ -114,11 +112,9 @@ class Order:
     @cached_property
     def tool(self) -> str:
         """What hands do it with: "with the sponge", or the usual thing."""
-        if self.deed.skill is not Skill.TOUCH:
-            return ""
-        return next((_noun(words) for word, words in self.places if word == "with"), "") or told_by(
-            household().tools, self.lemmas
-        )
+        told = (_noun(words) for word, words in self.places if word == "with" and self.verb != "play")
+        usual = told_by(household().tools, self.lemmas)
+        return (next(told, "") or usual) if self.deed.skill is Skill.TOUCH else ""
 
     @cached_property
     def needs(self) -> str:
@@ -243,8 +239,12 @@ def _imperatives() -> frozenset[str]:
 def _orders(clause: Clause, before: Sequence[Order]) -> Iterator[Order]:
     """The orders of a clause: the same is done with each thing that it lists."""
     words = [token for token in tokens_of(clause.text) if token.text[:1].isalnum()]
-    verb = words[-len(clause.lemmas)] if clause.verb else None
+    heads = words[: len(words) - len(clause.lemmas) + 1] if clause.verb else []  # "and" has no base form
+    verb = next((token for token in reversed(heads) if lemma_of(token.text) == clause.verb), None)
     first, *others = _LIST.split(clause.text[verb.end :] if verb else "")
+    shared = _PLACE.search(_HAND.sub("", others[-1])) if others else None
+    if shared and not _PLACE.search(first):  # "the cup and the plate on the table"
+        first = f"{first} {shared.string[shared.start() :]}"
     order = _order(clause.verb, first, before) if verb else None
     if order is None:
         raise _unknown(clause.text)

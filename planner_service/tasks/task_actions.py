@@ -24,7 +24,6 @@ _UNDRAWN: Final = "nothing is drawn in the hands"
 _LEFT_OUT: Final = {
     "take": "the hand is laid where it would lie; nothing is drawn in it",
     "put": "the hand is laid where it would lie; nothing is drawn in it",
-    "carry": "the hand is laid where it would lie; nothing is drawn in it",
     "operate": "the hand is laid on it; nothing moves",
     "call": "a hand is held to the ear; no phone is drawn in it",
     "use": "the pose is held; nothing is drawn in the hands",
@@ -96,15 +95,14 @@ class _Actor:
                 return self._walk(task, order, word), ""
             case "rest":
                 need = "sit" if order.deed.skill is Skill.SITDOWN else "lie"
-                return self._rest(
-                    order.deed.skill, self._found(word or self.at, need) if word or self.at else "floor"
-                ), ""
+                word = "floor" if order.deed.pieces == ("floor",) else word or self.at or "floor"
+                return self._rest(order.deed.skill, word if word == "floor" else self._found(word, need)), ""
             case "rise":
                 if self.posture is Posture.STANDING:
                     raise _CannotError("it is on its feet already")
                 self.seat = None
                 return self._stand(), ""
-            case "take" | "put" | "carry":
+            case "take" | "put":
                 return self._grasp(task, order, word, why)
             case "operate":
                 return self._operate(task, order, word, why)
@@ -226,8 +224,8 @@ class _Actor:
             return self._touch(task, ""), _UNDRAWN
         lying = self.posture is Posture.LYING
         skill = Skill.LIEDOWN if lying else Skill.SITDOWN
-        rows = row.captions if order.deed.skill is skill else row.lying if lying else row.seated
-        shown = self._by_hand(rows, task)
+        shown = row.captions if order.deed.skill is skill else row.lying if lying else row.seated
+        shown = tuple(self._by_hand(shown, task))
         other = "it is shown with the right hand" if task.hand == "left" and "right hand" in "".join(shown[:1]) else ""
         return self._while_resting(task.text, shown, "; ".join(filter(None, (why if order.hands else "", other))))
 

@@ -17,7 +17,7 @@ from planner_service.tasks.task_plan import MAX_STEP_LENGTH, MAX_STEPS, SubTask
 
 CATEGORIES: Final = get_args(Category)
 HANDS: Final = get_args(Hand)
-_BY_HAND: Final[tuple[Kind, ...]] = ("take", "put", "carry", "operate")
+_BY_HAND: Final[tuple[Kind, ...]] = ("take", "put", "operate")
 _SHOWN: Final = 80
 """Kinds of furniture that the model is told of."""
 

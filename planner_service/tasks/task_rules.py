@@ -54,7 +54,7 @@ class _Body:
             case "take":
                 self._take(_thing(order), order.hand, self._named(order.source or order.furniture))
                 self.fetched.pop(order.thing, None)
-            case "put" | "carry":
+            case "put":
                 self._put_as_told(order)
             case "operate":
                 self._operate(order)
@@ -86,7 +86,7 @@ class _Body:
     def _put_as_told(self, order: Order) -> None:
         thing = _thing(order)
         self._take(thing, order.hand, self._named(order.source))
-        back = self.fetched.get(thing, "") if order.verb in ("put back", "put away") else self.at
+        back = self.fetched.get(thing, "") if order.verb in ("put back", "put away") else self.room.find(self.at)
         self._put(thing, self._named(order.target) or back or self._first(kept_at(thing)))
 
     def _operate(self, order: Order) -> None:
@@ -147,6 +147,11 @@ class _Body:
         """Rest where it is done; where there is a table and no seat to it, stand there."""
         need, posture = ("lie", Posture.LYING) if order.deed.skill is Skill.LIEDOWN else ("sit", Posture.SEATED)
         named = order.furniture
+        if order.deed.pieces == ("floor",):
+            self._rise()
+            self._add(f"{need} down on the floor", "locomotion")
+            self.posture, self.at = posture, "floor"
+            return
         if named and need in furniture.affordances(named) and furniture.class_of(named) != "table":
             word = self._named(named, need)
         elif seat and need == "sit" and not order.deed.named:
@@ -198,7 +203,7 @@ class _Body:
         """Lay down what a hand holds."""
         for thing, holding in list(self.held.items()):
             if "both" in (hand, holding) or holding == hand:
-                self._put(thing, self.at or self._first(household().tables))
+                self._put(thing, self.room.find(self.at) or self._first(household().tables))
 
     def _first(self, options: Sequence[str], need: str = "touch") -> str:
         return self.room.first(options, need) or options[0]

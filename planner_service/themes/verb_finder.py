@@ -60,7 +60,7 @@ def plain(text: str) -> str:
     text = _CONTRACTION.sub(lambda m: _SHORT.get(m[1].lower(), f"{m[1]} not"), text)
     for short, whole in _ENDS:
         text = re.sub(rf"(?i)(?<=\w){short}\b", whole, text)
-    text = re.sub(r"(?i)\bby the time\b", "when", text)
+    text = re.sub(r"(?i)\bby the time\b", "when", re.sub(r"(?i)\brather than\b", "instead of", text))
     return re.sub(
         r"\b(I|[Hh]e|[Ss]he|[Tt]hey|[Ww]e)'d\b", r"\1 had", re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s\b", r"\1 is", text)
     )

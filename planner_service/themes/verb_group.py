@@ -74,7 +74,7 @@ def _denying_step(words: Sequence[Token], group: VerbGroup, low: str, base: str,
         step = near.index("to") + 1
     elif base in ("decide", "try", "choose", "prefer", "promise") and ahead == "not":
         step = 3 if len(near) > 2 and near[2] == "to" else 2
-    elif ahead == "to" and base in grammar().refusals | grammar().wishes:
+    elif ahead in ("to", "from") and base in grammar().refusals | (grammar().wishes if ahead == "to" else set()):
         step = 2
     elif ahead.endswith("ing") and base in grammar().refusals | {"consider", "imagine", "stop"}:
         step = 1

@@ -14,7 +14,7 @@ from motion_backend.motion import Skill
 from planner_service.composition.deed_lexicon import DeedRow, deed_table
 from planner_service.narration.keyframe_phrases import templates
 from planner_service.narration.story_words import story_words
-from planner_service.tasks.household import household
+from planner_service.tasks.household import Takes, household
 from planner_service.themes.patterns import pattern_at
 
 
@@ -58,6 +58,7 @@ def test_what_is_wrong_with_a_pattern_is_said_by_its_place() -> None:
     ("change", "fault"),
     [
         (lambda: replace(household(), seats=("sofa", "throne")), "household: 'throne' is no furniture"),
+        (lambda: replace(household(), takes=(Takes(("fly",)),)), "takes: fly is none"),
         (lambda: replace(deed_table(), deed=(DeedRow(("nap",), Skill.LIEDOWN, ("altar",)),)), "deed 'nap': 'altar' is"),
         (lambda: replace(deed_table(), deed=(DeedRow(("nap",), Skill.LIEDOWN, captions=("fly",)),)), "deed 'nap': fly"),
         (lambda: replace(templates(), further=("to {nowhere}",)), "further: there is no blank {nowhere}"),
