@@ -9,6 +9,7 @@ from pathlib import Path
 
 from motion_backend.motion import Character
 from planner_service.pipeline import Pipeline, Planned, StoryRequest
+from planner_service.scripts.script import LongScript
 
 FOLDER = Path(__file__).resolve().parent / "examples"
 WIDTH = 100
@@ -98,9 +99,7 @@ def page(example: Example, planned: Planned) -> str:
         "",
         "---",
         "",
-        f"Seed {example.seed}, told of {who.name} ({who.pronouns}) by rules. Woven from: "
-        + ", ".join(f"`{found.script.id}`" for found in planned.script.short_scripts)
-        + ".",
+        f"Seed {example.seed}, told of {who.name} ({who.pronouns}) by rules. " + _parts(planned.script),
         "",
         "```",
         example.command,
@@ -109,6 +108,14 @@ def page(example: Example, planned: Planned) -> str:
         "[How these pages are made](README.md)",
     ]
     return "\n".join(lines) + "\n"
+
+
+def _parts(script: LongScript) -> str:
+    """Which beats are acted, and what was taken from the library for them."""
+    parts = ", ".join(f"`{found.script.id}`" for found in script.short_scripts)
+    said = f"{script.acted} of {script.asked} beats of the theme are acted"
+    missed = "; ".join(f"“{beat.text}”: {beat.why}" for beat in script.beats if beat.asked and beat.why)
+    return said + (f" (not: {missed})" if missed else "") + "." + (f" Parts of {parts}." if parts else "")
 
 
 def wrapped(text: str) -> Iterator[str]:
@@ -129,7 +136,7 @@ def index() -> str:
         [
             "# Ten stories",
             "",
-            "Told without a language model: woven from short scripts of the library and worded by rules. Each page has",
+            "Told without a language model: planned beat by beat and worded by rules. Each page has",
             "the theme, the story, and the command that makes it with its home and its film. `python docs/stories.py`",
             "writes the pages anew (the sentence encoder has to be installed); two of them are made again by a test.",
             "",

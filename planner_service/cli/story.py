@@ -27,7 +27,7 @@ SHARES = {"plan": 0.30, "furnish": 0.05, "narrate": 0.02, "act": 0.06, "move": 0
 MAX_FILE_LINES = 100_000
 """Bytes of a theme's file that are read."""
 TOLD = {
-    "plan": "weaving short scripts",
+    "plan": "finding what is done, and how",
     "furnish": "finding rooms that fit",
     "narrate": "telling the story",
     "act": "finding where to sit, lie, touch and walk",

@@ -1,1 +1,1 @@
-"""Reading a theme: sentences, events, feelings and who it is about."""
+"""The one reader of English: clauses, beats, feelings and who a theme is about."""

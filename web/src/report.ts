@@ -11,7 +11,7 @@ const DEEP = 0.08;
 /** Who planned it: rules are not called a language model. */
 export function plannerWords(planner: string | null): string {
   if (planner === null) return "The keyframes were given; nothing was planned.";
-  if (planner === "rules") return "Woven by rules, no language model.";
+  if (planner === "rules") return "Planned by rules, no language model.";
   return `Planned by a language model, ${planner.replace(/^llm:/, "")}.`;
 }
 
