@@ -214,33 +214,43 @@ def is_feeling(clause: Clause) -> bool:
 
 
 def hero_of(clauses: Sequence[Clause]) -> str:
-    """Whom the theme is about: the first subject that is a person, as it is written; empty where none is named."""
-    mains = sorted(
-        (clause for clause in clauses if clause.subject), key=lambda clause: clause.joint not in _MAIN_JOINTS
-    )
-    named = [clause.subject for clause in mains]
-    people = [subject for subject in named if is_person(subject)]
-    if any(subject.lower() == "i" for subject in named):
+    """Whom the theme is about, as it is written first: the narrator, else the person that its pronouns fit best."""
+    told = [clause for clause in clauses if clause.subject]
+    mains = [clause.subject for clause in told if clause.joint in _MAIN_JOINTS]
+    if any(clause.subject.lower() == "i" for clause in told):
         return "I"
-    if named and named[0].lower() == "you":
+    if mains and mains[0].lower() == "you":
         return "you"
-    pronoun = next((subject for subject in people if subject.lower() in ("he", "she")), "")
-    one = [subject for subject in people if not (pronoun and _is_plural(subject))]
-    own = [subject for subject in one if subject.split()[0].lower() not in ("his", "her", "their", "my", "its")]
-    before = [subject for subject in own[: own.index(pronoun) if pronoun in own else 0] if not _is_pronoun(subject)]
-    if before:
-        called = [subject for subject in before if pronouns_of(subject) == pronoun.lower()]
-        may_be = [subject for subject in before if not pronouns_of(subject)]
-        main = {clause.subject for clause in clauses if clause.joint not in _ASIDE}
-        return [*before, *may_be, *(subject for subject in may_be if subject in main), *called[:1]][-1]
-    if one and (one[0].lower() not in _PRONOUNS or not named[0].lower().startswith(("a ", "an "))):
-        return one[0]
+    people = [clause for clause in told if is_person(clause.subject)]
+    pronoun = next((one.subject.lower() for one in people if one.subject.lower() in ("he", "she")), "")
+    nouns = [
+        one for one in people if not _is_pronoun(one.subject) and (one is told[0] or not _is_possessed(one.subject))
+    ]
+    if nouns:
+        return max(nouns, key=lambda clause: _heroic(clause, pronoun)).subject
     opens = ("a ", "an ", "one ", "my ", "our ", *(() if people else ("the ",)))
-    able = (
-        bool(named) and not is_known(head_of(named[0])) and head_of(named[0]).lower() not in theme_words()["no_heroes"]
+    living = [subject for subject in mains[:1] if subject.lower().startswith(opens) and _may_live(head_of(subject))]
+    return next(iter([*living, *(clause.subject for clause in people)]), "")
+
+
+def _heroic(clause: Clause, pronoun: str) -> int:
+    """How well a subject may be whom a theme is about, whose pronoun is "he", "she" or unknown."""
+    own = pronouns_of(clause.subject)
+    fits = 0 if not (pronoun and own) else 4 if own == pronoun else -8
+    return (
+        fits
+        - 2 * _is_possessed(clause.subject)
+        - 2 * (bool(pronoun) and _is_plural(clause.subject))
+        - (clause.joint in _ASIDE)
     )
-    living = named[:1] if able and named[0].lower().startswith(opens) else []
-    return next(iter([*living, *one, *people]), "")
+
+
+def _is_possessed(subject: str) -> bool:
+    return subject.split()[0].lower() in ("his", "her", "their", "my", "its")
+
+
+def _may_live(head: str) -> bool:
+    return not is_known(head) and head.lower() not in theme_words()["no_heroes"]
 
 
 def _is_pronoun(subject: str) -> bool:
