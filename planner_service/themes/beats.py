@@ -223,8 +223,13 @@ def hero_of(clauses: Sequence[Clause]) -> str:
         return "you"
     people = [clause for clause in told if is_person(clause.subject)]
     pronoun = next((one.subject.lower() for one in people if one.subject.lower() in ("he", "she")), "")
+    first = min(((one.sentence, one.place) for one in people if _is_pronoun(one.subject)), default=(len(clauses), 0))
     nouns = [
-        one for one in people if not _is_pronoun(one.subject) and (one is told[0] or not _is_possessed(one.subject))
+        one
+        for one in people
+        if not _is_pronoun(one.subject)
+        and (one is told[0] or not _is_possessed(one.subject))
+        and (one.joint not in _ASIDE or (one.sentence, one.place) < first)
     ]
     if nouns:
         return max(nouns, key=lambda clause: _heroic(clause, pronoun)).subject

@@ -54,6 +54,8 @@ class Clause:
     """What is said in it."""
     sentence: int = 0
     """Index of its sentence in the text."""
+    place: int = 0
+    """Where in its sentence it is written."""
 
 
 def clauses_of_text(text: str) -> tuple[Clause, ...]:
@@ -75,7 +77,7 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
         for piece in (pieces := _pieces(sentence)):
             parts = _clause(piece, quotes, number)
             own = parts[0].subject or (_next_subject(pieces, piece) if not told else "")
-            told.append([replace(part, doer=own or doer) for part in parts])
+            told.append([replace(part, doer=own or doer, place=len(told)) for part in parts])
             if not doer or not _is_led(piece.joint, ()):  # who does what "because guests are coming" is not the guests
                 doer = own or doer
         found += [part for place in _in_time(pieces) for part in told[place]]
