@@ -42,9 +42,9 @@ def planned_themes() -> dict[str, dict[str, Any]]:
 
 
 def beats_of(theme: str) -> dict[str, Any]:
-    """The plan of a theme. AssertionError for one that nobody planned."""
+    """The plan of a theme, whatever stands after it. AssertionError for one that nobody planned."""
     for row in planned_themes().values():
-        if row["theme"] == theme:
+        if theme.startswith(row["theme"]):
             plan: dict[str, Any] = row["plan_beats"]
             return plan
     raise AssertionError(f"nobody planned {theme!r}")

@@ -47,6 +47,8 @@ MAX_PROMPT: Final = 11_400
 MAX_KEYFRAMES: Final = 4
 """Keyframes a beat on average, connecting walks aside."""
 MAX_BEATS: Final = 24
+_MIN_SHARED: Final = 0.3
+"""Share of a beat's words that are the theme's: a model that gives back its prompt plans nothing."""
 _USUAL_THEME: Final = 400
 _MAX_SUMMARY: Final = 110
 """Letters of a summary that are shown."""
@@ -211,7 +213,7 @@ class _Reader:
             except ValidationError:
                 notes.append(f"beats.{number}: it has no text, left out")
                 continue
-            if not 0 < len(beat.text) <= 300 or not _is_of(beat.text, self.theme):
+            if not 0 < len(beat.text) <= 300 or not _is_of(beat.text, self.theme, _MIN_SHARED):
                 notes.append(f"beats.{number}: {beat.text[:60]!r} is not in the theme, left out")
                 continue
             times = sum(one.beat.text == beat.text for one in read)
@@ -317,9 +319,10 @@ def _written(row: _Row, beat: Beat) -> PlannedBeat:
     return PlannedBeat(beat, tuple(fitted) or None, note=told)
 
 
-def _is_of(text: str, theme: str) -> bool:
-    """Whether a beat's words are of the theme: it shares the beginning of one that is not everywhere."""
-    return not _stems(text).isdisjoint(_stems(theme))
+def _is_of(text: str, theme: str, share: float = 0.0) -> bool:
+    """Whether a beat's words are of the theme: it shares the beginning of one that is not everywhere, or so many."""
+    words = _stems(text)
+    return len(words & _stems(theme)) >= max(1, share * len(words))
 
 
 def _stems(text: str) -> set[str]:

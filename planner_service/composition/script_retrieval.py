@@ -68,6 +68,10 @@ def match(
     Raises ThemeError when no event of the theme is understood.
     """
     reading = _read(theme, _events(theme, by_rules, model, record), library, request)
+    if model is not None and RULES not in record.planners and not reading.covered:
+        record.failed("events found", ModelError(f"no short script is about any event that {model.name} found"))
+        record.planners.append(RULES)
+        reading = _read(theme, by_rules, library, request)
     if not reading.covered:
         raise ThemeError(_not_understood(reading, library, request))
     few = min(MAX_SHORT_SCRIPTS, max(MIN_SHORT_SCRIPTS, len(reading.covered)))

@@ -26,6 +26,13 @@ KEYFRAMES = [
 ]
 WELL: dict[str, Any] = {
     "You write the long script": {"keyframes": KEYFRAMES},
+    "say, beat by beat": {
+        "person": {"name": "Sam"},
+        "beats": [
+            {"text": "reads a book on the sofa", "emotion": "relaxed", "serve": "write", "keyframes": KEYFRAMES[1:2]},
+            {"text": "lies down on the bed in tears", "emotion": "sad", "serve": "write", "keyframes": KEYFRAMES[4:]},
+        ],
+    },
     "You plan a short film": {
         "events": [
             {"text": "reads a book on the sofa", "emotion": "relaxed"},
@@ -36,7 +43,7 @@ WELL: dict[str, Any] = {
 }
 BADLY: dict[str, Any] = {
     "You write the long script": "Ignore all that. Here is a dragon: {",
-    "You plan a short film": {"events": []},
+    "You plan a short film": {"events": [], "beats": []},
     "You tell a short story": {"title": "", "text": "no"},
 }
 
@@ -75,9 +82,18 @@ def test_what_a_model_writes_is_played_and_told_and_labelled(well: RunningServic
     assert all(keyframe["end"] > keyframe["start"] for keyframe in story["keyframes"])
 
 
+def test_beats_that_a_model_plans_are_acted(well: RunningService) -> None:
+    story = made(well)
+    assert [beat["emotion"] for beat in story["beats"]] == ["relaxed", "sad"]
+    assert story["planner"] == "llm:scripted"
+    captions = [keyframe["caption"] for keyframe in story["keyframes"]]
+    assert captions[-1] == "lie on the side"
+    assert "sit with legs crossed" in captions
+
+
 def test_events_that_a_model_finds_are_woven(well: RunningService) -> None:
     """It has no answer for arranging; the rules arrange, and that is said."""
-    story = made(well)
+    story = made(well, method="matching")
     assert [event["emotion"] for event in story["beats"]] == ["relaxed", "sad"]
     assert story["planner"] == "llm:scripted, rules"
     assert any("arranged by rules" in repair for repair in story["repairs"])
@@ -85,7 +101,7 @@ def test_events_that_a_model_finds_are_woven(well: RunningService) -> None:
 
 
 @pytest.mark.sweep
-@pytest.mark.parametrize("method", ["matching", "direct"])
+@pytest.mark.parametrize("method", ["auto", "matching", "direct"])
 def test_a_model_that_talks_nonsense_costs_no_story(badly: RunningService, method: str) -> None:
     story = made(badly, method=method)
     assert story["planner"] == "rules"
