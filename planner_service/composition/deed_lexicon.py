@@ -32,6 +32,7 @@ _WAYS: Final = re.compile(
 """A way through a home, whatever the verb that goes it."""
 _FLOOR: Final = re.compile(r"(?<!feet )(?<!foot )\bon the (?:\w+ )?(?:floor|ground|rug|carpet)\b")
 _AT: Final = re.compile(r"\b(?:at|by|near|beside|before|behind|in front of|next to)\b")
+_STATES: Final = frozenset(("be", "have", "become", "need", "like", "love", "hate", "know", "miss", "own"))
 _EXPRESSED: Final = frozenset(EXPRESSIONS)
 _IT: Final = frozenset(("it", "there", "one", "them"))
 Pattern = tuple[frozenset[str], ...]
@@ -191,18 +192,7 @@ def _by_things(clause: Clause, about: str) -> DeedRow | None:
         return DeedRow((clause.verb,), Skill.LOCO)
     if clause.verb in _EXPRESSED:
         return None
-    if not clause.verb or clause.verb in (
-        "be",
-        "have",
-        "become",
-        "need",
-        "like",
-        "love",
-        "hate",
-        "know",
-        "miss",
-        "own",
-    ):
+    if not clause.verb or clause.verb in _STATES:
         return None
     if any(affords(piece, "touch") for piece in _named(clause, "" if "them" in clause.lemmas else about)) or _kept(
         clause, about
