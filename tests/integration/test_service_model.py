@@ -29,8 +29,8 @@ WELL: dict[str, Any] = {
     "say, beat by beat": {
         "person": {"name": "Sam"},
         "beats": [
-            {"text": "reads a book on the sofa", "emotion": "relaxed", "serve": "write", "keyframes": KEYFRAMES[1:2]},
-            {"text": "lies down on the bed in tears", "emotion": "sad", "serve": "write", "keyframes": KEYFRAMES[4:]},
+            {"text": text, "kind": "deed", "emotion": shown["emotion"], "serve": "write", "keyframes": [shown]}
+            for text, shown in (("reads a book on the sofa", KEYFRAMES[1]), ("lies down on the bed", KEYFRAMES[4]))
         ],
     },
     "You plan a short film": {
