@@ -76,6 +76,8 @@ class ThemeWords:
     """Endings of nouns for people who do something: "-er" only where what is left is a verb."""
     memory_verbs: str
     speech_verbs: str
+    not_said: str
+    """What is answered or said with more than words."""
     unable_verbs: str
     """What somebody who cannot do it is seen trying: "cannot sleep"."""
     no_heroes: str
@@ -86,6 +88,8 @@ class ThemeWords:
     """What goes on in a head; a body shows none of it but thinking."""
     state_verbs: str
     """Verbs that only say how somebody is or feels."""
+    posed: str
+    """States that a body is seen in: whoever is asleep lies."""
     state_words: str
     """Words that say no more when they stand beside a feeling."""
     foreign: str
@@ -167,7 +171,8 @@ def _read(clause: Clause, hero: str) -> ReadBeat:
         text = clause.text
     text = _QUOTED.sub(f"“{clause.quotes[0]}”".replace("\\", "/") if clause.quotes else "", text)
     kind = _kind(clause, who)
-    emotion, sure = _emotion(clause.text if clause.verb else text)
+    said = f"it {clause.text}" if clause.subject.lower() == "it" else clause.text  # "it is late" is no hurry
+    emotion, sure = _emotion(said if clause.verb else text)
     if not sure and clause.subject:
         named, of_subject = _emotion(f"{clause.subject} {clause.text}")  # "a tired student …"
         emotion, sure = (named, True) if of_subject else (emotion, sure)
@@ -193,7 +198,7 @@ def _bounded(text: str, most: int = 300) -> str:
 
 def _kind(clause: Clause, who: str) -> BeatKind:
     words = theme_words()
-    if clause.quotes or (clause.verb in words["speech_verbs"] and "phone" not in clause.lemmas):
+    if clause.quotes or (clause.verb in words["speech_verbs"] and words["not_said"].isdisjoint(clause.lemmas)):
         return "speech" if not who else "other"
     if who:
         return "other"
@@ -209,8 +214,12 @@ def is_feeling(clause: Clause) -> bool:
     words = theme_words()
     if not clause.verb:
         return bool(feelings(clause.text))
+    if not words["posed"].isdisjoint(clause.lemmas):
+        return False
     rest = [word for word in clause.lemmas[1:] if word not in words["state_words"]]
-    return clause.verb in words["state_verbs"] and bool(feelings(clause.text)) and len(rest) <= 4
+    # "her heart is in her mouth"
+    own = f"{clause.subject} " if head_of(clause.subject).lower() in words["body"] else ""
+    return clause.verb in words["state_verbs"] and bool(feelings(own + clause.text)) and len(rest) <= 4
 
 
 def hero_of(clauses: Sequence[Clause]) -> str:

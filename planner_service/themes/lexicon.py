@@ -5,6 +5,7 @@ All of it is lemminflect's, a dictionary of English inflection; it is imported w
 
 from __future__ import annotations
 
+import re
 from functools import cache, cached_property, lru_cache
 from typing import Annotated, Final
 
@@ -83,10 +84,17 @@ def verb_of(word: str) -> str:
     return _IRREGULAR.get(low) or next(iter(kinds_of(low).get("VERB", ())), "") or _more_forms().get(low, "")
 
 
+_DOUBLED: Final = re.compile(r"[^aeiou][aeiou][bdgmnpt]$")
+"""Ends of verbs whose last letter may be doubled."""
+
+
 @cache
 def _more_forms() -> dict[str, str]:
     """Base forms of the forms of verbs that the dictionary does not know."""
-    return {form(base): base for base in sorted(grammar().more_verbs) for form in (str, third_person, past, gerund)}
+    verbs = sorted(grammar().more_verbs)
+    found = {form(base): base for base in verbs for form in (str, third_person, past, gerund)}
+    short = [base for base in verbs if _DOUBLED.search(base)]  # "repotted", "channel-hopping"
+    return found | {f"{base}{base[-1]}{end}": base for base in short for end in ("ed", "ing")}
 
 
 _IRREGULAR: Final = {"found": "find", "felt": "feel", "saw": "see", "lay": "lie", "laid": "lay", "wound": "wind",
@@ -114,7 +122,9 @@ def is_adjective(word: str) -> bool:
 def lemma_of(word: str) -> str:
     """The base form by which a word is compared with others: of the verb it may be, else of the noun."""
     low = word.lower()
-    return verb_of(low) or next(iter(kinds_of(low).get("NOUN", ())), low)
+    base = verb_of(low) or next(iter(kinds_of(low).get("NOUN", ())), "")
+    head, _, last = low.rpartition("-")
+    return base or (f"{head}-{lemma_of(last)}" if head and last else low)  # "sit-ups" are a sit-up
 
 
 def is_third_person(word: str) -> bool:
