@@ -217,8 +217,9 @@ def is_feeling(clause: Clause) -> bool:
     if not words["posed"].isdisjoint(clause.lemmas):
         return False
     rest = [word for word in clause.lemmas[1:] if word not in words["state_words"]]
-    # "her heart is in her mouth"
-    own = f"{clause.subject} " if head_of(clause.subject).lower() in words["body"] else ""
+    own = (
+        f"{clause.subject} " if head_of(clause.subject).lower() in words["body"] else ""
+    )  # "her heart is in her mouth"
     return clause.verb in words["state_verbs"] and bool(feelings(own + clause.text)) and len(rest) <= 4
 
 
