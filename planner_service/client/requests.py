@@ -58,7 +58,7 @@ class StoryOptions(Options, total=False):
     layouts: Sequence[str]
     home: Json
     short_scripts: int
-    method: Literal["matching", "direct"]
+    method: Literal["auto", "matching", "direct"]
 
 
 class MotionOptions(Options, total=False):

@@ -94,7 +94,7 @@ export class ThemeForm {
     const height = h("input", { id: "height", name: "height", type: "number", value: "1.70", min: 1.2, max: 2.2, step: 0.01, inputmode: "decimal" });
     const rooms = choices("rooms", ROOMS, "checkbox");
     const seed = h("input", { id: "seed", name: "seed", type: "number", value: 0, min: 0, step: 1, inputmode: "numeric" });
-    const method = choices("method", [["matching", "from short scripts"], ["direct", "at one go"]], "radio", "matching");
+    const method = choices("method", [["auto", "beat by beat"], ["matching", "from short scripts"], ["direct", "at one go"]], "radio", "auto");
     return h(
       "details",
       { class: "options" },
@@ -106,7 +106,7 @@ export class ThemeForm {
         this.#group("Pronouns", pronouns, "/character/pronouns"),
         this.#field("Height in metres", height, "/character/height"),
         this.#group("Rooms", rooms, "/rooms", "None chosen: whatever suits the story.", this.#layouts.length > 0),
-        this.#group("Woven", method, "/method"),
+        this.#group("Planned", method, "/method"),
         this.#field("Seed", seed, "/seed", "Another number, another staging of the same theme."),
       ),
     );

@@ -5,13 +5,13 @@ Planning over HTTP: a theme, and what may be said about how it is planned.
 
 from __future__ import annotations
 
-from typing import Any, Final, Literal
+from typing import Any, Final
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from motion_backend.motion import Emotion
-from planner_service.api.stories.schemas import Ask, RoomType, Seed
-from planner_service.composition.request import MAX_SHORT_SCRIPTS
+from planner_service.api.stories.schemas import METHOD, Ask, RoomType, Seed
+from planner_service.composition.request import MAX_SHORT_SCRIPTS, Method
 from planner_service.scripts.script import Keyframe, Origin, Room, ScriptGraph, Source
 from planner_service.themes.beats import MAX_THEME_LENGTH
 from scene_graphs.home import MAX_ROOMS
@@ -93,9 +93,9 @@ class LongScriptAsk(Ask):
     theme: str = Field(
         min_length=1, max_length=MAX_THEME_LENGTH, description="What happens, in a few English sentences."
     )
-    method: Literal["matching", "direct"] = Field(
-        "matching", description="Woven from the library's short scripts, or written at once (SIMS 10's baseline)."
+    method: Method = Field("auto", description=METHOD)
+    short_scripts: int | None = Field(
+        None, ge=1, le=MAX_SHORT_SCRIPTS, description="How many `matching` weaves; null: choose."
     )
-    short_scripts: int | None = Field(None, ge=1, le=MAX_SHORT_SCRIPTS, description="How many are woven; null: choose.")
     rooms: list[RoomType] = Field([], max_length=MAX_ROOMS, description="Room types to play in; empty: choose.")
     seed: Seed = 0

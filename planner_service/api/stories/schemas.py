@@ -11,7 +11,7 @@ from pydantic_core import CoreSchema, PydanticKnownError
 
 from motion_backend.backends import UnknownBackendError, backend_names, require_backend
 from motion_backend.motion import Emotion, Skill
-from planner_service.composition.request import MAX_SHORT_SCRIPTS
+from planner_service.composition.request import MAX_SHORT_SCRIPTS, Method
 from planner_service.pipeline import MAX_HEIGHT, MAX_SEED, MIN_HEIGHT
 from planner_service.scripts.script import MAX_NAME_LENGTH, Beat, Keyframe
 from planner_service.themes.beats import MAX_THEME_LENGTH
@@ -24,6 +24,9 @@ Kind = Literal["story", "motion"]
 RoomType = Literal["bedroom", "living_room", "dining_room", "study"]
 Seed = Annotated[int, Field(ge=0, le=MAX_SEED, description="The same seed gives the same story.")]
 LayoutId = Annotated[str, StringConstraints(min_length=1, max_length=200)]
+METHOD = (
+    "Every beat served by itself, whole short scripts woven (SIMS 3.2), or all written at once (SIMS 10's baseline)."
+)
 MAX_KEYFRAMES = 60
 """Keyframes of one motion."""
 
@@ -87,10 +90,10 @@ class StoryAsk(Ask):
         [], max_length=MAX_ROOMS, description="Ids of rooms to play in, joined to a home in place of retrieved ones."
     )
     home: Json | None = Field(None, description="A whole home to play in, as GET /v1/stories/{id}/home gives it.")
-    short_scripts: int | None = Field(None, ge=1, le=MAX_SHORT_SCRIPTS, description="How many are woven; null: choose.")
-    method: Literal["matching", "direct"] = Field(
-        "matching", description="Woven from the library's short scripts, or written at once (SIMS 10's baseline)."
+    short_scripts: int | None = Field(
+        None, ge=1, le=MAX_SHORT_SCRIPTS, description="How many `matching` weaves; null: choose."
     )
+    method: Method = Field("auto", description=METHOD)
     backend: BackendName | None = Field(None, description="What moves the body; null: as the service is set.")
     seed: Seed = 0
     character: CharacterAsk | None = None

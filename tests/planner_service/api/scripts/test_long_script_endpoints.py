@@ -49,7 +49,9 @@ async def test_the_plan_is_the_engines_own_and_can_be_acted_out(app: FastAPI) ->
 
 
 async def test_rooms_and_number_of_short_scripts_are_kept_to(app: FastAPI) -> None:
-    script = LongScript.model_validate((await ask(app, theme=THEME, rooms=["bedroom"], short_scripts=1)).json())
+    script = LongScript.model_validate(
+        (await ask(app, theme=THEME, rooms=["bedroom"], short_scripts=1, method="matching")).json()
+    )
     assert len(script.short_scripts) == 1
     assert {keyframe.room for keyframe in script.keyframes if keyframe.room} <= {"bedroom"}
 
@@ -58,7 +60,8 @@ async def test_a_script_that_was_just_added_is_planned_with(app: FastAPI) -> Non
     own = EXAMPLE | {"id": "zebra", "summary": "The character rides a zebra through the living room."}
     async with calling(app, timeout=60) as client:
         assert (await client.post("/v1/short-scripts", json=own)).status_code == 201
-    script = LongScript.model_validate((await ask(app, theme="She rides a zebra through the living room.")).json())
+    theme = "She rides a zebra through the living room."
+    script = LongScript.model_validate((await ask(app, theme=theme, method="matching")).json())
     assert [chosen.script.id for chosen in script.short_scripts][:1] == ["zebra"]
 
 
@@ -88,14 +91,16 @@ async def test_what_cannot_be_planned_is_refused_by_its_field(app: FastAPI, body
     assert problem["errors"][0]["pointer"] == pointer
 
 
-async def test_a_language_model_finds_the_events_where_one_is_set_and_rules_do_what_it_cannot(tmp_path: Path) -> None:
+async def test_a_language_model_plans_the_beats_where_one_is_set_and_rules_do_what_it_cannot(tmp_path: Path) -> None:
     answers = tmp_path / "answers.json"
-    events = [{"text": "She lies down on the bed and cries", "emotion": "sad"}]
-    answers.write_text(json.dumps({"a letter of glass": {"events": events}}), encoding="utf-8")
+    lies = {"skill": "liedown", "emotion": "sad", "caption": "lying down, legs straight", "furniture": "bed"}
+    beat = {"text": "gets a letter of glass", "kind": "deed", "emotion": "sad", "serve": "write", "keyframes": [lies]}
+    answers.write_text(json.dumps({"a letter of glass": {"beats": [beat]}}), encoding="utf-8")
     with warm_app_on(tmp_path / "data", llm_model=f"scripted:{answers}") as app:
         planned = LongScript.model_validate((await ask(app, theme="She gets a letter of glass.")).json())
         by_rules = LongScript.model_validate((await ask(app, theme=THEME)).json())
-    assert [event.model_dump() for event in planned.beats] == events
+    assert [(one.text, one.emotion) for one in planned.beats] == [("gets a letter of glass", "sad")]
+    assert [one.skill for one in planned.keyframes] == ["loco", "liedown"]
     assert planned.planner.startswith("llm:")
     assert by_rules.planner == "rules"
     assert any("by rules" in repair for repair in by_rules.repairs)
