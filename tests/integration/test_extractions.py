@@ -6,6 +6,7 @@ import io
 import json
 import os
 import signal
+import time
 from pathlib import Path
 
 import pytest
@@ -61,11 +62,15 @@ def test_a_film_with_subtitles_becomes_short_scripts_that_stories_can_use(
 
 
 def test_a_worker_that_is_killed_goes_on_and_asks_about_no_scene_twice(film: bytes, tmp_path: Path) -> None:
-    """It is killed while the model looks at the second scene."""
+    """It is killed while the model still looks at the second scene, when the first one is read and stored."""
     killed: list[int] = []
+    begun: list[str] = []
 
     def behave(asked: Asked) -> Sent:
         if "watch scene 2 of" in asked.prompt and not killed:
+            with Client(service.url) as other:
+                while not (begun and other.extraction(begun[0]).scenes):
+                    time.sleep(0.1)
             killed.extend(service.worker_pids())
             os.kill(killed[0], signal.SIGKILL)
         return chat(json.dumps(seen_in(asked.prompt)), asked.path)
@@ -74,9 +79,11 @@ def test_a_worker_that_is_killed_goes_on_and_asks_about_no_scene_twice(film: byt
         given = {"LLM_MODEL": "openai:gpt-x", "LLM_BASE_URL": server.url, "LLM_API_KEY": KEY, "LLM_CACHE_MB": "0"}
         service = RunningService(tmp_path, environment={f"SIMS_{name}": value for name, value in given.items()})
         with service, Client(service.url) as client:
-            done = client.wait_extraction(client.extract(video=io.BytesIO(film)).id, timeout=PATIENCE)
+            begun.append(client.extract(video=io.BytesIO(film)).id)
+            done = client.wait_extraction(begun[0], timeout=PATIENCE)
     asked = ["watch" if "You watch" in prompt else "write" for prompt in server.prompts]
-    assert asked == ["watch", "write", "watch", "watch", "write"]
+    assert sorted(asked[:3]) == ["watch", "watch", "write"]
+    assert asked[3:] == ["watch", "write"]
     assert len(killed) == 1
     scripts = [ShortScript.model_validate(row) for row in done.scripts]
     assert [(script.origin.start, script.origin.end) for script in scripts if script.origin] == [

@@ -260,9 +260,10 @@ def test_an_extraction_that_was_interrupted_goes_on_without_asking_again(app: Fa
     desk.open[halved["id"]].close()
     after = ScriptedModel(lambda prompt, _: seen_in(prompt))
     work(reader(app, after), halved["id"])
-    assert ([call.schema for call in before.calls], [call.schema for call in after.calls]) == (
-        ["SceneAnswer", "FilmedScripts"], ["SceneAnswer", "FilmedScripts"],
-    )  # fmt: skip
+    # Scenes are asked about some at once, so the second may have been before; what was read is not asked about again.
+    assert [call.schema for call in before.calls].count("SceneAnswer") <= 2
+    assert [call.schema for call in after.calls] == ["SceneAnswer", "FilmedScripts"]
+    assert not any("watch scene 1 of" in call.prompt for call in after.calls)
     one, other = (ask(app, "GET", shown["links"]["self"]).json() for shown in (whole, halved))
     assert (one["scripts"], one["scenes"]) == (other["scripts"], other["scenes"])
     assert one["by"] == "llm:scripted"
