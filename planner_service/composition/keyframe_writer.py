@@ -95,7 +95,8 @@ class KeyframeWriter:
         elif deed is not None and deed.row.why and not (read.felt is not None and read.sure):
             self.why[index] = deed.row.why
         elif deed is not None and not deed.row.why:
-            self._do(index, read, deed)
+            if not (_wakes(read, deed) and self._stays(index, beats)):
+                self._do(index, read, deed)
         elif beat.kind == "feeling" or (read.felt is not None and read.sure):
             self._feel(index, beats)
         else:
@@ -144,6 +145,23 @@ class KeyframeWriter:
             case _:
                 shown = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
                 self._rest(index, read, deed, mood, deed.skill, shown)
+
+    def _stays(self, index: int, beats: Sequence[ReadBeat]) -> bool:
+        """Whether who wakes at a beat goes on lying, or gets up only at the next deed: then it is shown lying."""
+        deeds = (deed_of(later.clause) for later in beats[index + 1 :] if later.beat.kind == "deed")
+        following = next((deed for deed in deeds if deed is not None and not deed.row.why), None)
+        if following is None or following.skill not in (Skill.LIEDOWN, Skill.GETUP):
+            return False
+        if self._lies():
+            self._show(index)
+        elif self._resting is None and not self.keyframes and self._has("bed"):
+            mood = beats[index].beat.emotion
+            caption = self._one_of(self._of_mood(Skill.LIEDOWN, mood), mood, index, Skill.LIEDOWN)
+            self._put(index, Skill.LIEDOWN, mood, caption, "bed", None)
+            self._resting, self._plain = self.keyframes[-1], True
+        else:
+            return False
+        return True
 
     def _lies(self) -> bool:
         return self._resting is not None and self._resting.skill is Skill.LIEDOWN
@@ -333,6 +351,11 @@ class KeyframeWriter:
         fitting = [caption for caption in captions if _shares().get((skill, caption), {}).get(mood, 0.0) >= 0.15]
         options = fitting or list(captions)
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
+
+
+def _wakes(read: ReadBeat, deed: Deed) -> bool:
+    """Whether somebody wakes, who may lie a while longer."""
+    return deed.skill is Skill.GETUP and read.clause.verb in ("wake", "awake", "awaken", "stir", "rouse")
 
 
 def _manner(read: ReadBeat) -> tuple[str, ...]:
