@@ -92,9 +92,9 @@ class KeyframeWriter:
         self._about = read.text if names_things(read.clause) else self._about
         if beat.kind in NOT_ACTED:
             self.why[index] = NOT_ACTED[beat.kind]
-        elif deed is not None and deed.row.why and not (read.felt is not None and read.sure):
+        elif deed is not None and deed.row.why:
             self.why[index] = deed.row.why
-        elif deed is not None and not deed.row.why:
+        elif deed is not None:
             if not (_wakes(read, deed) and self._stays(index, beats)):
                 self._do(index, read, deed)
         elif beat.kind == "feeling" or (read.felt is not None and read.sure):
