@@ -133,6 +133,78 @@ def test_captions_show_what_is_done(text: str, caption: str) -> None:
     assert caption in deed(text).row.captions
 
 
+@for_each(
+    ("text", "skill", "caption"),
+    [
+        ("He plonked himself down on the sofa", Skill.SITDOWN, ""),
+        ("She puts the kettle on", Skill.TOUCH, "turn on with the right hand"),
+        ("She had a quick nap", Skill.LIEDOWN, "lying still"),
+        ("He tossed and turned", Skill.LIEDOWN, "lying with hands under head, legs crossed"),
+        ("She was up at six", Skill.GETUP, ""),
+        ("He reached for the top shelf", Skill.TOUCH, "An act of reaching high with the right hand"),
+        ("I pinched the bridge of my nose", Skill.SITDOWN, "hands holding head, legs extended"),
+        ("He shoved his hands in his pockets", Skill.LOCO, "strolling with hands in pockets"),
+        ("She nodded", Skill.LOCO, "head bowed and body bent while walking"),
+        ("She glanced about", Skill.LOCO, "stand still"),
+        ("She did thirty jumping jacks", Skill.LOCO, "skip steps running"),
+        ("She did a cartwheel", Skill.LOCO, "dancing steps, arms swinging"),
+        ("He punched the air", Skill.LOCO, "skip steps running"),
+        ("He high-fived himself", Skill.LOCO, "skip steps running"),
+        ("He staggered to the bedroom", Skill.LOCO, "walking drunkenly"),
+        ("He stamped his foot", Skill.LOCO, "stomping heavily"),
+        ("He rushed around like a headless chicken", Skill.LOCO, "rush anxiously forward"),
+        ("He picked a sock up off the floor", Skill.TOUCH, "pick up with the right hand"),
+        ("He swept up the crumbs", Skill.TOUCH, "touch low height with the right hand"),
+        ("She fed the goldfish", Skill.TOUCH, "touch low height with the right hand"),
+        ("She pruned the bonsai", Skill.TOUCH, ""),
+        ("She wiped her face", Skill.TOUCH, "wash with both hands"),
+        ("She did the washing-up", Skill.TOUCH, "wash with both hands"),
+        ("She shaved her legs", Skill.TOUCH, ""),
+        ("She put on lipstick", Skill.TOUCH, ""),
+        ("She buttoned her coat", Skill.TOUCH, ""),
+        ("He hung up his coat", Skill.TOUCH, "An act of reaching high with the right hand"),
+        ("He loaded the dishwasher", Skill.TOUCH, "put down with the right hand"),
+        ("She cleared the plates", Skill.TOUCH, ""),
+        ("She ironed a shirt", Skill.TOUCH, ""),
+        ("She rearranged the furniture", Skill.TOUCH, "put down with the right hand"),
+        ("She changed a light bulb", Skill.TOUCH, "An act of reaching high with the right hand"),
+        ("He wound the clock", Skill.TOUCH, "rotate with the right hand"),
+        ("He cracked two eggs into a pan", Skill.TOUCH, ""),
+        ("He rolled out the pastry", Skill.TOUCH, ""),
+        ("He boiled an egg", Skill.TOUCH, "turn on with the right hand"),
+        ("He heated up some soup", Skill.TOUCH, "turn on with the right hand"),
+        ("She sipped her cocoa", Skill.SITDOWN, "drinking from a cup in the right hand"),
+        ("He drank to her health", Skill.SITDOWN, "drinking from a cup in the right hand"),
+        ("He picked at his food", Skill.SITDOWN, "eating at the table, right hand to the mouth"),
+        ("She had a midnight snack", Skill.SITDOWN, "eating at the table, right hand to the mouth"),
+        ("He buried his nose in a book", Skill.SITDOWN, "reading, book held in both hands"),
+        ("She did the crossword", Skill.SITDOWN, "reading, book held in both hands"),
+        ("She's working from home", Skill.SITDOWN, "typing, both hands on the keyboard"),
+        ("She surfed the web", Skill.SITDOWN, "typing, both hands on the keyboard"),
+        ("She sketched a bird", Skill.SITDOWN, "writing at the table, right hand moving"),
+        ("She strummed the guitar", Skill.SITDOWN, "playing the piano, both hands on the keys"),
+        ("She was gaming all night", Skill.SITDOWN, "playing a game, controller held in both hands"),
+        ("He hung up", Skill.TOUCH, "put down with the right hand"),
+        ("He lit a candle", Skill.TOUCH, ""),
+        ("She watched a movie", Skill.SITDOWN, "arms loosely, legs open"),
+        ("He listened to a record", Skill.SITDOWN, "listening to music, both hands at the ears"),
+        ("I'm taking it easy", Skill.SITDOWN, "lying back in chair, arms relaxed at sides"),
+        ("She racked her brains", Skill.SITDOWN, "right hand on chin, thinking"),
+        ("She said her prayers", Skill.SITDOWN, "cross-legged, hands on knees"),
+        ("She cried her eyes out", Skill.SITDOWN, "supporting head with hands, head bowed"),
+        ("She bawled", Skill.SITDOWN, "supporting head with hands, head bowed"),
+        ("He turned the place upside down", Skill.TOUCH, ""),
+        ("He drew the blinds", Skill.TOUCH, ""),
+        ("He tore the letter to shreds", Skill.TOUCH, ""),
+    ],
+)
+def test_everyday_english_is_shown_as_a_fair_viewer_would_expect(text: str, skill: Skill, caption: str) -> None:
+    found = deed_of(clauses_of_text(f"{text}.")[0])
+    assert found is not None
+    assert found.skill is skill
+    assert not caption or caption in found.row.captions
+
+
 @for_each("text", ["returns to the living room", "moves to the window", "takes the tray to the kitchen", "goes home"])
 def test_ways_are_gone(text: str) -> None:
     assert (deed(text).skill, deed(text).row.why) == (Skill.LOCO, "")
