@@ -25,7 +25,11 @@ from scene_graphs.home import home_from_layouts
 from scene_graphs.layout import Layout
 
 HOME = home_from_layouts([Layout("room", "study", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)), objects=())], 0)
-NAMED = [(stem.replace("*", ""), emotion) for emotion, stems in naming_words().items() for stem in stems]
+NAMED = [
+    (stem.replace(" * ", " her ").replace("*", ""), emotion)
+    for emotion, stems in naming_words().items()
+    for stem in stems
+]
 STYLES: dict[Skill, Callable[[Emotion, str], Any]] = {
     Skill.LOCO: walk_style,
     Skill.SITDOWN: sit_style,
@@ -35,7 +39,7 @@ STYLES: dict[Skill, Callable[[Emotion, str], Any]] = {
 
 def hinted() -> list[str]:
     table = read_table("planner_service", "emotion_hints.toml", EmotionHints)
-    return [stem.replace("*", "") for row in table.emotions for stem in row.hints]
+    return [stem.replace(" * ", " her ").replace("*", "") for row in table.emotions for stem in row.hints]
 
 
 def standing(words: str) -> Keyframe:
