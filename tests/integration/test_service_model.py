@@ -87,8 +87,8 @@ def test_beats_that_a_model_plans_are_acted(well: RunningService) -> None:
     assert [beat["emotion"] for beat in story["beats"]] == ["relaxed", "sad"]
     assert story["planner"] == "llm:scripted"
     captions = [keyframe["caption"] for keyframe in story["keyframes"]]
-    assert captions[-1] == "lie on the side"
-    assert "sit with legs crossed" in captions
+    assert captions[-1].startswith("side-l")  # the known caption that is nearest to the model's own
+    assert any(row["skill"] == "sitdown" and row["beat"] == 0 for row in story["keyframes"])
 
 
 def test_events_that_a_model_finds_are_woven(well: RunningService) -> None:
