@@ -14,8 +14,8 @@ import numpy as np
 
 from motion_backend.motion import Skill
 from planner_service.composition.deed_lexicon import Deed, deed_of
-from planner_service.composition.keyframe_writer import NOT_ACTED, UNSHOWN, KeyframeWriter, Part
-from planner_service.composition.llm_beats import PlannedTheme, plan_beats
+from planner_service.composition.keyframe_writer import UNSHOWN, KeyframeWriter, Part
+from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
 from planner_service.composition.request import RULES, Record, Request
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe, Retrieved, ShortScript
@@ -45,7 +45,7 @@ def serve_beats(
     for index in range(len(read)):
         served = planned.beats[index] if planned else None
         if served is not None and served.keyframes is not None:
-            writer.take(index, served.keyframes, served.beat.why, library.find(served.script or ""))
+            writer.take(index, served.keyframes, served.beat.why, _named_part(served, library))
         else:
             writer.write(index, read)
     if not writer.keyframes:
@@ -86,6 +86,14 @@ def _by_model(
     return planned
 
 
+def _named_part(served: PlannedBeat, library: ScriptLibrary) -> Part | None:
+    """The script that a model's beat is served by, and how well it answers the beat; None where it wrote."""
+    script = library.find(served.script or "")
+    if script is None:
+        return None
+    return Part(script, float(rank([served.beat.text], library)[0][library.scripts.index(script)]), ())
+
+
 def _read_anew(planned: PlannedTheme) -> tuple[ReadBeat, ...]:
     """The model's beats with what of their words the rules go by."""
     return tuple(read_beat(one.beat) for one in planned.beats)
@@ -94,14 +102,18 @@ def _read_anew(planned: PlannedTheme) -> tuple[ReadBeat, ...]:
 def _with_reasons(
     read: Sequence[ReadBeat], writer: KeyframeWriter, keyframes: Sequence[PlannedKeyframe]
 ) -> tuple[Beat, ...]:
-    """The beats as they are planned: those that no keyframe shows with the reason."""
+    """The beats as they are planned: those that no keyframe shows with the reason.
+
+    What a mood alone shows ("grins") is a feeling, and shown wherever something is done in that mood.
+    """
     shown = {beat for keyframe in keyframes for beat in (keyframe.beat, *keyframe.also) if beat is not None}
     moods = {keyframe.mood for keyframe in keyframes}
     beats = []
     for index, one in enumerate(read):
-        is_felt = index not in writer.why and one.beat.kind not in NOT_ACTED and one.beat.emotion in moods
-        known = index in shown or (is_felt and one.felt is not None)
-        beats.append(one.beat.model_copy(update={"why": "" if known else writer.why.get(index, UNSHOWN)}))
+        known = index in shown or (index in writer.moody and one.beat.emotion in moods)
+        why = "" if known else writer.why.get(index, UNSHOWN)
+        kind = "feeling" if index in writer.moody else one.beat.kind
+        beats.append(one.beat.model_copy(update={"why": why, "kind": kind}))
     return tuple(beats)
 
 

@@ -75,6 +75,8 @@ class KeyframeWriter:
     keyframes: list[PlannedKeyframe] = field(default_factory=list)
     why: dict[int, str] = field(default_factory=dict)
     """Beats that are not acted, with the reason."""
+    moody: set[int] = field(default_factory=set)
+    """Beats that a mood alone shows, in whatever is done in it."""
     parts: list[tuple[int, Part]] = field(default_factory=list)
     """Beats that are served by a part of a script."""
     _resting: PlannedKeyframe | None = None
@@ -102,14 +104,14 @@ class KeyframeWriter:
         else:
             self.why[index] = UNSHOWN
 
-    def take(self, index: int, keyframes: Sequence[Keyframe], why: str, script: ShortScript | None) -> None:
+    def take(self, index: int, keyframes: Sequence[Keyframe], why: str, part: Part | None) -> None:
         """Keyframes that somebody else planned for a beat, of a short script where they are of one."""
         if not keyframes:
             self.why[index] = why or UNSHOWN
             return
         number = None
-        if script is not None:
-            self.parts.append((index, Part(script, 1.0, ())))
+        if part is not None:
+            self.parts.append((index, part))
             number = len(self.parts) - 1
         for keyframe in keyframes:
             row = {**keyframe.model_dump(), "beat": index, "short_script": number}
@@ -240,6 +242,7 @@ class KeyframeWriter:
 
     def _feel(self, index: int, beats: Sequence[ReadBeat]) -> None:
         """A mood alone: shown by what is done in it next, or was just done; else by a walk."""
+        self.moody.add(index)
         mood = beats[index].beat.emotion
         for later in range(index + 1, len(beats)):
             if beats[later].beat.emotion is not mood or beats[later].clause.sentence > beats[index].clause.sentence + 1:

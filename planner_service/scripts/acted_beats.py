@@ -138,7 +138,7 @@ def _why(beat: Beat, index: int, shots: Sequence[Shot]) -> str:
     if beat.why or not beat.asked:
         return beat.why or UNDONE
     own = [shot for shot in shots if index in shot.beats]
-    if not own and beat.emotion is not Emotion.NEUTRAL:  # "grins" is shown in the mood of what is done then
+    if not own and beat.kind == "feeling" and beat.emotion is not Emotion.NEUTRAL:  # in what is done in that mood
         own = [shot for shot in shots if shot.mood is beat.emotion]
     if not own:
         return "no keyframe is left that shows it"

@@ -169,7 +169,8 @@ def _read(clause: Clause, hero: str) -> ReadBeat:
     text = f"{who} {clause.text}" if led else clause.text
     if not clause.verb:
         text = clause.text
-    text = _QUOTED.sub(f"“{clause.quotes[0]}”".replace("\\", "/") if clause.quotes else "", text)
+    quotes = iter(clause.quotes)
+    text = _QUOTED.sub(lambda _: f"“{next(quotes, '')}”", text)
     kind = _kind(clause, who)
     said = f"it {clause.text}" if clause.subject.lower() == "it" else clause.text  # "it is late" is no hurry
     emotion, sure = _emotion(said if clause.verb else text)

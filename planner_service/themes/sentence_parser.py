@@ -124,9 +124,8 @@ def _pieces(sentence: str) -> list[_Piece]:
     cut: list[_Piece] = []
     joint, current = "", list[Token]()
     for place, token in enumerate(tokens):
-        told = [*(word for piece in cut for word in piece.tokens), *current]
         is_joint = token.low in grammar().joints and _joins(tokens, place)
-        if token.text == "," or (is_joint and (not current or _may_end(token.low, told))):
+        if token.text == "," or (is_joint and (not current or _may_end(token.low, cut, current))):
             if current:
                 cut.append(_Piece(joint, tuple(current), source))
                 joint, current = "", []
@@ -180,11 +179,12 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
     return True
 
 
-def _may_end(joint: str, before: Sequence[Token]) -> bool:
+def _may_end(joint: str, cut: Sequence[_Piece], current: Sequence[Token]) -> bool:
     """Whether what stands before a joint can be a clause, or the end of one that lists things: not "a nurse" of
     "a nurse after a night shift", but "a pear" of "eats a plum and a pear after dinner is cooked"."""
-    leads = joint in grammar().earlier | {"before", "until", "without"}
-    return not leads or verb_place(before) is not None
+    if joint not in grammar().earlier | {"before", "until", "without"}:
+        return True
+    return any(verb_place(told) is not None for told in (current, *(piece.tokens for piece in reversed(cut))))
 
 
 def _starts_gerund(rest: Sequence[Token]) -> bool:
