@@ -86,6 +86,12 @@ class StoryRequest:
             raise RequestError(
                 f"must be a number from 1 to {MAX_SHORT_SCRIPTS}, got {self.short_scripts}", at="short_scripts"
             )
+        if self.short_scripts is not None and self.method != "matching":
+            raise RequestError(
+                f"{self.method} weaves no whole short scripts",
+                "leave it out, or ask for method matching",
+                at="short_scripts",
+            )
         if self.home is not None and self.layouts:
             raise RequestError("give a whole home or layouts to join to one, not both", at="home")
         if not 0 <= self.seed <= MAX_SEED:

@@ -228,7 +228,7 @@ long_scripts_router = APIRouter(prefix="/v1/long-scripts", tags=["long scripts"]
 
 @long_scripts_router.post("", response_model=LongScript)
 def compose(ask: LongScriptAsk, parts: PartsDep) -> LongScript:
-    """Plan a theme: its events, the short scripts chosen for them, and every keyframe. Nothing is stored."""
+    """Plan a theme: its beats, the short scripts that serve them, and every keyframe. Nothing is stored."""
     pipeline = Pipeline(parts.shelves, parts.model, parts.settings.llm_on_failure == "error")
     request = StoryRequest(
         theme=clean(ask.theme),

@@ -85,7 +85,7 @@ class LongScriptAsk(Ask):
         json_schema_extra={
             "examples": [
                 {"theme": "A woman comes home tired, reads a book on the sofa and falls asleep.", "seed": 3},
-                {"theme": "He is happy and dances, then he writes a letter.", "short_scripts": 2, "rooms": ["study"]},
+                {"theme": "He is happy and dances, then he writes a letter.", "method": "matching", "short_scripts": 2},
             ]
         }
     )
@@ -95,7 +95,7 @@ class LongScriptAsk(Ask):
     )
     method: Method = Field("auto", description=METHOD)
     short_scripts: int | None = Field(
-        None, ge=1, le=MAX_SHORT_SCRIPTS, description="How many `matching` weaves; null: choose."
+        None, ge=1, le=MAX_SHORT_SCRIPTS, description="How many `matching` weaves; null: choose. Only with it."
     )
     rooms: list[RoomType] = Field([], max_length=MAX_ROOMS, description="Room types to play in; empty: choose.")
     seed: Seed = 0

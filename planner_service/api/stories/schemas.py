@@ -91,7 +91,7 @@ class StoryAsk(Ask):
     )
     home: Json | None = Field(None, description="A whole home to play in, as GET /v1/stories/{id}/home gives it.")
     short_scripts: int | None = Field(
-        None, ge=1, le=MAX_SHORT_SCRIPTS, description="How many `matching` weaves; null: choose."
+        None, ge=1, le=MAX_SHORT_SCRIPTS, description="How many `matching` weaves; null: choose. Only with it."
     )
     method: Method = Field("auto", description=METHOD)
     backend: BackendName | None = Field(None, description="What moves the body; null: as the service is set.")

@@ -78,6 +78,7 @@ async def test_a_script_that_was_just_added_is_planned_with(app: FastAPI) -> Non
         ({"theme": THEME, "rooms": ["study"] * 5}, "/rooms"),
         ({"theme": THEME, "short_scripts": 0}, "/short_scripts"),
         ({"theme": THEME, "short_scripts": 13}, "/short_scripts"),
+        ({"theme": THEME, "short_scripts": 2}, "/short_scripts"),
         ({"theme": THEME, "seed": -1}, "/seed"),
         ({"theme": THEME, "seed": 2**53}, "/seed"),
         ({"theme": THEME, "seed": True}, "/seed"),
