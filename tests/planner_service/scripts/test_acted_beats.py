@@ -70,7 +70,7 @@ def test_a_beat_whose_deeds_the_body_did_not_reach_is_not_acted_and_says_so() ->
 
 
 def test_a_feeling_is_acted_by_the_mood_of_other_beats() -> None:
-    cries = Beat(text="cries", emotion=Emotion.SAD)
+    cries = Beat(text="cries", emotion=Emotion.SAD, kind="feeling")
     assert acted_beats([SITS, cries], [shot(0, mood=Emotion.SAD)]).outcomes[1].acted
     assert not acted_beats([SITS, cries], [shot(0)]).outcomes[1].acted
 
