@@ -21,6 +21,7 @@ from motion_backend.procedural.held_poses import idle, standing
 from motion_backend.procedural.pose import Pose, concatenate
 from motion_backend.procedural.pose_solver import hips_within, released, solve
 from motion_backend.procedural.skill_controller import perform
+from motion_backend.procedural.takeover import eased_from, pose_of
 from motion_backend.procedural.touch.hand_captions import steadies, with_both_hands
 from motion_backend.procedural.touch.hand_rests import Hold
 from motion_backend.scene import scene_of
@@ -52,7 +53,7 @@ class ProceduralBackend:
 
     def advance(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
         """Do one part, all of it; a body that cannot get there stays where it is and says why."""
-        body = _awake(home, upcoming, state)
+        body = self._awake(home, upcoming, state)
         reason = ""
         try:
             perform(body, part)
@@ -61,24 +62,26 @@ class ProceduralBackend:
             body.enter(PhaseKind.STAND)
             body.add(idle(body.pose, STANDS, 1.0, body.rng, FPS))
         motion = replace(_to_motion(body, part), completed=not reason, reason=reason)
+        if state.backend != self.name:
+            motion = eased_from(state.history, motion, body.skeleton)
         holds = [asdict(hold) if hold is not None else None for hold in body.holds]
         return motion, state.after(part, motion, self.name, {"pose": body.pose.to_lists(), "holds": holds})
 
-
-def _awake(home: Home, upcoming: Sequence[Part], state: BodyState) -> Body:
-    """The body as the state left it, whoever made what was before."""
-    skeleton, memory = build_skeleton(state.height), state.memory
-    left, right = (Hold(**hold) if hold else None for hold in memory.get("holds", (None, None)))
-    return Body(
-        scene=scene_of(home),
-        skeleton=skeleton,
-        rng=np.random.default_rng([state.seed, state.index]),
-        pose=released(Pose.from_lists(memory["pose"]), skeleton),
-        posture=state.posture,
-        rest=state.rest,
-        holds=(left, right),
-        upcoming=tuple(upcoming),
-    )
+    def _awake(self, home: Home, upcoming: Sequence[Part], state: BodyState) -> Body:
+        """The body as the state left it, whoever made what was before."""
+        skeleton, memory = build_skeleton(state.height), state.memory if state.backend == self.name else {}
+        left, right = (Hold(**hold) if hold else None for hold in memory.get("holds", (None, None)))
+        pose = Pose.from_lists(memory["pose"]) if memory else pose_of(state.history, skeleton)
+        return Body(
+            scene=scene_of(home),
+            skeleton=skeleton,
+            rng=np.random.default_rng([state.seed, state.index]),
+            pose=released(pose, skeleton),
+            posture=state.posture,
+            rest=state.rest,
+            holds=(left, right),
+            upcoming=tuple(upcoming),
+        )
 
 
 def _to_motion(body: Body, part: Part) -> Motion:
