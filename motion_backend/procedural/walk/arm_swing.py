@@ -12,6 +12,7 @@ from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import arm_arrays, arm_poses
 from motion_backend.procedural.pose import smooth
 from motion_backend.procedural.walk.footsteps import Steps
+from motion_backend.procedural.walk.stride import Stride
 from motion_backend.procedural.walk.walk_styles import Walk
 from motion_backend.rotations import Array
 from scene_graphs.data_tables import read_table, table
@@ -109,8 +110,8 @@ def arm_table() -> ArmTable:
     return rows
 
 
-def swing_arms(style: Walk, steps: Steps, speed: Array) -> tuple[Array, Array]:
-    """Wrists and elbow directions of T frames walked at `speed` (T,). (T, 2, 3) each."""
+def swing_arms(style: Walk, steps: Steps, speed: Array, spread: Array) -> tuple[Array, Array]:
+    """Wrists and elbow directions of T frames walked at `speed` (T,), `spread` (T, 2) into poses. (T, 2, 3) each."""
     row, frames = arm_table().swing, len(steps.phase)
     fixed, poles = arm_arrays(*style.bearing.arms)
     wrists, elbows = np.repeat(fixed[None], frames, axis=0), np.repeat(poles[None], frames, axis=0)
@@ -120,7 +121,7 @@ def swing_arms(style: Walk, steps: Steps, speed: Array) -> tuple[Array, Array]:
         if style.bearing.arms[index] in row.elbow_deg:
             wrists[:, index] = _hanging(style, index, side * cycle, steps.moving, speed)
         else:
-            wrists[:, index] = _held(style, index, wrists[:, index], frames)
+            wrists[:, index] = _held(index, wrists[:, index], spread[:, index])
             wrists[:, index, 2] += row.held_arms * side * cycle
         if style.across:
             wrists[:, index] = _across(style, side, steps, wrists[:, index])
@@ -150,23 +151,27 @@ def _hanging(style: Walk, index: int, beat: Array, moving: Array, speed: Array) 
     return np.asarray(wrist * np.minimum(1, row.stretched_max_arms / np.linalg.norm(wrist, axis=1))[:, None])
 
 
-def _held(style: Walk, index: int, wrist: Array, frames: int) -> Array:
+def _held(index: int, wrist: Array, spread: Array) -> Array:
     """A wrist on its way from hanging into the pose it is held in, and back where something is begun. (T, 3)."""
-    spread = _spread(frames, style.bearing.arms[index], style.release)
     hang = np.asarray(arm_poses()["hang"].wrist_arm_lengths) * [1 if index == 0 else -1, 1, 1]
     between = hang + spread[:, None] * (wrist - hang)
     length = np.linalg.norm(hang) + spread * (np.linalg.norm(wrist, axis=1) - np.linalg.norm(hang))
     return np.asarray(rotations.normalize(between) * length[:, None])
 
 
-def _spread(frames: int, arms: str, release: bool) -> Array:
-    """Share of an arm pose: open arms wait until the body is under way, and all but those that carry something
-    come down where something is begun."""
+def arm_spread(frames: int, style: Walk, stride: Stride | None = None) -> Array:
+    """Share of its pose that each arm is in: open arms wait until the body is under way, and all but those that carry
+    something come down where something is begun. (T, 2)."""
     row, at = arm_table().spread, np.arange(frames) / FPS
-    takes_room = arms in row.takes_room
-    begun = smooth((at - row.after_s) / row.within_s) if takes_room else np.ones(frames)
-    comes_down = takes_room or (release and arms != CARRIED)
-    return begun * smooth((at[-1] - at) / row.down_s) if comes_down else begun
+    spread = np.ones((frames, 2))
+    for index, arms in enumerate(style.bearing.arms):
+        takes_room = arms in row.takes_room
+        if takes_room:
+            begin = 0.0 if stride is None else float(stride.spread[index])
+            spread[:, index] = begin + (1 - begin) * smooth((at - row.after_s * (stride is None)) / row.within_s)
+        if takes_room or (style.release and arms != CARRIED):
+            spread[:, index] *= smooth((at[-1] - at) / row.down_s)
+    return spread
 
 
 def _across(style: Walk, side: int, steps: Steps, wrist: Array) -> Array:

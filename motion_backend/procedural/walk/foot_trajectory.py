@@ -156,6 +156,8 @@ class Swing:
     round: float = 0.0
     """How far outwards it goes round the other leg (metres)."""
     backwards: bool = False
+    rise: float = HEEL_RISE
+    """Phase from the first rise of its heel to the lift."""
 
     @property
     def turn(self) -> float:
@@ -187,11 +189,9 @@ class Swing:
     def pitch(self, phase: Array) -> Array:
         """How far the foot is pitched about the floor, heel up positive. (T,)."""
         (lift, land), row = self.window, foot_table()
-        # The first heel rises from the first frame on, not before.
-        rise = min(HEEL_RISE, max(lift - float(phase[0]), row.way.rise_min_phase))
         x = np.where(
             phase < lift,
-            np.maximum((phase - lift) / rise, -1.0),
+            np.maximum((phase - lift) / self.rise, -1.0),
             np.where(phase < land, (phase - lift) / (land - lift), 1 + np.minimum((phase - land) / SETTLE, 1.0)),
         )
         if self.backwards:
