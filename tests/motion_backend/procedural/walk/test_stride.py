@@ -37,13 +37,21 @@ PAIRS = {
 }
 
 
+def everywhere(points: np.ndarray) -> bool:
+    return len(points) > 0
+
+
+def in_a_passage(points: np.ndarray) -> bool:
+    return bool(np.abs(points[:, 0]).max() < 0.1)
+
+
 @cache
 def two_walks(name: str) -> tuple[Pose, Pose, Stride]:
     """One after the other, and the stride between them as it comes back from a saved state."""
     degrees, first, second = PAIRS[name]
     turn, corner = np.radians(degrees), np.array([0.0, LENGTH])
     onward = np.array([corner, corner + LENGTH * np.array([np.sin(turn), np.cos(turn)])])
-    way = through_way(np.array([[0.0, 0.0], corner]), onward, lambda points: True)
+    way = through_way(np.array([[0.0, 0.0], corner]), onward, everywhere)
     assert way is not None
     start = standing((0.0, 0.0), 0.0, Bearing(), SKELETON)
     styles = [walk_style(Emotion(mood), caption) for caption, mood in (first, second)]
@@ -113,7 +121,7 @@ def test_steps_go_on_in_turns_over_the_seam() -> None:
 def test_a_way_that_leads_on_keeps_both_ends_and_passes_the_place_between(degrees: float) -> None:
     turn, corner = np.radians(degrees), np.array([0.0, LENGTH])
     onward = np.array([corner, corner + LENGTH * np.array([np.sin(turn), np.cos(turn)])])
-    way = through_way(np.array([[0.0, 0.0], corner]), onward, lambda points: True)
+    way = through_way(np.array([[0.0, 0.0], corner]), onward, everywhere)
     assert way is not None
     np.testing.assert_allclose(way.points[[0, -1]], [[0.0, 0.0], onward[-1]], atol=1e-6)
     assert np.linalg.norm(way.points - corner, axis=1).min() < 0.3
@@ -125,6 +133,5 @@ def test_a_way_that_leads_on_keeps_both_ends_and_passes_the_place_between(degree
 def test_where_there_is_no_room_one_way_does_not_lead_into_the_next() -> None:
     corner = np.array([[0.0, 0.0], [0.0, LENGTH]])
     back = corner[::-1]
-    narrow = lambda points: bool(np.abs(points[:, 0]).max() < 0.1)  # noqa: E731
-    assert through_way(corner, back, narrow) is None
-    assert through_way(corner, np.array([[0.0, LENGTH], [0.2, LENGTH]]), lambda points: True) is None
+    assert through_way(corner, back, in_a_passage) is None
+    assert through_way(corner, np.array([[0.0, LENGTH], [0.2, LENGTH]]), everywhere) is None
