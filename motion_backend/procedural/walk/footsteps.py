@@ -237,7 +237,8 @@ def _beats(route: Route, phase: Array, first: int, style: Walk, begun: int) -> l
         else:
             # Slow steps stand longer on both feet than quick ones.
             double = style.double + (row.slow_double * max(row.slow_mps - speed, 0) if style.double > 0 else 0)
-            beats.append(_Beat(k, index, (k + double / 2, k + 1 - double / 2), k + row.middle))
+            sooner = style.character.beat_sides_share * (1 if index == 0 else -1)
+            beats.append(_Beat(k, index, (k + double / 2 - sooner, k + 1 - double / 2 - sooner), k + row.middle))
     return beats
 
 
@@ -313,7 +314,7 @@ def _swing_of(
     beside = feet.ankles[before, 1 - beat.index]
     middle = _stance(beat, route, at, style, place, rng)
     stance, width = _widths(route, at, style, place)
-    target = home_ankle(middle, heading, beat.index, width, skeleton)
+    target = home_ankle(middle, heading, beat.index, width + side * style.character.width_sides_m, skeleton)
     apart = min(place.apart_m, place.apart_ratio * stance) * skeleton.scale
     target = _clear_of(beside, target, heading, side, apart)
     ahead = np.array([np.sin(heading), np.cos(heading)])
@@ -325,7 +326,7 @@ def _swing_of(
         origin,
         target,
         yaw,
-        heading + side * shape.splay_rad,
+        heading + side * (shape.splay_rad + np.radians(style.character.of_side("toes", "deg", side))),
         side,
         beat.window,
         clearance=style.clearance * (shape.hop_clearance_share if beat.hop else dragged),
@@ -346,7 +347,8 @@ def _stance(beat: _Beat, route: Route, at: int, style: Walk, place: LandingPlace
     # A little behind the middle of its stance: the rising heel carries the ankle forward at the end of it.
     behind = place.back_s * min(speed, place.back_max_mps) * np.cos(np.radians(style.aside))
     middle = route.position[at] - behind * ahead
-    middle = middle - style.drag * under_way * (beat.index == 1) * ahead
+    longer = style.character.step_sides_m * (1 if beat.index == 0 else -1) - style.drag * (beat.index == 1)
+    middle = middle + under_way * longer * ahead
     scatter = under_way * (place.scatter_m + style.uneven * place.uneven_m)
     return np.asarray(middle + scatter * rng.standard_normal(2))
 

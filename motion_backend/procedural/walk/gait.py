@@ -61,6 +61,10 @@ class Sway:
     less_per_mps: float
     min_ratio: float
     max_ratio: float
+    shoulders_ratio: float
+    """How far the shoulders tip with the pelvis, and"""
+    shoulders_late_share: float
+    """how much later."""
     last_steps: float
     """All that swings fades over the last of this many steps."""
 
@@ -102,6 +106,20 @@ class Lean:
     """Of the gaze's turn to where a way curves."""
     counter_ratio: float
     """Of the hips' turn, that the chest turns against it."""
+
+
+@table
+class Wander:
+    """Nobody is as even as a clock."""
+
+    hz: float
+    trunk_deg: float
+    arms_deg: float
+    head_deg: float
+    trembles_hz: float
+    trunk_trembles_deg: float
+    arms_tremble_deg: float
+    head_trembles_deg: float
 
 
 @table
@@ -155,6 +173,7 @@ class Carriage:
     sway: Sway
     surge: Surge
     lean: Lean
+    wander: Wander
     drunk: Drunk
     gaze: Gaze
     knees: Knees
@@ -191,7 +210,7 @@ def walk_on(
     fps, row = FPS, carriage().way
     luck = float(np.clip(rng.standard_normal(), -row.pace_spread_max_sigmas, row.pace_spread_max_sigmas))
     pace = 1 + row.pace_spread_share * luck
-    style = replace(style, release=end_yaw is not None, speed=style.speed * pace)
+    style = replace(style.in_character(), release=end_yaw is not None, speed=style.speed * pace)
     speed, aside = style.speed * skeleton.scale, float(np.radians(style.aside))
     if stride is None:
         route = plan_route(path, float(yaw_of(start.hips)), end_yaw, speed, fps, aside)
@@ -293,26 +312,28 @@ def _carry(
     unsteady = style.wobble * drift(frames, row.drunk.hz, FPS, rng)
     brisk = np.clip(route.speed, 0.0, row.surge.brisk_max_mps) * moving * np.cos(np.radians(style.aside))
     ground = _support(route, steps, style, (moving, brisk, unsteady))
+    own, wander = style.character, _wander(frames, rng)
     hip_turn = np.radians(style.twist) * steps.first * np.cos(np.pi * steps.phase) * moving
-    drop = np.sin(np.pi * (steps.phase - row.sway.drops_late_share))
-    roll = -np.radians(style.hips) * steps.first * drop * moving
+    roll, shoulders = _rolls(steps, style, moving)
     lean = _leaning(route, style, brisk)
     tilt = row.lean.hips_share * lean + row.lean.hips_wave_rad * brisk * steps.wave(row.lean.hips_wave_at_phase)
     hips = rotations.compose(
-        rotations.yaw_to_quat(route.heading + hip_turn),
+        rotations.yaw_to_quat(route.heading + hip_turn + np.radians(own.hips_turn_deg) * moving),
         rotations.rotvec_to_quat(np.stack([tilt, np.zeros(frames), roll], axis=1)),
     )
     jolt = row.lean.jolt_rad * brisk * steps.wave(row.lean.jolt_at_phase)
     jolt = jolt + row.lean.stamp_rad_per_m * style.stamp * landing(steps)
     forward = row.lean.spine_share * lean + row.drunk.lean_rad * unsteady + jolt
-    turned = row.lean.looks_share * np.radians(style.veer) * moving - row.lean.counter_ratio * hip_turn
-    spine = np.stack([forward, turned, -roll + row.drunk.side_rad * unsteady], axis=1)
-    arms, elbows = swing_arms(style, steps, route.speed, spread)
+    turned = row.lean.looks_share * np.radians(style.veer) * moving
+    turned = turned + np.radians(own.shoulder_turn_deg) * moving - row.lean.counter_ratio * own.counter_ratio * hip_turn
+    spine = np.stack([forward, turned, shoulders - roll + row.drunk.side_rad * unsteady], axis=1)
+    spine = spine + moving[:, None] * wander[:, :3]
+    arms, elbows = swing_arms(style, steps, route.speed, spread, wander[:, 3:5])
     pose = Pose(
         pelvis=np.stack([ground[:, 0], np.zeros(frames), ground[:, 1]], axis=1),
         hips=hips,
         spine=spine,
-        head=_gaze(route, style, hip_turn, (unsteady, jolt), rng),
+        head=_gaze(route, style, hip_turn, (unsteady, jolt), rng) + moving[:, None] * wander[:, 5:8],
         ankles=steps.ankles,
         feet=steps.feet,
         toes=steps.toes,
@@ -326,6 +347,29 @@ def _carry(
         planted=steps.planted,
     )
     return replace(pose, pelvis=lifted(pose, route, steps, style, skeleton, in_stride))
+
+
+def _rolls(steps: Steps, style: Walk, moving: Array) -> tuple[Array, Array]:
+    """How far pelvis and shoulders are tipped, the left side up. (T,) radians each."""
+    row, own = carriage().sway, style.character
+    tips = -np.radians(style.hips) * steps.first * moving
+    roll = tips * np.sin(np.pi * (steps.phase - row.drops_late_share))
+    shoulders = tips * np.sin(np.pi * (steps.phase - row.drops_late_share - row.shoulders_late_share))
+    shoulders = row.shoulders_ratio * own.shoulder_swing_ratio * shoulders + np.radians(own.shoulder_roll_deg) * moving
+    return roll + np.radians(own.hips_roll_deg) * moving, shoulders
+
+
+def _wander(frames: int, rng: np.random.Generator) -> Array:
+    """What trunk (3), arms (2) and head (3) do that no step asks for: slow wandering, and the tremble of steps taken
+    on a real floor. (T, 8) radians."""
+    row = carriage().wander
+    slow = np.repeat([row.trunk_deg, row.arms_deg, row.head_deg], (3, 2, 3))
+    quick = np.repeat([row.trunk_trembles_deg, row.arms_tremble_deg, row.head_trembles_deg], (3, 2, 3))
+    wandered = [
+        one * drift(frames, row.hz, FPS, rng) + other * drift(frames, row.trembles_hz, FPS, rng)
+        for one, other in zip(slow, quick, strict=True)
+    ]
+    return np.radians(np.stack(wandered, axis=1))
 
 
 def _support(route: Route, steps: Steps, style: Walk, moved: tuple[Array, Array, Array]) -> Array:

@@ -70,10 +70,8 @@ def through_way(path: Array, onward: Array, fits: Fits) -> ThroughWay | None:
     arrives, leaves = _direction(first[::-1], row) * -1.0, _direction(second, row)
     turn = float(rotations.wrap(np.arctan2(*leaves) - np.arctan2(*arrives)))
     for size in row.cuts_m if abs(turn) < row.arc_from_rad else row.radii_m:
-        if abs(turn) < row.arc_from_rad:
-            joined = _cut(first, second, size)
-        else:
-            joined = _arc(first, second, arrives, turn, size)
+        sharp = abs(turn) >= row.arc_from_rad
+        joined = _arc(first, second, arrives, turn, size) if sharp else _cut(first, second, size)
         if joined is not None and fits(joined):
             points = resample(joined)
             near = int(np.argmin(np.linalg.norm(points - first[-1], axis=1)))
