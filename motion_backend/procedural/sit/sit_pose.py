@@ -12,7 +12,7 @@ from motion_backend.procedural.held_poses import Seat, bend, upright
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.pose_solver import solve
 from motion_backend.procedural.sit.sit_keys import SitPose, Surface, Trunk
-from motion_backend.procedural.sit.sit_legs import Room, seated_legs
+from motion_backend.procedural.sit.sit_legs import Room, bends_a_leg, seated_legs
 from motion_backend.procedural.sit.sit_styles import Seated
 from motion_backend.procedural.touch.hand_rests import (
     HOLDS,
@@ -87,7 +87,7 @@ def _palms(name: str, index: int, around: Handholds) -> Pair:
     match name:
         case "armrest":
             return around.armrests
-        case "behind" if around.behind[index] is not None:
+        case "behind" | "propped" if around.behind[index] is not None:
             return around.behind
         case "edge" if around.edge[index] is not None:
             return around.edge
@@ -103,8 +103,18 @@ def _inwards(row: Surface, place: Place, scale: float) -> float:
     return float(np.clip(inwards - (place.around.table or 0.0), row.min_inwards_m, row.max_inwards_m))
 
 
-def lacking(style: Seated, place: Place, skeleton: Skeleton) -> tuple[str, ...]:
-    """What the hands of a way of sitting were to be on and is not there, and where they are instead (`Note.words`)."""
+def lacking(style: Seated, place: Place, skeleton: Skeleton, keys: SitPose) -> tuple[str, ...]:
+    """What a way of sitting needs and is not there, and what is done instead (`Note.words`)."""
+    said = _hands_lacking(style, place, skeleton)
+    if bends_a_leg(place.seat, style.legs, skeleton, place.room, keys.legs):
+        said = (*said, "no room to stretch the legs: legs bent")
+    if style.recline >= LEANS_BACK and _recline(style, place, keys.trunk) < LEANT * np.radians(style.recline):
+        said = (*said, "nothing to lean back against: upright")
+    return said
+
+
+def _hands_lacking(style: Seated, place: Place, skeleton: Skeleton) -> tuple[str, ...]:
+    """What the hands of a way of sitting were to be on and is not there, and where they are instead."""
     left, right = (_lost(name, index, place, skeleton.scale) for index, name in enumerate(style.arms))
     if left is not None and left == right:
         return (f"no {left[0]}: each hand {left[1]}",)
@@ -159,7 +169,7 @@ def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton, keys: S
     return lay_hands(inside, holds, skeleton).at(0), holds
 
 
-SURFACES = ("armrest", "beside", "behind", "edge", "table", "desk")
+SURFACES = ("armrest", "beside", "behind", "propped", "edge", "table", "desk")
 """What hands may lie on besides the body: of `Handholds`, "desk" being the table with the forearms on it."""
 ON_TABLE = ("table", "desk")
 INSTEAD = {"desk": "knees", "table": "lap"}
@@ -168,6 +178,7 @@ LACKED = {
     "armrest": "armrest",
     "beside": "room beside the hips",
     "behind": "floor in reach",
+    "propped": "room behind the hips",
     "edge": "room beside the thighs",
     "table": "table before the seat",
     "desk": "table before the seat",
@@ -206,11 +217,20 @@ def _on_the_floor(style: Seated) -> Seated:
     return replace(style, arms=(left, right), legs=legs, recline=recline, on_elbows=style.on_elbows and not shins)
 
 
+LEANS_BACK, LEANT = 15.0, 0.7
+"""Who leans back by so much (degrees) leans back by such a share of it at least, or it is said."""
+
+
+def back_for(recline: float) -> float:
+    """How far behind a pelvis its backrest is at least for such a lean back (degrees; metres)."""
+    return float(BEHIND_PELVIS + BACKREST * np.sin(np.radians(max(recline, 0.0)) - GIVES))
+
+
 def _recline(style: Seated, place: Place, trunk: Trunk) -> float:
     """Backward lean of the trunk, as far as there is a back to lean against, or arms (radians)."""
     seat = place.seat
     limit = np.pi if np.isinf(seat.back) else np.arcsin(np.clip((seat.back - BEHIND_PELVIS) / BACKREST, 0.0, MAX_SINE))
-    propped = {"behind", "beside"} & set(style.arms)
+    propped = {"behind", "propped", "beside"} & set(style.arms)
     free = trunk.max_propped_deg if propped else trunk.max_free_deg
     most = np.radians(free if np.isinf(seat.back) else trunk.max_back_deg)
     lean = style.recline
