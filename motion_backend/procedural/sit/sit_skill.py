@@ -17,7 +17,7 @@ from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import SHIN_REACH, Seat, idle
 from motion_backend.procedural.sit.sit_keys import sit_keys
 from motion_backend.procedural.sit.sit_legs import Room, is_to_be_straight, perch, straight_reach
-from motion_backend.procedural.sit.sit_pose import Place, back_for, lacking
+from motion_backend.procedural.sit.sit_pose import ON_TABLE, Place, back_for, lacking
 from motion_backend.procedural.sit.sit_styles import Seated, sit_style
 from motion_backend.procedural.sit.sit_transition import sit_down, stand_up
 from motion_backend.procedural.touch.gestures import gesture
@@ -126,11 +126,9 @@ def _before(places: Array, depth: Array, clear: float) -> float:
     return float(places[np.argmax(hit)] - clear) if hit.any() else float(places[-1])
 
 
-AT_TABLE = frozenset({"table", "desk"})
-"""Arms of a way of sitting that lie on a table."""
-MIN_EDGE = 0.12
+MIN_EDGE = 0.07
 """Thighs rest on so much of a seat at least (metres)."""
-AT_EASE = 0.45
+AT_EASE = 0.42
 """Distance of a table's edge from the pelvis to which nobody draws nearer (metres)."""
 ABOUT = 1.4
 """A table in reach is within this distance of the pelvis (metres)."""
@@ -142,7 +140,7 @@ def seat_for(found: Sequence[Spot], emotion: Emotion, caption: str, obstacles: O
     Chairs stand so far from their tables that a body can get between: at a table one sits on the front of the seat.
     """
     style = sit_style(emotion, caption)
-    if AT_TABLE & set(style.arms):
+    if set(ON_TABLE) & set(style.arms):
         return next((near for spot in found if (near := _drawn_up(spot, obstacles))), found[0])
     if any(is_to_be_straight(style.legs)):
         return next((ahead for spot in found if (ahead := _perched(spot, style, obstacles))), found[0])
