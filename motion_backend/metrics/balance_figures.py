@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from motion_backend.body.segment_masses import centres_of_mass
 from motion_backend.body.zero_moment import nearest_in_hull, zero_moment_points
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Part
+from motion_backend.motion import PhaseKind
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX
 
-RESTING = frozenset({Part.GETUP, Part.EDGE, Part.SITDOWN, Part.LIEDOWN})
+RESTING = frozenset({PhaseKind.GETUP, PhaseKind.EDGE, PhaseKind.SITDOWN, PhaseKind.LIEDOWN})
 """Parts in which something else than the soles carries."""
 LEFT = 0.01
 """A seat is left when the pelvis is this much higher than it sat (metres)."""
@@ -51,7 +51,7 @@ def upright_frames(body: Kinematics) -> NDArray[np.bool_]:
     """Frames of standing and walking, nothing but soles on the floor. (T,)."""
     found = ~kneeling(body)
     for phase in body.motion.phases:
-        if phase.part in RESTING or phase.part is Part.STANDUP:
+        if phase.kind in RESTING or phase.kind is PhaseKind.STANDUP:
             found[phase.start : phase.stop] = False
     return found
 
@@ -61,7 +61,7 @@ def rising_frames(body: Kinematics) -> NDArray[np.bool_]:
     found = np.zeros(len(body.motion), dtype=bool)
     low = body.positions[:, 0, 1] < RISEN * body.motion.skeleton.standing_height
     for phase in body.motion.phases:
-        if phase.part is Part.STANDUP:
+        if phase.kind is PhaseKind.STANDUP:
             height = body.positions[phase.start : phase.stop, 0, 1]
             found[phase.start : phase.stop] = np.maximum.accumulate(height > height[:1] + LEFT)
     return np.asarray(found & low & ~kneeling(body))

@@ -18,7 +18,7 @@ from motion_backend.metrics.balance_figures import RESTING
 from motion_backend.metrics.contact_error import STRICT
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.stillness import STILL, fastest_speeds
-from motion_backend.motion import Action, Part, Skill
+from motion_backend.motion import Action, PhaseKind, Skill
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX
 
@@ -174,6 +174,6 @@ def _upright(body: Kinematics) -> NDArray[np.bool_]:
     """Frames of no part that rests, goes down or comes up. (T,)."""
     found = np.ones(len(body.motion), dtype=bool)
     for phase in body.motion.phases:
-        if phase.part in RESTING or phase.part is Part.STANDUP:
+        if phase.kind in RESTING or phase.kind is PhaseKind.STANDUP:
             found[phase.start : phase.stop] = False
     return found

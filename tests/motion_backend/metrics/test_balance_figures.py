@@ -10,7 +10,7 @@ from sample_motions import standing_still
 from motion_backend import rotations
 from motion_backend.metrics.balance_figures import outside_soles, rising_frames, upright_frames
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Motion, Part, Phase
+from motion_backend.motion import Motion, Phase, PhaseKind
 
 
 def leaning(degrees: float) -> Motion:
@@ -42,7 +42,7 @@ def test_a_foot_that_is_in_the_air_carries_nothing() -> None:
 def test_a_seat_that_is_not_left_carries_and_what_comes_after_is_rising() -> None:
     height = np.concatenate([np.full(20, -0.4), np.linspace(-0.4, 0, 20), np.zeros(20)])
     motion = standing_still(root=np.outer(height, [0.0, 1.0, 0.0]))
-    phases = (Phase(Part.SITDOWN, 0, 10), Phase(Part.STANDUP, 10, 45), Phase(Part.WALK, 45, 60))
+    phases = (Phase(PhaseKind.SITDOWN, 0, 10), Phase(PhaseKind.STANDUP, 10, 45), Phase(PhaseKind.WALK, 45, 60))
     body = Kinematics.of(replace(motion, phases=phases))
     rising, upright = np.flatnonzero(rising_frames(body)), np.flatnonzero(upright_frames(body))
     assert rising[0] in range(20, 23)

@@ -18,7 +18,7 @@ from motion_backend.metrics.story_flow import (
     touch_waits,
     turning_on_the_spot,
 )
-from motion_backend.motion import FPS, Action, Emotion, Motion, Part, Phase, Skill
+from motion_backend.motion import FPS, Action, Emotion, Motion, Phase, PhaseKind, Skill
 from motion_backend.skeleton import INDEX
 from scene_graphs.affordances.affordances import Spot
 
@@ -118,7 +118,7 @@ def test_a_turn_on_the_spot_is_all_on_the_spot_and_an_arc_is_not() -> None:
     assert turning_on_the_spot(on_the_spot).whole == pytest.approx(np.pi, rel=0.1)
     assert turning_on_the_spot(arc).value == pytest.approx(0.0, abs=0.02)
     assert turning_on_the_spot(_turning(0 * around, 0 * yaw)).value is None
-    lying = replace(on_the_spot.motion, phases=(Phase(Part.LIEDOWN, 0, 90),))
+    lying = replace(on_the_spot.motion, phases=(Phase(PhaseKind.LIEDOWN, 0, 90),))
     assert turning_on_the_spot(Kinematics.of(lying)).value is None
 
 
