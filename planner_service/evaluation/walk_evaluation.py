@@ -19,6 +19,7 @@ from motion_backend.metrics.foot_skate import skate_ratio, skate_speed
 from motion_backend.metrics.gait_features import UNITS, gait_features, windows
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.kernel_mmd import Distance, discrepancy, floor
+from motion_backend.metrics.smoothness import RULER
 from motion_backend.mocap.clip import ClipError
 from motion_backend.mocap.dataset_file import Dataset, Entry
 from motion_backend.mocap.resampling import low_pass
@@ -247,7 +248,7 @@ def _walks(name: str, motions: Sequence[tuple[str, Motion]]) -> Walks:
 
 def _windows_of(group: str, motion: Motion) -> Iterator[tuple[str, Array, float, float]]:
     # What a camera shakes is smoothed out of recordings: both are compared without it.
-    positions = low_pass(motion.joint_positions().astype(np.float64), motion.fps)
+    positions = low_pass(motion.joint_positions().astype(np.float64), motion.fps, RULER)
     for start, stop in windows(positions, motion.fps):
         features = gait_features(positions[start:stop], motion.fps)
         if features is not None:
