@@ -5,7 +5,7 @@ and Oquab, ICLR 2017) does not. It has 40 principal components of one second and
 area under the ROC curve: 0.5 where nothing is told apart, 1 where all is.
 
 A made body is one more person whose takes are halved: the network learns from one half and from some of the people,
-and is asked about the other half and about people it was not shown. Everybody has a turn at that. The figure is read
+and is asked about the other half and about somebody it was not shown. Everybody has a turn at that. The figure is read
 against that of people, got in the same way: some of them, their takes halved, against the others.
 """
 
@@ -18,7 +18,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from motion_backend.metrics.walk_seconds import Seconds
+from motion_backend.metrics.walk_seconds import WHOLE, Seconds
 from motion_backend.rotations import Array
 
 COMPONENTS: Final = 40
@@ -31,8 +31,6 @@ DECAY: Final = 0.1
 """Of the weights, against learning a few hundred windows by heart (Adam with decoupled decay)."""
 MOMENTS: Final = (0.9, 0.999)
 """How slowly Adam forgets gradients and their squares."""
-FOLDS: Final = 5
-"""Turns in which everybody is asked about once."""
 TEAMS: Final = 8
 """Random halves of the people who are told from the other half."""
 MIN_WINDOWS: Final = 8
@@ -77,25 +75,25 @@ class _Lesson:
     """(N,) that sum to one, a half for either answer; everybody weighs the same."""
 
 
-def told_apart(people: Seconds, body: Seconds, limb: str = "whole body", seed: int = 0) -> Told:
-    """How surely windows of a body are told from those of people who were not learned from. The body is one person."""
+def told_apart(people: Seconds, body: Seconds, limb: str = WHOLE, seed: int = 0) -> Told:
+    """How surely windows of a body are told from those of people of whom the network has seen nothing."""
     half = halves(body)
     seen, made = people.features(limb), body.features(limb)
-    found: dict[str, list[float]] = {person: [] for person in np.unique(people.people).tolist()}
-    for asked in folds(people.people, seed):
+    by_person = {}
+    for person in np.unique(people.people).tolist():
+        asked = people.people == person
+        found = []
         for shown in (half, ~half):
             score = _learned(seen[~asked], people.people[~asked], made[shown], body.people[shown], seed)
-            answers = score(made[~shown])
-            for person in np.unique(people.people[asked]).tolist():
-                found[person].append(auc(score(seen[people.people == person]), answers))
-    by_person = {person: float(np.mean(values)) for person, values in found.items()}
+            found.append(auc(score(seen[asked]), score(made[~shown])))
+        by_person[person] = float(np.mean(found))
     values = np.array(list(by_person.values()))
     drawn = np.random.default_rng(seed).integers(len(values), size=(1000, len(values)))
     low, high = np.quantile(values[drawn].mean(axis=1), [0.025, 0.975])
     return Told(float(values.mean()), float(low), float(high), by_person)
 
 
-def people_apart(people: Seconds, limb: str = "whole body", seed: int = 0) -> Yardstick:
+def people_apart(people: Seconds, limb: str = WHOLE, seed: int = 0) -> Yardstick:
     """The same among people: half of them, and each alone, against the rest."""
     names, rng = np.unique(people.people), np.random.default_rng(seed)
     teams = []
@@ -109,13 +107,6 @@ def people_apart(people: Seconds, limb: str = "whole body", seed: int = 0) -> Ya
     }
     low, high = np.quantile(teams, [0.025, 0.975])
     return Yardstick(float(np.mean(teams)), float(low), float(high), alone)
-
-
-def folds(people: NDArray[np.str_], seed: int) -> list[NDArray[np.bool_]]:
-    """Who is asked about in each turn: all windows of a person in one and the same. (N,) each."""
-    names = np.random.default_rng(seed).permutation(np.unique(people))
-    count = min(FOLDS, len(names))
-    return [np.isin(people, names[turn::count]) for turn in range(count)]
 
 
 def halves(body: Seconds) -> NDArray[np.bool_]:

@@ -22,12 +22,15 @@ INSTANTS: Final = 10
 """At which a window is looked at."""
 VELOCITY: Final = 0.15
 """Seconds: what a velocity is multiplied by to weigh about as much as a place."""
+ARM: Final = ("collar", "shoulder", "elbow", "wrist")
+LEG: Final = ("hip", "knee", "ankle", "foot")
+WHOLE: Final = "whole body"
 LIMBS: Final = {
-    "whole body": JOINTS,
-    "legs": tuple(f"{side}_{joint}" for side in ("left", "right") for joint in ("hip", "knee", "ankle", "foot")),
+    WHOLE: JOINTS,
+    "legs": tuple(f"{side}_{joint}" for side in ("left", "right") for joint in LEG),
     "knees": ("left_knee", "right_knee"),
     "feet": ("left_foot", "right_foot"),
-    "arms": tuple(f"{side}_{joint}" for side in ("left", "right") for joint in ("collar", "shoulder", "elbow", "wrist")),
+    "arms": tuple(f"{side}_{joint}" for side in ("left", "right") for joint in ARM),
     "trunk and head": ("spine1", "spine2", "spine3", "neck", "head"),
     "pelvis": ("pelvis",),
 }  # fmt: skip
@@ -63,7 +66,7 @@ class Seconds:
             kept += own[np.unique(np.linspace(0, len(own) - 1, min(len(own), most)).round().astype(int))].tolist()
         return self[np.array(sorted(kept), dtype=np.int64)]
 
-    def features(self, limb: str = "whole body") -> Array:
+    def features(self, limb: str = WHOLE) -> Array:
         """Places over the floor under the pelvis and velocities of a limb's joints at `INSTANTS`. (N, F)."""
         chosen, fps = [INDEX[name] for name in LIMBS[limb]], self.joints.shape[1]
         step = fps // INSTANTS
@@ -81,7 +84,9 @@ def seconds_of(walks: Sequence[tuple[str, str, Array]], fps: int) -> Seconds:
         for start in _starts(positions, fps)
     ]
     joints = np.array([row[0] for row in found]).reshape(-1, fps, len(JOINTS), 3)
-    return Seconds(joints, np.array([row[1] for row in found], dtype=str), np.array([row[2] for row in found], dtype=str))
+    return Seconds(
+        joints, np.array([row[1] for row in found], dtype=str), np.array([row[2] for row in found], dtype=str)
+    )
 
 
 def turned_to_the_way(positions: Array) -> Array:

@@ -63,7 +63,10 @@ def traits(joints: Array) -> dict[str, Array]:
             found[f"{name}: lowest"] = np.mean([curve.min(axis=1) for curve in pair], axis=0)
     found["arms, left with right: correlation"] = _correlation(left["arm forward, °"], right["arm forward, °"])
     found["arm with the other leg: correlation"] = np.mean(
-        [_correlation(one["arm forward, °"], other["thigh forward, °"]) for one, other in ((left, right), (right, left))],
+        [
+            _correlation(one["arm forward, °"], other["thigh forward, °"])
+            for one, other in ((left, right), (right, left))
+        ],
         axis=0,
     )
     for name, chosen in SHAKEN.items():

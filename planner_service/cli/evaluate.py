@@ -1,6 +1,4 @@
-"""`sims evaluate planning|methods|scripts|walks`: how well scripts are found, planned and acted, beside the limits.
-
-`sims evaluate walks`: made walks beside recorded ones, feature by feature and as one distance.
+"""`sims evaluate planning|methods|scripts`: how well scripts are found, planned and acted, beside the limits.
 
 `sims evaluate scripts`: whole scripts acted in the largest rooms, beside the paper's Table 2.
 """
@@ -13,7 +11,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import numpy as np
 import typer
 from rich.console import Console
 from rich.progress import Progress

@@ -20,7 +20,7 @@ from motion_backend.metrics.gait_features import UNITS, gait_features, windows
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.kernel_mmd import Distance, discrepancy, floor
 from motion_backend.metrics.walk_classifier import MIN_WINDOWS, Told, Yardstick, people_apart, told_apart
-from motion_backend.metrics.walk_seconds import LIMBS, Seconds, seconds_of
+from motion_backend.metrics.walk_seconds import LIMBS, WHOLE, Seconds, seconds_of
 from motion_backend.metrics.walk_traits import GiveAway, give_aways
 from motion_backend.mocap.clip import ClipError
 from motion_backend.mocap.dataset_file import Dataset, Entry
@@ -140,7 +140,7 @@ class WalkReport:
 
     @property
     def spread(self) -> float:
-        """Spread of the gait features at recorded speeds over that of people, the mean; more than people's is as much."""
+        """Spread of the gait features at recorded speeds over that of people: the mean, more than theirs as theirs."""
         return float(np.minimum(spread(self.recorded, self.compared[0].walks), 1.0).mean())
 
     def to_dict(self) -> dict[str, Any]:
@@ -181,7 +181,7 @@ def evaluate_walks(
         compared=tuple(_compared(recorded, one, one in plain) for one in plain + moods if len(one) > 1),
         jerk=jerk_bins(recorded, matched),
         yardstick=people_apart(recorded.seconds),
-        limbs={limb: told_apart(recorded.seconds, _as_one(matched), limb) for limb in LIMBS},
+        limbs={limb: told_apart(recorded.seconds, _as_one(matched), limb) for limb in LIMBS if limb != WHOLE},
         give_aways=tuple(give_aways(recorded.seconds, matched.seconds)),
         caption=caption,
         backend=ProceduralBackend.name,
@@ -244,7 +244,9 @@ def matched_walks(speeds: Array, caption: str, skeleton: Skeleton, mood: Emotion
 def room_walks(caption: str, rooms: int, seeds: int) -> Walks:
     """Walks to places of library rooms, as trials of the body have them."""
     trials = plan_trials({Skill.LOCO: [caption]}, rooms, seeds)
-    return _walks("in rooms", [Take(trial.room, trial.room, made) for trial in trials for made in perform(trial).motions])
+    return _walks(
+        "in rooms", [Take(trial.room, trial.room, made) for trial in trials for made in perform(trial).motions]
+    )
 
 
 def mood_walks(caption: str, mood: Emotion, seeds: int) -> Walks:
