@@ -26,7 +26,7 @@ COMPONENTS: Final = 40
 UNITS: Final = 32
 """Of the hidden layer."""
 STEPS: Final = 200
-RATE: Final = 3e-3
+RATE: Final = 1e-2
 DECAY: Final = 0.1
 """Of the weights, against learning a few hundred windows by heart (Adam with decoupled decay)."""
 MOMENTS: Final = (0.9, 0.999)
