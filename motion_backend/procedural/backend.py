@@ -15,23 +15,18 @@ from motion_backend.body.scene_collision import Obstacles
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import FPS, Action, BodyState, Character, ContactGoal, Motion, Note, Part, Posture, Skill
 from motion_backend.procedural.body_state import Body, Scene
-from motion_backend.procedural.collision_avoidance.elbow_collision import elbows_clear
-from motion_backend.procedural.collision_avoidance.hand_collision import hands_clear
+from motion_backend.procedural.collision_avoidance.arm_clearance import arms_clear
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import idle, standing
 from motion_backend.procedural.pose import Pose, concatenate
 from motion_backend.procedural.pose_solver import hips_within, released, solve
 from motion_backend.procedural.skill_controller import perform
-from motion_backend.procedural.touch.hand_captions import steadies, with_both_hands
 from motion_backend.rotations import Array
 from motion_backend.skeleton import HAND_REST, LYING_REST, SEATED_REST, build_skeleton
 from motion_backend.state_machine import shortfall, time_limit
 from scene_graphs.affordances.affordances import Spot
 from scene_graphs.home import Home
 from scene_graphs.navigation.path_planner import NoPath, Walkable
-
-SINKS = 0.03
-"""How deep arms sink into what is lain on (metres)."""
 
 
 class ProceduralBackend:
@@ -56,14 +51,14 @@ class ProceduralBackend:
     def advance(self, home: Home, action: Action, state: BodyState) -> tuple[Motion, BodyState]:
         """Act out one action; a body that cannot get there stays where it is and says why."""
         body = self._wake(home, state)
-        reason = ""
+        start, reason = body.pose, ""
         try:
             perform(body, action)
         except NoPath as error:
             reason = str(error)
             body.enter(Part.STAND)
             body.add(idle(body.pose, 1.0, 1.0, body.rng, FPS))
-        motion = _to_motion(body, action)
+        motion = _to_motion(body, start, action)
         limit = time_limit(state.posture, action, body.way)
         reason = reason or shortfall(action, Kinematics.of(motion), limit)
         motion = replace(motion, completed=not reason, reason=reason)
@@ -114,22 +109,9 @@ def _spot_from_lists(values: dict[str, Any] | None) -> Spot | None:
     return Spot(**restored)
 
 
-def _to_motion(body: Body, action: Action) -> Motion:
-    touching = None
-    if action.skill is Skill.TOUCH:
-        both = with_both_hands(action.caption) or steadies(action.caption)
-        touching = "both" if both else action.hand
-    elif action.skill in (Skill.SITDOWN, Skill.STANDUP, Skill.LIEDOWN, Skill.GETUP):
-        touching = "both"
-    solid = body.scene.obstacles.solid()
-    pose = hands_clear(hips_within(concatenate(body.frames), body.skeleton), body.skeleton, solid, touching)
-    if action.skill in (Skill.LOCO, Skill.TOUCH):
-        pose = elbows_clear(pose, body.skeleton, solid)
-    elif action.skill in (Skill.LIEDOWN, Skill.GETUP):
-        pose = elbows_clear(pose, body.skeleton, solid.sunk_into(action.object_id, SINKS))
-    else:
-        # Who sits is among what arms rest on: only shoulders are minded.
-        pose = elbows_clear(pose, body.skeleton, solid.only(np.zeros(len(solid.owners), dtype=bool)))
+def _to_motion(body: Body, start: Pose, action: Action) -> Motion:
+    pose = hips_within(concatenate(body.frames), body.skeleton)
+    pose = arms_clear(pose, start, action, body.skeleton, body.scene.obstacles.solid())
     body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)
     return Motion(
