@@ -12,17 +12,15 @@ from dataclasses import asdict, replace
 import numpy as np
 
 from motion_backend.backend_protocol import POSTURE_AFTER, BodyState, History, Part, PartKind
-from motion_backend.motion import FPS, Action, Character, Motion, Note, PhaseKind, Posture
+from motion_backend.motion import FPS, Action, Character, Motion, Note, PhaseKind
 from motion_backend.procedural.body_state import Body
-from motion_backend.procedural.collision_avoidance.elbow_collision import elbows_clear
-from motion_backend.procedural.collision_avoidance.hand_collision import hands_clear
+from motion_backend.procedural.collision_avoidance.arm_clearance import Around, arms_clear
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import idle, standing
 from motion_backend.procedural.pose import Pose, concatenate
 from motion_backend.procedural.pose_solver import hips_within, released, solve
 from motion_backend.procedural.skill_controller import perform
 from motion_backend.procedural.takeover import eased_from, pose_of
-from motion_backend.procedural.touch.hand_captions import steadies, with_both_hands
 from motion_backend.procedural.touch.hand_rests import Hold
 from motion_backend.scene import scene_of
 from motion_backend.skeleton import build_skeleton
@@ -31,8 +29,10 @@ from scene_graphs.navigation.path_planner import NoPath
 
 STANDS = 1.0
 """How long a body stands that cannot get where it is to go (seconds)."""
-SINKS = 0.03
-"""How deep arms sink into what is lain on (metres)."""
+
+
+ENTERS = (PartKind.SIT, PartKind.LIE)
+"""Parts that are in the posture they end in, for what arms may lie on; all others in the one they begin in."""
 
 
 class ProceduralBackend:
@@ -54,14 +54,14 @@ class ProceduralBackend:
     def advance(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
         """Do one part, all of it; a body that cannot get there stays where it is and says why."""
         body = self._awake(home, upcoming, state)
-        reason = ""
+        start, reason = body.pose, ""
         try:
             perform(body, part)
         except NoPath as error:
             reason = str(error)
             body.enter(PhaseKind.STAND)
             body.add(idle(body.pose, STANDS, 1.0, body.rng, FPS))
-        motion = replace(_to_motion(body, part), completed=not reason, reason=reason)
+        motion = replace(_to_motion(body, start, part), completed=not reason, reason=reason)
         if state.backend != self.name:
             motion = eased_from(state.history, motion, body.skeleton)
         holds = [asdict(hold) if hold is not None else None for hold in body.holds]
@@ -84,25 +84,14 @@ class ProceduralBackend:
         )
 
 
-def _to_motion(body: Body, part: Part) -> Motion:
-    action, touching = part.action, None
+def _to_motion(body: Body, start: Pose, part: Part) -> Motion:
+    action = part.action
     if not body.frames:
         return _nothing(body, action)
-    posture = POSTURE_AFTER.get(part.kind, body.posture) if part.kind is not PartKind.RISE else body.posture
-    if part.kind is PartKind.REACH:
-        both = with_both_hands(action.caption) or steadies(action.caption)
-        touching = "both" if both else action.hand
-    elif posture is not Posture.STANDING:
-        touching = "both"
-    solid = body.scene.obstacles.solid()
-    pose = hands_clear(hips_within(concatenate(body.frames), body.skeleton), body.skeleton, solid, touching)
-    if posture is Posture.STANDING:
-        pose = elbows_clear(pose, body.skeleton, solid)
-    elif posture is Posture.LYING:
-        pose = elbows_clear(pose, body.skeleton, solid.sunk_into(action.object_id, SINKS))
-    else:
-        # Who sits is among what arms rest on: only shoulders are minded.
-        pose = elbows_clear(pose, body.skeleton, solid.only(np.zeros(len(solid.owners), dtype=bool)))
+    posture = POSTURE_AFTER[part.kind] if part.kind in ENTERS else body.posture
+    under = body.rest if part.kind not in ENTERS else action.spot
+    around = Around(part, posture, under.object_id if under else None, body.scene.obstacles.solid())
+    pose = arms_clear(hips_within(concatenate(body.frames), body.skeleton), start, around, body.skeleton)
     body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)
     return Motion(

@@ -80,13 +80,13 @@ SHORT_WAY = 0.20
 TURNING_ROUND = 1.2
 """A body that arrives turned away from where it will face by more (radians) turns before the last step."""
 NARROW_ARMS = {
-    "open": ("raised", 0.80),
-    "balance": ("hang", 0.80),
+    "open": ("embracing", 0.80),
+    "balance": ("balance_ahead", 0.80),
     "hips": ("hang", 0.50),
     "pockets": ("hang", 0.45),
     "behind_back": ("hang", 0.40),
 }
-"""What arms do where elbows or hands would meet furniture, and the clearance (metres) they need: joy goes up."""
+"""What arms do where elbows or hands would meet furniture, and the clearance (metres) they need."""
 STAYING = 0.7
 """How long arms take into the pose they are held in where the body stays, and out of it (seconds)."""
 ELBOW_ROOM = 0.26
