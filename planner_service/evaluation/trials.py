@@ -23,6 +23,7 @@ from motion_backend.body.self_collision import deepest_pair
 from motion_backend.director import Director
 from motion_backend.emotion_words import emotion_of
 from motion_backend.metrics import story_metrics
+from motion_backend.metrics.joint_speed import fastest_joint
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.smoothness import bone_deviation, jerk_against_real, seam_jump, seam_speed_jump
 from motion_backend.motion import FPS, Action, Character, Motion, Skill, join
@@ -205,6 +206,7 @@ def perform(trial: Trial) -> Performance:
         "seam_speed_jump": seam_speed_jump(around),
         "bone_deviation": bone_deviation(body),
         "limits_joint": f"{joint} {np.degrees(beyond):.0f}°" if joint else "",
+        "joint_speed_joint": fastest_joint(motion.local_rotations, motion.fps)[0],
         "self_pen_pair": " in ".join(deepest_pair(body.motion.skeleton, body.positions, body.world)),
     }
     return Performance(trial, where.home, keyframes, actions, (*led, motion), figures, besides)
