@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 
 FIGURES = (
     "reached", "reached_any", "reached_strict", "contact_error", "contact_mean", "execution_time", "skate_ratio",
-    "skate", "slip", "pen_mean", "pen_share", "pen_max", "floor_pen", "floating", "self_pen_share", "self_pen_max",
-    "limits_share", "joint_speed", "frozen_share", "zmp_upright", "zmp_rising", "jerk", "jerk_peak",
-    "jerk_against_real", "seam_jump", "seam_speed_jump", "bone_deviation",
+    "skate", "slip", "pen_mean", "pen_share", "pen_max", "skin_pen_share", "skin_pen_max", "floor_pen", "floating",
+    "self_pen_share", "self_pen_max", "limits_share", "joint_speed", "frozen_share", "zmp_upright", "zmp_rising",
+    "jerk", "jerk_peak", "jerk_against_real", "seam_jump", "seam_speed_jump", "bone_deviation",
 )  # fmt: skip
 UNITS = {
     "reached": "%", "reached_any": "%", "reached_strict": "%", "skate_ratio": "%", "pen_share": "%",
@@ -37,11 +37,11 @@ UNITS = {
     "floor_pen": "cm", "floating": "cm", "self_pen_max": "cm", "seam_jump": "cm", "bone_deviation": "cm",
     "execution_time": "s", "skate": "cm/s", "jerk": "m/s³", "jerk_peak": "m/s³", "seam_speed_jump": "m/s",
     "jerk_against_real": "×", "contact_mean": "cm", "slip": "cm/s", "joint_speed": "rad/s", "frozen_share": "%",
-    "zmp_upright": "cm", "zmp_rising": "cm",
+    "zmp_upright": "cm", "zmp_rising": "cm", "skin_pen_share": "%", "skin_pen_max": "cm",
 }  # fmt: skip
 WORST = (
-    "contact_error", "contact_mean", "pen_max", "pen_share", "skate_ratio", "self_pen_max", "limits_share",
-    "joint_speed", "frozen_share", "zmp_upright", "zmp_rising", "seam_speed_jump",
+    "contact_error", "contact_mean", "pen_max", "pen_share", "skin_pen_max", "skate_ratio", "self_pen_max",
+    "limits_share", "joint_speed", "frozen_share", "zmp_upright", "zmp_rising", "seam_speed_jump",
 )  # fmt: skip
 """Of what the worst trials are named."""
 MAX_WORST = 4

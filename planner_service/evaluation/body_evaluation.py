@@ -27,7 +27,7 @@ from scene_graphs.layout_library import built_in_index
 from scene_graphs.navigation.path_planner import NoPath
 
 RESAMPLES: Final = 1000
-WORST_OF_TRIALS: Final = ("pen_max", "self_pen_max", "bone_deviation", "joint_speed")
+WORST_OF_TRIALS: Final = ("pen_max", "skin_pen_max", "self_pen_max", "bone_deviation", "joint_speed")
 """Of these the largest of all trials counts, not the mean."""
 Progress = Callable[[int, int], None]
 T = TypeVar("T")

@@ -13,6 +13,7 @@ import numpy as np
 
 from motion_backend.metrics.figure_limits import STORY_LIMITS, Limit
 from motion_backend.metrics.joint_speed import MOST
+from motion_backend.metrics.skin_penetration import THIN, SkinDepth, skin_penetration
 from motion_backend.metrics.story_figures import story_figures
 from motion_backend.metrics.story_flow import Share
 from motion_backend.motion import Skill
@@ -22,6 +23,7 @@ from planner_service.library.library import Shelves
 from planner_service.pipeline import Pipeline, Story, StoryRequest
 from planner_service.settings import read_settings
 from scene_graphs.errors import UserError
+from scene_graphs.meshes.convex_shapes import convex_shapes
 
 RESAMPLES: Final = 1000
 BY_TIME: Final = (
@@ -29,7 +31,7 @@ BY_TIME: Final = (
     "frozen_share", "jerk", "jerk_peak",
 )  # fmt: skip
 """Figures of a story that count by its seconds when stories are added up."""
-LARGEST: Final = ("pen_max", "self_pen_max", "joint_speed", "seam_jump", "seam_speed_jump")
+LARGEST: Final = ("pen_max", "skin_pen_max", "self_pen_max", "joint_speed", "seam_jump", "seam_speed_jump")
 """Figures of which the largest of all stories counts."""
 Progress = Callable[[int, int], None]
 
@@ -53,7 +55,7 @@ class StoryResult:
     largest: Mapping[str, float] | None = None
     """And those of which the largest counts."""
     report: Mapping[str, Any] | None = None
-    """Figures as the story's own report.json has them."""
+    """Figures as the story's own report.json has them, and those of its skin."""
     fault: str = ""
     """Why there is no story."""
 
@@ -114,8 +116,21 @@ def run_story(trial: StoryTrial) -> StoryResult:
         story = _pipeline().make(StoryRequest(trial.theme, seed=trial.seed))
     except UserError as error:
         return StoryResult(trial, fault=str(error))
-    largest = {name: float(story.report[name]) for name in LARGEST}
-    return StoryResult(trial, story.motion.duration, dict(_shares(story)), largest, story.report)
+    skin = _skin(story)
+    seen = {"skin_pen_share": round(skin.share, 5), "skin_pen_max": round(skin.most, 5)}
+    report = dict(story.report) | seen
+    shares = dict(_shares(story)) | {"skin_pen_share": Share(skin.share * len(skin.depths), len(skin.depths))}
+    return StoryResult(trial, story.motion.duration, shares, {name: float(report[name]) for name in LARGEST}, report)
+
+
+def _skin(story: Story) -> SkinDepth:
+    """How deep the skin is in what is drawn, action by action, since each may sink into what it uses."""
+    shapes = convex_shapes(story.planned.home, THIN)
+    found = [
+        skin_penetration(story.motion.part(*span), action, shapes).depths
+        for action, span in zip(story.actions, story.segments, strict=True)
+    ]
+    return SkinDepth(np.concatenate(found))
 
 
 def _shares(story: Story) -> Iterator[tuple[str, Share]]:
