@@ -199,13 +199,18 @@ def _on_the_back(pose: Pose, bed: Bed, style: Lying, skeleton: Skeleton, keys: L
 
 
 def _hand(style: Lying, bed: Bed, index: int, scale: float, rows: tuple[RestingHand, ...]) -> RestingHand:
-    """Where a hand rests; with something beside, forearms go up, or hands under the head or onto the hips."""
-    rest = _row(rows, style.arms[index], "sides")
-    while rest.narrower is not None and bed.beside[index] < rest.room_m * scale:
-        rest = _row(rows, rest.narrower, "sides")
+    """Where a hand rests on the back; with something beside, forearms go up, or hands under the head or on the hips."""
+    rest = _fitting(_row(rows, style.arms[index], "sides"), bed.beside[index] / scale, rows)
     if index == 1 and style.arms[0] == rest.name and rest.name in ("belly", "chest"):
         x, y, z = np.array(rest.wrist_m) + LOWER
         return replace(rest, wrist_m=(x, y, z))
+    return rest
+
+
+def _fitting(rest: RestingHand, room: float, rows: tuple[RestingHand, ...]) -> RestingHand:
+    """The hand, or one that needs less room where there is no more than that (metres at 1.70 m)."""
+    while rest.narrower is not None and room < rest.room_m:
+        rest = _row(rows, rest.narrower, rest.name)
     return rest
 
 
@@ -236,9 +241,11 @@ def _on_a_side(pose: Pose, bed: Bed, style: Lying, skeleton: Skeleton, keys: Lie
         spine=bend(curl, side=row.spine_side_rad * down, turn=row.spine_turn_rad * down),
     )
     legs = _row(keys.side_legs, style.legs, "straight")
-    pose = on_a_side(pose, legs, style.side, bed.beside[0 if down > 0 else 1], skeleton)
+    before = bed.beside[0 if down > 0 else 1]
+    pose = on_a_side(pose, legs, style.side, before, skeleton)
     names = style.arms if style.side == "left" else style.arms[::-1]
-    below, above = _row(keys.below_hand, names[0], "pillow"), _row(keys.above_hand, names[1], "before")
+    below = _fitting(_row(keys.below_hand, names[0], "pillow"), before / skeleton.scale, keys.below_hand)
+    above = _fitting(_row(keys.above_hand, names[1], "before"), before / skeleton.scale, keys.above_hand)
     under = max(bed.pillow, ON_ARM * skeleton.scale if below.with_head else 0.0)
     pitch = row.head_curl_share * curl + row.head_pitch_rad
     tries = np.stack([bend(pitch, side=float(tilt)) for tilt in TILTS * down])
