@@ -148,7 +148,7 @@ class LiePose:
 
 @table
 class OverEdge:
-    """Between sitting on the edge of a bed and lying on the side of that edge: the body turns about the way it looks."""
+    """Between sitting on the edge of a bed and lying on that side: the body turns about the way it looks."""
 
     name: str
     wait_s: float

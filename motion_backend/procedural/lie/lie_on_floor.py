@@ -12,7 +12,6 @@ from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays
 from motion_backend.procedural.held_poses import UP, bend, both_sides, shoulders, standing, upright
-from motion_backend.procedural.lie.lie_arms import wrists_steady
 from motion_backend.procedural.lie.lie_keys import (
     BothKnees,
     HandsAndKnees,
@@ -151,7 +150,7 @@ def lie_down_from_knees(knelt: Pose, mat: Mat, style: Lying, keys: LieKeys) -> P
     poses = [replace(pose, reach=hip.reach) for pose in (*poses, *lifted, end)]
     poses = [replace(knelt, reach=hands.reach, palms=hands.palms), hands, hip, *poses]
     times = np.cumsum([0.0, *waits]) / style.bearing.tempo
-    return wrists_steady(_on_the_knee(interpolate(times.tolist(), poses, FPS), times[1:4], mat), mat.skeleton)
+    return _on_the_knee(interpolate(times.tolist(), poses, FPS), times[1:4], mat)
 
 
 def rise_to_knees(start: Pose, mat: Mat, bearing: Bearing, keys: LieKeys) -> Pose:
@@ -170,7 +169,7 @@ def rise_to_knees(start: Pose, mat: Mat, bearing: Bearing, keys: LieKeys) -> Pos
     poses = [*before, hip, hands, replace(knelt, reach=hands.reach, palms=hands.palms)]
     waits = [leave.lifted_wait_s] * len(lifted) + [leave.side_wait_s, first.wait_s, second.wait_s, third.wait_s]
     times = np.cumsum([0.0, *waits]) / bearing.tempo
-    return wrists_steady(_on_the_knee(interpolate(times.tolist(), poses, FPS), times[-2:-5:-1], mat), mat.skeleton)
+    return _on_the_knee(interpolate(times.tolist(), poses, FPS), times[-2:-5:-1], mat)
 
 
 def _on_both_knees(row: BothKnees, pose: Pose, mat: Mat) -> Pose:

@@ -11,7 +11,7 @@ from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import FOOT_SPLAY, SHIN_REACH, UP, Seat, bend, both_sides, upright
-from motion_backend.procedural.lie.lie_arms import forearms_over, wrists_steady
+from motion_backend.procedural.lie.lie_arms import elbows_over
 from motion_backend.procedural.lie.lie_keys import LieKeys, LiePose, OverEdge, PushingHands, Rolled, SittingUp
 from motion_backend.procedural.lie.lie_pose import Bed, lying
 from motion_backend.procedural.lie.lie_styles import Lying
@@ -107,9 +107,11 @@ class Edge:
         yaws = [self.bed.head_yaw - self.way * angle for angle in (row.below_fingers_rad, row.above_fingers_rad)]
         names = (self.side, BESIDE[self.side])
         palms = [palm_on(UP, yaw, name) for yaw, name in zip(yaws, names, strict=True)]
-        wrists = [below, above]
-        order = [0, 1] if self.below == 0 else [1, 0]
-        return np.stack([wrists[which] for which in order]), np.stack([palms[which] for which in order])
+        return self.in_order(np.stack([below, above])), self.in_order(np.stack(palms))
+
+    def in_order(self, hands: Array) -> Array:
+        """What is given for the hand below and the one above, for left and right. (2, ...)."""
+        return hands if self.below == 0 else hands[::-1]
 
 
 def lie_down(landed: Pose, seat: Seat, bed: Bed, style: Lying, skeleton: Skeleton, keys: LieKeys) -> Pose:
@@ -132,7 +134,7 @@ def lie_down(landed: Pose, seat: Seat, bed: Bed, style: Lying, skeleton: Skeleto
     waits += [settle.lifted_wait_s] * len(lifted)
     waits.append(settle.end_after_lifted_wait_s if lifted else settle.end_wait_s)
     poses = [*poses, *(replace(pose, reach=rolled.reach) for pose in lifted), replace(end, reach=rolled.reach)]
-    return wrists_steady(forearms_over(_through(poses, waits, style.bearing), bed.surface, skeleton), skeleton)
+    return elbows_over(_through(poses, waits, style.bearing), bed.surface, skeleton)
 
 
 def rise_to_edge(start: Pose, seat: Seat, bed: Bed, bearing: Bearing, skeleton: Skeleton, keys: LieKeys) -> Pose:
@@ -152,7 +154,7 @@ def rise_to_edge(start: Pose, seat: Seat, bed: Bed, bearing: Bearing, skeleton: 
     poses = [replace(pose, reach=hands[0]) for pose in poses]
     waits += [keys.up.side.wait_s, *(row.wait_s for row in rows), keys.up.end.wait_s]
     whole = _through([*poses, rolled, *over, _bound_for(over[-1], sat)], waits, bearing)
-    return wrists_steady(forearms_over(whole, bed.surface, skeleton), skeleton)
+    return elbows_over(whole, bed.surface, skeleton)
 
 
 def _through(poses: list[Pose], waits: list[float], bearing: Bearing) -> Pose:
