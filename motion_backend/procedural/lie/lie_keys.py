@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from motion_backend.procedural.lie.lie_own import LieOwn
 from scene_graphs.data_tables import read_table, table
 
 Vector = tuple[float, float, float]
@@ -85,6 +86,20 @@ class Propped:
 
 
 @table
+class HeadInHand:
+    """On a side, the head in the hand below; in the head's frame, as if lying on the left."""
+
+    spine_pitch_rad: float
+    spine_turn_rad: float
+    head_pitch_rad: float
+    head_side_rad: float
+    head_turn_rad: float
+    wrist_m: Vector
+    fingers_direction: Vector
+    back_direction: Vector
+
+
+@table
 class OnSide:
     """The trunk of who lies on a side; to the left for who lies on the left."""
 
@@ -135,6 +150,7 @@ class LiePose:
 
     back: OnBack
     propped: Propped
+    head_in_hand: HeadInHand
     side: OnSide
     foot_down: FootDown
     over_end: OverEnd
@@ -387,6 +403,8 @@ class LieKeys:
     up: RiseToEdge
     floor_down: LieOnFloor
     floor_up: RiseFromFloor
+    own: LieOwn
+    """How people differ."""
 
 
 def lie_keys() -> LieKeys:
@@ -397,4 +415,5 @@ def lie_keys() -> LieKeys:
         read_table("motion_backend", "transitions/rise_to_edge.toml", RiseToEdge),
         read_table("motion_backend", "transitions/lie_on_floor.toml", LieOnFloor),
         read_table("motion_backend", "transitions/rise_from_floor.toml", RiseFromFloor),
+        read_table("motion_backend", "transitions/lie_own.toml", LieOwn),
     )
