@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from motion_backend.backend_protocol import POSTURE_AFTER, BodyState, History, Part, PartKind
-from motion_backend.motion import FPS, Character, Motion, Note, PhaseKind
+from motion_backend.motion import FPS, Character, Motion, Note, Phase, PhaseKind
 from motion_backend.procedural.body_state import Body
 from motion_backend.procedural.collision_avoidance.arm_clearance import Around, arms_clear
 from motion_backend.procedural.emotion_style import Bearing
