@@ -14,6 +14,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from motion_backend.director import Director
 from motion_backend.metrics.foot_skate import skate_ratio, skate_speed
 from motion_backend.metrics.gait_features import UNITS, gait_features, windows
 from motion_backend.metrics.joint_trajectories import Kinematics
@@ -22,7 +23,6 @@ from motion_backend.mocap.clip import ClipError
 from motion_backend.mocap.dataset_file import Dataset, Entry
 from motion_backend.mocap.resampling import low_pass
 from motion_backend.motion import Action, Character, Emotion, Motion, Skill
-from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose_solver import solve
 from motion_backend.procedural.walk.gait import walk
@@ -140,7 +140,7 @@ def evaluate_walks(
         if len(one) > 1
     ]
     between = floor(recorded.features, recorded.groups)
-    return WalkReport(recorded, between, tuple(compared), jerk_bins(recorded, matched), caption, ProceduralBackend.name)
+    return WalkReport(recorded, between, tuple(compared), jerk_bins(recorded, matched), caption, "procedural")
 
 
 def recorded_walks(dataset: Dataset, style: str = "") -> Walks:
@@ -193,14 +193,12 @@ def room_walks(caption: str, rooms: int, seeds: int) -> Walks:
 
 def mood_walks(caption: str, mood: Emotion, seeds: int) -> Walks:
     """From somewhere in an empty hall to both its ends in a mood, as a backend walks that is told no more than that."""
-    home, backend = _hall(), ProceduralBackend()
+    home, director = _hall(), Director.of("procedural")
     motions = []
     for seed in range(seeds):
-        state = backend.begin(home, Character(), seed)
-        for index, goal in enumerate(ENDS):
-            action = Action(Skill.LOCO, caption, mood, goal=goal, keyframe=index)
-            motion, state = backend.advance(home, action, state)
-            motions.append((f"seed {seed}", motion))
+        state = director.begin(home, Character(), seed)
+        actions = [Action(Skill.LOCO, caption, mood, goal=goal, keyframe=index) for index, goal in enumerate(ENDS)]
+        motions += [(f"seed {seed}", motion) for motion, _ in director.play(home, actions, state)]
     return _walks(mood, motions)
 
 

@@ -26,7 +26,7 @@ from planner_service.scripts.caption_actions import Hands, done_in, look_of
 from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_repair import free_hand, hand_of
-from scene_graphs.affordances.affordances import Spot, floor_spot, spots
+from scene_graphs.affordances.affordances import Spot, floor_spot, spot_to_dict, spots
 from scene_graphs.errors import UserError
 from scene_graphs.home import Home
 from scene_graphs.layout import Placed
@@ -326,8 +326,5 @@ def height_of(caption: str) -> str:
 
 def action_to_dict(action: Action) -> dict[str, Any]:
     """Plain values of an action for story.json."""
-    spot = None
-    if action.spot is not None:
-        spot = {name: (None if value == np.inf else value) for name, value in vars(action.spot).items()}
     plain: dict[str, Any] = {name: value for name, value in vars(action).items() if name != "spot"}
-    return plain | {"skill": action.skill.value, "emotion": action.emotion.value, "spot": spot}
+    return plain | {"skill": action.skill.value, "emotion": action.emotion.value, "spot": spot_to_dict(action.spot)}

@@ -12,6 +12,7 @@ from typing import Any
 
 from motion_backend.formats.bvh import write_bvh
 from motion_backend.formats.glb_film import film_glb
+from motion_backend.formats.motion_json import phase_to_dict
 from motion_backend.formats.npz import write_npz
 from planner_service.grounding.keyframes_to_actions import action_to_dict
 from planner_service.output.storyboard import storyboard
@@ -228,5 +229,5 @@ def _performances(story: Story) -> Iterator[dict[str, Any]]:
         row = figure.to_dict() | {"performed_as": action.caption if action.caption != own else None}
         phases = [phase for phase in story.motion.phases if span[0] <= phase.start < span[1]]
         row["notes"] = [note.words for note in story.motion.notes if note.keyframe == action.keyframe]
-        row["phases"] = [{"part": phase.part.value, "start": phase.start, "stop": phase.stop} for phase in phases]
+        row["phases"] = [phase_to_dict(phase) for phase in phases]
         yield row

@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
+from motion_backend.backend_protocol import Part, PartKind
 from motion_backend.body.scene_collision import Obstacles
-from motion_backend.motion import FPS, Action, Skill
+from motion_backend.motion import FPS, Action, Posture
 from motion_backend.procedural.arm_solver import Arm
 from motion_backend.procedural.collision_avoidance.elbow_collision import elbows_clear
 from motion_backend.procedural.collision_avoidance.hand_collision import hands_clear
@@ -34,27 +35,33 @@ LAID_FROM: Final = 0.6
 """A hand that presses more than this lies on something, and the more it does, the more its wrist stays there."""
 
 
-def arms_clear(pose: Pose, start: Pose, action: Action, skeleton: Skeleton, solid: Obstacles) -> Pose:
-    """A segment of T frames, begun in the single pose `start`, with its arms out of what is solid and none too fast."""
-    pose = hands_clear(pose, skeleton, solid, _touching(action))
-    pose = elbows_clear(pose, skeleton, _met_by_elbows(action, solid))
+def arms_clear(pose: Pose, start: Pose, part: Part, posture: Posture, skeleton: Skeleton, solid: Obstacles) -> Pose:
+    """A segment of T frames, begun in the single pose `start`, with its arms out of what is solid and none too fast.
+
+    `posture` is the one that the part leads to.
+    """
+    pose = hands_clear(pose, skeleton, solid, _touching(part, posture))
+    pose = elbows_clear(pose, skeleton, _met_by_elbows(part.action, posture, solid))
     return _slowed(pose, start, skeleton)
 
 
-def _touching(action: Action) -> str | None:
+def _touching(part: Part, posture: Posture) -> str | None:
     """The hands that are on things on purpose."""
-    if action.skill is Skill.TOUCH:
+    action = part.action
+    if part.kind is PartKind.REACH:
         return "both" if with_both_hands(action.caption) or steadies(action.caption) else action.hand
-    return None if action.skill is Skill.LOCO else "both"
+    return None if posture is Posture.STANDING else "both"
 
 
-def _met_by_elbows(action: Action, solid: Obstacles) -> Obstacles:
+def _met_by_elbows(action: Action, posture: Posture, solid: Obstacles) -> Obstacles:
     """Who lies sinks in a little; who sits is among what arms rest on, so that only shoulders are minded."""
-    if action.skill in (Skill.LOCO, Skill.TOUCH):
-        return solid
-    if action.skill in (Skill.LIEDOWN, Skill.GETUP):
-        return solid.sunk_into(action.object_id, SINKS)
-    return solid.only(np.zeros(len(solid.owners), dtype=bool))
+    match posture:
+        case Posture.STANDING:
+            return solid
+        case Posture.LYING:
+            return solid.sunk_into(action.object_id, SINKS)
+        case Posture.SEATED:
+            return solid.only(np.zeros(len(solid.owners), dtype=bool))
 
 
 class _Turning(NamedTuple):

@@ -1,4 +1,4 @@
-"""Going to a seat, sitting down on it and standing up from it: the performers of sitdown and of leaving a seat.
+"""Sitting down on a seat, staying there and standing up from it: the performers of sitting and of leaving a seat.
 
 Where on a seat one sits for what hands are to lie on: beside an armrest, or in front, within reach of a table.
 """
@@ -10,9 +10,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from motion_backend.backend_protocol import Part
 from motion_backend.body.scene_collision import Obstacles
-from motion_backend.motion import FPS, Action, Emotion, Posture
-from motion_backend.procedural.body_state import Body, spot_of
+from motion_backend.motion import FPS, Action, Emotion, PhaseKind
+from motion_backend.procedural.body_state import Body, Point, spot_of
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import SHIN_REACH, Seat, idle
 from motion_backend.procedural.sit.sit_keys import sit_keys
@@ -56,28 +57,35 @@ SLOW, QUICK = 0.76, 1.25
 """Tempos below and above which one rises with the hands on the knees, and with none."""
 
 
-def at_standing_point(body: Body, action: Action, seat: Seat) -> None:
-    """Stand where shins will be upright once seated, back to the seat."""
-    go(body, seat.standing_point(body.skeleton.scale), seat.yaw, action)
+def before_seat(body: Body, action: Action) -> tuple[Point, float]:
+    """Where to stand so that shins will be upright once seated, and the yaw with the back to the seat."""
+    seat = Seat.of(spot_of(action))
+    return seat.standing_point(body.skeleton.scale), seat.yaw
 
 
-def sitdown(body: Body, action: Action) -> None:
-    """From standing: to the seat, down onto it, and what is done there."""
+def sit(body: Body, part: Part) -> None:
+    """From standing: down onto the seat, and into the way of sitting."""
+    action = part.action
     style = sit_style(action.emotion, action.caption)
-    spot = spot_of(action)
-    seat = Seat.of(spot)
-    at_standing_point(body, action, seat)
+    seat = Seat.of(spot_of(action))
+    body.enter(PhaseKind.WALK)
+    go(body, *before_seat(body, action), action)
+    body.enter(PhaseKind.SITDOWN)
     around = handholds(seat, body.scene.obstacles, body.skeleton.scale)
     elbows = elbow_room(seat, body.scene.obstacles.solid(), body.skeleton.scale)
     place = Place(seat, around, _leg_room(body, seat), elbows)
     under = around.behind if seat.is_low(body.skeleton.scale) else around.beside
     felt = _grips(around.armrests, under, seat, style.manner.hands)
-    down, holds = sit_down(body.pose, place, style, felt, body.skeleton, sit_keys())
+    down, body.holds = sit_down(body.pose, place, style, felt, body.skeleton, sit_keys())
     body.add(down)
     body.note(*lacking(style, place, body.skeleton))
-    held = idle(body.pose, action.hold, style.bearing.restless, body.rng, FPS)
-    body.add(gesture(follow(held, body.pose, holds, body.skeleton), style.doing))
-    body.posture, body.rest = Posture.SEATED, spot
+
+
+def stay_seated(body: Body, part: Part) -> None:
+    """Sit for a while and do what is done there."""
+    style = sit_style(part.action.emotion, part.action.caption)
+    held = idle(body.pose, part.hold, style.bearing.restless, body.rng, FPS)
+    body.add(gesture(follow(held, body.pose, body.holds, body.skeleton), style.doing))
 
 
 def leave_seat(body: Body, seat: Seat, bearing: Bearing) -> None:
@@ -89,7 +97,7 @@ def leave_seat(body: Body, seat: Seat, bearing: Bearing) -> None:
         around = handholds(seat, body.scene.obstacles, body.skeleton.scale)
         push = _grips(around.armrests, around.beside, seat, (True, True))
     body.add(stand_up(body.pose, seat, bearing, push, body.skeleton, sit_keys().up))
-    body.posture, body.rest = Posture.STANDING, None
+    body.holds = (None, None)
 
 
 def _grips(armrests: Pair, under: Pair, seat: Seat, hands: tuple[bool, bool]) -> Holds:

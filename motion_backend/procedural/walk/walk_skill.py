@@ -11,19 +11,19 @@ from dataclasses import replace
 import numpy as np
 
 from motion_backend import rotations
-from motion_backend.motion import FPS, Action, Part, Skill
+from motion_backend.backend_protocol import Part
+from motion_backend.motion import FPS, Action, PhaseKind, Skill
 from motion_backend.procedural.body_state import Body, Point
 from motion_backend.procedural.collision_avoidance.hand_collision import arms_in
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays, bearing_of
 from motion_backend.procedural.held_poses import SPINE_LEAN, bend, idle
-from motion_backend.procedural.pose import interpolate
+from motion_backend.procedural.pose import interpolate, settle_from
 from motion_backend.procedural.touch.gestures import gesture
 from motion_backend.procedural.touch.hand_captions import arms_on_the_way
 from motion_backend.procedural.walk.gait import walk
 from motion_backend.procedural.walk.root_path import resample
 from motion_backend.procedural.walk.walk_styles import Walk, walk_style
 from motion_backend.rotations import Array
-from motion_backend.state_machine import OWN
 from scene_graphs.navigation.path_planner import Walkable
 
 BOWS = (0.24, 0.18, 0.12, 0.07)
@@ -103,7 +103,7 @@ def go(body: Body, goal: Point, facing: float | None, action: Action) -> None:
     turned = facing is None or abs(float(rotations.wrap(facing - body.yaw))) < FACING_IT
     if near and turned:
         return
-    body.enter(Part.WALK)
+    body.enter(PhaseKind.WALK)
     style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
     arms = arms_on_the_way(body.pose, style.bearing.arms)
     style = replace(style, bearing=replace(style.bearing, arms=arms))
@@ -124,10 +124,9 @@ def go(body: Body, goal: Point, facing: float | None, action: Action) -> None:
             _stride(body, way, None, style)
     if turning is not None and facing is not None:
         _stride(body, body.scene.walkable.path(body.place, turning), facing, style)
-        body.enter(Part.BACK_UP)
+        body.enter(PhaseKind.BACK_UP)
         path = np.array([body.place, goal])
     _stride(body, path, facing, style)
-    body.enter(OWN[action.skill])
 
 
 def _stride(body: Body, path: Array, facing: float | None, style: Walk) -> None:
@@ -136,7 +135,6 @@ def _stride(body: Body, path: Array, facing: float | None, style: Walk) -> None:
     if style.bearing.arms[0] in NARROW_ARMS:
         room = body.scene.walkable.field.at(frames.pelvis[:, [0, 2]])
         frames = arms_in(frames, room / body.skeleton.scale, *NARROW_ARMS[style.bearing.arms[0]])
-    body.way += float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
     body.add(gesture(frames, style.doing))
 
 
@@ -163,27 +161,19 @@ def _turning_place(body: Body, path: Array, goal: Point, facing: float | None) -
     return places[best] if room[best] > body.scene.walkable.clearance(goal) + ROOMIER else None
 
 
-def loco(body: Body, action: Action) -> None:
-    """Walk to the goal; without one, stay."""
-    bearing = bearing_of(action.emotion, action.caption)
-    if action.goal is None:
-        _stay(body, action)
+def stay(body: Body, part: Part) -> None:
+    """Stand where the body is: for loco with the arms as the caption has them, and let them hang again."""
+    action = part.action
+    restless = bearing_of(action.emotion, action.caption).restless
+    if action.skill is not Skill.LOCO or action.goal is not None:
+        body.add(settle_from(body.pose, idle(body.pose, part.hold, restless, body.rng, FPS), FPS))
         return
-    before = len(body.frames)
-    go(body, action.goal, action.facing, action)
-    if len(body.frames) == before:
-        body.add(idle(body.pose, 1.0, bearing.restless, body.rng, FPS))
-
-
-def _stay(body: Body, action: Action) -> None:
-    """Stand where the body is, arms as the caption has them, and let them hang again."""
     style = walk_style(action.emotion, action.caption)
     bearing = replace(style.bearing, arms=arms_on_the_way(body.pose, style.bearing.arms))
     at_ease = replace(body.pose, **_carriage(replace(bearing, arms=arms_on_the_way(body.pose, ("hang", "hang")))))
     held = replace(body.pose, **_carriage(bearing))
     body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, held], FPS))
-    restless = bearing_of(action.emotion, action.caption).restless
-    body.add(gesture(idle(body.pose, action.hold, restless, body.rng, FPS), style.doing))
+    body.add(gesture(idle(body.pose, part.hold, restless, body.rng, FPS), style.doing))
     if style.bearing.arms != ("hang", "hang"):
         body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, at_ease], FPS))
 

@@ -12,12 +12,14 @@ from for_each import for_each
 from layers import sampled
 from small_home import contact, rise, small_home, to
 
+from motion_backend.backend_protocol import BodyState
 from motion_backend.body.scene_collision import Obstacles
+from motion_backend.director import Director
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.contact_error import risen
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.smoothness import seam_jump
-from motion_backend.motion import Action, BodyState, Character, Emotion, Motion, Posture, Skill, join
+from motion_backend.motion import Action, Character, Emotion, Motion, Posture, Skill, join
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.sit.sit_styles import sit_style
@@ -30,11 +32,11 @@ OBSTACLES = Obstacles.of_home(HOME)
 
 
 def perform(actions: list[Action], seed: int = 3, height: float = 1.70) -> tuple[list[Motion], BodyState]:
-    backend = ProceduralBackend()
+    backend = Director(ProceduralBackend())
     state = backend.begin(HOME, Character(height=height), seed)
     motions = []
     for index, action in enumerate(actions):
-        motion, state = backend.advance(HOME, replace(action, keyframe=index), state)
+        motion, state = backend.act(HOME, replace(action, keyframe=index), state)
         motions.append(motion)
     return motions, state
 
@@ -106,14 +108,14 @@ def test_the_same_seed_gives_the_same_bytes_and_another_seed_another_body() -> N
 
 
 def test_any_segment_can_be_made_again_from_a_stored_state() -> None:
-    backend = ProceduralBackend()
+    backend = Director(ProceduralBackend())
     actions = day()
     state = backend.begin(HOME, Character(), 3)
     for action in actions[:3]:
-        _, state = backend.advance(HOME, action, state)
+        _, state = backend.act(HOME, action, state)
     stored = json.loads(json.dumps(asdict(state)))
     restored = BodyState(**(stored | {"posture": Posture(stored["posture"]), "pelvis": tuple(stored["pelvis"])}))
-    fresh, _ = ProceduralBackend().advance(HOME, actions[3], restored)
+    fresh, _ = Director(ProceduralBackend()).act(HOME, actions[3], restored)
     np.testing.assert_array_equal(fresh.local_rotations, motions()[3].local_rotations)
 
 

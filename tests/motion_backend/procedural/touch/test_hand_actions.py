@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from small_home import ROOM, after, backend_in, small_home
+from small_home import DIRECTOR, ROOM, after, small_home
 
 from motion_backend import rotations
 from motion_backend.body.scene_collision import Obstacles
@@ -30,7 +30,7 @@ def act(home: Home, name: str, caption: str, height: str = "medium") -> Motion:
     spot = next(s for s in spots(home.object(f"0/{name}"), "touch") if s.height == height)
     walk = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=spot.standing, facing=spot.approach)
     action = Action(Skill.TOUCH, caption, Emotion.NEUTRAL, name, f"0/{name}", spot, hold=2.5)
-    return backend_in(home).advance(home, action, after(home, walk))[0]
+    return DIRECTOR.act(home, action, after(home, walk))[0]
 
 
 @cache
