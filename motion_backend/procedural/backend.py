@@ -113,9 +113,7 @@ def _to_motion(body: Body, part: Part) -> Motion:
     if body.tail is not None:
         pose, start = carried_on(body.tail, pose), body.tail.at(0)
     pose = arms_clear(hips_within(pose, body.skeleton), start, around, body.skeleton)
-    kept = frames_kept_back(part, body.upcoming, len(pose)) if body.stride is None else 0
     body.pose = pose.at(len(pose) - 1)
-    body.tail = _freed(pose.at(slice(len(pose) - kept, None)), body.skeleton) if kept else None
     root, local = solve(pose, body.skeleton)
     whole = Motion(
         root_positions=root.astype(np.float32),
@@ -127,6 +125,8 @@ def _to_motion(body: Body, part: Part) -> Motion:
         phases=_filling(body.phases, len(pose)),
         notes=tuple(Note(part.action.keyframe, words) for words in body.otherwise),
     )
+    kept = frames_kept_back(part, body.upcoming, whole) if body.stride is None else 0
+    body.tail = _freed(pose.at(slice(len(pose) - kept, None)), body.skeleton) if kept else None
     return whole.part(0, len(pose) - kept)
 
 

@@ -14,7 +14,9 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.backend_protocol import Part, PartKind
-from motion_backend.motion import FPS
+from motion_backend.metrics.contact_error import RISEN, risen
+from motion_backend.metrics.joint_trajectories import Kinematics
+from motion_backend.motion import FPS, Motion
 from motion_backend.procedural.pose import Pose, concatenate
 from motion_backend.rotations import Array
 from motion_backend.state_machine import RISINGS
@@ -35,13 +37,18 @@ _TURNS: Final = ("hips", "feet", "palms")
 _SHARES: Final = ("reaching", "pressing")
 
 
-def frames_kept_back(part: Part, upcoming: tuple[Part, ...], made: int) -> int:
-    """How many of the frames made for a part are done together with the next one's."""
+def frames_kept_back(part: Part, upcoming: tuple[Part, ...], made: Motion) -> int:
+    """How many of the frames made for a part are done together with the next one's; who rises stands first."""
     later = next((one for one in upcoming if not only_stands(one)), None)
     if later is None:
         return 0
     own, following = (PartKind.WALK if one.kind is PartKind.TURN else one.kind for one in (part, later))
-    return min(round(TAILS.get((own, following), 0.0) * FPS), max(made - 1, 0))
+    kept = min(round(TAILS.get((own, following), 0.0) * FPS), len(made) - 1)
+    if part.kind is PartKind.RISE and kept > 0:
+        up = risen(Kinematics.of(made.part(max(len(made) - FPS, 0), len(made))))[::-1]
+        stood = len(up) if up.all() else int(np.argmin(up))
+        kept = min(kept, stood - round(RISEN[2] * FPS) - 1)
+    return max(kept, 0)
 
 
 def only_stands(part: Part) -> bool:

@@ -285,7 +285,11 @@ def stand_up(
     over = gather.at(len(gather) - 1)
     seconds = keys.rise.time_s * pace * (ANY_DEPTH + EACH_DEPTH * depth)
     times = [*(row.time_share * seconds for row in keys.pose), seconds]
-    leant = replace(over, pelvis=seat.pelvis + ready.pelvis_ahead_m * skeleton.scale * _ahead_of(seat), **_lean(seat, lean, fold, ready))
+    leant = replace(
+        over,
+        pelvis=seat.pelvis + ready.pelvis_ahead_m * skeleton.scale * _ahead_of(seat),
+        **_lean(seat, lean, fold, ready),
+    )
     risen = [_risen(row, over, end, seat, lean) for row in rows]
     up = interpolate([0.0, *times], [over, leant, *risen, replace(end, reach=over.reach, palms=over.palms)], FPS)
     up = follow(replace(up, knees=knees_over_feet(up)), over, push, skeleton)
