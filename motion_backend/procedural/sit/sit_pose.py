@@ -267,12 +267,17 @@ def _up_to_table(leans: Pose, style: Seated, holds: Holds, skeleton: Skeleton) -
     """The least of N leans towards a table in which both elbows are easily bent; the eyes where they were to look."""
     sides = (1.0, -1.0)
     poles = np.stack(
-        [pole if h is None else np.asarray(h.elbow) * [s, 1, 1] for pole, h, s in zip(leans.elbows[0], holds, sides, strict=True)]
+        [
+            pole if h is None else np.asarray(h.elbow) * [s, 1, 1]
+            for pole, h, s in zip(leans.elbows[0], holds, sides, strict=True)
+        ]
     )
     down = np.radians(style.head) - TO_TABLE
     heads = np.stack([bend(pitch, np.radians(style.tilt)) for pitch in down])
     laid = np.array([0.0 if hold is None else 1.0 for hold in holds])
-    many = replace(leans, head=heads, elbows=np.tile(poles, (len(leans), 1, 1)), reaching=np.tile(laid, (len(leans), 1)))
+    many = replace(
+        leans, head=heads, elbows=np.tile(poles, (len(leans), 1, 1)), reaching=np.tile(laid, (len(leans), 1))
+    )
     _, local = solve(lay_hands(many, holds, skeleton), skeleton)
     bent = np.stack([rotations.quat_to_rotvec(local[:, INDEX[f"{side}_elbow"]]) for side in ("left", "right")], axis=1)
     opened = np.pi - np.linalg.norm(bent, axis=-1)

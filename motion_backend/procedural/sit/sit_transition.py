@@ -291,7 +291,11 @@ def stand_up(
     over = gather.at(len(gather) - 1)
     seconds = keys.rise.time_s * pace * (ANY_DEPTH + EACH_DEPTH * depth)
     times = [*(row.time_share * seconds for row in keys.pose), seconds]
-    leant = replace(over, pelvis=seat.pelvis + ready.pelvis_ahead_m * skeleton.scale * _ahead_of(seat), **_lean(seat, lean, fold, ready))
+    leant = replace(
+        over,
+        pelvis=seat.pelvis + ready.pelvis_ahead_m * skeleton.scale * _ahead_of(seat),
+        **_lean(seat, lean, fold, ready),
+    )
     if low:
         # The floor is farther from the shoulders with every centimetre that one rises: hands leave it sooner.
         rows = [replace(row, held_share=keys.rise.low_held_ratio * row.held_share) for row in rows]
