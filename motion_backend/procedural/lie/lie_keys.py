@@ -89,6 +89,8 @@ class Propped:
 class HeadInHand:
     """On a side, the head in the hand below; in the head's frame, as if lying on the left."""
 
+    hips_up_rad: float
+    elbow_ahead_ratio: float
     spine_pitch_rad: float
     spine_turn_rad: float
     head_pitch_rad: float
