@@ -67,7 +67,7 @@ class Rule:
 
 
 DONE: Final[dict[Skill, Rule]] = {
-    Skill.LOCO: Rule("the pelvis", HAND_OVER, 0.3),
+    Skill.LOCO: Rule("the pelvis", HAND_OVER, 0.1),
     Skill.SITDOWN: Rule("the pelvis", THRESHOLDS[Skill.SITDOWN], SUSTAINED),
     Skill.LIEDOWN: Rule("the pelvis", THRESHOLDS[Skill.LIEDOWN], SUSTAINED),
     Skill.TOUCH: Rule("the hand", THRESHOLDS[Skill.TOUCH], SUSTAINED),

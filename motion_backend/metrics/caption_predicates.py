@@ -16,7 +16,7 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Action, Motion, Part, Skill
+from motion_backend.motion import Action, Motion, PhaseKind, Skill
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX
 from scene_graphs.data_tables import read_table, require_known, table
@@ -149,7 +149,7 @@ def shown(motion: Motion, action: Action) -> Motion:
         case Skill.TOUCH:
             start, stop = _at_the_goal(motion, action)
         case Skill.LOCO:
-            walks = [phase for phase in motion.phases if phase.part is Part.WALK]
+            walks = [phase for phase in motion.phases if phase.kind is PhaseKind.WALK]
             ends = round(STARTS * fps)
             start, stop = (walks[0].start + ends, walks[-1].stop - ends) if walks else (0, frames)
         case _:

@@ -18,7 +18,7 @@ from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import SHIN_REACH, Seat, idle
 from motion_backend.procedural.sit.sit_keys import sit_keys
 from motion_backend.procedural.sit.sit_legs import Room, is_to_be_straight, perch, straight_reach
-from motion_backend.procedural.sit.sit_pose import ON_TABLE, Place, back_for, lacking
+from motion_backend.procedural.sit.sit_pose import LEANS_BACK, ON_TABLE, Place, back_for, lacking
 from motion_backend.procedural.sit.sit_styles import Seated, sit_style
 from motion_backend.procedural.sit.sit_transition import sit_down, stand_up
 from motion_backend.procedural.touch.gestures import gesture
@@ -160,7 +160,7 @@ def seat_for(found: Sequence[Spot], emotion: Emotion, caption: str, obstacles: O
 
 def _slouch(spot: Spot, style: Seated) -> float:
     """How far from its backrest a pelvis slides for the trunk to lean back against it (metres)."""
-    if np.isinf(spot.back):
+    if np.isinf(spot.back) or style.recline < LEANS_BACK:
         return 0.0
     return float(np.clip(back_for(style.recline) - spot.back, 0.0, max(spot.edge - MIN_EDGE, 0.0)))
 

@@ -55,7 +55,7 @@ class Seated:
 
 AT_REST = 9.0
 """Backward lean of who sits as it comes: against the back of the seat, where there is one (degrees)."""
-SLUMP = 0.6
+SLUMP = 1.2
 """How much of the forward lean of a bearing takes from that, seated."""
 HANGING = 0.8
 """How much of its bent head is seen, seated."""
