@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.backend_protocol import Part, PartKind
 from motion_backend.body.scene_collision import Obstacles
-from motion_backend.motion import FPS, Action, Posture
+from motion_backend.motion import FPS, Posture
 from motion_backend.procedural.arm_solver import Arm
 from motion_backend.procedural.collision_avoidance.elbow_collision import elbows_clear
 from motion_backend.procedural.collision_avoidance.hand_collision import hands_clear
@@ -35,33 +35,38 @@ LAID_FROM: Final = 0.6
 """A hand that presses more than this lies on something, and the more it does, the more its wrist stays there."""
 
 
-def arms_clear(pose: Pose, start: Pose, part: Part, posture: Posture, skeleton: Skeleton, solid: Obstacles) -> Pose:
-    """A segment of T frames, begun in the single pose `start`, with its arms out of what is solid and none too fast.
+class Around(NamedTuple):
+    """What a body does in a segment, and among what."""
 
-    `posture` is the one that the part leads to.
-    """
-    pose = hands_clear(pose, skeleton, solid, _touching(part, posture))
-    pose = elbows_clear(pose, skeleton, _met_by_elbows(part.action, posture, solid))
+    part: Part
+    posture: Posture
+    under: str | None
+    """What it rests on or gets onto: an object's id."""
+    solid: Obstacles
+
+    @property
+    def touching(self) -> str | None:
+        """The hands that are on things on purpose."""
+        if self.part.kind is PartKind.REACH:
+            caption = self.part.action.caption
+            return "both" if with_both_hands(caption) or steadies(caption) else self.part.action.hand
+        return None if self.posture is Posture.STANDING else "both"
+
+    @property
+    def met_by_elbows(self) -> Obstacles:
+        """Who lies sinks in a little; who sits is among what arms rest on, so that only shoulders are minded."""
+        if self.posture is Posture.STANDING:
+            return self.solid
+        if self.posture is Posture.LYING:
+            return self.solid.sunk_into(self.under, SINKS)
+        return self.solid.only(np.zeros(len(self.solid.owners), dtype=bool))
+
+
+def arms_clear(pose: Pose, start: Pose, around: Around, skeleton: Skeleton) -> Pose:
+    """A segment of T frames, begun in the single pose `start`, with its arms out of what is solid and none too fast."""
+    pose = hands_clear(pose, skeleton, around.solid, around.touching)
+    pose = elbows_clear(pose, skeleton, around.met_by_elbows)
     return _slowed(pose, start, skeleton)
-
-
-def _touching(part: Part, posture: Posture) -> str | None:
-    """The hands that are on things on purpose."""
-    action = part.action
-    if part.kind is PartKind.REACH:
-        return "both" if with_both_hands(action.caption) or steadies(action.caption) else action.hand
-    return None if posture is Posture.STANDING else "both"
-
-
-def _met_by_elbows(action: Action, posture: Posture, solid: Obstacles) -> Obstacles:
-    """Who lies sinks in a little; who sits is among what arms rest on, so that only shoulders are minded."""
-    match posture:
-        case Posture.STANDING:
-            return solid
-        case Posture.LYING:
-            return solid.sunk_into(action.object_id, SINKS)
-        case Posture.SEATED:
-            return solid.only(np.zeros(len(solid.owners), dtype=bool))
 
 
 class _Turning(NamedTuple):
