@@ -18,7 +18,7 @@ HAND_OVER = 0.30
 STRICT = 0.10
 """What is near enough for strict success, whatever the skill (metres)."""
 SUSTAINED = 1.0
-RISEN = (0.85, np.cos(np.radians(30)), 0.5)
+RISEN = (0.85, np.cos(np.radians(30)), 0.1)
 """Share of the standing height, cosine of the trunk's tilt and seconds that count as having risen."""
 
 
@@ -27,7 +27,7 @@ class Outcome:
     """What became of one trial; none of it is true of a body that gave up."""
 
     reached: bool
-    """Sustained: without a break for one second (a walk: at its end; rising: for half a second)."""
+    """Sustained: without a break for one second (a walk: at its end; rising: for a tenth)."""
     reached_any: bool
     """In any frame (SIMS' own rule)."""
     reached_strict: bool

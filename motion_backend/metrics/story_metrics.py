@@ -41,7 +41,7 @@ class KeyframeFigures:
     keyframe: int
     skill: str
     reached: bool
-    """Within the threshold without a break for one second (a walk: at its end; rising: for half a second)."""
+    """Within the threshold without a break for one second (a walk: at its end; rising: for a tenth)."""
     reached_any: bool
     """Within the threshold in any frame (SIMS' own rule)."""
     reached_strict: bool
