@@ -45,9 +45,7 @@ class ProceduralBackend:
 
     def begin(self, home: Home, character: Character, seed: int) -> BodyState:
         """Standing in the first room, on a free place that the seed chooses."""
-        rng = np.random.default_rng([seed, 0])
-        place = scene_of(home).walkable.random_point(rng, 0)
-        yaw = float(rng.uniform(-np.pi, np.pi))
+        place, yaw = scene_of(home).beginning(seed)
         skeleton = build_skeleton(character.height)
         pose = standing(place, yaw, Bearing(), skeleton).repeat(1)
         history = History.of(*solve(pose, skeleton), np.repeat(pose.planted, 2, axis=1))

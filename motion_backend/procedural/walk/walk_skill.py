@@ -176,7 +176,14 @@ def _through(body: Body, path: Array, onward: Point) -> ThroughWay | None:
     if np.hypot(onward[0] - here[0], onward[1] - here[1]) < AT_THE_SPOT:
         return None
     walkable = body.scene.walkable
-    return through_way(path, walkable.path(here, onward), lambda points: _is_free(points, walkable))
+    ways = np.concatenate([resample(path), resample(leaving := walkable.path(here, onward))])
+
+    def fits(points: Array) -> bool:
+        # Where the planner leads there is room; only what the joining adds has to be looked at.
+        new = np.linalg.norm(points[:, None] - ways[None], axis=2).min(axis=1) > ROOM
+        return bool((walkable.field.at(points[new]) >= walkable.radius + ROOM).all())
+
+    return through_way(path, leaving, fits)
 
 
 def _spin_on_the_way(body: Body, path: Array, style: Walk) -> Array:
