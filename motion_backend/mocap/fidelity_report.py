@@ -22,7 +22,7 @@ move the mean by as much."""
 MAX_JOINT_TURN_RATE = 20.0
 """Radians a second that no joint turns faster, but for toes: at 12 Hz those of who walks snap down with 23."""
 AWAY = 6.5
-"""Degrees between limbs of source and copy, on average: a straight leg bends by six when its foot, which hovered by half
+"""Degrees between limbs of source and copy, on average: a straight leg bends by six when its foot, which hovered half
 a centimetre, is put down."""
 _TRUNK = ("left_hip", "right_hip", "left_shoulder", "right_shoulder")
 _HALVES = {"thigh": "hip", "shank": "knee", "upper arm": "shoulder", "forearm": "elbow"}
