@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from benchmarks.figure import Figure
 from benchmarks.stories import SPEED, Timed
 from benchmarks.themes import SEED
+from motion_backend.director import Director
 from motion_backend.motion import Character, Skill
-from motion_backend.procedural.backend import ProceduralBackend
 
 
 def skill_figures(made: Sequence[Timed]) -> list[Figure]:
@@ -19,11 +19,11 @@ def skill_figures(made: Sequence[Timed]) -> list[Figure]:
     """
     played, taken = dict.fromkeys(Skill, 0.0), dict.fromkeys(Skill, 0.0)
     for one in made:
-        backend, home = ProceduralBackend(), one.story.planned.home
-        state = backend.begin(home, Character(), SEED)
+        director, home = Director.of("procedural"), one.story.planned.home
+        acting = director.play(home, one.story.actions, director.begin(home, Character(), SEED))
         for action in one.story.actions:
             started = time.process_time()
-            motion, state = backend.advance(home, action, state)
+            motion, _ = next(acting)
             taken[action.skill] += time.process_time() - started
             played[action.skill] += motion.duration
     speeds = {skill: played[skill] / taken[skill] for skill in Skill if taken[skill]}

@@ -12,7 +12,7 @@ import numpy as np
 
 from benchmarks.figure import Figure
 from benchmarks.themes import SEED, THEMES
-from motion_backend.backends import load_backend
+from motion_backend.director import Director
 from motion_backend.formats.glb_film import film_glb
 from motion_backend.metrics.story_metrics import summarise
 from planner_service.grounding.keyframes_to_actions import act
@@ -66,7 +66,7 @@ def _make(pipeline: Pipeline, name: str, request: StoryRequest) -> Timed:
     plans = tuple(timed(lambda: pipeline.plan(request))[1] for _ in range(REPEATS))
     script, stage = planned.script, planned.stage
     actions, acted = timed(lambda: act(script.keyframes, stage.places, planned.home, request.seed))
-    motions, moved = timed(lambda: move(load_backend(request.backend), planned, actions, silent))
+    motions, moved = timed(lambda: move(Director.of(request.backend), planned, actions, silent))
     story, judged = timed(lambda: judge(planned, actions, motions, silent))
     return Timed(name, story, plans, acted, moved, judged)
 

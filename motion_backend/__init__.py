@@ -10,17 +10,17 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from motion_backend.backend_protocol import BodyState, MotionBackend, Part, PartKind
     from motion_backend.backends import backend_names, load_backend
+    from motion_backend.director import Director
     from motion_backend.formats import write_motion
     from motion_backend.formats.npz import read_npz
     from motion_backend.mocap.readers import read_clips
     from motion_backend.motion import (
         Action,
-        BodyState,
         Character,
         ContactGoal,
         Motion,
-        MotionBackend,
         Posture,
         Skill,
         join,
@@ -32,8 +32,11 @@ __all__ = [
     "BodyState",
     "Character",
     "ContactGoal",
+    "Director",
     "Motion",
     "MotionBackend",
+    "Part",
+    "PartKind",
     "Posture",
     "Skeleton",
     "Skill",
@@ -47,11 +50,14 @@ __all__ = [
 ]
 _ROOMS = {
     "Action": "motion",
-    "BodyState": "motion",
+    "BodyState": "backend_protocol",
     "Character": "motion",
     "ContactGoal": "motion",
+    "Director": "director",
     "Motion": "motion",
-    "MotionBackend": "motion",
+    "MotionBackend": "backend_protocol",
+    "Part": "backend_protocol",
+    "PartKind": "backend_protocol",
     "Posture": "motion",
     "Skeleton": "skeleton",
     "Skill": "motion",

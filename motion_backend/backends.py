@@ -10,7 +10,7 @@ from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Final
 
-from motion_backend.motion import MotionBackend
+from motion_backend.backend_protocol import MotionBackend
 from scene_graphs.errors import UserError
 
 GROUP: Final = "sims.backends"

@@ -1,20 +1,18 @@
-"""The words of the body: skills, actions, motion and the protocol every motion backend keeps.
+"""The words of the body: skills, actions, and motion.
 
 Arrays are float32, Y up, metres, seconds, quaternions xyzw; T frames at `fps`; 22 joints in SMPL's order (skeleton.py).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend.skeleton import Skeleton
 from scene_graphs.affordances.affordances import Spot
-from scene_graphs.home import Home
 
 Floats = NDArray[np.float32]
 FPS = 30
@@ -53,8 +51,8 @@ class Posture(StrEnum):
     LYING = "lying"
 
 
-class Part(StrEnum):
-    """What a segment is made of: the skill itself, and what had to be done for it first (state_machine.py)."""
+class PhaseKind(StrEnum):
+    """What a body does for a while: the phases that a part (state_machine.py) is made of."""
 
     STAND = "stand"
     GETUP = "getup"
@@ -72,11 +70,15 @@ class Part(StrEnum):
 
 @dataclass(frozen=True)
 class Phase:
-    """One part of a segment and its frames, `start` to `stop` (exclusive)."""
+    """One phase of a segment and its frames, `start` to `stop` (exclusive)."""
 
-    part: Part
+    kind: PhaseKind
     start: int
     stop: int
+    backend: str = ""
+    """Who made it; empty where nobody knows."""
+    fallback: str = ""
+    """Why another backend than the one asked for made it; empty where it was that one."""
 
 
 @dataclass(frozen=True)
@@ -153,6 +155,8 @@ class Motion:
     completed: bool = True
     reason: str = ""
     """Why not, when it was not completed."""
+    completion: float = 1.0
+    """How much of the part it was made for is done, 0 to 1: below 1 the next window goes on with it (LINGO A.5)."""
     phases: tuple[Phase, ...] = ()
     """What it is made of, in order; empty where nobody knows."""
     notes: tuple[Note, ...] = ()
@@ -174,7 +178,7 @@ class Motion:
         """Frames start to stop (exclusive)."""
         window = slice(start, stop)
         cut = [
-            Phase(phase.part, max(phase.start, start) - start, min(phase.stop, stop) - start)
+            replace(phase, start=max(phase.start, start) - start, stop=min(phase.stop, stop) - start)
             for phase in self.phases
             if phase.start < stop and phase.stop > start
         ]
@@ -204,40 +208,9 @@ def join(motions: list[Motion]) -> Motion:
         completed=all(m.completed for m in motions),
         reason="; ".join(m.reason for m in motions if m.reason),
         phases=tuple(
-            Phase(phase.part, start + phase.start, start + phase.stop)
+            replace(phase, start=start + phase.start, stop=start + phase.stop)
             for start, motion in zip(starts, motions, strict=False)
             for phase in motion.phases
         ),
         notes=tuple(note for motion in motions for note in motion.notes),
     )
-
-
-@dataclass(frozen=True)
-class BodyState:
-    """All a backend needs to go on: JSON-able, so that a story can stop and resume between any two actions."""
-
-    posture: Posture
-    pelvis: tuple[float, float, float]
-    yaw: float
-    object_id: str | None = None
-    """What it sits or lies on."""
-    index: int = 0
-    """Segments made so far; with the seed it fixes the next segment's randomness."""
-    seed: int = 0
-    height: float = 1.70
-    memory: dict[str, Any] = field(default_factory=dict)
-    """The backend's own: lists and numbers only."""
-
-
-class MotionBackend(Protocol):
-    """What moves the body. One segment an action, each reproducible alone from the state it starts in."""
-
-    name: str
-
-    def begin(self, home: Home, character: Character, seed: int) -> BodyState:
-        """The body standing in the home, before its first action."""
-        ...
-
-    def advance(self, home: Home, action: Action, state: BodyState) -> tuple[Motion, BodyState]:
-        """Act out one action from a state."""
-        ...

@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from motion_backend.backend_protocol import Part, PartKind
 from motion_backend.metrics.contact_error import (
     HAND_OVER,
     RISEN,
@@ -22,25 +23,23 @@ from motion_backend.metrics.contact_error import (
     risen,
 )
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Action, Part, Posture, Skill
+from motion_backend.motion import Action, Posture, Skill
 
-LEAVING: Final[dict[Posture, tuple[Part, ...]]] = {
-    Posture.STANDING: (),
-    Posture.SEATED: (Part.STANDUP,),
-    Posture.LYING: (Part.GETUP, Part.STANDUP),
+ENTERING: Final[dict[Skill, tuple[PartKind, ...]]] = {
+    Skill.LOCO: (PartKind.WALK,),
+    Skill.SITDOWN: (PartKind.WALK, PartKind.SIT, PartKind.HOLD),
+    Skill.LIEDOWN: (PartKind.WALK, PartKind.LIE, PartKind.HOLD),
+    Skill.TOUCH: (PartKind.WALK, PartKind.REACH),
+    Skill.STANDUP: (PartKind.HOLD,),
+    Skill.GETUP: (PartKind.HOLD,),
 }
-"""How a body comes to stand from each posture: who lies sits on the edge first."""
-ENTERING: Final[dict[Skill, tuple[Part, ...]]] = {
-    Skill.LOCO: (Part.WALK,),
-    Skill.SITDOWN: (Part.WALK, Part.BACK_UP, Part.SITDOWN),
-    Skill.LIEDOWN: (Part.WALK, Part.BACK_UP, Part.EDGE, Part.LIEDOWN),
-    Skill.TOUCH: (Part.WALK, Part.BACK_UP, Part.TOUCH),
-    Skill.STANDUP: (Part.STAND,),
-    Skill.GETUP: (Part.STAND,),
-}
-"""What a standing body does for each skill, in order; it walks and backs up only where there is a way to go."""
-OWN: Final[dict[Skill, Part]] = {skill: parts[-1] for skill, parts in ENTERING.items()}
-"""The skill itself among its parts."""
+"""What a standing body does for each skill, in order."""
+STOOD, STOOD_ALREADY = 0.3, 0.8
+"""Seconds that one stays on the feet one has come to, and on those one stood on."""
+AT_THE_SPOT: Final = 0.04
+"""A body this near to its goal (metres) need not walk: it turns."""
+RISINGS: Final = (Skill.STANDUP, Skill.GETUP)
+"""Skills of which nothing is left to do once the body stands."""
 ENDS: Final[dict[Skill, Posture]] = {
     Skill.LOCO: Posture.STANDING,
     Skill.SITDOWN: Posture.SEATED,
@@ -51,7 +50,7 @@ ENDS: Final[dict[Skill, Posture]] = {
 }
 """The posture each skill leaves the body in."""
 PATIENCE: Final = 10.0
-"""Seconds for every part but walking, as UniHSI gives each of its steps."""
+"""Seconds for every part, besides its way and its hold, as UniHSI gives each of its steps."""
 STUCK_SPEED: Final = 0.2
 """Metres a second: who walks more slowly is stuck."""
 
@@ -68,7 +67,7 @@ class Rule:
 
 
 DONE: Final[dict[Skill, Rule]] = {
-    Skill.LOCO: Rule("the pelvis", HAND_OVER, 0.3),
+    Skill.LOCO: Rule("the pelvis", HAND_OVER, 0.1),
     Skill.SITDOWN: Rule("the pelvis", THRESHOLDS[Skill.SITDOWN], SUSTAINED),
     Skill.LIEDOWN: Rule("the pelvis", THRESHOLDS[Skill.LIEDOWN], SUSTAINED),
     Skill.TOUCH: Rule("the hand", THRESHOLDS[Skill.TOUCH], SUSTAINED),
@@ -76,22 +75,34 @@ DONE: Final[dict[Skill, Rule]] = {
 """Skills with a goal; rising is done once the body has stood for as long as `RISEN` says."""
 
 
-def parts_of(posture: Posture, skill: Skill) -> tuple[Part, ...]:
-    """All that a body in a posture does for a skill, in order."""
-    return LEAVING[posture] + ENTERING[skill]
+def parts_of(action: Action, posture: Posture, place: tuple[float, float] | None = None) -> tuple[Part, ...]:
+    """All that a body in a posture does for an action, in order (Eq. 6); `place` is where it stands, where known."""
+    rising = () if posture is Posture.STANDING else (Part(PartKind.RISE, action),)
+    if action.skill is Skill.LOCO and action.goal is None:
+        return (*rising, Part(PartKind.HOLD, action, hold=action.hold))
+    if action.skill in RISINGS:
+        return (*rising, Part(PartKind.HOLD, action, hold=STOOD if rising else STOOD_ALREADY))
+    return (*rising, *(_part(kind, action, place) for kind in ENTERING[action.skill]))
 
 
-def time_limit(posture: Posture, action: Action, way: float) -> float:
-    """Seconds an action may take that has `way` metres to walk."""
-    standing_still = [part for part in parts_of(posture, action.skill) if part not in (Part.WALK, Part.BACK_UP)]
-    return PATIENCE * max(len(standing_still), 1) + way / STUCK_SPEED + action.hold
+def _part(kind: PartKind, action: Action, place: tuple[float, float] | None) -> Part:
+    if kind is PartKind.WALK:
+        goal, facing = action.goal, action.facing
+        if action.spot is not None and action.skill is not Skill.LOCO:
+            goal, facing = action.spot.standing, action.spot.approach
+        near = place is not None and goal is not None and np.hypot(goal[0] - place[0], goal[1] - place[1]) < AT_THE_SPOT
+        return Part(PartKind.TURN if near else kind, action, goal, facing)
+    return Part(kind, action, hold=action.hold if kind in (PartKind.REACH, PartKind.HOLD) else 0.0)
 
 
-def shortfall(action: Action, body: Kinematics, limit: float) -> str:
-    """Why what a body did is not the action; empty where it is. `limit` is how long it may take (seconds)."""
+def time_limit(part: Part, way: float) -> float:
+    """Seconds a part may take that has `way` metres to walk."""
+    return PATIENCE + way / STUCK_SPEED + part.hold
+
+
+def shortfall(action: Action, body: Kinematics) -> str:
+    """Why what a body did is not the action; empty where it is."""
     motion = body.motion
-    if motion.duration > limit:
-        return f"keyframe {action.keyframe}: {action.skill} took {motion.duration:.0f} s, longer than {limit:.0f} s"
     rule = DONE.get(action.skill)
     if rule is None:
         return _not_up(action, body)

@@ -6,11 +6,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, get_args
 
-from motion_backend.backends import DEFAULT_BACKEND, load_backend, require_backend
+from motion_backend.backends import DEFAULT_BACKEND, require_backend
 from motion_backend.body.scene_collision import Obstacles
+from motion_backend.director import Director
 from motion_backend.metrics import story_metrics
-from motion_backend.metrics.smoothness import seam_jump, seam_speed_jump
-from motion_backend.motion import Action, BodyState, Character, Motion, MotionBackend, join
+from motion_backend.metrics.story_figures import story_figures
+from motion_backend.motion import Action, Character, Motion, join
 from planner_service.composition.compose import compose, script_of
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, METHODS, Request
 from planner_service.grounding.furnish import Furnished, furnish
@@ -250,11 +251,11 @@ class Pipeline:
 
     def make(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Story:
         """Theme to acted story."""
-        backend = load_backend(request.backend)
+        director = Director.of(request.backend)
         planned = self.plan(request, progress)
         progress("act", 0.0)
         actions = self.act(request, planned.stage)
-        motions = move(backend, planned, actions, progress)
+        motions = move(director, planned, actions, progress)
         return judge(planned, actions, motions, progress)
 
 
@@ -287,15 +288,14 @@ def types_of(layouts: Sequence[Layout]) -> tuple[str, ...]:
     return tuple(room for room in dict.fromkeys(own) if room in ROOM_TYPES)[:MAX_ROOMS]
 
 
-def move(backend: MotionBackend, planned: Planned, actions: Sequence[Action], progress: Progress) -> list[Motion]:
+def move(director: Director, planned: Planned, actions: Sequence[Action], progress: Progress) -> list[Motion]:
     """One segment an action, each from the state the one before left."""
-    home = planned.home
-    state: BodyState = backend.begin(home, planned.character, planned.request.seed)
+    state = director.begin(planned.home, planned.character, planned.request.seed)
     motions = []
-    for index, action in enumerate(actions):
-        progress("move", index / len(actions))
-        motion, state = backend.advance(home, action, state)
+    progress("move", 0.0)
+    for motion, _ in director.play(planned.home, actions, state):
         motions.append(motion)
+        progress("move", len(motions) / len(actions))
     return motions
 
 
@@ -309,6 +309,5 @@ def judge(planned: Planned, actions: Sequence[Action], motions: Sequence[Motion]
         segments.append((frame, frame + len(motion)))
         frame += len(motion)
     whole = join(list(motions))
-    seams = {"seam_jump": round(seam_jump(whole), 5), "seam_speed_jump": round(seam_speed_jump(whole), 5)}
-    report = story_metrics.summarise(figures) | seams
+    report = story_metrics.summarise(figures) | story_figures(whole, actions, segments).to_dict()
     return Story(planned, tuple(actions), whole, tuple(segments), tuple(figures), report)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motion_backend.motion import ContactGoal, Motion, Note, Part, Phase
+from motion_backend.motion import ContactGoal, Motion, Note, Phase, PhaseKind
 from motion_backend.skeleton import Skeleton
 
 DIGITS = 6
@@ -32,7 +32,7 @@ def motion_to_dict(motion: Motion) -> dict[str, Any]:
         "goals": [{"joint": goal.joint, "position": list(goal.position)} for goal in motion.goals],
         "completed": motion.completed,
         "reason": motion.reason,
-        "phases": [{"part": phase.part.value, "start": phase.start, "stop": phase.stop} for phase in motion.phases],
+        "phases": [phase_to_dict(phase) for phase in motion.phases],
         "notes": [{"keyframe": note.keyframe, "words": note.words} for note in motion.notes],
     }
 
@@ -54,9 +54,20 @@ def dict_to_motion(data: dict[str, Any]) -> Motion:
         goals=tuple(ContactGoal(joint, (x, y, z)) for joint, (x, y, z) in goals),
         completed=bool(data.get("completed", True)),
         reason=str(data.get("reason", "")),
-        phases=tuple(Phase(Part(phase["part"]), phase["start"], phase["stop"]) for phase in data.get("phases", [])),
+        phases=tuple(_dict_to_phase(phase) for phase in data.get("phases", [])),
         notes=tuple(Note(note["keyframe"], str(note["words"])) for note in data.get("notes", [])),
     )
+
+
+def phase_to_dict(phase: Phase) -> dict[str, Any]:
+    """What a body did in some frames, who made them, and why another backend than the one asked for."""
+    row = {"part": phase.kind.value, "start": phase.start, "stop": phase.stop}
+    return row | {"backend": phase.backend, "fallback": phase.fallback or None}
+
+
+def _dict_to_phase(row: dict[str, Any]) -> Phase:
+    kind, start, stop = PhaseKind(row["part"]), int(row["start"]), int(row["stop"])
+    return Phase(kind, start, stop, str(row.get("backend", "")), str(row.get("fallback") or ""))
 
 
 def json_bytes(motion: Motion) -> bytes:

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
-from motion_backend.motion import ContactGoal, Floats, Motion, Note, Part, Phase
+from motion_backend.motion import ContactGoal, Floats, Motion, Note, Phase, PhaseKind
 from motion_backend.skeleton import Skeleton
 
 VERSION = 1
@@ -51,7 +51,9 @@ def npz_bytes(motion: Motion) -> bytes:
         "goal_positions": np.array([goal.position for goal in motion.goals], dtype=np.float64).reshape(-1, 3),
         "completed": np.array(motion.completed),
         "reason": np.array(motion.reason),
-        "phase_parts": np.array([phase.part.value for phase in motion.phases], dtype=np.str_),
+        "phase_parts": np.array([phase.kind.value for phase in motion.phases], dtype=np.str_),
+        "phase_backends": np.array([phase.backend for phase in motion.phases], dtype=np.str_),
+        "phase_fallbacks": np.array([phase.fallback for phase in motion.phases], dtype=np.str_),
         "phase_frames": np.array([(phase.start, phase.stop) for phase in motion.phases], dtype=np.int32).reshape(-1, 2),
         "note_keyframes": np.array([note.keyframe for note in motion.notes], dtype=np.int32),
         "note_words": np.array([note.words for note in motion.notes], dtype=np.str_),
@@ -82,7 +84,6 @@ def read_npz(file: Path | str | BinaryIO) -> Motion:
             tuple(int(parent) for parent in data["joint_parents"]),
             data["joint_offsets"],
         )
-        phases = zip(data["phase_parts"], data["phase_frames"].tolist(), strict=True) if "phase_parts" in data else ()
         notes = zip(data["note_keyframes"].tolist(), data["note_words"], strict=True) if "note_words" in data else ()
         goals = zip(data["goal_joints"], data["goal_positions"].tolist(), strict=True)
         return Motion(
@@ -95,9 +96,20 @@ def read_npz(file: Path | str | BinaryIO) -> Motion:
             goals=tuple(ContactGoal(str(joint), (x, y, z)) for joint, (x, y, z) in goals),
             completed=bool(data["completed"]),
             reason=str(data["reason"]),
-            phases=tuple(Phase(Part(part), start, stop) for part, (start, stop) in phases),
+            phases=_phases(data),
             notes=tuple(Note(keyframe, str(words)) for keyframe, words in notes),
         )
+
+
+def _phases(data: Mapping[str, NDArray[Any]]) -> tuple[Phase, ...]:
+    """The phases; files of earlier versions have none, or do not say who made them."""
+    if "phase_parts" not in data:
+        return ()
+    kinds, nobody = data["phase_parts"].tolist(), [""] * len(data["phase_parts"])
+    backends = data["phase_backends"].tolist() if "phase_backends" in data else nobody
+    fallbacks = data["phase_fallbacks"].tolist() if "phase_fallbacks" in data else nobody
+    rows = zip(kinds, data["phase_frames"].tolist(), backends, fallbacks, strict=True)
+    return tuple(Phase(PhaseKind(kind), start, stop, backend, why) for kind, (start, stop), backend, why in rows)
 
 
 _STAND_UP = rotations.rotvec_to_quat(np.array([np.pi / 2, 0.0, 0.0]))

@@ -1,37 +1,41 @@
 """The procedural backend: rules, styles and inverse kinematics behind `begin` and `advance`.
 
-It learns nothing and says so. What comes before what is decided in state_machine.py; here a state wakes up, one action
+It learns nothing and says so. What comes before what is decided in state_machine.py; here a state wakes up, one part
 is performed, and the state that is left is put into plain lists again.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
 
-from motion_backend.body.scene_collision import Obstacles
-from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import FPS, Action, BodyState, Character, ContactGoal, Motion, Note, Part, Posture, Skill
-from motion_backend.procedural.body_state import Body, Scene
-from motion_backend.procedural.collision_avoidance.elbow_collision import elbows_clear
-from motion_backend.procedural.collision_avoidance.hand_collision import hands_clear
+from motion_backend.backend_protocol import POSTURE_AFTER, BodyState, History, Part, PartKind
+from motion_backend.motion import FPS, Character, Motion, Note, Phase, PhaseKind
+from motion_backend.procedural.body_state import Body
+from motion_backend.procedural.collision_avoidance.arm_clearance import Around, arms_clear
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import idle, standing
 from motion_backend.procedural.pose import Pose, concatenate
 from motion_backend.procedural.pose_solver import hips_within, released, solve
 from motion_backend.procedural.skill_controller import perform
-from motion_backend.procedural.touch.hand_captions import steadies, with_both_hands
-from motion_backend.rotations import Array
-from motion_backend.skeleton import HAND_REST, LYING_REST, SEATED_REST, build_skeleton
-from motion_backend.state_machine import shortfall, time_limit
-from scene_graphs.affordances.affordances import Spot
+from motion_backend.procedural.tail import carried_on, frames_kept_back
+from motion_backend.procedural.takeover import eased_from, pose_of
+from motion_backend.procedural.touch.hand_rests import Hold
+from motion_backend.procedural.walk.stride import Stride
+from motion_backend.scene import scene_of
+from motion_backend.skeleton import Skeleton, build_skeleton
 from scene_graphs.home import Home
-from scene_graphs.navigation.path_planner import NoPath, Walkable
+from scene_graphs.navigation.path_planner import NoPath
 
-SINKS = 0.03
-"""How deep arms sink into what is lain on (metres)."""
+STANDS = 1.0
+"""How long a body stands that cannot get where it is to go (seconds)."""
+
+
+ENTERS = (PartKind.SIT, PartKind.LIE)
+"""Parts that are in the posture they end in, for what arms may lie on; all others in the one they begin in."""
 
 
 class ProceduralBackend:
@@ -39,117 +43,109 @@ class ProceduralBackend:
 
     name = "procedural"
 
-    def __init__(self) -> None:
-        self._scene: Scene | None = None
-
     def begin(self, home: Home, character: Character, seed: int) -> BodyState:
         """Standing in the first room, on a free place that the seed chooses."""
-        scene = self._enter(home)
-        rng = np.random.default_rng([seed, 0])
-        place = scene.walkable.random_point(rng, 0)
-        yaw = float(rng.uniform(-np.pi, np.pi))
+        place, yaw = scene_of(home).beginning(seed)
         skeleton = build_skeleton(character.height)
-        pose = standing(place, yaw, Bearing(), skeleton)
-        memory: dict[str, Any] = {"pose": pose.to_lists()}
-        return BodyState(Posture.STANDING, _triple(pose.pelvis), yaw, None, 1, seed, character.height, memory)
+        pose = standing(place, yaw, Bearing(), skeleton).repeat(1)
+        history = History.of(*solve(pose, skeleton), np.repeat(pose.planted, 2, axis=1))
+        first = BodyState.standing(place, yaw, character, seed)
+        return replace(first, history=history, index=1, backend=self.name, memory={"pose": pose.at(0).to_lists()})
 
-    def advance(self, home: Home, action: Action, state: BodyState) -> tuple[Motion, BodyState]:
-        """Act out one action; a body that cannot get there stays where it is and says why."""
-        body = self._wake(home, state)
+    def advance(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
+        """Do one part, all of it; a body that cannot get there stays where it is and says why."""
+        body = self._awake(home, upcoming, state)
         reason = ""
         try:
-            perform(body, action)
+            perform(body, part)
         except NoPath as error:
             reason = str(error)
-            body.enter(Part.STAND)
-            body.add(idle(body.pose, 1.0, 1.0, body.rng, FPS))
-        motion = _to_motion(body, action)
-        limit = time_limit(state.posture, action, body.way)
-        reason = reason or shortfall(action, Kinematics.of(motion), limit)
-        motion = replace(motion, completed=not reason, reason=reason)
-        rest = body.rest if body.posture is not Posture.STANDING else None
-        memory: dict[str, Any] = {"pose": body.pose.to_lists(), "spot": _spot_to_lists(rest)}
-        following = BodyState(
-            body.posture,
-            _triple(body.pose.pelvis),
-            body.yaw,
-            rest.object_id if rest else None,
-            state.index + 1,
-            state.seed,
-            state.height,
-            memory,
+            body.enter(PhaseKind.STAND)
+            body.add(idle(body.pose, STANDS, 1.0, body.rng, FPS))
+        if not body.frames:
+            nothing = _nothing(body, part)
+            return nothing, state.after(part, nothing, state.backend, state.memory)
+        motion = replace(_to_motion(body, part), completed=not reason, reason=reason)
+        if state.backend != self.name:
+            motion = eased_from(state.history, motion, body.skeleton)
+        return motion, state.after(part, motion, self.name, _remembered(body))
+
+    def _awake(self, home: Home, upcoming: Sequence[Part], state: BodyState) -> Body:
+        """The body as the state left it, whoever made what was before."""
+        skeleton, memory = build_skeleton(state.height), state.memory if state.backend == self.name else {}
+        left, right = (Hold(**hold) if hold else None for hold in memory.get("holds", (None, None)))
+        pose = Pose.from_lists(memory["pose"]) if memory else pose_of(state.history, skeleton)
+        tail, stride = memory.get("tail"), memory.get("stride")
+        return Body(
+            scene=scene_of(home),
+            skeleton=skeleton,
+            rng=np.random.default_rng([state.seed, state.index]),
+            pose=released(pose, skeleton),
+            posture=state.posture,
+            rest=state.rest,
+            holds=(left, right),
+            seed=state.seed,
+            tail=Pose.from_lists(tail) if tail else None,
+            stride=Stride.from_lists(stride) if stride else None,
+            upcoming=tuple(upcoming),
         )
-        return motion, following
-
-    def _wake(self, home: Home, state: BodyState) -> Body:
-        rng = np.random.default_rng([state.seed, state.index])
-        skeleton = build_skeleton(state.height)
-        pose = released(Pose.from_lists(state.memory["pose"]), skeleton)
-        rest = _spot_from_lists(state.memory.get("spot"))
-        return Body(self._enter(home), skeleton, rng, pose, state.posture, rest, [])
-
-    def _enter(self, home: Home) -> Scene:
-        if self._scene is None or self._scene.home is not home:
-            self._scene = Scene(home, Walkable(home), Obstacles.of_home(home))
-        return self._scene
 
 
-def _triple(point: Array) -> tuple[float, float, float]:
-    return float(point[0]), float(point[1]), float(point[2])
-
-
-def _spot_to_lists(spot: Spot | None) -> dict[str, Any] | None:
-    if spot is None:
-        return None
-    return {name: (None if value == np.inf else value) for name, value in vars(spot).items()}
-
-
-def _spot_from_lists(values: dict[str, Any] | None) -> Spot | None:
-    if values is None:
-        return None
-    restored: dict[str, Any] = {
-        name: tuple(value) if isinstance(value, list) else np.inf if value is None else value
-        for name, value in values.items()
+def _remembered(body: Body) -> dict[str, Any]:
+    """What the next part needs of a body besides its last frames."""
+    return {
+        "pose": body.pose.to_lists(),
+        "holds": [asdict(hold) if hold is not None else None for hold in body.holds],
+        "tail": body.tail.to_lists() if body.tail is not None else None,
+        "stride": body.stride.to_lists() if body.stride is not None else None,
     }
-    return Spot(**restored)
 
 
-def _to_motion(body: Body, action: Action) -> Motion:
-    touching = None
-    if action.skill is Skill.TOUCH:
-        both = with_both_hands(action.caption) or steadies(action.caption)
-        touching = "both" if both else action.hand
-    elif action.skill in (Skill.SITDOWN, Skill.STANDUP, Skill.LIEDOWN, Skill.GETUP):
-        touching = "both"
-    solid = body.scene.obstacles.solid()
-    pose = hands_clear(hips_within(concatenate(body.frames), body.skeleton), body.skeleton, solid, touching)
-    if action.skill in (Skill.LOCO, Skill.TOUCH):
-        pose = elbows_clear(pose, body.skeleton, solid)
-    elif action.skill in (Skill.LIEDOWN, Skill.GETUP):
-        pose = elbows_clear(pose, body.skeleton, solid.sunk_into(action.object_id, SINKS))
-    else:
-        # Who sits is among what arms rest on: only shoulders are minded.
-        pose = elbows_clear(pose, body.skeleton, solid.only(np.zeros(len(solid.owners), dtype=bool)))
+def _to_motion(body: Body, part: Part) -> Motion:
+    """The frames made for a part, but those that are done together with what comes next."""
+    action = part.action
+    posture = POSTURE_AFTER[part.kind] if part.kind in ENTERS else body.posture
+    under = body.rest if part.kind not in ENTERS else action.spot
+    around = Around(part, posture, under.object_id if under else None, body.scene.obstacles.solid())
+    pose, start = concatenate(body.frames), body.begun
+    if body.tail is not None:
+        pose, start = carried_on(body.tail, pose), body.tail.at(0)
+    pose = arms_clear(hips_within(pose, body.skeleton), start, around, body.skeleton)
     body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)
-    return Motion(
+    whole = Motion(
         root_positions=root.astype(np.float32),
         local_rotations=local.astype(np.float32),
         contacts=np.repeat(pose.planted, 2, axis=1).astype(np.float32),
         skeleton=body.skeleton,
         actions=np.full(len(pose), action.keyframe, dtype=np.int32),
         fps=FPS,
-        goals=contact_goals(action),
-        phases=body.phases,
-        notes=tuple(Note(action.keyframe, words) for words in body.otherwise),
+        phases=_filling(body.phases, len(pose)),
+        notes=tuple(Note(part.action.keyframe, words) for words in body.otherwise),
     )
+    kept = frames_kept_back(part, body.upcoming, whole) if body.stride is None else 0
+    body.tail = _freed(pose.at(slice(len(pose) - kept, None)), body.skeleton) if kept else None
+    return whole.part(0, len(pose) - kept)
 
 
-def contact_goals(action: Action) -> tuple[ContactGoal, ...]:
-    """Where joints should be: surface point + normal × that joint's rest offset."""
-    rest = {Skill.SITDOWN: SEATED_REST, Skill.LIEDOWN: LYING_REST, Skill.TOUCH: HAND_REST}.get(action.skill)
-    if action.spot is None or rest is None:
-        return ()
-    joint = f"{action.hand}_wrist" if action.skill is Skill.TOUCH else "pelvis"
-    point = np.asarray(action.spot.point) + rest * np.asarray(action.spot.normal)
-    return (ContactGoal(joint, _triple(point)),)
+def _filling(phases: tuple[Phase, ...], frames: int) -> tuple[Phase, ...]:
+    """Phases of so many frames: the last one goes on to their end."""
+    return (*phases[:-1], replace(phases[-1], stop=frames))
+
+
+def _freed(frames: Pose, skeleton: Skeleton) -> Pose:
+    """Frames whose wrists are held from the chest alone."""
+    freed = [released(frames.at(index), skeleton).repeat(1) for index in range(len(frames))]
+    return concatenate(freed)
+
+
+def _nothing(body: Body, part: Part) -> Motion:
+    """No frames: the body is where it is to be."""
+    return Motion(
+        root_positions=np.zeros((0, 3), dtype=np.float32),
+        local_rotations=np.zeros((0, len(body.skeleton.names), 4), dtype=np.float32),
+        contacts=np.zeros((0, 4), dtype=np.float32),
+        skeleton=body.skeleton,
+        actions=np.zeros(0, dtype=np.int32),
+        notes=tuple(Note(part.action.keyframe, words) for words in body.otherwise),
+    )

@@ -1,4 +1,4 @@
-"""The body in the middle of one action: where it is, what it rests on, the frames it has made."""
+"""The body in the middle of one part: where it is, what it rests on, the frames it has made."""
 
 from __future__ import annotations
 
@@ -6,30 +6,23 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from motion_backend.body.scene_collision import Obstacles
-from motion_backend.motion import Action, Part, Phase, Posture
+from motion_backend.backend_protocol import Part
+from motion_backend.motion import Action, Phase, PhaseKind, Posture
 from motion_backend.procedural.pose import Pose
+from motion_backend.procedural.touch.hand_rests import Holds
 from motion_backend.procedural.walk.footsteps import yaw_of
+from motion_backend.procedural.walk.stride import Stride
+from motion_backend.scene import Scene
 from motion_backend.skeleton import Skeleton
 from scene_graphs.affordances.affordances import Spot
-from scene_graphs.home import Home
-from scene_graphs.navigation.path_planner import NoPath, Walkable
+from scene_graphs.navigation.path_planner import NoPath
 
 Point = tuple[float, float]
 
 
-@dataclass(frozen=True)
-class Scene:
-    """A home with what is worked out about it once."""
-
-    home: Home
-    walkable: Walkable
-    obstacles: Obstacles
-
-
 @dataclass
 class Body:
-    """One action being made: frames so far, the last pose, and what it rests on."""
+    """One part being made: frames so far, the last pose, what it rests on and what it will do next."""
 
     scene: Scene
     skeleton: Skeleton
@@ -37,29 +30,42 @@ class Body:
     pose: Pose
     posture: Posture
     rest: Spot | None
-    frames: list[Pose]
+    holds: Holds = (None, None)
+    """What its hands lie on."""
+    seed: int = 0
+    """Of the story: what of a body lasts all through it is drawn from it."""
+    tail: Pose | None = None
+    """What is still to be done of the part before (tail.py)."""
+    stride: Stride | None = None
+    """What it is walking in, where the last walk did not stop."""
+    upcoming: tuple[Part, ...] = ()
+    """What it is to do next, for this action and the one after it."""
+    frames: list[Pose] = field(default_factory=list)
     made: int = 0
     """How many frames that is."""
-    way: float = 0.0
-    """How far it set out to walk (metres)."""
-    parts: list[tuple[Part, int]] = field(default_factory=list)
+    begun: Pose = field(init=False)
+    """The pose it set out from."""
+    doing: list[tuple[PhaseKind, int]] = field(default_factory=list)
     """What it has been doing, and from which frame on."""
     otherwise: list[str] = field(default_factory=list)
     """What it does otherwise than the caption says, in words (`Note.words`)."""
 
-    def enter(self, part: Part) -> None:
-        """Frames added from now on are this part of the action."""
-        if self.parts and self.parts[-1][1] == self.made:
-            self.parts.pop()
-        if not self.parts or self.parts[-1][0] is not part:
-            self.parts.append((part, self.made))
+    def __post_init__(self) -> None:
+        self.begun = self.pose
+
+    def enter(self, kind: PhaseKind) -> None:
+        """Frames added from now on are this phase of the part."""
+        if self.doing and self.doing[-1][1] == self.made:
+            self.doing.pop()
+        if not self.doing or self.doing[-1][0] is not kind:
+            self.doing.append((kind, self.made))
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """The parts with their frames."""
-        stops = [start for _, start in self.parts[1:]] + [self.made]
+        """What it did with its frames."""
+        stops = [start for _, start in self.doing[1:]] + [self.made]
         return tuple(
-            Phase(part, start, stop) for (part, start), stop in zip(self.parts, stops, strict=True) if stop > start
+            Phase(kind, start, stop) for (kind, start), stop in zip(self.doing, stops, strict=True) if stop > start
         )
 
     def note(self, *words: str) -> None:

@@ -1,61 +1,92 @@
-"""The state machine of SIMS 3.4: what each skill needs before it (state_machine.py), then the skill itself."""
+"""The performers of the parts that the state machine (SIMS 3.4) asks for."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from motion_backend.motion import FPS, Action, Part, Posture, Skill
-from motion_backend.procedural.body_state import Body, spot_under
-from motion_backend.procedural.emotion_style import Bearing, bearing_of
-from motion_backend.procedural.held_poses import Seat, idle
-from motion_backend.procedural.lie.lie_skill import get_up, leave_bed, liedown
-from motion_backend.procedural.pose import settle_from
-from motion_backend.procedural.sit.sit_skill import leave_seat, sitdown
-from motion_backend.procedural.touch.touch_skill import touch_spot
-from motion_backend.procedural.walk.walk_skill import loco
-from motion_backend.state_machine import ENDS, LEAVING, OWN
-
-STAYS, COMES_TO = 0.3, 0.8
-"""How long a body stays on the feet it has got up on, and takes to come to where it stood already (seconds)."""
+from motion_backend.backend_protocol import Part, PartKind
+from motion_backend.motion import Action, PhaseKind, Posture
+from motion_backend.procedural.body_state import Body, Point, spot_of, spot_under
+from motion_backend.procedural.emotion_style import bearing_of
+from motion_backend.procedural.held_poses import Seat
+from motion_backend.procedural.lie.lie_skill import before_bed, get_up, leave_bed, lie, stay_lying
+from motion_backend.procedural.sit.sit_skill import before_seat, leave_seat, sit, stay_seated
+from motion_backend.procedural.tail import only_stands
+from motion_backend.procedural.touch.touch_skill import before_thing, reach
+from motion_backend.procedural.walk.walk_skill import go, halt, stay
 
 
-def perform(body: Body, action: Action) -> None:
-    """Leave what the body rests on, then do the skill."""
-    bearing = bearing_of(action.emotion, action.caption)
-    for part in LEAVING[body.posture]:
-        body.enter(part)
-        RISES[part](body, bearing)
-    body.enter(Part.STAND if action.skill is Skill.LOCO else OWN[action.skill])
-    SKILLS[action.skill](body, action)
-    body.posture = ENDS[action.skill]
-    body.rest = action.spot if body.posture is not Posture.STANDING else None
+def perform(body: Body, part: Part) -> None:
+    """Do a part; frames are added to the body."""
+    if body.stride is not None and part.kind not in (PartKind.WALK, PartKind.TURN):
+        body.enter(PhaseKind.WALK)
+        halt(body, part.action)
+    PARTS[part.kind](body, part)
 
 
-def _stand_up(body: Body, bearing: Bearing) -> None:
-    """From a seat, or from where one has come to from lying."""
+def _walk(body: Body, part: Part) -> None:
+    """Walk to the goal of a part: to the very place that what comes next begins at, where that is done there."""
+    if part.goal is None:
+        return
+    goal, facing = _bound_for(body, part, part.goal, body.upcoming)
+    onward = None
+    if body.upcoming and body.upcoming[0].kind is PartKind.WALK and body.upcoming[0].goal is not None:
+        later = body.upcoming[0]
+        onward, _ = _bound_for(body, later, body.upcoming[0].goal, body.upcoming[1:])
+        # Who passes by does not turn to what is there.
+        facing = facing if onward == goal else None
+    body.enter(PhaseKind.WALK)
+    go(body, goal, facing, part.action, onward)
+
+
+def _bound_for(body: Body, part: Part, goal: Point, upcoming: tuple[Part, ...]) -> tuple[Point, float | None]:
+    """Where a walk to a part's goal ends, and the yaw, from what comes after it."""
+    contact = next((later for later in upcoming if later.kind not in (PartKind.WALK, PartKind.TURN)), None)
+    if contact is not None and contact.kind in PLACES and spot_of(contact.action).standing == goal:
+        return PLACES[contact.kind](body, contact.action)
+    return goal, part.facing
+
+
+def _rise(body: Body, part: Part) -> None:
+    """From what the body rests on to standing."""
+    bearing = bearing_of(part.action.emotion, part.action.caption)
     if body.posture is Posture.LYING:
+        body.enter(PhaseKind.GETUP)
+        get_up(body, bearing)
+        body.enter(PhaseKind.STANDUP)
         leave_bed(body, bearing)
     else:
+        body.enter(PhaseKind.STANDUP)
         leave_seat(body, Seat.of(spot_under(body)), bearing)
 
 
-def _stand(body: Body, action: Action) -> None:
-    """Stay on the feet one has come to."""
-    restless = bearing_of(action.emotion, action.caption).restless
-    if body.frames:
-        body.add(idle(body.pose, STAYS, restless, body.rng, FPS))
+def _hold(body: Body, part: Part) -> None:
+    """Stay in the pose that the body has come to."""
+    if body.posture is Posture.SEATED:
+        body.enter(PhaseKind.SITDOWN)
+        stay_seated(body, part)
+    elif body.posture is Posture.LYING:
+        body.enter(PhaseKind.LIEDOWN)
+        stay_lying(body, part)
     else:
-        body.add(settle_from(body.pose, idle(body.pose, COMES_TO, restless, body.rng, FPS), FPS))
+        body.enter(PhaseKind.STAND)
+        if not (only_stands(part) and body.upcoming):
+            stay(body, part)
 
 
-RISES: dict[Part, Callable[[Body, Bearing], None]] = {Part.GETUP: get_up, Part.STANDUP: _stand_up}
-"""How a body gets off what it rests on, part by part."""
-SKILLS: dict[Skill, Callable[[Body, Action], None]] = {
-    Skill.LOCO: loco,
-    Skill.SITDOWN: sitdown,
-    Skill.LIEDOWN: liedown,
-    Skill.STANDUP: _stand,
-    Skill.GETUP: _stand,
-    Skill.TOUCH: touch_spot,
+PLACES: dict[PartKind, Callable[[Body, Action], tuple[Point, float]]] = {
+    PartKind.SIT: before_seat,
+    PartKind.LIE: before_bed,
+    PartKind.REACH: before_thing,
 }
-"""The performer of each skill, from standing."""
+"""Where to stand, and the yaw, before each kind of contact."""
+PARTS: dict[PartKind, Callable[[Body, Part], None]] = {
+    PartKind.WALK: _walk,
+    PartKind.TURN: _walk,
+    PartKind.SIT: sit,
+    PartKind.LIE: lie,
+    PartKind.REACH: reach,
+    PartKind.RISE: _rise,
+    PartKind.HOLD: _hold,
+}
+"""How each kind of part is done."""

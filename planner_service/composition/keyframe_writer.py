@@ -8,18 +8,16 @@ same deed, in the same mood.
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache
 from typing import Final
 
 import numpy as np
 
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, deed_table, names_things, room_of
-from planner_service.scripts.built_in_scripts import built_in
-from planner_service.scripts.caption_fallbacks import WALKS, usual
+from planner_service.composition.mood_captions import captions_of, fitting, manner_of, walk_of
+from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import ReadBeat
@@ -33,17 +31,6 @@ NOT_ACTED: Final = {
 }
 """Why beats of these kinds are not acted."""
 UNSHOWN: Final = "none of the captions shows it"
-_MOODY: Final = {
-    Emotion.HAPPY: "walk excitedly with arms opened",
-    Emotion.STRESSED: "pacing back and forth",
-    Emotion.RELAXED: "strolling with hands in pockets",
-    Emotion.TIRED: "shuffling sleepily forward",
-}
-"""How a mood alone is shown on one's feet, where it is not the mood's usual walk."""
-_MIN_SHARE: Final = 0.3
-"""Share of a caption's uses in the library that must be of a mood for it to be one of the mood's."""
-
-
 _TOUCHES: Final = (
     "touch medium height with the right hand",
     "touch medium height",
@@ -158,7 +145,7 @@ class KeyframeWriter:
             self._show(index)
         elif self._resting is None and not self.keyframes and self._has("bed"):
             mood = beats[index].beat.emotion
-            caption = self._one_of(self._of_mood(Skill.LIEDOWN, mood), mood, index, Skill.LIEDOWN)
+            caption = self._one_of(captions_of(Skill.LIEDOWN, mood), mood, index, Skill.LIEDOWN)
             self._put(index, Skill.LIEDOWN, mood, caption, "bed", None)
             self._resting, self._plain = self.keyframes[-1], True
         else:
@@ -174,7 +161,7 @@ class KeyframeWriter:
         """Sit or lie: where one rests already if that does, with the caption of what is done there."""
         resting = self._resting
         here = resting is not None and self._same_place(resting, deed, skill)
-        shown = captions or self._of_mood(skill, mood)
+        shown = captions or captions_of(skill, mood)
         if resting is not None and here and resting.skill is skill:
             generic = deed.row.rests or deed.row.captions
             if self._plain or not generic or resting.caption in captions:
@@ -211,7 +198,7 @@ class KeyframeWriter:
             if not piece:
                 self.why[index] = "there is nothing to get up from"
                 return
-            self._put(index, skill, mood, self._one_of(self._of_mood(skill, mood), mood, index, skill), piece, None)
+            self._put(index, skill, mood, self._one_of(captions_of(skill, mood), mood, index, skill), piece, None)
             self._resting = self.keyframes[-1]
         resting = self._resting
         skill = Skill.GETUP if resting.skill is Skill.LIEDOWN else Skill.STANDUP
@@ -227,7 +214,7 @@ class KeyframeWriter:
         return len(last) == 2 and last[0] in (Skill.SITDOWN, Skill.LIEDOWN) and last[1] is Skill.TOUCH
 
     def _walk(self, index: int, read: ReadBeat, deed: Deed, mood: Emotion) -> None:
-        captions = deed.row.captions or _manner(read) or self._of_mood(Skill.LOCO, mood)
+        captions = deed.row.captions or manner_of(read) or captions_of(Skill.LOCO, mood)
         caption = self._one_of(captions, mood, index, Skill.LOCO)
         last = self.keyframes[-1] if self.keyframes else None
         piece = next((one for one in deed.pieces if self._has(one)), "floor")
@@ -253,11 +240,11 @@ class KeyframeWriter:
         if last is not None and last.mood is mood:
             self._show(index)
         elif last is not None and self._resting is not None and self._plain:
-            caption = self._one_of(self._of_mood(last.skill, mood), mood, index, last.skill)
+            caption = self._one_of(captions_of(last.skill, mood), mood, index, last.skill)
             self.keyframes[-1] = self._resting = last.model_copy(update={"caption": caption, "emotion": mood.value})
             self._show(index)
         else:
-            self._put(index, Skill.LOCO, mood, _MOODY.get(mood, WALKS[mood]), "floor", beats[index].room)
+            self._put(index, Skill.LOCO, mood, walk_of(mood), "floor", beats[index].room)
             self._resting = None
 
     def _add(
@@ -345,66 +332,12 @@ class KeyframeWriter:
         if self._resting is not None:
             self._resting = self.keyframes[-1]
 
-    def _of_mood(self, skill: Skill, mood: Emotion) -> Sequence[str]:
-        """Captions that the library uses in a mood mostly, and that show nothing else."""
-        return _captions_of(skill, mood) or (usual(skill, mood),)
-
     def _one_of(self, captions: Sequence[str], mood: Emotion, index: int, skill: Skill) -> str:
         """One caption by the seed, of those that the library uses in the mood if there are some."""
-        fitting = [caption for caption in captions if _shares().get((skill, caption), {}).get(mood, 0.0) >= 0.15]
-        options = fitting or list(captions)
+        options = fitting(captions, skill, mood)
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
 
 
 def _wakes(read: ReadBeat, deed: Deed) -> bool:
     """Whether somebody wakes, who may lie a while longer."""
     return deed.skill is Skill.GETUP and read.clause.verb in ("wake", "awake", "awaken", "stir", "rouse")
-
-
-def _manner(read: ReadBeat) -> tuple[str, ...]:
-    """How a walk is gone that the words describe."""
-    words = set(read.clause.lemmas)
-    for names, caption in _MANNERS.items():
-        if words & set(names.split()):
-            return (caption,)
-    return ()
-
-
-_MANNERS: Final = {
-    "tiptoe quietly silently softly": "walk on tiptoes",
-    "quickly fast hastily hurriedly": "walking quickly",
-    "slowly thoughtfully": "walking slowly, hands behind back",
-    "carefully cautiously": "walking carefully, arms out for balance",
-    "wearily heavily": "walk wearily, dragging the feet",
-    "angrily furiously": "angrily walking",
-    "proudly": "uplifted head walking",
-    "cheerfully happily merrily": "excited walk",
-}
-
-
-@cache
-def _shares() -> dict[tuple[Skill, str], dict[Emotion, float]]:
-    """How the library's keyframes of each caption are shared among the moods."""
-    counts: dict[tuple[Skill, str], Counter[Emotion]] = {}
-    for script in built_in():
-        for keyframe in script.keyframes:
-            counts.setdefault((keyframe.skill, keyframe.caption), Counter())[keyframe.mood] += 1
-    return {key: {mood: n / moods.total() for mood, n in moods.items()} for key, moods in counts.items()}
-
-
-@cache
-def _captions_of(skill: Skill, mood: Emotion) -> tuple[str, ...]:
-    """Captions of a skill that show a mood and no deed, in the order of the alphabet."""
-    rows = [row for row in deed_table().deed if row.rests or row.skill is Skill.LOCO or row.at == ("floor",)]
-    deeds = {caption for row in rows for caption in (*row.captions, *row.lying, *row.seated)}
-    shares = _shares()
-    return tuple(
-        sorted(
-            caption
-            for (of, caption), moods in shares.items()
-            if of is skill
-            and caption not in deeds
-            and not re.search("phone|to the front|hips|sidestep", caption)
-            and moods.get(mood, 0.0) >= _MIN_SHARE
-        )
-    )

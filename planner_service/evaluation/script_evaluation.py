@@ -121,11 +121,10 @@ def run_script(trial: ScriptTrial) -> ScriptResult:
 
 
 def _acted(trial: ScriptTrial, actions: Sequence[Action], where: Setting) -> ScriptResult:
-    state = where.backend.begin(where.home, Character(), trial.seed)
+    state = where.director.begin(where.home, Character(), trial.seed)
     steps, steps_any, failed, failed_any, fault = 0, 0, False, False, ""
     errors: list[float] = []
-    for action in actions:
-        motion, state = where.backend.advance(where.home, action, state)
+    for action, (motion, _) in zip(actions, where.director.play(where.home, actions, state), strict=True):
         found = outcome(action, Kinematics.of(motion))
         failed, failed_any = failed or not found.reached, failed_any or not found.reached_any
         if failed and not fault:

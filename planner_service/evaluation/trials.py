@@ -10,20 +10,24 @@ import re
 import zlib
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from itertools import islice
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from motion_backend.backend_protocol import BodyState
 from motion_backend.body.joint_limits import worst_joint
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.body.self_collision import deepest_pair
+from motion_backend.director import Director
 from motion_backend.emotion_words import emotion_of
 from motion_backend.metrics import story_metrics
+from motion_backend.metrics.joint_speed import fastest_joint
 from motion_backend.metrics.joint_trajectories import Kinematics
+from motion_backend.metrics.skin_penetration import THIN, skin_penetration
 from motion_backend.metrics.smoothness import bone_deviation, jerk_against_real, seam_jump, seam_speed_jump
-from motion_backend.motion import FPS, Action, BodyState, Character, Motion, MotionBackend, Skill, join
-from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.motion import FPS, Action, Character, Motion, Skill, join
 from planner_service.grounding.keyframes_to_actions import Place, UnreachableError, act, can_stand, height_of
 from planner_service.scripts.caption_actions import look_of
 from planner_service.scripts.script import Keyframe
@@ -33,6 +37,7 @@ from scene_graphs.affordances.affordances import Spot, spots
 from scene_graphs.home import Home, home_from_layouts
 from scene_graphs.layout import Placed
 from scene_graphs.layout_library import built_in_index
+from scene_graphs.meshes.convex_shapes import ConvexShape, convex_shapes
 from scene_graphs.navigation.path_planner import NoPath, Walkable
 
 FLOOR: Final = "floor"
@@ -72,7 +77,12 @@ class Setting:
     home: Home
     walkable: Walkable
     obstacles: Obstacles
-    backend: MotionBackend
+    director: Director
+
+    @cached_property
+    def shapes(self) -> tuple[ConvexShape, ...]:
+        """Walls and furniture as they are drawn, but what is thin."""
+        return convex_shapes(self.home, THIN)
 
     @cached_property
     def longest_walk(self) -> float:
@@ -138,7 +148,7 @@ class Performance:
 def setting(room: str) -> Setting:
     """The library's room of that id. Raises LayoutError where there is none."""
     home = home_from_layouts([built_in_index().layout(room)], 0)
-    return Setting(home, Walkable(home), Obstacles.of_home(home), ProceduralBackend())
+    return Setting(home, Walkable(home), Obstacles.of_home(home), Director.of("procedural"))
 
 
 def places_for(skill: Skill, caption: str, where: Setting) -> tuple[str, ...]:
@@ -192,17 +202,21 @@ def perform(trial: Trial) -> Performance:
     """Act one trial and judge it. Raises UnreachableError or NoPath where its room has no place for it."""
     where, luck = setting(trial.room), _luck(trial)
     keyframes, actions = _actions(trial, where, luck)
-    led, state = _lead(trial.room, _start(where, actions[0], luck), actions[:-1])
-    motion, _ = where.backend.advance(where.home, actions[-1], state)
+    led, state = _lead(trial.room, _start(where, actions[0], luck), actions[:-1], actions[-1])
+    motion, _ = where.director.act(where.home, actions[-1], state)
     figures = story_metrics.judge(motion, actions[-1], where.obstacles)
     around, body = join([led[-1].part(max(len(led[-1]) - FPS, 0), len(led[-1])), motion]), Kinematics.of(motion)
     joint, beyond = worst_joint(motion.local_rotations)
+    skin = skin_penetration(motion, actions[-1], where.shapes)
     besides: dict[str, float | str | None] = {
         "jerk_against_real": jerk_against_real(body) if trial.skill is Skill.LOCO else None,
+        "skin_pen_share": skin.share,
+        "skin_pen_max": skin.most,
         "seam_jump": seam_jump(around),
         "seam_speed_jump": seam_speed_jump(around),
         "bone_deviation": bone_deviation(body),
         "limits_joint": f"{joint} {np.degrees(beyond):.0f}°" if joint else "",
+        "joint_speed_joint": fastest_joint(motion.local_rotations, motion.fps)[0],
         "self_pen_pair": " in ".join(deepest_pair(body.motion.skeleton, body.positions, body.world)),
     }
     return Performance(trial, where.home, keyframes, actions, (*led, motion), figures, besides)
@@ -219,14 +233,15 @@ def _luck(trial: Trial) -> np.random.Generator:
 
 
 @lru_cache(maxsize=64)
-def _lead(room: str, seed: int, actions: tuple[Action, ...]) -> tuple[tuple[Motion, ...], BodyState]:
+def _lead(room: str, seed: int, actions: tuple[Action, ...], own: Action) -> tuple[tuple[Motion, ...], BodyState]:
     """What goes before a trial's own action, from where a seed begins; many captions are led up to alike."""
     where = setting(room)
-    state = where.backend.begin(where.home, Character(), seed)
+    state = where.director.begin(where.home, Character(), seed)
     motions = []
-    for action in actions:
-        motion, state = where.backend.advance(where.home, action, state)
+    # What comes after them is looked ahead at, and not done here.
+    for motion, after in islice(where.director.play(where.home, (*actions, own), state), len(actions)):
         motions.append(motion)
+        state = after
     return tuple(motions), state
 
 
@@ -265,7 +280,7 @@ def _start(where: Setting, first: Action, luck: np.random.Generator) -> int:
     """A seed that begins 1 to 5 m from where the first walk goes, or as near to that as the room allows."""
     best: tuple[float, int] | None = None
     for seed in luck.integers(1 << 31, size=24).tolist():
-        state = where.backend.begin(where.home, Character(), seed)
+        state = where.director.begin(where.home, Character(), seed)
         here = (state.pelvis[0], state.pelvis[2])
         away = np.hypot(here[0] - first.goal[0], here[1] - first.goal[1]) if first.goal else AWAY[0]
         if first.goal and not where.walkable.reachable(here, first.goal):

@@ -15,10 +15,12 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from motion_backend.director import Director
 from motion_backend.metrics.foot_skate import skate_ratio, skate_speed
 from motion_backend.metrics.gait_features import UNITS, gait_features, windows
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.kernel_mmd import Distance, discrepancy, floor
+from motion_backend.metrics.smoothness import RULER
 from motion_backend.metrics.walk_classifier import MIN_WINDOWS, Told, Yardstick, people_apart, told_apart
 from motion_backend.metrics.walk_seconds import LIMBS, WHOLE, Seconds, seconds_of
 from motion_backend.metrics.walk_traits import GiveAway, give_aways
@@ -26,7 +28,6 @@ from motion_backend.mocap.clip import ClipError
 from motion_backend.mocap.dataset_file import Dataset, Entry
 from motion_backend.mocap.resampling import low_pass
 from motion_backend.motion import FPS, Action, Character, Emotion, Motion, Skill
-from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose_solver import solve
 from motion_backend.procedural.walk.gait import walk
@@ -184,7 +185,7 @@ def evaluate_walks(
         limbs={limb: told_apart(recorded.seconds, _as_one(matched), limb) for limb in LIMBS if limb != WHOLE},
         give_aways=tuple(give_aways(recorded.seconds, matched.seconds)),
         caption=caption,
-        backend=ProceduralBackend.name,
+        backend="procedural",
     )
 
 
@@ -251,14 +252,12 @@ def room_walks(caption: str, rooms: int, seeds: int) -> Walks:
 
 def mood_walks(caption: str, mood: Emotion, seeds: int) -> Walks:
     """From somewhere in an empty hall to both its ends in a mood, as a backend walks that is told no more than that."""
-    home, backend = _hall(), ProceduralBackend()
+    home, director = _hall(), Director.of("procedural")
     motions = []
     for seed in range(seeds):
-        state = backend.begin(home, Character(), seed)
-        for index, goal in enumerate(ENDS):
-            action = Action(Skill.LOCO, caption, mood, goal=goal, keyframe=index)
-            motion, state = backend.advance(home, action, state)
-            motions.append(Take(f"seed {seed}", f"seed {seed}", motion))
+        state = director.begin(home, Character(), seed)
+        actions = [Action(Skill.LOCO, caption, mood, goal=goal, keyframe=index) for index, goal in enumerate(ENDS)]
+        motions += [Take(f"seed {seed}", f"seed {seed}", motion) for motion, _ in director.play(home, actions, state)]
     return _walks(mood, motions)
 
 
@@ -304,7 +303,7 @@ def _spread(of: NDArray[np.int64]) -> NDArray[np.int64]:
 
 def _walks(name: str, takes: Sequence[Take]) -> Walks:
     # What a camera shakes is smoothed out of recordings: both are compared without it.
-    smooth = [low_pass(take.motion.joint_positions().astype(np.float64), take.motion.fps, SMOOTHED) for take in takes]
+    smooth = [low_pass(take.motion.joint_positions().astype(np.float64), take.motion.fps, RULER) for take in takes]
     rows = [row for take, positions in zip(takes, smooth, strict=True) for row in _windows_of(take, positions)]
     features = np.array([row[1] for row in rows]).reshape(-1, len(UNITS))
     groups, skates, slides = (tuple(row[column] for row in rows) for column in (0, 2, 3))

@@ -18,8 +18,8 @@ from planner_service.scripts.emotion_classifier import clear_moods
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import EMOTIONS, Keyframe, PlannedKeyframe
 from planner_service.scripts.script_repair import repair
-from planner_service.themes.beats import MAX_THEME_LENGTH, ReadBeat, head_of, hero_of, is_person, read_beats, rooms_in
-from planner_service.themes.protagonist import pronouns_of
+from planner_service.themes.beats import MAX_THEME_LENGTH, ReadBeat, read_beats, rooms_in
+from planner_service.themes.protagonist import head_of, hero_of, is_person, pronouns_of
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.verb_finder import is_plural
 

@@ -11,15 +11,13 @@ from __future__ import annotations
 from dataclasses import asdict, fields
 from typing import Any
 
-import numpy as np
-
-from motion_backend.motion import Action, BodyState, Emotion, Posture, Skill
+from motion_backend.motion import Action, Emotion, Skill
 from planner_service.grounding.furnish import Furnished, RoomMatch
 from planner_service.grounding.keyframes_to_actions import Place, action_to_dict
 from planner_service.grounding.seat_access import pull_from_dict, pull_to_dict
 from planner_service.narration.narrator import Span, Told
 from planner_service.scripts.script import LongScript
-from scene_graphs.affordances.affordances import Spot
+from scene_graphs.affordances.affordances import spot_from_dict
 from scene_graphs.graph.furniture_graph import graph_from_dict, graph_to_dict
 from scene_graphs.home import home_from_dict, home_to_dict
 from scene_graphs.json_fields import Json
@@ -71,23 +69,10 @@ def told_from_dict(row: Json) -> Told:
 
 def action_from_dict(row: Json) -> Action:
     """The inverse of `action_to_dict`."""
-    spot = None
-    if row["spot"] is not None:
-        limits = {name: np.inf if value is None else value for name, value in row["spot"].items()}
-        spot = Spot(**{name: _tupled(value) for name, value in limits.items()})
+    spot = spot_from_dict(row["spot"])
     known = {field.name for field in fields(Action)}
     plain = {name: _tupled(value) for name, value in row.items() if name in known}
     return Action(**plain | {"skill": Skill(row["skill"]), "emotion": Emotion(row["emotion"]), "spot": spot})
-
-
-def state_to_dict(state: BodyState) -> Json:
-    """A body between two actions."""
-    return asdict(state)
-
-
-def state_from_dict(row: Json) -> BodyState:
-    """The inverse of `state_to_dict`."""
-    return BodyState(**row | {"posture": Posture(row["posture"]), "pelvis": tuple(row["pelvis"])})
 
 
 def _tupled(value: Any) -> Any:
@@ -99,8 +84,6 @@ __all__ = [
     "action_to_dict",
     "furnished_from_dict",
     "furnished_to_dict",
-    "state_from_dict",
-    "state_to_dict",
     "told_from_dict",
     "told_to_dict",
 ]

@@ -16,12 +16,13 @@ from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import Final
 
-from motion_backend.backends import load_backend
+from motion_backend.backend_protocol import BodyState
 from motion_backend.body.scene_collision import Obstacles
+from motion_backend.director import Director, segments_of
 from motion_backend.formats.glb_film import film_glb
 from motion_backend.formats.npz import npz_bytes, read_npz
 from motion_backend.metrics import story_metrics
-from motion_backend.motion import Action, Motion, MotionBackend
+from motion_backend.motion import Action, Motion
 from planner_service.grounding.furnish import Furnished
 from planner_service.jobs import serialization
 from planner_service.jobs.serialization import summary_of_home, summary_of_script
@@ -116,7 +117,7 @@ class Maker:
     pipeline: Pipeline
     worker: str
     open: OrderedDict[str, OpenStory] = field(default_factory=OrderedDict)
-    backends: dict[str, MotionBackend] = field(default_factory=dict)
+    directors: dict[str, Director] = field(default_factory=dict)
     turn: threading.RLock = field(default_factory=threading.RLock)
     """Held by whoever computes: stories take turns, and only those that wait for a language model let others go on."""
     _opening: threading.Lock = field(default_factory=threading.Lock)
@@ -150,16 +151,17 @@ class Maker:
 
     def _move(self, story: OpenStory, index: int) -> None:
         story_id, started = story.id, time.perf_counter()
-        backend = self._backend(story.request.backend)
+        director = self._director(story.request.backend)
         home, action = story.stage.home, story.actions[index]
+        following = story.actions[index + 1] if index + 1 < len(story.actions) else None
         position = FIRST_SEGMENT + index
         first = 0
         if index == 0:
-            state = backend.begin(home, actor(story.request, story.stage.script), story.request.seed)
+            state = director.begin(home, actor(story.request, story.stage.script), story.request.seed)
         else:
-            state = serialization.state_from_dict(self.store.segment(story_id, position - 1)[1])
+            state = BodyState.from_dict(self.store.segment(story_id, position - 1)[1])
             first = self._end_of(story_id, position - 1)
-        motion, after = backend.advance(home, action, state)
+        motion, after = director.act(home, action, state, following)
         figures = story_metrics.judge(motion, action, story.obstacles)
         summary = {
             "index": index,
@@ -168,6 +170,7 @@ class Maker:
             "end": first + len(motion),
             "reached": figures.reached,
             "reason": figures.reason,
+            "segments": [asdict(segment) for segment in segments_of(motion)],
         }
         share = (index + 1) / len(story.actions)
         made = Made(
@@ -178,7 +181,7 @@ class Maker:
             following="judge" if index + 1 == len(story.actions) else None,
             progress=round(_DONE["act"] + share * (_DONE["move"] - _DONE["act"]), 4),
             seconds=time.perf_counter() - started,
-            state=serialization.state_to_dict(after),
+            state=after.to_dict(),
         )
         self.store.record(story_id, made, self.worker)
 
@@ -250,10 +253,10 @@ class Maker:
                 self.open.popitem(last=False)
             return self.open[story_id]
 
-    def _backend(self, name: str) -> MotionBackend:
-        if name not in self.backends:
-            self.backends[name] = load_backend(name)
-        return self.backends[name]
+    def _director(self, name: str) -> Director:
+        if name not in self.directors:
+            self.directors[name] = Director.of(name)
+        return self.directors[name]
 
     def _end_of(self, story_id: str, position: int) -> int:
         found = self.store.get(story_id, position - 1).artifacts

@@ -12,7 +12,9 @@ from typing import Any
 
 from motion_backend.formats.bvh import write_bvh
 from motion_backend.formats.glb_film import film_glb
+from motion_backend.formats.motion_json import phase_to_dict
 from motion_backend.formats.npz import write_npz
+from motion_backend.metrics.figure_limits import held_against
 from planner_service.grounding.keyframes_to_actions import action_to_dict
 from planner_service.output.storyboard import storyboard
 from planner_service.pipeline import Planned, Story
@@ -215,6 +217,7 @@ def report_to_dict(story: Story) -> dict[str, Any]:
         "repairs": list(planned.script.repairs),
         "rooms": planned.stage.rooms_to_dicts(),
         "motion": story.report,
+        "limits": held_against(story.report),
         "keyframes": list(_performances(story)),
     }
 
@@ -228,5 +231,5 @@ def _performances(story: Story) -> Iterator[dict[str, Any]]:
         row = figure.to_dict() | {"performed_as": action.caption if action.caption != own else None}
         phases = [phase for phase in story.motion.phases if span[0] <= phase.start < span[1]]
         row["notes"] = [note.words for note in story.motion.notes if note.keyframe == action.keyframe]
-        row["phases"] = [{"part": phase.part.value, "start": phase.start, "stop": phase.stop} for phase in phases]
+        row["phases"] = [phase_to_dict(phase) for phase in phases]
         yield row

@@ -6,19 +6,16 @@ import re
 import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 from typing import Final
 
 from motion_backend.motion import Emotion
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
-from planner_service.themes.lexicon import grammar, is_third_person, lemma_of
-from planner_service.themes.protagonist import is_name, pronouns_of
+from planner_service.themes.protagonist import head_of, hero_of, is_hero
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
+from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import tokens_of
-from scene_graphs.data_tables import read_table, table
 from scene_graphs.errors import UserError
-from scene_graphs.furniture import is_known
 
 MAX_THEME_LENGTH: Final = 2000
 """Letters of a theme."""
@@ -35,8 +32,6 @@ _ROOMS: Final = {
 }
 _LOUDER: Final = {"stressed": ("drunk", "angry", "sad", "hurried"), "relaxed": ("drunk",)}
 """Moods that a mere hint of another one does not end within a sentence: who is angry paces with anger."""
-_ASIDE: Final = frozenset(("while", "until", "when", "after", "before", "because", "as", "since"))
-"""Joints of clauses that tell more often than others of somebody else."""
 _QUOTED: Final = re.compile(r"«\d+»")
 EXPRESSIONS: Final = {
     verb: mood
@@ -52,10 +47,6 @@ EXPRESSIONS: Final = {
 }
 """Verbs that say how somebody feels who does it."""
 _CODE: Final = re.compile(r"[{}<>;=\[\]_|\\^*/+]")
-_MAIN_JOINTS: Final = frozenset(("", ",", "and", "but", "so", "then", "to", "ing"))
-"""What joins main clauses: whom a theme is about does what these tell."""
-_FIRST_PERSON: Final = frozenset(("i", "we", "me", "my", "you"))
-_PRONOUNS: Final = {"he": "he", "she": "she", "they": "they", "who": ""}
 
 
 class ThemeError(UserError):
@@ -64,48 +55,6 @@ class ThemeError(UserError):
     def __init__(self, reason: str) -> None:
         super().__init__(f"{reason} Try for example: " + " Or: ".join(EXAMPLES), at="theme")
         self.reason = reason
-
-
-@table
-class ThemeWords:
-    """data/theme_words.toml: words by which the rules read themes; base forms, apart by spaces."""
-
-    people: str
-    """Nouns for people."""
-    person_endings: tuple[str, ...]
-    """Endings of nouns for people who do something: "-er" only where what is left is a verb."""
-    memory_verbs: str
-    speech_verbs: str
-    not_said: str
-    """What is answered or said with more than words."""
-    unable_verbs: str
-    """What somebody who cannot do it is seen trying: "cannot sleep"."""
-    no_heroes: str
-    """Nouns for what does things and is nobody a theme is about."""
-    body: str
-    """Parts of a person: what these do, the person does."""
-    thought_verbs: str
-    """What goes on in a head; a body shows none of it but thinking."""
-    state_verbs: str
-    """Verbs that only say how somebody is or feels."""
-    posed: str
-    """States that a body is seen in: whoever is asleep lies."""
-    state_words: str
-    """Words that say no more when they stand beside a feeling."""
-    foreign: str
-    """The commonest words of other languages that are no English words."""
-
-    @property
-    def sets(self) -> dict[str, frozenset[str]]:
-        """Every list as a set."""
-        return {name: frozenset(words.split()) for name, words in vars(self).items() if isinstance(words, str)}
-
-
-@cache
-def theme_words() -> dict[str, frozenset[str]]:
-    """The lists of `ThemeWords`."""
-    known: ThemeWords = read_table("planner_service", "theme_words.toml", ThemeWords)
-    return known.sets
 
 
 @dataclass(frozen=True)
@@ -222,117 +171,6 @@ def is_feeling(clause: Clause) -> bool:
         f"{clause.subject} " if head_of(clause.subject).lower() in words["body"] else ""
     )  # "her heart is in her mouth"
     return clause.verb in words["state_verbs"] and bool(feelings(own + clause.text)) and len(rest) <= 4
-
-
-def hero_of(clauses: Sequence[Clause]) -> str:
-    """Whom the theme is about, as it is written first: the narrator, else the person that its pronouns fit best."""
-    told = [clause for clause in clauses if clause.subject]
-    mains = [clause.subject for clause in told if clause.joint in _MAIN_JOINTS]
-    if any(clause.subject.lower() == "i" for clause in told):
-        return "I"
-    if mains and mains[0].lower() == "you":
-        return "you"
-    people = [clause for clause in told if is_person(clause.subject)]
-    pronoun = next((one.subject.lower() for one in people if one.subject.lower() in ("he", "she")), "")
-    first = min(((one.sentence, one.place) for one in people if _is_pronoun(one.subject)), default=(len(clauses), 0))
-    nouns = [
-        one
-        for one in people
-        if not _is_pronoun(one.subject)
-        and (one is told[0] or not _is_possessed(one.subject))
-        and (one.joint not in _ASIDE or (one.sentence, one.place) < first)
-    ]
-    if nouns:
-        return max(nouns, key=lambda clause: _heroic(clause, pronoun)).subject
-    opens = ("a ", "an ", "one ", "my ", "our ", *(() if people else ("the ",)))
-    living = [subject for subject in mains[:1] if subject.lower().startswith(opens) and _may_live(head_of(subject))]
-    return next(iter([*living, *(clause.subject for clause in people)]), "")
-
-
-def _heroic(clause: Clause, pronoun: str) -> int:
-    """How well a subject may be whom a theme is about, whose pronoun is "he", "she" or unknown."""
-    own = pronouns_of(clause.subject)
-    fits = 0 if not (pronoun and own) else 4 if own == pronoun else -8
-    return (
-        fits
-        - 2 * _is_possessed(clause.subject)
-        - 2 * (bool(pronoun) and _is_plural(clause.subject))
-        - (clause.joint in _ASIDE)
-    )
-
-
-def _is_possessed(subject: str) -> bool:
-    return subject.split()[0].lower() in ("his", "her", "their", "my", "its")
-
-
-def _may_live(head: str) -> bool:
-    return not is_known(head) and head.lower() not in theme_words()["no_heroes"]
-
-
-def _is_pronoun(subject: str) -> bool:
-    return subject.lower() in grammar().subjects
-
-
-def _is_plural(subject: str) -> bool:
-    head = head_of(subject).lower()
-    return head.endswith("s") and lemma_of(head) != head
-
-
-def is_person(subject: str) -> bool:
-    """Whether words may name a person: a pronoun, a name, or a noun for people."""
-    words = [token.text for token in tokens_of(subject)]
-    if not words:
-        return False
-    if words[-1].lower() in _PRONOUNS or words[-1].lower() in _FIRST_PERSON:
-        return True
-    people = theme_words()["people"]
-    if words[0].lower() in people:  # "someone sick with the flu"
-        return True
-    head = head_of(subject)
-    if head.lower() in people or lemma_of(head) in people:
-        return True
-    if any(is_name(word) for word in words) and words[0].lower() not in ("the", "a", "an"):
-        return True
-    if len(head) > 4 and head.endswith(("er", "or")):  # a "baker" is one who bakes
-        stem = head.lower()[:-2]
-        return is_third_person(f"{stem}s") or is_third_person(f"{stem}es")
-    return len(head) > 5 and head.lower().endswith(("ist", "ian", "man", "woman", "person", "ress"))
-
-
-def head_of(subject: str) -> str:
-    """The noun of a subject: "the old nurse after her shift" is "nurse", "a boy of six" is "boy"."""
-    words: list[str] = []
-    for token in tokens_of(subject):
-        if words and (token.low in grammar().prepositions or token.low in ("of", "who", "and", ",")):
-            break
-        words.append(token.text)
-    return words[-1] if words else ""
-
-
-def is_hero(subject: str, hero: str) -> bool:
-    """Whether a subject is whom the theme is about. Nobody named: it goes on with who it was about."""
-    if not subject or subject.lower() == hero.lower():
-        return True
-    if subject.lower() == "one" and _is_plural(hero):  # of several people the one is played who does something
-        return True
-    low, main = subject.split()[-1].lower(), hero.split()[-1].lower() if hero else ""
-    if low in _FIRST_PERSON:
-        return main in _FIRST_PERSON or not main
-    if low in _PRONOUNS:
-        return low in ("they", "who") or pronouns_of(hero) in ("", low)
-    if head_of(subject).lower() in theme_words()["body"]:
-        return True
-    if hero and head_of(subject).lower() == head_of(hero).lower():
-        return True
-    if not is_person(subject):
-        return False
-    if not hero or hero.lower() in _PRONOUNS:
-        called = pronouns_of(subject) in ("", hero.lower()) or hero.lower() not in ("he", "she")
-        return subject[:1].isupper() and " " not in subject and called
-    if main in _FIRST_PERSON:
-        return False
-    mine, theirs = head_of(subject).lower(), head_of(hero).lower()
-    return mine == theirs or hero.lower() in subject.lower()
 
 
 def _refuse_foreign(text: str) -> None:

@@ -1,14 +1,19 @@
-"""Who a theme is about, where nobody said: the name it calls its person by, and the pronouns it uses."""
+"""Who a theme is about, what is theirs to do, and the name and the pronouns it calls them by."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache, lru_cache
 from typing import Final
 
 from motion_backend.motion import Character
-from planner_service.themes.lexicon import grammar, is_verb, kinds_of
+from planner_service.themes.lexicon import grammar, is_third_person, is_verb, kinds_of, lemma_of
+from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.theme_words import theme_words
+from planner_service.themes.verb_finder import tokens_of
+from scene_graphs.furniture import is_known
 
 _NAMES: Final = {
     "she": """
@@ -44,6 +49,12 @@ _KINDS: Final = re.compile(
 _CAPITALISED: Final = re.compile(
     r"(?P<before>^|[.!?]\s+|\S\s+)(?P<name>[A-Z][a-zà-öø-ÿ]{1,19})\s+(?=(?P<verb>[a-z]+)\b)"
 )
+_ASIDE: Final = frozenset(("while", "until", "when", "after", "before", "because", "as", "since"))
+"""Joints of clauses that tell more often than others of somebody else."""
+_MAIN_JOINTS: Final = frozenset(("", ",", "and", "but", "so", "then", "to", "ing"))
+"""What joins main clauses: whom a theme is about does what these tell."""
+_FIRST_PERSON: Final = frozenset(("i", "we", "me", "my", "you"))
+_SUBJECTS: Final = frozenset(("he", "she", "they", "who"))
 
 
 def cast_by(theme: str, character: Character) -> Character:
@@ -102,3 +113,114 @@ def _pronouns_in(theme: str, named: bool) -> str:
 def _pronouns_by(pattern: re.Pattern[str], text: str) -> str:
     found = pattern.search(text)
     return "" if found is None else "she" if found["she"] else "he"
+
+
+def hero_of(clauses: Sequence[Clause]) -> str:
+    """Whom the theme is about, as it is written first: the narrator, else the person that its pronouns fit best."""
+    told = [clause for clause in clauses if clause.subject]
+    mains = [clause.subject for clause in told if clause.joint in _MAIN_JOINTS]
+    if any(clause.subject.lower() == "i" for clause in told):
+        return "I"
+    if mains and mains[0].lower() == "you":
+        return "you"
+    people = [clause for clause in told if is_person(clause.subject)]
+    pronoun = next((one.subject.lower() for one in people if one.subject.lower() in ("he", "she")), "")
+    first = min(((one.sentence, one.place) for one in people if _is_pronoun(one.subject)), default=(len(clauses), 0))
+    nouns = [
+        one
+        for one in people
+        if not _is_pronoun(one.subject)
+        and (one is told[0] or not _is_possessed(one.subject))
+        and (one.joint not in _ASIDE or (one.sentence, one.place) < first)
+    ]
+    if nouns:
+        return max(nouns, key=lambda clause: _heroic(clause, pronoun)).subject
+    opens = ("a ", "an ", "one ", "my ", "our ", *(() if people else ("the ",)))
+    living = [subject for subject in mains[:1] if subject.lower().startswith(opens) and _may_live(head_of(subject))]
+    return next(iter([*living, *(clause.subject for clause in people)]), "")
+
+
+def _heroic(clause: Clause, pronoun: str) -> int:
+    """How well a subject may be whom a theme is about, whose pronoun is "he", "she" or unknown."""
+    own = pronouns_of(clause.subject)
+    fits = 0 if not (pronoun and own) else 4 if own == pronoun else -8
+    return (
+        fits
+        - 2 * _is_possessed(clause.subject)
+        - 2 * (bool(pronoun) and _is_plural(clause.subject))
+        - (clause.joint in _ASIDE)
+    )
+
+
+def _is_possessed(subject: str) -> bool:
+    return subject.split()[0].lower() in ("his", "her", "their", "my", "its")
+
+
+def _may_live(head: str) -> bool:
+    return not is_known(head) and head.lower() not in theme_words()["no_heroes"]
+
+
+def _is_pronoun(subject: str) -> bool:
+    return subject.lower() in grammar().subjects
+
+
+def _is_plural(subject: str) -> bool:
+    head = head_of(subject).lower()
+    return head.endswith("s") and lemma_of(head) != head
+
+
+def is_person(subject: str) -> bool:
+    """Whether words may name a person: a pronoun, a name, or a noun for people."""
+    words = [token.text for token in tokens_of(subject)]
+    if not words:
+        return False
+    if words[-1].lower() in _SUBJECTS or words[-1].lower() in _FIRST_PERSON:
+        return True
+    people = theme_words()["people"]
+    if words[0].lower() in people:  # "someone sick with the flu"
+        return True
+    head = head_of(subject)
+    if head.lower() in people or lemma_of(head) in people:
+        return True
+    if any(is_name(word) for word in words) and words[0].lower() not in ("the", "a", "an"):
+        return True
+    if len(head) > 4 and head.endswith(("er", "or")):  # a "baker" is one who bakes
+        stem = head.lower()[:-2]
+        return is_third_person(f"{stem}s") or is_third_person(f"{stem}es")
+    return len(head) > 5 and head.lower().endswith(("ist", "ian", "man", "woman", "person", "ress"))
+
+
+def is_hero(subject: str, hero: str) -> bool:
+    """Whether a subject is whom the theme is about. Nobody named: it goes on with who it was about."""
+    if not subject or subject.lower() == hero.lower():
+        return True
+    if subject.lower() == "one" and _is_plural(hero):  # of several people the one is played who does something
+        return True
+    low, main = subject.split()[-1].lower(), hero.split()[-1].lower() if hero else ""
+    if low in _FIRST_PERSON:
+        return main in _FIRST_PERSON or not main
+    if low in _SUBJECTS:
+        return low in ("they", "who") or pronouns_of(hero) in ("", low)
+    if head_of(subject).lower() in theme_words()["body"]:
+        return True
+    if hero and head_of(subject).lower() == head_of(hero).lower():
+        return True
+    if not is_person(subject):
+        return False
+    if not hero or hero.lower() in _SUBJECTS:
+        called = pronouns_of(subject) in ("", hero.lower()) or hero.lower() not in ("he", "she")
+        return subject[:1].isupper() and " " not in subject and called
+    if main in _FIRST_PERSON:
+        return False
+    mine, theirs = head_of(subject).lower(), head_of(hero).lower()
+    return mine == theirs or hero.lower() in subject.lower()
+
+
+def head_of(subject: str) -> str:
+    """The noun of a subject: "the old nurse after her shift" is "nurse", "a boy of six" is "boy"."""
+    words: list[str] = []
+    for token in tokens_of(subject):
+        if words and (token.low in grammar().prepositions or token.low in ("of", "who", "and", ",")):
+            break
+        words.append(token.text)
+    return words[-1] if words else ""

@@ -5,12 +5,12 @@ from __future__ import annotations
 from math import cos, inf, sin
 
 from scene_graphs.affordances.sit_and_lie import TO_FOOT, TO_HEAD, lying, sitting
-from scene_graphs.affordances.spot import Spot
+from scene_graphs.affordances.spot import Spot, spot_from_dict, spot_to_dict
 from scene_graphs.affordances.touch import touching
 from scene_graphs.furniture_shapes import parts_of
 from scene_graphs.layout import Placed, Point2, wrap
 
-__all__ = ["Spot", "floor_spot", "spots"]
+__all__ = ["Spot", "floor_spot", "spot_from_dict", "spot_to_dict", "spots"]
 
 
 def spots(placed: Placed, affordance: str) -> tuple[Spot, ...]:

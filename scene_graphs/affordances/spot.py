@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import cos, inf, sin
 
 from scene_graphs.furniture_shapes import Part
+from scene_graphs.json_fields import Json
 from scene_graphs.layout import Placed, Point2, Point3
 
 REACH_AHEAD = 0.42
@@ -42,6 +43,19 @@ class Spot:
     """lie: distance from `point` to the foot end."""
     height: str = "medium"
     """touch: low, medium or high."""
+
+
+def spot_to_dict(spot: Spot | None) -> Json:
+    """Plain values of a spot, or None of none; what is endless is None."""
+    return spot and {name: (None if value == inf else value) for name, value in vars(spot).items()}
+
+
+def spot_from_dict(row: Json) -> Spot | None:
+    """The inverse of `spot_to_dict`, also once lists have come back for tuples."""
+    if row is None:
+        return None
+    plain = {name: inf if value is None else value for name, value in row.items()}
+    return Spot(**{name: tuple(value) if isinstance(value, list) else value for name, value in plain.items()})
 
 
 def extent(part: Part, u: Point2) -> float:

@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 import numpy as np
-from small_home import after, backend_in, contact, rise, small_home, to
+from small_home import DIRECTOR, after, contact, rise, small_home, to
 
 from motion_backend import rotations
+from motion_backend.backend_protocol import BodyState
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Action, BodyState, Emotion, Motion, Part, Skill
+from motion_backend.motion import Action, Emotion, Motion, PhaseKind, Skill
 from motion_backend.skeleton import INDEX
 from scene_graphs.affordances.affordances import floor_spot, spots
 from scene_graphs.home import home_from_layouts
@@ -61,9 +62,9 @@ class Body:
         """Whether the left and the right foot stand. (T, 2)."""
         return self.motion.contacts[:, [0, 2]] > 0
 
-    def phase(self, part: Part) -> slice:
+    def phase(self, part: PhaseKind) -> slice:
         """The frames of one part."""
-        found = next(phase for phase in self.motion.phases if phase.part is part)
+        found = next(phase for phase in self.motion.phases if phase.kind is part)
         return slice(found.start, found.stop)
 
     @property
@@ -117,7 +118,7 @@ def _stood(home: str, goal: tuple[float, float], facing: float, seed: int, heigh
 
 
 def _advanced(home: str, action: Action, state: BodyState) -> tuple[Motion, BodyState]:
-    return backend_in(HOMES[home]).advance(HOMES[home], action, state)
+    return DIRECTOR.act(HOMES[home], action, state)
 
 
 @cache

@@ -6,7 +6,9 @@ from functools import cache
 
 import numpy as np
 
-from motion_backend.motion import Action, BodyState, Character, Emotion, Skill
+from motion_backend.backend_protocol import BodyState
+from motion_backend.director import Director
+from motion_backend.motion import Action, Character, Emotion, Skill
 from motion_backend.procedural.backend import ProceduralBackend
 from scene_graphs.affordances.affordances import spots
 from scene_graphs.home import Home, home_from_layouts
@@ -31,21 +33,16 @@ def small_home() -> Home:
     return home_from_layouts([ROOM], 0)
 
 
-@cache
-def backend_in(home: Home) -> ProceduralBackend:
-    """One for all who act in a home, which it remembers: what it does hangs on the body's state alone."""
-    backend = ProceduralBackend()
-    backend.begin(home, Character(), 0)
-    return backend
+DIRECTOR = Director(ProceduralBackend())
+"""One for all: what it does hangs on the body's state alone."""
 
 
 @cache
 def after(home: Home, *actions: Action, seed: int = 3, height: float = 1.70) -> BodyState:
     """A body that has begun in a home and done all that."""
-    backend = backend_in(home)
     if not actions:
-        return backend.begin(home, Character(height=height), seed)
-    return backend.advance(home, actions[-1], after(home, *actions[:-1], seed=seed, height=height))[1]
+        return DIRECTOR.begin(home, Character(height=height), seed)
+    return DIRECTOR.act(home, actions[-1], after(home, *actions[:-1], seed=seed, height=height))[1]
 
 
 def contact(

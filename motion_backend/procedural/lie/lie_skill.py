@@ -1,4 +1,4 @@
-"""Going to a bed or a free floor, lying down there and getting up: the performers of liedown and of leaving a bed."""
+"""Lying down on a bed or a free floor, staying there and getting up: the performers of lying and of leaving a bed."""
 
 from __future__ import annotations
 
@@ -6,18 +6,20 @@ from dataclasses import replace
 
 import numpy as np
 
+from motion_backend.backend_protocol import Part
 from motion_backend.body.scene_collision import Obstacles
-from motion_backend.motion import FPS, Action, Part, Posture
-from motion_backend.procedural.body_state import Body, spot_of, spot_under
+from motion_backend.motion import FPS, Action, PhaseKind
+from motion_backend.procedural.body_state import Body, Point, spot_of, spot_under
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import UP, Seat, idle
 from motion_backend.procedural.lie.lie_keys import lie_keys
 from motion_backend.procedural.lie.lie_on_floor import Mat, kneel_down, kneel_up, lie_down_from_knees, rise_to_knees
+from motion_backend.procedural.lie.lie_own import own_way, paced
 from motion_backend.procedural.lie.lie_pose import Bed
 from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.lie.lie_transition import edge_seat, lie_down, rise_to_edge
 from motion_backend.procedural.sit.sit_keys import sit_keys
-from motion_backend.procedural.sit.sit_skill import at_standing_point, leave_seat
+from motion_backend.procedural.sit.sit_skill import leave_seat
 from motion_backend.procedural.sit.sit_styles import Seated
 from motion_backend.procedural.sit.sit_transition import NOTHING, lower_onto
 from motion_backend.procedural.walk.walk_skill import go
@@ -44,35 +46,50 @@ FEET = np.arange(0.45, 0.97, 0.03)
 """Where it is looked for what ends a bed at the feet, from the pelvis (metres at 1.70 m)."""
 
 
-def liedown(body: Body, action: Action) -> None:
-    """From standing: to the bed and onto its edge, or onto the knees on the floor; down, and the pose held there."""
-    style, keys = lie_style(action.emotion, action.caption), lie_keys()
+def before_bed(body: Body, action: Action) -> tuple[Point, float]:
+    """Where to stand, and the yaw, before the edge of the bed is sat on or the floor knelt on."""
     spot = spot_of(action)
     if _on_floor(spot):
+        return Mat(_made(body, spot), body.skeleton).standing_point, spot.facing
+    seat = _edge_of(body, spot)
+    return seat.standing_point(body.skeleton.scale), seat.yaw
+
+
+def lie(body: Body, part: Part) -> None:
+    """From standing: onto the edge of the bed, or onto the knees on the floor; down, and into the pose."""
+    action = part.action
+    keys = paced(lie_keys(), body.rng)
+    style = own_way(lie_style(action.emotion, action.caption), keys.own, body.rng)
+    spot = spot_of(action)
+    body.enter(PhaseKind.WALK)
+    go(body, *before_bed(body, action), action)
+    body.enter(PhaseKind.EDGE)
+    if _on_floor(spot):
         mat = Mat(_made(body, spot), body.skeleton)
-        go(body, mat.standing_point, spot.facing, action)
-        body.enter(Part.EDGE)
         body.add(kneel_down(body.pose, mat, style.bearing, keys.floor_down))
-        body.enter(Part.LIEDOWN)
+        body.enter(PhaseKind.LIEDOWN)
         body.add(lie_down_from_knees(body.pose, mat, style, keys))
     else:
         seat = _edge_of(body, spot)
-        at_standing_point(body, action, seat)
-        body.enter(Part.EDGE)
         sat = Seated(bearing=style.bearing)
         body.add(lower_onto(body.pose, seat, sat, NOTHING, body.skeleton, sit_keys().down))
-        body.enter(Part.LIEDOWN)
+        body.enter(PhaseKind.LIEDOWN)
         body.add(lie_down(body.pose, seat, _made(body, spot), style, body.skeleton, keys))
-    body.add(idle(body.pose, action.hold, CALM * style.bearing.restless, body.rng, FPS))
+
+
+def stay_lying(body: Body, part: Part) -> None:
+    """Lie for a while."""
+    style = lie_style(part.action.emotion, part.action.caption)
+    body.add(idle(body.pose, part.hold, CALM * style.bearing.restless, body.rng, FPS))
 
 
 def get_up(body: Body, bearing: Bearing) -> None:
     """From lying to the edge of the bed, or from the floor to the knees."""
-    spot = spot_under(body)
+    spot, keys = spot_under(body), paced(lie_keys(), body.rng)
     if _on_floor(spot):
-        body.add(rise_to_knees(body.pose, Mat(Bed.of(spot), body.skeleton), bearing, lie_keys()))
+        body.add(rise_to_knees(body.pose, Mat(Bed.of(spot), body.skeleton), bearing, keys))
     else:
-        body.add(rise_to_edge(body.pose, _edge_of(body, spot), Bed.of(spot), bearing, body.skeleton, lie_keys()))
+        body.add(rise_to_edge(body.pose, _edge_of(body, spot), Bed.of(spot), bearing, body.skeleton, keys))
 
 
 def leave_bed(body: Body, bearing: Bearing) -> None:
@@ -81,8 +98,7 @@ def leave_bed(body: Body, bearing: Bearing) -> None:
     if not _on_floor(spot):
         leave_seat(body, _edge_of(body, spot), bearing)
         return
-    body.add(kneel_up(body.pose, Mat(Bed.of(spot), body.skeleton), bearing, lie_keys().floor_up))
-    body.posture, body.rest = Posture.STANDING, None
+    body.add(kneel_up(body.pose, Mat(Bed.of(spot), body.skeleton), bearing, paced(lie_keys(), body.rng).floor_up))
 
 
 def _on_floor(spot: Spot) -> bool:

@@ -11,7 +11,6 @@ from typing import Final
 import numpy as np
 
 from motion_backend import rotations
-from motion_backend.procedural.body_state import Scene
 from motion_backend.procedural.held_poses import UP, bend, shoulders, upright
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.touch.hand_captions import Laid
@@ -19,6 +18,7 @@ from motion_backend.procedural.touch.hand_contacts import is_top, palm_on
 from motion_backend.procedural.touch.touch_keys import Foot, KneelingBody, KneelPose, KneelTable, Prone
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
+from motion_backend.scene import Scene
 from motion_backend.skeleton import ARM_LENGTH, HAND_REST, Skeleton
 from scene_graphs.affordances.affordances import Spot
 from scene_graphs.layout import Point2

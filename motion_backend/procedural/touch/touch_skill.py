@@ -1,4 +1,4 @@
-"""Going to a thing and laying a hand on it: the performer of touch."""
+"""Laying a hand on a thing: the performer of reaching."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import Final
 
 import numpy as np
 
-from motion_backend.motion import Action
-from motion_backend.procedural.body_state import Body, spot_of
+from motion_backend.backend_protocol import Part
+from motion_backend.motion import Action, PhaseKind
+from motion_backend.procedural.body_state import Body, Point, spot_of
 from motion_backend.procedural.emotion_style import bearing_of
 from motion_backend.procedural.touch.hand_captions import Laid, handling_of, holding, steadies, with_both_hands
 from motion_backend.procedural.touch.hand_contacts import free_palm, free_stroke, is_top, other_hand
@@ -18,6 +19,7 @@ from motion_backend.procedural.touch.reach import Manner, touch
 from motion_backend.procedural.touch.touch_keys import touch_keys
 from motion_backend.procedural.walk.walk_skill import go
 from motion_backend.skeleton import HAND_REST
+from scene_graphs.affordances.affordances import Spot
 
 REACHED_DOWN = 1.12
 """An arm goes down to what is lower than this (metres at 1.70 m), so that its fingers point down a front."""
@@ -26,18 +28,26 @@ MIN_HOLD: Final = 1.2
 _HEIGHT: Final = re.compile(r"\b(?:low|medium|high)\b", re.IGNORECASE)
 
 
-def touch_spot(body: Body, action: Action) -> None:
-    """From standing: to the thing, the hand onto it, what the hand does there, and back."""
+def before_thing(body: Body, action: Action) -> tuple[Point, float]:
+    """Where to stand, and the yaw, to touch a thing, on the knees where the caption asks for it and there is room."""
+    spot = _knelt_at(body, action) or spot_of(action)
+    return spot.standing, spot.facing
+
+
+def reach(body: Body, part: Part) -> None:
+    """From standing before a thing: the hand onto it, what the hand does there, and back."""
+    action = part.action
     bearing = bearing_of(action.emotion, action.caption)
-    spot = spot_of(action)
-    knelt = place_to_kneel(spot, body.place, body.scene, body.skeleton.scale) if "prone" in action.caption else None
+    spot, knelt = spot_of(action), _knelt_at(body, action)
     if "prone" in action.caption and knelt is None:
         body.note("no room to kneel: squats")
     asked = _HEIGHT.search(action.caption)
     if asked and asked[0].lower() != spot.height:
         body.note(f"nothing at {asked[0].lower()} height: {spot.height}")
     spot, prone = knelt or spot, knelt is not None
+    body.enter(PhaseKind.WALK)
     go(body, spot.standing, spot.facing, action)
+    body.enter(PhaseKind.TOUCH)
     normal = np.asarray(spot.normal, dtype=np.float64)
     goal = np.asarray(spot.point) + HAND_REST * normal
     obstacles, scale = body.scene.obstacles, body.skeleton.scale
@@ -51,5 +61,12 @@ def touch_spot(body: Body, action: Action) -> None:
         body.note("no room for both hands: one hand")
     laid = Laid(goal, palm, normal, action.hand, down, other)
     laid = replace(laid, stroke=free_stroke(obstacles, spot, laid))
-    hold = max(action.hold, MIN_HOLD)
+    hold = max(part.hold, MIN_HOLD)
     body.add(touch(body.pose, laid, Manner(bearing, hold, doing, prone), body.skeleton, depth, touch_keys()))
+
+
+def _knelt_at(body: Body, action: Action) -> Spot | None:
+    """The spot as it is touched on the knees; None where it is not, or there is no room."""
+    if "prone" not in action.caption:
+        return None
+    return place_to_kneel(spot_of(action), body.place, body.scene, body.skeleton.scale)

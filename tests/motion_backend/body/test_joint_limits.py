@@ -25,6 +25,7 @@ from motion_backend.body.joint_limits import (
     worst_joint,
 )
 from motion_backend.body.self_collision import deepest_pair, overlaps, pairs, self_penetration
+from motion_backend.director import Director
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.mocap.readers import read_clips
 from motion_backend.mocap.retarget import retarget
@@ -114,10 +115,10 @@ def _other(name: str) -> str:
 
 
 def test_sitting_standing_and_lying_bodies_are_within_their_limits() -> None:
-    home, backend = small_home(), ProceduralBackend()
+    home, backend = small_home(), Director(ProceduralBackend())
     for skill, name in ((Skill.SITDOWN, "chair"), (Skill.LIEDOWN, "bed")):
         caption = "sitting still" if skill is Skill.SITDOWN else "lying still"
-        motion, _ = backend.advance(home, contact(home, skill, name, caption), backend.begin(home, Character(), 1))
+        motion, _ = backend.act(home, contact(home, skill, name, caption), backend.begin(home, Character(), 1))
         assert limits_share(motion.local_rotations[[0, -1]]) == 0.0
         assert limits_share(motion.local_rotations) < 0.1
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from small_home import small_home
 
 from motion_backend import rotations
+from motion_backend.director import Director
 from motion_backend.mocap.clip import Clip, ClipError, make_bones, make_clip
 from motion_backend.mocap.foot_contacts import ANKLES, BALLS, Feet, no_faster, runs
 from motion_backend.mocap.foot_lock import locked
@@ -79,12 +80,12 @@ def angle(a: Array, b: Array) -> Array:
 
 @pytest.fixture(scope="module")
 def walk() -> Motion:
-    backend, home = ProceduralBackend(), small_home()
+    backend, home = Director(ProceduralBackend()), small_home()
     state = backend.begin(home, Character(), 3)
     way = Action(Skill.LOCO, "steadily walking forward", Emotion.NEUTRAL, goal=(2.6, 1.4))
-    _, state = backend.advance(home, way, state)
+    _, state = backend.act(home, way, state)
     back = Action(Skill.LOCO, "steadily walking forward", Emotion.NEUTRAL, goal=(4.0, 3.4))
-    return backend.advance(home, back, state)[0]
+    return backend.act(home, back, state)[0]
 
 
 @for_each(("rest", "twist"), [("t", 0.0), ("n", 0.0), ("t", 2.0), ("n", 2.0)])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, replace
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -12,12 +12,14 @@ from for_each import for_each
 from layers import sampled
 from small_home import contact, rise, small_home, to
 
+from motion_backend.backend_protocol import BodyState
 from motion_backend.body.scene_collision import Obstacles
+from motion_backend.director import Director
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.contact_error import risen
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.smoothness import seam_jump
-from motion_backend.motion import Action, BodyState, Character, Emotion, Motion, Posture, Skill, join
+from motion_backend.motion import Action, Character, Emotion, Motion, Posture, Skill, join
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.sit.sit_styles import sit_style
@@ -30,11 +32,11 @@ OBSTACLES = Obstacles.of_home(HOME)
 
 
 def perform(actions: list[Action], seed: int = 3, height: float = 1.70) -> tuple[list[Motion], BodyState]:
-    backend = ProceduralBackend()
+    backend = Director(ProceduralBackend())
     state = backend.begin(HOME, Character(height=height), seed)
     motions = []
     for index, action in enumerate(actions):
-        motion, state = backend.advance(HOME, replace(action, keyframe=index), state)
+        motion, state = backend.act(HOME, replace(action, keyframe=index), state)
         motions.append(motion)
     return motions, state
 
@@ -106,14 +108,13 @@ def test_the_same_seed_gives_the_same_bytes_and_another_seed_another_body() -> N
 
 
 def test_any_segment_can_be_made_again_from_a_stored_state() -> None:
-    backend = ProceduralBackend()
+    backend = Director(ProceduralBackend())
     actions = day()
     state = backend.begin(HOME, Character(), 3)
     for action in actions[:3]:
-        _, state = backend.advance(HOME, action, state)
-    stored = json.loads(json.dumps(asdict(state)))
-    restored = BodyState(**(stored | {"posture": Posture(stored["posture"]), "pelvis": tuple(stored["pelvis"])}))
-    fresh, _ = ProceduralBackend().advance(HOME, actions[3], restored)
+        _, state = backend.act(HOME, action, state)
+    restored = BodyState.from_dict(json.loads(json.dumps(state.to_dict())))
+    fresh, _ = Director(ProceduralBackend()).act(HOME, actions[3], restored)
     np.testing.assert_array_equal(fresh.local_rotations, motions()[3].local_rotations)
 
 
@@ -135,7 +136,7 @@ def test_a_seated_body_stands_up_before_it_walks() -> None:
 def test_a_body_remembers_what_it_rests_on() -> None:
     bed = contact(HOME, Skill.LIEDOWN, "bed", "legs straight")
     _, state = perform([bed])
-    assert (state.posture, state.object_id) == (Posture.LYING, "0/bed")
+    assert (state.posture, state.rest) == (Posture.LYING, bed.spot)
 
 
 def test_a_place_that_cannot_be_reached_is_said_and_not_faked() -> None:

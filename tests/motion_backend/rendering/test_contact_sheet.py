@@ -9,6 +9,7 @@ import pytest
 from small_home import contact, small_home, to
 
 from motion_backend import rotations
+from motion_backend.director import Director
 from motion_backend.motion import Character, Motion, Skill
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.rendering.contact_sheet import CELL, GAP, HEAD, UNDER, facts, footprints, sheet
@@ -68,8 +69,8 @@ def test_stances_are_where_the_feet_were_down() -> None:
 
 def test_a_walk_in_a_room_is_drawn_with_its_furniture() -> None:
     action = to(contact(HOME, Skill.TOUCH, "shelf", "touch medium height"))
-    backend = ProceduralBackend()
-    motion, _ = backend.advance(HOME, action, backend.begin(HOME, Character(), 3))
+    backend = Director(ProceduralBackend())
+    motion, _ = backend.act(HOME, action, backend.begin(HOME, Character(), 3))
     bare, there = sheet([("walk", motion)], columns=1), sheet([("walk", motion)], HOME, columns=1)
     assert bare.shape == there.shape
     assert (bare[:, : CELL[0]] != there[:, : CELL[0]]).mean() > 0.1

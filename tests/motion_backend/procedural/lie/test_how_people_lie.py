@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 from acted import Body, got_up, lain
 
-from motion_backend.motion import FPS, Part
+from motion_backend.motion import FPS, PhaseKind
 from motion_backend.skeleton import LYING_REST
 
 BACK = ("hands on belly", "lying down, legs straight", "lying on the back, arms spread wide", "lying still")
@@ -95,7 +95,7 @@ def test_who_lies_down_sits_on_the_edge_first_and_comes_down_gently() -> None:
     for name, body in lying((BACK[0], "side-lie on right")):
         if name[0] == "floor":
             continue
-        edge, down = body.phase(Part.EDGE), body.phase(Part.LIEDOWN)
+        edge, down = body.phase(PhaseKind.EDGE), body.phase(PhaseKind.LIEDOWN)
         seated = body.at("neck")[down.start] - body.at("pelvis")[down.start]
         assert seated[1] / np.linalg.norm(seated) > 0.8, name
         assert body.at("pelvis")[down.start, 1] < body.at("pelvis")[edge.start, 1] - 0.2, name
@@ -115,7 +115,7 @@ def test_the_head_rests_on_what_is_lain_on_and_looks_where_the_chest_does() -> N
 def test_who_gets_up_comes_over_the_edge_onto_both_feet_and_bears_on_a_hand() -> None:
     for place, home in PLACES:
         body = got_up(place, BACK[0], home=home)
-        end = body.phase(Part.GETUP).stop - 1
+        end = body.phase(PhaseKind.GETUP).stop - 1
         trunk = body.at("neck")[end] - body.at("pelvis")[end]
         assert trunk[1] / np.linalg.norm(trunk) > 0.9, place
         assert body.action.spot is not None
@@ -135,7 +135,7 @@ def test_who_gets_up_comes_over_the_edge_onto_both_feet_and_bears_on_a_hand() ->
 
 
 def test_the_hurried_are_up_sooner_than_the_tired() -> None:
-    seconds = [got_up("bed", BACK[0], mood).phase(Part.GETUP).stop for mood in ("hurried", "neutral", "tired")]
+    seconds = [got_up("bed", BACK[0], mood).phase(PhaseKind.GETUP).stop for mood in ("hurried", "neutral", "tired")]
     assert seconds[0] < seconds[1] < seconds[2]
-    slow = [lain("bed", BACK[0], mood).phase(Part.LIEDOWN) for mood in ("hurried", "tired")]
+    slow = [lain("bed", BACK[0], mood).phase(PhaseKind.LIEDOWN) for mood in ("hurried", "tired")]
     assert slow[0].stop - slow[0].start < slow[1].stop - slow[1].start

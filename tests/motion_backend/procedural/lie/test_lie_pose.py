@@ -11,14 +11,15 @@ from itertools import combinations
 import numpy as np
 import pytest
 from layers import sampled
-from small_home import after, backend_in, contact, rise, small_home
+from small_home import DIRECTOR, after, contact, rise, small_home
 
+from motion_backend.backend_protocol import BodyState
 from motion_backend.body.capsules import placed
 from motion_backend.body.joint_limits import limits_share
 from motion_backend.body.self_collision import self_penetration
 from motion_backend.metrics.foot_skate import skate_ratio
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Action, BodyState, Emotion, Motion, Part, Skill
+from motion_backend.motion import Action, Emotion, Motion, PhaseKind, Skill
 from motion_backend.procedural.lie.lie_pose import Bed, place_to_lie
 from motion_backend.procedural.lie.lie_styles import lie_style, wanted_edge
 from motion_backend.skeleton import INDEX
@@ -35,7 +36,7 @@ def lie(caption: str, name: str = "sofa", which: int = 0, height: float = 1.70) 
     action = contact(HOME, Skill.LIEDOWN, name, caption, which=which)
     if caption.endswith("foot on the floor"):
         action = replace(action, spot=place_to_lie([action.spot], caption) if action.spot else None)
-    return backend_in(HOME).advance(HOME, action, after(HOME, seed=2, height=height))[0]
+    return DIRECTOR.act(HOME, action, after(HOME, seed=2, height=height))[0]
 
 
 def held(caption: str, name: str = "sofa", which: int = 0) -> dict[str, np.ndarray]:
@@ -150,19 +151,19 @@ def test_short_and_tall_bodies_lie_as_well(height: float) -> None:
 def on_the_floor(caption: str) -> tuple[Action, Motion, BodyState]:
     """Lying down on the floor."""
     action = Action(Skill.LIEDOWN, caption, Emotion.NEUTRAL, "floor", "floor", floor_spot("lie", (3.2, 2.6), 0.7))
-    return action, *backend_in(HOME).advance(HOME, action, after(HOME, seed=2))
+    return action, *DIRECTOR.act(HOME, action, after(HOME, seed=2))
 
 
 @cache
 def up_again(caption: str, how: str) -> Motion:
     """Getting up from the floor."""
     action, _, state = on_the_floor(caption)
-    return backend_in(HOME).advance(HOME, replace(rise(action, Skill.GETUP), caption=how), state)[0]
+    return DIRECTOR.act(HOME, replace(rise(action, Skill.GETUP), caption=how), state)[0]
 
 
-def during(motion: Motion, *parts: Part) -> slice:
+def during(motion: Motion, *kinds: PhaseKind) -> slice:
     """The frames of some parts that follow each other."""
-    found = [phase for phase in motion.phases if phase.part in parts]
+    found = [phase for phase in motion.phases if phase.kind in kinds]
     return slice(found[0].start, found[-1].stop)
 
 
@@ -182,7 +183,9 @@ def test_the_floor_is_lain_on_and_got_up_from(caption: str) -> None:
 @pytest.mark.parametrize("which", [0, 1])
 def test_one_goes_down_to_the_floor_and_up_from_it_over_hands_and_knees(which: int) -> None:
     motion = (on_the_floor("lying still")[1], up_again("lying still", "get up slowly"))[which]
-    joints = motion.joint_positions()[during(motion, *((Part.EDGE, Part.LIEDOWN), (Part.GETUP, Part.STANDUP))[which])]
+    joints = motion.joint_positions()[
+        during(motion, *((PhaseKind.EDGE, PhaseKind.LIEDOWN), (PhaseKind.GETUP, PhaseKind.STANDUP))[which])
+    ]
     knees, wrists = (joints[:, [INDEX[f"left_{joint}"], INDEX[f"right_{joint}"]]] for joint in ("knee", "wrist"))
     high = joints[:, 0, 1] > 0.4
     kneeling = high & (knees[..., 1].max(axis=1) < 0.09)

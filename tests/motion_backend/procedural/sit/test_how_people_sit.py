@@ -10,7 +10,7 @@ import pytest
 from acted import HOMES, Body, risen_from, sat
 
 from motion_backend.body.self_collision import self_penetration
-from motion_backend.motion import FPS, Part
+from motion_backend.motion import FPS, PhaseKind
 from motion_backend.skeleton import SEATED_REST
 
 UPRIGHT = ("sitting still", "crossing arms", "hands on thighs")
@@ -43,7 +43,7 @@ def failures(found: Sequence[tuple[Name, object, object]]) -> list[tuple[Name, o
 def on_seat(body: Body) -> int:
     """The first frame in which the seat bears the body."""
     height = body.at("pelvis")[:, 1]
-    down = body.phase(Part.SITDOWN).start
+    down = body.phase(PhaseKind.SITDOWN).start
     return down + int(np.argmax(height[down:] < height[-1] + 0.02))
 
 
@@ -51,7 +51,7 @@ def test_the_trunk_folds_over_the_feet_before_the_seat_is_touched_and_unfolds_on
     found = []
     for name, body in sittings(UPRIGHT):
         lean, seat = body.lean(body.facing), on_seat(body)
-        start = body.phase(Part.SITDOWN).start
+        start = body.phase(PhaseKind.SITDOWN).start
         folded = start + int(lean[start : seat + 1].argmax())
         figure = lean[folded], folded - start, seat - start, lean[-1]
         found.append((name, 20 < lean[folded] < 50 and folded < seat and abs(lean[-1]) < 12, figure))
@@ -64,7 +64,7 @@ def test_hips_fold_as_one_sits_down_and_stay_folded() -> None:
     for name, body in sittings(UPRIGHT):
         for side in SIDES:
             hip, knee = body.hip(side), body.knee(side)
-            start, seat = body.phase(Part.SITDOWN).start, on_seat(body)
+            start, seat = body.phase(PhaseKind.SITDOWN).start, on_seat(body)
             found.append(((*name, side, "standing"), hip[start] < 20, hip[start]))
             found.append(((*name, side, "going down"), 85 < hip[start:seat].max() < 125, hip[start:seat].max()))
             found.append(((*name, side, "seated"), 65 < hip[-FPS:].min() <= hip[-FPS:].max() < 110, hip[-FPS:].mean()))
@@ -165,7 +165,7 @@ def test_the_sad_sit_down_more_slowly_and_more_bent_than_the_happy(seed: int) ->
     seconds, height, nod = {}, {}, {}
     for mood in ("happy", "neutral", "sad"):
         body = sat("chair", "sitting still", mood, seed=seed)
-        seconds[mood] = on_seat(body) - body.phase(Part.SITDOWN).start
+        seconds[mood] = on_seat(body) - body.phase(PhaseKind.SITDOWN).start
         height[mood] = (body.at("head") - body.at("pelvis"))[-1, 1]
         nod[mood] = body.axis("head", (0.0, 0.0, 1.0))[-FPS:, 1].mean()
     assert seconds["happy"] < seconds["neutral"] < seconds["sad"]

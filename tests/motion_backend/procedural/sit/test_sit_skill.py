@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from motion_backend.body.scene_collision import Obstacles
+from motion_backend.director import Director
 from motion_backend.motion import Action, Character, Emotion, Skill
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.procedural.sit.sit_skill import MIN_EDGE, seat_for
@@ -18,7 +19,7 @@ from scene_graphs.layout import Layout, Placed
 TYPING, RESTING = "typing, both hands on the keyboard", "Resting hands on the armrests, legs spread apart"
 CHAIR = Placed("chair", "dining_chair", (2.5, 0.0, 2.0), (0.47, 0.87, 0.54), 0.0)
 SOFA = Placed("sofa", "multi_seat_sofa", (2.5, 0.0, 2.0), (2.2, 0.85, 0.9), 0.0)
-BACKEND = ProceduralBackend()
+BACKEND = Director(ProceduralBackend())
 
 
 def room(*objects: Placed) -> Home:
@@ -36,7 +37,7 @@ def noted(home: Home, piece: str, caption: str) -> list[str]:
     found = spots(home.object(f"0/{piece}"), "sit")
     spot = seat_for(found, Emotion.NEUTRAL, caption, Obstacles.of_home(home))
     action = Action(Skill.SITDOWN, caption, Emotion.NEUTRAL, piece, f"0/{piece}", spot)
-    motion, _ = BACKEND.advance(home, action, BACKEND.begin(home, Character(), 1))
+    motion, _ = BACKEND.act(home, action, BACKEND.begin(home, Character(), 1))
     assert motion.completed, motion.reason
     return [note.words for note in motion.notes]
 

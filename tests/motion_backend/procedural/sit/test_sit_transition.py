@@ -13,7 +13,7 @@ from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from layers import sampled
-from small_home import after, backend_in, contact, rise, small_home, to
+from small_home import DIRECTOR, after, contact, rise, small_home, to
 
 from motion_backend.body.joint_limits import CLEARLY, beyond_limits
 from motion_backend.body.scene_collision import Obstacles
@@ -63,7 +63,7 @@ def seated(
         action = Action(Skill.SITDOWN, caption, emotion, "floor", "floor", floor_spot("sit", (3.0, 3.0), 0.0))
     else:
         action = contact(home, Skill.SITDOWN, name, caption, emotion)
-    motion, _ = backend_in(home).advance(home, replace(action, keyframe=1, hold=2.5), after(home, to(action)))
+    motion, _ = DIRECTOR.act(home, replace(action, keyframe=1, hold=2.5), after(home, to(action)))
     return motion, motion.joint_positions().astype(np.float64)
 
 
@@ -183,7 +183,7 @@ def test_who_rises_passes_hands_round_the_thighs_and_stays_within_limits(caption
     else:
         action = contact(HOME, Skill.SITDOWN, name, "sitting still")
     state = after(HOME, to(action), replace(action, keyframe=1))
-    motion, _ = backend_in(HOME).advance(HOME, replace(rise(action), caption=caption, keyframe=2), state)
+    motion, _ = DIRECTOR.act(HOME, replace(rise(action), caption=caption, keyframe=2), state)
     positions, world = motion.skeleton.forward_kinematics(motion.root_positions, motion.local_rotations)
     assert self_penetration(motion.skeleton, positions.astype(np.float64), world).max() < 0.05
     assert beyond_limits(motion.local_rotations).max() < CLEARLY
@@ -226,7 +226,7 @@ def test_slow_rising_leans_on_the_knees_and_abrupt_rising_is_quicker() -> None:
     for caption in ("stand up", "stand up abruptly", "stand up slowly"):
         action = contact(HOME, Skill.SITDOWN, "chair", "crossing arms")
         state = after(HOME, to(action), replace(action, keyframe=1))
-        motion, _ = backend_in(HOME).advance(HOME, replace(rise(action), caption=caption, keyframe=2), state)
+        motion, _ = DIRECTOR.act(HOME, replace(rise(action), caption=caption, keyframe=2), state)
         joints = motion.joint_positions().astype(np.float64)
         times[caption] = len(motion)
         near[caption] = np.linalg.norm(joints[:, INDEX["left_wrist"]] - joints[:, INDEX["left_knee"]], axis=1).min()

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 from for_each import for_each
-from small_home import after, backend_in, contact, small_home, to
+from small_home import DIRECTOR, after, contact, small_home, to
 
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.metrics import story_metrics
@@ -53,7 +53,7 @@ TOUCHING = {
 def performed(action: Action) -> tuple[Motion, np.ndarray]:
     """The action after the walk to it: its motion and world joints (T, 22, 3)."""
     state = after(HOME) if action.skill is Skill.LOCO else after(HOME, to(action))
-    motion, _ = backend_in(HOME).advance(HOME, replace(action, keyframe=1), state)
+    motion, _ = DIRECTOR.act(HOME, replace(action, keyframe=1), state)
     return motion, motion.joint_positions().astype(np.float64)
 
 
@@ -158,12 +158,12 @@ def test_what_is_picked_up_is_held_before_the_body() -> None:
 
 
 def test_what_is_picked_up_is_carried_on_the_way_until_it_is_put_down() -> None:
-    backend, pick = backend_in(HOME), contact(HOME, Skill.TOUCH, "table", "pick up with the right hand")
+    backend, pick = DIRECTOR, contact(HOME, Skill.TOUCH, "table", "pick up with the right hand")
     put = contact(HOME, Skill.TOUCH, "shelf", "put down with the right hand")
     state = backend.begin(HOME, Character(), 3)
     least = []
     for action in (to(pick), pick, to(put), put, to(pick)):
-        motion, state = backend.advance(HOME, action, state)
+        motion, state = backend.act(HOME, action, state)
         joints = motion.joint_positions().astype(np.float64)
         least.append(float((joints[:, RIGHT, 1] - joints[:, INDEX["spine1"], 1]).min()))
     assert max(least[0], least[4]) < -0.1
@@ -184,7 +184,7 @@ def test_who_writes_types_or_eats_has_it_on_the_lap(caption: str) -> None:
 @pytest.mark.parametrize("height", [1.5, 1.9])
 def test_a_body_of_other_height_steps_straight_to_where_it_sits_down(height: float) -> None:
     action = contact(HOME, Skill.SITDOWN, "chair", "sitting still")
-    motion, _ = backend_in(HOME).advance(HOME, action, after(HOME, to(action), height=height))
+    motion, _ = DIRECTOR.act(HOME, action, after(HOME, to(action), height=height))
     steps = np.linalg.norm(np.diff(motion.root_positions[:, [0, 2]], axis=0), axis=1)
     assert steps.sum() < 0.42 * height / 1.7 + 0.12
 

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from small_home import ROOM, after, backend_in, small_home
+from small_home import DIRECTOR, ROOM, after, small_home
 
 from motion_backend import rotations
+from motion_backend.backend_protocol import BodyState
 from motion_backend.body.scene_collision import Obstacles
-from motion_backend.motion import Action, Emotion, Motion, Skill
+from motion_backend.motion import Action, Character, Emotion, Motion, Skill
 from motion_backend.procedural.touch.hand_captions import FINGER, FINGERS, Laid
 from motion_backend.procedural.touch.hand_contacts import free_stroke, palm_on, suits
 from motion_backend.skeleton import HAND_REST, INDEX
@@ -30,7 +31,7 @@ def act(home: Home, name: str, caption: str, height: str = "medium") -> Motion:
     spot = next(s for s in spots(home.object(f"0/{name}"), "touch") if s.height == height)
     walk = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=spot.standing, facing=spot.approach)
     action = Action(Skill.TOUCH, caption, Emotion.NEUTRAL, name, f"0/{name}", spot, hold=2.5)
-    return backend_in(home).advance(home, action, after(home, walk))[0]
+    return DIRECTOR.act(home, action, after(home, walk))[0]
 
 
 @cache
@@ -124,7 +125,11 @@ def test_a_body_kneels_straight_before_or_from_aside_where_there_is_room(ways: t
 
 
 def test_a_body_that_cannot_kneel_squats_and_says_so() -> None:
-    motion = act(_walled((0.85, 0.45, 0.45)), "low", "Low touch from a prone position", "low")
+    home = _walled((0.85, 0.45, 0.45))
+    spot = next(one for one in spots(home.object("0/low"), "touch") if one.height == "low")
+    action = Action(Skill.TOUCH, "Low touch from a prone position", Emotion.NEUTRAL, "low", "0/low", spot)
+    there = BodyState.standing(spot.standing, spot.facing, Character(), 3)
+    motion, _ = DIRECTOR.act(home, action, there)
     knees = motion.joint_positions()[:, [INDEX["left_knee"], INDEX["right_knee"]], 1].max(axis=1)
     assert knees.min() > 0.25
     assert [note.words for note in motion.notes] == ["no room to kneel: squats"]

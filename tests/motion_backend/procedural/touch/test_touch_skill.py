@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 from for_each import for_each
-from small_home import ROOM, after, backend_in
+from small_home import DIRECTOR, ROOM, after
 
 from motion_backend.body.joint_limits import limits_share
 from motion_backend.motion import Action, Emotion, Motion, Skill
@@ -27,7 +27,7 @@ def act(caption: str, name: str, height: str, hand: str = "right", body: float =
     spot = next(s for s in spots(HOME.object(f"0/{name}"), "touch") if s.height == height)
     walk = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=spot.standing, facing=spot.facing)
     action = Action(Skill.TOUCH, caption, Emotion.NEUTRAL, name, f"0/{name}", spot, hand=hand)
-    return backend_in(HOME).advance(HOME, action, after(HOME, walk, seed=4, height=body))[0]
+    return DIRECTOR.act(HOME, action, after(HOME, walk, seed=4, height=body))[0]
 
 
 def gap(motion: Motion) -> np.ndarray:

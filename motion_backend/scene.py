@@ -1,0 +1,63 @@
+"""A home with what is worked out about it once and shared by all that move bodies in it."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass
+from functools import cached_property
+from threading import Lock
+from typing import Final
+
+import numpy as np
+
+from motion_backend.body.scene_collision import Obstacles
+from scene_graphs.geometry.egocentric_heightmap import SceneHeights
+from scene_graphs.home import Home
+from scene_graphs.navigation.path_planner import Walkable
+
+_KEPT: Final = 8
+"""Homes whose scenes are kept at hand."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A home as bodies meet it; each thing is made when it is first asked for."""
+
+    home: Home
+
+    @cached_property
+    def walkable(self) -> Walkable:
+        """Where one can walk."""
+        return Walkable(self.home)
+
+    def beginning(self, seed: int) -> tuple[tuple[float, float], float]:
+        """Where a body begins, [x, z], and its yaw: a free place of the first room that the seed chooses."""
+        rng = np.random.default_rng([seed, 0])
+        return self.walkable.random_point(rng, 0), float(rng.uniform(-np.pi, np.pi))
+
+    @cached_property
+    def obstacles(self) -> Obstacles:
+        """Furniture and walls as boxes."""
+        return Obstacles.of_home(self.home)
+
+    @cached_property
+    def heights(self) -> SceneHeights:
+        """How high everything is: egocentric heightmaps (SIMS 3.3) and occupancy (LINGO A.2) are looked up in it."""
+        return SceneHeights(self.home)
+
+
+_scenes: OrderedDict[int, Scene] = OrderedDict()
+_changing: Final = Lock()
+
+
+def scene_of(home: Home) -> Scene:
+    """The scene of a home, the same for all who ask while it is at hand."""
+    with _changing:
+        found = _scenes.get(id(home))
+        if found is None:
+            # The scene holds its home, so that no other home gets the same id while it is kept.
+            found = _scenes[id(home)] = Scene(home)
+        _scenes.move_to_end(id(home))
+        while len(_scenes) > _KEPT:
+            _scenes.popitem(last=False)
+        return found

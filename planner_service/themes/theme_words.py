@@ -1,0 +1,45 @@
+"""The lists of words by which the rules read themes."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from scene_graphs.data_tables import read_table, table
+
+
+@table
+class ThemeWords:
+    """data/theme_words.toml: lists of base forms, apart by spaces."""
+
+    people: str
+    """Nouns for people."""
+    memory_verbs: str
+    speech_verbs: str
+    not_said: str
+    """What is answered or said with more than words."""
+    unable_verbs: str
+    """What somebody who cannot do it is seen trying: "cannot sleep"."""
+    no_heroes: str
+    """Nouns for what does things and is nobody a theme is about."""
+    body: str
+    """Parts of a person: what these do, the person does."""
+    state_verbs: str
+    """Verbs that only say how somebody is or feels."""
+    posed: str
+    """States that a body is seen in: whoever is asleep lies."""
+    state_words: str
+    """Words that say no more when they stand beside a feeling."""
+    foreign: str
+    """The commonest words of other languages that are no English words."""
+
+    @property
+    def sets(self) -> dict[str, frozenset[str]]:
+        """Every list as a set."""
+        return {name: frozenset(words.split()) for name, words in vars(self).items()}
+
+
+@cache
+def theme_words() -> dict[str, frozenset[str]]:
+    """The lists of `ThemeWords`."""
+    known: ThemeWords = read_table("planner_service", "theme_words.toml", ThemeWords)
+    return known.sets
