@@ -21,6 +21,11 @@ _SEMI: Final = re.compile(r"\n+|;\s+|:\s+|\s+[–—]\s*|\s*[–—]\s+|\s+-{1,2
 _HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
 _THAT: Final = frozenset(("that", "how", "what", "why", "if", "whether", "which", "who"))
 """What joins a clause that is an object: "finds that he won"."""
+_SUPPOSING: Final = frozenset(("if", "unless"))
+"""Joints before what is only thought of: "if he calls"."""
+_RELATIVES: Final = frozenset(("that", "which", "who"))
+_ARTICLES: Final = frozenset(("the", "a", "an"))
+_OWNERS: Final = frozenset(("his", "her", "their", "its", "my", "our"))
 _LATER_JOINTS: Final = frozenset(("before", "until", "while"))
 _NO_JOINTS: Final = {"once": ("at", "for", "more", "all"), "while": ("a", "long", "little", "short")}
 """What joining words stand after where they join nothing: "at once", "for a while"."""
@@ -50,6 +55,8 @@ class Clause:
     """Whether it is not done since it cannot be: "cannot sleep"."""
     perfect: bool = False
     """Whether it had been done before."""
+    aside: bool = False
+    """Whether it only tells of a noun: "the letter she had hidden"."""
     quotes: tuple[str, ...] = ()
     """What is said in it."""
     sentence: int = 0
@@ -281,6 +288,8 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     if words and words[0].low in grammar().adverbs - grammar().denials and len(words) > 1:
         words = words[1:]
     group = verb_group(words)
+    group.denied |= joint in _SUPPOSING or piece.tokens[0].low in ("if", "though")
+    words, told_of = _without_asides(words, group.place)
     lemmas = _lemmas(words[group.place :])
     first = Clause(
         _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, joint, denied=group.denied,
@@ -288,7 +297,50 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     )  # fmt: skip
     parted = not group.denied or group.unable
     parts = _parted(first, words, group.place, piece.source) if parted else [first]
-    return [_placed(parts[0], _before(tokens[:place], subject), piece.source), *parts[1:]]
+    asides = [replace(one, sentence=sentence) for words in told_of for one in _aside(words, piece.source)]
+    return [_placed(parts[0], _before(tokens[:place], subject), piece.source), *parts[1:], *asides]
+
+
+def _without_asides(words: list[Token], main: int) -> tuple[list[Token], list[list[Token]]]:
+    """The words of a clause, and those after a noun that tell of it with a verb of their own: "the flour | the cat has
+    spilled", "a call | that never comes"."""
+    for place in range(main + 2, len(words) - 1):
+        low, after = words[place].low, words[place + 1 :]
+        if low in _RELATIVES:
+            tells = verb_place(after[:3]) == 0 or _tells(after)
+        else:
+            tells = low in grammar().subjects | _ARTICLES | _OWNERS and _tells(words[place:])
+        if tells and _ends_noun(words[place - 2].low, words[place - 1].low):
+            return words[:place], [words[place:]]
+    return words, []
+
+
+def _ends_noun(before: str, word: str) -> bool:
+    """Whether a word is a noun, told by the word before it where it may be an adjective too: "the light"."""
+    known = grammar()
+    if word in known.marks | known.prepositions or verb_of(before) == "let":
+        return False
+    return is_noun(word) and (not is_adjective(word) or before in known.marks)
+
+
+def _tells(words: Sequence[Token]) -> bool:
+    """Whether words begin with a subject and its finite verb."""
+    place = verb_place(words[:5])
+    if not place or (words[0].low in _ARTICLES | _OWNERS and place < 2):
+        return False
+    if any(token.low in grammar().prepositions | grammar().subjects for token in words[1:place]):
+        return False
+    word = words[place].low
+    return word in grammar().auxiliaries or is_third_person(word) or word != verb_of(word) and not word.endswith("ing")
+
+
+def _aside(words: list[Token], source: str) -> list[Clause]:
+    """What is told of a noun: it happened before or elsewhere, and somebody may have done it."""
+    head = words[1:] if words[0].low in _RELATIVES else words
+    place = verb_place(head) or 0
+    subject = " ".join(token.text for token in head[:place])
+    lemmas = _lemmas(head[place:])
+    return [Clause(_text(source, words), subject, lemmas[0] if lemmas else "", lemmas, "that", aside=True)]
 
 
 def _before(tokens: Sequence[Token], subject: str) -> Sequence[Token]:
