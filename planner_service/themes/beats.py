@@ -154,7 +154,7 @@ def _kind(clause: Clause, who: str) -> BeatKind:
         return "other"
     if clause.denied and not (clause.unable and clause.verb in words["unable_verbs"]):
         return "undone"
-    if clause.perfect or clause.verb in words["memory_verbs"] or clause.joint == "since":
+    if clause.perfect or (clause.verb in words["memory_verbs"] and not clause.unable) or clause.joint == "since":
         return "memory"
     return "feeling" if is_feeling(clause) else "deed"
 
