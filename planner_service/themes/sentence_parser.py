@@ -339,7 +339,9 @@ def _tells(words: Sequence[Token]) -> bool:
     if any(token.low in grammar().prepositions | grammar().subjects for token in words[1:place]):
         return False
     word = words[place].low
-    return word in grammar().auxiliaries or is_third_person(word) or word != verb_of(word) and not word.endswith("ing")
+    return (
+        word in grammar().auxiliaries or is_third_person(word) or (word != verb_of(word) and not word.endswith("ing"))
+    )
 
 
 def _aside(words: list[Token], source: str) -> list[Clause]:

@@ -87,7 +87,9 @@ def _keyframes(made: Json, segments: list[Json]) -> list[Json]:
     for row, object_id in zip(rows, made.get("objects", []), strict=False):
         row["object_id"] = object_id
     for segment in segments:
-        rows[segment["keyframe"]] |= {name: segment[name] for name in ("start", "end", "reached", "segments") if name in segment}
+        rows[segment["keyframe"]] |= {
+            name: segment[name] for name in ("start", "end", "reached", "segments") if name in segment
+        }
     return rows
 
 
