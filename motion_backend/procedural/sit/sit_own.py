@@ -72,9 +72,12 @@ def own_seat(spread: SitSpread, seed: int, rng: np.random.Generator) -> OwnSeat:
     return OwnSeat(**drawn)
 
 
-def in_own_way(keys: SitKeys, own: OwnSeat) -> SitKeys:
-    """The tables as this time has them: how far the trunk folds, and how long it takes."""
-    lean, time = 1 + own.lean, float(np.exp(own.time))
+def in_own_way(keys: SitKeys, own: OwnSeat, low: bool) -> SitKeys:
+    """The tables as this time has them: how far the trunk folds, and how long it takes.
+
+    On a low seat there is no room between trunk and knees to fold farther.
+    """
+    lean, time = 1 + (min(own.lean, 0.0) if low else own.lean), float(np.exp(own.time))
     lower, rise = keys.down.lower, keys.up.rise
     down = replace(
         lower, time_s=time * lower.time_s, lean_rad=lean * lower.lean_rad,

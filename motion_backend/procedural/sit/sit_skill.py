@@ -68,8 +68,9 @@ def sit(body: Body, part: Part) -> None:
     """From standing: down onto the seat, and into the way of sitting."""
     action = part.action
     own = own_seat(sit_keys().spread, body.seed, body.rng)
-    style, keys = replace(sit_style(action.emotion, action.caption), own=own), in_own_way(sit_keys(), own)
+    style = replace(sit_style(action.emotion, action.caption), own=own)
     seat = Seat.of(spot_of(action))
+    keys = in_own_way(sit_keys(), own, seat.is_low(body.skeleton.scale))
     body.enter(PhaseKind.WALK)
     go(body, *before_seat(body, action), action)
     body.enter(PhaseKind.SITDOWN)
@@ -98,7 +99,8 @@ def leave_seat(body: Body, seat: Seat, bearing: Bearing) -> None:
     elif bearing.tempo < QUICK:
         around = handholds(seat, body.scene.obstacles, body.skeleton.scale)
         push = _grips(around.armrests, around.beside, seat, (True, True))
-    keys = in_own_way(sit_keys(), own_seat(sit_keys().spread, body.seed, body.rng))
+    own = own_seat(sit_keys().spread, body.seed, body.rng)
+    keys = in_own_way(sit_keys(), own, seat.is_low(body.skeleton.scale))
     body.add(stand_up(body.pose, seat, bearing, push, body.skeleton, keys.up))
     body.holds = (None, None)
 
