@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from acted import Body, risen_from, sat
+from acted import Body, risen_from, sat, touched
 
 from motion_backend.metrics.caption_predicates import (
     MEASURES,
@@ -24,10 +24,12 @@ from planner_service.scripts.captions import captions
 
 def neutral(skill: Skill) -> Body:
     """What the body does whose caption says no more than the skill."""
+    if skill is Skill.TOUCH:
+        return touched("table", "medium", "touch medium height")
     return sat("chair", "sit") if skill is Skill.SITDOWN else risen_from("chair", "stand up")
 
 
-JUDGED = (Skill.SITDOWN, Skill.STANDUP)
+JUDGED = (Skill.SITDOWN, Skill.STANDUP, Skill.TOUCH)
 """Skills whose captions all have rows."""
 
 
