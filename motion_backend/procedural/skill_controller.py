@@ -33,6 +33,8 @@ def _walk(body: Body, part: Part) -> None:
     if body.upcoming and body.upcoming[0].kind is PartKind.WALK and body.upcoming[0].goal is not None:
         later = body.upcoming[0]
         onward, _ = _bound_for(body, later, body.upcoming[0].goal, body.upcoming[1:])
+        # Who passes by does not turn to what is there.
+        facing = facing if onward == goal else None
     body.enter(PhaseKind.WALK)
     go(body, goal, facing, part.action, onward)
     if body.upcoming and body.upcoming[0].kind is PartKind.REACH:

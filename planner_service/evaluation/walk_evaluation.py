@@ -51,8 +51,6 @@ MAX_WINDOWS: Final = 12
 MAX_SECONDS: Final = 24
 """Likewise, of one second each."""
 MIN_PEOPLE: Final = 4
-SMOOTHED: Final = 6.0
-"""Hz above which walks are not compared: what cameras shake differs from recording to recording."""
 AUC_MOST: Final = 0.90
 """Limit for a body of ours at recorded speeds."""
 PEOPLE_AUC: Final = (0.65, 0.80)

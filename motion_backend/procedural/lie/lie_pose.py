@@ -181,7 +181,10 @@ def _askew(hips: Array, bed: Bed, own: OwnWay) -> Array:
 def _moved(rest: RestingHand, own: OwnWay, index: int) -> RestingHand:
     """The hand where it lies this time, over the same surface."""
     out, up, ahead = rest.wrist_m
-    return replace(rest, wrist_m=(out + float(own.hand_across[index]), up + float(own.hand_along[index]), ahead))
+    # Under a head and on a face there is no more room.
+    size = 0.5 if rest.with_head else 1.0
+    across, along = size * float(own.hand_across[index]), size * float(own.hand_along[index])
+    return replace(rest, wrist_m=(out + across, up + along, ahead))
 
 
 def _hand(style: Lying, bed: Bed, index: int, scale: float, rows: tuple[RestingHand, ...]) -> RestingHand:

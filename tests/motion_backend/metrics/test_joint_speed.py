@@ -24,7 +24,7 @@ SAMPLES = {
     "stand up": lambda: risen_from("chair", "stand up"),
     "touch": lambda: touched("shelf", "medium", "touch medium height", home="hall"),
 }
-OFFENDERS = {"march": 32.0, "stomp": 21.0, "lie on the floor": 44.5}
+OFFENDERS = {"march": 34.5, "stomp": 23.5}
 """Samples that are known to be faster (rad/s), to be emptied: none may be added, and none may get worse."""
 
 
