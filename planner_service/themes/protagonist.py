@@ -192,6 +192,14 @@ def is_person(subject: str) -> bool:
     return len(head) > 5 and head.lower().endswith(("ist", "ian", "man", "woman", "person", "ress"))
 
 
+def names_somebody(clause: Clause) -> bool:
+    """Whether a person does what a clause tells, or is named in one without a verb."""
+    if clause.verb:
+        return is_person(clause.doer)
+    words = [token.text for token in tokens_of(clause.text)]
+    return any(word.lower() in theme_words()["people"] or (word.istitle() and is_name(word)) for word in words)
+
+
 def is_hero(subject: str, hero: str) -> bool:
     """Whether a subject is whom the theme is about. Nobody named: it goes on with who it was about."""
     if not subject or subject.lower() == hero.lower():

@@ -241,6 +241,8 @@ def _opens(piece: _Piece, after: Sequence[_Piece]) -> bool:
 def _is_noun_list(last: _Piece, piece: _Piece) -> bool:
     """Whether a single word goes on with the nouns before it: "cakes and drinks", but not "eats and drinks"."""
     words = piece.tokens
+    if [word.low for word in words if word.low != "up"] == ["standing"]:
+        return True  # "eats from the pot, standing up"
     verb = verb_place(words) or 0
     if piece.joint in ("and", "or", ",") and verb > 2 and words[verb - 1].low in grammar().subjects and last.tokens:
         return words[0].low in _ARTICLES | _OWNERS and _ends_noun(words[verb - 3].low, words[verb - 2].low)
