@@ -128,7 +128,7 @@ def _read(clause: Clause, hero: str) -> ReadBeat:
         emotion, sure = (named, True) if of_subject else (emotion, sure)
     if not sure and not who and (shown := EXPRESSIONS.get(clause.verb)):
         emotion, sure = shown, True
-    if kind in ("other", "undone") and not sure:
+    if (kind == "other" or (kind == "undone" and not clause.unable)) and not sure:
         emotion = None
     beat = Beat(text=_bounded(text), emotion=emotion or Emotion.NEUTRAL, kind=kind, who=_bounded(who, 80))
     return ReadBeat(beat, clause, sure, emotion, next(iter(rooms_in(text)), None))

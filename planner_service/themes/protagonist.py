@@ -131,7 +131,7 @@ def hero_of(clauses: Sequence[Clause]) -> str:
         for one in people
         if not _is_pronoun(one.subject) and (one.joint not in _ASIDE or (one.sentence, one.place) < first)
     ]
-    busy = {one.doer for one in clauses if not (one.denied or one.aside)}
+    busy = {one.doer for one in clauses if not ((one.denied and not one.unable) or one.aside)}
     if nouns:
         own = [one for one in nouns if one is told[0] or not _is_possessed(one.subject)] or nouns
         heroes = [own, nouns] if busy.isdisjoint({one.subject for one in own}) else [own]
