@@ -140,7 +140,9 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     need = NEEDS.get(skill)
     if skill is Skill.SITDOWN and not found.rests and any(_is_bed(piece) for piece in named) and clause.verb != "sit":
         skill, need = Skill.LIEDOWN, "lie"
-    seated = any(affords(piece, "sit") or piece in deed_table().seats_at for piece in named) and not any(affords(piece, "lie") for piece in named)
+    seated = any(affords(piece, "sit") or piece in deed_table().seats_at for piece in named) and not any(
+        affords(piece, "lie") for piece in named
+    )
     if skill is Skill.LIEDOWN and seated and not _FLOOR.search(clause.text):
         skill, need = Skill.SITDOWN, "sit"  # "collapses into the armchair"
     if need is None:

@@ -15,7 +15,16 @@ from typing import Final
 import numpy as np
 
 from motion_backend.motion import Emotion, Skill
-from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, deed_table, names_things, room_of, standing_at, where
+from planner_service.composition.deed_lexicon import (
+    Deed,
+    DeedRow,
+    deed_of,
+    deed_table,
+    names_things,
+    room_of,
+    standing_at,
+    where,
+)
 from planner_service.composition.mood_captions import captions_of, fitting, manner_of, walk_of
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
@@ -118,14 +127,12 @@ class KeyframeWriter:
         if not any(names_somebody(one.clause) for one in beats):
             return
         for index, one in enumerate(beats):
-            if one.clause.verb:
-                continue
-            for piece in where(one.clause.text):
+            for piece in () if one.clause.verb else where(one.clause.text):
                 rests = affords(piece, "lie") or not affords(piece, "touch")
-                skill = Skill.SITDOWN if rests else Skill.TOUCH
+                skill, mood = Skill.SITDOWN if rests else Skill.TOUCH, one.beat.emotion
                 if affords(piece, NEEDS[skill]) and skill not in self._avoided and self._has(piece):
-                    mood = one.beat.emotion
-                    self._put(index, skill, mood, self._one_of(captions_of(skill, mood), mood, index, skill), piece, one.room)
+                    caption = self._one_of(captions_of(skill, mood), mood, index, skill)
+                    self._put(index, skill, mood, caption, piece, one.room)
                     return
         mood = beats[-1].beat.emotion
         self._put(None, Skill.LOCO, mood, "stand still" if mood is Emotion.NEUTRAL else walk_of(mood), "floor", None)
@@ -278,7 +285,11 @@ class KeyframeWriter:
         """A keyframe at furniture: of a script where one does the same, else written; False where there is none."""
         part = self.part_of(index) if mood is read.beat.emotion else None
         same = part is not None and part.keyframes[-1].skill is skill
-        if part is not None and same and all(self._has(one.piece[0], read.room or part.script.room) for one in part.keyframes):
+        if (
+            part is not None
+            and same
+            and all(self._has(one.piece[0], read.room or part.script.room) for one in part.keyframes)
+        ):
             self.parts.append((index, part))
             for keyframe in part.keyframes:
                 update = {"beat": index, "short_script": len(self.parts) - 1, "room": read.room or part.script.room}

@@ -138,7 +138,9 @@ def hero_of(clauses: Sequence[Clause]) -> str:
         doing = [one for some in heroes for one in some if one.subject in busy]
         return max(doing or own, key=lambda clause: _heroic(clause, pronoun)).subject
     opens = ("a ", "an ", "one ", "my ", "our ", *(() if people else ("the ",)))
-    living = [subject for subject in mains[:1] if subject.lower().startswith(opens) and _may_live(head_of(subject))]
+    called = [one for one in mains[:1] if one[:1].isupper() and " " not in one and not people]  # "Wen", "Rose"
+    opening = [one for one in mains[:1] if one.lower().startswith(opens)]
+    living = [subject for subject in (*opening, *called) if _may_live(head_of(subject))]
     return next(iter([*living, *(clause.subject for clause in people)]), "")
 
 
@@ -197,7 +199,7 @@ def names_somebody(clause: Clause) -> bool:
     if clause.verb:
         return is_person(clause.doer)
     words = [token.text for token in tokens_of(clause.text)]
-    return any(word.lower() in theme_words()["people"] or (word.istitle() and is_name(word)) for word in words)
+    return any(word.lower() in theme_words()["people"] or word.lower() in _PRONOUNS_OF for word in words)
 
 
 def is_hero(subject: str, hero: str) -> bool:

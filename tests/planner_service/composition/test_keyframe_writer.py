@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from functools import cache
 
-import pytest
 from examples import tries
 from for_each import for_each
 from hypothesis import given
