@@ -35,7 +35,7 @@ ROUNDS: Final = 4
 """Where a point is nearest to the soles changes as it is moved: so often it is looked for again."""
 STILL, SMOOTH = 0.5, 3e-6
 """What a shift (m²) and the jerk of the shifted pelvis ((m/s³)²) cost against a point (m²) outside."""
-HELD: Final = 1e4
+HELD: Final = 1e8
 """What a shift costs where the pelvis rests on something."""
 LEFT: Final = 0.01
 """Thighs are off a seat when the pelvis is so much higher than at rest (metres)."""
