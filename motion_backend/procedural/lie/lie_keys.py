@@ -89,6 +89,8 @@ class Propped:
 class HeadInHand:
     """On a side, the head in the hand below; in the head's frame, as if lying on the left."""
 
+    hips_up_rad: float
+    elbow_ahead_ratio: float
     spine_pitch_rad: float
     spine_turn_rad: float
     head_pitch_rad: float
@@ -270,13 +272,28 @@ class RiseToEdge:
 
 @table
 class OneKnee:
-    """The left knee down, the right foot standing."""
+    """The left knee down, the right foot standing; a hand pushes on that thigh on the way up."""
 
     name: Literal["one_knee"]
     wait_s: float
+    pelvis_aside_m: float
+    pelvis_back_m: float
+    hand_share: float
     hip_pitch_rad: float
     spine_pitch_rad: float
     knee_up_ratio: float
+
+
+@table
+class OverOneKnee:
+    """Still on both knees, the weight over the left one before the right foot is taken."""
+
+    name: Literal["over_one_knee"]
+    wait_s: float
+    pelvis_aside_m: float
+    pelvis_back_m: float
+    spine_pitch_rad: float
+    spine_side_rad: float
 
 
 @table
@@ -285,6 +302,7 @@ class BothKnees:
 
     name: Literal["both_knees"]
     wait_s: float
+    pelvis_back_m: float
     hip_pitch_rad: float
     spine_pitch_rad: float
     head_pitch_rad: float
@@ -337,6 +355,8 @@ class Pushing:
     spine_pitch_rad: float
     pelvis_ahead_m: float
     pelvis_up_m: float
+    pelvis_aside_m: float
+    hand_share: float
 
 
 @table
@@ -369,7 +389,7 @@ class SettleOnFloor:
 class LieOnFloor:
     """From standing to lying on the floor; `lie_on_floor.toml` says how its columns are to be read."""
 
-    pose: tuple[OneKnee, BothKnees, HandsAndKnees, OnHip]
+    pose: tuple[OneKnee, OverOneKnee, BothKnees, HandsAndKnees, OnHip]
     left_step: Step
     right_step: Step
     settle: SettleOnFloor
@@ -389,7 +409,7 @@ class RiseFromFloor:
     """From lying on the floor to standing; `rise_from_floor.toml` says how its columns are to be read."""
 
     leave: LeaveFloor
-    pose: tuple[OnHip, HandsAndKnees, BothKnees, OneKnee, Pushing, Stood]
+    pose: tuple[OnHip, HandsAndKnees, BothKnees, OverOneKnee, OneKnee, Pushing, Stood]
     left_step: Step
     right_step: Step
 

@@ -33,8 +33,8 @@ MAX_END: Final = 0.34
 """Legs go over an end that is no higher over the mattress than this (metres)."""
 STRETCHED: Final = -0.75
 """An ankle that is farther down the bed is that of a stretched leg (metres at 1.70 m)."""
-MIN_KNEE: Final = 6.0
-"""Knees of who lies on a side are bent at least so far (degrees)."""
+MIN_KNEE, DRAWN_UP = 6.0, 80.0
+"""Knees of who lies on a side are bent at least so far, and hips so far where knees are drawn up (degrees)."""
 BACK: Final[dict[str, tuple[str, str]]] = {
     "straight": ("flat", "flat"),
     "loose": ("loose", "loose"),
@@ -71,12 +71,16 @@ def _owned(leg: LyingLeg, own: OwnWay, index: int, crossed: bool) -> LyingLeg:
 
 def on_a_side(pose: Pose, legs: SideLegs, side: str, room: float, skeleton: Skeleton, own: OwnWay) -> Pose:
     """Legs of who lies on the left or right side, one upon the other, with `room` metres before the body."""
-    folds = [
-        replace(fold, hip_deg=fold.hip_deg + own.side_hip, knee_deg=max(fold.knee_deg + own.side_knee, MIN_KNEE))
-        for fold in (legs.below, legs.above)
-    ]
-    below, above = (_folded(fold, room / skeleton.scale) for fold in folds)
+    below, above = (_folded(_own_fold(fold, own), room / skeleton.scale) for fold in (legs.below, legs.above))
     return _placed(pose, (below, above) if side == "left" else (above, below), skeleton)
+
+
+def _own_fold(fold: Fold, own: OwnWay) -> Fold:
+    """The leg as it is bent this time; knees that are drawn up are as far up as they go."""
+    if fold.hip_deg > DRAWN_UP:
+        return fold
+    knee = max(fold.knee_deg + own.side_knee, MIN_KNEE)
+    return replace(fold, hip_deg=fold.hip_deg + own.side_hip, knee_deg=knee)
 
 
 def _folded(fold: Fold, room: float) -> LyingLeg:

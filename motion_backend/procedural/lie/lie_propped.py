@@ -76,8 +76,9 @@ def head_in_hand(pose: Pose, below: int, height: float, skeleton: Skeleton, row:
     """
     down = SIDES[below][1]
     head = bend(row.head_pitch_rad, row.head_side_rad * down, row.head_turn_rad * down)
+    up = rotations.rotvec_to_quat(np.array([0.0, 0.0, row.hips_up_rad * down]))
     tries = replace(
-        replace(pose, head=head).repeat(len(RAISES)),
+        replace(pose, head=head, hips=rotations.compose(pose.hips, up)).repeat(len(RAISES)),
         spine=np.stack([bend(row.spine_pitch_rad, float(side) * down, row.spine_turn_rad * down) for side in RAISES]),
         head=np.repeat(
             bend(row.head_pitch_rad, row.head_side_rad * down, row.head_turn_rad * down)[None], len(RAISES), 0
@@ -100,9 +101,10 @@ def _holding_head(pose: Pose, below: int, skeleton: Skeleton, row: HeadInHand) -
     wrist = joint + rotations.rotate(head, np.array(row.wrist_m) * mirror * skeleton.scale)
     shoulder = place + rotations.rotate(chest, SHOULDER * mirror * skeleton.scale)
     back = rotations.inverse(chest)
+    front = rotations.rotate(pose.hips, np.array([0.0, 0.0, 1.0]))
     arms, elbows, palms = pose.arms.copy(), pose.elbows.copy(), pose.palms.copy()
     arms[:, below] = rotations.rotate(back, wrist - shoulder) / (ARM * skeleton.scale)
-    elbows[:, below] = rotations.rotate(back, np.broadcast_to(-UP, wrist.shape))
+    elbows[:, below] = rotations.rotate(back, row.elbow_ahead_ratio * front - UP)
     x = rotations.normalize(np.array(row.fingers_direction) * mirror) * mirror[0]
     outwards = np.array(row.back_direction) * mirror
     y = rotations.normalize(outwards - (outwards @ x) * x)
