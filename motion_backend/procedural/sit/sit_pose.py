@@ -13,7 +13,8 @@ from motion_backend.procedural.held_poses import Seat, bend, upright
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.pose_solver import solve
 from motion_backend.procedural.sit.sit_keys import SitPose, Surface, Trunk
-from motion_backend.procedural.sit.sit_legs import NOBODY, Room, bends_a_leg, seated_legs
+from motion_backend.procedural.sit.sit_legs import Room, bends_a_leg, seated_legs
+from motion_backend.procedural.sit.sit_own import NOBODY
 from motion_backend.procedural.sit.sit_styles import Seated
 from motion_backend.procedural.touch.hand_rests import (
     HOLDS,
@@ -123,7 +124,9 @@ def lacking(style: Seated, place: Place, skeleton: Skeleton, keys: SitPose) -> t
     said = _hands_lacking(style, place, skeleton)
     if bends_a_leg(place.seat, style.legs, skeleton, place.room, keys.legs):
         said = (*said, "no room to stretch the legs: legs bent")
-    if style.recline >= LEANS_BACK and _recline(replace(style, own=NOBODY), place, keys.trunk) < LEANT * np.radians(style.recline):
+    if style.recline >= LEANS_BACK and _recline(replace(style, own=NOBODY), place, keys.trunk) < LEANT * np.radians(
+        style.recline
+    ):
         said = (*said, "nothing to lean back against: upright")
     return said
 
