@@ -35,7 +35,7 @@ class Outcome:
     error: float | None
     """Metres from joint to goal: the smallest in the last second of the contact. None where nothing is touched."""
     mean_error: float | None
-    """The mean of the same while it is held, as long as the action asks for. None where nothing is touched."""
+    """The mean of the same over the hold, the longest time within 10 cm. None where nothing is touched."""
     seconds: float | None
     """Until the threshold was first met; None if never."""
 
@@ -76,15 +76,19 @@ def _contact(action: Action, body: Kinematics) -> Outcome:
         reached_any=bool(within.any()),
         reached_strict=farthest - closest >= SUSTAINED * fps,
         error=float(last.min()),
-        mean_error=_over_hold(distance, action.hold, fps),
+        mean_error=_over_hold(distance, fps),
         seconds=_first(within, fps),
     )
     return _if_completed(body, found)
 
 
-def _over_hold(distance: Array, seconds: float, fps: int) -> float:
-    """The smallest mean of distances over a hold: over as many seconds on end as the action asks for, at least one."""
-    frames = min(max(round(max(seconds, SUSTAINED) * fps), 1), len(distance))
+def _over_hold(distance: Array, fps: int) -> float:
+    """The mean of distances over the hold: the longest time within 10 cm without a break, but at least the second in
+    which they are smallest."""
+    start, stop = longest_run(distance <= STRICT)
+    frames = min(round(SUSTAINED * fps), len(distance))
+    if stop - start >= frames:
+        return float(distance[start:stop].mean())
     sums = np.cumsum(np.concatenate([[0.0], distance]))
     return float((sums[frames:] - sums[:-frames]).min() / frames)
 

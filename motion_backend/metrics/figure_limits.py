@@ -66,6 +66,8 @@ STORY_LIMITS: Final = (
     Limit("zmp_upright", most=0.015),
     Limit("zmp_rising", most=0.04),
     Limit("jerk_against_real", least=0.5, most=1.5),
+    Limit("seam_jump", most=0.03),
+    Limit("seam_speed_jump", most=1.0),
     Limit("walk_seam_stops", most=0.10),
     Limit("walk_seam_flows", least=0.80),
     Limit("still_share", most=0.05),

@@ -22,7 +22,7 @@ from motion_backend.metrics.walk_seconds import WHOLE, Seconds
 from motion_backend.rotations import Array
 
 COMPONENTS: Final = 40
-"""Principal components of the people that a network learns from."""
+"""Principal components of the windows that a network learns from."""
 UNITS: Final = 32
 """Of the hidden layer."""
 STEPS: Final = 200
@@ -132,8 +132,8 @@ def _learned(
     people: Array, names: NDArray[np.str_], body: Array, bodies: NDArray[np.str_], seed: int
 ) -> Callable[[Array], Array]:
     """A network that gives windows of the body higher scores than those of people. (N, F) to (N,)."""
-    mean = people.mean(axis=0)
-    axes = _principal_axes(people - mean)
+    mean, shown = people.mean(axis=0), np.concatenate([people, body])
+    axes = _principal_axes(shown - shown.mean(axis=0))
     scale = ((people - mean) @ axes).std(axis=0) + 1e-6
     inputs = [(windows - mean) @ axes / scale for windows in (people, body)]
     weights = np.concatenate([_even(names), _even(bodies)]) / 2

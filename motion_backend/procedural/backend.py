@@ -14,6 +14,7 @@ import numpy as np
 
 from motion_backend.backend_protocol import POSTURE_AFTER, BodyState, History, Part, PartKind
 from motion_backend.motion import FPS, Character, Motion, Note, Phase, PhaseKind
+from motion_backend.procedural.balance_pass import balanced
 from motion_backend.procedural.body_state import Body
 from motion_backend.procedural.collision_avoidance.arm_clearance import Around, arms_clear
 from motion_backend.procedural.emotion_style import Bearing
@@ -110,7 +111,8 @@ def _to_motion(body: Body, part: Part) -> Motion:
     pose, start = concatenate(body.frames), body.begun
     if body.tail is not None:
         pose, start = carried_on(body.tail, pose), body.tail.at(0)
-    pose = arms_clear(hips_within(pose, body.skeleton), start, around, body.skeleton)
+    pose = balanced(hips_within(pose, body.skeleton), body.phases, body.skeleton)
+    pose = arms_clear(pose, start, around, body.skeleton)
     body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)
     whole = Motion(

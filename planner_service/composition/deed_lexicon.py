@@ -31,6 +31,7 @@ _WAYS: Final = re.compile(
 )
 """A way through a home, whatever the verb that goes it."""
 _FLOOR: Final = re.compile(r"(?<!feet )(?<!foot )\bon the (?:\w+ )?(?:floor|ground|rug|carpet)\b")
+_UNDER: Final = re.compile(r"\b(?:under|beneath|underneath|behind|beside|next to)\b")
 _AT: Final = re.compile(r"\b(?:at|by|near|beside|before|behind|in front of|next to)\b")
 _STATES: Final = frozenset(("be", "have", "become", "need", "like", "love", "hate", "know", "miss", "own"))
 _EXPRESSED: Final = frozenset(EXPRESSIONS)
@@ -139,8 +140,10 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     need = NEEDS.get(skill)
     if skill is Skill.SITDOWN and not found.rests and any(_is_bed(piece) for piece in named) and clause.verb != "sit":
         skill, need = Skill.LIEDOWN, "lie"
-    seated = named and not any(affords(piece, "lie") for piece in named) and not _FLOOR.search(clause.text)
-    if skill is Skill.LIEDOWN and seated:
+    seated = any(affords(piece, "sit") or piece in deed_table().seats_at for piece in named) and not any(
+        affords(piece, "lie") for piece in named
+    )
+    if skill is Skill.LIEDOWN and seated and not _FLOOR.search(clause.text):
         skill, need = Skill.SITDOWN, "sit"  # "collapses into the armchair"
     if need is None:
         pieces = [piece for piece in named if furniture.affordances(piece)]
@@ -151,7 +154,8 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     ):
         seats = [seat for piece in named for seat in deed_table().seats_at.get(piece, ())]
         fitting = seats or fitting
-    if need in ("sit", "lie") and _FLOOR.search(clause.text):
+    under = need == "lie" and bool(named) and not fitting and bool(_UNDER.search(clause.text))
+    if under or (need in ("sit", "lie") and _FLOOR.search(clause.text)):
         fitting = ["floor"]
     if fitting:
         return Deed(found, skill, tuple(fitting), True)
@@ -168,13 +172,15 @@ def _named(clause: Clause, about: str) -> list[str]:
 
 
 def row_of(clause: Clause, about: str) -> DeedRow | None:
-    """The first row that the clause's words fit, from its verb on; else from a later -ing on; else by its things."""
+    """The row whose saying tells most of the clause's words, from its verb on; else from a later -ing on; else by its
+    things."""
     ways, starts = deed_table().ways, list(_starts(clause))
     for anchored in (True, False):  # patterns that begin with a gap fit any verb, where no other does
         for lemmas in starts:
-            for pattern, row in ways.get("".join(lemmas[:1]) if anchored else "", ()):
-                if _fits(pattern, lemmas):
-                    return row
+            fitting = [(pattern, row) for pattern, row in ways.get("".join(lemmas[:1]) if anchored else "", ())
+                       if _fits(pattern, lemmas)]  # fmt: skip
+            if fitting:
+                return max(fitting, key=lambda one: sum(map(bool, one[0])))[1]
     return _by_things(clause, about)
 
 
@@ -239,9 +245,13 @@ def says(ways: Iterable[str], lemmas: Sequence[str]) -> bool:
 @cache
 def _pattern(says: str) -> Pattern:
     return tuple(
-        frozenset() if word == _GAP else frozenset(form for one in word.split("|") for form in (one, lemma_of(one)))
+        frozenset() if word == _GAP else frozenset(form for one in word.split("|") for form in _forms(one))
         for word in says.split()
     )
+
+
+def _forms(word: str) -> tuple[str, ...]:
+    return (word,) if word == "lay" else (word, lemma_of(word))  # who lies lays nothing
 
 
 def pieces_in(text: str) -> list[str]:

@@ -30,6 +30,7 @@ NOT_ACTED: Final = {
     "speech": "it is said; the body does not speak",
 }
 """Why beats of these kinds are not acted."""
+SPOKEN_OF: Final = "it is only spoken of"
 UNSHOWN: Final = "none of the captions shows it"
 _TOUCHES: Final = (
     "touch medium height with the right hand",
@@ -80,7 +81,7 @@ class KeyframeWriter:
         deed = deed_of(read.clause, self._about) if beat.kind == "deed" else None
         self._about = read.text if names_things(read.clause) else self._about
         if beat.kind in NOT_ACTED:
-            self.why[index] = NOT_ACTED[beat.kind]
+            self.why[index] = SPOKEN_OF if read.clause.aside else NOT_ACTED[beat.kind]
         elif deed is not None and deed.row.why:
             self.why[index] = deed.row.why
         elif deed is not None:

@@ -113,7 +113,7 @@ def read_beats(clauses: Sequence[Clause]) -> tuple[ReadBeat, ...]:
 def _read(clause: Clause, hero: str) -> ReadBeat:
     if head_of(clause.doer).lower() in ("tear", "tears"):  # they run where somebody weeps
         clause = replace(clause, verb="weep", lemmas=("weep", *clause.lemmas[1:]))
-    who = "" if is_hero(clause.doer, hero) else clause.doer
+    who = "" if clause.aside or is_hero(clause.doer, hero) else clause.doer
     led = bool(who) and bool(clause.subject) and not clause.text.lower().startswith(who.lower())
     text = f"{who} {clause.text}" if led else clause.text
     if not clause.verb:
@@ -150,11 +150,11 @@ def _kind(clause: Clause, who: str) -> BeatKind:
     words = theme_words()
     if clause.quotes or (clause.verb in words["speech_verbs"] and words["not_said"].isdisjoint(clause.lemmas)):
         return "speech" if not who else "other"
-    if who:
+    if who or clause.aside:
         return "other"
     if clause.denied and not (clause.unable and clause.verb in words["unable_verbs"]):
         return "undone"
-    if clause.perfect or clause.verb in words["memory_verbs"] or clause.joint == "since":
+    if clause.perfect or (clause.verb in words["memory_verbs"] and not clause.unable) or clause.joint == "since":
         return "memory"
     return "feeling" if is_feeling(clause) else "deed"
 

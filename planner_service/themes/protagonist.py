@@ -117,7 +117,7 @@ def _pronouns_by(pattern: re.Pattern[str], text: str) -> str:
 
 def hero_of(clauses: Sequence[Clause]) -> str:
     """Whom the theme is about, as it is written first: the narrator, else the person that its pronouns fit best."""
-    told = [clause for clause in clauses if clause.subject]
+    told = [clause for clause in clauses if clause.subject and not clause.aside]
     mains = [clause.subject for clause in told if clause.joint in _MAIN_JOINTS]
     if any(clause.subject.lower() == "i" for clause in told):
         return "I"
@@ -129,12 +129,14 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     nouns = [
         one
         for one in people
-        if not _is_pronoun(one.subject)
-        and (one is told[0] or not _is_possessed(one.subject))
-        and (one.joint not in _ASIDE or (one.sentence, one.place) < first)
+        if not _is_pronoun(one.subject) and (one.joint not in _ASIDE or (one.sentence, one.place) < first)
     ]
+    busy = {one.doer for one in clauses if not (one.denied or one.aside)}
     if nouns:
-        return max(nouns, key=lambda clause: _heroic(clause, pronoun)).subject
+        own = [one for one in nouns if one is told[0] or not _is_possessed(one.subject)] or nouns
+        heroes = [own, nouns] if busy.isdisjoint({one.subject for one in own}) else [own]
+        doing = [one for some in heroes for one in some if one.subject in busy]
+        return max(doing or own, key=lambda clause: _heroic(clause, pronoun)).subject
     opens = ("a ", "an ", "one ", "my ", "our ", *(() if people else ("the ",)))
     living = [subject for subject in mains[:1] if subject.lower().startswith(opens) and _may_live(head_of(subject))]
     return next(iter([*living, *(clause.subject for clause in people)]), "")

@@ -21,6 +21,13 @@ _SEMI: Final = re.compile(r"\n+|;\s+|:\s+|\s+[–—]\s*|\s*[–—]\s+|\s+-{1,2
 _HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
 _THAT: Final = frozenset(("that", "how", "what", "why", "if", "whether", "which", "who"))
 """What joins a clause that is an object: "finds that he won"."""
+_SUPPOSING: Final = frozenset(("if", "unless"))
+"""Joints before what is only thought of: "if he calls"."""
+_RELATIVES: Final = frozenset(("that", "which", "who"))
+_MANNER: Final = frozenset(("way", "time", "moment", "minute", "day", "night", "morning", "year"))
+"""Nouns that say no more than how or when what is told of them was: "the way he was taught"."""
+_ARTICLES: Final = frozenset(("the", "a", "an"))
+_OWNERS: Final = frozenset(("his", "her", "their", "its", "my", "our"))
 _LATER_JOINTS: Final = frozenset(("before", "until", "while"))
 _NO_JOINTS: Final = {"once": ("at", "for", "more", "all"), "while": ("a", "long", "little", "short")}
 """What joining words stand after where they join nothing: "at once", "for a while"."""
@@ -50,6 +57,8 @@ class Clause:
     """Whether it is not done since it cannot be: "cannot sleep"."""
     perfect: bool = False
     """Whether it had been done before."""
+    aside: bool = False
+    """Whether it is only spoken of: of a noun ("the letter she had hidden"), or supposed ("if he calls")."""
     quotes: tuple[str, ...] = ()
     """What is said in it."""
     sentence: int = 0
@@ -77,7 +86,9 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
         for piece in (pieces := _pieces(sentence)):
             parts = _clause(piece, quotes, number)
             own = parts[0].subject or (_next_subject(pieces, piece) if not told else "")
-            told.append([replace(part, doer=own or doer, place=len(told)) for part in parts])
+            told.append(
+                [replace(part, doer=part.subject if part.aside else own or doer, place=len(told)) for part in parts]
+            )
             if not doer or not _is_led(piece.joint, ()):  # who does what "because guests are coming" is not the guests
                 doer = own or doer
         found += [part for place in _in_time(pieces) for part in told[place]]
@@ -230,6 +241,9 @@ def _opens(piece: _Piece, after: Sequence[_Piece]) -> bool:
 def _is_noun_list(last: _Piece, piece: _Piece) -> bool:
     """Whether a single word goes on with the nouns before it: "cakes and drinks", but not "eats and drinks"."""
     words = piece.tokens
+    verb = verb_place(words) or 0
+    if piece.joint in ("and", "or", ",") and verb > 2 and words[verb - 1].low in grammar().subjects and last.tokens:
+        return words[0].low in _ARTICLES | _OWNERS and _ends_noun(words[verb - 3].low, words[verb - 2].low)
     if len(words) > 1 or not is_noun(words[0].low):
         return False
     end, word = last.tokens[-1].low, words[0].low
@@ -281,14 +295,62 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     if words and words[0].low in grammar().adverbs - grammar().denials and len(words) > 1:
         words = words[1:]
     group = verb_group(words)
+    supposed = joint in _SUPPOSING or piece.tokens[0].low in ("if", "though")
+    words, told_of = _without_asides(words, group.place)
     lemmas = _lemmas(words[group.place :])
     first = Clause(
         _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, joint, denied=group.denied,
-        unable=group.unable, perfect=group.perfect, quotes=_quotes(tokens, quotes), sentence=sentence,
+        unable=group.unable, perfect=group.perfect, aside=supposed, quotes=_quotes(tokens, quotes), sentence=sentence,
     )  # fmt: skip
     parted = not group.denied or group.unable
     parts = _parted(first, words, group.place, piece.source) if parted else [first]
-    return [_placed(parts[0], _before(tokens[:place], subject), piece.source), *parts[1:]]
+    asides = [replace(one, sentence=sentence) for words in told_of for one in _aside(words, piece.source)]
+    return [_placed(parts[0], _before(tokens[:place], subject), piece.source), *parts[1:], *asides]
+
+
+def _without_asides(words: list[Token], main: int) -> tuple[list[Token], list[list[Token]]]:
+    """The words of a clause, and those after a noun that tell of it with a verb of their own: "the flour | the cat has
+    spilled", "a call | that never comes"."""
+    for place in range(main + 2, len(words) - 1):
+        low, after = words[place].low, words[place + 1 :]
+        if low in _RELATIVES:
+            tells = verb_place(after[:3]) == 0 or _tells(after)
+        else:
+            tells = low in grammar().subjects | _ARTICLES | _OWNERS and _tells(words[place:])
+        if tells and _ends_noun(words[place - 2].low, words[place - 1].low):
+            cut = place - 2 * (words[place - 1].low in _MANNER and words[place - 2].low in grammar().marks)
+            return words[:cut], [words[place:]]
+    return words, []
+
+
+def _ends_noun(before: str, word: str) -> bool:
+    """Whether a word is a noun, told by the word before it where it may be an adjective too: "the light"."""
+    known = grammar()
+    if word == "one" or word in known.marks | known.prepositions or verb_of(before) == "let":
+        return False
+    return is_noun(word) and (not is_adjective(word) or before in known.marks)
+
+
+def _tells(words: Sequence[Token]) -> bool:
+    """Whether words begin with a subject and its finite verb."""
+    place = verb_place(words[:5])
+    if not place or (words[0].low in _ARTICLES | _OWNERS and place < 2):
+        return False
+    if any(token.low in grammar().prepositions | grammar().subjects for token in words[1:place]):
+        return False
+    word = words[place].low
+    return (
+        word in grammar().auxiliaries or is_third_person(word) or (word != verb_of(word) and not word.endswith("ing"))
+    )
+
+
+def _aside(words: list[Token], source: str) -> list[Clause]:
+    """What is told of a noun: it happened before or elsewhere, and somebody may have done it."""
+    head = words[1:] if words[0].low in _RELATIVES else words
+    place = verb_place(head) or 0
+    subject = _subject(head[:place]) or words[0].text
+    lemmas = _lemmas(head[place:])
+    return [Clause(_text(source, words), subject, lemmas[0] if lemmas else "", lemmas, "that", aside=True)]
 
 
 def _before(tokens: Sequence[Token], subject: str) -> Sequence[Token]:

@@ -84,10 +84,12 @@ def sit_down(
     landed = released(touched, skeleton)
     settled, holds = seated(landed, place, style, skeleton, keys.pose)
     poses = [landed, replace(settled, ankles=landed.ankles, feet=landed.feet)]
-    moved = interpolate([0.0, _hands_take(landed, settled, take, skeleton) * pace], poses, FPS)
+    low = place.seat.is_low(skeleton.scale)
+    seconds = _hands_take(landed, settled, take, skeleton) * pace * (ROUND_KNEES if low else 1.0)
+    moved = interpolate([0.0, seconds], poses, FPS)
     moved = follow(_place_feet(moved, landed, settled, take), settled, holds, skeleton)
     moved = _taken(moved, landed, holds)
-    moved = _round_the_thighs(moved, touched.reaching, place.seat.is_low(skeleton.scale))
+    moved = _round_the_thighs(moved, touched.reaching, low)
     share = smooth(np.arange(len(moved)) / BEGINS)
     moved = arms_inside(moved, place.seat, place.elbows, skeleton, share)
     whole = concatenate([part for part in (ready, down, settle, moved) if part is not None])
@@ -98,6 +100,10 @@ def _hands_take(start: Pose, end: Pose, move: Move, skeleton: Skeleton) -> float
     """Seconds that hands take from pose to pose at tempo 1: from the head longer than from the lap."""
     travel = float(np.linalg.norm(end.arms - start.arms, axis=1).max()) * ARM * skeleton.scale
     return max(move.min_time_s, move.time_per_m_s * travel)
+
+
+ROUND_KNEES = 1.4
+"""Hands take so much longer on the floor: they go round knees that are up."""
 
 
 def _depth(stood: Pose, seat: Seat, scale: float) -> float:
@@ -234,7 +240,7 @@ def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move) -> Pose:
     ankles, feet, planted, knees = pose.ankles.copy(), pose.feet.copy(), pose.planted.copy(), pose.knees.copy()
     time, each = np.arange(1, len(pose) + 1) / FPS, move.foot_time_s
     wait = (WAITS if after.planted.all() else WAITS_TO_STAND) * each
-    for order, index in enumerate(_first_foot(after)):
+    for order, index in enumerate(_first_foot(before, after)):
         gap = float(np.linalg.norm(after.ankles[index] - before.ankles[index]))
         share = np.clip((time - move.first_foot_s - order * wait) / max(each, STEP * gap), 0.0, 1.0)
         way = smooth(share)[:, None]
@@ -255,8 +261,12 @@ def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move) -> Pose:
     return replace(pose, ankles=ankles, feet=feet, planted=planted, knees=knees)
 
 
-def _first_foot(after: Pose) -> tuple[int, int]:
-    """Which foot goes first: one that will stand, else one that comes to lie behind the other's shin."""
+def _first_foot(before: Pose, after: Pose) -> tuple[int, int]:
+    """Which foot goes first: one that will stand, else one that comes to lie behind the other's shin; of two that
+    stand the one with the longer way."""
+    if before.planted.all() and after.planted.all():
+        way = np.linalg.norm(after.ankles - before.ankles, axis=1)
+        return (0, 1) if way[0] > way[1] else (1, 0)
     away = np.linalg.norm((after.ankles - after.pelvis)[:, [0, 2]], axis=1)
     left = after.planted[0] > after.planted[1] or (not after.planted.any() and away[0] < away[1] - BEHIND)
     return (0, 1) if left else (1, 0)
@@ -290,6 +300,9 @@ def stand_up(
         pelvis=seat.pelvis + ready.pelvis_ahead_m * skeleton.scale * _ahead_of(seat),
         **_lean(seat, lean, fold, ready),
     )
+    if low:
+        # The floor is farther from the shoulders with every centimetre that one rises: hands leave it sooner.
+        rows = [replace(row, held_share=keys.rise.low_held_ratio * row.held_share) for row in rows]
     risen = [_risen(row, over, end, seat, lean) for row in rows]
     up = interpolate([0.0, *times], [over, leant, *risen, replace(end, reach=over.reach, palms=over.palms)], FPS)
     up = follow(replace(up, knees=knees_over_feet(up)), over, push, skeleton)

@@ -54,6 +54,7 @@ class ArmSwing:
     upper_arms: float
     lower_arms: float
     aside_arms: float
+    aside_min_arms: float
     inwards_arms: float
     """How much a hand comes in before the body."""
     stretched_max_arms: float
@@ -115,7 +116,7 @@ def arm_table() -> ArmTable:
 def swing_arms(style: Walk, steps: Steps, speed: Array, spread: Array, wander: Array) -> tuple[Array, Array]:
     """Wrists and elbow directions of T frames walked at `speed` (T,), `spread` (T, 2) into poses. (T, 2, 3) each.
 
-    `wander` (T, 2) is how far an arm is off its swing (radians).
+    `wander` (T, 2, 2) is how far each arm is off its swing, forwards and aside (radians).
     """
     row, frames = arm_table().swing, len(steps.phase)
     fixed, poles = arm_arrays(*style.bearing.arms)
@@ -139,7 +140,7 @@ def swing_arms(style: Walk, steps: Steps, speed: Array, spread: Array, wander: A
 def _hanging(style: Walk, index: int, swung: tuple[Array, Array, Array], speed: Array) -> Array:
     """A wrist that swings: shoulder and elbow turn forward together, and further forward than back. (T, 3).
 
-    `swung` is the beat of its swing, how much the body moves, and how far the arm is off (T,) each.
+    `swung` is the beat of its swing and how much the body moves (T,) each, and how far the arm is off (T, 2).
     """
     row, side, (beat, moving, off), own = arm_table().swing, 1 if index == 0 else -1, swung, style.character
     bent = max(style.elbow + row.elbow_deg[style.bearing.arms[index]] + own.of_side("elbow", "deg", side), 0.0)
@@ -147,12 +148,13 @@ def _hanging(style: Walk, index: int, swung: tuple[Array, Array, Array], speed: 
     reach = np.minimum(reach * own.of_side("swing", "ratio", side), np.radians(row.swing_max_deg))
     # Arms hang down from a bent trunk.
     hangs = row.hangs_deg + row.free_share * style.bearing.lean + own.of_side("hang", "deg", side)
-    swing = reach * beat + np.radians(hangs) + off * moving
+    swing = reach * beat + np.radians(hangs) + off[:, 0] * moving
     more = (bent - row.straight_deg) * (row.still_share + row.moving_share * moving)
-    bend = np.radians(row.straight_deg + more) + row.folds_ratio * (swing + reach * moving)
+    bend = np.radians(row.straight_deg + more) + row.folds_ratio * own.folds_ratio * (swing + reach * moving)
     shoulder, fore = swing - row.shoulder_share * bend, swing + row.forearm_share * bend
     aside = row.aside_arms + style.splay + own.of_side("splay", "arms", side) * moving
-    inwards = row.inwards_arms + own.inwards_arms
+    aside = np.maximum(aside, row.aside_min_arms) + np.abs(off[:, 1]) * moving
+    inwards = row.inwards_arms + own.of_side("inwards", "arms", side)
     wrist = np.stack(
         [
             side * (aside - inwards * np.sin(swing)),

@@ -91,8 +91,6 @@ class FootWay:
     """Of the time in the air, in which toes that were bent stretch,"""
     toes_bend_share: float
     """and in which they can bend again."""
-    swings_out_deg: float
-    """How far its tip points outwards half-way."""
     toe_bend_deg: float
     """So far toes bend while the heel rises; beyond that the foot tips over their ends."""
 
@@ -158,6 +156,8 @@ class Swing:
     round: float = 0.0
     """How far outwards it goes round the other leg (metres)."""
     backwards: bool = False
+    swings_out: float = 0.0
+    """How far its tip points outwards half-way (radians)."""
     rise: float = HEEL_RISE
     """Phase from the first rise of its heel to the lift."""
 
@@ -241,7 +241,7 @@ class Feet:
         self.ankles[after, index] = swing.start + way[:, None] * (swing.end - swing.start)
         self.ankles[after, index] += (np.sin(np.pi * u) ** 2)[:, None] * swing.bow
         self.ankles[after, index, 1] += swing.height(1 - u if swing.backwards else u)
-        aside = np.radians(row.swings_out_deg) * swing.size * np.sin(np.pi * u) ** 2
+        aside = swing.swings_out * swing.size * np.sin(np.pi * u) ** 2
         self.yaw[after, index] = swing.start_yaw + smooth(u) * swing.turn + swing.side * aside
         self.planted[inside, index] = 0.0
         air = share[inside]

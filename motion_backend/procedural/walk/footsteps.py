@@ -107,6 +107,8 @@ class SwingShape:
     full_stride_m: float
     """A step that rolls fully from heel to toe."""
     splay_rad: float
+    swings_out_deg: float
+    """How far its tip points outwards half-way."""
     drag_clearance_share: float
     """Of the usual clearance, of a foot that is dragged."""
     hop_clearance_share: float
@@ -321,6 +323,7 @@ def _swing_of(
     forward = float((target - origin)[[0, 2]] @ ahead) / (shape.full_stride_m * skeleton.scale)
     stride = float(np.clip(forward, -1.0, 1.0))
     dragged = shape.drag_clearance_share if style.drag and beat.index == 1 else 1.0
+    clearance = style.clearance * style.character.clearance_sides_ratio**side
     rolled = np.radians(shape.heel_off_deg) * style.roll * abs(stride) ** shape.heel_off_power
     return Swing(
         origin,
@@ -329,12 +332,13 @@ def _swing_of(
         heading + side * (shape.splay_rad + np.radians(style.character.of_side("toes", "deg", side))),
         side,
         beat.window,
-        clearance=style.clearance * (shape.hop_clearance_share if beat.hop else dragged),
+        clearance=clearance * (shape.hop_clearance_share if beat.hop else dragged),
         heel_off=rolled * (shape.hop_heel_off_share if beat.hop else 1.0),
         heel_strike=TIP_UP * style.strike * abs(stride) * (0.0 if beat.hop else 1.0),
         scuff=np.radians(style.scuff) * float(np.clip(stride / shape.scuff_stride_share, 0.0, 1.0)),
         round=_way_round(origin, target, beside, heading, side) * skeleton.scale,
         backwards=stride < -shape.backwards_share,
+        swings_out=np.radians(shape.swings_out_deg) * style.character.of_side("toes_swing", "ratio", side),
         # The first heel rises from the first frame on, not before.
         rise=min(HEEL_RISE, max(beat.window[0] - float(phase[0]), foot_table().way.rise_min_phase)),
     )
@@ -361,7 +365,8 @@ def _widths(route: Route, at: int, style: Walk, place: LandingPlace) -> tuple[fl
     stance = max(style.width, turning * usual_width())
     under_way = min(float(route.speed[at]) / place.under_way_mps, 1.0)
     narrower = 0.0 if style.aside == SIDEWAYS else place.narrower_share
-    return stance, stance * (1 - narrower * under_way * (1 - turning))
+    straight_on = under_way * (1 - turning)
+    return stance, stance * (1 - narrower * straight_on) * style.character.width_ratio**straight_on
 
 
 def _clear_of(beside: Array, target: Array, heading: float, side: int, apart: float) -> Array:

@@ -316,24 +316,25 @@ def _carry(
     hip_turn = np.radians(style.twist) * steps.first * np.cos(np.pi * steps.phase) * moving
     roll, shoulders = _rolls(steps, style, moving)
     lean = _leaning(route, style, brisk)
-    tilt = row.lean.hips_share * lean + row.lean.hips_wave_rad * brisk * steps.wave(row.lean.hips_wave_at_phase)
+    nods = own.nod_ratio * brisk
+    tilt = row.lean.hips_share * lean + row.lean.hips_wave_rad * nods * steps.wave(row.lean.hips_wave_at_phase)
     hips = rotations.compose(
         rotations.yaw_to_quat(route.heading + hip_turn + np.radians(own.hips_turn_deg) * moving),
         rotations.rotvec_to_quat(np.stack([tilt, np.zeros(frames), roll], axis=1)),
     )
-    jolt = row.lean.jolt_rad * brisk * steps.wave(row.lean.jolt_at_phase)
+    jolt = row.lean.jolt_rad * nods * steps.wave(row.lean.jolt_at_phase)
     jolt = jolt + row.lean.stamp_rad_per_m * style.stamp * landing(steps)
     forward = row.lean.spine_share * lean + row.drunk.lean_rad * unsteady + jolt
     turned = row.lean.looks_share * np.radians(style.veer) * moving
     turned = turned + np.radians(own.shoulder_turn_deg) * moving - row.lean.counter_ratio * own.counter_ratio * hip_turn
     spine = np.stack([forward, turned, shoulders - roll + row.drunk.side_rad * unsteady], axis=1)
     spine = spine + moving[:, None] * wander[:, :3]
-    arms, elbows = swing_arms(style, steps, route.speed, spread, wander[:, 3:5])
+    arms, elbows = swing_arms(style, steps, route.speed, spread, wander[:, 3:7].reshape(-1, 2, 2))
     pose = Pose(
         pelvis=np.stack([ground[:, 0], np.zeros(frames), ground[:, 1]], axis=1),
         hips=hips,
         spine=spine,
-        head=_gaze(route, style, hip_turn, (unsteady, jolt), rng) + moving[:, None] * wander[:, 5:8],
+        head=_gaze(route, style, hip_turn, (unsteady, jolt), rng) + moving[:, None] * wander[:, 7:],
         ankles=steps.ankles,
         feet=steps.feet,
         toes=steps.toes,
@@ -360,11 +361,11 @@ def _rolls(steps: Steps, style: Walk, moving: Array) -> tuple[Array, Array]:
 
 
 def _wander(frames: int, rng: np.random.Generator) -> Array:
-    """What trunk (3), arms (2) and head (3) do that no step asks for: slow wandering, and the tremble of steps taken
-    on a real floor. (T, 8) radians."""
+    """What trunk (3), arms (2 each) and head (3) do that no step asks for: slow wandering, and the tremble of steps
+    taken on a real floor. (T, 10) radians."""
     row = carriage().wander
-    slow = np.repeat([row.trunk_deg, row.arms_deg, row.head_deg], (3, 2, 3))
-    quick = np.repeat([row.trunk_trembles_deg, row.arms_tremble_deg, row.head_trembles_deg], (3, 2, 3))
+    slow = np.repeat([row.trunk_deg, row.arms_deg, row.head_deg], (3, 4, 3))
+    quick = np.repeat([row.trunk_trembles_deg, row.arms_tremble_deg, row.head_trembles_deg], (3, 4, 3))
     wandered = [
         one * drift(frames, row.hz, FPS, rng) + other * drift(frames, row.trembles_hz, FPS, rng)
         for one, other in zip(slow, quick, strict=True)

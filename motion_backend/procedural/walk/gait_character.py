@@ -33,14 +33,18 @@ class CharacterSpread:
     counter_ratio: Spread
     bounce_ratio: Spread
     clearance_ratio: Spread
+    clearance_sides_ratio: Spread
     roll_ratio: Spread
     strike_ratio: Spread
     double_share: Spread
     crouch_m: Spread
+    nod_ratio: Spread
     lean_deg: Spread
     head_deg: Spread
     toes_deg: Spread
     toes_sides_deg: Spread
+    toes_swing_ratio: Spread
+    toes_swing_sides_ratio: Spread
     step_sides_m: Spread
     beat_sides_share: Spread
     width_sides_m: Spread
@@ -57,9 +61,11 @@ class CharacterSpread:
     splay_sides_arms: Spread
     elbow_deg: Spread
     elbow_sides_deg: Spread
+    folds_ratio: Spread
     lag_phase: Spread
     lag_sides_phase: Spread
     inwards_arms: Spread
+    inwards_sides_arms: Spread
 
 
 @table
@@ -86,6 +92,7 @@ class GaitCharacter:
 
     stride_ratio: float = 1.0
     width_ratio: float = 1.0
+    """Between the feet in full stride."""
     sway_ratio: float = 1.0
     hips_ratio: float = 1.0
     """How far the pelvis tips with each step,"""
@@ -95,14 +102,20 @@ class GaitCharacter:
     """and the chest against it."""
     bounce_ratio: float = 1.0
     clearance_ratio: float = 1.0
+    clearance_sides_ratio: float = 1.0
     roll_ratio: float = 1.0
     strike_ratio: float = 1.0
     double_share: float = 0.0
     crouch_m: float = 0.0
+    nod_ratio: float = 1.0
+    """Of the trunk with each step."""
     lean_deg: float = 0.0
     head_deg: float = 0.0
     toes_deg: float = 0.0
     toes_sides_deg: float = 0.0
+    toes_swing_ratio: float = 1.0
+    """How far toes swing outwards in the air."""
+    toes_swing_sides_ratio: float = 1.0
     step_sides_m: float = 0.0
     """Steps of the left foot are longer,"""
     beat_sides_share: float = 0.0
@@ -128,16 +141,23 @@ class GaitCharacter:
     splay_sides_arms: float = 0.0
     elbow_deg: float = 0.0
     elbow_sides_deg: float = 0.0
+    folds_ratio: float = 1.0
+    """Of the elbow, as an arm comes forward."""
     lag_phase: float = 0.0
     """How much later arms swing (of a step)."""
     lag_sides_phase: float = 0.0
     inwards_arms: float = 0.0
     """How much further hands come in before the body (arm lengths)."""
+    inwards_sides_arms: float = 0.0
 
     def of_side(self, name: str, unit: str, side: int) -> float:
         """What one side has of a trait that both have, and of what sets them apart: +1 left, -1 right."""
         both, apart = float(getattr(self, f"{name}_{unit}")), float(getattr(self, f"{name}_sides_{unit}"))
         return both * apart**side if unit == "ratio" else both + side * apart
+
+
+NOBODY = GaitCharacter()
+"""Nobody in particular: the average of all."""
 
 
 @cache

@@ -24,7 +24,7 @@ from motion_backend.procedural.walk.gait import walk_on
 from motion_backend.procedural.walk.gait_character import gait_character
 from motion_backend.procedural.walk.root_path import resample
 from motion_backend.procedural.walk.walk_styles import Walk, walk_style
-from motion_backend.procedural.walk.way_junction import ThroughWay, through_way
+from motion_backend.procedural.walk.way_junction import ThroughWay, through_way, way_from, way_to
 from motion_backend.rotations import Array
 from scene_graphs.navigation.path_planner import Walkable
 
@@ -34,6 +34,7 @@ ROOM = 0.02
 """What a detour leaves free beyond what the body needs (metres)."""
 LONG_ENOUGH = 1.0
 """Ways shorter than this (metres) are gone straight and once."""
+STRAIGHT_ON = "no room for a curve: straight on, looking to that side"
 BEAT = 2.4
 """How far somebody who paces goes before turning round (metres),"""
 BEAT_SHARE = 0.9
@@ -126,7 +127,9 @@ def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Po
         path = _spin_on_the_way(body, path, style)
         style = replace(style, spin=0.0)
     if style.veer and not near:
-        path = curved(path, style.veer > 0, body.scene.walkable)
+        straight, path = path, curved(path, style.veer > 0, body.scene.walkable)
+        if path is straight:
+            body.note(STRAIGHT_ON)
     if style.to_and_fro and not near:
         *before, path = to_and_fro(path, body.scene.walkable)
         for way in before:
@@ -160,7 +163,11 @@ def halt(body: Body, action: Action) -> None:
 def _stride(body: Body, path: Array, facing: float | None, style: Walk, onward: Point | None = None) -> None:
     """Walk along a path; arms that are spread come in where there is no room for them."""
     stride, body.stride = body.stride, None
+    if stride is None and not style.aside:
+        path = way_from(path, body.yaw, lambda points: _is_free(points, body.scene.walkable))
     way = _through(body, path, onward) if onward is not None and not style.spin else None
+    if way is None and facing is not None and not style.aside:
+        path = way_to(path, facing, lambda points: _is_free(points, body.scene.walkable))
     points, cut = (path, None) if way is None else (way.points, way.cut_m)
     end = facing if way is None else None
     frames, body.stride = walk_on(body.pose, points, end, style, body.skeleton, body.rng, stride, cut)

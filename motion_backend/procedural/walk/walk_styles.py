@@ -17,7 +17,7 @@ from motion_backend.procedural.style_sheet import (
     Turns,
     read_style_sheet,
 )
-from motion_backend.procedural.walk.gait_character import GaitCharacter
+from motion_backend.procedural.walk.gait_character import NOBODY, GaitCharacter
 
 MIN_DOUBLE = 0.05
 """Share of a step on both feet that whoever does not run has at least."""
@@ -91,7 +91,7 @@ class Walk:
     """What the hands do meanwhile: a name in `gestures.GESTURES`."""
     release: bool = False
     """Whether arms come down at the end of the way, where something else begins."""
-    character: GaitCharacter = GaitCharacter()
+    character: GaitCharacter = NOBODY
     """Whose walk it is."""
 
     def in_character(self) -> Walk:
@@ -102,7 +102,6 @@ class Walk:
             self,
             bearing=bearing,
             stride=self.stride * own.stride_ratio,
-            width=self.width * own.width_ratio,
             clearance=self.clearance * own.clearance_ratio,
             bounce=self.bounce * own.bounce_ratio,
             sway=self.sway * own.sway_ratio,

@@ -42,6 +42,8 @@ class JunctionTable:
     """Of its radius, that the arc begins before the place."""
     back_m: float
     """Over which the way that leads on is joined."""
+    round_from_rad: float
+    """Who sets out, or arrives, turned by more than this comes round in an arc."""
 
 
 def junction_table() -> JunctionTable:
@@ -97,11 +99,10 @@ def _cut(first: Array, second: Array, size: float) -> Array | None:
     return np.concatenate([first[: -1 - steps], curve, second[steps + 1 :]])
 
 
-def _arc(first: Array, second: Array, arrives: Array, turn: float, radius: float) -> Array | None:
+def _arc(first: Array, second: Array, arrives: Array, turn: float, radius: float) -> Array:
     """An arc of that radius from the first way's direction round to the second's, which is joined little by little."""
     row, before = junction_table(), int(junction_table().before_ratio * radius / SPACING)
-    if before >= len(first):
-        return None
+    before = min(before, len(first) - 1)
     start, side = first[-1 - before], np.sign(turn) * np.array([arrives[1], -arrives[0]])
     angle = np.linspace(0.0, abs(turn), max(int(abs(turn) * radius / SPACING), 2))[:, None]
     curve = start + radius * (np.sin(angle) * arrives + (1 - np.cos(angle)) * side)
@@ -109,3 +110,24 @@ def _arc(first: Array, second: Array, arrives: Array, turn: float, radius: float
     rest = second[nearest:]
     away = smooth(SPACING * np.arange(len(rest)) / row.back_m)[:, None]
     return np.concatenate([first[: -1 - before], curve, (rest + (1 - away) * (curve[-1] - rest[0]))[1:]])
+
+
+def way_from(path: Array, yaw: float, fits: Fits) -> Array:
+    """A way (N, 2) for a body that faces `yaw`: it sets out ahead and comes round in an arc; as it was without room."""
+    row, points = junction_table(), resample(path)
+    if len(points) * SPACING < row.onward_min_m:
+        return path
+    ahead = np.array([np.sin(yaw), np.cos(yaw)])
+    turn = float(rotations.wrap(np.arctan2(*_direction(points, row)) - yaw))
+    if abs(turn) < row.round_from_rad:
+        return path
+    for radius in row.radii_m:
+        curved = _arc(points[:1], points, ahead, turn, radius)
+        if len(points) * SPACING > 2 * radius and fits(curved):
+            return curved
+    return path
+
+
+def way_to(path: Array, facing: float, fits: Fits) -> Array:
+    """A way (N, 2) that comes round in an arc to what is faced at its end; as it was without room."""
+    return way_from(path[::-1], facing + np.pi, fits)[::-1]

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from acted import Body, got_up, lain, risen_from, sat
+from acted import Body, got_up, lain, risen_from, sat, touched
 
 from motion_backend.metrics.caption_predicates import (
     MEASURES,
@@ -31,10 +31,12 @@ def neutral(skill: Skill) -> Body:
             return lain("bed", "lie")
         case Skill.GETUP:
             return got_up("bed", "hands on belly")
+        case Skill.TOUCH:
+            return touched("table", "medium", "touch medium height")
     return risen_from("chair", "stand up")
 
 
-JUDGED = (Skill.SITDOWN, Skill.STANDUP, Skill.LIEDOWN, Skill.GETUP)
+JUDGED = (Skill.SITDOWN, Skill.STANDUP, Skill.LIEDOWN, Skill.GETUP, Skill.TOUCH)
 """Skills whose captions all have rows."""
 
 

@@ -77,7 +77,7 @@ def test_nobody_is_asked_about_whom_the_network_has_seen(monkeypatch: pytest.Mon
     body, known = made(0.3), people()
     rows = {window.tobytes(): name for window, name in zip(known.features(), known.people.tolist(), strict=True)}
     rows |= {window.tobytes(): take for window, take in zip(body.features(), body.takes.tolist(), strict=True)}
-    asked = []
+    asked: list[str] = []
 
     def learned(shown: Array, names: Array, ours: Array, *_: object) -> object:
         seen = {rows[window.tobytes()] for window in (*shown, *ours)}
@@ -105,13 +105,14 @@ def test_halves_keep_takes_whole_and_cut_a_single_one_in_time() -> None:
         assert 0.3 < half[body.people == name].mean() < 0.7
     single = halves(body[body.takes == "a 0"])
     assert single.tolist() == sorted(single.tolist(), reverse=True)
-    assert single.any() and not single.all()
+    assert single.any()
+    assert not single.all()
 
 
 def test_windows_do_not_say_where_a_walk_is_nor_where_it_leads_to() -> None:
     walk = strolled(np.random.default_rng(1), 0.2)
     turn = rotations.axis_to_quat("y", np.array(2.1))
-    elsewhere = rotations.rotate(turn, walk) + [3.0, 0.0, -5.0]
+    elsewhere = rotations.rotate(turn, walk) + np.array([3.0, 0.0, -5.0])
     here, there = (seconds_of([("a", "a", joints)], FPS) for joints in (walk, elsewhere))
     assert len(here) == 3
     np.testing.assert_allclose(here.features(), there.features(), atol=1e-9)

@@ -162,7 +162,7 @@ def test_things_are_picked_up_from_tops_and_two_hands_have_room() -> None:
                     np.asarray(spot.normal), "right")  # fmt: skip
         stroke = free_stroke(OBSTACLES, spot, laid)
         assert abs(stroke @ np.asarray(spot.normal)) < 1e-9
-        assert 0.02 < np.linalg.norm(stroke) < 0.10
+        assert 0.02 < np.linalg.norm(stroke) < 0.15
 
 
 def test_where_two_hands_have_no_room_one_does_it_and_says_so() -> None:
