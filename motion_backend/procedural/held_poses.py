@@ -212,7 +212,11 @@ def idle(pose: Pose, seconds: float, size: float, rng: np.random.Generator, fps:
     breath = np.sin(2 * np.pi * (row.breath_hz * time / fps + rng.uniform() + row.breath_uneven_share * slow[3]))
     aside, down = _glances(frames, size, rng, fps)
     lies = abs(float(rotations.rotate(pose.hips, UP)[1])) < LIES
-    moved = (row.least_share + (1 - row.least_share) * size) * (row.lying_share if lies else 1.0) * _bends(slow, _shifts(frames, rng, fps), aside, row)
+    moved = (
+        (row.least_share + (1 - row.least_share) * size)
+        * (row.lying_share if lies else 1.0)
+        * _bends(slow, _shifts(frames, rng, fps), aside, row)
+    )
     moved[:, 0] += row.breath_rad * breath
     spine = held.spine + ease * moved
     nod, turn = row.head_forward_rad * size * slow[2] + down, row.head_turn_rad * size * slow[3] + aside

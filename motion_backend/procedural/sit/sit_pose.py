@@ -123,7 +123,9 @@ def lacking(style: Seated, place: Place, skeleton: Skeleton, keys: SitPose) -> t
     said = _hands_lacking(style, place, skeleton)
     if bends_a_leg(place.seat, style.legs, skeleton, place.room, keys.legs):
         said = (*said, "no room to stretch the legs: legs bent")
-    if style.recline >= LEANS_BACK and _recline(replace(style, own=NOBODY), place, keys.trunk) < LEANT * np.radians(style.recline):
+    if style.recline >= LEANS_BACK and _recline(replace(style, own=NOBODY), place, keys.trunk) < LEANT * np.radians(
+        style.recline
+    ):
         said = (*said, "nothing to lean back against: upright")
     return said
 
