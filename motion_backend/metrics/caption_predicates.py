@@ -283,6 +283,12 @@ def _from_pelvis(body: Kinematics, points: Array) -> Array:
     return points - body.positions[:, None, INDEX["pelvis"]]
 
 
+def _in_pelvis(body: Kinematics, joint: str) -> Array:
+    """Where the left joint is against the right one, in the pelvis' own frame (metres). (T, 3)."""
+    pair = _both(body, joint)
+    return rotations.rotate(rotations.inverse(body.world[:, INDEX["pelvis"]]), pair[:, 0] - pair[:, 1])
+
+
 def _high(points: Array) -> Array:
     return np.asarray(points[..., 1])
 
@@ -298,6 +304,8 @@ MEASURES: Final[dict[str, Callable[[Kinematics], Array]]] = {
     "trunk_pitch": lambda body: np.degrees(np.arctan2(np.sum(_trunk(body) * _heading(body), -1), _trunk(body)[:, 1])),
     "trunk_tilt": lambda body: _angle(_trunk(body), np.array([0.0, 1.0, 0.0])),
     "face_down": lambda body: _pitch(_front(body, "head")),
+    # Degrees that the left of the pelvis points below the horizontal: on the left side above 0, on the right below.
+    "left_down": lambda body: _pitch(rotations.rotate(body.world[:, INDEX["pelvis"]], np.array([1.0, 0.0, 0.0]))),
     "pelvis_pitch": lambda body: _pitch(_front(body, "pelvis")),
     # Metres, of the left and the right hand: the middle of its palm.
     "hand_to_head": lambda body: _palms_to(body, "head", SKULL),
@@ -322,11 +330,16 @@ MEASURES: Final[dict[str, Callable[[Kinematics], Array]]] = {
     "foot_ahead": lambda body: _ahead(body, _both(body, "ankle")),
     "feet_apart": lambda body: _left_over_right(body, "ankle"),
     "knees_apart": lambda body: np.linalg.norm(_both(body, "knee")[:, 0] - _both(body, "knee")[:, 1], axis=-1),
+    # Of who lies: how far the left ankle is to the left of the right one, and before or behind it.
+    "ankles_across": lambda body: _in_pelvis(body, "ankle")[:, 0],
+    "ankles_ahead": lambda body: np.abs(_in_pelvis(body, "ankle")[:, 2]),
+    "neck_over_pelvis": lambda body: _high(_trunk(body)),
     "elbow_to_knee": lambda body: np.linalg.norm(_both(body, "elbow") - _both(body, "knee"), axis=-1),
     # Metres and metres a second.
     "knee_height": lambda body: _high(_both(body, "knee")),
     "pelvis_height": lambda body: _high(body.positions[:, INDEX["pelvis"]]),
     "pelvis_rise": lambda body: _slope(_high(body.positions[:, INDEX["pelvis"]]), body.motion.fps),
+    "neck_speed": lambda body: _speeds(body, body.positions[:, INDEX["neck"]]),
     "pelvis_speed": lambda body: _speeds(body, body.positions[:, INDEX["pelvis"]] * [1.0, 0.0, 1.0]),
 }  # fmt: skip
 """What can be measured of a body in every frame: (T,), or (T, 2) for left and right. (T, 2) over-floor heights count

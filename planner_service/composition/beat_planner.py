@@ -49,6 +49,8 @@ def serve_beats(
         else:
             writer.write(index, read)
     if not writer.keyframes:
+        writer.appear(read)
+    if not writer.keyframes:
         told = "; ".join(
             f"“{one.text[:60]}”: {writer.why.get(index, UNSHOWN)}" for index, one in list(enumerate(read))[:4]
         )

@@ -220,6 +220,17 @@ def _lemmas(text: str) -> list[str]:
     return [lemma_of(token.text) for token in tokens_of(text)]
 
 
+def where(text: str) -> tuple[str, ...]:
+    """Furniture that words name, else where the first thing is that they name."""
+    places = deed_table().places
+    return tuple(pieces_in(text)) or next((places[word] for word in _lemmas(text) if word in places), ())
+
+
+def standing_at(clause: Clause) -> tuple[str, ...]:
+    """Where one stands who eats or drinks on one's feet; empty where nothing tells."""
+    return tuple(piece for piece in where(clause.text) if affords(piece, "touch"))
+
+
 def names_things(clause: Clause) -> bool:
     """Whether a clause names furniture or things, which "it" may mean later."""
     return bool(pieces_in(clause.text)) or any(word in deed_table().places for word in clause.lemmas)

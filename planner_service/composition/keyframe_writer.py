@@ -15,12 +15,22 @@ from typing import Final
 import numpy as np
 
 from motion_backend.motion import Emotion, Skill
-from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, deed_table, names_things, room_of
+from planner_service.composition.deed_lexicon import (
+    Deed,
+    DeedRow,
+    deed_of,
+    deed_table,
+    names_things,
+    room_of,
+    standing_at,
+    where,
+)
 from planner_service.composition.mood_captions import captions_of, fitting, manner_of, walk_of
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import ReadBeat
+from planner_service.themes.protagonist import names_somebody
 from scene_graphs import furniture
 
 NOT_ACTED: Final = {
@@ -38,6 +48,10 @@ _TOUCHES: Final = (
     "touch medium height with the left hand",
 )
 _ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
+_TAKEN: Final = DeedRow(
+    ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
+)
+"""What is eaten or drunk on one's feet is taken from where it is."""
 _STANDING: Final = DeedRow(("stand",), Skill.LOCO, captions=("stand still",))
 
 
@@ -108,6 +122,21 @@ class KeyframeWriter:
         self._resting = last if last.skill in (Skill.SITDOWN, Skill.LIEDOWN) else None
         self._plain = False
 
+    def appear(self, beats: Sequence[ReadBeat]) -> None:
+        """Somebody of whom nothing else can be acted is seen at what a beat without a verb names, else in their mood."""
+        if not any(names_somebody(one.clause) for one in beats):
+            return
+        for index, one in enumerate(beats):
+            for piece in () if one.clause.verb else where(one.clause.text):
+                rests = affords(piece, "lie") or not affords(piece, "touch")
+                skill, mood = Skill.SITDOWN if rests else Skill.TOUCH, one.beat.emotion
+                if affords(piece, NEEDS[skill]) and skill not in self._avoided and self._has(piece):
+                    caption = self._one_of(captions_of(skill, mood), mood, index, skill)
+                    self._put(index, skill, mood, caption, piece, one.room)
+                    return
+        mood = beats[-1].beat.emotion
+        self._put(None, Skill.LOCO, mood, "stand still" if mood is Emotion.NEUTRAL else walk_of(mood), "floor", None)
+
     def avoid(self, beats: Sequence[ReadBeat]) -> None:
         """Neither sit nor lie for other deeds where the theme says that this is not done."""
         for one in beats:
@@ -116,7 +145,9 @@ class KeyframeWriter:
 
     def _do(self, index: int, read: ReadBeat, deed: Deed) -> None:
         mood = read.beat.emotion
-        if deed.row.rests and (deed.skill in self._avoided or _ON_FEET.search(read.text)):
+        if deed.row.rests and _ON_FEET.search(read.text) and (stands := standing_at(read.clause)):
+            deed = Deed(_TAKEN, Skill.TOUCH, stands, True)
+        elif deed.row.rests and (deed.skill in self._avoided or _ON_FEET.search(read.text)):
             deed = Deed(_STANDING, Skill.LOCO, deed.pieces if deed.named else (), deed.named)
         if deed.row.mood and mood is Emotion.NEUTRAL:
             mood = Emotion(deed.row.mood)
@@ -253,7 +284,12 @@ class KeyframeWriter:
     ) -> bool:
         """A keyframe at furniture: of a script where one does the same, else written; False where there is none."""
         part = self.part_of(index) if mood is read.beat.emotion else None
-        if part is not None and all(self._has(one.piece[0], read.room or part.script.room) for one in part.keyframes):
+        same = part is not None and part.keyframes[-1].skill is skill
+        if (
+            part is not None
+            and same
+            and all(self._has(one.piece[0], read.room or part.script.room) for one in part.keyframes)
+        ):
             self.parts.append((index, part))
             for keyframe in part.keyframes:
                 update = {"beat": index, "short_script": len(self.parts) - 1, "room": read.room or part.script.room}
@@ -312,7 +348,7 @@ class KeyframeWriter:
         kinds = furniture.categories_of(word)
         return any(category in kinds for name, those in self.home.items() if room in (None, name) for category in those)
 
-    def _put(self, index: int, skill: Skill, mood: Emotion, caption: str, piece: str, room: str | None) -> None:
+    def _put(self, index: int | None, skill: Skill, mood: Emotion, caption: str, piece: str, room: str | None) -> None:
         self.keyframes.append(
             PlannedKeyframe.model_validate(
                 {

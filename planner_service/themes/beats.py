@@ -11,6 +11,7 @@ from typing import Final
 from motion_backend.motion import Emotion
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
+from planner_service.themes.lexicon import is_known_word
 from planner_service.themes.protagonist import head_of, hero_of, is_hero
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.theme_words import theme_words
@@ -128,7 +129,7 @@ def _read(clause: Clause, hero: str) -> ReadBeat:
         emotion, sure = (named, True) if of_subject else (emotion, sure)
     if not sure and not who and (shown := EXPRESSIONS.get(clause.verb)):
         emotion, sure = shown, True
-    if kind in ("other", "undone") and not sure:
+    if (kind == "other" or (kind == "undone" and not clause.unable)) and not sure:
         emotion = None
     beat = Beat(text=_bounded(text), emotion=emotion or Emotion.NEUTRAL, kind=kind, who=_bounded(who, 80))
     return ReadBeat(beat, clause, sure, emotion, next(iter(rooms_in(text)), None))
@@ -176,6 +177,9 @@ def is_feeling(clause: Clause) -> bool:
 def _refuse_foreign(text: str) -> None:
     words = [token.low for token in tokens_of(text) if token.text[:1].isalpha()]
     foreign = [word for word in words if word in theme_words()["foreign"]]
+    plain = [token.low for token in tokens_of(text) if token.text.isalpha() and token.text.islower()]
+    if len(plain) > 3 and 2 * sum(map(is_known_word, plain)) < len(plain):
+        raise ThemeError(f"{text[:60]!r} is not English. {LANGUAGE}")
     if not any(re.search(r"[a-z]", word) for word in words) or len(foreign) >= max(2, 0.2 * len(words)):
         raise ThemeError(f"{text[:60]!r} is not English. {LANGUAGE}")
     if len(_CODE.findall(text)) > max(3, len(words) / 3):

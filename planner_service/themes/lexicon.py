@@ -103,6 +103,13 @@ _IRREGULAR: Final = {"found": "find", "felt": "feel", "saw": "see", "lay": "lie"
 """Forms of two verbs, with the one that themes mean."""
 
 
+def is_known_word(word: str) -> bool:
+    """Whether a word in small letters is English."""
+    words = grammar()
+    small = words.marks | words.subjects | words.prepositions | words.joints | words.adverbs | words.auxiliaries
+    return bool(kinds_of(word)) or word in small or word in words.never_verbs
+
+
 def is_verb(word: str) -> bool:
     """Whether a word may be a form of a verb."""
     return bool(verb_of(word)) or word.lower() in grammar().auxiliaries

@@ -131,14 +131,16 @@ def hero_of(clauses: Sequence[Clause]) -> str:
         for one in people
         if not _is_pronoun(one.subject) and (one.joint not in _ASIDE or (one.sentence, one.place) < first)
     ]
-    busy = {one.doer for one in clauses if not (one.denied or one.aside)}
+    busy = {one.doer for one in clauses if not ((one.denied and not one.unable) or one.aside)}
     if nouns:
         own = [one for one in nouns if one is told[0] or not _is_possessed(one.subject)] or nouns
         heroes = [own, nouns] if busy.isdisjoint({one.subject for one in own}) else [own]
         doing = [one for some in heroes for one in some if one.subject in busy]
         return max(doing or own, key=lambda clause: _heroic(clause, pronoun)).subject
     opens = ("a ", "an ", "one ", "my ", "our ", *(() if people else ("the ",)))
-    living = [subject for subject in mains[:1] if subject.lower().startswith(opens) and _may_live(head_of(subject))]
+    called = [one for one in mains[:1] if one[:1].isupper() and " " not in one and not people]  # "Wen", "Rose"
+    opening = [one for one in mains[:1] if one.lower().startswith(opens)]
+    living = [subject for subject in (*opening, *called) if _may_live(head_of(subject))]
     return next(iter([*living, *(clause.subject for clause in people)]), "")
 
 
@@ -190,6 +192,14 @@ def is_person(subject: str) -> bool:
         stem = head.lower()[:-2]
         return is_third_person(f"{stem}s") or is_third_person(f"{stem}es")
     return len(head) > 5 and head.lower().endswith(("ist", "ian", "man", "woman", "person", "ress"))
+
+
+def names_somebody(clause: Clause) -> bool:
+    """Whether a person does what a clause tells, or is named in one without a verb."""
+    if clause.verb:
+        return is_person(clause.doer)
+    words = [token.text for token in tokens_of(clause.text)]
+    return any(word.lower() in theme_words()["people"] or word.lower() in _PRONOUNS_OF for word in words)
 
 
 def is_hero(subject: str, hero: str) -> bool:

@@ -13,6 +13,7 @@ from functools import cache
 from typing import Any, Final
 
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_third_person, lemma_of, verb_of
+from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import Token, is_plural, plain, tokens_of, verb_place
 from planner_service.themes.verb_group import verb_group
 
@@ -241,12 +242,16 @@ def _opens(piece: _Piece, after: Sequence[_Piece]) -> bool:
 def _is_noun_list(last: _Piece, piece: _Piece) -> bool:
     """Whether a single word goes on with the nouns before it: "cakes and drinks", but not "eats and drinks"."""
     words = piece.tokens
+    if [word.low for word in words if word.low != "up"] == ["standing"]:
+        return True  # "eats from the pot, standing up"
     verb = verb_place(words) or 0
     if piece.joint in ("and", "or", ",") and verb > 2 and words[verb - 1].low in grammar().subjects and last.tokens:
         return words[0].low in _ARTICLES | _OWNERS and _ends_noun(words[verb - 3].low, words[verb - 2].low)
     if len(words) > 1 or not is_noun(words[0].low):
         return False
     end, word = last.tokens[-1].low, words[0].low
+    if {end, word} <= theme_words()["body"]:
+        return True  # "on his hands and knees"
     if is_third_person(word):
         return is_plural(end) and len(last.tokens) > 2 and last.tokens[-2].low not in grammar().marks
     return is_noun(end) and word == verb_of(word)
@@ -289,6 +294,8 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
         return [Clause(piece.text, "", "", _lemmas(tokens), joint, quotes=_quotes(tokens, quotes), sentence=sentence)]
     place -= 2 * ([token.low for token in tokens[max(place - 2, 0) : place]] == ["no", "longer"])
     subject = _subject(tokens[:place])
+    if subject.startswith("«"):
+        subject = _inverted(tokens[place + 1 :])
     denials = grammar().denials - grammar().subjects
     lead = tokens[:place] if not subject else [t for t in tokens[:place] if t.low in denials]
     words = (lead if any(token.low in grammar().denials for token in lead) else []) + tokens[place:]
@@ -339,9 +346,8 @@ def _tells(words: Sequence[Token]) -> bool:
     if any(token.low in grammar().prepositions | grammar().subjects for token in words[1:place]):
         return False
     word = words[place].low
-    return (
-        word in grammar().auxiliaries or is_third_person(word) or (word != verb_of(word) and not word.endswith("ing"))
-    )
+    finite = word != verb_of(word) and not word.endswith("ing")
+    return finite or word in grammar().auxiliaries or is_third_person(word)
 
 
 def _aside(words: list[Token], source: str) -> list[Clause]:
@@ -351,6 +357,13 @@ def _aside(words: list[Token], source: str) -> list[Clause]:
     subject = _subject(head[:place]) or words[0].text
     lemmas = _lemmas(head[place:])
     return [Clause(_text(source, words), subject, lemmas[0] if lemmas else "", lemmas, "that", aside=True)]
+
+
+def _inverted(after: Sequence[Token]) -> str:
+    """Who says it, where that stands after the verb: "“Who is there?” shouted Barnaby"."""
+    if after and after[0].text[:1].isupper():
+        return after[0].text
+    return " ".join(token.text for token in after[:2]) if after and after[0].low in _ARTICLES | _OWNERS else ""
 
 
 def _before(tokens: Sequence[Token], subject: str) -> Sequence[Token]:

@@ -56,19 +56,17 @@ def told(words: list[str]) -> Iterator[str]:
         yield from (" ".join(one.replace("...", filling).replace("$", "").split()) for one in said)
 
 
-def test_every_saying_is_understood_as_its_row_or_an_earlier_one_of_its_skill() -> None:
+def test_every_saying_is_understood_as_its_row_or_another_of_its_skill() -> None:
     """Else the saying can never be met, and whoever added it believes that it is."""
     rows = deed_table().deed
     place_of = {id(row): place for place, row in enumerate(rows)}
     dead = []
-    for place, row in enumerate(rows):
+    for row in rows:
         for says in row.says:
             for words in ways(says):
                 found = (place_of.get(id(one)) for text in told(words) for one in rows_of(text))
                 if not any(
-                    at is not None
-                    and at <= place
-                    and (at == place or (rows[at].skill is row.skill and bool(rows[at].why) == bool(row.why)))
+                    at is not None and rows[at].skill is row.skill and bool(rows[at].why) == bool(row.why)
                     for at in found
                 ):
                     dead.append((row.says[0], " ".join(words)))
@@ -153,7 +151,7 @@ def test_captions_show_what_is_done(text: str, caption: str) -> None:
         ("He staggered to the bedroom", Skill.LOCO, "walking drunkenly"),
         ("He stamped his foot", Skill.LOCO, "stomping heavily"),
         ("He rushed around like a headless chicken", Skill.LOCO, "rush anxiously forward"),
-        ("He picked a sock up off the floor", Skill.TOUCH, "pick up with the right hand"),
+        ("He picked a sock up off the floor", Skill.TOUCH, "touch low height with the right hand"),
         ("He swept up the crumbs", Skill.TOUCH, "touch low height with the right hand"),
         ("She fed the goldfish", Skill.TOUCH, "touch low height with the right hand"),
         ("She pruned the bonsai", Skill.TOUCH, ""),
@@ -171,8 +169,8 @@ def test_captions_show_what_is_done(text: str, caption: str) -> None:
         ("He wound the clock", Skill.TOUCH, "rotate with the right hand"),
         ("He cracked two eggs into a pan", Skill.TOUCH, ""),
         ("He rolled out the pastry", Skill.TOUCH, ""),
-        ("He boiled an egg", Skill.TOUCH, "turn on with the right hand"),
-        ("He heated up some soup", Skill.TOUCH, "turn on with the right hand"),
+        ("He boiled an egg", Skill.TOUCH, ""),
+        ("He heated up some soup", Skill.TOUCH, ""),
         ("She sipped her cocoa", Skill.SITDOWN, "drinking from a cup in the right hand"),
         ("He drank to her health", Skill.SITDOWN, "drinking from a cup in the right hand"),
         ("He picked at his food", Skill.SITDOWN, "eating at the table, right hand to the mouth"),
