@@ -11,7 +11,9 @@ PAGE_SOURCES = $(shell find web -type f -not -path '*/node_modules/*' -not -path
 NODE_TESTS := $(patsubst %/package-lock.json,%/node_modules/.ready,$(wildcard tests/*/package-lock.json))
 NODE_20 := node -e 'process.exit(parseInt(process.versions.node) >= 20 ? 0 : 1)' 2>/dev/null && command -v npm >/dev/null
 
-THEME ?= A person is happy at first, but he is told in the phone that he fails the job interview and becomes very depressed.
+# benchmarks/ and docs/images/draw.py read the demo's theme and seed here.
+THEME ?= He comes home happy, talks on the phone about the failed interview, angrily slams the cabinet, drinks a glass of wine on the sofa and falls asleep.
+THEME_SEED ?= 2
 OUT ?= out/demo
 # Where torch comes from; if empty, install.py chooses.
 TORCH_INDEX ?=
@@ -62,7 +64,7 @@ serve: $(READY) page
 	@$(BIN)/sims serve
 
 demo: $(READY)
-	@$(BIN)/sims story "$(THEME)" --out $(OUT) --seed 7
+	@$(BIN)/sims story "$(THEME)" --out $(OUT) --seed $(THEME_SEED)
 
 # Each closes with the time it took beside its limits: tests/run_layer.py.
 test: $(READY_DEV)

@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 from benchmarks.figure import Figure
-from benchmarks.themes import DEMO, SEED, THEMES
+from benchmarks.themes import demo
 
 SECONDS, GIGABYTES = 20.0, 1.5
 
@@ -21,12 +21,13 @@ def measure_demo() -> list[Figure]:
 
     Must come before any other child process: the peak memory is that of the largest child so far.
     """
+    theme, seed = demo()
     with tempfile.TemporaryDirectory(prefix="sims-bench-") as folder:
         environment = os.environ | {"SIMS_DATA_DIR": str(Path(folder, "data")), "COLUMNS": "120"}
-        command = [sys.executable, "-c", "from planner_service.cli import main; main()", "story", THEMES[DEMO]]
+        command = [sys.executable, "-c", "from planner_service.cli import main; main()", "story", theme]
         started = time.perf_counter()
         done = subprocess.run(
-            [*command, "--out", str(Path(folder, "out")), "--seed", str(SEED)],
+            [*command, "--out", str(Path(folder, "out")), "--seed", str(seed)],
             env=environment,
             capture_output=True,
             text=True,

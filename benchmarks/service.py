@@ -18,7 +18,7 @@ from typing import Any
 import httpx
 
 from benchmarks.figure import Figure
-from benchmarks.themes import DEMO, THEMES
+from benchmarks.themes import demo
 
 MEDIAN_MS, P99_MS, PER_SECOND, FIRST_SECONDS, RATIO = 20.0, 100.0, 300.0, 3.0, 1.7
 LOAD_SECONDS, BATCH = 8.0, 12
@@ -104,7 +104,7 @@ def browser_figures(client: httpx.Client) -> list[Figure]:
     chromium = os.environ.get("CHROMIUM") or any(map(shutil.which, ("chromium", "chromium-browser", "google-chrome")))
     if not chromium or shutil.which("node") is None or not all(tool.exists() for tool in tools):
         return []
-    command = ["node", str(script), str(client.base_url), THEMES[DEMO]]
+    command = ["node", str(script), str(client.base_url), demo()[0]]
     told = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
     note = "Chromium without a graphics card"
     return [
@@ -115,7 +115,7 @@ def browser_figures(client: httpx.Client) -> list[Figure]:
 
 def post(client: httpx.Client, seed: int) -> str:
     """Post the demo's theme; the story's id."""
-    story = client.post("/v1/stories", json={"theme": THEMES[DEMO], "seed": seed}).raise_for_status().json()
+    story = client.post("/v1/stories", json={"theme": demo()[0], "seed": seed}).raise_for_status().json()
     return str(story["id"])
 
 

@@ -1,6 +1,9 @@
-"""The seven themes of SIMS 8.2 and Tables 10, 11 and 13, as printed there; the second is the demo's."""
+"""The seven themes of SIMS 8.2 and Tables 10, 11 and 13, as printed there; and the demo's."""
 
 from __future__ import annotations
+
+import re
+from pathlib import Path
 
 THEMES = {
     "weekend": "A person relaxes at home during the weekend, drinks cokes, and reads books.",
@@ -16,6 +19,12 @@ THEMES = {
     "remembers his dead wife and becomes sad. He then decides to drink a bottle of wine and becomes drunken and rests "
     "on the sofa.",
 }
-DEMO = "interview"
 SEED = 7
-"""The demo's seed."""
+"""Of the stories of these."""
+MAKEFILE = Path(__file__).resolve().parents[1] / "Makefile"
+
+
+def demo() -> tuple[str, int]:
+    """The theme and the seed of `make demo`, as the Makefile has them."""
+    told = dict(re.findall(r"^(THEME|THEME_SEED) \?= (.+)$", MAKEFILE.read_text(encoding="utf-8"), re.MULTILINE))
+    return told["THEME"], int(told["THEME_SEED"])

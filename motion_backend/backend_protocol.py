@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from typing import Any, Final, Protocol
 
@@ -14,8 +14,9 @@ from motion_backend.contact_goals import contact_goals
 from motion_backend.motion import FPS, Action, Character, ContactGoal, Motion, Posture
 from motion_backend.rotations import Array
 from motion_backend.skeleton import build_skeleton
-from scene_graphs.affordances.affordances import Spot
+from scene_graphs.affordances.affordances import Spot, spot_from_dict, spot_to_dict
 from scene_graphs.home import Home
+from scene_graphs.json_fields import Json
 
 HISTORY: Final = 10
 """Frames a state remembers: a third of a second, more than the two frames at 10 a second that LINGO goes on from."""
@@ -172,6 +173,17 @@ class BodyState:
             backend=backend,
             memory=memory or {},
         )
+
+    def to_dict(self) -> Json:
+        """Plain values, for JSON."""
+        return asdict(self) | {"rest": spot_to_dict(self.rest)}
+
+    @staticmethod
+    def from_dict(row: Json) -> BodyState:
+        """The inverse of `to_dict`, also after JSON."""
+        history = History(**{name: tuple(map(tuple, rows)) for name, rows in row["history"].items()})
+        own = {"posture": Posture(row["posture"]), "history": history, "rest": spot_from_dict(row["rest"])}
+        return BodyState(**row | own)
 
 
 POSTURE_AFTER: Final = {

@@ -77,7 +77,7 @@ class Director:
         waiting = {index: next(acting) for index, acting in enumerate(actings)}
         done: dict[int, Step] = {}
         while waiting:
-            for backend in dict.fromkeys(backend for backend, _ in waiting.values()):
+            for backend in {id(backend): backend for backend, _ in waiting.values()}.values():
                 mine = [index for index, (asked_of, _) in waiting.items() if asked_of is backend]
                 steps = advance_many(backend, [waiting[index][1] for index in mine])
                 for index, step in zip(mine, steps, strict=True):
@@ -171,7 +171,17 @@ def _judged(motion: Motion, action: Action) -> Motion:
     served = np.full(len(motion), action.keyframe, dtype=np.int32)
     motion = replace(motion, actions=served, goals=contact_goals(action), completion=1.0)
     why = motion.reason or shortfall(action, Kinematics.of(motion))
-    return replace(motion, completed=not why, reason=why)
+    return replace(motion, completed=not why, reason=why, phases=_run_together(motion.phases))
+
+
+def _run_together(phases: Sequence[Phase]) -> tuple[Phase, ...]:
+    """Neighbours of one kind by one backend as one phase: sitting down and sitting there."""
+    found: list[Phase] = []
+    for phase in phases:
+        if found and replace(found[-1], start=phase.start, stop=phase.stop) == phase:
+            phase = replace(phase, start=found.pop().start)
+        found.append(phase)
+    return tuple(found)
 
 
 @dataclass(frozen=True)

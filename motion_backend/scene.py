@@ -8,6 +8,8 @@ from functools import cached_property
 from threading import Lock
 from typing import Final
 
+import numpy as np
+
 from motion_backend.body.scene_collision import Obstacles
 from scene_graphs.geometry.egocentric_heightmap import SceneHeights
 from scene_graphs.home import Home
@@ -27,6 +29,11 @@ class Scene:
     def walkable(self) -> Walkable:
         """Where one can walk."""
         return Walkable(self.home)
+
+    def beginning(self, seed: int) -> tuple[tuple[float, float], float]:
+        """Where a body begins, [x, z], and its yaw: a free place of the first room that the seed chooses."""
+        rng = np.random.default_rng([seed, 0])
+        return self.walkable.random_point(rng, 0), float(rng.uniform(-np.pi, np.pi))
 
     @cached_property
     def obstacles(self) -> Obstacles:

@@ -34,8 +34,8 @@ ENTERING: Final[dict[Skill, tuple[PartKind, ...]]] = {
     Skill.GETUP: (PartKind.HOLD,),
 }
 """What a standing body does for each skill, in order."""
-STOOD: Final = 0.3
-"""Seconds that one stays on the feet one has come to."""
+STOOD, STOOD_ALREADY = 0.3, 0.8
+"""Seconds that one stays on the feet one has come to, and on those one stood on."""
 AT_THE_SPOT: Final = 0.04
 """A body this near to its goal (metres) need not walk: it turns."""
 RISINGS: Final = (Skill.STANDUP, Skill.GETUP)
@@ -67,7 +67,7 @@ class Rule:
 
 
 DONE: Final[dict[Skill, Rule]] = {
-    Skill.LOCO: Rule("the pelvis", HAND_OVER, 0.3),
+    Skill.LOCO: Rule("the pelvis", HAND_OVER, 0.1),
     Skill.SITDOWN: Rule("the pelvis", THRESHOLDS[Skill.SITDOWN], SUSTAINED),
     Skill.LIEDOWN: Rule("the pelvis", THRESHOLDS[Skill.LIEDOWN], SUSTAINED),
     Skill.TOUCH: Rule("the hand", THRESHOLDS[Skill.TOUCH], SUSTAINED),
@@ -80,6 +80,8 @@ def parts_of(action: Action, posture: Posture, place: tuple[float, float] | None
     rising = () if posture is Posture.STANDING else (Part(PartKind.RISE, action),)
     if action.skill is Skill.LOCO and action.goal is None:
         return (*rising, Part(PartKind.HOLD, action, hold=action.hold))
+    if action.skill in RISINGS:
+        return (*rising, Part(PartKind.HOLD, action, hold=STOOD if rising else STOOD_ALREADY))
     return (*rising, *(_part(kind, action, place) for kind in ENTERING[action.skill]))
 
 
@@ -90,9 +92,7 @@ def _part(kind: PartKind, action: Action, place: tuple[float, float] | None) -> 
             goal, facing = action.spot.standing, action.spot.approach
         near = place is not None and goal is not None and np.hypot(goal[0] - place[0], goal[1] - place[1]) < AT_THE_SPOT
         return Part(PartKind.TURN if near else kind, action, goal, facing)
-    if kind is PartKind.HOLD:
-        return Part(kind, action, hold=STOOD if action.spot is None or action.skill in RISINGS else action.hold)
-    return Part(kind, action, hold=action.hold if kind is PartKind.REACH else 0.0)
+    return Part(kind, action, hold=action.hold if kind in (PartKind.REACH, PartKind.HOLD) else 0.0)
 
 
 def time_limit(part: Part, way: float) -> float:

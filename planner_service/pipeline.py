@@ -10,7 +10,7 @@ from motion_backend.backends import DEFAULT_BACKEND, require_backend
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.director import Director
 from motion_backend.metrics import story_metrics
-from motion_backend.metrics.smoothness import seam_jump, seam_speed_jump
+from motion_backend.metrics.story_figures import story_figures
 from motion_backend.motion import Action, Character, Motion, join
 from planner_service.composition.compose import compose, script_of
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, METHODS, Request
@@ -309,6 +309,5 @@ def judge(planned: Planned, actions: Sequence[Action], motions: Sequence[Motion]
         segments.append((frame, frame + len(motion)))
         frame += len(motion)
     whole = join(list(motions))
-    seams = {"seam_jump": round(seam_jump(whole), 5), "seam_speed_jump": round(seam_speed_jump(whole), 5)}
-    report = story_metrics.summarise(figures) | seams
+    report = story_metrics.summarise(figures) | story_figures(whole, actions, segments).to_dict()
     return Story(planned, tuple(actions), whole, tuple(segments), tuple(figures), report)

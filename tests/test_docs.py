@@ -112,6 +112,12 @@ def test_the_python_of_the_readme_uses_names_that_exist() -> None:
     assert "Pipeline" in names
 
 
+def test_the_readme_shows_the_theme_of_the_demo() -> None:
+    told = re.search(r"^THEME \?= (.+)$", text_of(ROOT / "Makefile"), re.MULTILINE)
+    assert told is not None
+    assert told[1] in re.sub(r"\n(?:> )?", " ", text_of(ROOT / "README.md"))
+
+
 def test_the_pictures_are_small() -> None:
     for name, most in (
         ("storyboard.png", 400_000),

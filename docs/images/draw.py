@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 from pathlib import Path
 
@@ -19,13 +20,9 @@ from scene_graphs.plots.match_plot import draw_match
 from scene_graphs.retrieval.layout_index import LayoutIndex
 
 HERE = Path(__file__).parent
-THEME = (
-    "A person is happy at first, but he is told in the phone that he fails the job interview and becomes very "
-    "depressed."
-)
-"""The demo's, with the demo's seed."""
-SEED = 7
-SHOWN = (1, 7, 10, 16)
+MAKEFILE = HERE.parents[1] / "Makefile"
+"""It has the theme and the seed of the demo."""
+SHOWN = (1, 3, 5, 8)
 """Keyframes cut out of the storyboard, two in a row."""
 PLAN_OF = "living-room-0016"
 ASKED = ("sofa:lie", "coffee-table", "tv-stand,", "bench:sit", "bookshelf", "wardrobe,", "piano")
@@ -47,7 +44,7 @@ def main() -> None:
     pipeline = Pipeline()
     index = pipeline.shelves.layouts()
     with tempfile.TemporaryDirectory() as folder:
-        board = draw_board(pipeline.make(StoryRequest(THEME, seed=SEED)), Path(folder, "board.png"))
+        board = draw_board(pipeline.make(demo()), Path(folder, "board.png"))
         picture(index.layout(PLAN_OF), Shown(), Path(folder, "plan.png"))
         draw_found(index, Path(folder, "match.png"))
         save(cut(board, SHOWN), HERE / "storyboard.png")
@@ -55,6 +52,12 @@ def main() -> None:
         for name in ("plan.png", "match.png"):
             # Lines of few pixels keep their colours, which mean something.
             save(np.asarray(Image.open(Path(folder, name)).convert("RGB")), HERE / name, Image.Quantize.MAXCOVERAGE)
+
+
+def demo() -> StoryRequest:
+    """What `make demo` asks for."""
+    told = dict(re.findall(r"^(THEME|THEME_SEED) \?= (.+)$", MAKEFILE.read_text(encoding="utf-8"), re.MULTILINE))
+    return StoryRequest(told["THEME"], seed=int(told["THEME_SEED"]))
 
 
 def draw_board(story: Story, path: Path) -> np.ndarray:

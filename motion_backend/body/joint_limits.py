@@ -2,8 +2,9 @@
 
 Ranges are those of the American Academy of Orthopaedic Surgeons (Joint Motion, 1965: active ranges from the anatomical
 position, averages of adults), with three differences: our rest pose is the T-pose, so shoulders are a cone about the
-middle of what they reach; the range of neck and trunk is shared out over their joints; and what a loaded joint does
-beyond its active range counts as well (ankles of a crouching body, hips of one who sits cross-legged, toes).
+middle of what they reach; the range of neck and trunk is shared out over their joints, and one of them may bend beyond
+its share while they all together do not; and what a loaded joint does beyond its active range counts as well (ankles of
+a crouching body, hips of one who sits cross-legged, toes), or what recorded people do as a matter of course.
 Angles are Cardan angles in the order of the International Society of Biomechanics (Wu et al. 2002, 2005): first the
 joint's main hinge, last the turn about the bone.
 """
@@ -53,26 +54,30 @@ _ANATOMY: dict[str, Hinges | Cone] = {
     "spine1": Hinges("xzy", x=(-10, 32), y=(-12, 12), z=(-14, 14)),
     "spine2": Hinges("xzy", x=(-10, 32), y=(-16, 16), z=(-14, 14)),
     "spine3": Hinges("xzy", x=(-10, 32), y=(-20, 20), z=(-14, 14)),
-    # Cervical: flexion and extension 45, to the side 45, rotation 60 (80 in the young).
-    "neck": Hinges("xzy", x=(-30, 30), y=(-40, 40), z=(-25, 25)),
-    "head": Hinges("xzy", x=(-30, 30), y=(-40, 40), z=(-25, 25)),
-    "collar": Hinges("zyx", x=(-30, 30), y=(-30, 25), z=(-15, 45)),
+    # Cervical: flexion 45, extension 45 (70 of who looks up at what the hands do), to the side 45, rotation 60 (of the
+    # young 80).
+    "neck": Hinges("xzy", x=(-35, 30), y=(-40, 40), z=(-25, 25)),
+    "head": Hinges("xzy", x=(-35, 30), y=(-40, 40), z=(-25, 25)),
+    "collar": Hinges("zyx", x=(-30, 30), y=(-30, 25), z=(-20, 45)),
     # Flexion and abduction 180 with the shoulder blade, extension 60; inward rotation 70, outward 90, and 30 more of
     # either by the shoulder blade, which our collar only lifts: hands reach behind head and back.
     "shoulder": Cone((0.50, -0.45, 0.74), 115, twist=(-120, 100)),
     # Flexion 150; pronation and supination 80, which may sit in either joint of the forearm.
     "elbow": Hinges("yzx", x=(-90, 90), y=(-155, 5), z=(-15, 15)),
     # Flexion 80, extension 70, towards the thumb 20, away from it 30.
-    "wrist": Hinges("xzy", x=(-90, 90), y=(-25, 35), z=(-85, 75)),
+    "wrist": Hinges("xzy", x=(-90, 90), y=(-25, 40), z=(-85, 75)),
     # Flexion 120, extension 30, abduction 45, adduction 30, rotation 45.
     "hip": Hinges("xzy", x=(-130, 30), y=(-45, 60), z=(-30, 50)),
     # Flexion 135 (150 passively); a bent knee also turns.
     "knee": Hinges("xzy", x=(-5, 150), y=(-40, 40), z=(-10, 10)),
-    # Dorsiflexion 20 (45 under load, as in a lunge or squat), plantar flexion 50, inversion 35, eversion 15.
-    "ankle": Hinges("xzy", x=(-45, 50), y=(-30, 30), z=(-35, 20)),
+    # Dorsiflexion 20 (45 under load, as in a lunge or squat), plantar flexion 50, inversion 35, eversion 15; who sneaks
+    # or crawls turns the foot in by 40.
+    "ankle": Hinges("xzy", x=(-45, 50), y=(-40, 40), z=(-35, 20)),
     # Big toe: extension 70, flexion 45.
     "foot": Hinges("xzy", x=(-70, 45), y=(-15, 15), z=(-15, 15)),
 }  # fmt: skip
+COLUMNS = (("spine1", "spine2", "spine3"), ("neck", "head"))
+"""Joints among which a range is shared out: skeletons differ in which of them bends most."""
 
 
 def beyond_limits(local_rotations: NDArray[np.floating]) -> Array:
@@ -81,7 +86,11 @@ def beyond_limits(local_rotations: NDArray[np.floating]) -> Array:
     beyond = np.zeros(local.shape[:2])
     for group in _hinge_groups():
         angles = cardan(local[:, group.joints] * group.mirrored, group.order)
-        beyond[:, group.joints] = np.linalg.norm(_excess(angles, group.low, group.high), axis=-1)
+        excess = _excess(angles, group.low, group.high)
+        for column in group.columns:
+            together = _excess(*(np.sum(values, axis=-2) for values in _of(column, angles, group.low, group.high)))
+            excess[:, column] = np.minimum(excess[:, column], together[:, None])
+        beyond[:, group.joints] = np.linalg.norm(excess, axis=-1)
     for part, limit in _ANATOMY.items():
         if isinstance(limit, Cone):
             joints = _joints_of(part)
@@ -137,6 +146,8 @@ class _Group(NamedTuple):
     mirrored: Array
     low: Array
     high: Array
+    columns: list[list[int]]
+    """Places of joints that share a range."""
 
 
 @cache
@@ -147,8 +158,14 @@ def _hinge_groups() -> tuple[_Group, ...]:
         limits = [(j, limit) for part, limit in hinges.items() if limit.order == order for j in _joints_of(part)]
         joints = [joint for joint, _ in limits]
         ranges = np.radians([[getattr(limit, axis) for axis in order] for _, limit in limits])  # (joints, 3, 2)
-        found.append(_Group(order, joints, _mirrored(joints), ranges[..., 0], ranges[..., 1]))
+        columns = [[joints.index(INDEX[name]) for name in column] for column in COLUMNS if INDEX[column[0]] in joints]
+        found.append(_Group(order, joints, _mirrored(joints), ranges[..., 0], ranges[..., 1], columns))
     return tuple(found)
+
+
+def _of(places: list[int], *values: Array) -> list[Array]:
+    """Rows of joints (..., joints, 3) at these places."""
+    return [rows[..., places, :] for rows in values]
 
 
 def _group_of(joint: str) -> tuple[_Group, int]:

@@ -18,7 +18,7 @@ HAND_OVER = 0.30
 STRICT = 0.10
 """What is near enough for strict success, whatever the skill (metres)."""
 SUSTAINED = 1.0
-RISEN = (0.85, np.cos(np.radians(30)), 0.5)
+RISEN = (0.85, np.cos(np.radians(30)), 0.1)
 """Share of the standing height, cosine of the trunk's tilt and seconds that count as having risen."""
 
 
@@ -27,13 +27,15 @@ class Outcome:
     """What became of one trial; none of it is true of a body that gave up."""
 
     reached: bool
-    """Sustained: without a break for one second (a walk: at its end; rising: for half a second)."""
+    """Sustained: without a break for one second (a walk: at its end; rising: for a tenth)."""
     reached_any: bool
     """In any frame (SIMS' own rule)."""
     reached_strict: bool
     """Sustained within 10 cm."""
     error: float | None
     """Metres from joint to goal: the smallest in the last second of the contact. None where nothing is touched."""
+    mean_error: float | None
+    """The mean of the same over the hold, the longest time within 10 cm. None where nothing is touched."""
     seconds: float | None
     """Until the threshold was first met; None if never."""
 
@@ -47,18 +49,18 @@ def outcome(action: Action, body: Kinematics) -> Outcome:
         up = risen(body)
         start, stop = longest_run(up)
         held = bool(up[-1] and stop - start >= RISEN[2] * motion.fps)
-        return _if_completed(body, Outcome(held, bool(up.any()), held, None, _first(up, motion.fps)))
+        return _if_completed(body, Outcome(held, bool(up.any()), held, None, None, _first(up, motion.fps)))
     if action.goal is None:
         done = motion.completed
-        return Outcome(done, done, done, None, motion.duration if done else None)
+        return Outcome(done, done, done, None, None, motion.duration if done else None)
     gap = np.hypot(*(body.positions[:, 0, [0, 2]] - np.asarray(action.goal)).T)
     near = gap <= HAND_OVER
     return _if_completed(
-        body, Outcome(bool(near[-1]), bool(near.any()), bool(gap[-1] <= STRICT), None, _first(near, motion.fps))
+        body, Outcome(bool(near[-1]), bool(near.any()), bool(gap[-1] <= STRICT), None, None, _first(near, motion.fps))
     )
 
 
-_FAILED = Outcome(False, False, False, None, None)
+_FAILED = Outcome(False, False, False, None, None, None)
 
 
 def _contact(action: Action, body: Kinematics) -> Outcome:
@@ -74,13 +76,25 @@ def _contact(action: Action, body: Kinematics) -> Outcome:
         reached_any=bool(within.any()),
         reached_strict=farthest - closest >= SUSTAINED * fps,
         error=float(last.min()),
+        mean_error=_over_hold(distance, fps),
         seconds=_first(within, fps),
     )
     return _if_completed(body, found)
 
 
+def _over_hold(distance: Array, fps: int) -> float:
+    """The mean of distances over the hold: the longest time within 10 cm without a break, but at least the second in
+    which they are smallest."""
+    start, stop = longest_run(distance <= STRICT)
+    frames = min(round(SUSTAINED * fps), len(distance))
+    if stop - start >= frames:
+        return float(distance[start:stop].mean())
+    sums = np.cumsum(np.concatenate([[0.0], distance]))
+    return float((sums[frames:] - sums[:-frames]).min() / frames)
+
+
 def _if_completed(body: Kinematics, found: Outcome) -> Outcome:
-    return found if body.motion.completed else Outcome(False, False, False, found.error, None)
+    return found if body.motion.completed else Outcome(False, False, False, found.error, found.mean_error, None)
 
 
 def _first(flags: NDArray[np.bool_], fps: int) -> float | None:

@@ -11,6 +11,8 @@ from motion_backend.skeleton import INDEX
 
 REACH_UP = 0.10
 """A surface holds up what is at most this far below its top (metres): bodies sink into cushions."""
+STANDS_ON = 0.05
+"""A point of a sole lower than this (metres) may be what the body stands on: as GMD has it for toes."""
 
 
 def skate_ratio(body: Kinematics) -> float:
@@ -36,6 +38,18 @@ def skate_speed(body: Kinematics) -> float:
     on = low[1:] & low[:-1]
     speed = np.linalg.norm(np.diff(body.soles[..., [0, 2]], axis=0), axis=-1) * body.motion.fps * 100
     return float(speed[on].mean()) if on.any() else 0.0
+
+
+def support_slip(body: Kinematics) -> float:
+    """Mean horizontal speed of the best supported point of the soles, cm/s: of those that are low in two neighbouring
+    frames the one that moves least. Toes that swing low are not taken for a foot that slides; recorded walkers have 3.
+    """
+    soles = body.soles.reshape(len(body.soles), -1, 3)
+    low = soles[..., 1] < STANDS_ON
+    speed = np.linalg.norm(np.diff(soles[..., [0, 2]], axis=0), axis=-1) * body.motion.fps * 100
+    least = np.where(low[1:] & low[:-1], speed, np.inf).min(axis=1)
+    stands = np.isfinite(least)
+    return float(least[stands].mean()) if stands.any() else 0.0
 
 
 def floor_penetration(body: Kinematics) -> float:

@@ -42,12 +42,12 @@ def penetration(body: Kinematics, obstacles: Obstacles, action: Action | None) -
         points = capsules.skin_points(flat_start[touching], flat_end[touching], radius[touching])
         depth = close.inside(points.reshape(-1, 3), index).reshape(len(touching), -1).max(axis=1)
         bodies = touching % len(capsules.BODIES)
-        depth = depth - np.array([_cushion(action, owner, capsules.BODIES[b].name) for b in bodies])
+        depth = depth - np.array([cushion(action, owner, capsules.BODIES[b].name) for b in bodies])
         np.maximum.at(deepest, touching // len(capsules.BODIES), depth)
     return deepest
 
 
-def _cushion(action: Action | None, owner: str, body: str) -> float:
+def cushion(action: Action | None, owner: str, body: str) -> float:
     """Contact bodies may sink into their own target and nowhere else."""
     if action is None or action.object_id != owner or action.skill in (Skill.LOCO, Skill.TOUCH):
         return 0.0

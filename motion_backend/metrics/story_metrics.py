@@ -16,11 +16,21 @@ from numpy.typing import NDArray
 from motion_backend.body.joint_limits import limits_share
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.body.self_collision import self_penetration
+from motion_backend.metrics.balance_figures import outside_soles, rising_frames, upright_frames
 from motion_backend.metrics.contact_error import outcome
-from motion_backend.metrics.foot_skate import floor_penetration, height_above_support, skate_ratio, skate_speed
+from motion_backend.metrics.foot_skate import (
+    floor_penetration,
+    height_above_support,
+    skate_ratio,
+    skate_speed,
+    support_slip,
+)
+from motion_backend.metrics.joint_speed import WILD, fastest_joint
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.penetration import CLEARLY_IN, penetration
 from motion_backend.metrics.smoothness import jerk, jerk_peak
+from motion_backend.metrics.stillness import frozen_share
+from motion_backend.metrics.story_figures import mean_over
 from motion_backend.motion import Action, Motion, Skill
 
 
@@ -31,13 +41,15 @@ class KeyframeFigures:
     keyframe: int
     skill: str
     reached: bool
-    """Within the threshold without a break for one second (a walk: at its end; rising: for half a second)."""
+    """Within the threshold without a break for one second (a walk: at its end; rising: for a tenth)."""
     reached_any: bool
     """Within the threshold in any frame (SIMS' own rule)."""
     reached_strict: bool
     """Within 10 cm, as long as `reached` asks for."""
     contact_error: float | None
     """Metres from joint to goal: the smallest in the last second of the contact."""
+    contact_mean: float | None
+    """The mean of the same over the hold."""
     execution_time: float | None
     """Seconds until the threshold was first met; None if never."""
     seconds: float
@@ -45,6 +57,8 @@ class KeyframeFigures:
     """GMD: share of frames with a toe near the floor and faster than 0.5 m/s."""
     skate: float
     """Mean speed of soles on the floor, cm/s."""
+    slip: float
+    """Mean speed of the best supported point of the soles, cm/s."""
     pen_mean: float
     """Mean over frames of the deepest point inside furniture, metres."""
     pen_max: float
@@ -64,6 +78,14 @@ class KeyframeFigures:
     """Mean over joints and frames, m/s³."""
     jerk_peak: float
     """99th percentile over joints and frames, m/s³."""
+    joint_speed: float | None
+    """Radians a second of the fastest joint; None for a caption that is wild by name."""
+    frozen_share: float
+    """Share of frames in which no joint moves."""
+    zmp_upright: float | None
+    """Metres that the zero-moment point is outside the soles on average while standing or walking; None without."""
+    zmp_rising: float | None
+    """The same while standing up."""
     reason: str = ""
 
     def to_dict(self) -> dict[str, Any]:
@@ -77,6 +99,7 @@ def judge(motion: Motion, action: Action, obstacles: Obstacles) -> KeyframeFigur
     found = outcome(action, body)
     depth = penetration(body, obstacles, action)
     own = self_penetration(motion.skeleton, body.positions, body.world)
+    outside = outside_soles(body)
     return KeyframeFigures(
         keyframe=action.keyframe,
         skill=action.skill.value,
@@ -84,10 +107,12 @@ def judge(motion: Motion, action: Action, obstacles: Obstacles) -> KeyframeFigur
         reached_any=found.reached_any,
         reached_strict=found.reached_strict,
         contact_error=found.error,
+        contact_mean=found.mean_error,
         execution_time=found.seconds,
         seconds=motion.duration,
         skate_ratio=skate_ratio(body),
         skate=skate_speed(body),
+        slip=support_slip(body),
         pen_mean=float(depth.mean()),
         pen_max=float(depth.max()),
         pen_share=float((depth > CLEARLY_IN).mean()),
@@ -98,6 +123,10 @@ def judge(motion: Motion, action: Action, obstacles: Obstacles) -> KeyframeFigur
         limits_share=limits_share(motion.local_rotations),
         jerk=jerk(body.positions, motion.fps),
         jerk_peak=jerk_peak(body.positions, motion.fps),
+        joint_speed=None if action.caption in WILD else fastest_joint(motion.local_rotations, motion.fps)[1],
+        frozen_share=frozen_share(body),
+        zmp_upright=mean_over(outside, upright_frames(body)).value,
+        zmp_rising=mean_over(outside, rising_frames(body)).value,
         reason=motion.reason,
     )
 
@@ -136,9 +165,11 @@ def summarise(figures: Sequence[KeyframeFigures]) -> dict[str, Any]:
         "by_skill": by_skill,
         "contact_error": average([f.contact_error for f in contacts]),
         "contact_error_success": average([f.contact_error for f in contacts if f.reached]),
+        "contact_mean": average([f.contact_mean for f in contacts]),
         "execution_time": average([f.execution_time for f in figures]),
         "skate_ratio_loco": mean("skate_ratio", loco),
         "skate": mean("skate"),
+        "slip": mean("slip"),
         "pen_mean": mean("pen_mean"),
         "pen_share": mean("pen_share"),
         "pen_max": most("pen_max"),
@@ -147,6 +178,7 @@ def summarise(figures: Sequence[KeyframeFigures]) -> dict[str, Any]:
         "self_pen_max": most("self_pen_max"),
         "self_pen_share": mean("self_pen_share"),
         "limits_share": mean("limits_share"),
+        "frozen_share": mean("frozen_share"),
         "jerk": mean("jerk"),
         "jerk_peak": mean("jerk_peak"),
         "seconds": round(float(seconds.sum()), 3),

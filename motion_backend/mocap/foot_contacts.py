@@ -174,30 +174,6 @@ def resting_hands(positions: Array, fps: float) -> Flags:
     return np.stack(flags, axis=1)
 
 
-def held_still(feet: Feet) -> Array:
-    """How far each ankle must move so that standing feet stay where they stand. (T, 2, 3) metres.
-
-    The ball of a foot is held over its mean place of a stance; in the air the shift passes from that of one stance to
-    that of the next. Heights stay: a nearly straight leg pays for a centimetre with ten degrees of its knee.
-    """
-    contacts = feet.contacts().astype(np.bool_)
-    shift = np.zeros_like(feet.ankles)
-    for side in range(2):
-        ball, planted = feet.balls[:, side], contacts[:, 2 * side + 1]
-        known: list[int] = []
-        for start, stop in runs(planted):
-            shift[start:stop, side] = ball[start:stop].mean(axis=0) - ball[start:stop]
-            known += range(start, stop)
-        if known:
-            frames = np.arange(len(ball))
-            for axis in (0, 2):
-                shift[:, side, axis] = np.interp(frames, known, shift[known, side, axis])
-    shift[..., 1] = 0.0
-    length = np.linalg.norm(shift, axis=-1, keepdims=True)
-    shift *= np.minimum(1.0, MAX_FOOT_SHIFT / np.maximum(length, 1e-9))
-    return np.asarray(low_pass(shift, feet.fps, cutoff=8.0) if len(shift) > 8 else shift)
-
-
 def above_floor(feet: Feet) -> Array:
     """How far each ankle must rise so that no corner of its sole is under the floor. (T, 2, 3) metres."""
     lift = np.zeros_like(feet.ankles)

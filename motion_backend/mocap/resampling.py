@@ -18,8 +18,9 @@ from motion_backend.mocap.joint_map import JointMap
 from motion_backend.mocap.rest_pose import is_t_pose
 from motion_backend.rotations import Array
 
-CUTOFF = 6.0
-"""Hz above which a captured body's movement is mostly noise (Winter)."""
+CUTOFF = 12.0
+"""Hz above which a captured body's movement is mostly noise: 6 Hz (Winter) is meant for walking and takes most of the
+jerk that people have."""
 FAST_ENOUGH = 60.0
 """Frames a second from which a recording is smoothed: slower ones hold little beyond the cutoff."""
 

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.body.joint_limits import limits_share
-from motion_backend.mocap import foot_contacts
+from motion_backend.mocap import foot_contacts, foot_lock
 from motion_backend.mocap.clip import MAX_TURNS, Clip, ClipError
 from motion_backend.mocap.fidelity_report import Fidelity, fastest_turn, faults, limb_differences
-from motion_backend.mocap.foot_contacts import ANKLES, BALLS, Feet, above_floor, bend_legs, held_still, resting_hands
+from motion_backend.mocap.foot_contacts import ANKLES, BALLS, Feet, above_floor, bend_legs, resting_hands
 from motion_backend.mocap.joint_map import JointMap, checked_map, find_map
 from motion_backend.mocap.resampling import (
     CUTOFF,
@@ -117,7 +117,7 @@ def retarget(clip: Clip, skeleton: Skeleton | None = None, joints: JointMap | No
     pose, theirs = _travelled(pose, theirs, notes)
     pose, theirs = _grounded(pose, theirs, toy, notes)
     pose, theirs = pose.with_bent_toes(), theirs.with_bent_toes()
-    pose, locked = _standing_still(pose, notes)
+    pose, theirs = _standing_still(pose, theirs, notes)
     pose = _out_of_floor(pose, notes)
 
     local = rotations.continuous(world_to_local(pose.world))
@@ -147,7 +147,6 @@ def retarget(clip: Clip, skeleton: Skeleton | None = None, joints: JointMap | No
         limbs=limbs,
         fastest=fastest,
         beyond_limits=limits_share(local),
-        locked=locked,
         refused=faults(pose.feet, theirs.skate(), lowest, limbs, fastest),
         conversions=tuple(notes),
     )
@@ -239,14 +238,14 @@ def _upwards(heights: Array) -> Array:
     return np.asarray(np.multiply.outer(heights, [0.0, 1.0, 0.0]))
 
 
-def _standing_still(pose: _Pose, notes: list[str]) -> tuple[_Pose, bool]:
-    """Knees as hinges, and feet that stand held where they stand, if they slide less for it."""
-    free = pose.with_ankles(pose.feet.ankles)
-    held = pose.with_ankles(pose.feet.ankles + held_still(pose.feet))
-    if held.feet.skate() >= free.feet.skate():
-        return free, False
-    notes.append("feet held where they stand")
-    return held, True
+def _standing_still(pose: _Pose, theirs: Feet, notes: list[str]) -> tuple[_Pose, Feet]:
+    """Knees as hinges, standing feet on the floor and held where they stand; the source's put there only."""
+    ankles, pelvis = foot_lock.locked(pose.feet, pose.pelvis)
+    notes.append("standing feet put on the floor and held where they stand")
+    return (
+        pose.moved(pelvis).with_ankles(pose.feet.ankles + ankles),
+        replace(theirs, ankles=theirs.ankles + ankles * [0.0, 1.0, 0.0]),
+    )
 
 
 def _out_of_floor(pose: _Pose, notes: list[str]) -> _Pose:

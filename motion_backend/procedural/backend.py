@@ -8,30 +8,35 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, replace
+from typing import Any
 
 import numpy as np
 
 from motion_backend.backend_protocol import POSTURE_AFTER, BodyState, History, Part, PartKind
-from motion_backend.motion import FPS, Action, Character, Motion, Note, PhaseKind, Posture
+from motion_backend.motion import FPS, Character, Motion, Note, Phase, PhaseKind
+from motion_backend.procedural.balance_pass import balanced
 from motion_backend.procedural.body_state import Body
-from motion_backend.procedural.collision_avoidance.elbow_collision import elbows_clear
-from motion_backend.procedural.collision_avoidance.hand_collision import hands_clear
+from motion_backend.procedural.collision_avoidance.arm_clearance import Around, arms_clear
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import idle, standing
 from motion_backend.procedural.pose import Pose, concatenate
 from motion_backend.procedural.pose_solver import hips_within, released, solve
 from motion_backend.procedural.skill_controller import perform
-from motion_backend.procedural.touch.hand_captions import steadies, with_both_hands
+from motion_backend.procedural.tail import carried_on, frames_kept_back
+from motion_backend.procedural.takeover import eased_from, pose_of
 from motion_backend.procedural.touch.hand_rests import Hold
+from motion_backend.procedural.walk.stride import Stride
 from motion_backend.scene import scene_of
-from motion_backend.skeleton import build_skeleton
+from motion_backend.skeleton import Skeleton, build_skeleton
 from scene_graphs.home import Home
 from scene_graphs.navigation.path_planner import NoPath
 
 STANDS = 1.0
 """How long a body stands that cannot get where it is to go (seconds)."""
-SINKS = 0.03
-"""How deep arms sink into what is lain on (metres)."""
+
+
+ENTERS = (PartKind.SIT, PartKind.LIE)
+"""Parts that are in the posture they end in, for what arms may lie on; all others in the one they begin in."""
 
 
 class ProceduralBackend:
@@ -41,9 +46,7 @@ class ProceduralBackend:
 
     def begin(self, home: Home, character: Character, seed: int) -> BodyState:
         """Standing in the first room, on a free place that the seed chooses."""
-        rng = np.random.default_rng([seed, 0])
-        place = scene_of(home).walkable.random_point(rng, 0)
-        yaw = float(rng.uniform(-np.pi, np.pi))
+        place, yaw = scene_of(home).beginning(seed)
         skeleton = build_skeleton(character.height)
         pose = standing(place, yaw, Bearing(), skeleton).repeat(1)
         history = History.of(*solve(pose, skeleton), np.repeat(pose.planted, 2, axis=1))
@@ -52,7 +55,7 @@ class ProceduralBackend:
 
     def advance(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
         """Do one part, all of it; a body that cannot get there stays where it is and says why."""
-        body = _awake(home, upcoming, state)
+        body = self._awake(home, upcoming, state)
         reason = ""
         try:
             perform(body, part)
@@ -60,61 +63,85 @@ class ProceduralBackend:
             reason = str(error)
             body.enter(PhaseKind.STAND)
             body.add(idle(body.pose, STANDS, 1.0, body.rng, FPS))
+        if not body.frames:
+            nothing = _nothing(body, part)
+            return nothing, state.after(part, nothing, state.backend, state.memory)
         motion = replace(_to_motion(body, part), completed=not reason, reason=reason)
-        holds = [asdict(hold) if hold is not None else None for hold in body.holds]
-        return motion, state.after(part, motion, self.name, {"pose": body.pose.to_lists(), "holds": holds})
+        if state.backend != self.name:
+            motion = eased_from(state.history, motion, body.skeleton)
+        return motion, state.after(part, motion, self.name, _remembered(body))
+
+    def _awake(self, home: Home, upcoming: Sequence[Part], state: BodyState) -> Body:
+        """The body as the state left it, whoever made what was before."""
+        skeleton, memory = build_skeleton(state.height), state.memory if state.backend == self.name else {}
+        left, right = (Hold(**hold) if hold else None for hold in memory.get("holds", (None, None)))
+        pose = Pose.from_lists(memory["pose"]) if memory else pose_of(state.history, skeleton)
+        tail, stride = memory.get("tail"), memory.get("stride")
+        return Body(
+            scene=scene_of(home),
+            skeleton=skeleton,
+            rng=np.random.default_rng([state.seed, state.index]),
+            pose=released(pose, skeleton),
+            posture=state.posture,
+            rest=state.rest,
+            holds=(left, right),
+            seed=state.seed,
+            tail=Pose.from_lists(tail) if tail else None,
+            stride=Stride.from_lists(stride) if stride else None,
+            upcoming=tuple(upcoming),
+        )
 
 
-def _awake(home: Home, upcoming: Sequence[Part], state: BodyState) -> Body:
-    """The body as the state left it, whoever made what was before."""
-    skeleton, memory = build_skeleton(state.height), state.memory
-    left, right = (Hold(**hold) if hold else None for hold in memory.get("holds", (None, None)))
-    return Body(
-        scene=scene_of(home),
-        skeleton=skeleton,
-        rng=np.random.default_rng([state.seed, state.index]),
-        pose=released(Pose.from_lists(memory["pose"]), skeleton),
-        posture=state.posture,
-        rest=state.rest,
-        holds=(left, right),
-        upcoming=tuple(upcoming),
-    )
+def _remembered(body: Body) -> dict[str, Any]:
+    """What the next part needs of a body besides its last frames."""
+    return {
+        "pose": body.pose.to_lists(),
+        "holds": [asdict(hold) if hold is not None else None for hold in body.holds],
+        "tail": body.tail.to_lists() if body.tail is not None else None,
+        "stride": body.stride.to_lists() if body.stride is not None else None,
+    }
 
 
 def _to_motion(body: Body, part: Part) -> Motion:
-    action, touching = part.action, None
-    if not body.frames:
-        return _nothing(body, action)
-    posture = POSTURE_AFTER.get(part.kind, body.posture) if part.kind is not PartKind.RISE else body.posture
-    if part.kind is PartKind.REACH:
-        both = with_both_hands(action.caption) or steadies(action.caption)
-        touching = "both" if both else action.hand
-    elif posture is not Posture.STANDING:
-        touching = "both"
-    solid = body.scene.obstacles.solid()
-    pose = hands_clear(hips_within(concatenate(body.frames), body.skeleton), body.skeleton, solid, touching)
-    if posture is Posture.STANDING:
-        pose = elbows_clear(pose, body.skeleton, solid)
-    elif posture is Posture.LYING:
-        pose = elbows_clear(pose, body.skeleton, solid.sunk_into(action.object_id, SINKS))
-    else:
-        # Who sits is among what arms rest on: only shoulders are minded.
-        pose = elbows_clear(pose, body.skeleton, solid.only(np.zeros(len(solid.owners), dtype=bool)))
+    """The frames made for a part, but those that are done together with what comes next."""
+    action = part.action
+    posture = POSTURE_AFTER[part.kind] if part.kind in ENTERS else body.posture
+    under = body.rest if part.kind not in ENTERS else action.spot
+    around = Around(part, posture, under.object_id if under else None, body.scene.obstacles.solid())
+    pose, start = concatenate(body.frames), body.begun
+    if body.tail is not None:
+        pose, start = carried_on(body.tail, pose), body.tail.at(0)
+    pose = balanced(hips_within(pose, body.skeleton), body.phases, body.skeleton)
+    pose = arms_clear(pose, start, around, body.skeleton)
     body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)
-    return Motion(
+    whole = Motion(
         root_positions=root.astype(np.float32),
         local_rotations=local.astype(np.float32),
         contacts=np.repeat(pose.planted, 2, axis=1).astype(np.float32),
         skeleton=body.skeleton,
         actions=np.full(len(pose), action.keyframe, dtype=np.int32),
         fps=FPS,
-        phases=body.phases,
-        notes=tuple(Note(action.keyframe, words) for words in body.otherwise),
+        phases=_filling(body.phases, len(pose)),
+        notes=tuple(Note(part.action.keyframe, words) for words in body.otherwise),
     )
+    kept = frames_kept_back(part, body.upcoming, whole) if body.stride is None else 0
+    body.tail = _freed(pose.at(slice(len(pose) - kept, None)), body.skeleton) if kept else None
+    return whole.part(0, len(pose) - kept)
 
 
-def _nothing(body: Body, action: Action) -> Motion:
+def _filling(phases: tuple[Phase, ...], frames: int) -> tuple[Phase, ...]:
+    """Phases of so many frames: the last one goes on to their end."""
+    return (*phases[:-1], replace(phases[-1], stop=frames))
+
+
+def _freed(frames: Pose, skeleton: Skeleton) -> Pose:
+    """Frames whose wrists are held from the chest alone."""
+    freed = [released(frames.at(index), skeleton).repeat(1) for index in range(len(frames))]
+    return concatenate(freed)
+
+
+def _nothing(body: Body, part: Part) -> Motion:
     """No frames: the body is where it is to be."""
     return Motion(
         root_positions=np.zeros((0, 3), dtype=np.float32),
@@ -122,5 +149,5 @@ def _nothing(body: Body, action: Action) -> Motion:
         contacts=np.zeros((0, 4), dtype=np.float32),
         skeleton=body.skeleton,
         actions=np.zeros(0, dtype=np.int32),
-        notes=tuple(Note(action.keyframe, words) for words in body.otherwise),
+        notes=tuple(Note(part.action.keyframe, words) for words in body.otherwise),
     )

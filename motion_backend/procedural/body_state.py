@@ -11,6 +11,7 @@ from motion_backend.motion import Action, Phase, PhaseKind, Posture
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.touch.hand_rests import Holds
 from motion_backend.procedural.walk.footsteps import yaw_of
+from motion_backend.procedural.walk.stride import Stride
 from motion_backend.scene import Scene
 from motion_backend.skeleton import Skeleton
 from scene_graphs.affordances.affordances import Spot
@@ -31,15 +32,26 @@ class Body:
     rest: Spot | None
     holds: Holds = (None, None)
     """What its hands lie on."""
+    seed: int = 0
+    """Of the story: what of a body lasts all through it is drawn from it."""
+    tail: Pose | None = None
+    """What is still to be done of the part before (tail.py)."""
+    stride: Stride | None = None
+    """What it is walking in, where the last walk did not stop."""
     upcoming: tuple[Part, ...] = ()
     """What it is to do next, for this action and the one after it."""
     frames: list[Pose] = field(default_factory=list)
     made: int = 0
     """How many frames that is."""
+    begun: Pose = field(init=False)
+    """The pose it set out from."""
     doing: list[tuple[PhaseKind, int]] = field(default_factory=list)
     """What it has been doing, and from which frame on."""
     otherwise: list[str] = field(default_factory=list)
     """What it does otherwise than the caption says, in words (`Note.words`)."""
+
+    def __post_init__(self) -> None:
+        self.begun = self.pose
 
     def enter(self, kind: PhaseKind) -> None:
         """Frames added from now on are this phase of the part."""

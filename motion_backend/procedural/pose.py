@@ -18,6 +18,8 @@ from motion_backend.rotations import Array
 ROTATIONS = ("hips", "feet", "palms")
 OPPOSITE, NO_SIZE = 1e-3, 1e-12
 """Arms that are turned right round have no shortest turn, vectors of no size no direction: kept from dividing by 0."""
+HALF_TURN = 1.0
+"""A turn smaller than this (radians) is never taken the other way round."""
 BOWED_FROM, BOWED_WITHIN = 0.2, 0.25
 """A swing of an arm goes round the shoulder from so far apart on (0 together, 1 opposite), wholly from so much more."""
 OUTWARD, BOW = np.array([[0.75, 0.0, 0.66], [-0.75, 0.0, 0.66]]), 2.4
@@ -111,7 +113,8 @@ def _each(knots: Array, keys: list[Pose], at: Array) -> dict[str, Array]:
     standing = stacked.pop("planted")
     middles = {name: stacked[name][len(keys) // 2] for name in ROTATIONS}
     for name, middle in middles.items():
-        stacked[name] = rotations.quat_to_rotvec(rotations.compose(rotations.inverse(middle), stacked[name]))
+        turns = rotations.quat_to_rotvec(rotations.compose(rotations.inverse(middle), stacked[name]))
+        stacked[name] = _unwrapped(turns, len(keys) // 2)
     ends = np.cumsum([values[0].size for values in stacked.values()])
     flat = _spline(knots, np.concatenate([values.reshape(len(keys), -1) for values in stacked.values()], axis=1), at)
     found = {
@@ -124,6 +127,21 @@ def _each(knots: Array, keys: list[Pose], at: Array) -> dict[str, Array]:
     # A foot stands only where it stood at both ends of a stretch; the last frame is the last key.
     found["planted"] = np.minimum(standing[after - 1], standing[after])
     found["planted"][-1] = standing[-1]
+    return found
+
+
+def _unwrapped(turns: Array, middle: int) -> Array:
+    """Rotation vectors (K, ..., 3) of key poses, each the one of its rotation's that is nearer to its neighbour's.
+
+    The neighbour is that on the way from the key `middle`: a body that turns on by more than half a turn turns on.
+    """
+    found = turns.copy()
+    steps = [(key, key - 1) for key in range(middle + 1, len(turns))] + [(key, key + 1) for key in range(middle)][::-1]
+    for key, neighbour in steps:
+        size = np.maximum(rotations.length(found[key]), NO_SIZE)
+        other = found[key] * (1 - 2 * np.pi / size)
+        nearer = rotations.length(other - found[neighbour]) < rotations.length(found[key] - found[neighbour])
+        found[key] = np.where(nearer & (size > HALF_TURN), other, found[key])
     return found
 
 

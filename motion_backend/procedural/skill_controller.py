@@ -11,12 +11,16 @@ from motion_backend.procedural.emotion_style import bearing_of
 from motion_backend.procedural.held_poses import Seat
 from motion_backend.procedural.lie.lie_skill import before_bed, get_up, leave_bed, lie, stay_lying
 from motion_backend.procedural.sit.sit_skill import before_seat, leave_seat, sit, stay_seated
+from motion_backend.procedural.tail import only_stands
 from motion_backend.procedural.touch.touch_skill import before_thing, reach
-from motion_backend.procedural.walk.walk_skill import go, stay
+from motion_backend.procedural.walk.walk_skill import go, halt, stay
 
 
 def perform(body: Body, part: Part) -> None:
     """Do a part; frames are added to the body."""
+    if body.stride is not None and part.kind not in (PartKind.WALK, PartKind.TURN):
+        body.enter(PhaseKind.WALK)
+        halt(body, part.action)
     PARTS[part.kind](body, part)
 
 
@@ -24,12 +28,23 @@ def _walk(body: Body, part: Part) -> None:
     """Walk to the goal of a part: to the very place that what comes next begins at, where that is done there."""
     if part.goal is None:
         return
-    goal, facing = part.goal, part.facing
-    contact = next((later for later in body.upcoming if later.kind not in (PartKind.WALK, PartKind.TURN)), None)
-    if contact is not None and contact.kind in PLACES and spot_of(contact.action).standing == goal:
-        goal, facing = PLACES[contact.kind](body, contact.action)
+    goal, facing = _bound_for(body, part, part.goal, body.upcoming)
+    onward = None
+    if body.upcoming and body.upcoming[0].kind is PartKind.WALK and body.upcoming[0].goal is not None:
+        later = body.upcoming[0]
+        onward, _ = _bound_for(body, later, body.upcoming[0].goal, body.upcoming[1:])
+        # Who passes by does not turn to what is there.
+        facing = facing if onward == goal else None
     body.enter(PhaseKind.WALK)
-    go(body, goal, facing, part.action)
+    go(body, goal, facing, part.action, onward)
+
+
+def _bound_for(body: Body, part: Part, goal: Point, upcoming: tuple[Part, ...]) -> tuple[Point, float | None]:
+    """Where a walk to a part's goal ends, and the yaw, from what comes after it."""
+    contact = next((later for later in upcoming if later.kind not in (PartKind.WALK, PartKind.TURN)), None)
+    if contact is not None and contact.kind in PLACES and spot_of(contact.action).standing == goal:
+        return PLACES[contact.kind](body, contact.action)
+    return goal, part.facing
 
 
 def _rise(body: Body, part: Part) -> None:
@@ -55,7 +70,8 @@ def _hold(body: Body, part: Part) -> None:
         stay_lying(body, part)
     else:
         body.enter(PhaseKind.STAND)
-        stay(body, part)
+        if not (only_stands(part) and body.upcoming):
+            stay(body, part)
 
 
 PLACES: dict[PartKind, Callable[[Body, Action], tuple[Point, float]]] = {

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,29 +15,34 @@ from rich.table import Table
 
 from motion_backend.motion import Skill
 from planner_service.cli.console import plain_table
+from planner_service.cli.evaluate_stories import bounds, print_stories, read_stories, shown, stories_to_dict
 from planner_service.pipeline import RequestError
 from planner_service.scripts.captions import captions as known_captions
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from planner_service.evaluation.body_evaluation import Figure, Result
     from planner_service.evaluation.caption_classifier import Telling
+    from planner_service.evaluation.story_evaluation import StoryTrial
     from planner_service.evaluation.trials import Performance
 
 FIGURES = (
-    "reached", "reached_any", "reached_strict", "contact_error", "execution_time", "skate_ratio", "skate", "pen_mean",
-    "pen_share", "pen_max", "floor_pen", "floating", "self_pen_share", "self_pen_max", "limits_share", "jerk",
-    "jerk_peak", "jerk_against_real", "seam_jump", "seam_speed_jump", "bone_deviation",
+    "reached", "reached_any", "reached_strict", "contact_error", "contact_mean", "execution_time", "skate_ratio",
+    "skate", "slip", "pen_mean", "pen_share", "pen_max", "skin_pen_share", "skin_pen_max", "floor_pen", "floating",
+    "self_pen_share", "self_pen_max", "limits_share", "joint_speed", "frozen_share", "zmp_upright", "zmp_rising",
+    "jerk", "jerk_peak", "jerk_against_real", "seam_jump", "seam_speed_jump", "bone_deviation",
 )  # fmt: skip
 UNITS = {
     "reached": "%", "reached_any": "%", "reached_strict": "%", "skate_ratio": "%", "pen_share": "%",
     "self_pen_share": "%", "limits_share": "%", "contact_error": "cm", "pen_mean": "cm", "pen_max": "cm",
     "floor_pen": "cm", "floating": "cm", "self_pen_max": "cm", "seam_jump": "cm", "bone_deviation": "cm",
     "execution_time": "s", "skate": "cm/s", "jerk": "m/s³", "jerk_peak": "m/s³", "seam_speed_jump": "m/s",
-    "jerk_against_real": "×",
+    "jerk_against_real": "×", "contact_mean": "cm", "slip": "cm/s", "joint_speed": "rad/s", "frozen_share": "%",
+    "zmp_upright": "cm", "zmp_rising": "cm", "skin_pen_share": "%", "skin_pen_max": "cm",
 }  # fmt: skip
-WORST = ("contact_error", "pen_max", "pen_share", "skate_ratio", "self_pen_max", "limits_share", "seam_speed_jump")
+WORST = (
+    "contact_error", "contact_mean", "pen_max", "pen_share", "skin_pen_max", "skate_ratio", "self_pen_max",
+    "limits_share", "joint_speed", "frozen_share", "zmp_upright", "zmp_rising", "seam_speed_jump",
+)  # fmt: skip
 """Of what the worst trials are named."""
 MAX_WORST = 4
 MAX_CAPTION_LENGTH = 200
@@ -48,13 +54,18 @@ PAPER_APD = {"sitdown": "1.14 (UniHSI), 16.55 (SIMS)", "liedown": "1.35 (UniHSI)
 
 
 def body(
-    captions: Annotated[str, typer.Option(help="How many captions of each skill, or all.")] = "all",
+    captions: Annotated[
+        str | None, typer.Option(help="How many captions of each skill, or all; left out with --stories: none.")
+    ] = None,
     rooms: Annotated[int, typer.Option(min=1, max=100, help="Rooms for each caption; 20 for the whole.")] = 4,
     seeds: Annotated[int, typer.Option(min=1, max=100, help="Seeds in each room; 5 for the whole.")] = 1,
     skill: Annotated[list[Skill] | None, typer.Option(help="Only this skill; may be given again.")] = None,
     only: Annotated[str | None, typer.Option(help="Only this caption; with --room, one trial.")] = None,
     room: Annotated[str | None, typer.Option(help="With --only: the id of a room of the library.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="With --only and --room: the seed.")] = 0,
+    stories: Annotated[
+        str | None, typer.Option(help="Whole stories: how many on themes of ours, or a file with a theme a line.")
+    ] = None,
     workers: Annotated[int, typer.Option(min=1, max=64, help="Processes at once.")] = 2,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of tables.")] = False,
     out: Annotated[Path | None, typer.Option(help="Folder for all figures, or for one trial's film.")] = None,
@@ -62,20 +73,64 @@ def body(
     """Act captions in library rooms, from a random place 1 to 5 m away, and print every figure beside its limit.
 
     It also says how well captions are told apart by a nearest neighbour, and how varied sitting and lying are. The
-    whole is --rooms 20 --seeds 5. Exit code 1 when a limit is missed.
+    whole is --rooms 20 --seeds 5. With --stories, themes are told and acted as `sims story` does, and judged as wholes:
+    how they flow, stand about and turn. Exit code 1 when a limit is missed.
     """
-    from planner_service.evaluation.body_evaluation import plan_trials, run_trials, sum_up
-    from planner_service.evaluation.caption_classifier import tell_apart
-    from planner_service.evaluation.diversity import diversity
     from planner_service.output.story_export import check_writable, write_files
 
     console = Console(markup=False, highlight=False)
-    chosen = _chosen(captions, skill, only)
+    chosen = _chosen(captions or "all", skill, only) if captions or only or skill or not stories else {}
     if room is not None:
         _one_trial(console, chosen, room, seed, as_json, out)
         return
+    told = read_stories(stories, seeds) if stories else []
     if out is not None:
-        check_writable(out, ("body.json", "trials.jsonl"))
+        check_writable(out, ("body.json", "trials.jsonl", "stories.jsonl"))
+    parts: list[_Evaluated] = []
+    if chosen:
+        parts.append(_over_trials(chosen, rooms, seeds, workers))
+    if told:
+        parts.append(_over_stories(told, workers))
+    value: dict[str, Any] = {"physics_mode": "none"}
+    for part in parts:
+        value |= part.value
+    if out is not None:
+        text = json.dumps(value, indent=2, ensure_ascii=False) + "\n"
+        files = {part.file: "".join(json.dumps(row, ensure_ascii=False) + "\n" for row in part.rows) for part in parts}
+        write_files(out, {name: _writer(written) for name, written in (files | {"body.json": text}).items()})
+    if as_json:
+        console.print_json(json.dumps(value))
+    else:
+        for part in parts:
+            part.show(console)
+    if any(part.missed for part in parts):
+        raise typer.Exit(1)
+
+
+@dataclass(frozen=True)
+class _Evaluated:
+    """Trials or stories, measured."""
+
+    value: Mapping[str, Any]
+    """For JSON."""
+    rows: Sequence[Mapping[str, Any]]
+    """One a trial or story, for the file."""
+    file: str
+    show: Callable[[Console], None]
+    missed: bool
+    """Whether a limit is."""
+
+
+def _writer(text: str) -> Callable[[Path], object]:
+    return lambda path: path.write_text(text, encoding="utf-8")
+
+
+def _over_trials(chosen: Mapping[Skill, list[str]], rooms: int, seeds: int, workers: int) -> _Evaluated:
+    """Captions acted in library rooms, figure by figure and skill by skill."""
+    from planner_service.evaluation.body_evaluation import plan_trials, run_trials, sum_up
+    from planner_service.evaluation.caption_classifier import tell_apart
+    from planner_service.evaluation.diversity import diversity
+
     trials = plan_trials(chosen, rooms, seeds)
     with Progress(console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("acting", total=len(trials))
@@ -87,29 +142,39 @@ def body(
         for of in (Skill.SITDOWN, Skill.LIEDOWN)
     }
     value = {
-        "trials": len(trials), "rooms": rooms, "seeds": seeds, "physics_mode": "none",
+        "trials": len(trials), "rooms": rooms, "seeds": seeds,
         "figures": [_figure_to_dict(figure) for figure in figures], "telling_apart": [asdict(one) for one in told],
         "diversity": apd, "worst": _worst(results), "by_caption": _by_caption(results),
         "not_begun": [_unbegun(one) for one in results if one.fault],
     }  # fmt: skip
-    if out is not None:
-        lines = "".join(json.dumps(dict(one.figures), ensure_ascii=False) + "\n" for one in results if one.figures)
-        text = json.dumps(value, indent=2, ensure_ascii=False) + "\n"
-        write_files(
-            out,
-            {
-                "body.json": lambda path: path.write_text(text, encoding="utf-8"),
-                "trials.jsonl": lambda path: path.write_text(lines, encoding="utf-8"),
-            },
-        )
-    if as_json:
-        console.print_json(json.dumps(value))
-    else:
+
+    def show(console: Console) -> None:
         _print(console, figures, told, value)
         if rooms < 20 or seeds < 5:
             console.print("\na sample; the whole is --rooms 20 --seeds 5")
-    if any(figure.missed for figure in figures) or any(telling.missed for telling in told):
-        raise typer.Exit(1)
+
+    rows = [dict(one.figures) for one in results if one.figures]
+    missed = any(figure.missed for figure in figures) or any(telling.missed for telling in told)
+    return _Evaluated(value, rows, "trials.jsonl", show, missed)
+
+
+def _over_stories(trials: Sequence[StoryTrial], workers: int) -> _Evaluated:
+    """Stories told and acted, figure by figure over all of them."""
+    from planner_service.evaluation.story_evaluation import run_stories, sum_up_stories
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("telling", total=len(trials))
+        results = run_stories(trials, workers, lambda done, _all: bar.update(task, completed=done))
+    figures = sum_up_stories(results)
+    value = stories_to_dict(results, figures)
+    rows = [{"theme": one.trial.theme, "seed": one.trial.seed, **one.report} for one in results if one.report]
+    return _Evaluated(
+        {"over_stories": value},
+        rows,
+        "stories.jsonl",
+        lambda console: print_stories(console, figures, value, UNITS),
+        any(figure.missed for figure in figures) or not any(one.report for one in results),
+    )
 
 
 def _chosen(captions: str, skills: Sequence[Skill] | None, only: str | None) -> Mapping[Skill, list[str]]:
@@ -160,7 +225,7 @@ def _one_trial(
         for name, value in told.items():
             words = "; ".join(value) if isinstance(value, list) else value
             unit, plain = UNITS.get(name, ""), "–" if words in (None, "") else str(words)
-            table.add_row(name, f"{_shown(value, unit)} {unit}" if isinstance(value, float) else plain)
+            table.add_row(name, f"{shown(value, unit)} {unit}" if isinstance(value, float) else plain)
         console.print(table)
     if out is not None:
         _write_trial(done, out)
@@ -207,9 +272,9 @@ def _print(console: Console, figures: Sequence[Figure], told: Sequence[Telling],
     console.print("\nworst trials; sims evaluate body --only CAPTION --room ID --seed S --out DIR shows one")
     for row in value["worst"]:
         unit = UNITS[row["figure"]]
-        shown = f"{_shown(row['value'], unit)} {unit}"
+        told_as = f"{shown(row['value'], unit)} {unit}"
         where = " · ".join(str(row[key]) for key in ("caption", "room", "seed", "object", "detail") if row[key] != "")
-        console.print(f"{row['figure']:15} {shown:>9}  {where}", soft_wrap=True)
+        console.print(f"{row['figure']:15} {told_as:>9}  {where}", soft_wrap=True)
     for row in value["not_begun"][:10]:
         console.print(f"not begun: {row['caption']} · {row['room']}: {row['why']}", soft_wrap=True)
 
@@ -219,7 +284,9 @@ def _table(figures: Sequence[Figure]) -> Table:
     table = plain_table("figure", *skills, "limit", right=(*skills, "limit"))
     for name in dict.fromkeys(figure.name for figure in figures):
         row = {figure.skill: figure for figure in figures if figure.name == name}
-        limits = dict.fromkeys(_limit(figure) for figure in row.values() if figure.limit is not None)
+        limits = dict.fromkeys(
+            bounds(figure.limit, UNITS[figure.name]) for figure in row.values() if figure.limit is not None
+        )
         cells = [_cell(row[skill]) if skill in row else "" for skill in skills]
         table.add_row(f"{name}, {UNITS[name]}", *cells, " ".join(limits))
     return table
@@ -228,22 +295,8 @@ def _table(figures: Sequence[Figure]) -> Table:
 def _cell(figure: Figure) -> str:
     unit = UNITS[figure.name]
     spread = (figure.high - figure.low) / 2
-    around = f" ±{_shown(spread, unit)}" if spread > 0 else ""
-    return f"{_shown(figure.value, unit)}{around}{' !' if figure.missed else ''}"
-
-
-def _limit(figure: Figure) -> str:
-    limit, unit = figure.limit, UNITS[figure.name]
-    if limit is None:
-        return ""
-    least = "" if limit.least is None else f"≥ {_shown(limit.least, unit)}"
-    most = "" if limit.most is None else f"≤ {_shown(limit.most, unit)}"
-    return " ".join(filter(None, (least, most)))
-
-
-def _shown(value: float, unit: str) -> str:
-    scale, digits = {"%": (100, 1), "cm": (100, 1), "m/s³": (1, 0), "cm/s": (1, 1)}.get(unit, (1, 2))
-    return f"{value * scale:.{digits}f}"
+    around = f" ±{shown(spread, unit)}" if spread > 0 else ""
+    return f"{shown(figure.value, unit)}{around}{' !' if figure.missed else ''}"
 
 
 def _figure_to_dict(figure: Figure) -> dict[str, Any]:

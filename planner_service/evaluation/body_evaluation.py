@@ -10,11 +10,12 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from itertools import groupby
 from multiprocessing import get_context
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from motion_backend.metrics.figure_limits import LIMITS, Limit
 from motion_backend.motion import Skill
 from motion_backend.rotations import Array
 from planner_service.evaluation.caption_classifier import describe
@@ -26,39 +27,11 @@ from scene_graphs.layout_library import built_in_index
 from scene_graphs.navigation.path_planner import NoPath
 
 RESAMPLES: Final = 1000
-CONTACTS: Final = (Skill.SITDOWN, Skill.LIEDOWN, Skill.TOUCH)
-WORST_OF_TRIALS: Final = ("pen_max", "self_pen_max", "bone_deviation")
+WORST_OF_TRIALS: Final = ("pen_max", "skin_pen_max", "self_pen_max", "bone_deviation", "joint_speed")
 """Of these the largest of all trials counts, not the mean."""
 Progress = Callable[[int, int], None]
-
-
-@dataclass(frozen=True)
-class Limit:
-    """What a figure must keep over the trials of some skills, in metres and shares."""
-
-    figure: str
-    most: float | None = None
-    least: float | None = None
-    skills: tuple[Skill, ...] = tuple(Skill)
-
-    def missed(self, value: float) -> bool:
-        """Whether a value does not keep it."""
-        return (self.most is not None and value > self.most) or (self.least is not None and value < self.least)
-
-
-LIMITS: Final = (
-    Limit("reached", least=0.98, skills=(Skill.SITDOWN,)),
-    Limit("reached", least=0.97, skills=(Skill.LIEDOWN,)),
-    Limit("reached", least=0.98, skills=(Skill.TOUCH,)),
-    Limit("contact_error", most=0.02, skills=CONTACTS),
-    Limit("skate_ratio", most=0.02, skills=(Skill.LOCO,)),
-    Limit("pen_mean", most=0.01),
-    Limit("pen_share", most=0.02),
-    Limit("pen_max", most=0.05),
-    Limit("limits_share", most=0.0),
-    Limit("jerk_against_real", least=0.5, most=1.5, skills=(Skill.LOCO,)),
-)
-"""What the body is to keep over all captions; `judge` says what each figure is."""
+T = TypeVar("T")
+R = TypeVar("R")
 
 
 @dataclass(frozen=True)
@@ -117,21 +90,22 @@ def run_trials(trials: Sequence[Trial], workers: int, progress: Progress = lambd
     in_rooms = sorted(trials, key=lambda trial: (trial.room, trial.seed, trial))
     batches = [list(some) for _, some in groupby(in_rooms, key=lambda trial: (trial.room, trial.seed))]
     found: list[Result] = []
-    for results in _each(batches, workers):
+    for results in in_processes(run_batch, batches, workers):
         found += results
         progress(len(found), len(trials))
     return sorted(found, key=lambda result: result.trial)
 
 
-def _each(batches: Sequence[list[Trial]], workers: int) -> Iterator[list[Result]]:
+def in_processes(work: Callable[[T], R], rows: Sequence[T], workers: int) -> Iterator[R]:
+    """What some work makes of every row, in as many processes; as they are done, in no order."""
     if workers == 1:
-        yield from map(run_batch, batches)
+        yield from map(work, rows)
         return
     # Libraries read this when they are loaded, and a process of its own loads them anew.
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     pool = ProcessPoolExecutor(workers, get_context("spawn"), _ended_quietly)
     try:
-        for future in as_completed([pool.submit(run_batch, batch) for batch in batches]):
+        for future in as_completed([pool.submit(work, row) for row in rows]):
             yield future.result()
     except BrokenProcessPool as error:
         raise RequestError(

@@ -23,7 +23,9 @@ from motion_backend.body.self_collision import deepest_pair
 from motion_backend.director import Director
 from motion_backend.emotion_words import emotion_of
 from motion_backend.metrics import story_metrics
+from motion_backend.metrics.joint_speed import fastest_joint
 from motion_backend.metrics.joint_trajectories import Kinematics
+from motion_backend.metrics.skin_penetration import THIN, skin_penetration
 from motion_backend.metrics.smoothness import bone_deviation, jerk_against_real, seam_jump, seam_speed_jump
 from motion_backend.motion import FPS, Action, Character, Motion, Skill, join
 from planner_service.grounding.keyframes_to_actions import Place, UnreachableError, act, can_stand, height_of
@@ -35,6 +37,7 @@ from scene_graphs.affordances.affordances import Spot, spots
 from scene_graphs.home import Home, home_from_layouts
 from scene_graphs.layout import Placed
 from scene_graphs.layout_library import built_in_index
+from scene_graphs.meshes.convex_shapes import ConvexShape, convex_shapes
 from scene_graphs.navigation.path_planner import NoPath, Walkable
 
 FLOOR: Final = "floor"
@@ -75,6 +78,11 @@ class Setting:
     walkable: Walkable
     obstacles: Obstacles
     director: Director
+
+    @cached_property
+    def shapes(self) -> tuple[ConvexShape, ...]:
+        """Walls and furniture as they are drawn, but what is thin."""
+        return convex_shapes(self.home, THIN)
 
     @cached_property
     def longest_walk(self) -> float:
@@ -199,12 +207,16 @@ def perform(trial: Trial) -> Performance:
     figures = story_metrics.judge(motion, actions[-1], where.obstacles)
     around, body = join([led[-1].part(max(len(led[-1]) - FPS, 0), len(led[-1])), motion]), Kinematics.of(motion)
     joint, beyond = worst_joint(motion.local_rotations)
+    skin = skin_penetration(motion, actions[-1], where.shapes)
     besides: dict[str, float | str | None] = {
         "jerk_against_real": jerk_against_real(body) if trial.skill is Skill.LOCO else None,
+        "skin_pen_share": skin.share,
+        "skin_pen_max": skin.most,
         "seam_jump": seam_jump(around),
         "seam_speed_jump": seam_speed_jump(around),
         "bone_deviation": bone_deviation(body),
         "limits_joint": f"{joint} {np.degrees(beyond):.0f}°" if joint else "",
+        "joint_speed_joint": fastest_joint(motion.local_rotations, motion.fps)[0],
         "self_pen_pair": " in ".join(deepest_pair(body.motion.skeleton, body.positions, body.world)),
     }
     return Performance(trial, where.home, keyframes, actions, (*led, motion), figures, besides)

@@ -21,6 +21,7 @@ from motion_backend.motion import Action, Emotion, Skill
 from motion_backend.procedural.lie.lie_pose import place_to_lie
 from motion_backend.procedural.sit.sit_skill import seat_for
 from motion_backend.procedural.touch.hand_contacts import suits
+from motion_backend.scene import scene_of
 from planner_service.grounding.touch_stance import LEG_ROOM, ElbowRoom
 from planner_service.scripts.caption_actions import Hands, done_in, look_of
 from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
@@ -126,14 +127,15 @@ def act(
 
     An action's caption is what is performed: where the body knows no word of the keyframe's, the nearest of `words`.
     """
-    stage = _Stage(home, Walkable(home), np.random.default_rng([seed, 7]), words)
+    scene = scene_of(home)
+    stage = _Stage(home, scene.walkable, np.random.default_rng([seed, 7]), words)
     drafts: list[Action] = []
     for index, (keyframe, place) in enumerate(zip(keyframes, places, strict=True)):
         before = keyframes[index - 1] if index else None
         drafts.append(stage.contact(index, keyframe, place, free_hand(before)))
     hands = Hands()
     return tuple(hands.follow(action, done_in(keyframes[action.keyframe].caption))
-                 for action in stage.walks(drafts, places))  # fmt: skip
+                 for action in stage.walks(drafts, places, scene.beginning(seed)[0]))  # fmt: skip
 
 
 class _Stage:
@@ -247,10 +249,13 @@ class _Stage:
             raise UnreachableError(f"room {room} has no free floor to {need} on", "choose another room")
         return best[1]
 
-    def walks(self, drafts: list[Action], places: Sequence[Place]) -> list[Action]:
-        """Give every walk its goal: where the next contact with the same thing begins, beside a thing, or anywhere."""
+    def walks(self, drafts: list[Action], places: Sequence[Place], begins: Point) -> list[Action]:
+        """Give every walk its goal: where the next contact with the same thing begins, beside a thing, or anywhere.
+
+        `begins` is where the body stands before the first of them.
+        """
         done: list[tuple[Action, Point | None]] = []
-        at: Point | None = None
+        at: Point | None = begins
         for index, action in enumerate(drafts):
             wanders = action.skill is Skill.LOCO and places[index].object_id is None
             ahead = in_front(action.caption, self.walkable, at, done) if wanders else None
@@ -273,10 +278,12 @@ class _Stage:
             beside = self._reachable(self.home.object(place.object_id), "touch")
             if beside:
                 return replace(action, goal=beside[0].standing, facing=beside[0].facing)
-        return replace(action, goal=self._anywhere(place.room, at), facing=None)
+        onward = following.spot.standing if following is not None and following.spot is not None else None
+        return replace(action, goal=self._anywhere(place.room, at, onward), facing=None)
 
-    def _anywhere(self, room: int, at: Point | None) -> Point:
-        """A place to wander to: some way off, with room around it, and not through the whole house."""
+    def _anywhere(self, room: int, at: Point | None, onward: Point | None) -> Point:
+        """A place to wander to: some way off, with room around it, not through the whole house, and not one that the
+        body would have to turn back at to get where it goes next."""
         start = at or self.walkable.random_point(self.rng, room)
         points = [self.walkable.random_point(self.rng, room) for _ in range(12)]
         points = [point for point in points if self.walkable.reachable(start, point)]
@@ -289,9 +296,16 @@ class _Stage:
                 min(length, 2.2 * PACING)
                 - 0.4 * max(length - 3 * PACING, 0.0)
                 + min(self.walkable.clearance(point), 0.8)
+                + (0.0 if onward is None else _straight_on(start, point, onward))
             )
 
         return max(points, key=worth)
+
+
+def _straight_on(start: Point, middle: Point, end: Point) -> float:
+    """How straight the way over a place is: 1 straight on, -1 back again."""
+    before, after = np.subtract(middle, start), np.subtract(end, middle)
+    return float(before @ after / max(np.linalg.norm(before) * np.linalg.norm(after), 1e-6))
 
 
 def can_stand(walkable: Walkable, start: Point, spot: Spot) -> bool:

@@ -11,14 +11,13 @@ from __future__ import annotations
 from dataclasses import asdict, fields
 from typing import Any
 
-from motion_backend.backend_protocol import BodyState, History
-from motion_backend.motion import Action, Emotion, Posture, Skill
+from motion_backend.motion import Action, Emotion, Skill
 from planner_service.grounding.furnish import Furnished, RoomMatch
 from planner_service.grounding.keyframes_to_actions import Place, action_to_dict
 from planner_service.grounding.seat_access import pull_from_dict, pull_to_dict
 from planner_service.narration.narrator import Span, Told
 from planner_service.scripts.script import LongScript
-from scene_graphs.affordances.affordances import spot_from_dict, spot_to_dict
+from scene_graphs.affordances.affordances import spot_from_dict
 from scene_graphs.graph.furniture_graph import graph_from_dict, graph_to_dict
 from scene_graphs.home import home_from_dict, home_to_dict
 from scene_graphs.json_fields import Json
@@ -76,18 +75,6 @@ def action_from_dict(row: Json) -> Action:
     return Action(**plain | {"skill": Skill(row["skill"]), "emotion": Emotion(row["emotion"]), "spot": spot})
 
 
-def state_to_dict(state: BodyState) -> Json:
-    """A body between two actions."""
-    return asdict(state) | {"rest": spot_to_dict(state.rest)}
-
-
-def state_from_dict(row: Json) -> BodyState:
-    """The inverse of `state_to_dict`."""
-    history = History(**{name: tuple(map(tuple, rows)) for name, rows in row["history"].items()})
-    own = {"posture": Posture(row["posture"]), "history": history, "rest": spot_from_dict(row["rest"])}
-    return BodyState(**row | own)
-
-
 def _tupled(value: Any) -> Any:
     return tuple(value) if isinstance(value, list) else value
 
@@ -97,8 +84,6 @@ __all__ = [
     "action_to_dict",
     "furnished_from_dict",
     "furnished_to_dict",
-    "state_from_dict",
-    "state_to_dict",
     "told_from_dict",
     "told_to_dict",
 ]

@@ -16,6 +16,7 @@ from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import Final
 
+from motion_backend.backend_protocol import BodyState
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.director import Director, segments_of
 from motion_backend.formats.glb_film import film_glb
@@ -158,7 +159,7 @@ class Maker:
         if index == 0:
             state = director.begin(home, actor(story.request, story.stage.script), story.request.seed)
         else:
-            state = serialization.state_from_dict(self.store.segment(story_id, position - 1)[1])
+            state = BodyState.from_dict(self.store.segment(story_id, position - 1)[1])
             first = self._end_of(story_id, position - 1)
         motion, after = director.act(home, action, state, following)
         figures = story_metrics.judge(motion, action, story.obstacles)
@@ -180,7 +181,7 @@ class Maker:
             following="judge" if index + 1 == len(story.actions) else None,
             progress=round(_DONE["act"] + share * (_DONE["move"] - _DONE["act"]), 4),
             seconds=time.perf_counter() - started,
-            state=serialization.state_to_dict(after),
+            state=after.to_dict(),
         )
         self.store.record(story_id, made, self.worker)
 

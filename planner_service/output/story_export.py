@@ -14,6 +14,7 @@ from motion_backend.formats.bvh import write_bvh
 from motion_backend.formats.glb_film import film_glb
 from motion_backend.formats.motion_json import phase_to_dict
 from motion_backend.formats.npz import write_npz
+from motion_backend.metrics.figure_limits import held_against
 from planner_service.grounding.keyframes_to_actions import action_to_dict
 from planner_service.output.storyboard import storyboard
 from planner_service.pipeline import Planned, Story
@@ -216,6 +217,7 @@ def report_to_dict(story: Story) -> dict[str, Any]:
         "repairs": list(planned.script.repairs),
         "rooms": planned.stage.rooms_to_dicts(),
         "motion": story.report,
+        "limits": held_against(story.report),
         "keyframes": list(_performances(story)),
     }
 

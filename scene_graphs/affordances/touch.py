@@ -9,8 +9,13 @@ from scene_graphs.affordances.spot import FORWARD, Spot, ahead, dot, extent, pla
 from scene_graphs.furniture_shapes import Part
 from scene_graphs.layout import Placed, Point2, Point3, wrap
 
-TOUCH_HEIGHTS = {"medium": (0.68, 1.0, 1.15), "low": (0.30, 0.45, 0.55), "high": (1.38, 1.55, 1.68)}
+TOUCH_HEIGHTS = {"medium": (0.68, 1.0, 1.15), "low": (0.30, 0.45, 0.55), "high": (1.38, 1.76, 1.76)}
 """Least, wanted and greatest height above the floor of a touched point."""
+AWAY = {"medium": (0.38, 0.45), "low": (0.50,), "high": (0.45,)}
+"""How far from it one stands: right up to what is at hand if its foot allows that, with room to squat or to stretch
+(metres)."""
+AWAY_OVER = 0.50
+"""The same from what stands on something else."""
 SHOULDERS = 1.3
 """Up to this height tops are touched rather than fronts (metres above the piece's bottom)."""
 DISC = 0.22
@@ -39,10 +44,12 @@ def _touch_spot(
     placed: Placed, solid: list[Part], found: tuple[Point3, Point3], u: Point2, height: str
 ) -> Iterator[Spot]:
     local, normal = found
-    away = 0.50 if height == "low" or placed.parent else 0.45
-    stand = ahead(local, u, away)
-    if any(plan_distance(part, stand) < DISC for part in solid if part.low[1] + placed.position[1] < 1.7):
+    tries = [ahead(local, u, away) for away in ((AWAY_OVER,) if placed.parent else AWAY[height])]
+    below = [part for part in solid if part.low[1] + placed.position[1] < 1.7]
+    free = [stand for stand in tries if all(plan_distance(part, stand) >= DISC for part in below)]
+    if not free:
         return
+    stand = free[0]
     facing = wrap(placed.yaw + atan2(-u[0], -u[1]))
     point, standing = to_world(placed, local), to_world(placed, stand)
     turned = to_world(placed, normal)

@@ -16,6 +16,7 @@ from stranger import GUIDE, install
 
 from motion_backend import backends
 from motion_backend.backends import BrokenBackendError, UnknownBackendError, about, backend_names, load_backend
+from motion_backend.director import Director
 from motion_backend.motion import Action, Character, Emotion, Skill
 from planner_service.settings import SettingsError, read_settings
 from scene_graphs.generation.generate_room import generate_room
@@ -72,7 +73,7 @@ def test_an_unknown_name_is_refused_with_the_names_there_are(installed: Path) ->
     [
         ("no_such_library:Backend", "ModuleNotFoundError: No module named 'no_such_library'"),
         ("ghost:Spirit", "AttributeError: .*Spirit"),
-        ("ghost:Action", "TypeError"),
+        ("ghost:Part", "TypeError"),
         ("builtins:dict", "it has no begin and no advance"),
     ],
 )
@@ -94,8 +95,8 @@ def test_any_backend_can_be_stopped_between_two_actions_and_repeats_itself(insta
     action = Action(
         Skill.LOCO, "walk", Emotion.NEUTRAL, goal=(state.pelvis[0], state.pelvis[2]), facing=1.0, keyframe=4
     )
-    motion, after = first.advance(home, action, state)
-    again, same = second.advance(home, action, state)
+    motion, after = Director(first).act(home, action, state)
+    again, same = Director(second).act(home, action, state)
     assert after == same
     assert (motion.root_positions == again.root_positions).all()
     assert set(motion.actions.tolist()) == {4}

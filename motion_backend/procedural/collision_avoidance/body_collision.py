@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
 from motion_backend import rotations
-from motion_backend.inverse_kinematics import Limb, arm_rotations, two_bone
+from motion_backend.inverse_kinematics import two_bone
+from motion_backend.procedural.arm_solver import SIDES, Arm
 from motion_backend.procedural.collision_avoidance.hand_collision import eased
 from motion_backend.procedural.held_poses import UP, Seat
 from motion_backend.procedural.pose import Pose, smooth
-from motion_backend.procedural.pose_solver import SIDES, chest_frame, limb_of_arm, wrist_rotations
+from motion_backend.procedural.pose_solver import chest_frame
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, Skeleton
 
@@ -40,36 +41,6 @@ LED: Final = 7
 """Frames in which a way round grows out of where a hand begins, and comes to where it is to be."""
 
 
-class _Arm(NamedTuple):
-    """An arm as it is solved: joints (T, 3), bones, the chest's rotation (T, 4) and its length."""
-
-    shoulder: Array
-    elbow: Array
-    wrist: Array
-    limb: Limb
-    chest: Array
-    length: float
-
-    @staticmethod
-    def of(pose: Pose, skeleton: Skeleton, index: int, frame: tuple[Array, Array]) -> _Arm:
-        """The left (0) or right (1) arm of T frames whose chest is in that `chest_frame`."""
-        name, side = SIDES[index]
-        limb, _, shoulder = limb_of_arm(pose, skeleton, (index, name, side), frame)
-        upper, lower = (abs(float(skeleton.offsets[INDEX[f"{name}_{joint}"], 0])) for joint in ("elbow", "wrist"))
-        elbow = shoulder + upper * limb.upper
-        return _Arm(shoulder, elbow, elbow + lower * limb.lower, limb, frame[0], upper + lower)
-
-    def hand(self, palms: Array, pressing: Array, side: int) -> Array:
-        """The direction of its hand, which wants to lie as `palms` (T, 4) says, as far as it presses. (T, 3)."""
-        _, forearm = arm_rotations(self.limb, side)
-        turned = rotations.compose(forearm, wrist_rotations(forearm, palms, pressing, side))
-        return rotations.rotate(turned, np.array([float(side), 0.0, 0.0]))
-
-    def in_chest(self, vectors: Array) -> Array:
-        """World vectors (T, 3) in the chest's frame."""
-        return rotations.rotate(rotations.inverse(self.chest), vectors)
-
-
 def hands_round_body(pose: Pose, skeleton: Skeleton) -> Pose:
     """T frames in which hands that would go through the own head, hips or thighs, or the floor, go round them.
 
@@ -85,8 +56,8 @@ def hands_round_body(pose: Pose, skeleton: Skeleton) -> Pose:
     ends = smooth(np.minimum(np.arange(len(pose)), np.arange(len(pose))[::-1]) / LED)[:, None]
     reach, reaching = pose.reach.copy(), pose.reaching.copy()
     for index, (_, side) in enumerate(SIDES):
-        arm = _Arm.of(pose, skeleton, index, frame)
-        hand = arm.hand(pose.palms[:, index], pose.pressing[:, index], side)
+        arm = Arm.of(pose, skeleton, index, frame)
+        hand = arm.hand(arm.limb)
         outwards = side * sideways
         points = np.stack([arm.wrist + beyond * scale * (hand if beyond > 0 else arm.limb.lower) for beyond in ALONG])
         ways = [_way_out(points, wide, hips, outwards + 0.5 * ahead, scale * (HIPS - GIVES))]
@@ -157,20 +128,20 @@ def arms_inside(pose: Pose, seat: Seat, room: tuple[float, float], skeleton: Ske
         if room[index] < np.inf:
             outwards = side * rotations.cross(UP, forwards)
             wall = outwards, room[index] - ELBOW * skeleton.scale + float(seat.pelvis @ outwards)
-            pose = _wrist_inside(pose, index, _Arm.of(pose, skeleton, index, frame), wall, share)
-            pose = _elbow_inside(pose, index, _Arm.of(pose, skeleton, index, frame), wall, (share, forwards))
+            pose = _wrist_inside(pose, index, Arm.of(pose, skeleton, index, frame), wall, share)
+            pose = _elbow_inside(pose, index, Arm.of(pose, skeleton, index, frame), wall, (share, forwards))
     return pose
 
 
-def _wrist_inside(pose: Pose, index: int, arm: _Arm, wall: tuple[Array, float], share: Array) -> Pose:
+def _wrist_inside(pose: Pose, index: int, arm: Arm, wall: tuple[Array, float], share: Array) -> Pose:
     """A wrist that nothing holds comes in until it is no farther along wall[0] than wall[1]."""
     over = np.maximum(arm.wrist @ wall[0] - wall[1], 0.0) * (1 - pose.reaching[:, index]) * share
     arms = pose.arms.copy()
-    arms[:, index] -= arm.in_chest(over[:, None] * wall[0]) / arm.length
+    arms[:, index] -= arm.in_chest(over[:, None] * wall[0]) / sum(arm.lengths)
     return replace(pose, arms=arms)
 
 
-def _elbow_inside(pose: Pose, index: int, arm: _Arm, wall: tuple[Array, float], how: tuple[Array, Array]) -> Pose:
+def _elbow_inside(pose: Pose, index: int, arm: Arm, wall: tuple[Array, float], how: tuple[Array, Array]) -> Pose:
     """An elbow goes round the line from shoulder to wrist, forwards, until it is inside the same wall; one that points
     well backwards goes farther back."""
     from scipy.ndimage import gaussian_filter1d

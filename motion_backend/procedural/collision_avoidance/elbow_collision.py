@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +12,11 @@ from motion_backend import rotations
 from motion_backend.body.joint_limits import out_of_cone
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.inverse_kinematics import Limb, arm_rotations
+from motion_backend.procedural.arm_solver import Arm
 from motion_backend.procedural.pose import Pose, smooth
-from motion_backend.procedural.pose_solver import SIDES, chest_frame, limb_of_arm, wrist_rotations
+from motion_backend.procedural.pose_solver import chest_frame
 from motion_backend.rotations import Array
-from motion_backend.skeleton import INDEX, Skeleton
+from motion_backend.skeleton import Skeleton
 
 SWINGS: Final = np.radians(np.arange(-105.0, 106.0, 15.0))
 """Angles that an elbow may be swung by (radians)."""
@@ -43,61 +44,26 @@ DEEP, BEYOND, FAR, FAST = 60.0, 40.0, 0.5, 30.0
 """What counts in a frame: a metre of depth, a radian beyond the range, a swing and its change (radians²)."""
 
 
-class _Arm(NamedTuple):
-    """An arm over T frames: its bones, and what it hangs from."""
+def _swung(arm: Arm, angles: Array) -> Limb:
+    """An arm's bones with its elbow swung by angles (A,) or (T, 1). (T, A, 3) each."""
+    axis = rotations.normalize(arm.way)[:, None]
+    return Limb(*(_about(bone[:, None], axis, angles) for bone in arm.limb))
 
-    side: int
-    joint: str
-    limb: Limb
-    lengths: tuple[float, float]
-    shoulder: Array
-    """(T, 3)."""
-    clavicle: Array
-    """World rotation. (T, 4)."""
-    palm: Array
-    """World rotation that its hand is to have. (T, 4)."""
-    pressing: Array
-    """(T,)."""
 
-    def part(self, frames: slice) -> _Arm:
-        """The same arm over some of its frames."""
-        parts = (each[frames] for each in (self.shoulder, self.clavicle, self.palm, self.pressing))
-        return _Arm(self.side, self.joint, Limb(*(bone[frames] for bone in self.limb)), self.lengths, *parts)
+def _points(arm: Arm, limb: Limb, scale: float) -> Array:
+    """Places along the middle of upper arm, forearm and hand. (7, ..., 3)."""
+    upper, lower = arm.lengths[0] * limb.upper, arm.lengths[1] * limb.lower
+    shoulder = arm.shoulder if limb.upper.ndim == 2 else arm.shoulder[:, None]
+    hand = arm.hand(limb) * scale
+    along = [*(share * upper for share in UPPER), *(upper + share * lower for share in FORE)]
+    return np.asarray(shoulder + np.stack([*along, *(upper + lower + reach * hand for reach in HAND)]))
 
-    @property
-    def way(self) -> Array:
-        """From shoulder to wrist. (T, 3)."""
-        return self.lengths[0] * self.limb.upper + self.lengths[1] * self.limb.lower
 
-    def swung(self, angles: Array) -> Limb:
-        """Its bones with the elbow swung by angles (A,) or (T, 1). (T, A, 3) each."""
-        axis = rotations.normalize(self.way)[:, None]
-        return Limb(*(_about(bone[:, None], axis, angles) for bone in self.limb))
-
-    def points(self, limb: Limb, scale: float) -> Array:
-        """Places along the middle of upper arm, forearm and hand. (7, ..., 3)."""
-        upper, lower = self.lengths[0] * limb.upper, self.lengths[1] * limb.lower
-        shoulder = self.shoulder if limb.upper.ndim == 2 else self.shoulder[:, None]
-        hand = self._hand(limb) * scale
-        along = [*(share * upper for share in UPPER), *(upper + share * lower for share in FORE)]
-        return np.asarray(shoulder + np.stack([*along, *(upper + lower + reach * hand for reach in HAND)]))
-
-    def _hand(self, limb: Limb) -> Array:
-        """Where its fingers point: on along the forearm, unless the hand is laid on something. (..., 3)."""
-        if not self.pressing.any():
-            return limb.lower
-        palm, pressing = self.palm, self.pressing
-        if limb.upper.ndim == 3:
-            palm, pressing = palm[:, None], pressing[:, None]
-        _, forearm = arm_rotations(limb, self.side)
-        hand = rotations.compose(forearm, wrist_rotations(forearm, palm, pressing, self.side))
-        return self.side * rotations.rotate(hand, np.array([1.0, 0.0, 0.0]))
-
-    def beyond(self, limb: Limb) -> Array:
-        """How far the shoulder of swung bones (T, 3) or (T, A, 3) is beyond its range. (T) or (T, A) radians."""
-        bone, _ = arm_rotations(limb, self.side)
-        clavicle = self.clavicle if bone.ndim == 2 else self.clavicle[:, None]
-        return out_of_cone(self.joint, rotations.compose(rotations.inverse(clavicle), bone))
+def _beyond(arm: Arm, limb: Limb) -> Array:
+    """How far the shoulder of swung bones (T, 3) or (T, A, 3) is beyond its range. (T) or (T, A) radians."""
+    bone, _ = arm_rotations(limb, arm.side)
+    clavicle = arm.clavicle if bone.ndim == 2 else arm.clavicle[:, None]
+    return out_of_cone(f"{arm.name}_shoulder", rotations.compose(rotations.inverse(clavicle), bone))
 
 
 def elbows_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles) -> Pose:
@@ -106,19 +72,15 @@ def elbows_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles) -> Pose:
     """
     chest, scale = chest_frame(pose, skeleton), skeleton.scale
     elbows = pose.elbows.copy()
-    for index, (name, side) in enumerate(SIDES):
-        limb, collar, shoulder = limb_of_arm(pose, skeleton, (index, name, side), chest)
-        upper, lower = (abs(float(skeleton.offsets[INDEX[f"{name}_{joint}"], 0])) for joint in ("elbow", "wrist"))
-        hand = pose.palms[:, index], pose.pressing[:, index]
-        clavicle = rotations.compose(chest[0], collar)
-        arm = _Arm(side, f"{name}_shoulder", limb, (upper, lower), shoulder, clavicle, *hand)
-        before = _depth(arm.points(limb, scale), obstacles, scale)
-        strained = arm.beyond(limb)
+    for index in (0, 1):
+        arm = Arm.of(pose, skeleton, index, chest)
+        before = _depth(_points(arm, arm.limb, scale), obstacles, scale)
+        strained = _beyond(arm, arm.limb)
         for frames in _about_each((before >= SEEN) | (strained > STRAINED)):
             part, body = arm.part(frames), (chest[0][frames], chest[1][frames])
             swing = _swing(part, body, obstacles, scale, ends=frames.stop < len(pose))
-            swung = part.swung(swing[:, None])
-            after, strain = _depth(part.points(swung, scale), obstacles, scale), part.beyond(swung)
+            swung = _swung(part, swing[:, None])
+            after, strain = _depth(_points(part, swung, scale), obstacles, scale), _beyond(part, swung)
             # A hand that cannot follow its forearm may turn over on the way: then it is better left alone.
             deep = before[frames].max()
             if after.max() <= deep and (deep >= SEEN or strain.max() <= strained[frames].max()):
@@ -136,15 +98,15 @@ def _about_each(frames: NDArray[np.bool_]) -> list[slice]:
     return [slice(max(int(one[0]) - LEAD, 0), min(int(one[-1]) + LEAD + 1, len(frames))) for one in groups]
 
 
-def _swing(arm: _Arm, chest: tuple[Array, Array], obstacles: Obstacles, scale: float, ends: bool) -> Array:
+def _swing(arm: Arm, chest: tuple[Array, Array], obstacles: Obstacles, scale: float, ends: bool) -> Array:
     """How far the elbow of T frames is swung out of what is there; not at the first frame, and the last if it `ends`.
 
     (T,) radians.
     """
-    tries = arm.swung(SWINGS)
-    points = arm.points(tries, scale)
+    tries = _swung(arm, SWINGS)
+    points = _points(arm, tries, scale)
     deep = np.maximum(_depth(points, obstacles, scale) - SEEN, 0.0) + _in_trunk(points, chest, scale)
-    cost = DEEP * deep + BEYOND * arm.beyond(tries) + FAR * SWINGS**2
+    cost = DEEP * deep + BEYOND * _beyond(arm, tries) + FAR * SWINGS**2
     if ends:
         cost[-1, SWINGS != 0.0] = np.inf
     swing = _steady(cost)

@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.body.scene_collision import Obstacles
+from motion_backend.procedural.arm_solver import Arm
 from motion_backend.procedural.emotion_style import arm_arrays
 from motion_backend.procedural.pose import Pose, smooth
-from motion_backend.procedural.pose_solver import SIDES, chest_frame, limb_of_arm
+from motion_backend.procedural.pose_solver import chest_frame
 from motion_backend.rotations import Array
-from motion_backend.skeleton import INDEX, Skeleton
+from motion_backend.skeleton import Skeleton
 
 HAND_LENGTH = 0.14
 THICKNESS = 0.034
@@ -43,15 +44,12 @@ def hands_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles, touching: 
     """The same motion with hands moved out of what is solid; those that touch ("left", "right", "both") stay there."""
     reach, reaching = pose.reach.copy(), pose.reaching.copy()
     frame = chest_frame(pose, skeleton)
-    for index, (name, side) in enumerate(SIDES):
-        arm, _, shoulder = limb_of_arm(pose, skeleton, (index, name, side), frame)
-        upper = abs(float(skeleton.offsets[INDEX[f"{name}_elbow"], 0]))
-        lower = abs(float(skeleton.offsets[INDEX[f"{name}_wrist"], 0]))
-        elbow = shoulder + upper * arm.upper
-        wrist = elbow + lower * arm.lower
-        tip = wrist + HAND_LENGTH * skeleton.scale * arm.lower
+    for index in (0, 1):
+        arm = Arm.of(pose, skeleton, index, frame)
+        elbow, wrist, shoulder = arm.elbow, arm.wrist, arm.shoulder
+        tip = wrist + HAND_LENGTH * skeleton.scale * arm.limb.lower
         push = _way_out(np.stack([tip, wrist, 0.5 * (elbow + wrist)], axis=1), shoulder, obstacles)
-        if touching in (name, "both"):
+        if touching in (arm.name, "both"):
             push = push * (1 - pose.pressing[:, index, None])
         moved = np.linalg.norm(push, axis=1) > MOVED
         if not moved.any():
@@ -59,7 +57,7 @@ def hands_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles, touching: 
         # A segment begins in the pose the one before left, which was cleared already.
         led = eased(push) * smooth(np.arange(len(push)) / BEGINS)[:, None]
         used = np.linalg.norm(led, axis=1) > MOVED
-        reach[used, index] = _unfolded(wrist + led, shoulder, upper, lower)[used]
+        reach[used, index] = _unfolded(wrist + led, shoulder, *arm.lengths)[used]
         reaching[used, index] = 1.0
     return replace(pose, reach=reach, reaching=reaching)
 

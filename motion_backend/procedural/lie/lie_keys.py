@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from motion_backend.procedural.lie.lie_own import LieOwn
 from scene_graphs.data_tables import read_table, table
 
 Vector = tuple[float, float, float]
@@ -85,6 +86,22 @@ class Propped:
 
 
 @table
+class HeadInHand:
+    """On a side, the head in the hand below; in the head's frame, as if lying on the left."""
+
+    hips_up_rad: float
+    elbow_ahead_ratio: float
+    spine_pitch_rad: float
+    spine_turn_rad: float
+    head_pitch_rad: float
+    head_side_rad: float
+    head_turn_rad: float
+    wrist_m: Vector
+    fingers_direction: Vector
+    back_direction: Vector
+
+
+@table
 class OnSide:
     """The trunk of who lies on a side; to the left for who lies on the left."""
 
@@ -135,6 +152,7 @@ class LiePose:
 
     back: OnBack
     propped: Propped
+    head_in_hand: HeadInHand
     side: OnSide
     foot_down: FootDown
     over_end: OverEnd
@@ -147,56 +165,61 @@ class LiePose:
 
 
 @table
-class OnEdge:
-    """Sitting on the edge of a bed, about to lie down or to rise."""
+class OverEdge:
+    """Between sitting on the edge of a bed and lying on that side: the body turns about the way it looks."""
 
-    name: Literal["sat", "leaning"]
-    wait_s: float
-    hip_pitch_rad: float
-    hip_roll_rad: float
-    spine_pitch_rad: float
-    spine_side_rad: float
-    head_pitch_rad: float
-    head_turn_rad: float
-
-
-@table
-class LegsUp:
-    """Between sitting on the edge and lying, the legs off the floor."""
-
-    name: Literal["half_way", "legs_over"]
+    name: str
     wait_s: float
     pelvis_share: float
     pelvis_up_m: float
-    lain_share: float
+    tilt_rad: float
+    roll_rad: float
     spine_pitch_rad: float
     spine_side_rad: float
     head_pitch_rad: float
-    ankle_m: Vector
+    head_side_rad: float
+    head_turn_rad: float
+    legs_rad: float
+    feet_apart_share: float
     foot_pitch_rad: float
-    knee_direction: Vector
+    below_share: float
+    above_share: float
+    below_wrist_ratio: Vector
+    below_elbow_direction: Vector
+    above_wrist_ratio: Vector
+    above_elbow_direction: Vector
+    planted: bool = False
 
 
 @table
-class BearingHand:
-    """The hand that bears the trunk beside the edge, and the other."""
+class Rolled:
+    """On the side of the edge, knees bent and arms before the chest."""
 
-    min_headwards_m: float
-    max_headwards_m: float
-    inwards_m: float
-    fingers_out_rad: float
-    pressing_share: float
-    elbow_direction: Vector
-    free_wrist_ratio: Vector
-    free_elbow_direction: Vector
-    after_wrist_ratio: Vector
-    after_elbow_direction: Vector
+    name: Literal["rolled"]
+    wait_s: float
+    head_pitch_rad: float
+    pelvis_share: float
+
+
+@table
+class PushingHands:
+    """Where the hands push: the one below, on the side of the head end, and the one above, before the chest."""
+
+    below_min_headwards_m: float
+    below_max_headwards_m: float
+    below_out_m: float
+    below_fingers_rad: float
+    above_headwards_m: float
+    above_out_m: float
+    above_fingers_rad: float
+    inside_edge_m: float
 
 
 @table
 class SettleOnBed:
-    """Times of what comes after the legs are over (see `freed`)."""
+    """Times of what comes after the side: flat with bent knees, a leg lifted over the other, the way of lying."""
 
+    back_wait_s: float
     bent_wait_s: float
     lifted_wait_s: float
     end_wait_s: float
@@ -207,36 +230,18 @@ class SettleOnBed:
 class LieDown:
     """From the edge of a bed to lying; `lie_down.toml` says how its columns are to be read."""
 
-    pose: tuple[OnEdge, OnEdge, LegsUp, LegsUp]
+    pose: tuple[OverEdge, ...]
+    side: Rolled
     settle: SettleOnBed
-    hand: BearingHand
+    hands: PushingHands
 
 
 @table
 class LeaveBed:
-    """Time of what comes before rolling (see `freed`)."""
+    """Times of what comes before the side: a leg lifted over, flat with bent knees (see `freed`)."""
 
     lifted_wait_s: float
-
-
-@table
-class Rolled:
-    """On the way to the side of the edge, knees bent."""
-
-    name: Literal["rolled"]
-    wait_s: float
-    roll_rad: float
-    hurried_roll_rad: float
-    pelvis_up_m: float
-    spine_pitch_rad: float
-    spine_side_ratio: float
-    head_pitch_rad: float
-    head_turn_rad: float
-    ankle_m: Vector
-    foot_pitch_rad: float
-    knee_direction: Vector
-    wrist_ratio: Vector
-    elbow_direction: Vector
+    bent_wait_s: float
 
 
 @table
@@ -259,19 +264,36 @@ class RiseToEdge:
     """From lying to sitting on the edge of a bed; `rise_to_edge.toml` says how its columns are to be read."""
 
     leave: LeaveBed
-    pose: tuple[Rolled, LegsUp, LegsUp, OnEdge, SittingUp]
-    hand: BearingHand
+    side: Rolled
+    pose: tuple[OverEdge, ...]
+    end: SittingUp
+    hands: PushingHands
 
 
 @table
 class OneKnee:
-    """The left knee down, the right foot standing."""
+    """The left knee down, the right foot standing; a hand pushes on that thigh on the way up."""
 
     name: Literal["one_knee"]
     wait_s: float
+    pelvis_aside_m: float
+    pelvis_back_m: float
+    hand_share: float
     hip_pitch_rad: float
     spine_pitch_rad: float
     knee_up_ratio: float
+
+
+@table
+class OverOneKnee:
+    """Still on both knees, the weight over the left one before the right foot is taken."""
+
+    name: Literal["over_one_knee"]
+    wait_s: float
+    pelvis_aside_m: float
+    pelvis_back_m: float
+    spine_pitch_rad: float
+    spine_side_rad: float
 
 
 @table
@@ -280,6 +302,7 @@ class BothKnees:
 
     name: Literal["both_knees"]
     wait_s: float
+    pelvis_back_m: float
     hip_pitch_rad: float
     spine_pitch_rad: float
     head_pitch_rad: float
@@ -332,6 +355,8 @@ class Pushing:
     spine_pitch_rad: float
     pelvis_ahead_m: float
     pelvis_up_m: float
+    pelvis_aside_m: float
+    hand_share: float
 
 
 @table
@@ -364,7 +389,7 @@ class SettleOnFloor:
 class LieOnFloor:
     """From standing to lying on the floor; `lie_on_floor.toml` says how its columns are to be read."""
 
-    pose: tuple[OneKnee, BothKnees, HandsAndKnees, OnHip]
+    pose: tuple[OneKnee, OverOneKnee, BothKnees, HandsAndKnees, OnHip]
     left_step: Step
     right_step: Step
     settle: SettleOnFloor
@@ -384,7 +409,7 @@ class RiseFromFloor:
     """From lying on the floor to standing; `rise_from_floor.toml` says how its columns are to be read."""
 
     leave: LeaveFloor
-    pose: tuple[OnHip, HandsAndKnees, BothKnees, OneKnee, Pushing, Stood]
+    pose: tuple[OnHip, HandsAndKnees, BothKnees, OverOneKnee, OneKnee, Pushing, Stood]
     left_step: Step
     right_step: Step
 
@@ -398,6 +423,8 @@ class LieKeys:
     up: RiseToEdge
     floor_down: LieOnFloor
     floor_up: RiseFromFloor
+    own: LieOwn
+    """How people differ."""
 
 
 def lie_keys() -> LieKeys:
@@ -408,4 +435,5 @@ def lie_keys() -> LieKeys:
         read_table("motion_backend", "transitions/rise_to_edge.toml", RiseToEdge),
         read_table("motion_backend", "transitions/lie_on_floor.toml", LieOnFloor),
         read_table("motion_backend", "transitions/rise_from_floor.toml", RiseFromFloor),
+        read_table("motion_backend", "transitions/lie_own.toml", LieOwn),
     )

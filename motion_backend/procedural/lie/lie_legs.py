@@ -10,6 +10,7 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.procedural.held_poses import UP
 from motion_backend.procedural.lie.lie_keys import BeforeEnd, Fold, FootDown, LyingLeg, OverEnd, SideLegs
+from motion_backend.procedural.lie.lie_own import OwnWay
 from motion_backend.procedural.pose import Pose
 from motion_backend.skeleton import Skeleton
 
@@ -30,6 +31,10 @@ SOLE: Final = 0.09
 """From an ankle to the sole of a foot with its toes up, and a little (metres at 1.70 m)."""
 MAX_END: Final = 0.34
 """Legs go over an end that is no higher over the mattress than this (metres)."""
+STRETCHED: Final = -0.75
+"""An ankle that is farther down the bed is that of a stretched leg (metres at 1.70 m)."""
+MIN_KNEE, DRAWN_UP = 6.0, 80.0
+"""Knees of who lies on a side are bent at least so far, and hips so far where knees are drawn up (degrees)."""
 BACK: Final[dict[str, tuple[str, str]]] = {
     "straight": ("flat", "flat"),
     "loose": ("loose", "loose"),
@@ -43,17 +48,39 @@ BACK: Final[dict[str, tuple[str, str]]] = {
 """Left and right leg of who lies on the back: rows of the table."""
 
 
-def on_the_back(pose: Pose, legs: str, skeleton: Skeleton, rows: tuple[LyingLeg, ...]) -> Pose:
+def on_the_back(pose: Pose, legs: str, skeleton: Skeleton, rows: tuple[LyingLeg, ...], own: OwnWay) -> Pose:
     """Legs of who lies on the back."""
     left, right = BACK.get(legs, BACK["straight"])
     named = {row.name: row for row in rows}
-    return _placed(pose, (named[left], named[right]), skeleton)
+    crossed = legs == "crossed"
+    return _placed(pose, (_owned(named[left], own, 0, crossed), _owned(named[right], own, 1, crossed)), skeleton)
 
 
-def on_a_side(pose: Pose, legs: SideLegs, side: str, room: float, skeleton: Skeleton) -> Pose:
+def _owned(leg: LyingLeg, own: OwnWay, index: int, crossed: bool) -> LyingLeg:
+    """The leg as it lies this time: both go aside together where they cross, stretched ones stay so."""
+    out, up, ahead = leg.ankle_m
+    aside = own.ankle_aside[0] * (1 - 2 * index) if crossed else own.ankle_aside[index]
+    along = own.ankle_along[index] if up > STRETCHED else 0.0
+    return replace(
+        leg,
+        ankle_m=(out + float(aside), up + float(along), ahead),
+        foot_out_rad=leg.foot_out_rad + float(own.foot_out[index]),
+        knee_out_ratio=leg.knee_out_ratio + float(own.knee_out[index]),
+    )
+
+
+def on_a_side(pose: Pose, legs: SideLegs, side: str, room: float, skeleton: Skeleton, own: OwnWay) -> Pose:
     """Legs of who lies on the left or right side, one upon the other, with `room` metres before the body."""
-    below, above = (_folded(fold, room / skeleton.scale) for fold in (legs.below, legs.above))
+    below, above = (_folded(_own_fold(fold, own), room / skeleton.scale) for fold in (legs.below, legs.above))
     return _placed(pose, (below, above) if side == "left" else (above, below), skeleton)
+
+
+def _own_fold(fold: Fold, own: OwnWay) -> Fold:
+    """The leg as it is bent this time; knees that are drawn up are as far up as they go."""
+    if fold.hip_deg > DRAWN_UP:
+        return fold
+    knee = max(fold.knee_deg + own.side_knee, MIN_KNEE)
+    return replace(fold, hip_deg=fold.hip_deg + own.side_hip, knee_deg=knee)
 
 
 def _folded(fold: Fold, room: float) -> LyingLeg:

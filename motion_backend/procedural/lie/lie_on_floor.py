@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from motion_backend import rotations
+from motion_backend.inverse_kinematics import two_bone
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays
 from motion_backend.procedural.held_poses import UP, bend, both_sides, shoulders, standing, upright
@@ -20,6 +21,7 @@ from motion_backend.procedural.lie.lie_keys import (
     LiePose,
     OneKnee,
     OnHip,
+    OverOneKnee,
     Pushing,
     RiseFromFloor,
     Step,
@@ -54,6 +56,8 @@ SHIN_OUT, SHIN_UP = 0.30, 0.16
 """How far out and up the left shin points from its knee when the body is down beside it, against down the mat."""
 HOLDS: Final = -0.9
 """From so long before hands and knees on (against the time from there to the hip) the left knee keeps its place."""
+ON_THIGH, OVER_THIGH, FINGERS_IN = 0.25, 0.120, 0.5
+"""A wrist on its thigh: from the hip along it, over its middle (metres at 1.70 m), fingers turned in (radians)."""
 ON_SIDE: Final = Lying(side="left", legs="gathered", arms=("tucked", "before"))
 """How one comes onto the floor, and leaves it: with the left side down."""
 
@@ -92,6 +96,13 @@ class Mat:
         back = float(np.sqrt(SHANK**2 - (ANKLE - KNEE) ** 2))
         return np.asarray(self.knees + scale * ((ANKLE - KNEE) * UP - back * self.up))
 
+    def over_knees(self, aside: float, back: float) -> Array:
+        """The pelvis on both knees, so far to the left and so far towards the heels (metres at 1.70 m). (3,)."""
+        height = float(np.sqrt(THIGH**2 - aside**2 - back**2))
+        return np.asarray(
+            self.knees.mean(axis=0) + self.skeleton.scale * (height * UP - back * self.up - aside * self.out)
+        )
+
     @property
     def ankle_aside(self) -> Array:
         """Where the left ankle is when the body has gone down beside that knee. (3,)."""
@@ -107,25 +118,34 @@ class Mat:
 
 def kneel_down(start: Pose, mat: Mat, bearing: Bearing, keys: LieOnFloor) -> Pose:
     """From standing to both knees: the left foot steps back and that knee goes down, then the other."""
-    pace, (one, two, *_) = 1 / bearing.tempo, keys.pose
+    pace, (one, over, two, *_) = 1 / bearing.tempo, keys.pose
     both = _on_both_knees(two, start, mat)
     half = _on_one_knee(one, start, both, mat)
-    down = interpolate(_times(keys.pose[:2], pace), [start, half, both], FPS)
+    left = _over_one_knee(over, half, mat)
+    down = interpolate(_times(keys.pose[:3], pace), [start, half, left, both], FPS)
     down = _step(down, 0, _seconds(keys.left_step, pace), half, mat)
     return _step(down, 1, _seconds(keys.right_step, pace), both, mat)
 
 
 def kneel_up(knelt: Pose, mat: Mat, bearing: Bearing, keys: RiseFromFloor) -> Pose:
     """From both knees to standing: the right foot is put forward, the left one follows as the body rises."""
-    pace, (*_, one, push, _stood) = 1 / bearing.tempo, keys.pose
+    pace, (*_, over, one, push, _stood) = 1 / bearing.tempo, keys.pose
     end = standing(mat.standing_point, mat.bed.head_yaw, bearing, mat.skeleton)
     half = _on_one_knee(one, end, knelt, mat)
-    up = interpolate(_times(keys.pose[3:], pace), [knelt, half, _pushing(push, half, mat), end], FPS)
+    pushing = _pushing(push, half, mat)
+    left, end = replace(_over_one_knee(over, knelt, mat), reach=half.reach), replace(end, reach=pushing.reach)
+    poses = [_bound_for(half, knelt), _bound_for(half, left), half, pushing, _bound_for(pushing, end)]
+    up = interpolate(_times(keys.pose[3:], pace), poses, FPS)
     up = _step(up, 1, _seconds(keys.right_step, pace), half, mat)
     return _step(up, 0, _seconds(keys.left_step, pace), end, mat)
 
 
-def _times(rows: tuple[OneKnee | BothKnees | Pushing | Stood, ...], pace: float) -> list[float]:
+def _bound_for(bearing: Pose, pose: Pose) -> Pose:
+    """The same pose with hands that are free bound for where they bear, so that they go there by the shortest way."""
+    return replace(pose, reach=bearing.reach, palms=bearing.palms, reaching=np.zeros(2), pressing=np.zeros(2))
+
+
+def _times(rows: tuple[OneKnee | OverOneKnee | BothKnees | Pushing | Stood, ...], pace: float) -> list[float]:
     """When each pose is reached from the one before the first (seconds)."""
     return [0.0, *(np.cumsum([row.wait_s for row in rows]) * pace).tolist()]
 
@@ -136,7 +156,7 @@ def _seconds(step: Step, pace: float) -> tuple[float, float]:
 
 def lie_down_from_knees(knelt: Pose, mat: Mat, style: Lying, keys: LieKeys) -> Pose:
     """From both knees to lying: hands down, the left hip and side, then over into the way of lying."""
-    (_, _, third, fourth), settle = keys.floor_down.pose, keys.floor_down.settle
+    (*_, third, fourth), settle = keys.floor_down.pose, keys.floor_down.settle
     hands = _on_hands_and_knees(third, knelt, mat)
     side = _on_the_side(knelt, mat, keys.pose)
     end = lying(knelt, mat.bed, style, mat.skeleton, keys.pose)
@@ -175,11 +195,11 @@ def rise_to_knees(start: Pose, mat: Mat, bearing: Bearing, keys: LieKeys) -> Pos
 def _on_both_knees(row: BothKnees, pose: Pose, mat: Mat) -> Pose:
     """Upright on both knees."""
     arms, elbows = arm_arrays("hang", "hang")
-    yaw, scale = mat.bed.head_yaw, mat.skeleton.scale
+    yaw = mat.bed.head_yaw
     toes_down = rotations.compose(rotations.yaw_to_quat(yaw), rotations.rotvec_to_quat(np.array([ON_TOES, 0.0, 0.0])))
     return replace(
         pose,
-        pelvis=mat.knees.mean(axis=0) + THIGH * scale * UP,
+        pelvis=mat.over_knees(0.0, row.pelvis_back_m),
         hips=upright(yaw, row.hip_pitch_rad),
         spine=bend(row.spine_pitch_rad),
         head=bend(row.head_pitch_rad),
@@ -197,8 +217,9 @@ def _on_both_knees(row: BothKnees, pose: Pose, mat: Mat) -> Pose:
 
 def _on_one_knee(row: OneKnee, stood: Pose, both: Pose, mat: Mat) -> Pose:
     """The left knee down, the right foot where it stands."""
-    return replace(
+    half = replace(
         both,
+        pelvis=mat.over_knees(row.pelvis_aside_m, row.pelvis_back_m),
         hips=upright(mat.bed.head_yaw, row.hip_pitch_rad),
         spine=bend(row.spine_pitch_rad),
         ankles=np.stack([both.ankles[0], stood.ankles[1]]),
@@ -206,13 +227,38 @@ def _on_one_knee(row: OneKnee, stood: Pose, both: Pose, mat: Mat) -> Pose:
         toes=np.array([CURLED, 0.0]),
         knees=np.stack([both.knees[0], mat.up + row.knee_up_ratio * UP]),
     )
+    return _hand_on_thigh(half, row.hand_share, mat)
+
+
+def _over_one_knee(row: OverOneKnee, pose: Pose, mat: Mat) -> Pose:
+    """The weight over the left knee, feet where they are."""
+    return replace(
+        pose,
+        pelvis=mat.over_knees(row.pelvis_aside_m, row.pelvis_back_m),
+        spine=bend(row.spine_pitch_rad, side=row.spine_side_rad),
+    )
+
+
+def _hand_on_thigh(pose: Pose, share: float, mat: Mat) -> Pose:
+    """The right hand on its thigh above the knee, as far as that share says."""
+    scale = mat.skeleton.scale
+    hip = pose.pelvis + rotations.rotate(pose.hips, np.array([-HIP * scale, 0.0, 0.0]))
+    leg = two_bone(hip, pose.ankles[1], pose.knees[1], (THIGH * scale, SHANK * scale))
+    normal = rotations.normalize(rotations.cross(leg.upper, mat.out))
+    place = hip + scale * (ON_THIGH * leg.upper + OVER_THIGH * normal)
+    reach, palms = pose.reach.copy(), pose.palms.copy()
+    reach[1], palms[1] = place, palm_on(normal, mat.bed.head_yaw + FINGERS_IN, "right")
+    shares = np.array([0.0, share])
+    return replace(pose, reach=reach, palms=palms, reaching=shares, pressing=shares)
 
 
 def _pushing(row: Pushing, half: Pose, mat: Mat) -> Pose:
     """Over the right foot, the left one pushing off on its toes."""
     scale, forward = mat.skeleton.scale, upright(mat.bed.head_yaw, row.hip_pitch_rad)
-    pelvis = half.pelvis + scale * (row.pelvis_ahead_m * mat.up + row.pelvis_up_m * UP)
-    return replace(half, pelvis=pelvis, hips=forward, spine=bend(row.spine_pitch_rad), head=bend(0.0))
+    # The left of a body that looks to its head's end is away from where it looks lying on the left side.
+    moved = row.pelvis_ahead_m * mat.up + row.pelvis_up_m * UP - row.pelvis_aside_m * mat.out
+    pushing = replace(half, pelvis=half.pelvis + scale * moved, hips=forward, spine=bend(row.spine_pitch_rad))
+    return _hand_on_thigh(replace(pushing, head=bend(0.0)), row.hand_share, mat)
 
 
 def _on_hands_and_knees(row: HandsAndKnees, knelt: Pose, mat: Mat) -> Pose:

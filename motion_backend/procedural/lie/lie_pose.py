@@ -13,9 +13,11 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.motion import Emotion
-from motion_backend.procedural.held_poses import UP, bend, shoulders
-from motion_backend.procedural.lie.lie_keys import LiePose, Propped, RestingHand, SideLegs
+from motion_backend.procedural.held_poses import UP, bend
+from motion_backend.procedural.lie.lie_keys import LiePose, RestingHand, SideLegs
 from motion_backend.procedural.lie.lie_legs import foot_down, on_a_side, on_the_back, shortened
+from motion_backend.procedural.lie.lie_own import OwnWay
+from motion_backend.procedural.lie.lie_propped import head_in_hand, on_both_elbows
 from motion_backend.procedural.lie.lie_styles import Lying, lie_style, wanted_edge
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.pose_solver import chest_frame
@@ -29,7 +31,6 @@ SHOULDER: Final = np.array([0.18, 0.135, 0.0])
 ARM: Final = 0.54
 HEAD: Final = np.array([0.0, 0.35, 0.01])
 """Left shoulder, arm's length and middle of an unbent head in the chest's frame (metres)."""
-UPPER_ARM, FOREARM = 0.292, 0.248
 NECK, SKULL, MIDDLE = (0.0, 0.20, 0.0), (0.0, 0.09, 0.0), (0.0, 0.06, 0.01)
 """From chest to neck, neck to head joint, and on to the middle of the head."""
 
@@ -41,22 +42,18 @@ SKULL_RADIUS: Final = 0.085
 """Half a head: its middle above what it lies on (metres at 1.70 m)."""
 ON_ARM, ON_HANDS = 0.05, 0.05
 """How high a head lies on an arm rather than on a pillow, or on hands upon it (metres at 1.70 m)."""
+NARROW: Final = 0.25
+"""With so much room from the middle to either side one lies straight along (metres)."""
 OVER_EDGE: Final = 0.30
 """How far from the edge the pelvis of who puts a foot down lies at most (metres)."""
 TO_HEAD: Final = 0.30
 """From the shoulders to what a pillow lifts (metres): with its height the slope of the trunk."""
 MIN_BED: Final = 0.15
 """A foot is put down beside what is higher than this (metres)."""
-ELBOW, WRIST = 0.04, 0.045
-"""Elbow and wrist of a forearm that lies, above what it lies on (metres)."""
-STRAIGHT: Final = 0.99
-"""The share of an upper arm that stands under its shoulder at most."""
 NODS: Final = np.linspace(-0.2, 0.9, 56)
 """Forward bends of the head on the back that are tried (radians)."""
 TILTS: Final = np.linspace(-0.7, 0.5, 61)
 """Side bends of the head on the left side that are tried (radians)."""
-BENDS: Final = np.linspace(0.0, 0.9, 46)
-"""Forward bends of the trunk on the elbows that are tried (radians)."""
 
 
 def hands_at_rest(pose: Pose, rests: tuple[RestingHand, RestingHand], skeleton: Skeleton) -> Pose:
@@ -83,31 +80,6 @@ def head_middle(pose: Pose, skeleton: Skeleton) -> Array:
     on_neck = np.array(SKULL) + rotations.rotate(half, np.array(MIDDLE))
     local = np.array(NECK) + rotations.rotate(half, on_neck)
     return np.asarray(place + rotations.rotate(chest, local * skeleton.scale))
-
-
-def propped(pose: Pose, height: float, skeleton: Skeleton, row: Propped) -> Pose:
-    """On the elbows: they stand on the mattress (`height` in the world) under the shoulders, the forearms lie ahead."""
-    chest, place = (values[0] for values in chest_frame(pose.repeat(1), skeleton))
-    back = rotations.inverse(chest)
-    ahead = rotations.normalize(rotations.rotate(pose.hips, np.array([0.0, -1.0, 0.0])) * [1.0, 0.0, 1.0])
-    aside = rotations.rotate(pose.hips, np.array([1.0, 0.0, 0.0]))
-    arms, elbows, palms = np.zeros((2, 3)), np.zeros((2, 3)), np.zeros((2, 4))
-    for index, side in enumerate((1.0, -1.0)):
-        mirror = np.array([side, 1.0, 1.0])
-        shoulder = place + rotations.rotate(chest, SHOULDER * mirror * skeleton.scale)
-        drop = min(shoulder[1] - height - ELBOW, STRAIGHT * UPPER_ARM * skeleton.scale)
-        apart = np.sqrt((UPPER_ARM * skeleton.scale) ** 2 - drop**2)
-        elbow = shoulder + apart * (row.elbow_aside_share * side * aside + row.elbow_ahead_share * ahead)
-        elbow[1] = shoulder[1] - drop
-        along = rotations.normalize(ahead - row.forearm_inwards_share * side * aside)
-        wrist = elbow + FOREARM * skeleton.scale * along
-        wrist[1] = height + WRIST
-        arms[index] = rotations.rotate(back, wrist - shoulder) / (ARM * skeleton.scale)
-        elbows[index] = rotations.rotate(back, elbow - 0.5 * (wrist + shoulder))
-        x = rotations.normalize(along * [1.0, 0.0, 1.0]) * side
-        up = np.array([0.0, 1.0, 0.0])
-        palms[index] = rotations.basis_to_quat(x, up, rotations.cross(x, up))
-    return replace(pose, arms=arms, elbows=elbows, palms=palms, pressing=np.ones(2), reaching=np.zeros(2))
 
 
 @dataclass(frozen=True)
@@ -176,36 +148,58 @@ def lying(start: Pose, bed: Bed, style: Lying, skeleton: Skeleton, keys: LiePose
 
 def _on_the_back(pose: Pose, bed: Bed, style: Lying, skeleton: Skeleton, keys: LiePose) -> Pose:
     lift = float(np.arctan2(bed.pillow, TO_HEAD))
-    spine = bend(keys.back.spine_lift_share * lift)
-    pose = replace(pose, pelvis=bed.pelvis, hips=bed.hips("back"), spine=spine, head=bend(0.0))
-    pose = on_the_back(pose, style.legs, skeleton, keys.leg)
+    spine = bend(keys.back.spine_lift_share * lift, side=style.own.curve)
+    hips = _askew(bed.hips("back"), bed, style.own)
+    pose = replace(pose, pelvis=bed.pelvis, hips=hips, spine=spine, head=bend(0.0))
+    pose = on_the_back(pose, style.legs, skeleton, keys.leg, style.own)
     if style.legs.endswith("_down") and style.legs == f"{bed.edge_side}_down" and bed.surface > MIN_BED:
         index = ("left", "right").index(bed.edge_side)
         pose = foot_down(pose, index, (bed.edge, bed.outward), skeleton, keys.foot_down)
     else:
         pose = shortened(pose, bed.end, skeleton, keys.over_end, keys.before_end)
     if style.propped:
-        pose = _sat_up(pose, bed, skeleton, keys.propped)
-        pose = replace(pose, head=bend(keys.propped.head_pitch_rad))
-        return propped(pose, bed.surface, skeleton, keys.propped)
+        return on_both_elbows(pose, bed.surface, skeleton, keys.propped)
     heights = head_middle(replace(pose, head=np.stack([bend(float(nod)) for nod in NODS])), skeleton)[:, 1]
     left, right = (_hand(style, bed, index, skeleton.scale, keys.back_hand) for index in (0, 1))
     under_head = any(hand.with_head and hand.wrist_m[2] < 0 for hand in (left, right))
     under = bed.pillow + (ON_HANDS * skeleton.scale if under_head else 0.0)
     resting = bed.surface + under + SKULL_RADIUS * skeleton.scale
     nod = float(NODS[int(np.argmin(np.abs(heights - resting)))]) + style.nod
-    pose = replace(pose, head=bend(nod, turn=style.turn))
-    return hands_at_rest(pose, (left, right), skeleton)
+    # A head that hands go with stays between them.
+    turned = 0.0 if left.with_head or right.with_head or style.nod else style.own.head_turn
+    turn = style.turn * (1.0 if turned >= 0 else -1.0) + turned
+    pose = replace(pose, head=bend(nod, turn=turn, side=style.own.head_tilt))
+    return hands_at_rest(pose, (_moved(left, style.own, 0), _moved(right, style.own, 1)), skeleton)
+
+
+def _askew(hips: Array, bed: Bed, own: OwnWay) -> Array:
+    """Hips a little across the bed, where that has room to the sides."""
+    room = np.clip((min(bed.edge, *bed.beside) - NARROW) / NARROW, 0.0, 1.0)
+    return rotations.compose(rotations.yaw_to_quat(float(own.askew * room)), hips)
+
+
+def _moved(rest: RestingHand, own: OwnWay, index: int) -> RestingHand:
+    """The hand where it lies this time, over the same surface."""
+    out, up, ahead = rest.wrist_m
+    # Under a head and on a face there is no more room.
+    size = 0.5 if rest.with_head else 1.0
+    across, along = size * float(own.hand_across[index]), size * float(own.hand_along[index])
+    return replace(rest, wrist_m=(out + across, up + along, ahead))
 
 
 def _hand(style: Lying, bed: Bed, index: int, scale: float, rows: tuple[RestingHand, ...]) -> RestingHand:
-    """Where a hand rests; with something beside, forearms go up, or hands under the head or onto the hips."""
-    rest = _row(rows, style.arms[index], "sides")
-    while rest.narrower is not None and bed.beside[index] < rest.room_m * scale:
-        rest = _row(rows, rest.narrower, "sides")
+    """Where a hand rests on the back; with something beside, forearms go up, or hands under the head or on the hips."""
+    rest = _fitting(_row(rows, style.arms[index], "sides"), bed.beside[index] / scale, rows)
     if index == 1 and style.arms[0] == rest.name and rest.name in ("belly", "chest"):
         x, y, z = np.array(rest.wrist_m) + LOWER
         return replace(rest, wrist_m=(x, y, z))
+    return rest
+
+
+def _fitting(rest: RestingHand, room: float, rows: tuple[RestingHand, ...]) -> RestingHand:
+    """The hand, or one that needs less room where there is no more than that (metres at 1.70 m)."""
+    while rest.narrower is not None and room < rest.room_m:
+        rest = _row(rows, rest.narrower, rest.name)
     return rest
 
 
@@ -215,16 +209,6 @@ def _row(rows: tuple[Row, ...], name: str, usual: str) -> Row:
     return named.get(name, named[usual])
 
 
-def _sat_up(pose: Pose, bed: Bed, skeleton: Skeleton, row: Propped) -> Pose:
-    """The trunk raised until an upper arm stands upright under its shoulder; the pelvis tips back under it."""
-    back = rotations.rotvec_to_quat(np.array([row.hips_back_rad, 0.0, 0.0]))
-    pose = replace(pose, hips=rotations.compose(pose.hips, back))
-    tries = replace(pose.repeat(len(BENDS)), spine=np.stack([bend(float(forward)) for forward in BENDS]))
-    heights = shoulders(tries, skeleton)[:, 0, 1]
-    best = int(np.argmin(np.abs(heights - bed.surface - row.shoulder_height_m * skeleton.scale)))
-    return replace(pose, spine=tries.spine[best])
-
-
 def _on_a_side(pose: Pose, bed: Bed, style: Lying, skeleton: Skeleton, keys: LiePose) -> Pose:
     """Hips and shoulders one above the other, the head on the pillow or the arm, one leg upon the other."""
     row, down = keys.side, 1.0 if style.side == "left" else -1.0
@@ -232,17 +216,24 @@ def _on_a_side(pose: Pose, bed: Bed, style: Lying, skeleton: Skeleton, keys: Lie
     pose = replace(
         pose,
         pelvis=bed.pelvis + row.pelvis_up_m * UP,
-        hips=bed.hips(style.side),
-        spine=bend(curl, side=row.spine_side_rad * down, turn=row.spine_turn_rad * down),
+        hips=_askew(bed.hips(style.side), bed, style.own),
+        spine=bend(curl + abs(style.own.curve), side=row.spine_side_rad * down, turn=row.spine_turn_rad * down),
     )
     legs = _row(keys.side_legs, style.legs, "straight")
-    pose = on_a_side(pose, legs, style.side, bed.beside[0 if down > 0 else 1], skeleton)
+    before = bed.beside[0 if down > 0 else 1]
+    pose = on_a_side(pose, legs, style.side, before, skeleton, style.own)
     names = style.arms if style.side == "left" else style.arms[::-1]
-    below, above = _row(keys.below_hand, names[0], "pillow"), _row(keys.above_hand, names[1], "before")
+    if style.propped:
+        above = _fitting(_row(keys.above_hand, names[1], "before"), before / skeleton.scale, keys.above_hand)
+        held = hands_at_rest(pose, (above, above), skeleton)
+        return head_in_hand(held, 0 if down > 0 else 1, bed.surface, skeleton, keys.head_in_hand)
+    below = _fitting(_row(keys.below_hand, names[0], "pillow"), before / skeleton.scale, keys.below_hand)
+    above = _fitting(_row(keys.above_hand, names[1], "before"), before / skeleton.scale, keys.above_hand)
     under = max(bed.pillow, ON_ARM * skeleton.scale if below.with_head else 0.0)
     pitch = row.head_curl_share * curl + row.head_pitch_rad
     tries = np.stack([bend(pitch, side=float(tilt)) for tilt in TILTS * down])
     heights = head_middle(replace(pose, head=tries), skeleton)[:, 1]
     resting = bed.surface + under + SKULL_RADIUS * skeleton.scale
     pose = replace(pose, head=tries[int(np.argmin(np.abs(heights - resting)))])
-    return hands_at_rest(pose, (below, above) if style.side == "left" else (above, below), skeleton)
+    hands = _moved(below, style.own, 0), _moved(above, style.own, 1)
+    return hands_at_rest(pose, hands if style.side == "left" else hands[::-1], skeleton)

@@ -14,6 +14,7 @@ from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import UP, Seat, idle
 from motion_backend.procedural.lie.lie_keys import lie_keys
 from motion_backend.procedural.lie.lie_on_floor import Mat, kneel_down, kneel_up, lie_down_from_knees, rise_to_knees
+from motion_backend.procedural.lie.lie_own import own_way, paced
 from motion_backend.procedural.lie.lie_pose import Bed
 from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.lie.lie_transition import edge_seat, lie_down, rise_to_edge
@@ -57,7 +58,8 @@ def before_bed(body: Body, action: Action) -> tuple[Point, float]:
 def lie(body: Body, part: Part) -> None:
     """From standing: onto the edge of the bed, or onto the knees on the floor; down, and into the pose."""
     action = part.action
-    style, keys = lie_style(action.emotion, action.caption), lie_keys()
+    keys = paced(lie_keys(), body.rng)
+    style = own_way(lie_style(action.emotion, action.caption), keys.own, body.rng)
     spot = spot_of(action)
     body.enter(PhaseKind.WALK)
     go(body, *before_bed(body, action), action)
@@ -83,11 +85,11 @@ def stay_lying(body: Body, part: Part) -> None:
 
 def get_up(body: Body, bearing: Bearing) -> None:
     """From lying to the edge of the bed, or from the floor to the knees."""
-    spot = spot_under(body)
+    spot, keys = spot_under(body), paced(lie_keys(), body.rng)
     if _on_floor(spot):
-        body.add(rise_to_knees(body.pose, Mat(Bed.of(spot), body.skeleton), bearing, lie_keys()))
+        body.add(rise_to_knees(body.pose, Mat(Bed.of(spot), body.skeleton), bearing, keys))
     else:
-        body.add(rise_to_edge(body.pose, _edge_of(body, spot), Bed.of(spot), bearing, body.skeleton, lie_keys()))
+        body.add(rise_to_edge(body.pose, _edge_of(body, spot), Bed.of(spot), bearing, body.skeleton, keys))
 
 
 def leave_bed(body: Body, bearing: Bearing) -> None:
@@ -96,7 +98,7 @@ def leave_bed(body: Body, bearing: Bearing) -> None:
     if not _on_floor(spot):
         leave_seat(body, _edge_of(body, spot), bearing)
         return
-    body.add(kneel_up(body.pose, Mat(Bed.of(spot), body.skeleton), bearing, lie_keys().floor_up))
+    body.add(kneel_up(body.pose, Mat(Bed.of(spot), body.skeleton), bearing, paced(lie_keys(), body.rng).floor_up))
 
 
 def _on_floor(spot: Spot) -> bool:

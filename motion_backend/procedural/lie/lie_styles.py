@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from motion_backend.motion import Emotion
 from motion_backend.procedural.emotion_style import AT_EASE, Bearing, bearing_of
+from motion_backend.procedural.lie.lie_own import OwnWay
 from motion_backend.procedural.style_sheet import Radians, read_style_sheet
 
 
@@ -20,10 +21,11 @@ class Lying:
     legs: str = "straight"
     """straight, loose, left_bent, right_bent, bent, tucked, crossed; left_down, right_down: that foot on the floor."""
     propped: bool = False
-    """Whether the trunk is raised on the elbows."""
+    """Whether the trunk is raised on the elbows, on a side with the head in the hand."""
     nod: Radians = 0.0
     turn: Radians = 0.0
     """How far the head is lifted, and turned to the left, from where it rests."""
+    own: OwnWay = field(default_factory=OwnWay)
 
 
 def lie_style(emotion: Emotion, caption: str) -> Lying:

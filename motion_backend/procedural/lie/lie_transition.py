@@ -1,8 +1,9 @@
-"""Lying down and getting up, as key poses over the edge of what is lain on."""
+"""Lying down on a bed and getting up from it, as people do: over the side of the edge, on elbow and hands."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -10,11 +11,11 @@ from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import FOOT_SPLAY, SHIN_REACH, UP, Seat, bend, both_sides, upright
-from motion_backend.procedural.lie.lie_keys import BearingHand, LegsUp, LieKeys, OnEdge, Rolled, SittingUp
+from motion_backend.procedural.lie.lie_arms import elbows_over
+from motion_backend.procedural.lie.lie_keys import LieKeys, LiePose, OverEdge, PushingHands, Rolled, SittingUp
 from motion_backend.procedural.lie.lie_pose import Bed, lying
 from motion_backend.procedural.lie.lie_styles import Lying
 from motion_backend.procedural.pose import Pose, interpolate
-from motion_backend.procedural.pose_solver import released
 from motion_backend.procedural.touch.hand_contacts import palm_on
 from motion_backend.procedural.walk.footsteps import home_ankle
 from motion_backend.rotations import Array
@@ -26,14 +27,17 @@ ASIDE, HIGHER = 0.10, 0.03
 """How far it goes aside to come off the other one, and towards the head (metres)."""
 CROSSED = 0.07
 """Ankles nearer to each other from side to side are crossed (metres)."""
-HURRIED = 1.35
-"""Who is quicker than this gets up straight ahead."""
 ON_EDGE = 0.12
 """Who sits on the edge of a bed sits so far inside it at least (metres)."""
 SOFT = 0.01
 """How much lower the pelvis is that sits on what it would lie on (metres)."""
 PAST_HAND = 0.12
 """A hand is so far from the end of a bed at least (metres)."""
+CLEAR = 0.01
+"""A sole is so far above the floor that it is not put down on yet, at least (metres)."""
+FACING_UP = 0.5
+"""Who lies with so much of the front up lies on the back (cosine)."""
+BESIDE = {"left": "right", "right": "left"}
 
 
 def edge_seat(bed: Bed, standing_point: tuple[float, float], outward: float, edge: float, scale: float) -> Seat:
@@ -49,36 +53,108 @@ def edge_seat(bed: Bed, standing_point: tuple[float, float], outward: float, edg
     return Seat(pelvis, outward, np.inf)
 
 
+@dataclass(frozen=True)
+class Edge:
+    """The edge of a bed that is sat on, for one body."""
+
+    seat: Seat
+    bed: Bed
+    skeleton: Skeleton
+
+    @cached_property
+    def way(self) -> float:
+        """1 where the head end is to the left of who sits there, -1 to the right."""
+        return 1.0 if np.sin(self.bed.head_yaw - self.seat.yaw) > 0 else -1.0
+
+    @property
+    def below(self) -> int:
+        """The arm on the side of the head end: it is below in lying on the side."""
+        return 0 if self.way > 0 else 1
+
+    @cached_property
+    def side(self) -> str:
+        """The side that one lies on who looks over the edge."""
+        return ("left", "right")[self.below]
+
+    def tilted(self, angle: float) -> Array:
+        """What turns who is upright on the edge to the head end: upright at a right angle, lying at 0. (4,)."""
+        return rotations.rotvec_to_quat(np.array([0.0, 0.0, -self.way * (np.pi / 2 - angle)]))
+
+    def turned(self, angle: float) -> Array:
+        """The same in the world. (4,)."""
+        yaw = rotations.yaw_to_quat(self.seat.yaw)
+        return rotations.compose(rotations.compose(yaw, self.tilted(angle)), rotations.inverse(yaw))
+
+    def on_mattress(self, headwards: float, out: float) -> Array:
+        """Where a hand lies, from where the pelvis sits (metres at 1.70 m). (3,)."""
+        scale, bed = self.skeleton.scale, self.bed
+        up = np.array([np.sin(bed.head_yaw), 0.0, np.cos(bed.head_yaw)])
+        outward = np.array([np.sin(self.seat.yaw), 0.0, np.cos(self.seat.yaw)])
+        place = self.seat.pelvis + scale * (headwards * up + out * outward)
+        place[1] = bed.surface + HAND_REST
+        return np.asarray(place)
+
+    def hands(self, row: PushingHands) -> tuple[Array, Array]:
+        """Wrists (2, 3) and palms (2, 4) of both hands where they push."""
+        up = np.array([np.sin(self.bed.head_yaw), 0.0, np.cos(self.bed.head_yaw)])
+        out = np.array([np.sin(self.seat.yaw), 0.0, np.cos(self.seat.yaw)])
+        moved, scale = self.seat.pelvis - self.bed.pelvis, self.skeleton.scale
+        room = (self.bed.back - float(moved @ up) - PAST_HAND) / scale
+        headwards = float(np.clip(room, row.below_min_headwards_m, row.below_max_headwards_m))
+        most = (self.bed.edge - float(moved @ out)) / scale - row.inside_edge_m
+        below = self.on_mattress(headwards, min(row.below_out_m, most))
+        above = self.on_mattress(row.above_headwards_m, min(row.above_out_m, most))
+        yaws = [self.bed.head_yaw - self.way * angle for angle in (row.below_fingers_rad, row.above_fingers_rad)]
+        names = (self.side, BESIDE[self.side])
+        palms = [palm_on(UP, yaw, name) for yaw, name in zip(yaws, names, strict=True)]
+        return self.in_order(np.stack([below, above])), self.in_order(np.stack(palms))
+
+    def in_order(self, hands: Array) -> Array:
+        """What is given for the hand below and the one above, for left and right. (2, ...)."""
+        return hands if self.below == 0 else hands[::-1]
+
+
 def lie_down(landed: Pose, seat: Seat, bed: Bed, style: Lying, skeleton: Skeleton, keys: LieKeys) -> Pose:
-    """From the edge: lean towards the head end on an arm, swing the legs up, lower the trunk; only then settle."""
-    first, second, third, fourth = keys.down.pose
-    sat = _on_edge(first, landed, seat, bed)
-    leaning = _leaning(second, sat, seat, bed, skeleton, keys.down.hand)
-    landed, sat = _bound_for(leaning, landed), _bound_for(leaning, sat)
-    middle = _half_way(third, leaning, seat, bed, skeleton, keys.down.hand)
-    over = _legs_over(fourth, middle, seat, bed, skeleton, keys.down.hand)
+    """From the edge: onto a hand and the elbow as the legs come up, the side, and over into the way of lying."""
+    edge, rows, settle = Edge(seat, bed, skeleton), keys.down.pose, keys.down.settle
+    hands = edge.hands(keys.down.hands)
+    over = [_over_edge(row, landed, edge, hands) for row in rows]
+    rolled = _rolled(keys.down.side, landed, edge, hands, keys.pose)
     end = lying(landed, bed, style, skeleton, keys.pose)
+    poses = [_bound_for(over[0], landed), *over, rolled]
+    waits = [*(row.wait_s for row in rows), keys.down.side.wait_s]
     # Hands are turned to what they lie on only as they get there.
-    bent = replace(lying(landed, bed, gathered(style), skeleton, keys.pose), palms=end.palms, pressing=np.zeros(2))
-    lifted, settle = freed(end, bed), keys.down.settle
-    waits = [row.wait_s for row in keys.down.pose] + [settle.bent_wait_s] + [settle.lifted_wait_s] * len(lifted)
+    if style.side == BESIDE[edge.side]:
+        poses.append(_unpressed(lying(landed, bed, gathered(replace(style, side="back")), skeleton, keys.pose), end))
+        waits.append(settle.back_wait_s)
+    if style.side != edge.side:
+        poses.append(_unpressed(lying(landed, bed, gathered(style), skeleton, keys.pose), end))
+        waits.append(settle.bent_wait_s)
+    lifted = freed(end, bed)
+    waits += [settle.lifted_wait_s] * len(lifted)
     waits.append(settle.end_after_lifted_wait_s if lifted else settle.end_wait_s)
-    return _through([landed, sat, leaning, middle, over, bent, *lifted, end], waits, style.bearing)
+    poses = [*poses, *(replace(pose, reach=rolled.reach) for pose in lifted), replace(end, reach=rolled.reach)]
+    return elbows_over(_through(poses, waits, style.bearing), bed.surface, skeleton)
 
 
 def rise_to_edge(start: Pose, seat: Seat, bed: Bed, bearing: Bearing, skeleton: Skeleton, keys: LieKeys) -> Pose:
-    """From lying to sitting on the edge: roll to it with bent knees, legs over it, push up on an arm."""
-    first, second, third, fourth, last = keys.up.pose
-    sat = _sitting(last, start, seat, skeleton)
-    leaning = _leaning(fourth, sat, seat, bed, skeleton, keys.up.hand)
-    sat = _bound_for(leaning, sat)
-    middle = _half_way(third, leaning, seat, bed, skeleton, keys.up.hand)
-    flat = Lying(bearing=bearing, legs="bent", arms=("belly", "belly"))
-    rolled = _rolled(first, lying(start, bed, flat, skeleton, keys.pose), start.palms, bed, bearing, skeleton)
-    over = _legs_over(second, middle, seat, bed, skeleton, keys.up.hand)
-    lifted = freed(start, bed)
-    waits = [keys.up.leave.lifted_wait_s] * len(lifted) + [row.wait_s for row in keys.up.pose]
-    return _through([start, *lifted, rolled, over, middle, leaning, sat], waits, bearing)
+    """From lying to sitting on the edge: knees up, onto the side, legs over the edge as elbow and hands push."""
+    edge, rows, leave = Edge(seat, bed, skeleton), keys.up.pose, keys.up.leave
+    hands = edge.hands(keys.up.hands)
+    sat = _sitting(keys.up.end, start, seat, skeleton)
+    over = [_over_edge(row, sat, edge, hands) for row in rows]
+    rolled = _rolled(keys.up.side, start, edge, hands, keys.pose)
+    poses, waits = [start, *freed(start, bed)], [leave.lifted_wait_s] * len(freed(start, bed))
+    front = rotations.rotate(start.hips, np.array([0.0, 0.0, 1.0]))
+    looks_out = front @ np.array([np.sin(seat.yaw), 0.0, np.cos(seat.yaw)]) > FACING_UP
+    if not looks_out:
+        flat = Lying(bearing=bearing, legs="bent", arms=("belly", "belly"))
+        poses.append(_unpressed(lying(start, bed, flat, skeleton, keys.pose), start))
+        waits.append(leave.bent_wait_s)
+    poses = [replace(pose, reach=hands[0]) for pose in poses]
+    waits += [keys.up.side.wait_s, *(row.wait_s for row in rows), keys.up.end.wait_s]
+    whole = _through([*poses, rolled, *over, _bound_for(over[-1], sat)], waits, bearing)
+    return elbows_over(whole, bed.surface, skeleton)
 
 
 def _through(poses: list[Pose], waits: list[float], bearing: Bearing) -> Pose:
@@ -90,6 +166,11 @@ def _through(poses: list[Pose], waits: list[float], bearing: Bearing) -> Pose:
 def gathered(style: Lying) -> Lying:
     """The way of lying that a body comes down in: knees bent, arms over the trunk."""
     return Lying(bearing=style.bearing, side=style.side, legs="bent", arms=("chest", "belly"))
+
+
+def _unpressed(pose: Pose, end: Pose) -> Pose:
+    """The pose with hands that lie on nothing yet, turned as at the end."""
+    return replace(pose, palms=end.palms, pressing=np.zeros(2), reach=end.reach)
 
 
 def freed(pose: Pose, bed: Bed) -> list[Pose]:
@@ -106,11 +187,6 @@ def freed(pose: Pose, bed: Bed) -> list[Pose]:
     local[index] += [ASIDE if index == 0 else -ASIDE, HIGHER, LIFTED]
     ankles[index] = pose.pelvis + rotations.rotate(pose.hips, local[index])
     return [replace(pose, ankles=ankles)]
-
-
-def _head_side(seat: Seat, bed: Bed) -> float:
-    """1 where the head end is to the left of who sits on the edge, -1 to the right."""
-    return 1.0 if np.sin(bed.head_yaw - seat.yaw) > 0 else -1.0
 
 
 def _sitting(row: SittingUp, start: Pose, seat: Seat, skeleton: Skeleton) -> Pose:
@@ -135,104 +211,74 @@ def _sitting(row: SittingUp, start: Pose, seat: Seat, skeleton: Skeleton) -> Pos
     )
 
 
-def _on_edge(row: OnEdge, sat: Pose, seat: Seat, bed: Bed) -> Pose:
-    """Sitting on the edge, turned or bent towards the head end."""
-    way = _head_side(seat, bed)
-    roll = rotations.rotvec_to_quat(np.array([0.0, 0.0, row.hip_roll_rad * way]))
+def _over_edge(row: OverEdge, sat: Pose, edge: Edge, hands: tuple[Array, Array]) -> Pose:
+    """A key pose between sitting on the edge, as in `sat`, and lying on the side."""
+    way, seat, bed = edge.way, edge.seat, edge.bed
+    pelvis = bed.pelvis + row.pelvis_share * (seat.pelvis - bed.pelvis) + row.pelvis_up_m * UP
+    hips = rotations.compose(upright(seat.yaw, row.roll_rad), edge.tilted(row.tilt_rad))
+    pose = replace(
+        sat,
+        pelvis=pelvis,
+        hips=hips,
+        spine=bend(row.spine_pitch_rad, side=row.spine_side_rad * way),
+        head=bend(row.head_pitch_rad, side=row.head_side_rad * way, turn=row.head_turn_rad * way),
+    )
+    return _pushed(row, pose if row.planted else _hanging(row, pose, edge), edge, hands)
+
+
+def _hanging(row: OverEdge, sat: Pose, edge: Edge) -> Pose:
+    """Legs swung up over the edge as a whole, from where they stand in `sat`."""
+    swing = edge.turned(row.legs_rad)
+    local = sat.ankles - edge.seat.pelvis
+    middle = local.mean(axis=0)
+    ankles = sat.pelvis + rotations.rotate(swing, middle + row.feet_apart_share * (local - middle))
+    ankles[:, 1] = np.maximum(ankles[:, 1], edge.skeleton.ankle_height + CLEAR)
+    pitch = rotations.rotvec_to_quat(np.array([row.foot_pitch_rad, 0.0, 0.0]))
     return replace(
         sat,
-        hips=rotations.compose(upright(seat.yaw, row.hip_pitch_rad), roll),
-        spine=bend(row.spine_pitch_rad, side=row.spine_side_rad * way),
-        head=bend(row.head_pitch_rad, turn=row.head_turn_rad * way),
+        ankles=ankles,
+        feet=rotations.compose(rotations.compose(swing, sat.feet), pitch),
+        toes=np.zeros(2),
+        knees=rotations.rotate(swing, sat.knees),
+        planted=np.zeros(2),
     )
 
 
-def _leaning(row: OnEdge, sat: Pose, seat: Seat, bed: Bed, skeleton: Skeleton, hand: BearingHand) -> Pose:
-    """Sitting on the edge, leaning towards the head end on that hand."""
-    return _on_a_hand(_on_edge(row, sat, seat, bed), seat, bed, skeleton, hand)
+def _pushed(row: OverEdge, pose: Pose, edge: Edge, hands: tuple[Array, Array]) -> Pose:
+    """Hands on the mattress as far as a row has them there."""
+    below, above = (
+        (row.below_wrist_ratio, row.below_elbow_direction),
+        (row.above_wrist_ratio, row.above_elbow_direction),
+    )
+    shares = np.array([row.below_share, row.above_share])
+    ways = (below, above) if edge.below == 0 else (above, below)
+    shares = shares if edge.below == 0 else shares[::-1]
+    arms, elbows = (np.stack([both_sides(ways[index][what])[index] for index in (0, 1)]) for what in (0, 1))
+    reach, palms = hands
+    return replace(pose, arms=arms, elbows=elbows, reach=reach, palms=palms, reaching=shares, pressing=shares)
 
 
 def _bound_for(leaning: Pose, pose: Pose) -> Pose:
-    """The same pose with hands that are free bound for where they bear, so that they go there by the shortest way."""
+    """The same pose with hands that are free bound for where they push, so that they go there by the shortest way."""
     free = pose.reaching[:, None] <= 0
     reach, palms = np.where(free, leaning.reach, pose.reach), np.where(free, leaning.palms, pose.palms)
     return replace(pose, reach=reach, palms=palms)
 
 
-def _on_a_hand(pose: Pose, seat: Seat, bed: Bed, skeleton: Skeleton, hand: BearingHand) -> Pose:
-    """The hand on the side of the head end on the mattress beside the edge, the other before the body."""
-    way, scale = _head_side(seat, bed), skeleton.scale
-    index = 0 if way > 0 else 1
-    up = np.array([np.sin(bed.head_yaw), 0.0, np.cos(bed.head_yaw)])
-    inward = -np.array([np.sin(seat.yaw), 0.0, np.cos(seat.yaw)])
-    room = bed.back - float((seat.pelvis - bed.pelvis) @ up) - PAST_HAND
-    headwards = float(np.clip(room, hand.min_headwards_m * scale, hand.max_headwards_m * scale))
-    place = seat.pelvis + headwards * up + hand.inwards_m * scale * inward
-    place[1] = bed.surface + HAND_REST
-    arms, elbows = pose.arms.copy(), pose.elbows.copy()
-    reach, palms = pose.reach.copy(), pose.palms.copy()
-    reaching, pressing = np.zeros(2), np.zeros(2)
-    reach[index], reaching[index], pressing[index] = place, 1.0, hand.pressing_share
-    palms[index] = palm_on(UP, bed.head_yaw - hand.fingers_out_rad * way, ("left", "right")[index])
-    elbows[index] = both_sides(hand.elbow_direction)[index]
-    arms[1 - index] = both_sides(hand.free_wrist_ratio)[1 - index]
-    elbows[1 - index] = both_sides(hand.free_elbow_direction)[1 - index]
-    posed = replace(pose, reach=reach, reaching=reaching, palms=palms, pressing=pressing, arms=arms, elbows=elbows)
-    arms[index] = released(posed, skeleton).arms[index]
-    return replace(posed, arms=arms)
-
-
-def _half_way(row: LegsUp, leaning: Pose, seat: Seat, bed: Bed, skeleton: Skeleton, hand: BearingHand) -> Pose:
-    """Leaning on one arm with the legs just off the floor."""
-    hips = rotations.slerp(upright(seat.yaw, 0.0), bed.hips("back"), row.lain_share)
-    pelvis = seat.pelvis + row.pelvis_share * (bed.pelvis - seat.pelvis) + row.pelvis_up_m * UP
-    pose = _legs_up(row, leaning, pelvis, hips, skeleton.scale)
-    spine = bend(row.spine_pitch_rad, side=row.spine_side_rad * _head_side(seat, bed))
-    return _on_a_hand(replace(pose, spine=spine), seat, bed, skeleton, hand)
-
-
-def _legs_over(row: LegsUp, middle: Pose, seat: Seat, bed: Bed, skeleton: Skeleton, hand: BearingHand) -> Pose:
-    """Legs over the edge and above the bed, trunk nearly down, the hand that bore it free."""
-    support = middle.reaching[:, None] > 0
-    hips = rotations.slerp(middle.hips, bed.hips("back"), row.lain_share)
-    pelvis = middle.pelvis + row.pelvis_share * (bed.pelvis - middle.pelvis) + row.pelvis_up_m * UP
+def _rolled(row: Rolled, pose: Pose, edge: Edge, hands: tuple[Array, Array], keys: LiePose) -> Pose:
+    """On the side of the edge with knees bent, arms before the chest, the hand above about to push or done with it."""
+    arms = ("tucked", "before") if edge.side == "left" else ("before", "tucked")
+    side = Lying(side=edge.side, legs="gathered", arms=arms)
+    lain = lying(pose, edge.bed, side, edge.skeleton, keys)
+    moved = row.pelvis_share * (edge.seat.pelvis - edge.bed.pelvis) * [1.0, 0.0, 1.0]
+    head = lain.head + bend(row.head_pitch_rad)
+    reach, palms = hands
     return replace(
-        _legs_up(row, middle, pelvis, hips, skeleton.scale),
-        spine=bend(row.spine_pitch_rad, side=row.spine_side_rad * _head_side(seat, bed)),
-        arms=np.where(support, both_sides(hand.after_wrist_ratio), middle.arms),
-        elbows=np.where(support, both_sides(hand.after_elbow_direction), middle.elbows),
-        reaching=np.zeros(2),
-        pressing=np.zeros(2),
-    )
-
-
-def _legs_up(row: LegsUp | Rolled, pose: Pose, pelvis: Array, hips: Array, scale: float) -> Pose:
-    """Both legs off what they were on, as a row has them against the pelvis."""
-    foot = rotations.compose(hips, rotations.rotvec_to_quat(np.array([row.foot_pitch_rad, 0.0, 0.0])))
-    return replace(
-        pose,
-        pelvis=pelvis,
-        hips=hips,
-        head=bend(row.head_pitch_rad),
-        ankles=pelvis + rotations.rotate(hips, both_sides(row.ankle_m) * scale),
-        feet=np.stack([foot, foot]),
-        knees=rotations.rotate(hips, both_sides(row.knee_direction)),
-        planted=np.zeros(2),
-    )
-
-
-def _rolled(row: Rolled, flat: Pose, palms: Array, bed: Bed, bearing: Bearing, skeleton: Skeleton) -> Pose:
-    """On the way to the side of the edge from lying flat with bent knees; who is in a hurry hardly rolls."""
-    roll = row.hurried_roll_rad if bearing.tempo > HURRIED else row.roll_rad
-    way = 1.0 if bed.edge_side == "left" else -1.0
-    hips = rotations.compose(flat.hips, rotations.rotvec_to_quat(np.array([0.0, roll * way, 0.0])))
-    return replace(
-        _legs_up(row, flat, flat.pelvis, hips, skeleton.scale),
-        pelvis=flat.pelvis + row.pelvis_up_m * UP,
+        lain,
+        pelvis=lain.pelvis + moved,
+        ankles=lain.ankles + moved,
+        head=head,
+        reach=reach,
         palms=palms,
-        spine=bend(row.spine_pitch_rad, side=row.spine_side_ratio * roll * way),
-        head=bend(row.head_pitch_rad, turn=row.head_turn_rad * way),
-        arms=both_sides(row.wrist_ratio),
-        elbows=both_sides(row.elbow_direction),
         pressing=np.zeros(2),
     )

@@ -183,6 +183,7 @@ class Ready:
 
     name: Literal["ready"]
     time_share: float
+    pelvis_ahead_m: float
     hip_pitch_share: float
     spine_pitch_share: float
     arms_up_ratio: float
@@ -193,7 +194,7 @@ class Ready:
 class Risen:
     """A key pose on the way up."""
 
-    name: Literal["lift", "straighten"]
+    name: Literal["leave", "lift", "straighten"]
     time_share: float
     pelvis_ahead_share: float
     pelvis_up_share: float
@@ -212,7 +213,9 @@ class Rise:
     time_s: float
     lean_rad: float
     lean_per_depth_rad: float
+    gathered_share: float
     low_fold_share: float
+    low_held_ratio: float
 
 
 @table
@@ -221,7 +224,7 @@ class StandUp:
 
     gather: Move
     rise: Rise
-    pose: tuple[Ready, Risen, Risen]
+    pose: tuple[Ready, Risen, Risen, Risen]
 
 
 @dataclass(frozen=True)

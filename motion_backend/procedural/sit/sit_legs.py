@@ -12,7 +12,7 @@ from motion_backend.inverse_kinematics import leg_rotations, two_bone
 from motion_backend.procedural.held_poses import FLOOR_REACH, FOOT_SPLAY, SHIN_REACH, UP, Seat, upright
 from motion_backend.procedural.sit.sit_keys import SeatedLeg, SeatedLegs
 from motion_backend.rotations import Array
-from motion_backend.skeleton import INDEX, Skeleton
+from motion_backend.skeleton import ANKLE_HEIGHT, INDEX, Skeleton
 
 HANGING: Final = 0.72
 """Above this pelvis height over the ankle feet hang (metres at 1.70 m)."""
@@ -30,11 +30,17 @@ THIGH: Final = 0.4165
 SHANK: Final = 0.418
 """Lengths of the bones of a leg (metres at 1.70 m)."""
 MIN_STRETCH: Final = 0.2
-MAX_STRETCH: Final = 0.80
-STRETCH_STEP: Final = 0.01
+MAX_STRETCH: Final = 0.828
+STRETCH_STEP: Final = 0.005
 """How far ahead of the pelvis a stretched foot is tried, from afar (metres at 1.70 m); a leg is no longer either."""
+ON_HEEL: Final = 0.04
+"""How much higher the ankle of a stretched leg is, on its heel, than that of a foot that stands (metres at 1.70 m)."""
+BENT: Final = 0.817
+"""A leg that reaches less far than this is not straight (metres at 1.70 m): its knee has less than 156 degrees."""
 MAX_SINK: Final = 0.055
 """How far a thigh's middle line comes down to the seat's front edge at most, from the hip (metres at 1.70 m)."""
+PERCH: Final = 0.06
+"""So much of a seat is under a pelvis at least that slides to its front to stretch the legs (metres)."""
 WAYS: Final[dict[str, tuple[str, str]]] = {
     "rest": ("rest", "rest"),
     "together": ("together", "together"),
@@ -50,6 +56,8 @@ WAYS: Final[dict[str, tuple[str, str]]] = {
     "drawn": ("drawn", "drawn"),
 }
 """What the left and the right leg do in each way of sitting: rows of the table."""
+STRAIGHT: Final = ("straight", "over", "under")
+"""Rows of legs that are straight."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +146,7 @@ def _ahead(row: SeatedLeg, seat: Seat, skeleton: Skeleton, room: float) -> float
     if row.ahead_m is not None:
         ahead = (row.low_ahead_m if low and row.low_ahead_m is not None else row.ahead_m) * scale
     else:
-        stretched = _stretch(seat, seat.pelvis[1] - skeleton.ankle_height, scale)
+        stretched = _stretch(seat.edge, _drop(seat, scale), scale)
         far = float(np.clip(stretched, MIN_STRETCH, max(room, SHIN_REACH * scale)))
         ahead = (1 - row.stretched_share) * shin + row.stretched_share * far + row.beyond_m * scale
     match row.name:
@@ -187,8 +195,44 @@ def _on_the_knee(
     return np.asarray(left + lengths[0] * thigh + ON_KNEE * skeleton.scale * UP)
 
 
-def _stretch(seat: Seat, drop: float, scale: float) -> float:
-    """How far ahead a stretched foot goes: as far as the thigh clears the seat's front edge (metres)."""
+def _drop(seat: Seat, scale: float) -> float:
+    """From the hip down to the ankle of a foot on its heel (metres)."""
+    return float(seat.pelvis[1]) - (ANKLE_HEIGHT + ON_HEEL) * scale
+
+
+def is_to_be_straight(legs: str) -> tuple[bool, bool]:
+    """Whether the left and the right leg of a way of sitting are to be straight."""
+    left, right = WAYS[legs]
+    return left in STRAIGHT, right in STRAIGHT
+
+
+def bends_a_leg(seat: Seat, legs: str, skeleton: Skeleton, room: tuple[Room, Room], keys: SeatedLegs) -> bool:
+    """Whether a leg that is to be straight has no room for it, or the seat is too high or too deep."""
+    scale = skeleton.scale
+    least = straight_reach(seat, scale) - STRETCH_STEP
+    rows = [keys.of(way) for way in WAYS[legs]]
+    too_high = _drop(seat, scale) > HANGING * scale
+    return any(
+        straight and (too_high or _ahead(row, seat, skeleton, one.ahead) - row.beyond_m * scale < least)
+        for straight, row, one in zip(is_to_be_straight(legs), rows, room, strict=True)
+    )
+
+
+def straight_reach(seat: Seat, scale: float) -> float:
+    """How far ahead of the pelvis an ankle is at least for its leg to be straight (metres)."""
+    return float(np.sqrt(max((BENT * scale) ** 2 - _drop(seat, scale) ** 2, (MIN_STRETCH * scale) ** 2)))
+
+
+def perch(seat: Seat, scale: float) -> float:
+    """How far to the front of its seat a pelvis slides for legs to be straight on the floor ahead (metres)."""
+    for edge in np.arange(seat.edge, PERCH, -STRETCH_STEP):
+        if _stretch(float(edge), _drop(seat, scale), scale) >= straight_reach(seat, scale):
+            return float(seat.edge - edge)
+    return max(seat.edge - PERCH, 0.0)
+
+
+def _stretch(edge: float, drop: float, scale: float) -> float:
+    """How far ahead a stretched foot goes: as far as the thigh clears the seat's front edge, so far ahead (metres)."""
     thigh, shank = THIGH * scale, SHANK * scale
     for ahead in np.arange(MAX_STRETCH, SHIN_REACH, -STRETCH_STEP) * scale:
         reach = float(np.hypot(ahead, drop))
@@ -196,7 +240,7 @@ def _stretch(seat: Seat, drop: float, scale: float) -> float:
             continue
         # The knee lies above the line from hip to ankle: the thigh's slope follows from the triangle they make.
         inner = np.arccos(np.clip((thigh**2 + reach**2 - shank**2) / (2 * thigh * reach), -1.0, 1.0))
-        sinks = np.tan(np.arctan2(drop, ahead) - inner) * seat.edge
+        sinks = np.tan(np.arctan2(drop, ahead) - inner) * edge
         if sinks < MAX_SINK * scale:
             return float(ahead)
     return SHIN_REACH * scale

@@ -6,13 +6,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from motion_backend import rotations
 from motion_backend.procedural.collision_avoidance.body_collision import arms_inside
 from motion_backend.procedural.emotion_style import arm_arrays
 from motion_backend.procedural.held_poses import Seat, bend, upright
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.pose_solver import solve
 from motion_backend.procedural.sit.sit_keys import SitPose, Surface, Trunk
-from motion_backend.procedural.sit.sit_legs import Room, seated_legs
+from motion_backend.procedural.sit.sit_legs import Room, bends_a_leg, seated_legs
 from motion_backend.procedural.sit.sit_styles import Seated
 from motion_backend.procedural.touch.hand_rests import (
     HOLDS,
@@ -32,8 +33,12 @@ ON_THIGH = 0.105
 """Elbow above the middle of the thigh it lies on (metres at 1.70 m)."""
 ELBOW = 0.045
 """Elbow above the table it lies on (metres at 1.70 m)."""
-NEAR_TABLE, FARTHER = 0.28, 70.0
-"""Beyond this distance of a table's edge one leans towards it, so many degrees a metre."""
+TO_TABLE = np.radians(np.arange(2.0, 48.0, 1.0))
+"""Leans forward that are tried until the elbows of hands on a table are bent enough."""
+EASY_TABLE = 0.65
+"""A table's edge is no farther from the pelvis for hands that do something on it (metres at 1.70 m)."""
+EASY_ELBOW = np.radians(112.0)
+"""How far an elbow is open at most whose hand is on a table."""
 LEANS = np.radians(np.arange(8.0, 62.0, 1.0))
 """Leans of the trunk that are tried until the elbows lie."""
 BEHIND_PELVIS = 0.12
@@ -72,6 +77,8 @@ def _hold(name: str, index: int, place: Place, scale: float, keys: SitPose) -> H
 
 def _on_surface(row: Surface, index: int, place: Place, scale: float) -> Hold | None:
     """A hand on a surface that belongs to no body; None where it is not there."""
+    if row.name in BUSY_ON_TABLE and not _reaches_table(place, scale):
+        return None
     if row.name in ON_TABLE:
         points = place.around.on_table(place.seat, _inwards(row, place, scale), row.apart_m * scale)
     else:
@@ -82,12 +89,17 @@ def _on_surface(row: Surface, index: int, place: Place, scale: float) -> Hold | 
     return on_thing(point, place.seat.yaw, (1, -1)[index] * row.fingers_out_rad, row.elbow_direction)
 
 
+def _reaches_table(place: Place, scale: float) -> bool:
+    """Whether hands can do something on a table with bent elbows."""
+    return place.around.table is not None and place.around.table <= EASY_TABLE * scale
+
+
 def _palms(name: str, index: int, around: Handholds) -> Pair:
     """Where palms lie but on a table; beside the hips if that hand has no room behind them or at the edge."""
     match name:
         case "armrest":
             return around.armrests
-        case "behind" if around.behind[index] is not None:
+        case "behind" | "propped" if around.behind[index] is not None:
             return around.behind
         case "edge" if around.edge[index] is not None:
             return around.edge
@@ -103,8 +115,18 @@ def _inwards(row: Surface, place: Place, scale: float) -> float:
     return float(np.clip(inwards - (place.around.table or 0.0), row.min_inwards_m, row.max_inwards_m))
 
 
-def lacking(style: Seated, place: Place, skeleton: Skeleton) -> tuple[str, ...]:
-    """What the hands of a way of sitting were to be on and is not there, and where they are instead (`Note.words`)."""
+def lacking(style: Seated, place: Place, skeleton: Skeleton, keys: SitPose) -> tuple[str, ...]:
+    """What a way of sitting needs and is not there, and what is done instead (`Note.words`)."""
+    said = _hands_lacking(style, place, skeleton)
+    if bends_a_leg(place.seat, style.legs, skeleton, place.room, keys.legs):
+        said = (*said, "no room to stretch the legs: legs bent")
+    if style.recline >= LEANS_BACK and _recline(style, place, keys.trunk) < LEANT * np.radians(style.recline):
+        said = (*said, "nothing to lean back against: upright")
+    return said
+
+
+def _hands_lacking(style: Seated, place: Place, skeleton: Skeleton) -> tuple[str, ...]:
+    """What the hands of a way of sitting were to be on and is not there, and where they are instead."""
     left, right = (_lost(name, index, place, skeleton.scale) for index, name in enumerate(style.arms))
     if left is not None and left == right:
         return (f"no {left[0]}: each hand {left[1]}",)
@@ -119,6 +141,8 @@ def _lost(name: str, index: int, place: Place, scale: float) -> tuple[str, str] 
     if name not in SURFACES:
         return None
     on_table, around = name in ON_TABLE, place.around
+    if name in BUSY_ON_TABLE and around.table is not None and not _reaches_table(place, scale):
+        return "table in easy reach", WHERE["lap"]
     there = around.table is not None if on_table else _palms(name, index, around)[index] is not None
     low = place.seat.is_low(scale)
     if name == "behind" and there and not low:
@@ -151,6 +175,8 @@ def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton, keys: S
         planted=legs.planted,
     )
     holds = holds_of(style, place, skeleton, keys)
+    if _reaches_table(place, skeleton.scale) and BUSY_ON_TABLE & set(style.arms):
+        return _up_to_table(_leaning(pose, seat, -TO_TABLE, keys.trunk), style, holds, skeleton), holds
     if style.on_elbows:
         return _on_elbows(_leaning(pose, seat, -LEANS, keys.trunk), place, holds, skeleton), holds
     back = np.array([_recline(style, place, keys.trunk)])
@@ -159,20 +185,22 @@ def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton, keys: S
     return lay_hands(inside, holds, skeleton).at(0), holds
 
 
-SURFACES = ("armrest", "beside", "behind", "edge", "table", "desk")
+SURFACES = ("armrest", "beside", "behind", "propped", "edge", "table", "keyboard", "paper", "pen", "desk")
 """What hands may lie on besides the body: of `Handholds`, "desk" being the table with the forearms on it."""
-ON_TABLE = ("table", "desk")
-INSTEAD = {"desk": "knees", "table": "lap"}
+ON_TABLE = ("table", "keyboard", "paper", "pen", "desk")
+"""Those of them that are on a table."""
+BUSY_ON_TABLE = frozenset(ON_TABLE) - {"desk"}
+"""And those on which hands do something: elbows are bent for that."""
+INSTEAD = {"desk": "knees"} | dict.fromkeys(BUSY_ON_TABLE, "lap")
 """Where hands lie if a surface is not there; on the thighs otherwise."""
 LACKED = {
     "armrest": "armrest",
     "beside": "room beside the hips",
     "behind": "floor in reach",
+    "propped": "room behind the hips",
     "edge": "room beside the thighs",
-    "table": "table before the seat",
-    "desk": "table before the seat",
     "keys": "piano",
-}
+} | dict.fromkeys(ON_TABLE, "table before the seat")
 """What is not there, of what hands were to be on, in words."""
 WHERE = {
     "thighs": "on its thigh",
@@ -206,17 +234,23 @@ def _on_the_floor(style: Seated) -> Seated:
     return replace(style, arms=(left, right), legs=legs, recline=recline, on_elbows=style.on_elbows and not shins)
 
 
+LEANS_BACK, LEANT = 15.0, 0.7
+"""Who leans back by so much (degrees) leans back by such a share of it at least, or it is said."""
+
+
+def back_for(recline: float) -> float:
+    """How far behind a pelvis its backrest is at least for such a lean back (degrees; metres)."""
+    return float(BEHIND_PELVIS + BACKREST * np.sin(np.radians(max(recline, 0.0)) - GIVES))
+
+
 def _recline(style: Seated, place: Place, trunk: Trunk) -> float:
     """Backward lean of the trunk, as far as there is a back to lean against, or arms (radians)."""
     seat = place.seat
     limit = np.pi if np.isinf(seat.back) else np.arcsin(np.clip((seat.back - BEHIND_PELVIS) / BACKREST, 0.0, MAX_SINE))
-    propped = {"behind", "beside"} & set(style.arms)
+    propped = {"behind", "propped", "beside"} & set(style.arms)
     free = trunk.max_propped_deg if propped else trunk.max_free_deg
     most = np.radians(free if np.isinf(seat.back) else trunk.max_back_deg)
-    lean = style.recline
-    if place.around.table is not None and "table" in style.arms:
-        lean = min(lean, -FARTHER * (place.around.table - NEAR_TABLE))
-    return float(min(np.radians(lean), float(limit) + GIVES, most))
+    return float(min(np.radians(style.recline), float(limit) + GIVES, most))
 
 
 def _leaning(pose: Pose, seat: Seat, back: Array, trunk: Trunk) -> Pose:
@@ -227,6 +261,29 @@ def _leaning(pose: Pose, seat: Seat, back: Array, trunk: Trunk) -> Pose:
     spine = np.stack([bend(-share * lean) for share, lean in zip(spine_shares, back, strict=True)])
     head = many.head + np.stack([bend(trunk.head_ahead_share * max(lean, 0.0)) for lean in back])
     return replace(many, hips=hips, spine=spine, head=head)
+
+
+def _up_to_table(leans: Pose, style: Seated, holds: Holds, skeleton: Skeleton) -> Pose:
+    """The least of N leans towards a table in which both elbows are easily bent; the eyes where they were to look."""
+    sides = (1.0, -1.0)
+    poles = np.stack(
+        [
+            pole if h is None else np.asarray(h.elbow) * [s, 1, 1]
+            for pole, h, s in zip(leans.elbows[0], holds, sides, strict=True)
+        ]
+    )
+    down = np.radians(style.head) - TO_TABLE
+    heads = np.stack([bend(pitch, np.radians(style.tilt)) for pitch in down])
+    laid = np.array([0.0 if hold is None else 1.0 for hold in holds])
+    many = replace(
+        leans, head=heads, elbows=np.tile(poles, (len(leans), 1, 1)), reaching=np.tile(laid, (len(leans), 1))
+    )
+    _, local = solve(lay_hands(many, holds, skeleton), skeleton)
+    bent = np.stack([rotations.quat_to_rotvec(local[:, INDEX[f"{side}_elbow"]]) for side in ("left", "right")], axis=1)
+    opened = np.pi - np.linalg.norm(bent, axis=-1)
+    easy = (opened <= EASY_ELBOW) | (laid == 0.0)
+    chosen = int(np.argmax(easy.all(axis=1))) if easy.all(axis=1).any() else int(np.argmin(opened.max(axis=1)))
+    return at_rest(many.at(chosen), holds, skeleton)
 
 
 def _on_elbows(leans: Pose, place: Place, holds: Holds, skeleton: Skeleton) -> Pose:

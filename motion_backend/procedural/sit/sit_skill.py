@@ -17,9 +17,9 @@ from motion_backend.procedural.body_state import Body, Point, spot_of
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import SHIN_REACH, Seat, idle
 from motion_backend.procedural.sit.sit_keys import sit_keys
-from motion_backend.procedural.sit.sit_legs import Room
-from motion_backend.procedural.sit.sit_pose import Place, lacking
-from motion_backend.procedural.sit.sit_styles import sit_style
+from motion_backend.procedural.sit.sit_legs import Room, is_to_be_straight, perch, straight_reach
+from motion_backend.procedural.sit.sit_pose import LEANS_BACK, ON_TABLE, Place, back_for, lacking
+from motion_backend.procedural.sit.sit_styles import Seated, sit_style
 from motion_backend.procedural.sit.sit_transition import sit_down, stand_up
 from motion_backend.procedural.touch.gestures import gesture
 from motion_backend.procedural.touch.hand_rests import (
@@ -73,12 +73,12 @@ def sit(body: Body, part: Part) -> None:
     body.enter(PhaseKind.SITDOWN)
     around = handholds(seat, body.scene.obstacles, body.skeleton.scale)
     elbows = elbow_room(seat, body.scene.obstacles.solid(), body.skeleton.scale)
-    place = Place(seat, around, _leg_room(body, seat), elbows)
+    place = Place(seat, around, leg_room(body.scene.obstacles, seat, body.skeleton.scale), elbows)
     under = around.behind if seat.is_low(body.skeleton.scale) else around.beside
     felt = _grips(around.armrests, under, seat, style.manner.hands)
     down, body.holds = sit_down(body.pose, place, style, felt, body.skeleton, sit_keys())
     body.add(down)
-    body.note(*lacking(style, place, body.skeleton))
+    body.note(*lacking(style, place, body.skeleton, sit_keys().pose))
 
 
 def stay_seated(body: Body, part: Part) -> None:
@@ -114,9 +114,9 @@ def _grips(armrests: Pair, under: Pair, seat: Seat, hands: tuple[bool, bool]) ->
     return found[0], found[1]
 
 
-def _leg_room(body: Body, seat: Seat) -> tuple[Room, Room]:
+def leg_room(obstacles: Obstacles, seat: Seat, scale: float) -> tuple[Room, Room]:
     """How far each foot may go before it meets something."""
-    near, scale = body.scene.obstacles.solid(), body.skeleton.scale
+    near = obstacles.solid()
     ahead, aside = np.arange(*AHEAD, STEP), np.arange(*ASIDE, STEP) * scale
     # Before the seat's own front, where shins and feet of a sitter are.
     front = max(SHIN_REACH * scale, seat.edge) + SHIN
@@ -134,11 +134,9 @@ def _before(places: Array, depth: Array, clear: float) -> float:
     return float(places[np.argmax(hit)] - clear) if hit.any() else float(places[-1])
 
 
-AT_TABLE = frozenset({"table", "desk"})
-"""Arms of a way of sitting that lie on a table."""
-MIN_EDGE = 0.12
+MIN_EDGE = 0.07
 """Thighs rest on so much of a seat at least (metres)."""
-AT_EASE = 0.45
+AT_EASE = 0.42
 """Distance of a table's edge from the pelvis to which nobody draws nearer (metres)."""
 ABOUT = 1.4
 """A table in reach is within this distance of the pelvis (metres)."""
@@ -149,13 +147,41 @@ def seat_for(found: Sequence[Spot], emotion: Emotion, caption: str, obstacles: O
 
     Chairs stand so far from their tables that a body can get between: at a table one sits on the front of the seat.
     """
-    arms = sit_style(emotion, caption).arms
-    if AT_TABLE & set(arms):
+    style = sit_style(emotion, caption)
+    if set(ON_TABLE) & set(style.arms):
         return next((near for spot in found if (near := _drawn_up(spot, obstacles))), found[0])
-    if "armrest" not in arms:
-        return found[0]
+    if any(is_to_be_straight(style.legs)):
+        return next((ahead for spot in found if (ahead := _perched(spot, style, obstacles))), found[0])
+    if "armrest" not in style.arms:
+        return _slid(found[0], _slouch(found[0], style))
     # The first of those that are as good as any.
     return max(found, key=lambda spot: _armrests(spot, obstacles))
+
+
+def _slouch(spot: Spot, style: Seated) -> float:
+    """How far from its backrest a pelvis slides for the trunk to lean back against it (metres)."""
+    if np.isinf(spot.back) or style.recline < LEANS_BACK:
+        return 0.0
+    return float(np.clip(back_for(style.recline) - spot.back, 0.0, max(spot.edge - MIN_EDGE, 0.0)))
+
+
+def _perched(spot: Spot, style: Seated, obstacles: Obstacles) -> Spot | None:
+    """The same seat sat on so far to the front that legs are straight on the floor; None where they have no room."""
+    seat = Seat.of(spot)
+    ahead = _slid(spot, max(perch(seat, 1.0), _slouch(spot, style)))
+    placed = Seat.of(ahead)
+    rooms = zip(is_to_be_straight(style.legs), leg_room(obstacles, placed, 1.0), strict=True)
+    enough = all(room.ahead >= straight_reach(placed, 1.0) for straight, room in rooms if straight)
+    return ahead if enough else None
+
+
+def _slid(spot: Spot, ahead: float) -> Spot:
+    """The same seat sat on so far farther to the front (metres)."""
+    if ahead <= 0.0:
+        return spot
+    x, y, z = spot.point
+    point = (x + ahead * float(np.sin(spot.facing)), y, z + ahead * float(np.cos(spot.facing)))
+    return replace(spot, point=point, edge=spot.edge - ahead, back=spot.back + ahead)
 
 
 def _drawn_up(spot: Spot, obstacles: Obstacles) -> Spot | None:
@@ -165,10 +191,7 @@ def _drawn_up(spot: Spot, obstacles: Obstacles) -> Spot | None:
     table = table_before(seat, near, 1.0, TABLE_REACH + forward)
     if table is None:
         return None
-    moved = float(np.clip(table[0] - AT_EASE, 0.0, forward))
-    x, y, z = spot.point
-    x, z = x + moved * np.sin(spot.facing), z + moved * np.cos(spot.facing)
-    place = replace(spot, point=(float(x), y, float(z)), edge=spot.edge - moved, back=spot.back + moved)
+    place = _slid(spot, float(np.clip(table[0] - AT_EASE, 0.0, forward)))
     return place if table_before(Seat.of(place), near, 1.0) is not None else None
 
 

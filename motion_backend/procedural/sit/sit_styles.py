@@ -53,9 +53,9 @@ class Seated:
     """What the hands do while seated: a name in `gestures.GESTURES`."""
 
 
-UPRIGHT = 4.0
-"""Backward lean of who sits upright (degrees)."""
-SLUMP = 0.6
+AT_REST = 9.0
+"""Backward lean of who sits as it comes: against the back of the seat, where there is one (degrees)."""
+SLUMP = 1.2
 """How much of the forward lean of a bearing takes from that, seated."""
 HANGING = 0.8
 """How much of its bent head is seen, seated."""
@@ -65,5 +65,5 @@ def sit_style(emotion: Emotion, caption: str) -> Seated:
     """The way of sitting a caption asks for, in that emotion."""
     said = read_style_sheet("sit.toml", Bearing, Seated).of_caption(caption)
     bearing, changes = carried(bearing_of(emotion, caption), said, Seated)
-    slump = {"recline": UPRIGHT - SLUMP * max(bearing.lean, 0.0), "head": HANGING * max(bearing.head, 0.0)}
+    slump = {"recline": AT_REST - SLUMP * max(bearing.lean, 0.0), "head": HANGING * max(bearing.head, 0.0)}
     return Seated(bearing=bearing, manner=manners()[emotion], **(slump | changes))

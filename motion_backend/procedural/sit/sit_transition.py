@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import ceil
 from typing import NamedTuple
 
 import numpy as np
@@ -83,10 +84,12 @@ def sit_down(
     landed = released(touched, skeleton)
     settled, holds = seated(landed, place, style, skeleton, keys.pose)
     poses = [landed, replace(settled, ankles=landed.ankles, feet=landed.feet)]
-    moved = interpolate([0.0, _hands_take(landed, settled, take, skeleton) * pace], poses, FPS)
+    low = place.seat.is_low(skeleton.scale)
+    seconds = _hands_take(landed, settled, take, skeleton) * pace * (ROUND_KNEES if low else 1.0)
+    moved = interpolate([0.0, seconds], poses, FPS)
     moved = follow(_place_feet(moved, landed, settled, take), settled, holds, skeleton)
     moved = _taken(moved, landed, holds)
-    moved = _round_the_thighs(moved, touched.reaching, place.seat.is_low(skeleton.scale))
+    moved = _round_the_thighs(moved, touched.reaching, low)
     share = smooth(np.arange(len(moved)) / BEGINS)
     moved = arms_inside(moved, place.seat, place.elbows, skeleton, share)
     whole = concatenate([part for part in (ready, down, settle, moved) if part is not None])
@@ -97,6 +100,10 @@ def _hands_take(start: Pose, end: Pose, move: Move, skeleton: Skeleton) -> float
     """Seconds that hands take from pose to pose at tempo 1: from the head longer than from the lap."""
     travel = float(np.linalg.norm(end.arms - start.arms, axis=1).max()) * ARM * skeleton.scale
     return max(move.min_time_s, move.time_per_m_s * travel)
+
+
+ROUND_KNEES = 1.4
+"""Hands take so much longer on the floor: they go round knees that are up."""
 
 
 def _depth(stood: Pose, seat: Seat, scale: float) -> float:
@@ -246,7 +253,7 @@ def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move) -> Pose:
         stands = np.where(share <= 0, before.planted[index], np.where(share >= 1, after.planted[index], 0.0))
         planted[:, index] = stands
     far = float(np.linalg.norm(after.ankles - before.ankles, axis=1).max())
-    short = max(round((move.first_foot_s + wait + max(each, STEP * far)) * FPS) - len(pose), 0)
+    short = max(ceil((move.first_foot_s + wait + max(each, STEP * far)) * FPS) - len(pose), 0)
     if short:
         # The feet take longer than the trunk: hold the trunk until both are placed.
         held = pose.at(slice(len(pose) - 1, len(pose)))
@@ -261,14 +268,21 @@ def _first_foot(after: Pose) -> tuple[int, int]:
     return (0, 1) if left else (1, 0)
 
 
-def stand_up(start: Pose, seat: Seat, bearing: Bearing, push: Holds, skeleton: Skeleton, keys: StandUp) -> Pose:
-    """From a seat to standing before it: feet under, lean forward, push off with the hands, rise over the feet."""
+def stand_up(
+    start: Pose, seat: Seat, bearing: Bearing, push: Holds, skeleton: Skeleton, keys: StandUp, drawn: float = 0.0
+) -> Pose:
+    """From a seat to standing before it: feet under, lean forward, push off with the hands, rise over the feet.
+
+    Feet are so much farther back than under upright shins (`drawn`, metres): the less the weight has to go ahead.
+    """
     low, pace = seat.is_low(skeleton.scale), 1 / bearing.tempo
-    end = standing(seat.standing_point(skeleton.scale), seat.yaw, bearing, skeleton)
+    place = seat.standing_point(skeleton.scale) - drawn * np.array([np.sin(seat.yaw), np.cos(seat.yaw)])
+    end = standing((float(place[0]), float(place[1])), seat.yaw, bearing, skeleton)
     depth = _depth(end, seat, skeleton.scale)
     lean = keys.rise.lean_rad + keys.rise.lean_per_depth_rad * depth
     ready, *rows = keys.pose
-    over = _over_the_feet(start, end, seat, lean, keys.rise.low_fold_share if low else 0.0, ready)
+    fold = keys.rise.low_fold_share if low else 0.0
+    over = _over_the_feet(start, end, seat, keys.rise.gathered_share * lean, fold, ready)
     over = at_rest(over, push, skeleton)
     seconds = _hands_take(start, over, keys.gather, skeleton) * pace
     gather = interpolate([0.0, seconds], [start, replace(over, ankles=start.ankles, feet=start.feet)], FPS)
@@ -277,8 +291,16 @@ def stand_up(start: Pose, seat: Seat, bearing: Bearing, push: Holds, skeleton: S
     over = gather.at(len(gather) - 1)
     seconds = keys.rise.time_s * pace * (ANY_DEPTH + EACH_DEPTH * depth)
     times = [*(row.time_share * seconds for row in keys.pose), seconds]
+    leant = replace(
+        over,
+        pelvis=seat.pelvis + ready.pelvis_ahead_m * skeleton.scale * _ahead_of(seat),
+        **_lean(seat, lean, fold, ready),
+    )
+    if low:
+        # The floor is farther from the shoulders with every centimetre that one rises: hands leave it sooner.
+        rows = [replace(row, held_share=keys.rise.low_held_ratio * row.held_share) for row in rows]
     risen = [_risen(row, over, end, seat, lean) for row in rows]
-    up = interpolate(times, [over, *risen, replace(end, reach=over.reach, palms=over.palms)], FPS)
+    up = interpolate([0.0, *times], [over, leant, *risen, replace(end, reach=over.reach, palms=over.palms)], FPS)
     up = follow(replace(up, knees=knees_over_feet(up)), over, push, skeleton)
     return hands_round_body(concatenate([gather, up]), skeleton)
 
@@ -288,8 +310,7 @@ def _over_the_feet(start: Pose, end: Pose, seat: Seat, lean: float, fold: float,
     return replace(
         start,
         pelvis=seat.pelvis,
-        hips=upright(seat.yaw, (row.hip_pitch_share - fold) * lean),
-        spine=bend((row.spine_pitch_share + fold) * lean),
+        **_lean(seat, lean, fold, row),
         head=bend(0.0),
         ankles=end.ankles,
         feet=end.feet,
@@ -301,6 +322,19 @@ def _over_the_feet(start: Pose, end: Pose, seat: Seat, lean: float, fold: float,
         pressing=np.zeros(2),
         planted=np.ones(2),
     )
+
+
+def _lean(seat: Seat, lean: float, fold: float, row: Ready) -> dict[str, Array]:
+    """Hips and spine of who leans over the feet; `fold` is what the spine takes from the hips."""
+    return {
+        "hips": upright(seat.yaw, (row.hip_pitch_share - fold) * lean),
+        "spine": bend((row.spine_pitch_share + fold) * lean),
+    }
+
+
+def _ahead_of(seat: Seat) -> Array:
+    """Unit vector that a sitter faces. (3,)."""
+    return np.array([np.sin(seat.yaw), 0.0, np.cos(seat.yaw)])
 
 
 def _risen(row: Risen, ready: Pose, end: Pose, seat: Seat, lean: float) -> Pose:

@@ -46,8 +46,12 @@ class Way:
     """Speed of the hands against neutral."""
     bending: float
     """Seconds for what takes the whole body a second."""
-    step: float
+    kneel_step: float
     """For each pose of `down`, of such seconds."""
+    looks: float = 1.0
+    """How much of the time for looking at the thing it needs."""
+    step: Callable[[Pose, tuple[int, int, int]], Pose] = lambda whole, _lengths: whole
+    """A foot that steps up to the thing and back, in frames of coming, doing and leaving."""
 
     @property
     def hands(self) -> list[int]:
@@ -88,12 +92,13 @@ class Way:
         """The key poses of a stage; who kneels gets down before being at the thing, and up again after it."""
         found: Keys = []
         bodies = {row.name: row.body for row in rows.pose}
-        there, step = stage in ("do", "leave"), self.step * self.bending * self.tempo
+        there, step = stage in ("do", "leave"), self.kneel_step * self.bending * self.tempo
         for key in (key for key in rows.key if key.stage == stage):
             if there != (bodies[key.pose] == "at it"):
                 found += [(knelt, step) for knelt in (self.down[::-1] if there else self.down)]
                 there = not there
-            found.append((poses[key.pose], self.seconds(key, rows.busy_s)))
+            looks = self.looks if bodies[key.pose] == "looking" else 1.0
+            found.append((poses[key.pose], looks * self.seconds(key, rows.busy_s)))
         return found
 
     def turned(self) -> tuple[Array, Array]:
@@ -108,14 +113,16 @@ def deed(way: Way, doing: str, keys: TouchKeys) -> Pose:
     """A touch from standing to standing, with what is done there (see `hand_captions.Handled`)."""
     rows = keys.of(doing)
     poses = {row.name: way.pose(row) for row in rows.pose}
-    frames, last = [], way.away
+    frames: dict[str, Pose] = {}
+    last = way.away
     for stage in STAGES:
         if stage == "do" and doing in _HELD:
-            frames.append(_HELD[doing](way, last, max(way.hold, rows.hold_min_s), keys.held))
+            frames[stage] = _HELD[doing](way, last, max(way.hold, rows.hold_min_s), keys.held)
         elif following := way.keys(rows, stage, poses):
-            frames.append(way.through(last, following))
+            frames[stage] = way.through(last, following)
             last, _ = following[-1]
-    return concatenate(frames)
+    come, do, leave = (len(frames[stage]) for stage in STAGES[:3])
+    return way.step(concatenate(list(frames.values())), (come, do, leave))
 
 
 def _bent(pose: Pose, row: TouchPose) -> Pose:
@@ -156,10 +163,11 @@ def _rest(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
 
 
 def _wash(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
-    """Wide strokes from side to side, a little to and fro; trunk, hips and eyes go along."""
+    """Wide circles; trunk, hips and eyes go along."""
     row = keys.wash
     time, ease, held = _held(there, seconds, keys.ease_s)
-    aside, forth = ease * _wave(row.stroke_hz, time), ease * _wave(row.forth_hz, time)
+    around = 2 * np.pi * row.stroke_hz * time
+    aside, forth = ease * np.sin(around), ease * np.cos(around)
     along = way.laid.stroke
     across = rotations.cross(along, way.laid.normal)
     reach, palms = held.reach.copy(), held.palms.copy()

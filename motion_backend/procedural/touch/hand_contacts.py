@@ -31,7 +31,7 @@ ELBOW: Final = 0.11
 """From the middle of a forearm to what is beside it (metres)."""
 TURNS: Final = (0.0, 0.5, -0.5, 1.0, -1.0, 1.5, -1.5)
 """How far a hand is turned inwards on the surface where its fingers would be in something else (radians)."""
-STROKES: Final = (0.09, 0.07, 0.05, 0.03)
+STROKES: Final = (0.14, 0.11, 0.09, 0.07, 0.05, 0.03)
 """How far hands go to either side in wiping, the first that there is room for (metres)."""
 
 

@@ -14,9 +14,10 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.body.scene_collision import Obstacles
+from motion_backend.procedural.arm_solver import Arm
 from motion_backend.procedural.held_poses import Seat
 from motion_backend.procedural.pose import Pose, smooth
-from motion_backend.procedural.pose_solver import SIDES, chest_frame, limb_of_arm, released, trunk_and_legs
+from motion_backend.procedural.pose_solver import chest_frame, released, trunk_and_legs
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, SEATED_REST, Skeleton
 
@@ -120,7 +121,7 @@ def lay_hands(pose: Pose, holds: Holds, skeleton: Skeleton) -> Pose:
         wanted, rise = fingers, hold.gap * np.ones((len(pose), 1))
         for _ in range(PASSES):
             reach[:, index] = skin + skeleton.scale * (rise * normal - hold.along * fingers)
-            arm, _, _ = limb_of_arm(replace(pose, reach=reach), skeleton, (index, *SIDES[index]), chest)
+            arm = Arm.of(replace(pose, reach=reach), skeleton, index, chest).limb
             fingers = _along_forearm(wanted, normal, arm.lower)
             hand, back = _tipped(fingers, normal, arm.lower)
             # A hand that is tipped stands on its fingers.

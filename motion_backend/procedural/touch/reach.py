@@ -5,8 +5,8 @@ The numbers are rows of data/transitions/reach.toml.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -15,28 +15,27 @@ from motion_backend.inverse_kinematics import two_bone
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays
 from motion_backend.procedural.held_poses import UP, bend, shoulders, upright
-from motion_backend.procedural.pose import Pose, settle_from
+from motion_backend.procedural.pose import Pose, interpolate, settle_from, smooth
 from motion_backend.procedural.pose_solver import chest_frame, released
 from motion_backend.procedural.sit.sit_transition import knees_over_feet
 from motion_backend.procedural.touch.hand_actions import Way, deed
 from motion_backend.procedural.touch.hand_captions import Laid
 from motion_backend.procedural.touch.hand_contacts import is_top
 from motion_backend.procedural.touch.kneel import down_on_knees, elbows_out, prone
+from motion_backend.procedural.touch.step_in import Depth, Step, shifted, step_before, stepped
 from motion_backend.procedural.touch.touch_keys import (
     Approach,
     ReachEffort,
     ReachGaze,
     ReachSearch,
     ReachTable,
+    ReachVariation,
     ThighHand,
     TouchKeys,
 )
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
 from motion_backend.skeleton import ARM_LENGTH, INDEX, Skeleton
-
-Depth = Callable[[Array], Array]
-
 
 LIFTED = 1e-6
 """A pelvis that rises by less than this (metres) stays on flat feet."""
@@ -55,35 +54,131 @@ class Manner:
     """Whether one kneels down and bends forwards to it."""
 
 
-def touch(start: Pose, laid: Laid, manner: Manner, skeleton: Skeleton, depth: Depth, keys: TouchKeys) -> Pose:
+def touch(
+    start: Pose, laid: Laid, manner: Manner, skeleton: Skeleton, depth: Depth, keys: TouchKeys, rng: np.random.Generator
+) -> Pose:
     """Bring a hand from outside onto a surface, keep it there, and come back to standing.
 
     `depth` says how deep points (N, 3) are in furniture.
     """
-    way, pace = keys.reach.approach, 1 / manner.bearing.tempo
+    row, varied = keys.reach.approach, keys.reach.variation
     yaw, down = float(yaw_of(start.hips)), down_on_knees(start, skeleton, keys.kneel) if manner.prone else []
+    tempo = manner.bearing.tempo * float(np.exp(varied.tempo_share * np.clip(rng.normal(), -2.0, 2.0)))
+    pace, over = 1 / tempo, row.over_m * float(1 + varied.over_share * np.clip(rng.normal(), -2.0, 2.0))
+    step, raised = Step(0, np.zeros(3)), False
     if manner.prone:
         bent = prone(down[-1], laid.wrist, laid.hands[0][0], skeleton, keys.kneel.prone)
-        pace *= way.kneeling_ratio
+        pace *= row.kneeling_ratio
     else:
-        bent = _reaching(start, laid, skeleton, depth, keys.reach)
-        bent = _free_arm(bent, laid, manner.doing, skeleton, keys.reach)
+        raised = float(laid.wrist[1]) > keys.reach.hand.raised_from_m * skeleton.scale
+        step = (
+            step
+            if raised
+            else step_before(start, _feet(laid, skeleton, keys.reach), skeleton, depth, keys.reach.step, rng)
+        )
+        bent = _reaching(shifted(start, step, keys.reach.step), laid, skeleton, depth, keys.reach)
+        bent = _varied(bent, laid, yaw, skeleton, keys.reach, rng)
+        # A hand on a thigh lies where the foot's step has taken it.
+        bent = replace(_free_arm(step.taken(bent), laid, manner.doing, skeleton, keys.reach), ankles=bent.ankles)
+        bent = _free_hand_varied(bent, laid, keys.reach.variation, rng)
         # A deep bend takes its time, however hurried.
-        pace *= max(1.0, float(start.pelvis[1] - bent.pelvis[1]) / (way.deep_m * skeleton.scale))
+        pace *= max(1.0, float(start.pelvis[1] - bent.pelvis[1]) / (row.deep_m * skeleton.scale))
+    poles = varied.elbow * rng.normal(size=(2, 3))
 
     def hand(off: float, tilt: float) -> Pose:
         posed = _hand_at(bent, laid.tilted(tilt), off, yaw, skeleton, keys.reach)
-        return elbows_out(posed, laid, keys.kneel.prone) if manner.prone else posed
+        return elbows_out(posed, laid, keys.kneel.prone) if manner.prone else _poled(posed, laid, poles)
 
-    over, reached = hand(way.over_m, 0.0), hand(0.0, 0.0)
-    away = replace(start, reach=over.reach, palms=over.palms)
-    # The eyes go first.
-    lead = replace(away, head=way.eyes_there_share * reached.head + way.eyes_kept_share * start.head)
-    kneeling = tuple(replace(key, reach=over.reach, palms=over.palms) for key in down)
-    times = manner.hold, manner.bearing.tempo, pace, way.kneeling_step_s
-    whole = deed(Way(away, lead, kneeling, hand, laid, *times), manner.doing, keys)
+    above, reached = hand(over, 0.0), hand(0.0, 0.0)
+    away = replace(start, reach=above.reach, palms=above.palms)
+    kneeling = tuple(replace(key, reach=above.reach, palms=above.palms) for key in down)
+    lead = _looking_there(away, reached, row)
+    looks = min(float(np.linalg.norm(lead.head - start.head)) / keys.reach.arriving.looks_rad, 1.0)
+    if raised:
+        kneeling = (_folded(lead, above, laid, row),)
+    times = manner.hold, tempo, pace, row.folding_s if raised else row.kneeling_step_s, max(looks, 1 / FPS)
+    way = Way(away, lead, kneeling, hand, laid, *times, partial(stepped, step=step, row=keys.reach.step))
+    whole = deed(way, manner.doing, keys)
     knees = whole.knees if manner.prone else knees_over_feet(whole)
-    return settle_from(start, replace(whole, knees=knees), FPS, seconds=way.settle_s)
+    return settle_from(start, replace(whole, knees=knees), FPS, seconds=row.settle_s)
+
+
+def _feet(laid: Laid, skeleton: Skeleton, keys: ReachTable) -> tuple[int, ...]:
+    """The feet that may step up to the thing: down low not the one whose knee would be in the hand's way."""
+    low = float(laid.wrist[1]) < keys.hand.low_m * skeleton.scale
+    return (1 - laid.hands[0][0],) if low else (0, 1)
+
+
+def _folded(lead: Pose, above: Pose, laid: Laid, row: Approach) -> Pose:
+    """Half-way to a raised hand, which comes up before the body: a straight arm would swing into what is there."""
+    arms, elbows = arm_arrays(row.folded, row.folded)
+    half = interpolate([-1.0, 1.0], [lead, above], 1).at(0)
+    for index in (0, 1):
+        if index not in [one for one, *_ in laid.hands]:
+            arms[index], elbows[index] = half.arms[index], half.elbows[index]
+    return replace(half, arms=arms, elbows=elbows)
+
+
+def _looking_there(away: Pose, reached: Pose, row: Approach) -> Pose:
+    """Standing with the eyes on the thing: they go first, and the body has just begun to bend."""
+    # In a squat the hand comes past the knees before they rise.
+    share = row.begun_share * max(1 - float(away.pelvis[1] - reached.pelvis[1]) / row.deep_m, 0.0)
+    turn = rotations.slerp(away.hips, reached.hips, share)
+    return replace(
+        away,
+        head=row.eyes_there_share * reached.head + row.eyes_kept_share * away.head,
+        pelvis=away.pelvis + share * (reached.pelvis - away.pelvis),
+        spine=away.spine + share * (reached.spine - away.spine),
+        hips=turn,
+    )
+
+
+def arriving(walked: Pose, goal: Array, hand: str, skeleton: Skeleton, keys: ReachTable) -> Pose:
+    """The frames (T,) of a walk up to a thing, the eyes on the hand's goal (3,) before the body stands and the hand
+    on its way: what `touch` goes on from without a pause."""
+    row, index = keys.arriving, 0 if hand == "left" else 1
+    left = (len(walked) - np.arange(1, len(walked) + 1)) / FPS
+    last = walked.at(len(walked) - 1)
+    look = _looking(last, goal, 0.0, float(yaw_of(last.hips)), skeleton, keys.gaze)
+    eyes = smooth(1 - left / row.eyes_s)[:, None]
+    share = row.hand_share * smooth(1 - left / row.hand_s)[:, None]
+    wrists, poles = arm_arrays(row.hand, row.hand)
+    arms, elbows = walked.arms.copy(), walked.elbows.copy()
+    arms[:, index] += share * (wrists[index] - arms[:, index])
+    elbows[:, index] += share * (poles[index] - elbows[:, index])
+    return replace(walked, head=walked.head + eyes * (look - walked.head), arms=arms, elbows=elbows)
+
+
+def _varied(bent: Pose, laid: Laid, yaw: float, skeleton: Skeleton, keys: ReachTable, rng: np.random.Generator) -> Pose:
+    """The posture as it is this time, from which the hands still get there: nobody bends twice in the same way."""
+    row = keys.variation
+    deep = float(bent.pelvis[1]) < keys.free_arm.low_share * skeleton.standing_height
+    size = row.deep_share if deep else 1.0
+    turned = rotations.rotate(rotations.yaw_to_quat(yaw), np.array([1.0, 0.0, 1.0]) * rng.normal(size=(row.tries, 3)))
+    tries = replace(
+        bent.repeat(row.tries),
+        pelvis=bent.pelvis + size * row.pelvis_m * skeleton.scale * turned,
+        spine=bent.spine + size * row.spine_rad * rng.normal(size=(row.tries, 3)),
+        head=bent.head + size * row.head_rad * rng.normal(size=(row.tries, 3)),
+    )
+    miss = _misses(tries, laid, skeleton, lambda points: np.full(len(points), -np.inf), keys.search)
+    within = np.flatnonzero(miss <= row.misses_m)
+    return tries.at(int(within[0])) if len(within) else bent
+
+
+def _free_hand_varied(bent: Pose, laid: Laid, row: ReachVariation, rng: np.random.Generator) -> Pose:
+    """The other hand held a little elsewhere."""
+    aside = row.arms * rng.normal(size=(2, 3))
+    aside[[index for index, *_ in laid.hands]] = 0.0
+    return replace(bent, arms=bent.arms + aside)
+
+
+def _poled(posed: Pose, laid: Laid, poles: Array) -> Pose:
+    """The elbows of hands that are laid point a little elsewhere. `poles` (2, 3)."""
+    elbows = posed.elbows.copy()
+    for index, *_ in laid.hands:
+        elbows[index] += poles[index]
+    return replace(posed, elbows=elbows)
 
 
 def _free_arm(bent: Pose, laid: Laid, doing: str, skeleton: Skeleton, keys: ReachTable) -> Pose:
@@ -196,11 +291,14 @@ def _effort(miss: Array, bent: tuple[Array, Array], laid: Laid, skeleton: Skelet
     (lean, crouch), height = bent, float(laid.wrist[1])
     higher = float(np.clip((height / skeleton.scale - row.squat_below_m) / row.squat_within_m, 0.0, 1.0))
     squat = row.crouch_per_m + row.crouch_more_per_m * higher
-    if is_top(laid.normal) and height > row.top_above_m * skeleton.scale:
+    if is_top(laid.normal) and row.top_above_m < height / skeleton.scale < row.top_below_m:
         squat = max(squat, row.crouch_top_per_m)
     effort = row.miss_per_m * miss + row.lean_per_rad * lean + row.lean_per_rad2 * lean**2
-    # One rises on tiptoes only for what is out of reach otherwise.
-    return np.asarray(effort + np.where(crouch < -LIFTED, row.tiptoe - row.tiptoe_per_m * crouch, squat * crouch))
+    # One rises on tiptoes only for what is out of reach otherwise, or overhead.
+    above = float(np.clip((height / skeleton.scale - row.stretch_from_m) / row.stretch_within_m, 0.0, 1.0))
+    rise = np.abs(crouch + above * row.stretch_m * skeleton.scale)
+    tiptoe = np.where(crouch < -LIFTED, (1 - above) * row.tiptoe + row.tiptoe_per_m * rise, squat * rise)
+    return np.asarray(effort + tiptoe)
 
 
 def _looking(pose: Pose, goal: Array, lean: float, yaw: float, skeleton: Skeleton, row: ReachGaze) -> Array:

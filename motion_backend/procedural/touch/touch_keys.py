@@ -38,9 +38,14 @@ class Approach:
     """How far the head is bent as it will be at the thing before anything else moves."""
     eyes_kept_share: float
     """And how far as it was."""
+    begun_share: float
+    """And so far it has then begun to bend."""
     settle_s: float
     kneeling_ratio: float
     """Who kneels down takes so much longer."""
+    folded: str
+    """The arm pose through which a hand is raised, and from which it comes down."""
+    folding_s: float
     kneeling_step_s: float
     """For each step of getting down on the knees."""
     deep_m: float
@@ -150,6 +155,12 @@ class ReachEffort:
     lean_per_rad2: float
     tiptoe: float
     tiptoe_per_m: float
+    stretch_from_m: float
+    """To what is higher than this one stretches,"""
+    stretch_within_m: float
+    """wholly so from so much higher:"""
+    stretch_m: float
+    """heels rise by so much of themselves."""
     crouch_per_m: float
     """To what is low."""
     crouch_more_per_m: float
@@ -158,8 +169,10 @@ class ReachEffort:
     squat_within_m: float
     """by this."""
     crouch_top_per_m: float
-    """The least to a top above `top_above_m`."""
+    """The least to a top above `top_above_m`"""
     top_above_m: float
+    top_below_m: float
+    """And below this: to higher ones knees give."""
 
 
 @table
@@ -176,6 +189,64 @@ class ReachGaze:
 
 
 @table
+class StepIn:
+    """One foot goes up to the thing as the body bends to it, and back."""
+
+    least_m: float
+    most_m: float
+    pelvis_share: float
+    """How far the pelvis goes with it, of its way."""
+    lift_m: float
+    room_m: float
+    """That its toes keep to furniture."""
+    toes_m: float
+    """Before the ankle."""
+    comes_from_share: float
+    """Of the time until the hand is there,"""
+    comes_to_share: float
+    goes_from_share: float
+    """and of the time in which the body rises again."""
+    goes_to_share: float
+
+
+@table
+class ReachVariation:
+    """What differs from one time to the next: standard deviations."""
+
+    tempo_share: float
+    pelvis_m: float
+    """To each side and ahead."""
+    spine_rad: float
+    deep_share: float
+    """Of all this, where one squats."""
+    head_rad: float
+    elbow: float
+    """Of an elbow's direction, in each of its three parts."""
+    arms: float
+    """Of the free wrist, arm lengths."""
+    over_share: float
+    """Of the height from which a hand comes down."""
+    tries: int
+    """So many are drawn, until the hand still gets there."""
+    misses_m: float
+
+
+@table
+class Arriving:
+    """The end of a walk to a thing."""
+
+    eyes_s: float
+    """The eyes are on it so long before one stands,"""
+    hand_s: float
+    """and the hand begins to rise."""
+    hand_share: float
+    """How far it has, on the way into the arm pose `hand`."""
+    hand: str
+    looks_rad: float
+    """A head turned from the thing by this much takes as long as the table says to look at it."""
+
+
+@table
 class ReachTable:
     """Bringing a hand onto a surface: `reach.toml`."""
 
@@ -187,6 +258,9 @@ class ReachTable:
     search: ReachSearch
     effort: ReachEffort
     gaze: ReachGaze
+    step: StepIn
+    variation: ReachVariation
+    arriving: Arriving
 
 
 Foot = Literal["standing", "lifted", "back"]
@@ -336,9 +410,8 @@ class Wash:
     """Strokes from side to side."""
 
     stroke_hz: float
-    forth_hz: float
     forth_share: float
-    """How far to and fro, of the stroke's width."""
+    """How far to and fro, of the stroke's width: hands go round."""
     palm_rad: float
     """How far the hand turns on the surface at the end of a stroke."""
     usual_m: float

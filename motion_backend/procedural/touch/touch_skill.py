@@ -62,7 +62,8 @@ def reach(body: Body, part: Part) -> None:
     laid = Laid(goal, palm, normal, action.hand, down, other)
     laid = replace(laid, stroke=free_stroke(obstacles, spot, laid))
     hold = max(part.hold, MIN_HOLD)
-    body.add(touch(body.pose, laid, Manner(bearing, hold, doing, prone), body.skeleton, depth, touch_keys()))
+    manner = Manner(bearing, hold, doing, prone)
+    body.add(touch(body.pose, laid, manner, body.skeleton, depth, touch_keys(), body.rng))
 
 
 def _knelt_at(body: Body, action: Action) -> Spot | None:

@@ -12,6 +12,7 @@ from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import arm_arrays, arm_poses
 from motion_backend.procedural.pose import smooth
 from motion_backend.procedural.walk.footsteps import Steps
+from motion_backend.procedural.walk.stride import Stride
 from motion_backend.procedural.walk.walk_styles import Walk
 from motion_backend.rotations import Array
 from scene_graphs.data_tables import read_table, table
@@ -30,6 +31,8 @@ class ArmSwing:
     """Arms swing as far as the style says."""
     min_ratio: float
     max_ratio: float
+    swing_max_deg: float
+    """But no farther than this."""
     hangs_deg: float
     """How far forward of an upright trunk an arm hangs."""
     free_share: float
@@ -51,6 +54,7 @@ class ArmSwing:
     upper_arms: float
     lower_arms: float
     aside_arms: float
+    aside_min_arms: float
     inwards_arms: float
     """How much a hand comes in before the body."""
     stretched_max_arms: float
@@ -109,18 +113,22 @@ def arm_table() -> ArmTable:
     return rows
 
 
-def swing_arms(style: Walk, steps: Steps, speed: Array) -> tuple[Array, Array]:
-    """Wrists and elbow directions of T frames walked at `speed` (T,). (T, 2, 3) each."""
+def swing_arms(style: Walk, steps: Steps, speed: Array, spread: Array, wander: Array) -> tuple[Array, Array]:
+    """Wrists and elbow directions of T frames walked at `speed` (T,), `spread` (T, 2) into poses. (T, 2, 3) each.
+
+    `wander` (T, 2, 2) is how far each arm is off its swing, forwards and aside (radians).
+    """
     row, frames = arm_table().swing, len(steps.phase)
     fixed, poles = arm_arrays(*style.bearing.arms)
     wrists, elbows = np.repeat(fixed[None], frames, axis=0), np.repeat(poles[None], frames, axis=0)
     # An arm is farthest forward as the heel of the other side comes down, before that foot is flat.
-    cycle = steps.first * np.cos(np.pi * (steps.phase + row.early_phase)) * steps.moving
     for index, side in ((0, 1), (1, -1)):
+        early = row.early_phase - style.character.of_side("lag", "phase", side)
+        cycle = steps.first * np.cos(np.pi * (steps.phase + early)) * steps.moving
         if style.bearing.arms[index] in row.elbow_deg:
-            wrists[:, index] = _hanging(style, index, side * cycle, steps.moving, speed)
+            wrists[:, index] = _hanging(style, index, (side * cycle, steps.moving, wander[:, index]), speed)
         else:
-            wrists[:, index] = _held(style, index, wrists[:, index], frames)
+            wrists[:, index] = _held(index, wrists[:, index], spread[:, index])
             wrists[:, index, 2] += row.held_arms * side * cycle
         if style.across:
             wrists[:, index] = _across(style, side, steps, wrists[:, index])
@@ -129,19 +137,27 @@ def swing_arms(style: Walk, steps: Steps, speed: Array) -> tuple[Array, Array]:
     return wrists, elbows
 
 
-def _hanging(style: Walk, index: int, beat: Array, moving: Array, speed: Array) -> Array:
-    """A wrist that swings: shoulder and elbow turn forward together, and further forward than back. (T, 3)."""
-    row, side = arm_table().swing, 1 if index == 0 else -1
-    bent = style.elbow + row.elbow_deg[style.bearing.arms[index]]
+def _hanging(style: Walk, index: int, swung: tuple[Array, Array, Array], speed: Array) -> Array:
+    """A wrist that swings: shoulder and elbow turn forward together, and further forward than back. (T, 3).
+
+    `swung` is the beat of its swing and how much the body moves (T,) each, and how far the arm is off (T, 2).
+    """
+    row, side, (beat, moving, off), own = arm_table().swing, 1 if index == 0 else -1, swung, style.character
+    bent = max(style.elbow + row.elbow_deg[style.bearing.arms[index]] + own.of_side("elbow", "deg", side), 0.0)
     reach = np.radians(style.swing) * np.clip(speed / row.usual_mps, row.min_ratio, row.max_ratio)
+    reach = np.minimum(reach * own.of_side("swing", "ratio", side), np.radians(row.swing_max_deg))
     # Arms hang down from a bent trunk.
-    swing = reach * beat + np.radians(row.hangs_deg + row.free_share * style.bearing.lean)
+    hangs = row.hangs_deg + row.free_share * style.bearing.lean + own.of_side("hang", "deg", side)
+    swing = reach * beat + np.radians(hangs) + off[:, 0] * moving
     more = (bent - row.straight_deg) * (row.still_share + row.moving_share * moving)
-    bend = np.radians(row.straight_deg + more) + row.folds_ratio * (swing + reach * moving)
+    bend = np.radians(row.straight_deg + more) + row.folds_ratio * own.folds_ratio * (swing + reach * moving)
     shoulder, fore = swing - row.shoulder_share * bend, swing + row.forearm_share * bend
+    aside = row.aside_arms + style.splay + own.of_side("splay", "arms", side) * moving
+    aside = np.maximum(aside, row.aside_min_arms) + np.abs(off[:, 1]) * moving
+    inwards = row.inwards_arms + own.of_side("inwards", "arms", side)
     wrist = np.stack(
         [
-            side * (row.aside_arms - row.inwards_arms * np.maximum(np.sin(swing), 0) + style.splay),
+            side * (aside - inwards * np.sin(swing)),
             -row.upper_arms * np.cos(shoulder) - row.lower_arms * np.cos(fore),
             row.upper_arms * np.sin(shoulder) + row.lower_arms * np.sin(fore),
         ],
@@ -150,23 +166,27 @@ def _hanging(style: Walk, index: int, beat: Array, moving: Array, speed: Array) 
     return np.asarray(wrist * np.minimum(1, row.stretched_max_arms / np.linalg.norm(wrist, axis=1))[:, None])
 
 
-def _held(style: Walk, index: int, wrist: Array, frames: int) -> Array:
+def _held(index: int, wrist: Array, spread: Array) -> Array:
     """A wrist on its way from hanging into the pose it is held in, and back where something is begun. (T, 3)."""
-    spread = _spread(frames, style.bearing.arms[index], style.release)
     hang = np.asarray(arm_poses()["hang"].wrist_arm_lengths) * [1 if index == 0 else -1, 1, 1]
     between = hang + spread[:, None] * (wrist - hang)
     length = np.linalg.norm(hang) + spread * (np.linalg.norm(wrist, axis=1) - np.linalg.norm(hang))
     return np.asarray(rotations.normalize(between) * length[:, None])
 
 
-def _spread(frames: int, arms: str, release: bool) -> Array:
-    """Share of an arm pose: open arms wait until the body is under way, and all but those that carry something
-    come down where something is begun."""
+def arm_spread(frames: int, style: Walk, stride: Stride | None = None) -> Array:
+    """Share of its pose that each arm is in: open arms wait until the body is under way, and all but those that carry
+    something come down where something is begun. (T, 2)."""
     row, at = arm_table().spread, np.arange(frames) / FPS
-    takes_room = arms in row.takes_room
-    begun = smooth((at - row.after_s) / row.within_s) if takes_room else np.ones(frames)
-    comes_down = takes_room or (release and arms != CARRIED)
-    return begun * smooth((at[-1] - at) / row.down_s) if comes_down else begun
+    spread = np.ones((frames, 2))
+    for index, arms in enumerate(style.bearing.arms):
+        takes_room = arms in row.takes_room
+        if takes_room:
+            begin = 0.0 if stride is None else float(stride.spread[index])
+            spread[:, index] = begin + (1 - begin) * smooth((at - row.after_s * (stride is None)) / row.within_s)
+        if takes_room or (style.release and arms != CARRIED):
+            spread[:, index] *= smooth((at[-1] - at) / row.down_s)
+    return spread
 
 
 def _across(style: Walk, side: int, steps: Steps, wrist: Array) -> Array:

@@ -9,6 +9,7 @@ import numpy as np
 
 from motion_backend.procedural.walk.footsteps import LEAD, SIDEWAYS, drift, footstep_table
 from motion_backend.procedural.walk.root_path import Route
+from motion_backend.procedural.walk.stride import BEATS, Stride
 from motion_backend.procedural.walk.walk_styles import Walk
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
@@ -55,9 +56,12 @@ def cadence() -> Cadence:
 
 
 def plan_phase(
-    route: Route, style: Walk, skeleton: Skeleton, fps: int, rng: np.random.Generator
+    route: Route, style: Walk, skeleton: Skeleton, fps: int, rng: np.random.Generator, stride: Stride | None = None
 ) -> tuple[Route, Array]:
-    """Cadence from speed and turning, then enough standing frames for both feet to come home."""
+    """Cadence from speed and turning, then enough standing frames for both feet to come home.
+
+    The first frame of a body in its stride is the one it has already made.
+    """
     row, scale = cadence(), skeleton.scale
     turning = np.abs(np.gradient(route.heading)) * fps
     usual = np.sqrt(np.maximum(route.speed, row.speed_min_mps) / (row.usual_mps_per_hz2 * scale**row.size_power))
@@ -72,14 +76,17 @@ def plan_phase(
     rate = np.maximum.reduce([usual, turned, longest, np.full_like(usual, row.min_hz)])
     if style.skips:
         rate = np.where(route.speed > footstep_table().beat.skip_from_mps, np.minimum(rate, row.skip_max_hz), rate)
-    # The first steps are short: the foot that stays behind must not be left too far.
-    walked = np.cumsum(route.speed) / fps
-    starting = np.clip((row.start_m * scale - walked) / row.start_within_m, 0.0, 1.0)
-    rate = np.maximum(rate, np.minimum(route.speed / (row.start_step_m * scale), row.start_max_hz) * starting)
-    # A third of a step goes by before the first foot lifts: the weight shifts and the heel rises.
-    phase = np.cumsum(rate) / fps - LEAD
+    if stride is None:
+        # The first steps are short: the foot that stays behind must not be left too far.
+        walked = np.cumsum(route.speed) / fps
+        starting = np.clip((row.start_m * scale - walked) / row.start_within_m, 0.0, 1.0)
+        rate = np.maximum(rate, np.minimum(route.speed / (row.start_step_m * scale), row.start_max_hz) * starting)
+        # A third of a step goes by before the first foot lifts: the weight shifts and the heel rises.
+        phase, begun = np.cumsum(rate) / fps - LEAD, -1
+    else:
+        phase, begun = stride.phase + (np.cumsum(rate) - rate[0]) / fps, stride.begun
     # Both feet step at least once, and a last step in flight comes down before the end.
-    total = max(np.ceil(phase[-1] + 0.5), 2.0) + max(0.0, -style.double / 2) + row.standing_steps
+    total = max(np.ceil(phase[-1] + 0.5), begun + 1.0 + BEATS) + max(0.0, -style.double / 2) + row.standing_steps
     extra = max(int(np.ceil((total - phase[-1]) / row.end_hz * fps)), 1)
     tail = phase[-1] + (total - phase[-1]) * np.arange(1, extra + 1) / extra
     longer = Route(

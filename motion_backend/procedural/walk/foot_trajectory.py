@@ -156,6 +156,10 @@ class Swing:
     round: float = 0.0
     """How far outwards it goes round the other leg (metres)."""
     backwards: bool = False
+    swings_out: float = 0.0
+    """How far its tip points outwards half-way (radians)."""
+    rise: float = HEEL_RISE
+    """Phase from the first rise of its heel to the lift."""
 
     @property
     def turn(self) -> float:
@@ -187,11 +191,9 @@ class Swing:
     def pitch(self, phase: Array) -> Array:
         """How far the foot is pitched about the floor, heel up positive. (T,)."""
         (lift, land), row = self.window, foot_table()
-        # The first heel rises from the first frame on, not before.
-        rise = min(HEEL_RISE, max(lift - float(phase[0]), row.way.rise_min_phase))
         x = np.where(
             phase < lift,
-            np.maximum((phase - lift) / rise, -1.0),
+            np.maximum((phase - lift) / self.rise, -1.0),
             np.where(phase < land, (phase - lift) / (land - lift), 1 + np.minimum((phase - land) / SETTLE, 1.0)),
         )
         if self.backwards:
@@ -239,7 +241,8 @@ class Feet:
         self.ankles[after, index] = swing.start + way[:, None] * (swing.end - swing.start)
         self.ankles[after, index] += (np.sin(np.pi * u) ** 2)[:, None] * swing.bow
         self.ankles[after, index, 1] += swing.height(1 - u if swing.backwards else u)
-        self.yaw[after, index] = swing.start_yaw + smooth(u) * swing.turn
+        aside = swing.swings_out * swing.size * np.sin(np.pi * u) ** 2
+        self.yaw[after, index] = swing.start_yaw + smooth(u) * swing.turn + swing.side * aside
         self.planted[inside, index] = 0.0
         air = share[inside]
         self.bend[inside, index] = 1 - smooth(air / row.toes_stretch_share) * smooth((1 - air) / row.toes_bend_share)

@@ -7,14 +7,16 @@ moves from lift to landing is in foot_trajectory.py. The numbers are in data/gai
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from motion_backend import rotations
 from motion_backend.procedural.pose import Pose, smooth
-from motion_backend.procedural.walk.foot_trajectory import TIP_UP, Feet, Swing
+from motion_backend.procedural.walk.foot_trajectory import HEEL_RISE, TIP_UP, Feet, Swing, foot_table
 from motion_backend.procedural.walk.root_path import Route
+from motion_backend.procedural.walk.stride import Step, Stride
 from motion_backend.procedural.walk.walk_styles import Walk, usual_width
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
@@ -28,8 +30,8 @@ DRIFT_RATES, DRIFT_SIZE = (0.61, 1.0, 1.43), 2.1
 """Rates of a drift's sines against the one asked for, in no whole ratio to each other; what their sum is divided by."""
 NO_WAY = 1e-9
 """Square of a way that has no direction (metres²)."""
-SOFT_FRAMES = 5.0
-"""Width of the bell that what steps scale is smoothed by (frames)."""
+SOFT_FRAMES, SOFT_BEFORE = 5.0, 20
+"""Width of the bell that what steps scale is smoothed by, and how far it looks back (frames)."""
 
 
 @table
@@ -105,6 +107,8 @@ class SwingShape:
     full_stride_m: float
     """A step that rolls fully from heel to toe."""
     splay_rad: float
+    swings_out_deg: float
+    """How far its tip points outwards half-way."""
     drag_clearance_share: float
     """Of the usual clearance, of a foot that is dragged."""
     hop_clearance_share: float
@@ -156,6 +160,12 @@ class Steps:
     """(T, 2)."""
     hopping: Array
     """(T,) 1 over the steps of a skip, else 0."""
+    tiptoe: Array
+    """(T,) how far both heels are raised (radians)."""
+    flat: Array
+    """(T, 2, 3) where ankles would be if feet did not roll."""
+    made: tuple[Step, ...]
+    """Every step of either foot."""
 
     def wave(self, at: float) -> Array:
         """A wave of unit size, highest at that phase of every step. (T,)."""
@@ -205,6 +215,8 @@ def home_ankle(position: Array, heading: Array | float, index: int, width: float
 class _Beat:
     """One foot going from one place to the next."""
 
+    number: int
+    """Of the step in the walk."""
     index: int
     """0 left, 1 right."""
     window: tuple[float, float]
@@ -214,19 +226,21 @@ class _Beat:
     hop: bool = False
 
 
-def _beats(route: Route, phase: Array, first: int, style: Walk) -> list[_Beat]:
-    """Left, right, left, right; in a skip the foot that stands hops on before the other one lands."""
+def _beats(route: Route, phase: Array, first: int, style: Walk, begun: int) -> list[_Beat]:
+    """Left, right, left, right, after those that have `begun`; in a skip the foot that stands hops on before the
+    other one lands."""
     row, steps, beats = footstep_table().beat, round(phase[-1]), []
-    for k in range(steps):
+    for k in range(begun + 1, steps):
         index = 0 if (k % 2 == 0) == (first > 0) else 1
         speed = _speed_at(route, phase, k + 0.5)
         if style.skips and k < steps - 2 and speed > row.skip_from_mps:
-            beats.append(_Beat(1 - index, (k + row.hop_lift, k + row.hop_land), k + row.hop_middle, hop=True))
-            beats.append(_Beat(index, (k + row.skip_lift, k + row.skip_land), k + row.skip_middle))
+            beats.append(_Beat(k, 1 - index, (k + row.hop_lift, k + row.hop_land), k + row.hop_middle, hop=True))
+            beats.append(_Beat(k, index, (k + row.skip_lift, k + row.skip_land), k + row.skip_middle))
         else:
             # Slow steps stand longer on both feet than quick ones.
             double = style.double + (row.slow_double * max(row.slow_mps - speed, 0) if style.double > 0 else 0)
-            beats.append(_Beat(index, (k + double / 2, k + 1 - double / 2), k + row.middle))
+            sooner = style.character.beat_sides_share * (1 if index == 0 else -1)
+            beats.append(_Beat(k, index, (k + double / 2 - sooner, k + 1 - double / 2 - sooner), k + row.middle))
     return beats
 
 
@@ -235,23 +249,58 @@ def _speed_at(route: Route, phase: Array, when: float) -> float:
 
 
 def plan_steps(
-    start: Pose, route: Route, phase: Array, style: Walk, skeleton: Skeleton, rng: np.random.Generator
+    start: Pose,
+    route: Route,
+    phase: Array,
+    style: Walk,
+    skeleton: Skeleton,
+    rng: np.random.Generator,
+    stride: Stride | None = None,
 ) -> Steps:
-    """Where both feet are at every frame, from where they stand at the start."""
+    """Where both feet are at every frame, from where they stand at the start, or in the stride they are in."""
     frames = len(phase)
-    first = _first_foot(start, route, style)
+    first = _first_foot(start, route, style) if stride is None else stride.first
+    made = [] if stride is None else list(stride.steps)
     feet = Feet.standing(start.ankles, yaw_of(start.feet), frames)
-    amount, hopping = np.zeros(frames), np.zeros(frames)
-    for beat in _beats(route, phase, first, style):
+    if stride is not None:
+        feet = Feet.standing(stride.ankles, stride.yaw, frames)
+        for step in made:
+            feet.add(step.swing, phase, step.index)
+    hopping = np.zeros(frames)
+    for beat in _beats(route, phase, first, style, -1 if stride is None else stride.begun):
         swing = _swing_of(beat, feet, route, phase, style, skeleton, rng)
-        lift, land = beat.window
-        if not beat.hop:
-            amount = np.maximum(amount, swing.size * ((phase > np.floor(lift)) & (phase <= np.ceil(land))))
-        hopping[(phase > np.floor(lift)) & (phase <= np.ceil(land))] = beat.hop
+        hopping[_during(swing, phase)] = beat.hop
         feet.add(swing, phase, beat.index)
-    ease = smooth(phase + LEAD) * smooth((phase[-1] - phase) / footstep_table().beat.tiptoe_last_steps)
-    turned, toes = feet.rolled(np.radians(style.tiptoe) * ease, skeleton)
-    return Steps(phase, _soften(amount), first, feet.ankles, turned, feet.yaw, toes, feet.planted, _soften(hopping))
+        made.append(Step(beat.number, beat.index, swing, beat.hop))
+    tiptoe, flat = _tiptoe(phase, style, stride), feet.ankles.copy()
+    turned, toes = feet.rolled(tiptoe, skeleton)
+    amount = _moving(made, phase, 0.0 if stride is None else stride.moving)
+    return Steps(
+        phase, amount, first, feet.ankles, turned, feet.yaw, toes, feet.planted, _soften(hopping), tiptoe, flat,
+        tuple(made),
+    )  # fmt: skip
+
+
+def _during(swing: Swing, phase: Array) -> Array:
+    """The frames of the step that a swing belongs to. (T,) of bool."""
+    lift, land = swing.window
+    return np.asarray((phase > np.floor(lift)) & (phase <= np.ceil(land)))
+
+
+def _moving(made: Sequence[Step], phase: Array, before: float) -> Array:
+    """How full the stride is at each frame, after what it was `before`. (T,)."""
+    amount = np.zeros(len(phase))
+    for step in made:
+        if not step.hop:
+            amount = np.maximum(amount, step.swing.size * _during(step.swing, phase))
+    return _soften(np.concatenate([np.full(SOFT_BEFORE, before), amount]))[SOFT_BEFORE:]
+
+
+def _tiptoe(phase: Array, style: Walk, stride: Stride | None) -> Array:
+    """How far both heels are raised. (T,) radians."""
+    begin, since = (0.0, -LEAD) if stride is None else (stride.tiptoe, stride.phase)
+    raised = begin + (np.radians(style.tiptoe) - begin) * smooth(phase - since)
+    return np.asarray(raised * smooth((phase[-1] - phase) / footstep_table().beat.tiptoe_last_steps))
 
 
 def _swing_of(
@@ -267,27 +316,31 @@ def _swing_of(
     beside = feet.ankles[before, 1 - beat.index]
     middle = _stance(beat, route, at, style, place, rng)
     stance, width = _widths(route, at, style, place)
-    target = home_ankle(middle, heading, beat.index, width, skeleton)
+    target = home_ankle(middle, heading, beat.index, width + side * style.character.width_sides_m, skeleton)
     apart = min(place.apart_m, place.apart_ratio * stance) * skeleton.scale
     target = _clear_of(beside, target, heading, side, apart)
     ahead = np.array([np.sin(heading), np.cos(heading)])
     forward = float((target - origin)[[0, 2]] @ ahead) / (shape.full_stride_m * skeleton.scale)
     stride = float(np.clip(forward, -1.0, 1.0))
     dragged = shape.drag_clearance_share if style.drag and beat.index == 1 else 1.0
+    clearance = style.clearance * style.character.clearance_sides_ratio**side
     rolled = np.radians(shape.heel_off_deg) * style.roll * abs(stride) ** shape.heel_off_power
     return Swing(
         origin,
         target,
         yaw,
-        heading + side * shape.splay_rad,
+        heading + side * (shape.splay_rad + np.radians(style.character.of_side("toes", "deg", side))),
         side,
         beat.window,
-        clearance=style.clearance * (shape.hop_clearance_share if beat.hop else dragged),
+        clearance=clearance * (shape.hop_clearance_share if beat.hop else dragged),
         heel_off=rolled * (shape.hop_heel_off_share if beat.hop else 1.0),
         heel_strike=TIP_UP * style.strike * abs(stride) * (0.0 if beat.hop else 1.0),
         scuff=np.radians(style.scuff) * float(np.clip(stride / shape.scuff_stride_share, 0.0, 1.0)),
         round=_way_round(origin, target, beside, heading, side) * skeleton.scale,
         backwards=stride < -shape.backwards_share,
+        swings_out=np.radians(shape.swings_out_deg) * style.character.of_side("toes_swing", "ratio", side),
+        # The first heel rises from the first frame on, not before.
+        rise=min(HEEL_RISE, max(beat.window[0] - float(phase[0]), foot_table().way.rise_min_phase)),
     )
 
 
@@ -298,7 +351,8 @@ def _stance(beat: _Beat, route: Route, at: int, style: Walk, place: LandingPlace
     # A little behind the middle of its stance: the rising heel carries the ankle forward at the end of it.
     behind = place.back_s * min(speed, place.back_max_mps) * np.cos(np.radians(style.aside))
     middle = route.position[at] - behind * ahead
-    middle = middle - style.drag * under_way * (beat.index == 1) * ahead
+    longer = style.character.step_sides_m * (1 if beat.index == 0 else -1) - style.drag * (beat.index == 1)
+    middle = middle + under_way * longer * ahead
     scatter = under_way * (place.scatter_m + style.uneven * place.uneven_m)
     return np.asarray(middle + scatter * rng.standard_normal(2))
 
@@ -311,7 +365,8 @@ def _widths(route: Route, at: int, style: Walk, place: LandingPlace) -> tuple[fl
     stance = max(style.width, turning * usual_width())
     under_way = min(float(route.speed[at]) / place.under_way_mps, 1.0)
     narrower = 0.0 if style.aside == SIDEWAYS else place.narrower_share
-    return stance, stance * (1 - narrower * under_way * (1 - turning))
+    straight_on = under_way * (1 - turning)
+    return stance, stance * (1 - narrower * straight_on) * style.character.width_ratio**straight_on
 
 
 def _clear_of(beside: Array, target: Array, heading: float, side: int, apart: float) -> Array:

@@ -14,11 +14,12 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.pose import Pose, settle_from, smooth
-from motion_backend.procedural.walk.arm_swing import swing_arms
+from motion_backend.procedural.walk.arm_swing import arm_spread, swing_arms
 from motion_backend.procedural.walk.cadence import plan_phase
 from motion_backend.procedural.walk.footsteps import Steps, drift, plan_steps, yaw_of
 from motion_backend.procedural.walk.pelvis_height import landing, lifted
-from motion_backend.procedural.walk.root_path import Route, evenly, plan_route
+from motion_backend.procedural.walk.root_path import Route, evenly, plan_route, resample
+from motion_backend.procedural.walk.stride import BEATS, Stride
 from motion_backend.procedural.walk.walk_styles import Walk
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
@@ -41,6 +42,10 @@ class GaitWay:
     stagger_turn_deg: float
     stagger_turn_hz: float
     stagger_ease_frames: float
+    same_arms: float
+    """A walk that goes on takes arms up as they swing that are no farther off than this (arm lengths),"""
+    same_arms_s: float
+    """over so long."""
 
 
 @table
@@ -56,6 +61,10 @@ class Sway:
     less_per_mps: float
     min_ratio: float
     max_ratio: float
+    shoulders_ratio: float
+    """How far the shoulders tip with the pelvis, and"""
+    shoulders_late_share: float
+    """how much later."""
     last_steps: float
     """All that swings fades over the last of this many steps."""
 
@@ -97,6 +106,20 @@ class Lean:
     """Of the gaze's turn to where a way curves."""
     counter_ratio: float
     """Of the hips' turn, that the chest turns against it."""
+
+
+@table
+class Wander:
+    """Nobody is as even as a clock."""
+
+    hz: float
+    trunk_deg: float
+    arms_deg: float
+    head_deg: float
+    trembles_hz: float
+    trunk_trembles_deg: float
+    arms_tremble_deg: float
+    head_trembles_deg: float
 
 
 @table
@@ -150,6 +173,7 @@ class Carriage:
     sway: Sway
     surge: Surge
     lean: Lean
+    wander: Wander
     drunk: Drunk
     gaze: Gaze
     knees: Knees
@@ -165,20 +189,87 @@ def walk(
     start: Pose, path: Array, end_yaw: float | None, style: Walk, skeleton: Skeleton, rng: np.random.Generator
 ) -> Pose:
     """Walk from a standing pose along a path (N, 2), ending on both feet at its end, facing `end_yaw` if given."""
+    return walk_on(start, path, end_yaw, style, skeleton, rng)[0]
+
+
+def walk_on(
+    start: Pose,
+    path: Array,
+    end_yaw: float | None,
+    style: Walk,
+    skeleton: Skeleton,
+    rng: np.random.Generator,
+    stride: Stride | None = None,
+    cut_m: float | None = None,
+) -> tuple[Pose, Stride | None]:
+    """Walk as `walk` does, from a body in the `stride` that the last walk left it in, where there is one.
+
+    With `cut_m` the path goes on after the walk is over, so many metres along it: the body does not stop there, and its
+    stride is returned (`way_junction.through_way` joins two ways and says where). Without, it ends standing.
+    """
     fps, row = FPS, carriage().way
     luck = float(np.clip(rng.standard_normal(), -row.pace_spread_max_sigmas, row.pace_spread_max_sigmas))
     pace = 1 + row.pace_spread_share * luck
-    style = replace(style, release=end_yaw is not None, speed=style.speed * pace)
+    style = replace(style.in_character(), release=end_yaw is not None, speed=style.speed * pace)
     speed, aside = style.speed * skeleton.scale, float(np.radians(style.aside))
-    route = plan_route(path, float(yaw_of(start.hips)), end_yaw, speed, fps, aside)
+    if stride is None:
+        route = plan_route(path, float(yaw_of(start.hips)), end_yaw, speed, fps, aside)
+    else:
+        path = np.concatenate([stride.place[None], path[1:]])
+        begun = plan_route(path, stride.heading, end_yaw, speed, fps, aside, stride.speed)
+        route = begun.after(stride.place, stride.heading, stride.speed)
     if style.spin:
         route = _with_spin(route, style.spin, fps)
     if style.wobble:
         route = _staggering(route, style.wobble, rng, fps)
-    route, phase = plan_phase(route, style, skeleton, fps, rng)
-    steps = plan_steps(start, route, phase, style, skeleton, rng)
-    pose = _carry(start, route, steps, style, skeleton, rng)
-    return settle_from(start, pose, fps)
+    route, phase = plan_phase(route, style, skeleton, fps, rng, stride)
+    steps = plan_steps(start, route, phase, style, skeleton, rng, stride)
+    spread = arm_spread(len(phase), style, stride)
+    pose = _carry(start, route, steps, style, skeleton, rng, spread, stride is not None)
+    pose = settle_from(start, pose, fps) if stride is None else _taken_up(start, pose, fps)
+    if cut_m is None:
+        return pose, None
+    last = route.reaches(cut_m)
+    return pose.at(slice(0, last + 1 - (stride is not None))), _stride_at(last, path, route, steps, spread)
+
+
+def _taken_up(start: Pose, pose: Pose, fps: int) -> Pose:
+    """A walk whose first frame is the pose it starts from, and is over already."""
+    settled, row = settle_from(start, pose, fps), carriage().way
+    apart = start.arms - pose.arms[0]
+    if float(np.linalg.norm(apart, axis=-1).max()) < row.same_arms:
+        # Arms go on swinging: what little they are off fades out.
+        fade = 1 - smooth(np.arange(len(pose)) / (row.same_arms_s * fps))
+        settled = replace(settled, arms=pose.arms + fade[:, None, None] * apart, elbows=pose.elbows)
+    return settled.at(slice(1, len(settled)))
+
+
+def _stride_at(frame: int, path: Array, route: Route, steps: Steps, spread: Array) -> Stride:
+    """What a walk that goes on leaves the next one at a frame."""
+    phase = float(steps.phase[frame])
+    begun = [step for step in steps.made if step.begun(phase)]
+    under_way = [step for step in begun if not step.over(phase)]
+    ankles, yaw = steps.flat[frame].copy(), steps.yaw[frame].copy()
+    for step in reversed(under_way):
+        ankles[step.index], yaw[step.index] = step.swing.start, step.swing.start_yaw
+    earlier = BEATS * int(np.floor(phase / BEATS))
+    points = resample(path)
+    ahead = int(np.argmin(np.linalg.norm(points - route.position[frame], axis=1))) + 1
+    return Stride(
+        phase=phase - earlier,
+        begun=max((step.number for step in begun if not step.hop), default=-1) - earlier,
+        first=steps.first,
+        speed=float(route.speed[frame]),
+        place=route.position[frame],
+        heading=float(rotations.wrap(route.heading[frame])),
+        moving=float(steps.moving[frame]),
+        ankles=ankles,
+        yaw=yaw,
+        steps=tuple(step.later(-earlier) for step in under_way),
+        tiptoe=float(steps.tiptoe[frame]),
+        spread=spread[frame],
+        rest=np.concatenate([route.position[frame : frame + 1], points[ahead:]]),
+    )
 
 
 def _with_spin(route: Route, turns: float, fps: int) -> Route:
@@ -205,33 +296,45 @@ def _staggering(route: Route, size: float, rng: np.random.Generator, fps: int) -
     return Route(route.position + aside[:, None] * left, yaw, route.speed)
 
 
-def _carry(start: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skeleton, rng: np.random.Generator) -> Pose:
+def _carry(
+    start: Pose,
+    route: Route,
+    steps: Steps,
+    style: Walk,
+    skeleton: Skeleton,
+    rng: np.random.Generator,
+    spread: Array,
+    in_stride: bool,
+) -> Pose:
     """Everything above the feet: pelvis over its support, hips and chest turning against each other, arms, gaze."""
     row, frames = carriage(), len(steps.phase)
     moving = steps.moving * smooth((steps.phase[-1] - steps.phase) / row.sway.last_steps)
     unsteady = style.wobble * drift(frames, row.drunk.hz, FPS, rng)
     brisk = np.clip(route.speed, 0.0, row.surge.brisk_max_mps) * moving * np.cos(np.radians(style.aside))
     ground = _support(route, steps, style, (moving, brisk, unsteady))
+    own, wander = style.character, _wander(frames, rng)
     hip_turn = np.radians(style.twist) * steps.first * np.cos(np.pi * steps.phase) * moving
-    drop = np.sin(np.pi * (steps.phase - row.sway.drops_late_share))
-    roll = -np.radians(style.hips) * steps.first * drop * moving
+    roll, shoulders = _rolls(steps, style, moving)
     lean = _leaning(route, style, brisk)
-    tilt = row.lean.hips_share * lean + row.lean.hips_wave_rad * brisk * steps.wave(row.lean.hips_wave_at_phase)
+    nods = own.nod_ratio * brisk
+    tilt = row.lean.hips_share * lean + row.lean.hips_wave_rad * nods * steps.wave(row.lean.hips_wave_at_phase)
     hips = rotations.compose(
-        rotations.yaw_to_quat(route.heading + hip_turn),
+        rotations.yaw_to_quat(route.heading + hip_turn + np.radians(own.hips_turn_deg) * moving),
         rotations.rotvec_to_quat(np.stack([tilt, np.zeros(frames), roll], axis=1)),
     )
-    jolt = row.lean.jolt_rad * brisk * steps.wave(row.lean.jolt_at_phase)
+    jolt = row.lean.jolt_rad * nods * steps.wave(row.lean.jolt_at_phase)
     jolt = jolt + row.lean.stamp_rad_per_m * style.stamp * landing(steps)
     forward = row.lean.spine_share * lean + row.drunk.lean_rad * unsteady + jolt
-    turned = row.lean.looks_share * np.radians(style.veer) * moving - row.lean.counter_ratio * hip_turn
-    spine = np.stack([forward, turned, -roll + row.drunk.side_rad * unsteady], axis=1)
-    arms, elbows = swing_arms(style, steps, route.speed)
+    turned = row.lean.looks_share * np.radians(style.veer) * moving
+    turned = turned + np.radians(own.shoulder_turn_deg) * moving - row.lean.counter_ratio * own.counter_ratio * hip_turn
+    spine = np.stack([forward, turned, shoulders - roll + row.drunk.side_rad * unsteady], axis=1)
+    spine = spine + moving[:, None] * wander[:, :3]
+    arms, elbows = swing_arms(style, steps, route.speed, spread, wander[:, 3:7].reshape(-1, 2, 2))
     pose = Pose(
         pelvis=np.stack([ground[:, 0], np.zeros(frames), ground[:, 1]], axis=1),
         hips=hips,
         spine=spine,
-        head=_gaze(route, style, hip_turn, (unsteady, jolt), rng),
+        head=_gaze(route, style, hip_turn, (unsteady, jolt), rng) + moving[:, None] * wander[:, 7:],
         ankles=steps.ankles,
         feet=steps.feet,
         toes=steps.toes,
@@ -244,7 +347,30 @@ def _carry(start: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skele
         pressing=np.zeros((frames, 2)),
         planted=steps.planted,
     )
-    return replace(pose, pelvis=lifted(pose, route, steps, style, skeleton))
+    return replace(pose, pelvis=lifted(pose, route, steps, style, skeleton, in_stride))
+
+
+def _rolls(steps: Steps, style: Walk, moving: Array) -> tuple[Array, Array]:
+    """How far pelvis and shoulders are tipped, the left side up. (T,) radians each."""
+    row, own = carriage().sway, style.character
+    tips = -np.radians(style.hips) * steps.first * moving
+    roll = tips * np.sin(np.pi * (steps.phase - row.drops_late_share))
+    shoulders = tips * np.sin(np.pi * (steps.phase - row.drops_late_share - row.shoulders_late_share))
+    shoulders = row.shoulders_ratio * own.shoulder_swing_ratio * shoulders + np.radians(own.shoulder_roll_deg) * moving
+    return roll + np.radians(own.hips_roll_deg) * moving, shoulders
+
+
+def _wander(frames: int, rng: np.random.Generator) -> Array:
+    """What trunk (3), arms (2 each) and head (3) do that no step asks for: slow wandering, and the tremble of steps
+    taken on a real floor. (T, 10) radians."""
+    row = carriage().wander
+    slow = np.repeat([row.trunk_deg, row.arms_deg, row.head_deg], (3, 4, 3))
+    quick = np.repeat([row.trunk_trembles_deg, row.arms_tremble_deg, row.head_trembles_deg], (3, 4, 3))
+    wandered = [
+        one * drift(frames, row.hz, FPS, rng) + other * drift(frames, row.trembles_hz, FPS, rng)
+        for one, other in zip(slow, quick, strict=True)
+    ]
+    return np.radians(np.stack(wandered, axis=1))
 
 
 def _support(route: Route, steps: Steps, style: Walk, moved: tuple[Array, Array, Array]) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.procedural.pose import Pose, smooth
-from motion_backend.procedural.walk.footsteps import LEAD, Steps
+from motion_backend.procedural.walk.footsteps import Steps
 from motion_backend.procedural.walk.root_path import Route
 from motion_backend.procedural.walk.walk_styles import Walk
 from motion_backend.rotations import Array
@@ -51,9 +51,7 @@ class Height:
     last_steps: float
     """The bounce fades, and legs straighten, over the last of this many steps."""
     tiptoe_m: float
-    """From the ankle to the ball of the foot, that tiptoes lift."""
-    tiptoe_min_m: float
-    tiptoe_last_steps: float
+    """From the ankle to the ball of the foot, and a little more, that tiptoes lift."""
     leg_share: float
     """Of its length, that a leg is stretched to."""
     leg_min_m2: float
@@ -94,12 +92,12 @@ def pelvis_table() -> PelvisTable:
     return rows
 
 
-def lifted(pose: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skeleton) -> Array:
+def lifted(pose: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skeleton, in_stride: bool) -> Array:
     """Pelvis positions with the height that the bounce asks for and the legs allow. (T, 3)."""
     from scipy.ndimage import gaussian_filter1d, minimum_filter1d
 
     row, pelvis = pelvis_table().height, pose.pelvis.copy()
-    carried, ending = _carried(route, steps, style, skeleton)
+    carried, ending = _carried(route, steps, style, skeleton, in_stride)
     wanted = carried + skeleton.scale * ending * _bounce(route, steps, style)
     leg = -float(skeleton.offsets[INDEX["left_knee"], 1] + skeleton.offsets[INDEX["left_ankle"], 1]) * row.leg_share
     limits = []
@@ -115,7 +113,7 @@ def lifted(pose: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skelet
     return pelvis
 
 
-def _carried(route: Route, steps: Steps, style: Walk, skeleton: Skeleton) -> tuple[Array, Array]:
+def _carried(route: Route, steps: Steps, style: Walk, skeleton: Skeleton, in_stride: bool) -> tuple[Array, Array]:
     """The height of the pelvis without its bounce, and a share that ends with the last step. (T,) each."""
     row = pelvis_table().height
     lower_standing = row.standing_lower_m + row.standing_crouch_share * style.crouch
@@ -128,10 +126,9 @@ def _carried(route: Route, steps: Steps, style: Walk, skeleton: Skeleton) -> tup
     # The last step ends upright: legs straighten as the feet come together.
     left = steps.phase[-1] - steps.phase
     ending = smooth(left / row.last_steps)
-    starting = smooth((steps.phase - steps.phase[0]) / row.first_steps)
+    starting = 1.0 if in_stride else smooth((steps.phase - steps.phase[0]) / row.first_steps)
     carried = at_rest + np.clip(row.moving_ratio * steps.moving, 0.0, 1.0) * ending * starting * (walking - at_rest)
-    tiptoe = row.tiptoe_m * skeleton.scale * np.sin(np.radians(style.tiptoe)) + row.tiptoe_min_m * (style.tiptoe > 0)
-    return carried + tiptoe * smooth(steps.phase + LEAD) * smooth(left / row.tiptoe_last_steps), ending
+    return carried + row.tiptoe_m * skeleton.scale * np.sin(steps.tiptoe), ending
 
 
 def _bounce(route: Route, steps: Steps, style: Walk) -> Array:

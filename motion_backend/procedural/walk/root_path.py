@@ -95,18 +95,38 @@ class Route:
     speed: Array
     """(T,) metres a second."""
 
+    def after(self, place: Array, heading: float, speed: float) -> Route:
+        """The same route with the frame before it, where the body came from."""
+        return Route(
+            np.concatenate([place[None], self.position]),
+            np.concatenate([[heading], self.heading]),
+            np.concatenate([[speed], self.speed]),
+        )
+
+    def reaches(self, length: float) -> int:
+        """The first frame that has so much of the way behind it (metres); the last one of a shorter way."""
+        gone = np.cumsum(np.linalg.norm(np.diff(self.position, axis=0, prepend=self.position[:1]), axis=1))
+        return min(int(np.searchsorted(gone, length)), len(gone) - 1)
+
 
 def plan_route(
-    path: Array, start_yaw: float, end_yaw: float | None, speed: float, fps: int, aside: float = 0.0
+    path: Array,
+    start_yaw: float,
+    end_yaw: float | None,
+    speed: float,
+    fps: int,
+    aside: float = 0.0,
+    begun_mps: float | None = None,
 ) -> Route:
     """Sample a path (N, 2) in time: ease in and out, slow down in bends, turn first and last where needed.
 
-    The body faces along the path, or `aside` of it (radians) to the side that takes less turning.
-    """
+    The body faces along the path, or `aside` of it (radians) to the side that takes less turning. One that already
+    goes at `begun_mps` neither stops to turn nor starts anew.
+    """  # fmt: skip
     rows, points = root_path_table(), resample(path)
     length = SPACING * (len(points) - 1)
     end = start_yaw if end_yaw is None else end_yaw
-    if length < rows.shuffle.below_m:
+    if length < rows.shuffle.below_m and begun_mps is None:
         turn = float(rotations.wrap(end - start_yaw))
         if length < SPACING or abs(turn) < rows.shuffle.turn_max_rad:
             return _shuffle(points, start_yaw, turn, fps)
@@ -116,13 +136,17 @@ def plan_route(
     pieces: list[Route] = []
     first_turn = float(rotations.wrap(tangent[0] - start_yaw))
     yaw = start_yaw
-    if abs(first_turn) > rows.turn.in_place_from_rad:
+    if abs(first_turn) > rows.turn.in_place_from_rad and begun_mps is None:
         # The last third of the turn is left to the first steps, as people do.
         yaw = start_yaw + first_turn - np.sign(first_turn) * rows.turn.left_to_steps_rad
         pieces.append(_turn(points[0], start_yaw, yaw, fps))
     last_turn = 0.0 if end_yaw is None else float(rotations.wrap(end_yaw - tangent[-1]))
     walked = _walk(
-        points, tangent, yaw, last_turn if abs(last_turn) <= rows.turn.in_place_from_rad else 0.0, (speed, fps)
+        points,
+        tangent,
+        yaw,
+        last_turn if abs(last_turn) <= rows.turn.in_place_from_rad else 0.0,
+        (speed, fps, begun_mps),
     )
     pieces.append(walked)
     if abs(last_turn) > rows.turn.in_place_from_rad:
@@ -167,10 +191,10 @@ def _tangents(points: Array) -> Array:
     return np.asarray(gaussian_filter1d(yaw, root_path_table().speed.bends_m / SPACING, mode="nearest"))
 
 
-def _walk(points: Array, tangent: Array, yaw: float, last_turn: float, pace: tuple[float, int]) -> Route:
-    (speed, fps), row = pace, root_path_table().speed
+def _walk(points: Array, tangent: Array, yaw: float, last_turn: float, pace: tuple[float, int, float | None]) -> Route:
+    (speed, fps, begun), row = pace, root_path_table().speed
     arc = SPACING * np.arange(len(points))
-    limit = _speed_limits(tangent, speed, row)
+    limit = _speed_limits(tangent, speed, row, begun)
     time = np.concatenate([[0.0], np.cumsum(2 * SPACING / (limit[1:] + limit[:-1]))])
     at = np.arange(1, int(np.ceil(time[-1] * fps)) + 1) / fps
     along = np.interp(at, time, arc)
@@ -183,17 +207,21 @@ def _walk(points: Array, tangent: Array, yaw: float, last_turn: float, pace: tup
     return Route(position, heading, np.interp(at, time, limit))
 
 
-def _speed_limits(tangent: Array, speed: float, row: PathSpeed) -> Array:
+def _speed_limits(tangent: Array, speed: float, row: PathSpeed, begun: float | None) -> Array:
     """How fast each point of a path is passed: slowly in bends, quickening and slowing down as bodies can. (M,)."""
     bend = np.abs(np.gradient(tangent, SPACING))
     limit = np.minimum(speed, row.aside_max_mps2**0.5 / np.maximum(bend, STRAIGHT) ** 0.5)
     limit = np.minimum(limit, row.turn_max_rad_per_s / np.maximum(bend, STRAIGHT))
-    limit[0] = limit[-1] = row.end_mps
+    limit[0], limit[-1] = row.end_mps if begun is None else begun, row.end_mps
     push, brake = (rate * max(speed, row.push_from_mps) for rate in (row.push_per_s, row.brake_per_s))
     for i in range(1, len(limit)):
         limit[i] = min(limit[i], np.sqrt(limit[i - 1] ** 2 + 2 * push * SPACING))
     for i in range(len(limit) - 2, -1, -1):
         limit[i] = min(limit[i], np.sqrt(limit[i + 1] ** 2 + 2 * brake * SPACING))
+    if begun is not None:
+        # Who comes along quickly cannot be slower at once.
+        arc = SPACING * np.arange(len(limit))
+        limit = np.maximum(limit, np.sqrt(np.maximum(begun**2 - 2 * brake * arc, 0.0)))
     return np.asarray(limit)
 
 

@@ -20,9 +20,11 @@ from motion_backend.procedural.held_poses import SPINE_LEAN, bend, idle
 from motion_backend.procedural.pose import interpolate, settle_from
 from motion_backend.procedural.touch.gestures import gesture
 from motion_backend.procedural.touch.hand_captions import arms_on_the_way
-from motion_backend.procedural.walk.gait import walk
+from motion_backend.procedural.walk.gait import walk_on
+from motion_backend.procedural.walk.gait_character import gait_character
 from motion_backend.procedural.walk.root_path import resample
 from motion_backend.procedural.walk.walk_styles import Walk, walk_style
+from motion_backend.procedural.walk.way_junction import ThroughWay, through_way, way_from, way_to
 from motion_backend.rotations import Array
 from scene_graphs.navigation.path_planner import Walkable
 
@@ -32,6 +34,7 @@ ROOM = 0.02
 """What a detour leaves free beyond what the body needs (metres)."""
 LONG_ENOUGH = 1.0
 """Ways shorter than this (metres) are gone straight and once."""
+STRAIGHT_ON = "no room for a curve: straight on, looking to that side"
 BEAT = 2.4
 """How far somebody who paces goes before turning round (metres),"""
 BEAT_SHARE = 0.9
@@ -80,15 +83,17 @@ SHORT_WAY = 0.20
 TURNING_ROUND = 1.2
 """A body that arrives turned away from where it will face by more (radians) turns before the last step."""
 NARROW_ARMS = {
-    "open": ("raised", 0.80),
-    "balance": ("hang", 0.80),
+    "open": ("embracing", 0.80),
+    "balance": ("balance_ahead", 0.80),
     "hips": ("hang", 0.50),
     "pockets": ("hang", 0.45),
     "behind_back": ("hang", 0.40),
 }
-"""What arms do where elbows or hands would meet furniture, and the clearance (metres) they need: joy goes up."""
+"""What arms do where elbows or hands would meet furniture, and the clearance (metres) they need."""
 STAYING = 0.7
 """How long arms take into the pose they are held in where the body stays, and out of it (seconds)."""
+HALTS = 0.6
+"""How far a walk goes on that has to stop (metres)."""
 ELBOW_ROOM = 0.26
 """Clearance beyond which there is no better place to turn on the spot (metres)."""
 TURNING_PLACES = (0.32, 0.26, 0.20, 0.14)
@@ -97,17 +102,22 @@ ROOMIER = 0.04
 """where that has so much more room than the seat (metres)."""
 
 
-def go(body: Body, goal: Point, facing: float | None, action: Action) -> None:
-    """Walk to a place and end up facing a yaw, in the style of the action."""
+def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Point | None = None) -> None:
+    """Walk to a place and end up facing a yaw, in the style of the action.
+
+    Where the way leads `onward` to another place, the body passes by this one in stride, if there is room for that.
+    """
     near = float(np.hypot(goal[0] - body.place[0], goal[1] - body.place[1])) < AT_THE_SPOT
     turned = facing is None or abs(float(rotations.wrap(facing - body.yaw))) < FACING_IT
     if near and turned:
+        if body.stride is not None:
+            halt(body, action)
         return
     body.enter(PhaseKind.WALK)
     style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
     arms = arms_on_the_way(body.pose, style.bearing.arms)
-    style = replace(style, bearing=replace(style.bearing, arms=arms))
-    path = body.scene.walkable.path(body.place, goal) if not near else np.array([body.place, goal])
+    style = replace(style, bearing=replace(style.bearing, arms=arms), character=gait_character(body.seed))
+    path = _way_to(body, goal) if not near else np.array([body.place, goal])
     turning = None
     if turned and float(np.hypot(goal[0] - body.place[0], goal[1] - body.place[1])) < SHORT_WAY:
         path = np.array([body.place, goal])
@@ -117,7 +127,9 @@ def go(body: Body, goal: Point, facing: float | None, action: Action) -> None:
         path = _spin_on_the_way(body, path, style)
         style = replace(style, spin=0.0)
     if style.veer and not near:
-        path = curved(path, style.veer > 0, body.scene.walkable)
+        straight, path = path, curved(path, style.veer > 0, body.scene.walkable)
+        if path is straight:
+            body.note(STRAIGHT_ON)
     if style.to_and_fro and not near:
         *before, path = to_and_fro(path, body.scene.walkable)
         for way in before:
@@ -126,16 +138,59 @@ def go(body: Body, goal: Point, facing: float | None, action: Action) -> None:
         _stride(body, body.scene.walkable.path(body.place, turning), facing, style)
         body.enter(PhaseKind.BACK_UP)
         path = np.array([body.place, goal])
-    _stride(body, path, facing, style)
+    _stride(body, path, facing, style, onward if not near and turning is None else None)
 
 
-def _stride(body: Body, path: Array, facing: float | None, style: Walk) -> None:
+def _way_to(body: Body, goal: Point) -> Array:
+    """The path (N, 2) to a place: who is walking goes on the way that the last walk was to go on by."""
+    if body.stride is None:
+        return body.scene.walkable.path(body.place, goal)
+    rest = body.stride.rest
+    end = float(rest[-1, 0]), float(rest[-1, 1])
+    if np.hypot(goal[0] - end[0], goal[1] - end[1]) < AT_THE_SPOT:
+        return rest
+    return np.concatenate([rest, body.scene.walkable.path(end, goal)[1:]])
+
+
+def halt(body: Body, action: Action) -> None:
+    """Come to a stand out of a walk that nothing follows after all."""
+    stride = body.stride
+    if stride is not None:
+        ahead = np.array([np.sin(stride.heading), np.cos(stride.heading)])
+        _stride(body, np.stack([stride.place, stride.place + HALTS * ahead]), None, walk_style(action.emotion, "walk"))
+
+
+def _stride(body: Body, path: Array, facing: float | None, style: Walk, onward: Point | None = None) -> None:
     """Walk along a path; arms that are spread come in where there is no room for them."""
-    frames = walk(body.pose, path, facing, style, body.skeleton, body.rng)
+    stride, body.stride = body.stride, None
+    if stride is None and not style.aside:
+        path = way_from(path, body.yaw, lambda points: _is_free(points, body.scene.walkable))
+    way = _through(body, path, onward) if onward is not None and not style.spin else None
+    if way is None and facing is not None and not style.aside:
+        path = way_to(path, facing, lambda points: _is_free(points, body.scene.walkable))
+    points, cut = (path, None) if way is None else (way.points, way.cut_m)
+    end = facing if way is None else None
+    frames, body.stride = walk_on(body.pose, points, end, style, body.skeleton, body.rng, stride, cut)
     if style.bearing.arms[0] in NARROW_ARMS:
         room = body.scene.walkable.field.at(frames.pelvis[:, [0, 2]])
         frames = arms_in(frames, room / body.skeleton.scale, *NARROW_ARMS[style.bearing.arms[0]])
     body.add(gesture(frames, style.doing))
+
+
+def _through(body: Body, path: Array, onward: Point) -> ThroughWay | None:
+    """The way by the end of a path and on to another place; None where it is the same place, or there is no room."""
+    here = float(path[-1, 0]), float(path[-1, 1])
+    if np.hypot(onward[0] - here[0], onward[1] - here[1]) < AT_THE_SPOT:
+        return None
+    walkable = body.scene.walkable
+    ways = np.concatenate([resample(path), resample(leaving := walkable.path(here, onward))])
+
+    def fits(points: Array) -> bool:
+        # Where the planner leads there is room; only what the joining adds has to be looked at.
+        new = np.linalg.norm(points[:, None] - ways[None], axis=2).min(axis=1) > ROOM
+        return bool((walkable.field.at(points[new]) >= walkable.radius + ROOM).all())
+
+    return through_way(path, leaving, fits)
 
 
 def _spin_on_the_way(body: Body, path: Array, style: Walk) -> Array:

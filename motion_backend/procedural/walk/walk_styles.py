@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from motion_backend.motion import Emotion
 from motion_backend.procedural.emotion_style import Bearing, bearings, carried
@@ -17,6 +17,10 @@ from motion_backend.procedural.style_sheet import (
     Turns,
     read_style_sheet,
 )
+from motion_backend.procedural.walk.gait_character import NOBODY, GaitCharacter
+
+MIN_DOUBLE = 0.05
+"""Share of a step on both feet that whoever does not run has at least."""
 
 
 @dataclass(frozen=True)
@@ -87,6 +91,27 @@ class Walk:
     """What the hands do meanwhile: a name in `gestures.GESTURES`."""
     release: bool = False
     """Whether arms come down at the end of the way, where something else begins."""
+    character: GaitCharacter = NOBODY
+    """Whose walk it is."""
+
+    def in_character(self) -> Walk:
+        """The same style as its character walks it, in what both sides have alike."""
+        own = self.character
+        bearing = replace(self.bearing, lean=self.bearing.lean + own.lean_deg, head=self.bearing.head + own.head_deg)
+        return replace(
+            self,
+            bearing=bearing,
+            stride=self.stride * own.stride_ratio,
+            clearance=self.clearance * own.clearance_ratio,
+            bounce=self.bounce * own.bounce_ratio,
+            sway=self.sway * own.sway_ratio,
+            hips=self.hips * own.hips_ratio,
+            twist=self.twist * own.twist_ratio,
+            crouch=max(self.crouch + own.crouch_m, 0.0),
+            double=max(self.double + own.double_share, MIN_DOUBLE) if self.double > 0 else self.double,
+            roll=self.roll * own.roll_ratio,
+            strike=self.strike * own.strike_ratio,
+        )
 
 
 def usual_width() -> float:

@@ -140,6 +140,13 @@ class Span(BaseModel):
     keyframes: list[int]
 
 
+class SegmentShown(BaseModel):
+    """Frames of a keyframe that one backend made."""
+
+    backend: str
+    fallback: str | None = Field(description="Why another backend than the one asked for made them; null: it did.")
+
+
 class KeyframeShown(BaseModel):
     """One moment: what is done, how, at what, and in which frames once it was moved."""
 

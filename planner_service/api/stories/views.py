@@ -83,11 +83,13 @@ def story_shown(record: Record) -> Json:
 
 
 def _keyframes(made: Json, segments: list[Json]) -> list[Json]:
-    rows = [row | {"start": None, "end": None, "reached": None} for row in made.get("keyframes", [])]
+    rows = [row | {"start": None, "end": None, "reached": None, "segments": []} for row in made.get("keyframes", [])]
     for row, object_id in zip(rows, made.get("objects", []), strict=False):
         row["object_id"] = object_id
     for segment in segments:
-        rows[segment["keyframe"]] |= {name: segment[name] for name in ("start", "end", "reached")}
+        rows[segment["keyframe"]] |= {
+            name: segment[name] for name in ("start", "end", "reached", "segments") if name in segment
+        }
     return rows
 
 

@@ -56,6 +56,19 @@ def test_slow_creeping_is_skate_speed_but_not_gmd_skating() -> None:
     assert foot_skate.skate_speed(body) == pytest.approx(30, rel=1e-3)
 
 
+def test_the_best_supported_point_slips_as_fast_as_the_body_glides_and_not_when_one_foot_stands() -> None:
+    gliding = Kinematics.of(standing_still(root=np.outer(np.arange(60) / 30, [0.3, 0.0, 0.0])))
+    assert foot_skate.support_slip(gliding) == pytest.approx(30, rel=1e-3)
+    stepping = standing_still()
+    turns = stepping.local_rotations.astype(np.float64)
+    turns[:, INDEX["left_hip"]] = rotations.axis_to_quat("x", 0.3 * np.sin(np.arange(60) / 3))
+    stepping = replace(stepping, local_rotations=turns.astype(np.float32))
+    assert foot_skate.support_slip(Kinematics.of(stepping)) == pytest.approx(0, abs=1e-3)
+    flying = np.outer(np.arange(60) / 30, [0.3, 0.0, 0.0])
+    flying[:, 1] = 0.2
+    assert foot_skate.support_slip(Kinematics.of(standing_still(root=flying))) == 0.0
+
+
 def test_a_body_in_the_air_does_not_skate() -> None:
     root = np.outer(np.arange(60) / 30, [1.2, 0.0, 0.0])
     root[:, 1] = 0.2
@@ -188,6 +201,18 @@ def test_bones_keep_their_length_whatever_the_joints_do() -> None:
     assert smoothness.bone_deviation(replace(stretched, positions=stretched.positions * 1.1)) > 0.03
 
 
+def test_a_contact_that_is_touched_once_and_not_held_is_near_in_one_frame_and_far_on_average() -> None:
+    still = standing_still(90)
+    wrist = Kinematics.of(still).positions[0, INDEX["right_wrist"]]
+    goal = (ContactGoal("right_wrist", (float(wrist[0]), float(wrist[1]), float(wrist[2]))),)
+    wandering = np.outer(0.1 * np.abs(np.sin(np.arange(90) / 5)), [1.0, 0.0, 0.0])
+    held = contact_error.outcome(touch(), Kinematics.of(replace(still, goals=goal)))
+    waved = contact_error.outcome(touch(), Kinematics.of(replace(standing_still(root=wandering), goals=goal)))
+    assert (held.error, held.mean_error) == (pytest.approx(0, abs=1e-5), pytest.approx(0, abs=1e-5))
+    assert waved.error == pytest.approx(0, abs=0.005)
+    assert waved.mean_error == pytest.approx(0.2 / np.pi, abs=0.01)
+
+
 def test_the_peak_of_jerk_is_above_its_mean() -> None:
     positions = np.zeros((200, 1, 3))
     positions[100, 0, 0] = 0.01
@@ -201,9 +226,18 @@ def test_jerk_is_held_against_recorded_walks_of_the_same_speed() -> None:
     assert found is not None
     assert found < 0.05
     shaken = np.outer(np.arange(60) / 30, [1.0, 0.0, 0.0])
-    shaken[:, 1] = 0.002 * (-1.0) ** np.arange(60)
+    shaken[:, 1] = 0.002 * np.sin(2 * np.pi * 5 * np.arange(60) / 30)
     found = smoothness.jerk_against_real(Kinematics.of(standing_still(root=shaken)))
-    assert found == pytest.approx(0.002 * 8 * 30**3 / smoothness.REAL_WALK[0], rel=0.02)
+    # Of a sine to the third difference, whose size is 2/π of its swing on average.
+    usual = 0.002 * (2 * np.sin(np.pi / 6) * 30) ** 3 * 2 / np.pi
+    assert found == pytest.approx(usual / smoothness.REAL_WALK[0], rel=0.1)
+
+
+def test_what_only_a_camera_shakes_is_no_jerk_on_the_ruler() -> None:
+    shaken = np.outer(np.arange(60) / 30, [1.0, 0.0, 0.0])
+    shaken[:, 1] = 0.002 * (-1.0) ** np.arange(60)
+    positions = Kinematics.of(standing_still(root=shaken)).positions
+    assert smoothness.ruled_jerk(positions, 30) < 0.1 * smoothness.jerk(positions, 30)
 
 
 def test_a_body_floats_above_the_floor_and_not_above_what_holds_it() -> None:

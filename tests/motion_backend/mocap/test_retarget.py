@@ -15,7 +15,8 @@ from small_home import small_home
 from motion_backend import rotations
 from motion_backend.director import Director
 from motion_backend.mocap.clip import Clip, ClipError, make_bones, make_clip
-from motion_backend.mocap.foot_contacts import ANKLES, BALLS, Feet, held_still, no_faster, runs
+from motion_backend.mocap.foot_contacts import ANKLES, BALLS, Feet, no_faster, runs
+from motion_backend.mocap.foot_lock import locked
 from motion_backend.mocap.joint_map import FAMILIES, checked_map, find_map, read_map
 from motion_backend.mocap.readers import clip_of_motion, read_clips
 from motion_backend.mocap.resampling import low_pass, sample_rotations, sample_times
@@ -230,19 +231,46 @@ def test_legs_of_a_few_centimetres_are_asked_for_their_units(walk: Motion) -> No
         retarget(make_clip("tiny", bones, own.root_positions, own.local_rotations, own.tpose, 30.0, "sims"))
 
 
-@for_each(("slide", "moved"), [(0.02, 0.01), (0.05, 0.025), (0.25, 0.06)])
-@for_each("axis", [0, 2])
-def test_a_standing_foot_that_slides_is_held_over_its_middle_but_moved_by_six_centimetres_at_most(
-    slide: float, moved: float, axis: int
-) -> None:
-    skeleton, frames = build_skeleton(), 60
+def standing_feet(hover: float = 0.0, slide: float = 0.0, frames: int = 60) -> tuple[Feet, np.ndarray]:
+    """Two feet side by side, the left one over the floor and sliding forward, and the pelvis above them."""
+    skeleton = build_skeleton()
     ankles = np.tile([[0.09, skeleton.ankle_height, 0.0], [-0.09, skeleton.ankle_height, 0.0]], (frames, 1, 1))
-    ankles[:, 0, axis] += np.linspace(0, slide, frames)
+    ankles[:, 0, 1] += hover
+    ankles[:, 0, 2] += np.linspace(0, slide, frames)
     turns = np.tile(rotations.IDENTITY, (frames, 2, 1))
-    shift = held_still(Feet(ankles, turns, turns, skeleton, 30.0))
-    assert np.abs(shift[5:-5, 0, axis]).max() == pytest.approx(moved * (0.83 if moved < 0.06 else 1.0), rel=0.1)
-    assert np.abs(np.delete(shift[:, 0], axis, axis=1)).max() < 1e-9
-    assert np.abs(shift[:, 1]).max() < 1e-9
+    return Feet(ankles, turns, turns, skeleton, 30.0), np.tile([0.0, 0.9, 0.0], (frames, 1))
+
+
+@for_each(("slide", "left"), [(0.02, 0.0), (0.1, 0.0), (0.25, 0.13)])
+def test_a_standing_foot_that_slides_is_held_over_its_middle_but_moved_by_six_centimetres_at_most(
+    slide: float, left: float
+) -> None:
+    feet, pelvis = standing_feet(slide=slide)
+    shift, _ = locked(feet, pelvis)
+    held = feet.ankles + shift
+    assert np.ptp(held[:, 0, 2]) == pytest.approx(left, abs=0.005)
+    assert np.linalg.norm(shift, axis=-1).max() < 0.062
+    np.testing.assert_allclose(shift[:, 1], 0.0, atol=1e-9)
+    assert held[:, 0, 2].mean() == pytest.approx(slide / 2, abs=0.005)
+
+
+def test_a_hovering_foot_is_put_down_and_the_pelvis_comes_half_way_where_the_other_stands() -> None:
+    feet, pelvis = standing_feet(hover=0.02)
+    shift, carried = locked(feet, pelvis)
+    np.testing.assert_allclose(shift[:, 0, 1], -0.02, atol=1e-4)
+    np.testing.assert_allclose(carried[:, 1], -0.01, atol=1e-4)
+    assert not carried[:, [0, 2]].any()
+
+
+def test_a_foot_in_the_air_goes_smoothly_from_one_stance_to_the_next() -> None:
+    feet, pelvis = standing_feet(hover=0.02, frames=90)
+    feet.ankles[30:60, 0, 1] += 0.2
+    feet.ankles[60:, 0, 1] -= 0.01
+    feet.ankles[45:, 0, 2] += 0.6
+    shift, _ = locked(feet, pelvis)
+    assert shift[10, 0, 1] == pytest.approx(-0.02, abs=1e-3)
+    assert shift[80, 0, 1] == pytest.approx(-0.01, abs=1e-3)
+    assert np.abs(np.diff(shift[:, 0, 1])).max() < 0.001
 
 
 def test_the_shortest_turn_takes_one_vector_to_the_other_even_if_they_are_opposite() -> None:

@@ -149,9 +149,9 @@ def read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, Call
         ("sit_down", "felt_share = 0.7\n", "", r"pose\.1\.felt_share"),
         ("sit_pose", 'foot = "heel"', 'foot = "heels"', r"legs\.pose\.3\.foot"),
         ("stand_up", 'name = "ready"', 'name = "lift"', r"pose\.0\.name"),
-        ("lie_down", "spine_side_rad = -0.12", "spine_side_rad = inf", r"pose\.2\.spine_side_rad"),
-        ("lie_down", "[0.10, -0.50, 0.47]", "[0.10, -0.50]", r"pose\.2\.ankle_m"),
-        ("rise_to_edge", 'name = "rolled"', 'name = "sitting"', r"pose\.0\.name"),
+        ("lie_down", "spine_side_rad = 0.12", "spine_side_rad = inf", r"pose\.2\.spine_side_rad"),
+        ("lie_down", "[-0.30, -0.50, 0.45]", "[-0.30, -0.50]", r"pose\.2\.above_wrist_ratio"),
+        ("rise_to_edge", 'name = "rolled"', 'name = "sitting"', r"side\.name"),
     ],
 )
 def test_a_column_too_many_or_too_few_and_a_row_out_of_its_place_are_refused(
@@ -206,20 +206,20 @@ def lain(keys: LieKeys) -> Pose:
 
 
 def test_a_bed_is_lain_on_as_its_rows_say() -> None:
-    sat, leaning, half_way, legs_over = LIE.down.pose
-    high = replace(half_way, pelvis_up_m=half_way.pelvis_up_m + 0.1)
-    plain, varied = lain(LIE), lain(replace(LIE, down=replace(LIE.down, pose=(sat, leaning, high, legs_over))))
+    look, hand, elbow, legs = LIE.down.pose
+    high = replace(elbow, pelvis_up_m=elbow.pelvis_up_m + 0.1)
+    plain, varied = lain(LIE), lain(replace(LIE, down=replace(LIE.down, pose=(look, hand, high, legs))))
     assert (varied.pelvis - plain.pelvis)[:, 1].max() == pytest.approx(0.1, abs=0.01)
     np.testing.assert_allclose(varied.ankles[-1], plain.ankles[-1], atol=1e-9)
-    longer = replace(LIE, down=replace(LIE.down, settle=replace(LIE.down.settle, bent_wait_s=1.8)))
+    longer = replace(LIE, down=replace(LIE.down, settle=replace(LIE.down.settle, bent_wait_s=1.75)))
     assert len(lain(longer)) - len(plain) == FPS
 
 
 def test_the_floor_is_lain_on_as_its_rows_say() -> None:
     mat = Mat(FLOOR, SKELETON)
     stood = standing(mat.standing_point, 0.0, Bearing(), SKELETON)
-    one, both, hands, hip = LIE.floor_down.pose
-    flat = replace(LIE, floor_down=replace(LIE.floor_down, pose=(one, both, replace(hands, head_pitch_rad=0.0), hip)))
+    *knees, hands, hip = LIE.floor_down.pose
+    flat = replace(LIE, floor_down=replace(LIE.floor_down, pose=(*knees, replace(hands, head_pitch_rad=0.0), hip)))
     heads = []
     for keys in (LIE, flat):
         knelt = kneel_down(stood, mat, Bearing(), keys.floor_down)

@@ -29,8 +29,10 @@ from motion_backend.procedural.walk.cadence import cadence
 from motion_backend.procedural.walk.foot_trajectory import foot_table
 from motion_backend.procedural.walk.footsteps import footstep_table
 from motion_backend.procedural.walk.gait import carriage
+from motion_backend.procedural.walk.gait_character import character_table
 from motion_backend.procedural.walk.pelvis_height import pelvis_table
 from motion_backend.procedural.walk.root_path import root_path_table
+from motion_backend.procedural.walk.way_junction import junction_table
 from motion_backend.skeleton import build_skeleton
 from scene_graphs.data_tables import read_table
 
@@ -39,7 +41,7 @@ DEEDS = ["", *(row["doing"] for _, row in read_style_sheet("touch.toml", Handled
 TABLES = {
     "touch": TOUCH, "gestures": gesture_table(), "idle": idle_table(), "carriage": carriage(), "feet": foot_table(),
     "steps": footstep_table(), "cadence": cadence(), "arms": arm_table(), "pelvis": pelvis_table(),
-    "root": root_path_table(),
+    "root": root_path_table(), "junction": junction_table(), "character": character_table(),
 }  # fmt: skip
 UNITS = {
     "s", "m", "rad", "deg", "share", "ratio", "hz", "arms", "frames", "steps", "phase", "mps", "mps2", "cos", "power",
@@ -78,7 +80,8 @@ NUMBERS = [found for name, rows in TABLES.items() for found in numbers(rows, nam
 def test_every_table_is_read_by_one_of_the_readers() -> None:
     read_table.cache_clear()
     for reader in (touch_keys, gesture_table, idle_table, carriage, foot_table, footstep_table, cadence, arm_table,
-                   pelvis_table, root_path_table, sit_keys, lie_keys):  # fmt: skip
+                   pelvis_table, root_path_table, junction_table, character_table,
+                   sit_keys, lie_keys):  # fmt: skip
         reader()
     data = files("motion_backend").joinpath("data")
     shipped = [

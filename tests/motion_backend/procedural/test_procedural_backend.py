@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, replace
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -113,8 +113,7 @@ def test_any_segment_can_be_made_again_from_a_stored_state() -> None:
     state = backend.begin(HOME, Character(), 3)
     for action in actions[:3]:
         _, state = backend.act(HOME, action, state)
-    stored = json.loads(json.dumps(asdict(state)))
-    restored = BodyState(**(stored | {"posture": Posture(stored["posture"]), "pelvis": tuple(stored["pelvis"])}))
+    restored = BodyState.from_dict(json.loads(json.dumps(state.to_dict())))
     fresh, _ = Director(ProceduralBackend()).act(HOME, actions[3], restored)
     np.testing.assert_array_equal(fresh.local_rotations, motions()[3].local_rotations)
 
@@ -137,7 +136,7 @@ def test_a_seated_body_stands_up_before_it_walks() -> None:
 def test_a_body_remembers_what_it_rests_on() -> None:
     bed = contact(HOME, Skill.LIEDOWN, "bed", "legs straight")
     _, state = perform([bed])
-    assert (state.posture, state.object_id) == (Posture.LYING, "0/bed")
+    assert (state.posture, state.rest) == (Posture.LYING, bed.spot)
 
 
 def test_a_place_that_cannot_be_reached_is_said_and_not_faked() -> None:

@@ -14,10 +14,11 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from motion_backend import rotations
+from motion_backend.metrics.figure_limits import LIMITS, Limit
 from motion_backend.motion import Motion, Skill
 from motion_backend.skeleton import INDEX, build_skeleton
 from planner_service.cli import app
-from planner_service.evaluation.body_evaluation import LIMITS, Limit, Result, plan_trials, run_trials, sum_up
+from planner_service.evaluation.body_evaluation import Result, plan_trials, run_trials, sum_up
 from planner_service.evaluation.caption_classifier import APART, SAME, describe, group_of, nearest, tell_apart
 from planner_service.evaluation.diversity import diversity, pairwise_distances
 from planner_service.evaluation.trials import AWAY, FLOOR, Trial, perform, places_for, setting

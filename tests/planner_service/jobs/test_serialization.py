@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 from encoded import encoded
 
-from motion_backend.backends import load_backend
+from motion_backend.backend_protocol import BodyState
+from motion_backend.director import Director
 from motion_backend.motion import Character, Emotion
 from planner_service.grounding.keyframes_to_actions import act
 from planner_service.jobs import serialization
@@ -64,14 +65,14 @@ def test_a_body_goes_on_from_json_exactly_as_from_memory(planned: Planned) -> No
     )
     assert again == actions
     assert {type(action.emotion) for action in again} == {Emotion}
-    backend, resumed = load_backend("procedural"), load_backend("procedural")
+    director, resumed = Director.of("procedural"), Director.of("procedural")
     home = serialization.furnished_from_dict(through_json(serialization.furnished_to_dict(planned.stage))).home
-    state = backend.begin(planned.home, REQUEST.character, REQUEST.seed)
-    stored = through_json(serialization.state_to_dict(state))
+    state = director.begin(planned.home, REQUEST.character, REQUEST.seed)
+    stored = through_json(state.to_dict())
     for action, read in zip(actions, again, strict=True):
-        motion, state = backend.advance(planned.home, action, state)
-        other, after = resumed.advance(home, read, serialization.state_from_dict(stored))
-        stored = through_json(serialization.state_to_dict(after))
-        assert stored == through_json(serialization.state_to_dict(state))
+        motion, state = director.act(planned.home, action, state)
+        other, after = resumed.act(home, read, BodyState.from_dict(stored))
+        stored = through_json(after.to_dict())
+        assert stored == through_json(state.to_dict())
         assert other.local_rotations.tobytes() == motion.local_rotations.tobytes()
         assert other.root_positions.tobytes() == motion.root_positions.tobytes()

@@ -166,7 +166,7 @@ def test_who_touches_stands_clear_of_the_piece_and_within_reach(category: str) -
     assert found
     for spot in found:
         away = hypot(spot.standing[0] - spot.point[0], spot.standing[1] - spot.point[2])
-        assert 0.4 <= away <= 0.52
+        assert (0.37 if spot.height == "medium" else 0.4) <= away <= 0.52
         assert np.allclose([spot.standing[0], spot.standing[1]], ahead(spot, -away), atol=1e-9)
         for part in parts(category, placed.size):
             gap = [abs(spot.standing[i] - part.center[a]) - part.size[a] / 2 for i, a in ((0, 0), (1, 2))]

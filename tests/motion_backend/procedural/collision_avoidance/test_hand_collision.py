@@ -31,15 +31,15 @@ def wrists(pose: Pose) -> np.ndarray:
 
 def test_open_arms_stay_open_where_there_is_room() -> None:
     pose = stood("open")
-    np.testing.assert_allclose(arms_in(pose, np.full(60, 2.0), "raised", 0.8).arms, pose.arms, atol=1e-9)
+    np.testing.assert_allclose(arms_in(pose, np.full(60, 2.0), "embracing", 0.8).arms, pose.arms, atol=1e-9)
 
 
-def test_open_arms_rise_where_it_is_narrow_and_hanging_arms_hang_on() -> None:
+def test_open_arms_open_to_the_front_where_it_is_narrow_and_hanging_arms_hang_on() -> None:
     narrow = np.full(60, 0.3)
-    raised, _ = arm_arrays("raised", "raised")
-    np.testing.assert_allclose(arms_in(stood("open"), narrow, "raised", 0.8).arms[-1], raised, atol=1e-6)
+    embracing, _ = arm_arrays("embracing", "embracing")
+    np.testing.assert_allclose(arms_in(stood("open"), narrow, "embracing", 0.8).arms[-1], embracing, atol=1e-6)
     hanging = stood("hang")
-    np.testing.assert_allclose(arms_in(hanging, narrow, "raised", 0.8).arms, hanging.arms, atol=1e-9)
+    np.testing.assert_allclose(arms_in(hanging, narrow, "embracing", 0.8).arms, hanging.arms, atol=1e-9)
 
 
 @for_each(("arms", "needed"), [(arms, needed) for arms, (_, needed) in NARROW_ARMS.items()])
@@ -56,7 +56,7 @@ def test_arms_that_stick_out_come_in_only_where_they_would_meet_something(arms: 
 
 def test_a_segment_begins_in_the_pose_it_was_given() -> None:
     pose = stood("open")
-    np.testing.assert_allclose(arms_in(pose, np.full(60, 0.3), "raised", 0.8).arms[0], pose.arms[0], atol=1e-9)
+    np.testing.assert_allclose(arms_in(pose, np.full(60, 0.3), "embracing", 0.8).arms[0], pose.arms[0], atol=1e-9)
 
 
 def test_a_hand_stretched_through_a_wall_comes_back_to_its_own_side() -> None:

@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from small_home import DIRECTOR, ROOM, after, small_home
 
 from motion_backend import rotations
+from motion_backend.backend_protocol import BodyState
 from motion_backend.body.scene_collision import Obstacles
-from motion_backend.motion import Action, Emotion, Motion, Skill
+from motion_backend.motion import Action, Character, Emotion, Motion, Skill
 from motion_backend.procedural.touch.hand_captions import FINGER, FINGERS, Laid
 from motion_backend.procedural.touch.hand_contacts import free_stroke, palm_on, suits
 from motion_backend.skeleton import HAND_REST, INDEX
@@ -124,7 +125,11 @@ def test_a_body_kneels_straight_before_or_from_aside_where_there_is_room(ways: t
 
 
 def test_a_body_that_cannot_kneel_squats_and_says_so() -> None:
-    motion = act(_walled((0.85, 0.45, 0.45)), "low", "Low touch from a prone position", "low")
+    home = _walled((0.85, 0.45, 0.45))
+    spot = next(one for one in spots(home.object("0/low"), "touch") if one.height == "low")
+    action = Action(Skill.TOUCH, "Low touch from a prone position", Emotion.NEUTRAL, "low", "0/low", spot)
+    there = BodyState.standing(spot.standing, spot.facing, Character(), 3)
+    motion, _ = DIRECTOR.act(home, action, there)
     knees = motion.joint_positions()[:, [INDEX["left_knee"], INDEX["right_knee"]], 1].max(axis=1)
     assert knees.min() > 0.25
     assert [note.words for note in motion.notes] == ["no room to kneel: squats"]
@@ -157,7 +162,7 @@ def test_things_are_picked_up_from_tops_and_two_hands_have_room() -> None:
                     np.asarray(spot.normal), "right")  # fmt: skip
         stroke = free_stroke(OBSTACLES, spot, laid)
         assert abs(stroke @ np.asarray(spot.normal)) < 1e-9
-        assert 0.02 < np.linalg.norm(stroke) < 0.10
+        assert 0.02 < np.linalg.norm(stroke) < 0.15
 
 
 def test_where_two_hands_have_no_room_one_does_it_and_says_so() -> None:

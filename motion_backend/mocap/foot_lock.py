@@ -1,0 +1,96 @@
+"""Standing feet put on the floor and held where they stand, heel first and ball after it. Floor at y = 0.
+
+What a foot slides while it stands is taken back step by step: the ball's way where the ball stands, else the heel's.
+Over a stance that shift is zero on average; in the air it passes from that of one stance to that of the next.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from motion_backend.mocap.foot_contacts import BALLS, BRIEF, MAX_FOOT_SHIFT, Feet, Flags, runs
+from motion_backend.mocap.resampling import low_pass
+from motion_backend.rotations import Array
+
+LOW = 0.04
+"""Metres above its rest height under which a heel or ball may stand."""
+SLOW, SLOWER = 0.3, 0.25
+"""Metres a second, and share of the pelvis' speed: it stands while slower than either. Shoes of who runs shake."""
+PASSED = 8.0
+"""Hz above which nothing of the shift is kept."""
+CARRIED = 3.0
+"""Likewise of what the pelvis comes along with a standing foot."""
+
+
+def standing(feet: Feet, pelvis: Array) -> tuple[Flags, Flags]:
+    """Whether heels and whether balls stand, under a pelvis at (T, 3). (T, 2) each."""
+    speed = np.linalg.norm(_rate(pelvis[:, [0, 2]], feet.fps), axis=1)
+    most = np.maximum(SLOW, SLOWER * speed)[:, None]
+    rest = feet.skeleton.ankle_height + feet.skeleton.offsets[BALLS[0], 1]
+    found = []
+    for points, height in ((feet.soles[:, :, 0], 0.0), (feet.balls, rest)):
+        still = np.linalg.norm(_rate(points[..., [0, 2]], feet.fps), axis=-1) < most
+        flags = still & (points[..., 1] < height + LOW)
+        found.append(np.stack([_without_brief(flags[:, side]) for side in range(2)], axis=1))
+    return found[0], found[1]
+
+
+def locked(feet: Feet, pelvis: Array) -> tuple[Array, Array]:
+    """How far ankles must move for feet to stand on the floor and to stay there, (T, 2, 3), and the pelvis with them.
+
+    The pelvis, (T, 3), rises and sinks with the foot that stands, so that its leg keeps its length: a leg that is
+    nearly straight pays for a centimetre with ten degrees of its knee. Metres.
+    """
+    heels, balls = standing(feet, pelvis)
+    shift = np.zeros_like(feet.ankles)
+    for side in range(2):
+        way = np.where(balls[:-1, side, None], _steps(feet.balls[:, side]), _steps(feet.soles[:, side, 0]))
+        stances = runs(_without_brief(heels[:, side] | balls[:, side]))
+        for start, stop in stances:
+            back = -np.concatenate([[[0.0, 0.0]], np.cumsum(way[start : stop - 1], axis=0)])
+            shift[start:stop, side][:, [0, 2]] = back - back.mean(axis=0)
+            shift[start:stop, side, 1] = -feet.soles[start:stop, side, :, 1].min(axis=1)
+        _pass_over(shift[:, side], stances)
+    length = np.linalg.norm(shift, axis=-1, keepdims=True)
+    shift *= np.minimum(1.0, MAX_FOOT_SHIFT / np.maximum(length, 1e-9))
+    carried = np.zeros_like(pelvis)
+    carried[:, 1] = np.average(shift[..., 1], axis=1, weights=(heels | balls) + 1e-3)
+    if len(shift) <= 8:
+        return shift, carried
+    return low_pass(shift, feet.fps, PASSED), low_pass(carried, feet.fps, CARRIED)
+
+
+def _rate(points: Array, fps: float) -> Array:
+    """Metres a second, of neighbouring frames. (T, …)."""
+    return np.asarray(np.gradient(points, axis=0) * fps) if len(points) > 1 else np.zeros_like(points)
+
+
+def _steps(points: Array) -> Array:
+    """From each frame to the next over the floor. (T, 3) to (T - 1, 2)."""
+    return np.asarray(np.diff(points[:, [0, 2]], axis=0))
+
+
+def _without_brief(flags: Flags) -> Flags:
+    """Brief gaps closed, then brief contacts dropped. (T,)."""
+    kept = flags.copy()
+    for start, stop in runs(~kept):
+        if stop - start < BRIEF and start > 0 and stop < len(kept):
+            kept[start:stop] = True
+    for start, stop in runs(kept):
+        if stop - start < BRIEF:
+            kept[start:stop] = False
+    return kept
+
+
+def _pass_over(shift: Array, stances: list[tuple[int, int]]) -> None:
+    """Between stances the shift (T, 3) goes smoothly from one to the next; at either end it stays."""
+    if not stances:
+        return
+    shift[: stances[0][0]] = shift[stances[0][0]]
+    shift[stances[-1][1] :] = shift[stances[-1][1] - 1]
+    for (_, stop), (start, _) in pairwise(stances):
+        share = np.linspace(0.0, 1.0, start - stop + 2)[1:-1, None]
+        share = share * share * (3.0 - 2.0 * share)
+        shift[stop:start] = shift[stop - 1] * (1 - share) + shift[start] * share

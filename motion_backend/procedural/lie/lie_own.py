@@ -1,0 +1,128 @@
+"""Nobody lies as somebody else does, nor twice alike: what is drawn for one time of lying down (data/transitions)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields, is_dataclass, replace
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import numpy as np
+
+from motion_backend.rotations import Array
+from scene_graphs.data_tables import table
+
+if TYPE_CHECKING:
+    from motion_backend.procedural.lie.lie_keys import LieKeys
+    from motion_backend.procedural.lie.lie_styles import Lying
+
+DRAWN: Final = 2.0
+"""Nothing is drawn beyond so many standard deviations."""
+SIZES: Final = (("askew", ()), ("curve", ()), ("head_turn", ()), ("head_tilt", ()), ("ankle_aside", (2,)),
+                ("ankle_along", (2,)), ("foot_out", (2,)), ("knee_out", (2,)), ("side_hip", ()), ("side_knee", ()),
+                ("hand_along", (2,)), ("hand_across", (2,)))  # fmt: skip
+"""What is drawn of a pose, once or for left and right."""
+
+
+@table
+class LyingSpread:
+    """How far people lie otherwise: standard deviations."""
+
+    askew_rad: float
+    curve_rad: float
+    head_turn_rad: float
+    head_tilt_rad: float
+    ankle_aside_m: float
+    ankle_along_m: float
+    foot_out_rad: float
+    knee_out_ratio: float
+    side_hip_deg: float
+    side_knee_deg: float
+    hand_along_m: float
+    hand_across_m: float
+    wait_share: float
+
+
+@table
+class RestingArms:
+    """Where both arms lie, by the rows of resting hands; on a side the one below is given as left."""
+
+    left: str
+    right: str
+
+
+@table
+class LieOwn:
+    """How people lie otherwise than one another."""
+
+    spread: LyingSpread
+    back_arms: tuple[RestingArms, ...]
+    side_arms: tuple[RestingArms, ...]
+
+
+def _none() -> Array:
+    return np.zeros(2)
+
+
+@dataclass(frozen=True)
+class OwnWay:
+    """What one time of lying has of its own; nothing by itself. Pairs are left and right, or below and above."""
+
+    askew: float = 0.0
+    """Of the body to the left, seen from above (radians)."""
+    curve: float = 0.0
+    head_turn: float = 0.0
+    head_tilt: float = 0.0
+    ankle_aside: Array = field(default_factory=_none)
+    """Outwards (metres at 1.70 m)."""
+    ankle_along: Array = field(default_factory=_none)
+    foot_out: Array = field(default_factory=_none)
+    knee_out: Array = field(default_factory=_none)
+    side_hip: float = 0.0
+    """Degrees."""
+    side_knee: float = 0.0
+    hand_along: Array = field(default_factory=_none)
+    hand_across: Array = field(default_factory=_none)
+
+
+def own_way(style: Lying, own: LieOwn, rng: np.random.Generator) -> Lying:
+    """The way of lying as it is this time."""
+    spread = {name.rpartition("_")[0]: value for name, value in vars(own.spread).items()}
+    drawn = {name: spread[name] * np.clip(rng.normal(size=size), -DRAWN, DRAWN) for name, size in SIZES}
+    arms = own.back_arms if style.side == "back" else own.side_arms
+    chosen = arms[int(rng.integers(len(arms)))]
+    style = replace(style, own=OwnWay(**drawn))
+    if style.arms != type(style)().arms or style.propped:
+        return style
+    pair = (chosen.left, chosen.right)
+    return replace(style, arms=pair if style.side != "right" else pair[::-1])
+
+
+def paced(keys: LieKeys, rng: np.random.Generator) -> LieKeys:
+    """The tables with the times of this time: over an edge each pose takes its own; on the floor, where feet step in
+    time with them, all are quicker or slower."""
+    spread = keys.own.spread.wait_share
+
+    def drawn() -> float:
+        return float(np.exp(spread * np.clip(rng.normal(), -DRAWN, DRAWN)))
+
+    floor = drawn()
+    return replace(
+        keys,
+        down=_timed(keys.down, drawn),
+        up=_timed(keys.up, drawn),
+        floor_down=_timed(keys.floor_down, lambda: floor),
+        floor_up=_timed(keys.floor_up, lambda: floor),
+    )
+
+
+def _timed(rows: Any, factor: Callable[[], float]) -> Any:
+    """A table, or a row of one, with every time of it multiplied by what `factor` draws."""
+    if isinstance(rows, tuple) and rows and is_dataclass(rows[0]):
+        return tuple(_timed(row, factor) for row in rows)
+    if not is_dataclass(rows):
+        return rows
+    changed = {}
+    for one in fields(rows):
+        value = getattr(rows, one.name)
+        changed[one.name] = value * factor() if one.name.endswith("_s") else _timed(value, factor)
+    return replace(cast(Any, rows), **changed)

@@ -1,0 +1,76 @@
+"""The end of a part that is still being done while the next part has begun: nobody finishes one thing, stops, and
+begins another.
+
+A part ends in a pose, and the next one sets out from that pose. Where the two flow together the last frames of the
+first are kept back, as a tail, and are added to the first frames of the second: what every handle had still to go.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from motion_backend import rotations
+from motion_backend.backend_protocol import Part, PartKind
+from motion_backend.metrics.contact_error import RISEN, risen
+from motion_backend.metrics.joint_trajectories import Kinematics
+from motion_backend.motion import FPS, Motion
+from motion_backend.procedural.pose import Pose, concatenate
+from motion_backend.rotations import Array
+from motion_backend.state_machine import RISINGS
+
+TAILS: Final[dict[tuple[PartKind, PartKind], float]] = {
+    (PartKind.WALK, PartKind.SIT): 0.7,
+    (PartKind.WALK, PartKind.LIE): 0.7,
+    (PartKind.WALK, PartKind.REACH): 0.8,
+    (PartKind.WALK, PartKind.WALK): 0.7,
+    (PartKind.REACH, PartKind.WALK): 0.8,
+    (PartKind.REACH, PartKind.REACH): 0.5,
+    (PartKind.RISE, PartKind.WALK): 0.35,
+    (PartKind.RISE, PartKind.REACH): 0.35,
+}
+"""Seconds of a part that are still done while the next kind of part begins; others end before anything begins."""
+_PLACES: Final = ("pelvis", "spine", "head", "ankles", "toes", "knees", "arms", "elbows", "reach")
+_TURNS: Final = ("hips", "feet", "palms")
+_SHARES: Final = ("reaching", "pressing")
+
+
+def frames_kept_back(part: Part, upcoming: tuple[Part, ...], made: Motion) -> int:
+    """How many of the frames made for a part are done together with the next one's; who rises stands first."""
+    later = next((one for one in upcoming if not only_stands(one)), None)
+    if later is None:
+        return 0
+    own, following = (PartKind.WALK if one.kind is PartKind.TURN else one.kind for one in (part, later))
+    kept = min(round(TAILS.get((own, following), 0.0) * FPS), len(made) - 1)
+    if part.kind is PartKind.RISE and kept > 0:
+        up = risen(Kinematics.of(made.part(max(len(made) - FPS, 0), len(made))))[::-1]
+        stood = len(up) if up.all() else int(np.argmin(up))
+        kept = min(kept, stood - round(RISEN[2] * FPS) - 1)
+    return max(kept, 0)
+
+
+def only_stands(part: Part) -> bool:
+    """Whether a part is nothing but staying on the feet one has come to: who has something to do next does that."""
+    return part.kind is PartKind.HOLD and part.action.skill in RISINGS
+
+
+def carried_on(tail: Pose, pose: Pose) -> Pose:
+    """Frames of a part with the tail of the one before it, which ended where these set out from, added to the first."""
+    frames, end = len(tail), tail.at(slice(len(tail) - 1, None))
+    if len(pose) < frames:
+        pose = concatenate([pose, pose.at(len(pose) - 1).repeat(frames - len(pose))])
+    begun, changed = slice(0, frames), {}
+    for name in (*_PLACES, *_SHARES):
+        values = getattr(pose, name).copy()
+        values[begun] += getattr(tail, name) - getattr(end, name)
+        changed[name] = np.clip(values, 0.0, 1.0) if name in _SHARES else values
+    for name in _TURNS:
+        values = getattr(pose, name).copy()
+        to_go = rotations.compose(getattr(tail, name), rotations.inverse(getattr(end, name)))
+        values[begun] = rotations.compose(to_go, values[begun])
+        changed[name] = values
+    planted: Array = pose.planted.copy()
+    planted[begun] = np.minimum(planted[begun], tail.planted)
+    return replace(pose, **changed, planted=planted)

@@ -1,0 +1,137 @@
+"""Walks that lead on into the next: nobody stops at the seam, and nothing of the body jumps there."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+
+import numpy as np
+import pytest
+from for_each import for_each
+
+from motion_backend.metrics.joint_trajectories import Kinematics
+from motion_backend.motion import FPS, Emotion, Motion
+from motion_backend.procedural.emotion_style import Bearing
+from motion_backend.procedural.held_poses import standing
+from motion_backend.procedural.pose import Pose, concatenate
+from motion_backend.procedural.pose_solver import solve
+from motion_backend.procedural.walk.gait import walk_on
+from motion_backend.procedural.walk.stride import Stride
+from motion_backend.procedural.walk.walk_styles import walk_style
+from motion_backend.procedural.walk.way_junction import through_way
+from motion_backend.skeleton import INDEX, build_skeleton
+
+SKELETON = build_skeleton()
+LENGTH = 2.4
+STEADY, RUN = "steadily walking forward", "run with open arms"
+PAIRS = {
+    "straight on": (0.0, (STEADY, "neutral"), (STEADY, "neutral")),
+    "a corner": (70.0, (STEADY, "neutral"), (STEADY, "neutral")),
+    "round to the right": (-120.0, (STEADY, "tired"), (STEADY, "tired")),
+    "about": (180.0, (STEADY, "neutral"), (STEADY, "neutral")),
+    "joy to sorrow": (30.0, (STEADY, "happy"), (STEADY, "sad")),
+    "into a run": (20.0, (STEADY, "neutral"), (RUN, "happy")),
+    "out of a run": (20.0, (RUN, "happy"), (STEADY, "neutral")),
+    "drunk": (40.0, ("drunkenly walking", "drunk"), ("drunkenly walking", "drunk")),
+    "on tiptoes": (40.0, ("walk on tiptoes", "neutral"), (STEADY, "neutral")),
+}
+
+
+def everywhere(points: np.ndarray) -> bool:
+    return len(points) > 0
+
+
+def in_a_passage(points: np.ndarray) -> bool:
+    return bool(np.abs(points[:, 0]).max() < 0.1)
+
+
+@cache
+def two_walks(name: str) -> tuple[Pose, Pose, Stride]:
+    """One after the other, and the stride between them as it comes back from a saved state."""
+    degrees, first, second = PAIRS[name]
+    turn, corner = np.radians(degrees), np.array([0.0, LENGTH])
+    onward = np.array([corner, corner + LENGTH * np.array([np.sin(turn), np.cos(turn)])])
+    way = through_way(np.array([[0.0, 0.0], corner]), onward, everywhere)
+    assert way is not None
+    start = standing((0.0, 0.0), 0.0, Bearing(), SKELETON)
+    styles = [walk_style(Emotion(mood), caption) for caption, mood in (first, second)]
+    one, left = walk_on(start, way.points, None, styles[0], SKELETON, np.random.default_rng(0), cut_m=way.cut_m)
+    assert left is not None
+    stride = Stride.from_lists(json.loads(json.dumps(left.to_lists())))
+    last = one.at(len(one) - 1)
+    other, stopped = walk_on(last, stride.rest, None, styles[1], SKELETON, np.random.default_rng(1), stride)
+    assert stopped is None
+    return one, other, stride
+
+
+def moved(pose: Pose) -> Motion:
+    root, local = solve(pose, SKELETON)
+    contacts = np.repeat(pose.planted, 2, axis=1).astype(np.float32)
+    return Motion(
+        root.astype(np.float32), local.astype(np.float32), contacts, SKELETON, np.zeros(len(pose), dtype=np.int32)
+    )
+
+
+@for_each("name", PAIRS)
+def test_nobody_stops_where_a_walk_goes_over_into_the_next(name: str) -> None:
+    one, other, _ = two_walks(name)
+    pace = np.linalg.norm(np.diff(concatenate([one, other]).pelvis[:, [0, 2]], axis=0), axis=1) * FPS
+    assert pace[len(one) - 10 : len(one) + 10].min() > 0.3
+    assert np.linalg.norm(other.pelvis[-1, [0, 2]] - two_walks(name)[2].rest[-1]) < 0.05
+    assert other.planted[-1].min() == 1
+
+
+@for_each("name", PAIRS)
+def test_no_joint_jumps_at_the_seam(name: str) -> None:
+    one, other, _ = two_walks(name)
+    places, seam = moved(concatenate([one, other])).joint_positions().astype(np.float64), len(one)
+    pushed = np.linalg.norm(np.diff(places, n=2, axis=0), axis=-1).max(axis=1) * FPS**2
+    assert pushed[seam - 3 : seam + 2].max() < max(60.0, 1.2 * np.quantile(pushed[20:-20], 0.99))
+
+
+@for_each("name", PAIRS)
+def test_feet_that_stand_at_the_seam_stay_and_none_sinks_in(name: str) -> None:
+    one, other, _ = two_walks(name)
+    motion, seam = moved(concatenate([one, other])), len(one)
+    body, planted = Kinematics.of(motion), motion.contacts[:, [0, 2]] > 0
+    around = slice(seam - 8, seam + 8)
+    assert body.soles[around, ..., 1].min() > -0.005
+    for foot, side in enumerate(("left", "right")):
+        pace = np.linalg.norm(np.diff(body.positions[:, INDEX[f"{side}_foot"]][:, [0, 2]], axis=0), axis=1) * FPS
+        stays = planted[1:, foot] & planted[:-1, foot]
+        assert np.median(pace[stays]) < 0.01
+        assert pace[around][stays[around]].max(initial=0.0) < 0.5
+        # A foot that is flagged as standing is on the floor.
+        assert body.soles[around, foot][planted[around, foot]].reshape(-1, 4, 3)[..., 1].min(axis=1).max() < 0.01
+
+
+def test_steps_go_on_in_turns_over_the_seam() -> None:
+    for name in ("straight on", "a corner", "joy to sorrow"):
+        one, other, _ = two_walks(name)
+        planted = concatenate([one, other]).planted > 0
+        landed = sorted((frame, foot) for foot in (0, 1) for frame in np.flatnonzero(np.diff(planted[:, foot] * 1) > 0))
+        feet = [foot for _, foot in landed]
+        assert feet == [(feet[0] + step) % 2 for step in range(len(feet))]
+        between = np.diff([frame for frame, _ in landed])
+        near = (np.array([frame for frame, _ in landed])[1:] > len(one) - 5).argmax()
+        assert 0.6 < between[near] / np.median(between) < 1.6
+
+
+@pytest.mark.parametrize("degrees", [20, 100, -160, 180])
+def test_a_way_that_leads_on_keeps_both_ends_and_passes_the_place_between(degrees: float) -> None:
+    turn, corner = np.radians(degrees), np.array([0.0, LENGTH])
+    onward = np.array([corner, corner + LENGTH * np.array([np.sin(turn), np.cos(turn)])])
+    way = through_way(np.array([[0.0, 0.0], corner]), onward, everywhere)
+    assert way is not None
+    np.testing.assert_allclose(way.points[[0, -1]], [[0.0, 0.0], onward[-1]], atol=1e-6)
+    assert np.linalg.norm(way.points - corner, axis=1).min() < 0.3
+    heading = np.unwrap(np.arctan2(*np.diff(way.points, axis=0).T))
+    assert np.abs(np.diff(heading)).max() < 0.45
+    assert abs(np.degrees(heading[-1] - heading[0])) == pytest.approx(abs(degrees), abs=1.0)
+
+
+def test_where_there_is_no_room_one_way_does_not_lead_into_the_next() -> None:
+    corner = np.array([[0.0, 0.0], [0.0, LENGTH]])
+    back = corner[::-1]
+    assert through_way(corner, back, in_a_passage) is None
+    assert through_way(corner, np.array([[0.0, LENGTH], [0.2, LENGTH]]), everywhere) is None
