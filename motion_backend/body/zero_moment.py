@@ -44,7 +44,7 @@ def nearest_in_hull(points: Array, corners: Array, carries: NDArray[np.bool_]) -
 
     Points (T, 2), corners (T, N, 2), carries (T, N). A point inside stays; where nothing carries it is not a number.
     """
-    somewhere = carries.any(axis=1)
+    somewhere = np.asarray(carries.any(axis=1))
     # What does not carry takes the place of a corner that does: hulls of all frames then have as many corners.
     stand_in = np.take_along_axis(corners, carries.argmax(axis=1)[:, None, None], axis=1)
     hull = np.where(carries[..., None], corners, stand_in)

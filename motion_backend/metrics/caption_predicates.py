@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Final, Literal
 
@@ -30,6 +30,8 @@ EASES: Final = 0.3
 """Seconds at both ends of a hold in which the body still comes to it, or leaves it."""
 STARTS: Final = 0.6
 """Seconds at both ends of a walk that belong to starting and stopping."""
+AFTERWARDS, BEFOREHAND = r"\bpick|\bturn on", r"\bput"
+"""Words of touches that show after the hand was there, and before."""
 NEAREST: Final = 0.03
 """A hand that touches is so near to where it comes nearest to its goal (metres)."""
 
@@ -126,7 +128,7 @@ def judge_caption(motion: Motion, action: Action, caption: str = "") -> Verdict 
     rows = predicates_of(action.skill, caption)
     if not rows:
         return None
-    body = Kinematics.of(shown(motion, action))
+    body = Kinematics.of(shown(motion, replace(action, caption=caption)))
     missed = [(row, check) for row in rows for check in row.checks if not check.holds(body)]
     said = [note.words for note in motion.notes if note.keyframe == action.keyframe]
     noted = all(row.noted and any(re.search(row.noted, words) for words in said) for row, _ in missed)
@@ -140,7 +142,10 @@ def kept_share(verdicts: Iterable[Verdict | None]) -> float | None:
 
 
 def shown(motion: Motion, action: Action) -> Motion:
-    """The frames that show a caption: the hold of a pose, the hand at its goal, the way of a walk, all of a rise."""
+    """The frames that show a caption: the hold of a pose, the hand at its goal, the way of a walk, all of a rise.
+
+    What is picked up or turned on shows once the hand has left, what is put down before it is there.
+    """
     frames, fps = len(motion), motion.fps
     match action.skill:
         case Skill.SITDOWN | Skill.LIEDOWN:
@@ -148,6 +153,10 @@ def shown(motion: Motion, action: Action) -> Motion:
             start, stop = frames - hold + ease, frames - ease
         case Skill.TOUCH:
             start, stop = _at_the_goal(motion, action)
+            if re.search(AFTERWARDS, action.caption.lower()):
+                start, stop = stop, frames
+            elif re.search(BEFOREHAND, action.caption.lower()):
+                start, stop = 0, start
         case Skill.LOCO:
             walks = [phase for phase in motion.phases if phase.kind is PhaseKind.WALK]
             ends = round(STARTS * fps)
@@ -262,9 +271,22 @@ def _travel(points: Array) -> Array:
     return np.broadcast_to(np.ptp(points, axis=0).max(axis=-1), points.shape[:2])
 
 
+def _turning(body: Kinematics, joints: tuple[str, str]) -> Array:
+    """The farthest that joints are turned from where they are first, the same in every frame (degrees). (T, 2)."""
+    world = body.world[:, [INDEX[joint] for joint in joints]]
+    turned = rotations.quat_to_rotvec(rotations.compose(world, rotations.inverse(world[:1])))
+    return np.broadcast_to(np.degrees(np.linalg.norm(turned, axis=-1).max(axis=0)), world.shape[:2])
+
+
 def _from_pelvis(body: Kinematics, points: Array) -> Array:
     """Points (T, 2, 3) as the pelvis carries them along. (T, 2, 3)."""
     return points - body.positions[:, None, INDEX["pelvis"]]
+
+
+def _in_pelvis(body: Kinematics, joint: str) -> Array:
+    """Where the left joint is against the right one, in the pelvis' own frame (metres). (T, 3)."""
+    pair = _both(body, joint)
+    return rotations.rotate(rotations.inverse(body.world[:, INDEX["pelvis"]]), pair[:, 0] - pair[:, 1])
 
 
 def _high(points: Array) -> Array:
@@ -282,6 +304,8 @@ MEASURES: Final[dict[str, Callable[[Kinematics], Array]]] = {
     "trunk_pitch": lambda body: np.degrees(np.arctan2(np.sum(_trunk(body) * _heading(body), -1), _trunk(body)[:, 1])),
     "trunk_tilt": lambda body: _angle(_trunk(body), np.array([0.0, 1.0, 0.0])),
     "face_down": lambda body: _pitch(_front(body, "head")),
+    # Degrees that the left of the pelvis points below the horizontal: on the left side above 0, on the right below.
+    "left_down": lambda body: _pitch(rotations.rotate(body.world[:, INDEX["pelvis"]], np.array([1.0, 0.0, 0.0]))),
     "pelvis_pitch": lambda body: _pitch(_front(body, "pelvis")),
     # Metres, of the left and the right hand: the middle of its palm.
     "hand_to_head": lambda body: _palms_to(body, "head", SKULL),
@@ -297,6 +321,8 @@ MEASURES: Final[dict[str, Callable[[Kinematics], Array]]] = {
     "hand_travel": lambda body: _travel(_from_pelvis(body, _palms(body))),
     "hand_speed": lambda body: _speeds(body, _from_pelvis(body, _palms(body))),
     "hands_apart": lambda body: np.linalg.norm(_palms(body)[:, 0] - _palms(body)[:, 1], axis=-1),
+    # Degrees that the left and the right hand turn in all.
+    "hand_turn": lambda body: _turning(body, ("left_wrist", "right_wrist")),
     # Metres, of the left and the right foot: the lowest corner of its sole, its heel, its toes; its ankle.
     "foot_height": lambda body: _high(body.soles).min(axis=-1),
     "heel_height": lambda body: _high(body.soles[:, :, 0]),
@@ -304,10 +330,16 @@ MEASURES: Final[dict[str, Callable[[Kinematics], Array]]] = {
     "foot_ahead": lambda body: _ahead(body, _both(body, "ankle")),
     "feet_apart": lambda body: _left_over_right(body, "ankle"),
     "knees_apart": lambda body: np.linalg.norm(_both(body, "knee")[:, 0] - _both(body, "knee")[:, 1], axis=-1),
+    # Of who lies: how far the left ankle is to the left of the right one, and before or behind it.
+    "ankles_across": lambda body: _in_pelvis(body, "ankle")[:, 0],
+    "ankles_ahead": lambda body: np.abs(_in_pelvis(body, "ankle")[:, 2]),
+    "neck_over_pelvis": lambda body: _high(_trunk(body)),
     "elbow_to_knee": lambda body: np.linalg.norm(_both(body, "elbow") - _both(body, "knee"), axis=-1),
     # Metres and metres a second.
+    "knee_height": lambda body: _high(_both(body, "knee")),
     "pelvis_height": lambda body: _high(body.positions[:, INDEX["pelvis"]]),
     "pelvis_rise": lambda body: _slope(_high(body.positions[:, INDEX["pelvis"]]), body.motion.fps),
+    "neck_speed": lambda body: _speeds(body, body.positions[:, INDEX["neck"]]),
     "pelvis_speed": lambda body: _speeds(body, body.positions[:, INDEX["pelvis"]] * [1.0, 0.0, 1.0]),
 }  # fmt: skip
 """What can be measured of a body in every frame: (T,), or (T, 2) for left and right. (T, 2) over-floor heights count

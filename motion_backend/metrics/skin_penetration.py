@@ -33,9 +33,20 @@ THIN: Final = 2 * CLEARLY_IN
 class Shape(Protocol):
     """A solid of the home (scene_graphs/meshes/convex_shapes.py)."""
 
-    owner: str
-    low: Array
-    high: Array
+    @property
+    def owner(self) -> str:
+        """Object id, or that it is a wall."""
+        ...
+
+    @property
+    def low(self) -> Array:
+        """(3,) least corner of the box around it."""
+        ...
+
+    @property
+    def high(self) -> Array:
+        """(3,) greatest corner."""
+        ...
 
     def depth(self, points: Array) -> Array:
         """How deep points (N, 3) are in it. (N,)."""
@@ -112,4 +123,4 @@ def _bodies_of(mesh: SkinnedMesh) -> NDArray[np.int64]:
         if carried[joint] < 0:
             carried[joint] = carried[parent]
     strongest = mesh.joints[np.arange(len(mesh.joints)), mesh.weights.argmax(axis=1)]
-    return np.array(carried)[strongest]
+    return np.asarray(np.array(carried)[strongest])

@@ -53,7 +53,7 @@ def jerk_against_real(body: Kinematics) -> float | None:
         return None
     factor, power = REAL_WALK
     usual = factor * float(pace[start:stop].mean()) ** power
-    return ruled_jerk(body.positions[start : stop + 1], fps) / usual
+    return float(ruled_jerk(body.positions[start : stop + 1], fps) / usual)
 
 
 def seam_jump(motion: Motion) -> float:

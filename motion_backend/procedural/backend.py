@@ -111,7 +111,7 @@ def _to_motion(body: Body, part: Part) -> Motion:
     pose, start = concatenate(body.frames), body.begun
     if body.tail is not None:
         pose, start = carried_on(body.tail, pose), body.tail.at(0)
-    pose = balanced(hips_within(pose, body.skeleton), body.phases, body.skeleton)
+    pose = hips_within(balanced(pose, body.phases, body.skeleton), body.skeleton)
     pose = arms_clear(pose, start, around, body.skeleton)
     body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)

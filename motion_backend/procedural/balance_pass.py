@@ -33,9 +33,9 @@ INSIDE: Final = 0.6
 """The zero-moment point is led into so much of each sole, about its middle: who stands on an edge tips at once."""
 ROUNDS: Final = 4
 """Where a point is nearest to the soles changes as it is moved: so often it is looked for again."""
-STILL, SMOOTH = 2e-3, 3e-6
-"""What a shift (m²) and its jerk ((m/s³)²) cost against a point (m²) outside."""
-HELD: Final = 1e4
+STILL, SMOOTH = 0.5, 3e-6
+"""What a shift (m²) and the jerk of the shifted pelvis ((m/s³)²) cost against a point (m²) outside."""
+HELD: Final = 1e8
 """What a shift costs where the pelvis rests on something."""
 LEFT: Final = 0.01
 """Thighs are off a seat when the pelvis is so much higher than at rest (metres)."""
@@ -44,7 +44,7 @@ SEATS: Final = 0.35
 KNEELS: Final = 0.15
 """A knee lower than this may be knelt on (metres at 1.70 m)."""
 BENT: Final = 0.985
-"""A leg that was bent may be stretched to so much of its length, no leg beyond what it was: knees near straight snap."""
+"""A bent leg may be stretched to so much of its length, no leg beyond what it was: knees near straight snap."""
 SINKS: Final = (4, 2.0)
 """A pelvis sinks for a leg so many frames before and after it has to, in a bell so wide (frames)."""
 
@@ -62,8 +62,9 @@ def balanced(pose: Pose, phases: Sequence[Phase], skeleton: Skeleton) -> Pose:
     knees = positions[:, [INDEX["left_knee"], INDEX["right_knee"]], 1]
     free &= knees.min(axis=1) > KNEELS * skeleton.scale
     cart = _Cart.of(centres_of_mass(skeleton, positions.astype(np.float64), world))
-    shift = _shift(cart, _soles(pose, skeleton), np.repeat(pose.planted > 0, len(SOLE), axis=1), free)
+    support = _Support(_soles(pose, skeleton), np.repeat(pose.planted > 0, len(SOLE), axis=1), free)
     moved = pose.pelvis.copy()
+    shift = _shift(cart, support, moved[:, FLOOR])
     moved[:, FLOOR] += shift
     hips = positions[:, [INDEX["left_hip"], INDEX["right_hip"]]]
     moved[:, 1] -= _sinking(hips - pose.ankles, shift, skeleton)
@@ -122,17 +123,31 @@ class _Cart(NamedTuple):
         return np.asarray(FOLLOWS * (shift - self.lever[:, None] * rate))
 
 
-def _shift(cart: _Cart, soles: Array, carries: NDArray[np.bool_], free: NDArray[np.bool_]) -> Array:
-    """The least and smoothest shift that takes the zero-moment point into the soles, none before and after. (T, 2)."""
+class _Support(NamedTuple):
+    """What carries a body."""
+
+    soles: Array
+    """Corners to be within. (T, 8, 2)."""
+    carries: NDArray[np.bool_]
+    """Which of them are of a planted foot. (T, 8)."""
+    free: NDArray[np.bool_]
+    """Frames in which nothing else carries. (T,)."""
+
+
+def _shift(cart: _Cart, support: _Support, pelvis: Array) -> Array:
+    """The least shift of a pelvis on its way (T, 2) that takes the zero-moment point into the soles, and the smoothest
+    pelvis; nothing is shifted before and after. (T, 2)."""
     from scipy.linalg import cho_solve_banded, cholesky_banded
 
-    judged = (free & carries.any(axis=1)).astype(np.float64)
-    factor = cholesky_banded(_normal_equations(cart.lever, judged, free), lower=True)
-    shift = np.zeros_like(cart.points)
+    judged = (support.free & support.carries.any(axis=1)).astype(np.float64)
+    factor = cholesky_banded(_normal_equations(cart.lever, judged, support.free), lower=True)
+    smoother = _smoother(pelvis)
+    shift = np.zeros_like(pelvis)
     for _ in range(ROUNDS):
         now = cart.points + cart.moved(shift)
-        wanted = np.where(judged[:, None] > 0, nearest_in_hull(now, soles, carries) - cart.points, 0.0)
-        shift = cho_solve_banded((factor, True), _turned_back(cart.lever, judged, wanted))
+        nearest = nearest_in_hull(now, support.soles, support.carries)
+        wanted = np.where(judged[:, None] > 0, nearest - cart.points, 0.0)
+        shift = cho_solve_banded((factor, True), _turned_back(cart.lever, judged, wanted) + smoother)
     return shift
 
 
@@ -155,6 +170,15 @@ def _normal_equations(lever: Array, judged: Array, free: NDArray[np.bool_]) -> A
 
 JERK: Final = np.diff(np.eye(1, 7, 3)[0], n=3)
 """The third difference."""
+
+
+def _smoother(pelvis: Array) -> Array:
+    """What the jerk that the pelvis has by itself on its way (T, 2) adds to the right side of the least squares."""
+    rate = np.diff(pelvis, n=3, axis=0)
+    found = np.zeros_like(pelvis)
+    for late, share in enumerate(-JERK):
+        found[late : late + len(rate)] -= share * rate
+    return SMOOTH * FPS**6 * found
 
 
 def _turned_back(lever: Array, judged: Array, wanted: Array) -> Array:

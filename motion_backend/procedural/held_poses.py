@@ -33,6 +33,8 @@ HIPS_LEAN, SPINE_LEAN = 0.3, 0.7
 FLOOR_REACH, LOW = 0.56, 0.30
 """The same where the pelvis comes to rest lower than `LOW`: hips do not fold any further (metres at 1.70 m)."""
 UP = np.array([0.0, 1.0, 0.0])
+LIES = 0.5
+"""A body lies whose pelvis is upright by less than this (cosine)."""
 MIRROR = np.array([-1.0, 1.0, 1.0])
 """What makes a left vector, in the body's own frame, a right one."""
 
@@ -54,8 +56,21 @@ class Glance:
     aside_max_rad: float
     down_min_rad: float
     down_max_rad: float
+    trunk_share: float
+    """Of a look aside: how far the trunk turns with the head."""
     size_max_ratio: float
     """The most restless look aside no farther than this."""
+
+
+@table
+class Shift:
+    """The weight goes to another place now and then: bounds that chance keeps."""
+
+    wait_min_s: float
+    wait_max_s: float
+    take_s: float
+    forward_rad: float
+    side_rad: float
 
 
 @table
@@ -68,9 +83,19 @@ class Idle:
     """Of the chest."""
     breath_arms: float
     """How far free hands come forward with it."""
+    breath_uneven_share: float
+    """Of a breath: how far one comes before or after its time."""
     drift_hz: float
+    quick_hz: float
+    quick_share: float
+    """Of what drifts: small corrections on top, so that no part ever stands."""
     spine_forward_rad: float
     spine_turn_rad: float
+    spine_side_rad: float
+    least_share: float
+    """Of these, whatever the mood: nobody alive is a statue."""
+    lying_share: float
+    """Of how the trunk moves of who is up: what of it is left to who lies."""
     head_forward_rad: float
     head_turn_rad: float
     head_side_rad: float
@@ -81,6 +106,7 @@ class Idle:
     sway_down_share: float
     """Of the sway: the weight on one leg."""
     glance: Glance
+    shift: Shift
 
 
 def idle_table() -> Idle:
@@ -182,11 +208,17 @@ def idle(pose: Pose, seconds: float, size: float, rng: np.random.Generator, fps:
     row, frames = idle_table(), max(round(seconds * fps), 1)
     held, time = pose.repeat(frames), np.arange(1, frames + 1)
     ease = (1 - np.exp(-time / (row.ease_s * fps)))[:, None]
-    breath = np.sin(2 * np.pi * row.breath_hz * time / fps)
-    slow = [drift(frames, row.drift_hz, fps, rng) for _ in range(4)]
+    slow = [_wander(frames, row, rng, fps) for _ in range(4)]
+    breath = np.sin(2 * np.pi * (row.breath_hz * time / fps + rng.uniform() + row.breath_uneven_share * slow[3]))
     aside, down = _glances(frames, size, rng, fps)
-    bends = [row.breath_rad * breath, row.spine_forward_rad * size * slow[0], row.spine_turn_rad * size * slow[1]]
-    spine = held.spine + ease * np.stack(bends, axis=1)
+    lies = abs(float(rotations.rotate(pose.hips, UP)[1])) < LIES
+    moved = (
+        (row.least_share + (1 - row.least_share) * size)
+        * (row.lying_share if lies else 1.0)
+        * _bends(slow, _shifts(frames, rng, fps), aside, row)
+    )
+    moved[:, 0] += row.breath_rad * breath
+    spine = held.spine + ease * moved
     nod, turn = row.head_forward_rad * size * slow[2] + down, row.head_turn_rad * size * slow[3] + aside
     head = held.head + ease * np.stack([nod, turn, row.head_side_rad * slow[0]], axis=1)
     on_feet = bool(pose.planted.min() > 0 and pose.pelvis[1] > row.on_feet_above_m)
@@ -195,6 +227,38 @@ def idle(pose: Pose, seconds: float, size: float, rng: np.random.Generator, fps:
     arms = held.arms.copy()
     arms[:, :, 2] += (row.breath_arms * ease[:, 0] * breath)[:, None] * (1 - held.reaching)
     return replace(held, spine=spine, head=head, pelvis=held.pelvis + sway, arms=arms)
+
+
+def _wander(frames: int, row: Idle, rng: np.random.Generator, fps: int) -> Array:
+    """Slow wandering with small quick corrections on it, of unit size. (T,)."""
+    return drift(frames, row.drift_hz, fps, rng) + row.quick_share * drift(frames, row.quick_hz, fps, rng)
+
+
+def _bends(slow: list[Array], shift: tuple[Array, Array], aside: Array, row: Idle) -> Array:
+    """How the trunk bends and turns while it holds, besides its breath: forwards, to the left, to the side. (T, 3)."""
+    forward, side = shift
+    return np.stack(
+        [
+            row.spine_forward_rad * slow[0] + forward,
+            row.spine_turn_rad * slow[1] + row.glance.trunk_share * aside,
+            row.spine_side_rad * slow[2] + side,
+        ],
+        axis=1,
+    )
+
+
+def _shifts(frames: int, rng: np.random.Generator, fps: int) -> tuple[Array, Array]:
+    """Where the weight is taken to now and then, forwards and aside: bends of the trunk, radians. (T,) twice."""
+    row, forward, side = idle_table().shift, np.zeros(frames), np.zeros(frames)
+    time, take, place = np.arange(frames), row.take_s * fps, np.zeros(2)
+    at = rng.uniform(0.0, row.wait_max_s) * fps
+    while at < frames:
+        wanted = rng.uniform(-1.0, 1.0, 2) * [row.forward_rad, row.side_rad]
+        gone = smooth((time - at) / take)
+        forward, side = forward + gone * (wanted - place)[0], side + gone * (wanted - place)[1]
+        place = wanted
+        at += take + rng.uniform(row.wait_min_s, row.wait_max_s) * fps
+    return forward, side
 
 
 def _glances(frames: int, size: float, rng: np.random.Generator, fps: int) -> tuple[Array, Array]:

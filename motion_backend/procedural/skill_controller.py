@@ -12,7 +12,7 @@ from motion_backend.procedural.held_poses import Seat
 from motion_backend.procedural.lie.lie_skill import before_bed, get_up, leave_bed, lie, stay_lying
 from motion_backend.procedural.sit.sit_skill import before_seat, leave_seat, sit, stay_seated
 from motion_backend.procedural.tail import only_stands
-from motion_backend.procedural.touch.touch_skill import before_thing, reach
+from motion_backend.procedural.touch.touch_skill import before_thing, come_to_thing, reach
 from motion_backend.procedural.walk.walk_skill import go, halt, stay
 
 
@@ -37,6 +37,8 @@ def _walk(body: Body, part: Part) -> None:
         facing = facing if onward == goal else None
     body.enter(PhaseKind.WALK)
     go(body, goal, facing, part.action, onward)
+    if body.upcoming and body.upcoming[0].kind is PartKind.REACH:
+        come_to_thing(body, body.upcoming[0].action)
 
 
 def _bound_for(body: Body, part: Part, goal: Point, upcoming: tuple[Part, ...]) -> tuple[Point, float | None]:

@@ -76,7 +76,7 @@ def print_stories(
     console: Console, figures: Sequence[StoryFigure], value: Mapping[str, Any], units: Mapping[str, str]
 ) -> None:
     """The figures as a table, and which stories are to be looked at."""
-    units = units | UNITS
+    units = {**units, **UNITS}
     right = ("over all", "95 %", "limit", "stories", "missed in")
     table = plain_table("figure", *right, right=right)
     for one in figures:

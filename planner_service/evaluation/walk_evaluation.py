@@ -304,7 +304,9 @@ def _walks(name: str, takes: Sequence[Take]) -> Walks:
     smooth = [low_pass(take.motion.joint_positions().astype(np.float64), take.motion.fps, RULER) for take in takes]
     rows = [row for take, positions in zip(takes, smooth, strict=True) for row in _windows_of(take, positions)]
     features = np.array([row[1] for row in rows]).reshape(-1, len(UNITS))
-    groups, skates, slides = (tuple(row[column] for row in rows) for column in (0, 2, 3))
+    groups, skates, slides = (
+        tuple(row[0] for row in rows), tuple(row[2] for row in rows), tuple(row[3] for row in rows)
+    )  # fmt: skip
     named = [(take.group, take.name, positions) for take, positions in zip(takes, smooth, strict=True)]
     return Walks(name, features, groups, skates, slides, seconds_of(named, FPS))
 

@@ -227,16 +227,21 @@ def _on_one_knee(row: OneKnee, stood: Pose, both: Pose, mat: Mat) -> Pose:
         toes=np.array([CURLED, 0.0]),
         knees=np.stack([both.knees[0], mat.up + row.knee_up_ratio * UP]),
     )
-    return _hand_on_thigh(half, row.hand_share, mat)
+    return _hand_on_thigh(_on_their_knees(half, mat), row.hand_share, mat)
+
+
+def _on_their_knees(pose: Pose, mat: Mat) -> Pose:
+    """The pose with knees that are knelt on, feet on their toes behind them, on their places."""
+    aside = np.array([[HIP], [-HIP]]) * [1.0, 0.0, 0.0] * mat.skeleton.scale
+    hips = pose.pelvis + rotations.rotate(pose.hips, aside)
+    return replace(pose, knees=np.where(pose.toes[:, None] > 0, mat.knees - hips, pose.knees))
 
 
 def _over_one_knee(row: OverOneKnee, pose: Pose, mat: Mat) -> Pose:
     """The weight over the left knee, feet where they are."""
-    return replace(
-        pose,
-        pelvis=mat.over_knees(row.pelvis_aside_m, row.pelvis_back_m),
-        spine=bend(row.spine_pitch_rad, side=row.spine_side_rad),
-    )
+    pelvis = mat.over_knees(row.pelvis_aside_m, row.pelvis_back_m)
+    spine = bend(row.spine_pitch_rad, side=row.spine_side_rad)
+    return _on_their_knees(replace(pose, pelvis=pelvis, spine=spine), mat)
 
 
 def _hand_on_thigh(pose: Pose, share: float, mat: Mat) -> Pose:

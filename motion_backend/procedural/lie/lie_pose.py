@@ -44,6 +44,10 @@ ON_ARM, ON_HANDS = 0.05, 0.05
 """How high a head lies on an arm rather than on a pillow, or on hands upon it (metres at 1.70 m)."""
 NARROW: Final = 0.25
 """With so much room from the middle to either side one lies straight along (metres)."""
+STRETCHED: Final = 0.91
+"""From the pelvis to the soles of stretched legs (metres at 1.70 m)."""
+KNEES_UP: Final = 0.5
+"""Knees drawn up on a side need so much room before the body (metres at 1.70 m)."""
 OVER_EDGE: Final = 0.30
 """How far from the edge the pelvis of who puts a foot down lies at most (metres)."""
 TO_HEAD: Final = 0.30
@@ -137,6 +141,24 @@ def place_to_lie(found: Sequence[Spot], caption: str) -> Spot:
     x, y, z = spot.point
     point = (x + over * float(np.sin(spot.approach)), y, z + over * float(np.cos(spot.approach)))
     return replace(spot, point=point, edge=spot.edge - over)
+
+
+def lacking(style: Lying, bed: Bed, skeleton: Skeleton, keys: LiePose) -> list[str]:
+    """What of a way of lying there is no place for, and what is done instead."""
+    words, stretched = [], style.legs not in ("bent", "left_down", "right_down")
+    if style.legs.endswith("_down") and (style.legs != f"{bed.edge_side}_down" or bed.surface <= MIN_BED):
+        words.append("no edge on that side: the foot stays where the body lies")
+    if style.legs == "tucked" and bed.beside[("left", "right").index(style.side)] < KNEES_UP * skeleton.scale:
+        words.append("no room before the body: knees drawn up less")
+    if style.side != "back" or style.propped:
+        return words
+    for index, side in enumerate(("left", "right")):
+        wanted = _row(keys.back_hand, style.arms[index], "sides")
+        if _fitting(wanted, bed.beside[index] / skeleton.scale, keys.back_hand) != wanted:
+            words.append(f"no room beside the {side} arm: drawn in")
+    if stretched and bed.end[0] < STRETCHED * skeleton.scale:
+        words.append("too short to lie stretched: knees bent or feet over the end")
+    return words
 
 
 def lying(start: Pose, bed: Bed, style: Lying, skeleton: Skeleton, keys: LiePose) -> Pose:

@@ -15,7 +15,7 @@ from motion_backend.procedural.held_poses import UP, Seat, idle
 from motion_backend.procedural.lie.lie_keys import lie_keys
 from motion_backend.procedural.lie.lie_on_floor import Mat, kneel_down, kneel_up, lie_down_from_knees, rise_to_knees
 from motion_backend.procedural.lie.lie_own import own_way, paced
-from motion_backend.procedural.lie.lie_pose import Bed
+from motion_backend.procedural.lie.lie_pose import Bed, lacking
 from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.lie.lie_transition import edge_seat, lie_down, rise_to_edge
 from motion_backend.procedural.sit.sit_keys import sit_keys
@@ -61,11 +61,13 @@ def lie(body: Body, part: Part) -> None:
     keys = paced(lie_keys(), body.rng)
     style = own_way(lie_style(action.emotion, action.caption), keys.own, body.rng)
     spot = spot_of(action)
+    made = _made(body, spot)
+    body.note(*lacking(style, made, body.skeleton, keys.pose))
     body.enter(PhaseKind.WALK)
     go(body, *before_bed(body, action), action)
     body.enter(PhaseKind.EDGE)
     if _on_floor(spot):
-        mat = Mat(_made(body, spot), body.skeleton)
+        mat = Mat(made, body.skeleton)
         body.add(kneel_down(body.pose, mat, style.bearing, keys.floor_down))
         body.enter(PhaseKind.LIEDOWN)
         body.add(lie_down_from_knees(body.pose, mat, style, keys))
@@ -74,7 +76,7 @@ def lie(body: Body, part: Part) -> None:
         sat = Seated(bearing=style.bearing)
         body.add(lower_onto(body.pose, seat, sat, NOTHING, body.skeleton, sit_keys().down))
         body.enter(PhaseKind.LIEDOWN)
-        body.add(lie_down(body.pose, seat, _made(body, spot), style, body.skeleton, keys))
+        body.add(lie_down(body.pose, seat, made, style, body.skeleton, keys))
 
 
 def stay_lying(body: Body, part: Part) -> None:

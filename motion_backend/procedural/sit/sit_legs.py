@@ -11,6 +11,7 @@ from motion_backend import rotations
 from motion_backend.inverse_kinematics import leg_rotations, two_bone
 from motion_backend.procedural.held_poses import FLOOR_REACH, FOOT_SPLAY, SHIN_REACH, UP, Seat, upright
 from motion_backend.procedural.sit.sit_keys import SeatedLeg, SeatedLegs
+from motion_backend.procedural.sit.sit_own import OwnSeat
 from motion_backend.rotations import Array
 from motion_backend.skeleton import ANKLE_HEIGHT, INDEX, Skeleton
 
@@ -56,6 +57,15 @@ WAYS: Final[dict[str, tuple[str, str]]] = {
     "drawn": ("drawn", "drawn"),
 }
 """What the left and the right leg do in each way of sitting: rows of the table."""
+FREE_TO_STAND: Final = ("rest", "together", "open", "slouched")
+"""Rows of legs that may as well stand a little elsewhere."""
+FREE_ASIDE: Final = ("straight", "drawn", "ahead")
+"""Rows of legs that may be farther out or in."""
+NOBODY: Final = OwnSeat()
+APART: Final = 0.08
+"""An ankle nearer than this to the middle is to stand beside the other one (metres at 1.70 m)."""
+BEFORE_SEAT, LEAST_OUTWARDS = 0.03, 0.045
+"""An ankle is so far before the seat at least, and so far from the middle (metres at 1.70 m)."""
 STRAIGHT: Final = ("straight", "over", "under")
 """Rows of legs that are straight."""
 
@@ -93,13 +103,19 @@ class _Leg(NamedTuple):
     """Whether the ankle lies on the other knee, wherever that is."""
 
 
-def seated_legs(seat: Seat, legs: str, skeleton: Skeleton, room: tuple[Room, Room], keys: SeatedLegs) -> Legs:
+def seated_legs(
+    seat: Seat, legs: str, skeleton: Skeleton, room: tuple[Room, Room], keys: SeatedLegs, own: OwnSeat = NOBODY
+) -> Legs:
     """Both legs on a seat, where the left and the right foot have that much room."""
     ways = WAYS["folded" if legs == "crossed" and seat.is_low(skeleton.scale) else legs]
     hung = seat.pelvis[1] - skeleton.ankle_height > HANGING * skeleton.scale
     solved: list[tuple[Array, Array, Array, float]] = []
     for index, way in enumerate(ways):
         leg = _leg(keys.of(way), seat, skeleton, room[index].ahead)
+        if way in FREE_TO_STAND:
+            leg = _elsewhere(leg, own, index, seat, skeleton.scale, room[index].ahead)
+        elif way in FREE_ASIDE:
+            leg = _aside(leg, own, index, skeleton.scale)
         if leg.outwards > room[index].aside:
             share = (room[index].aside / leg.outwards) ** 2
             leg = leg._replace(outwards=room[index].aside, knee_out=share * leg.knee_out)
@@ -109,6 +125,21 @@ def seated_legs(seat: Seat, legs: str, skeleton: Skeleton, room: tuple[Room, Roo
         solved.append(_placed(leg, index, seat, skeleton, solved))
     ankles, feet, knees, planted = (np.stack(values) for values in zip(*solved, strict=True))
     return Legs(ankles, feet, knees, planted)
+
+
+def _elsewhere(leg: _Leg, own: OwnSeat, index: int, seat: Seat, scale: float, room: float) -> _Leg:
+    """A foot that stands a little elsewhere: not under the seat, nor in what is before it."""
+    nearest = min(leg.ahead, max(seat.edge, 0.0) + BEFORE_SEAT * scale)
+    ahead = leg.ahead + scale * float(own.foot_ahead[index])
+    ahead = float(np.clip(ahead, nearest, max(leg.ahead, room)))
+    leg = leg._replace(ahead=ahead)
+    return leg if leg.outwards < APART * scale else _aside(leg, own, index, scale)
+
+
+def _aside(leg: _Leg, own: OwnSeat, index: int, scale: float) -> _Leg:
+    """A foot that is a little farther out, or in."""
+    outwards = leg.outwards + scale * float(own.foot_out[index])
+    return leg._replace(outwards=max(outwards, min(leg.outwards, LEAST_OUTWARDS * scale)))
 
 
 def _leg(row: SeatedLeg, seat: Seat, skeleton: Skeleton, room: float) -> _Leg:

@@ -13,7 +13,7 @@ from motion_backend.procedural.held_poses import Seat, bend, upright
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.pose_solver import solve
 from motion_backend.procedural.sit.sit_keys import SitPose, Surface, Trunk
-from motion_backend.procedural.sit.sit_legs import Room, bends_a_leg, seated_legs
+from motion_backend.procedural.sit.sit_legs import NOBODY, Room, bends_a_leg, seated_legs
 from motion_backend.procedural.sit.sit_styles import Seated
 from motion_backend.procedural.touch.hand_rests import (
     HOLDS,
@@ -65,7 +65,10 @@ class Place:
 
 def holds_of(style: Seated, place: Place, skeleton: Skeleton, keys: SitPose) -> Holds:
     """What the hands of a way of sitting lie on here; a surface that is not there is replaced by the thighs."""
-    left, right = (_hold(name, index, place, skeleton.scale, keys) for index, name in enumerate(style.arms))
+    left, right = (
+        style.own.of_hand(_hold(name, index, place, skeleton.scale, keys), index)
+        for index, name in enumerate(style.arms)
+    )
     return left, right
 
 
@@ -120,7 +123,9 @@ def lacking(style: Seated, place: Place, skeleton: Skeleton, keys: SitPose) -> t
     said = _hands_lacking(style, place, skeleton)
     if bends_a_leg(place.seat, style.legs, skeleton, place.room, keys.legs):
         said = (*said, "no room to stretch the legs: legs bent")
-    if style.recline >= LEANS_BACK and _recline(style, place, keys.trunk) < LEANT * np.radians(style.recline):
+    if style.recline >= LEANS_BACK and _recline(replace(style, own=NOBODY), place, keys.trunk) < LEANT * np.radians(
+        style.recline
+    ):
         said = (*said, "nothing to lean back against: upright")
     return said
 
@@ -157,12 +162,12 @@ def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton, keys: S
     seat = place.seat
     if seat.is_low(skeleton.scale):
         style = _on_the_floor(style)
-    legs = seated_legs(seat, style.legs, skeleton, place.room, keys.legs)
+    legs = seated_legs(seat, style.legs, skeleton, place.room, keys.legs, style.own)
     wrists, elbows = arm_arrays(*style.arms)
     pose = replace(
         start,
         pelvis=seat.pelvis.copy(),
-        head=bend(np.radians(style.head), np.radians(style.tilt)),
+        head=_head(style),
         ankles=legs.ankles,
         feet=legs.feet,
         toes=np.zeros(2),
@@ -180,7 +185,9 @@ def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton, keys: S
     if style.on_elbows:
         return _on_elbows(_leaning(pose, seat, -LEANS, keys.trunk), place, holds, skeleton), holds
     back = np.array([_recline(style, place, keys.trunk)])
-    rested = at_rest(_leaning(pose, seat, back, keys.trunk).at(0), holds, skeleton)
+    leaned = _leaning(pose, seat, back, keys.trunk).at(0)
+    leaned = replace(leaned, spine=leaned.spine + bend(0.0, style.own.side, style.own.turn))
+    rested = at_rest(leaned, holds, skeleton)
     inside = arms_inside(rested.repeat(1), seat, place.elbows, skeleton, np.ones(1))
     return lay_hands(inside, holds, skeleton).at(0), holds
 
@@ -243,6 +250,12 @@ def back_for(recline: float) -> float:
     return float(BEHIND_PELVIS + BACKREST * np.sin(np.radians(max(recline, 0.0)) - GIVES))
 
 
+def _head(style: Seated) -> Array:
+    """How the head is held against the chest. (3,)."""
+    own = style.own
+    return bend(np.radians(style.head) + own.head_forward, np.radians(style.tilt), own.head_turn)
+
+
 def _recline(style: Seated, place: Place, trunk: Trunk) -> float:
     """Backward lean of the trunk, as far as there is a back to lean against, or arms (radians)."""
     seat = place.seat
@@ -250,7 +263,8 @@ def _recline(style: Seated, place: Place, trunk: Trunk) -> float:
     propped = {"behind", "propped", "beside"} & set(style.arms)
     free = trunk.max_propped_deg if propped else trunk.max_free_deg
     most = np.radians(free if np.isinf(seat.back) else trunk.max_back_deg)
-    return float(min(np.radians(style.recline), float(limit) + GIVES, most))
+    own = style.own.recline if style.recline and not propped else style.own.upright_recline
+    return float(min(np.radians(style.recline + own), float(limit) + GIVES, most))
 
 
 def _leaning(pose: Pose, seat: Seat, back: Array, trunk: Trunk) -> Pose:
@@ -273,7 +287,7 @@ def _up_to_table(leans: Pose, style: Seated, holds: Holds, skeleton: Skeleton) -
         ]
     )
     down = np.radians(style.head) - TO_TABLE
-    heads = np.stack([bend(pitch, np.radians(style.tilt)) for pitch in down])
+    heads = _head(style) + np.stack([bend(pitch - np.radians(style.head)) for pitch in down])
     laid = np.array([0.0 if hold is None else 1.0 for hold in holds])
     many = replace(
         leans, head=heads, elbows=np.tile(poles, (len(leans), 1, 1)), reaching=np.tile(laid, (len(leans), 1))

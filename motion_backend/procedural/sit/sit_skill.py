@@ -18,6 +18,7 @@ from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import SHIN_REACH, Seat, idle
 from motion_backend.procedural.sit.sit_keys import sit_keys
 from motion_backend.procedural.sit.sit_legs import Room, is_to_be_straight, perch, straight_reach
+from motion_backend.procedural.sit.sit_own import in_own_way, own_seat
 from motion_backend.procedural.sit.sit_pose import LEANS_BACK, ON_TABLE, Place, back_for, lacking
 from motion_backend.procedural.sit.sit_styles import Seated, sit_style
 from motion_backend.procedural.sit.sit_transition import sit_down, stand_up
@@ -66,8 +67,10 @@ def before_seat(body: Body, action: Action) -> tuple[Point, float]:
 def sit(body: Body, part: Part) -> None:
     """From standing: down onto the seat, and into the way of sitting."""
     action = part.action
-    style = sit_style(action.emotion, action.caption)
+    own = own_seat(sit_keys().spread, body.seed, body.rng)
+    style = replace(sit_style(action.emotion, action.caption), own=own)
     seat = Seat.of(spot_of(action))
+    keys = in_own_way(sit_keys(), own, seat.is_low(body.skeleton.scale))
     body.enter(PhaseKind.WALK)
     go(body, *before_seat(body, action), action)
     body.enter(PhaseKind.SITDOWN)
@@ -76,7 +79,7 @@ def sit(body: Body, part: Part) -> None:
     place = Place(seat, around, leg_room(body.scene.obstacles, seat, body.skeleton.scale), elbows)
     under = around.behind if seat.is_low(body.skeleton.scale) else around.beside
     felt = _grips(around.armrests, under, seat, style.manner.hands)
-    down, body.holds = sit_down(body.pose, place, style, felt, body.skeleton, sit_keys())
+    down, body.holds = sit_down(body.pose, place, style, felt, body.skeleton, keys)
     body.add(down)
     body.note(*lacking(style, place, body.skeleton, sit_keys().pose))
 
@@ -96,7 +99,9 @@ def leave_seat(body: Body, seat: Seat, bearing: Bearing) -> None:
     elif bearing.tempo < QUICK:
         around = handholds(seat, body.scene.obstacles, body.skeleton.scale)
         push = _grips(around.armrests, around.beside, seat, (True, True))
-    body.add(stand_up(body.pose, seat, bearing, push, body.skeleton, sit_keys().up))
+    own = own_seat(sit_keys().spread, body.seed, body.rng)
+    keys = in_own_way(sit_keys(), own, seat.is_low(body.skeleton.scale))
+    body.add(stand_up(body.pose, seat, bearing, push, body.skeleton, keys.up))
     body.holds = (None, None)
 
 

@@ -240,7 +240,7 @@ def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move) -> Pose:
     ankles, feet, planted, knees = pose.ankles.copy(), pose.feet.copy(), pose.planted.copy(), pose.knees.copy()
     time, each = np.arange(1, len(pose) + 1) / FPS, move.foot_time_s
     wait = (WAITS if after.planted.all() else WAITS_TO_STAND) * each
-    for order, index in enumerate(_first_foot(after)):
+    for order, index in enumerate(_first_foot(before, after)):
         gap = float(np.linalg.norm(after.ankles[index] - before.ankles[index]))
         share = np.clip((time - move.first_foot_s - order * wait) / max(each, STEP * gap), 0.0, 1.0)
         way = smooth(share)[:, None]
@@ -261,8 +261,12 @@ def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move) -> Pose:
     return replace(pose, ankles=ankles, feet=feet, planted=planted, knees=knees)
 
 
-def _first_foot(after: Pose) -> tuple[int, int]:
-    """Which foot goes first: one that will stand, else one that comes to lie behind the other's shin."""
+def _first_foot(before: Pose, after: Pose) -> tuple[int, int]:
+    """Which foot goes first: one that will stand, else one that comes to lie behind the other's shin; of two that
+    stand the one with the longer way."""
+    if before.planted.all() and after.planted.all():
+        way = np.linalg.norm(after.ankles - before.ankles, axis=1)
+        return (0, 1) if way[0] > way[1] else (1, 0)
     away = np.linalg.norm((after.ankles - after.pelvis)[:, [0, 2]], axis=1)
     left = after.planted[0] > after.planted[1] or (not after.planted.any() and away[0] < away[1] - BEHIND)
     return (0, 1) if left else (1, 0)

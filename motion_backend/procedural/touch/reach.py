@@ -83,7 +83,8 @@ def touch(
         bent = _free_hand_varied(bent, laid, keys.reach.variation, rng)
         # A deep bend takes its time, however hurried.
         pace *= max(1.0, float(start.pelvis[1] - bent.pelvis[1]) / (row.deep_m * skeleton.scale))
-    poles = varied.elbow * rng.normal(size=(2, 3))
+    # A raised arm is near the end of its range.
+    poles = float(not raised) * varied.elbow * rng.normal(size=(2, 3))
 
     def hand(off: float, tilt: float) -> Pose:
         posed = _hand_at(bent, laid.tilted(tilt), off, yaw, skeleton, keys.reach)

@@ -15,7 +15,7 @@ from motion_backend.procedural.emotion_style import bearing_of
 from motion_backend.procedural.touch.hand_captions import Laid, handling_of, holding, steadies, with_both_hands
 from motion_backend.procedural.touch.hand_contacts import free_palm, free_stroke, is_top, other_hand
 from motion_backend.procedural.touch.kneel import place_to_kneel
-from motion_backend.procedural.touch.reach import Manner, touch
+from motion_backend.procedural.touch.reach import Manner, arriving, touch
 from motion_backend.procedural.touch.touch_keys import touch_keys
 from motion_backend.procedural.walk.walk_skill import go
 from motion_backend.skeleton import HAND_REST
@@ -23,6 +23,8 @@ from scene_graphs.affordances.affordances import Spot
 
 REACHED_DOWN = 1.12
 """An arm goes down to what is lower than this (metres at 1.70 m), so that its fingers point down a front."""
+OVERHEAD: Final = 1.65
+"""To what is lower nobody stretches (metres at 1.70 m)."""
 MIN_HOLD: Final = 1.2
 """A hand stays at least so long (seconds)."""
 _HEIGHT: Final = re.compile(r"\b(?:low|medium|high)\b", re.IGNORECASE)
@@ -32,6 +34,15 @@ def before_thing(body: Body, action: Action) -> tuple[Point, float]:
     """Where to stand, and the yaw, to touch a thing, on the knees where the caption asks for it and there is room."""
     spot = _knelt_at(body, action) or spot_of(action)
     return spot.standing, spot.facing
+
+
+def come_to_thing(body: Body, action: Action) -> None:
+    """The end of the walk just made leads to a thing: eyes on it, the hand on its way."""
+    if body.frames:
+        spot = spot_of(action)
+        goal = np.asarray(spot.point) + HAND_REST * np.asarray(spot.normal)
+        body.frames[-1] = arriving(body.frames[-1], goal, action.hand, body.skeleton, touch_keys().reach)
+        body.pose = body.frames[-1].at(len(body.frames[-1]) - 1)
 
 
 def reach(body: Body, part: Part) -> None:
@@ -44,6 +55,8 @@ def reach(body: Body, part: Part) -> None:
     asked = _HEIGHT.search(action.caption)
     if asked and asked[0].lower() != spot.height:
         body.note(f"nothing at {asked[0].lower()} height: {spot.height}")
+    elif asked and spot.height == "high" and spot.point[1] < OVERHEAD * body.skeleton.scale:
+        body.note("nothing overhead: no stretch")
     spot, prone = knelt or spot, knelt is not None
     body.enter(PhaseKind.WALK)
     go(body, spot.standing, spot.facing, action)

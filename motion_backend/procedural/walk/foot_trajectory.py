@@ -251,9 +251,9 @@ class Feet:
     def rolled(self, tiptoe: Array, skeleton: Skeleton) -> tuple[Array, Array]:
         """Pitch the feet about heel, ball or tip, moving the ankles along; feet (T, 2, 4) and toe bends (T, 2).
 
-        `tiptoe` (T,) raises both heels throughout (radians).
+        `tiptoe` (T, 2) raises both heels throughout (radians).
         """
-        pitch, toe_bend = self.pitch + tiptoe[:, None], np.radians(foot_table().way.toe_bend_deg)
+        pitch, toe_bend = self.pitch + tiptoe, np.radians(foot_table().way.toe_bend_deg)
         flat = rotations.yaw_to_quat(self.yaw)
         feet = rotations.compose(flat, rotations.axis_to_quat("x", pitch))
         ball = skeleton.offsets[INDEX["left_foot"]]

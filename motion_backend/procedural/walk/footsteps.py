@@ -161,7 +161,7 @@ class Steps:
     hopping: Array
     """(T,) 1 over the steps of a skip, else 0."""
     tiptoe: Array
-    """(T,) how far both heels are raised (radians)."""
+    """(T, 2) how far both heels are raised (radians)."""
     flat: Array
     """(T, 2, 3) where ankles would be if feet did not roll."""
     made: tuple[Step, ...]
@@ -297,10 +297,12 @@ def _moving(made: Sequence[Step], phase: Array, before: float) -> Array:
 
 
 def _tiptoe(phase: Array, style: Walk, stride: Stride | None) -> Array:
-    """How far both heels are raised. (T,) radians."""
-    begin, since = (0.0, -LEAD) if stride is None else (stride.tiptoe, stride.phase)
-    raised = begin + (np.radians(style.tiptoe) - begin) * smooth(phase - since)
-    return np.asarray(raised * smooth((phase[-1] - phase) / footstep_table().beat.tiptoe_last_steps))
+    """How far both heels are raised. (T, 2) radians."""
+    begin, since = (np.zeros(2), -LEAD) if stride is None else (stride.tiptoe, stride.phase)
+    own = [max(style.character.of_side("heel", "deg", side), 0.0) for side in (1, -1)]
+    raised = begin + (np.radians(style.tiptoe + np.array(own)) - begin) * smooth(phase - since)[:, None]
+    ending = smooth((phase[-1] - phase) / footstep_table().beat.tiptoe_last_steps)
+    return np.asarray(raised * ending[:, None])
 
 
 def _swing_of(

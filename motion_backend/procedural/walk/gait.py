@@ -266,7 +266,7 @@ def _stride_at(frame: int, path: Array, route: Route, steps: Steps, spread: Arra
         ankles=ankles,
         yaw=yaw,
         steps=tuple(step.later(-earlier) for step in under_way),
-        tiptoe=float(steps.tiptoe[frame]),
+        tiptoe=steps.tiptoe[frame],
         spread=spread[frame],
         rest=np.concatenate([route.position[frame : frame + 1], points[ahead:]]),
     )

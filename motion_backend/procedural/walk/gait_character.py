@@ -45,6 +45,8 @@ class CharacterSpread:
     toes_sides_deg: Spread
     toes_swing_ratio: Spread
     toes_swing_sides_ratio: Spread
+    heel_deg: Spread
+    heel_sides_deg: Spread
     step_sides_m: Spread
     beat_sides_share: Spread
     width_sides_m: Spread
@@ -116,6 +118,9 @@ class GaitCharacter:
     toes_swing_ratio: float = 1.0
     """How far toes swing outwards in the air."""
     toes_swing_sides_ratio: float = 1.0
+    heel_deg: float = 0.0
+    """How far off the floor the heel of a standing foot is, under way."""
+    heel_sides_deg: float = 0.0
     step_sides_m: float = 0.0
     """Steps of the left foot are longer,"""
     beat_sides_share: float = 0.0

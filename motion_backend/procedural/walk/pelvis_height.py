@@ -128,7 +128,7 @@ def _carried(route: Route, steps: Steps, style: Walk, skeleton: Skeleton, in_str
     ending = smooth(left / row.last_steps)
     starting = 1.0 if in_stride else smooth((steps.phase - steps.phase[0]) / row.first_steps)
     carried = at_rest + np.clip(row.moving_ratio * steps.moving, 0.0, 1.0) * ending * starting * (walking - at_rest)
-    return carried + row.tiptoe_m * skeleton.scale * np.sin(steps.tiptoe), ending
+    return carried + row.tiptoe_m * skeleton.scale * np.sin(steps.tiptoe.min(axis=1)), ending
 
 
 def _bounce(route: Route, steps: Steps, style: Walk) -> Array:

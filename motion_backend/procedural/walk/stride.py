@@ -69,8 +69,8 @@ class Stride:
     """(2,) where they pointed then."""
     steps: tuple[Step, ...]
     """Those under way: a heel that rises, a foot in the air, one that is not flat yet."""
-    tiptoe: float
-    """How far both heels are raised (radians)."""
+    tiptoe: Array
+    """(2,) how far both heels are raised (radians)."""
     spread: Array
     """(2,) share of the arm pose that each arm is in."""
     rest: Array
@@ -88,7 +88,7 @@ class Stride:
     @staticmethod
     def from_lists(memory: dict[str, Any]) -> Stride:
         """Back from `to_lists`."""
-        arrays = {name: np.asarray(memory[name]) for name in ("place", "ankles", "yaw", "spread", "rest")}
+        arrays = {name: np.asarray(memory[name]) for name in ("place", "ankles", "yaw", "tiptoe", "spread", "rest")}
         return Stride(**{**memory, **arrays, "steps": tuple(_step(one) for one in memory["steps"])})
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from acted import Body, risen_from, sat
+from acted import Body, got_up, lain, risen_from, sat, touched
 
 from motion_backend.metrics.caption_predicates import (
     MEASURES,
@@ -24,10 +24,19 @@ from planner_service.scripts.captions import captions
 
 def neutral(skill: Skill) -> Body:
     """What the body does whose caption says no more than the skill."""
-    return sat("chair", "sit") if skill is Skill.SITDOWN else risen_from("chair", "stand up")
+    match skill:
+        case Skill.SITDOWN:
+            return sat("chair", "sit")
+        case Skill.LIEDOWN:
+            return lain("bed", "lie")
+        case Skill.GETUP:
+            return got_up("bed", "hands on belly")
+        case Skill.TOUCH:
+            return touched("table", "medium", "touch medium height")
+    return risen_from("chair", "stand up")
 
 
-JUDGED = (Skill.SITDOWN, Skill.STANDUP)
+JUDGED = (Skill.SITDOWN, Skill.STANDUP, Skill.LIEDOWN, Skill.GETUP, Skill.TOUCH)
 """Skills whose captions all have rows."""
 
 
@@ -46,6 +55,13 @@ def test_the_neutral_pose_fails_every_caption_that_says_something_else(skill: Sk
         if says == (not verdict.missed):
             passed.append((caption, verdict.missed))
     assert passed == []
+
+
+@pytest.mark.parametrize("place", ["bed", "floor"])
+def test_who_lies_does_what_the_words_say(place: str) -> None:
+    some = captions()[Skill.LIEDOWN][::3]
+    verdicts = [judge_caption(body.motion, body.action) for body in (lain(place, caption) for caption in some)]
+    assert [verdict for verdict in verdicts if verdict is None or not verdict.kept] == []
 
 
 def test_a_row_that_judges_no_caption_is_no_row() -> None:

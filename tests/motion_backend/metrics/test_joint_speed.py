@@ -24,8 +24,6 @@ SAMPLES = {
     "stand up": lambda: risen_from("chair", "stand up"),
     "touch": lambda: touched("shelf", "medium", "touch medium height", home="hall"),
 }
-OFFENDERS = {"march": 34.5, "stomp": 23.5}
-"""Samples that are known to be faster (rad/s), to be emptied: none may be added, and none may get worse."""
 
 
 def test_a_joint_that_turns_steadily_turns_at_its_own_speed_whatever_the_sign_of_its_quaternions() -> None:
@@ -36,7 +34,9 @@ def test_a_joint_that_turns_steadily_turns_at_its_own_speed_whatever_the_sign_of
     speeds = joint_speeds(local, FPS)
     assert speeds[:, INDEX["left_wrist"]] == pytest.approx(3.0, rel=1e-6)
     assert np.delete(speeds, INDEX["left_wrist"], axis=1).max() == 0
-    assert fastest_joint(local, FPS) == ("left_wrist", pytest.approx(3.0, rel=1e-6))
+    joint, speed = fastest_joint(local, FPS)
+    assert joint == "left_wrist"
+    assert speed == pytest.approx(3.0, rel=1e-6)
 
 
 def test_speeds_are_the_same_in_a_mirror_backwards_and_at_another_rate() -> None:
@@ -56,9 +56,4 @@ def test_what_is_wild_by_name_is_among_the_captions() -> None:
 def test_no_joint_of_a_sample_is_faster_than_a_person_turns_it(name: str) -> None:
     body: Body = SAMPLES[name]()
     joint, speed = fastest_joint(body.motion.local_rotations, FPS)
-    assert speed <= OFFENDERS.get(name, MOST), f"{joint} turns at {speed:.0f} rad/s"
-
-
-def test_the_list_of_offenders_holds_no_sample_that_keeps_the_limit() -> None:
-    kept = [name for name in OFFENDERS if fastest_joint(SAMPLES[name]().motion.local_rotations, FPS)[1] <= MOST]
-    assert kept == []
+    assert speed <= MOST, f"{joint} turns at {speed:.0f} rad/s"

@@ -208,7 +208,8 @@ def test_a_contact_that_is_touched_once_and_not_held_is_near_in_one_frame_and_fa
     wandering = np.outer(0.1 * np.abs(np.sin(np.arange(90) / 5)), [1.0, 0.0, 0.0])
     held = contact_error.outcome(touch(), Kinematics.of(replace(still, goals=goal)))
     waved = contact_error.outcome(touch(), Kinematics.of(replace(standing_still(root=wandering), goals=goal)))
-    assert (held.error, held.mean_error) == (pytest.approx(0, abs=1e-5), pytest.approx(0, abs=1e-5))
+    assert held.error == pytest.approx(0, abs=1e-5)
+    assert held.mean_error == pytest.approx(0, abs=1e-5)
     assert waved.error == pytest.approx(0, abs=0.005)
     assert waved.mean_error == pytest.approx(0.2 / np.pi, abs=0.01)
 

@@ -77,7 +77,7 @@ def test_nobody_is_asked_about_whom_the_network_has_seen(monkeypatch: pytest.Mon
     body, known = made(0.3), people()
     rows = {window.tobytes(): name for window, name in zip(known.features(), known.people.tolist(), strict=True)}
     rows |= {window.tobytes(): take for window, take in zip(body.features(), body.takes.tolist(), strict=True)}
-    asked = []
+    asked: list[str] = []
 
     def learned(shown: Array, names: Array, ours: Array, *_: object) -> object:
         seen = {rows[window.tobytes()] for window in (*shown, *ours)}

@@ -108,3 +108,28 @@ def test_each_hand_reaches_as_the_other_would_in_a_mirror(hand: str) -> None:
     shoulder = body.kinematics.positions[frames[0], INDEX[f"{hand}_shoulder"]]
     other = body.kinematics.positions[frames[0], INDEX[f"{HANDS[1 - HANDS.index(hand)]}_shoulder"]]
     assert ((shoulder - other) @ left > 0) == (hand == "left")
+
+
+def test_two_times_differ_before_and_after_and_the_contact_is_the_same() -> None:
+    for reach in (REACHES[0], REACHES[3]):
+        one, other = touched(*reach, seed=3), touched(*reach, seed=4)
+        begins = [held(body, "right")[0] for body in (one, other)]
+        ends = [held(body, "right")[-1] for body in (one, other)]
+        for at, way in ((begins, -1), (ends, 1)):
+            apart = [
+                np.linalg.norm(
+                    one.kinematics.positions[at[0] + way * n] - other.kinematics.positions[at[1] + way * n], axis=-1
+                )
+                for n in range(6, 18)
+            ]
+            assert np.max(apart) > 0.03
+        wrists = [body.at("right_wrist")[frame] for body, frame in zip((one, other), begins, strict=True)]
+        assert np.linalg.norm(wrists[0] - wrists[1]) < 0.03
+
+
+def test_who_touches_at_hand_height_steps_up_to_it_and_hardly_bends() -> None:
+    for hand in HANDS:
+        body = touched(*REACHES[3], hand=hand)
+        assert body.lean(body.facing)[held(body, hand)].mean() < 30
+        body = touched(*REACHES[1], hand=hand)
+        assert body.lean(body.facing)[held(body, hand)].mean() < 15

@@ -9,6 +9,7 @@ import numpy as np
 from for_each import for_each
 from small_home import DIRECTOR, ROOM, after
 
+from motion_backend import rotations
 from motion_backend.body.joint_limits import limits_share
 from motion_backend.motion import Action, Emotion, Motion, Skill
 from motion_backend.skeleton import INDEX
@@ -18,7 +19,8 @@ from scene_graphs.layout import Placed
 
 HOME = home_from_layouts(
     [replace(ROOM, objects=(Placed("shelf", "bookshelf", (1.5, 0, 2.5), (0.9, 1.9, 0.35), 0.0),
-                            Placed("low", "tv_stand", (4.5, 0, 2.5), (1.2, 0.45, 0.4), 0.0)))], 0
+                            Placed("low", "tv_stand", (4.5, 0, 2.5), (1.2, 0.45, 0.4), 0.0),
+                            Placed("tall", "wardrobe", (0.9, 0, 4.6), (1.0, 2.0, 0.5), np.pi)))], 0
 )  # fmt: skip
 
 
@@ -59,8 +61,6 @@ def test_the_hand_gets_there_and_stays_within_the_joints_limits(
 def test_the_eyes_go_to_it_before_the_hand_moves() -> None:
     motion = act("touch low height", "low", "low")
     _, world = motion.skeleton.forward_kinematics(motion.root_positions, motion.local_rotations)
-    from motion_backend import rotations
-
     look = rotations.rotate(world[:, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
     turned = np.arccos(np.clip(look @ look[0], -1.0, 1.0))
     came = gap(motion)[0] - gap(motion)
@@ -88,6 +88,21 @@ def test_only_a_short_body_rises_on_its_tiptoes() -> None:
         assert gap(motion).min() < 0.02
     assert heels[1.5] > 0.02
     assert heels[1.75] < 0.01
+
+
+@for_each("hand", ["left", "right"])
+def test_to_what_is_overhead_heels_rise_and_the_eyes_go_up(hand: str) -> None:
+    motion = act("An act of reaching high", "tall", "high", hand)
+    frame, joints = int(np.argmin(gap(motion))), motion.joint_positions()
+    assert motion.goals[0].position[1] > 1.7
+    for side in ("left", "right"):
+        assert joints[frame, INDEX[f"{side}_ankle"], 1] > motion.skeleton.ankle_height + 0.02
+    _, world = motion.skeleton.forward_kinematics(motion.root_positions, motion.local_rotations)
+    assert rotations.rotate(world[frame, INDEX["head"]], np.array([0.0, 0.0, 1.0]))[1] > 0.15
+    assert motion.notes == ()
+    assert [note.words for note in act("An act of reaching high", "shelf", "high").notes] == [
+        "nothing overhead: no stretch"
+    ]
 
 
 def test_what_is_done_shows_in_the_other_arm() -> None:

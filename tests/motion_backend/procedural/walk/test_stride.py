@@ -18,7 +18,7 @@ from motion_backend.procedural.pose_solver import solve
 from motion_backend.procedural.walk.gait import walk_on
 from motion_backend.procedural.walk.stride import Stride
 from motion_backend.procedural.walk.walk_styles import walk_style
-from motion_backend.procedural.walk.way_junction import through_way
+from motion_backend.procedural.walk.way_junction import through_way, way_from, way_to
 from motion_backend.skeleton import INDEX, build_skeleton
 
 SKELETON = build_skeleton()
@@ -135,3 +135,15 @@ def test_where_there_is_no_room_one_way_does_not_lead_into_the_next() -> None:
     back = corner[::-1]
     assert through_way(corner, back, in_a_passage) is None
     assert through_way(corner, np.array([[0.0, LENGTH], [0.2, LENGTH]]), everywhere) is None
+
+
+@pytest.mark.parametrize("degrees", [90, -150])
+def test_who_faces_elsewhere_sets_out_and_arrives_in_an_arc_where_there_is_room(degrees: float) -> None:
+    straight, yaw = np.array([[0.0, 0.0], [0.0, 4.0]]), float(np.radians(degrees))
+    for way in (way_from(straight, yaw, everywhere), way_to(straight, yaw + np.pi, everywhere)[::-1]):
+        steps = np.diff(way, axis=0)
+        turned = np.abs(np.diff(np.unwrap(np.arctan2(*steps.T))))
+        assert turned.max() < 0.45
+        assert np.degrees(turned.sum()) > 0.8 * abs(degrees)
+        np.testing.assert_allclose(np.sort(way[[0, -1], 1]), [0.0, 4.0], atol=1e-6)
+    assert way_from(straight, yaw, in_a_passage) is straight

@@ -1,0 +1,90 @@
+"""Nobody sits down, sits and rises as somebody else does, nor twice alike: what is drawn for one time of it.
+
+A part of it is a character's own, and lasts the whole story (data/transitions/sit_own.toml).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+import numpy as np
+
+from motion_backend.procedural.sit.sit_keys import SitKeys, SitSpread
+from motion_backend.procedural.touch.hand_rests import Hold
+from motion_backend.rotations import Array
+
+DRAWN: Final = 2.0
+"""Nothing is drawn beyond so many standard deviations."""
+ON_TOP, TO_KNEE = 0.02, -0.02
+"""How far a palm is from a thigh's middle line that lies on top of it, and goes towards the knee (metres)."""
+CHARACTER: Final = 0x517
+"""Sets what is drawn for a character apart from what else is drawn from its seed."""
+
+
+def _pair() -> Array:
+    return np.zeros(2)
+
+
+@dataclass(frozen=True)
+class OwnSeat:
+    """What one time of sitting has of its own; nothing by itself. Pairs are left and right, metres at 1.70 m."""
+
+    lean: float = 0.0
+    """How much farther the trunk folds (share)."""
+    time: float = 0.0
+    """How much longer it all takes (share)."""
+    recline: float = 0.0
+    """In the mean of those who do not sit upright (degrees)."""
+    upright_recline: float = 0.0
+    turn: float = 0.0
+    side: float = 0.0
+    head_forward: float = 0.0
+    head_turn: float = 0.0
+    foot_ahead: Array = field(default_factory=_pair)
+    foot_out: Array = field(default_factory=_pair)
+    palm_along: Array = field(default_factory=_pair)
+    palm_out: Array = field(default_factory=_pair)
+    elbow_out: Array = field(default_factory=_pair)
+
+    def of_hand(self, hold: Hold | None, index: int) -> Hold | None:
+        """A hold that is a little elsewhere, where it is on top of a thigh."""
+        if hold is None or hold.part != "left_hip" or abs(hold.palm[0]) > ON_TOP:
+            return hold
+        (x, y, z), (out, up, ahead) = hold.palm, hold.elbow
+        palm = (x + float(self.palm_out[index]), y + max(float(self.palm_along[index]), TO_KNEE), z)
+        return replace(hold, palm=palm, elbow=(out * (1 + float(self.elbow_out[index])), up, ahead))
+
+
+SIZES: Final = {"foot_ahead": 2, "foot_out": 2, "palm_along": 2, "palm_out": 2, "elbow_out": 2}
+"""What is drawn for the left and the right."""
+
+
+def own_seat(spread: SitSpread, seed: int, rng: np.random.Generator) -> OwnSeat:
+    """What this time of sitting has of its own, of the character of that seed."""
+    always = np.random.default_rng([seed, CHARACTER])
+    drawn = {}
+    for column, deviation in vars(spread).items():
+        name = column.rpartition("_")[0]
+        size = SIZES.get(name)
+        one = (always.normal(size=size) + rng.normal(size=size)) / np.sqrt(2)
+        drawn[name] = deviation * np.clip(one, -DRAWN, DRAWN)
+    return OwnSeat(**drawn)
+
+
+def in_own_way(keys: SitKeys, own: OwnSeat, low: bool) -> SitKeys:
+    """The tables as this time has them: how far the trunk folds, and how long it takes.
+
+    On a low seat there is no room between trunk and knees to fold farther.
+    """
+    lean, time = 1 + (min(own.lean, 0.0) if low else own.lean), float(np.exp(own.time))
+    lower, rise = keys.down.lower, keys.up.rise
+    down = replace(
+        lower, time_s=time * lower.time_s, lean_rad=lean * lower.lean_rad,
+        lean_per_depth_rad=lean * lower.lean_per_depth_rad,
+    )  # fmt: skip
+    up = replace(
+        rise, time_s=time * rise.time_s, lean_rad=lean * rise.lean_rad,
+        lean_per_depth_rad=lean * rise.lean_per_depth_rad,
+    )  # fmt: skip
+    return replace(keys, down=replace(keys.down, lower=down), up=replace(keys.up, rise=up))
