@@ -6,10 +6,12 @@ in tables with other rows.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
-from motion_backend.procedural.lie.lie_own import LieOwn
+import numpy as np
+
+from motion_backend.procedural.lie.lie_own import DRAWN, LieOwn, timed
 from scene_graphs.data_tables import read_table, table
 
 Vector = tuple[float, float, float]
@@ -436,4 +438,22 @@ def lie_keys() -> LieKeys:
         read_table("motion_backend", "transitions/lie_on_floor.toml", LieOnFloor),
         read_table("motion_backend", "transitions/rise_from_floor.toml", RiseFromFloor),
         read_table("motion_backend", "transitions/lie_own.toml", LieOwn),
+    )
+
+
+def paced(keys: LieKeys, rng: np.random.Generator) -> LieKeys:
+    """The tables with the times of this time: over an edge each pose takes its own; on the floor, where feet step in
+    time with them, all are quicker or slower."""
+    spread = keys.own.spread.wait_share
+
+    def drawn() -> float:
+        return float(np.exp(spread * np.clip(rng.normal(), -DRAWN, DRAWN)))
+
+    floor = drawn()
+    return replace(
+        keys,
+        down=timed(keys.down, drawn),
+        up=timed(keys.up, drawn),
+        floor_down=timed(keys.floor_down, lambda: floor),
+        floor_up=timed(keys.floor_up, lambda: floor),
     )

@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields, is_dataclass, replace
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 
 from motion_backend.rotations import Array
 from scene_graphs.data_tables import table
-
-if TYPE_CHECKING:
-    from motion_backend.procedural.lie.lie_keys import LieKeys
-    from motion_backend.procedural.lie.lie_styles import Lying
 
 DRAWN: Final = 2.0
 """Nothing is drawn beyond so many standard deviations."""
@@ -84,45 +80,20 @@ class OwnWay:
     hand_across: Array = field(default_factory=_none)
 
 
-def own_way(style: Lying, own: LieOwn, rng: np.random.Generator) -> Lying:
-    """The way of lying as it is this time."""
+def drawn_way(own: LieOwn, rng: np.random.Generator) -> OwnWay:
+    """What one time of lying has of its own."""
     spread = {name.rpartition("_")[0]: value for name, value in vars(own.spread).items()}
-    drawn = {name: spread[name] * np.clip(rng.normal(size=size), -DRAWN, DRAWN) for name, size in SIZES}
-    arms = own.back_arms if style.side == "back" else own.side_arms
-    chosen = arms[int(rng.integers(len(arms)))]
-    style = replace(style, own=OwnWay(**drawn))
-    if style.arms != type(style)().arms or style.propped:
-        return style
-    pair = (chosen.left, chosen.right)
-    return replace(style, arms=pair if style.side != "right" else pair[::-1])
+    return OwnWay(**{name: spread[name] * np.clip(rng.normal(size=size), -DRAWN, DRAWN) for name, size in SIZES})
 
 
-def paced(keys: LieKeys, rng: np.random.Generator) -> LieKeys:
-    """The tables with the times of this time: over an edge each pose takes its own; on the floor, where feet step in
-    time with them, all are quicker or slower."""
-    spread = keys.own.spread.wait_share
-
-    def drawn() -> float:
-        return float(np.exp(spread * np.clip(rng.normal(), -DRAWN, DRAWN)))
-
-    floor = drawn()
-    return replace(
-        keys,
-        down=_timed(keys.down, drawn),
-        up=_timed(keys.up, drawn),
-        floor_down=_timed(keys.floor_down, lambda: floor),
-        floor_up=_timed(keys.floor_up, lambda: floor),
-    )
-
-
-def _timed(rows: Any, factor: Callable[[], float]) -> Any:
+def timed(rows: Any, factor: Callable[[], float]) -> Any:
     """A table, or a row of one, with every time of it multiplied by what `factor` draws."""
     if isinstance(rows, tuple) and rows and is_dataclass(rows[0]):
-        return tuple(_timed(row, factor) for row in rows)
+        return tuple(timed(row, factor) for row in rows)
     if not is_dataclass(rows):
         return rows
     changed = {}
     for one in fields(rows):
         value = getattr(rows, one.name)
-        changed[one.name] = value * factor() if one.name.endswith("_s") else _timed(value, factor)
+        changed[one.name] = value * factor() if one.name.endswith("_s") else timed(value, factor)
     return replace(cast(Any, rows), **changed)

@@ -12,11 +12,10 @@ from motion_backend.motion import FPS, Action, PhaseKind
 from motion_backend.procedural.body_state import Body, Point, spot_of, spot_under
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import UP, Seat, idle
-from motion_backend.procedural.lie.lie_keys import lie_keys
+from motion_backend.procedural.lie.lie_keys import lie_keys, paced
 from motion_backend.procedural.lie.lie_on_floor import Mat, kneel_down, kneel_up, lie_down_from_knees, rise_to_knees
-from motion_backend.procedural.lie.lie_own import own_way, paced
 from motion_backend.procedural.lie.lie_pose import Bed, lacking
-from motion_backend.procedural.lie.lie_styles import lie_style
+from motion_backend.procedural.lie.lie_styles import lie_style, own_way
 from motion_backend.procedural.lie.lie_transition import edge_seat, lie_down, rise_to_edge
 from motion_backend.procedural.sit.sit_keys import sit_keys
 from motion_backend.procedural.sit.sit_skill import leave_seat

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from motion_backend.motion import Emotion
 from motion_backend.procedural.emotion_style import AT_EASE, Bearing, bearing_of
-from motion_backend.procedural.lie.lie_own import OwnWay
+from motion_backend.procedural.lie.lie_own import LieOwn, OwnWay, drawn_way
 from motion_backend.procedural.style_sheet import Radians, read_style_sheet
 
 
@@ -40,3 +42,15 @@ def wanted_edge(caption: str) -> str | None:
     if style.side != "back":
         return style.side
     return style.legs.removesuffix("_down") if style.legs.endswith("_down") else None
+
+
+def own_way(style: Lying, own: LieOwn, rng: np.random.Generator) -> Lying:
+    """The way of lying as it is this time."""
+    drawn = drawn_way(own, rng)
+    arms = own.back_arms if style.side == "back" else own.side_arms
+    chosen = arms[int(rng.integers(len(arms)))]
+    style = replace(style, own=drawn)
+    if style.arms != Lying().arms or style.propped:
+        return style
+    pair = (chosen.left, chosen.right)
+    return replace(style, arms=pair if style.side != "right" else pair[::-1])
