@@ -152,7 +152,7 @@ def shown(motion: Motion, action: Action) -> Motion:
             ease, hold = round(EASES * fps), round(action.hold * fps)
             start, stop = frames - hold + ease, frames - ease
         case Skill.TOUCH:
-            start, stop = _at_the_goal(motion, action)
+            start, stop = _at_the_goal(motion)
             if re.search(AFTERWARDS, action.caption.lower()):
                 start, stop = stop, frames
             elif re.search(BEFOREHAND, action.caption.lower()):
@@ -167,7 +167,7 @@ def shown(motion: Motion, action: Action) -> Motion:
     return motion.part(start, stop) if stop > start else motion
 
 
-def _at_the_goal(motion: Motion, action: Action) -> tuple[int, int]:
+def _at_the_goal(motion: Motion) -> tuple[int, int]:
     """From the first to behind the last frame in which the hand is as near to its goal as it comes."""
     if not motion.goals:
         return 0, len(motion)

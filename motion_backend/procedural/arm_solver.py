@@ -27,7 +27,7 @@ SHRUG = 0.45
 class Arm(NamedTuple):
     """The left (0) or right (1) arm of T frames."""
 
-    index: int
+    which: int
     limb: Limb
     lengths: tuple[float, float]
     """Of upper arm and forearm (metres)."""
@@ -65,12 +65,12 @@ class Arm(NamedTuple):
     @property
     def name(self) -> str:
         """left or right."""
-        return SIDES[self.index][0]
+        return SIDES[self.which][0]
 
     @property
     def side(self) -> int:
         """1 left, -1 right."""
-        return SIDES[self.index][1]
+        return SIDES[self.which][1]
 
     @property
     def elbow(self) -> Array:
@@ -95,7 +95,7 @@ class Arm(NamedTuple):
     def part(self, frames: slice) -> Arm:
         """The same arm over some of its frames."""
         parts = (each[frames] for each in self[3:])
-        return Arm(self.index, Limb(*(bone[frames] for bone in self.limb)), self.lengths, *parts)
+        return Arm(self.which, Limb(*(bone[frames] for bone in self.limb)), self.lengths, *parts)
 
     def hand(self, limb: Limb) -> Array:
         """Where its fingers point, with its bones (T, 3) or (T, A, 3): along the forearm unless the hand is laid on

@@ -46,7 +46,7 @@ SEATS: Final = 0.35
 KNEELS: Final = 0.15
 """A knee lower than this may be knelt on (metres at 1.70 m)."""
 BENT: Final = 0.985
-"""A leg that was bent may be stretched to so much of its length, no leg beyond what it was: knees near straight snap."""
+"""A bent leg may be stretched to so much of its length, no leg beyond what it was: knees near straight snap."""
 SINKS: Final = (4, 2.0)
 """A pelvis sinks for a leg so many frames before and after it has to, in a bell so wide (frames)."""
 

@@ -123,7 +123,7 @@ class KeyframeWriter:
         self._plain = False
 
     def appear(self, beats: Sequence[ReadBeat]) -> None:
-        """Somebody of whom nothing else can be acted is seen at what a beat without a verb names, else in their mood."""
+        """Somebody of whom nothing else can be acted is seen at what a verbless beat names, else in their mood."""
         if not any(names_somebody(one.clause) for one in beats):
             return
         for index, one in enumerate(beats):

@@ -126,7 +126,7 @@ def _posed(pose: Pose, begun: Pose, about: Array, turning: _Turning, width: floa
     lower = rotations.compose(upper, elbow)
     out = np.array([float(arm.side), 0.0, 0.0])
     bones = [size * rotations.rotate(turn, out) for size, turn in zip(arm.lengths, (upper, lower), strict=True)]
-    laid = begun.reaching[:, arm.index] * np.clip((arm.pressing - LAID_FROM) / (1 - LAID_FROM), 0.0, 1.0)
+    laid = begun.reaching[:, arm.which] * np.clip((arm.pressing - LAID_FROM) / (1 - LAID_FROM), 0.0, 1.0)
     place = arm.shoulder + bones[0] + bones[1]
     place = place + laid[:, None] * (arm.wrist - place)
     hinge = rotations.rotate(upper, np.array([0.0, -float(arm.side), 0.0]))
@@ -139,7 +139,7 @@ def _posed(pose: Pose, begun: Pose, about: Array, turning: _Turning, width: floa
         "palms": rotations.compose(lower, wrist),
         "pressing": np.where(arm.pressing > 0, 1.0, 0.0),
     }
-    return _with(pose, arm.index, about > 0, changed)
+    return _with(pose, arm.which, about > 0, changed)
 
 
 def _lifted(arm: Arm, skeleton: Skeleton) -> Array:

@@ -11,7 +11,7 @@ from motion_backend import rotations
 from motion_backend.inverse_kinematics import leg_rotations, two_bone
 from motion_backend.procedural.held_poses import FLOOR_REACH, FOOT_SPLAY, SHIN_REACH, UP, Seat, upright
 from motion_backend.procedural.sit.sit_keys import SeatedLeg, SeatedLegs
-from motion_backend.procedural.sit.sit_own import OwnSeat
+from motion_backend.procedural.sit.sit_own import NOBODY, OwnSeat
 from motion_backend.rotations import Array
 from motion_backend.skeleton import ANKLE_HEIGHT, INDEX, Skeleton
 
@@ -61,7 +61,6 @@ FREE_TO_STAND: Final = ("rest", "together", "open", "slouched")
 """Rows of legs that may as well stand a little elsewhere."""
 FREE_ASIDE: Final = ("straight", "drawn", "ahead")
 """Rows of legs that may be farther out or in."""
-NOBODY: Final = OwnSeat()
 APART: Final = 0.08
 """An ankle nearer than this to the middle is to stand beside the other one (metres at 1.70 m)."""
 BEFORE_SEAT, LEAST_OUTWARDS = 0.03, 0.045

@@ -56,6 +56,8 @@ class OwnSeat:
         return replace(hold, palm=palm, elbow=(out * (1 + float(self.elbow_out[index])), up, ahead))
 
 
+NOBODY: Final = OwnSeat()
+"""Who sits as the tables say."""
 SIZES: Final = {"foot_ahead": 2, "foot_out": 2, "palm_along": 2, "palm_out": 2, "elbow_out": 2}
 """What is drawn for the left and the right."""
 

@@ -13,7 +13,8 @@ from motion_backend.procedural.held_poses import Seat, bend, upright
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.pose_solver import solve
 from motion_backend.procedural.sit.sit_keys import SitPose, Surface, Trunk
-from motion_backend.procedural.sit.sit_legs import NOBODY, Room, bends_a_leg, seated_legs
+from motion_backend.procedural.sit.sit_legs import Room, bends_a_leg, seated_legs
+from motion_backend.procedural.sit.sit_own import NOBODY
 from motion_backend.procedural.sit.sit_styles import Seated
 from motion_backend.procedural.touch.hand_rests import (
     HOLDS,

@@ -8,7 +8,7 @@ from functools import cache
 
 from motion_backend.motion import Emotion
 from motion_backend.procedural.emotion_style import AT_EASE, THIGHS, Bearing, bearing_of, carried
-from motion_backend.procedural.sit.sit_own import OwnSeat
+from motion_backend.procedural.sit.sit_own import NOBODY, OwnSeat
 from motion_backend.procedural.style_sheet import Degrees, Metres, Share, read_style_sheet
 
 
@@ -50,7 +50,7 @@ class Seated:
     head: Degrees = 0.0
     tilt: Degrees = 0.0
     """Head turned to the left."""
-    own: OwnSeat = OwnSeat()
+    own: OwnSeat = NOBODY
     """What this time of sitting has of its own."""
     doing: str = ""
     """What the hands do while seated: a name in `gestures.GESTURES`."""

@@ -302,7 +302,10 @@ def stand_up(
     )
     if low:
         # The floor is farther from the shoulders with every centimetre that one rises: hands leave it sooner.
-        rows = [replace(row, held_share=keys.rise.low_held_ratio * row.held_share) for row in rows]
+        held, folds = keys.rise.low_held_ratio, 1 - 0.5 * fold
+        rows = [
+            replace(row, held_share=held * row.held_share, hip_pitch_share=folds * row.hip_pitch_share) for row in rows
+        ]
     risen = [_risen(row, over, end, seat, lean) for row in rows]
     up = interpolate([0.0, *times], [over, leant, *risen, replace(end, reach=over.reach, palms=over.palms)], FPS)
     up = follow(replace(up, knees=knees_over_feet(up)), over, push, skeleton)

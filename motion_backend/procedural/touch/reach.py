@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Final
 
 import numpy as np
 
@@ -37,6 +38,8 @@ from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
 from motion_backend.skeleton import ARM_LENGTH, INDEX, Skeleton
 
+TRIES: Final = 8
+"""So many postures are drawn by chance, of which the first is taken from which the hands get to their goals."""
 LIFTED = 1e-6
 """A pelvis that rises by less than this (metres) stays on flat feet."""
 
@@ -84,7 +87,7 @@ def touch(
         # A deep bend takes its time, however hurried.
         pace *= max(1.0, float(start.pelvis[1] - bent.pelvis[1]) / (row.deep_m * skeleton.scale))
     # A raised arm is near the end of its range.
-    poles = float(not raised) * varied.elbow * rng.normal(size=(2, 3))
+    poles = float(not raised) * varied.elbow_ratio * rng.normal(size=(2, 3))
 
     def hand(off: float, tilt: float) -> Pose:
         posed = _hand_at(bent, laid.tilted(tilt), off, yaw, skeleton, keys.reach)
@@ -155,12 +158,12 @@ def _varied(bent: Pose, laid: Laid, yaw: float, skeleton: Skeleton, keys: ReachT
     row = keys.variation
     deep = float(bent.pelvis[1]) < keys.free_arm.low_share * skeleton.standing_height
     size = row.deep_share if deep else 1.0
-    turned = rotations.rotate(rotations.yaw_to_quat(yaw), np.array([1.0, 0.0, 1.0]) * rng.normal(size=(row.tries, 3)))
+    turned = rotations.rotate(rotations.yaw_to_quat(yaw), np.array([1.0, 0.0, 1.0]) * rng.normal(size=(TRIES, 3)))
     tries = replace(
-        bent.repeat(row.tries),
+        bent.repeat(TRIES),
         pelvis=bent.pelvis + size * row.pelvis_m * skeleton.scale * turned,
-        spine=bent.spine + size * row.spine_rad * rng.normal(size=(row.tries, 3)),
-        head=bent.head + size * row.head_rad * rng.normal(size=(row.tries, 3)),
+        spine=bent.spine + size * row.spine_rad * rng.normal(size=(TRIES, 3)),
+        head=bent.head + size * row.head_rad * rng.normal(size=(TRIES, 3)),
     )
     miss = _misses(tries, laid, skeleton, lambda points: np.full(len(points), -np.inf), keys.search)
     within = np.flatnonzero(miss <= row.misses_m)
@@ -169,7 +172,7 @@ def _varied(bent: Pose, laid: Laid, yaw: float, skeleton: Skeleton, keys: ReachT
 
 def _free_hand_varied(bent: Pose, laid: Laid, row: ReachVariation, rng: np.random.Generator) -> Pose:
     """The other hand held a little elsewhere."""
-    aside = row.arms * rng.normal(size=(2, 3))
+    aside = row.wrist_arms * rng.normal(size=(2, 3))
     aside[[index for index, *_ in laid.hands]] = 0.0
     return replace(bent, arms=bent.arms + aside)
 

@@ -220,15 +220,14 @@ class ReachVariation:
     deep_share: float
     """Of all this, where one squats."""
     head_rad: float
-    elbow: float
+    elbow_ratio: float
     """Of an elbow's direction, in each of its three parts."""
-    arms: float
-    """Of the free wrist, arm lengths."""
+    wrist_arms: float
+    """Of the free wrist."""
     over_share: float
     """Of the height from which a hand comes down."""
-    tries: int
-    """So many are drawn, until the hand still gets there."""
     misses_m: float
+    """The hand still gets so near."""
 
 
 @table

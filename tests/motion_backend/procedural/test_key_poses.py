@@ -217,8 +217,10 @@ def test_a_bed_is_lain_on_as_its_rows_say() -> None:
 def test_the_floor_is_lain_on_as_its_rows_say() -> None:
     mat = Mat(FLOOR, SKELETON)
     stood = standing(mat.standing_point, 0.0, Bearing(), SKELETON)
-    *knees, hands, hip = LIE.floor_down.pose
-    flat = replace(LIE, floor_down=replace(LIE.floor_down, pose=(*knees, replace(hands, head_pitch_rad=0.0), hip)))
+    one, over, both, hands, hip = LIE.floor_down.pose
+    flat = replace(
+        LIE, floor_down=replace(LIE.floor_down, pose=(one, over, both, replace(hands, head_pitch_rad=0.0), hip))
+    )
     heads = []
     for keys in (LIE, flat):
         knelt = kneel_down(stood, mat, Bearing(), keys.floor_down)

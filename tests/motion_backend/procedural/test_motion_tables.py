@@ -200,9 +200,8 @@ def touched(doing: str, keys: TouchKeys, prone: bool = False) -> Pose:
     up = np.array([0.0, 1.0, 0.0])
     wrist = np.array([-0.2, 0.35, 0.75]) if prone else np.array([-0.2, 0.95, 0.45])
     laid = Laid(wrist, palm_on(up, 0.0, "right"), up, "right", stroke=np.array([0.09, 0.0, 0.0]))
-    return touch(
-        start, laid, Manner(Bearing(), 2.5, doing, prone), SKELETON, lambda points: -np.ones(len(points)), keys
-    )
+    manner, rng = Manner(Bearing(), 2.5, doing, prone), np.random.default_rng(0)
+    return touch(start, laid, manner, SKELETON, lambda points: -np.ones(len(points)), keys, rng)
 
 
 def varied(doing: str, **columns: Any) -> TouchKeys:

@@ -140,7 +140,7 @@ def test_where_there_is_no_room_one_way_does_not_lead_into_the_next() -> None:
 @pytest.mark.parametrize("degrees", [90, -150])
 def test_who_faces_elsewhere_sets_out_and_arrives_in_an_arc_where_there_is_room(degrees: float) -> None:
     straight, yaw = np.array([[0.0, 0.0], [0.0, 4.0]]), float(np.radians(degrees))
-    for way in (way_from(straight, yaw, everywhere), way_to(straight, yaw + np.pi, everywhere)[::-1]):
+    for way in (way_from(straight, yaw, everywhere), way_to(straight, yaw, everywhere)):
         steps = np.diff(way, axis=0)
         turned = np.abs(np.diff(np.unwrap(np.arctan2(*steps.T))))
         assert turned.max() < 0.45
