@@ -176,7 +176,7 @@ def _smoother(pelvis: Array) -> Array:
     found = np.zeros_like(pelvis)
     for late, share in enumerate(-JERK):
         found[late : late + len(rate)] -= share * rate
-    return SMOOTH * FPS**6 * found
+    return np.asarray(SMOOTH * FPS**6 * found)
 
 
 def _turned_back(lever: Array, judged: Array, wanted: Array) -> Array:
