@@ -29,12 +29,14 @@ FLOOR: Final = [0, 2]
 """The axes of the floor, x and z."""
 FOLLOWS: Final = 0.85
 """Of a level shift of the pelvis the centre of mass does as much: ankles stay, knees go half the way."""
-INSIDE: Final = 0.6
+INSIDE: Final = 0.5
 """The zero-moment point is led into so much of each sole, about its middle: who stands on an edge tips at once."""
 ROUNDS: Final = 4
 """Where a point is nearest to the soles changes as it is moved: so often it is looked for again."""
 STILL, SMOOTH = 0.5, 3e-6
 """What a shift (m²) and the jerk of the shifted pelvis ((m/s³)²) cost against a point (m²) outside."""
+JERK: Final = np.array([1.0, -3.0, 3.0, -1.0])
+"""The third difference of a lone shift."""
 HELD: Final = 1e8
 """What a shift costs where the pelvis rests on something."""
 LEFT: Final = 0.01
@@ -164,12 +166,8 @@ def _normal_equations(lever: Array, judged: Array, free: NDArray[np.bool_]) -> A
     bands[1, :-1] = (weight * middle * beside)[:-1] + (weight * middle * beside)[1:]
     bands[2, :-2] = (weight * beside**2)[1:-1]
     # Third differences with themselves; beyond both ends nothing is shifted.
-    bands += SMOOTH * FPS**6 * np.convolve(JERK, JERK[::-1])[len(JERK) - 1 :, None]
+    bands += SMOOTH * FPS**6 * np.correlate(JERK, JERK, mode="full")[len(JERK) - 1 :, None]
     return bands
-
-
-JERK: Final = np.diff(np.eye(1, 7, 3)[0], n=3)
-"""The third difference."""
 
 
 def _smoother(pelvis: Array) -> Array:
@@ -178,7 +176,7 @@ def _smoother(pelvis: Array) -> Array:
     found = np.zeros_like(pelvis)
     for late, share in enumerate(-JERK):
         found[late : late + len(rate)] -= share * rate
-    return SMOOTH * FPS**6 * found
+    return np.asarray(SMOOTH * FPS**6 * found)
 
 
 def _turned_back(lever: Array, judged: Array, wanted: Array) -> Array:

@@ -22,7 +22,7 @@ export function encoderWords(encoder: string | null): string {
 }
 
 export function backendWords(backend: string): string {
-  if (backend === "procedural") return "Procedural: rules and inverse kinematics. Nothing learned, nothing simulated, no balance, no force.";
+  if (backend === "procedural") return "Procedural: rules and inverse kinematics. Nothing learned, nothing simulated, no force.";
   return `Moved by the backend “${backend}”.`;
 }
 

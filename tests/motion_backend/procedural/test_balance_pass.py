@@ -28,7 +28,7 @@ ON_FEET = (Phase(PhaseKind.TOUCH, 0, FRAMES),)
 
 
 def leaning(seed: int) -> Pose:
-    """Standing on both feet with the pelvis going wherever it likes within a hand's breadth or two, from rest to rest."""
+    """Standing on both feet with the pelvis going wherever it likes within two hands, from rest to rest."""
     rng = np.random.default_rng(seed)
     steps = np.repeat(rng.uniform(-0.16, 0.16, (6, 3)) * [1.0, 0.0, 1.0], FRAMES // 6, axis=0)
     bell = np.exp(-0.5 * (np.arange(-20, 21) / 7) ** 2)
