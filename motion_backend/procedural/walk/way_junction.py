@@ -106,9 +106,11 @@ def _arc(first: Array, second: Array, arrives: Array, turn: float, radius: float
     start, side = first[-1 - before], np.sign(turn) * np.array([arrives[1], -arrives[0]])
     angle = np.linspace(0.0, abs(turn), max(int(abs(turn) * radius / SPACING), 2))[:, None]
     curve = start + radius * (np.sin(angle) * arrives + (1 - np.cos(angle)) * side)
-    nearest = int(np.argmin(np.linalg.norm(second - curve[-1], axis=1)))
+    nearest = min(int(np.argmin(np.linalg.norm(second - curve[-1], axis=1))), len(second) - 2)
     rest = second[nearest:]
-    away = smooth(SPACING * np.arange(len(rest)) / row.back_m)[:, None]
+    # However short the rest is, it ends where it is to end.
+    along = SPACING * np.arange(len(rest))
+    away = smooth(along / min(row.back_m, along[-1]))[:, None]
     return np.concatenate([first[: -1 - before], curve, (rest + (1 - away) * (curve[-1] - rest[0]))[1:]])
 
 
