@@ -121,7 +121,7 @@ def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Po
     turning = None
     if turned and float(np.hypot(goal[0] - body.place[0], goal[1] - body.place[1])) < SHORT_WAY:
         path = np.array([body.place, goal])
-    else:
+    elif not near:
         turning = _turning_place(body, path, goal, facing)
     if style.spin and not near:
         path = _spin_on_the_way(body, path, style)
