@@ -18,6 +18,8 @@ from scene_graphs.data_tables import read_table, table
 
 Fits = Callable[[Array], bool]
 """Whether a body can be at all of these points. (N, 2) as [x, z]."""
+JOINS = 2.0
+"""A way is joined from aside over so much more than it is off, at least: shorter, it would bend more than an arc."""
 
 
 @table
@@ -99,8 +101,9 @@ def _cut(first: Array, second: Array, size: float) -> Array | None:
     return np.concatenate([first[: -1 - steps], curve, second[steps + 1 :]])
 
 
-def _arc(first: Array, second: Array, arrives: Array, turn: float, radius: float) -> Array:
-    """An arc of that radius from the first way's direction round to the second's, which is joined little by little."""
+def _arc(first: Array, second: Array, arrives: Array, turn: float, radius: float) -> Array | None:
+    """An arc of that radius from the first way's direction round to the second's, which is joined little by little and
+    ends where it did; None where too little of it is left for that."""
     row, before = junction_table(), int(junction_table().before_ratio * radius / SPACING)
     before = min(before, len(first) - 1)
     start, side = first[-1 - before], np.sign(turn) * np.array([arrives[1], -arrives[0]])
@@ -108,8 +111,11 @@ def _arc(first: Array, second: Array, arrives: Array, turn: float, radius: float
     curve = start + radius * (np.sin(angle) * arrives + (1 - np.cos(angle)) * side)
     nearest = int(np.argmin(np.linalg.norm(second - curve[-1], axis=1)))
     rest = second[nearest:]
-    away = smooth(SPACING * np.arange(len(rest)) / row.back_m)[:, None]
-    return np.concatenate([first[: -1 - before], curve, (rest + (1 - away) * (curve[-1] - rest[0]))[1:]])
+    left, off = SPACING * (len(rest) - 1), curve[-1] - rest[0]
+    if left < JOINS * float(np.linalg.norm(off)):
+        return None
+    away = smooth(SPACING * np.arange(len(rest)) / min(row.back_m, left))[:, None]
+    return np.concatenate([first[: -1 - before], curve, (rest + (1 - away) * off)[1:]])
 
 
 def way_from(path: Array, yaw: float, fits: Fits) -> Array:
@@ -123,7 +129,7 @@ def way_from(path: Array, yaw: float, fits: Fits) -> Array:
         return path
     for radius in row.radii_m:
         curved = _arc(points[:1], points, ahead, turn, radius)
-        if len(points) * SPACING > 2 * radius and fits(curved):
+        if curved is not None and len(points) * SPACING > 2 * radius and fits(curved):
             return curved
     return path
 

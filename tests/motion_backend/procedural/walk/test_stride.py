@@ -147,3 +147,13 @@ def test_who_faces_elsewhere_sets_out_and_arrives_in_an_arc_where_there_is_room(
         assert np.degrees(turned.sum()) > 0.8 * abs(degrees)
         np.testing.assert_allclose(np.sort(way[[0, -1], 1]), [0.0, 4.0], atol=1e-6)
     assert way_from(straight, yaw, in_a_passage) is straight
+
+
+@pytest.mark.parametrize("length", [0.7, 0.9, 1.2, 2.0])
+def test_a_short_way_that_is_set_out_on_in_an_arc_ends_where_it_did(length: float) -> None:
+    straight = np.array([[0.0, 0.0], [0.0, length]])
+    for yaw in np.radians([40.0, 90.0, 130.0, -170.0]):
+        leaving, arriving = way_from(straight, float(yaw), everywhere), way_to(straight, float(yaw), everywhere)
+        for way in (leaving, arriving):
+            np.testing.assert_allclose(way[[0, -1]], straight, atol=1e-6)
+            assert np.linalg.norm(np.diff(way, axis=0), axis=1).max() < max(0.05, length * (len(way) == 2) + 1e-6)
