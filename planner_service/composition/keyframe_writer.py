@@ -291,7 +291,9 @@ class KeyframeWriter:
             and all(self._has(one.piece[0], read.room or part.script.room) for one in part.keyframes)
         ):
             self.parts.append((index, part))
-            for keyframe in part.keyframes:
+            leads = len(part.keyframes) > 1
+            there = leads and self._is_there(part.keyframes[0].furniture, read.room or part.script.room)
+            for keyframe in part.keyframes[there:]:
                 update = {"beat": index, "short_script": len(self.parts) - 1, "room": read.room or part.script.room}
                 self.keyframes.append(keyframe.model_copy(update=update))
             return True
@@ -307,7 +309,16 @@ class KeyframeWriter:
                 self._show(index)
                 return True
             caption = others[0]
+        self._is_there(piece, room)
         self._put(index, skill, mood, caption, piece, room)
+        return True
+
+    def _is_there(self, piece: str, room: str | None) -> bool:
+        """Whether the body has just walked to a piece; a walk to one in no certain room is then to the one in `room`."""
+        last = self.keyframes[-1] if self.keyframes else None
+        if last is None or last.skill is not Skill.LOCO or last.furniture != piece or last.room not in (None, room):
+            return False
+        self.keyframes[-1] = last.model_copy(update={"room": room})
         return True
 
     def _piece(self, read: ReadBeat, deed: Deed, skill: Skill) -> tuple[str | None, str]:

@@ -63,7 +63,8 @@ def event(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
         text = re.sub(rf"\b{day}\b", instead, text)
     state = text.removeprefix(f"{WAS} ")
     plain = state != text and len(state.split()) <= 2 and says_how(state.split()[-1])
-    head = _bare((rest if verb == "did not" else words[at:])[0])
+    goes_on = verb != WAS and _helpers().get(_bare(words[at])) == WAS  # "is sitting" was told as "sat"
+    head = _bare(rest[0] if verb == "did not" else words[at + goes_on])
     text = re.sub(_SAID, lambda _: next(quotes), text)
     return Predicate(text, frozenset(bases(head)), state if plain else "")
 

@@ -109,6 +109,11 @@ def test_somebody_of_whom_it_is_only_told_what_they_do_not_do_is_seen_standing(t
     assert all(beat.why == "it is not done" for beat in script.beats)
 
 
+def test_who_has_walked_to_a_piece_of_furniture_does_not_walk_to_it_once_more() -> None:
+    script = planned("He cooks in the kitchen, walks to the sofa and lies down on it, tired.")
+    assert [keyframe.skill.value for keyframe in script.keyframes] == ["loco", "touch", "loco", "liedown"]
+
+
 def test_wrong_requests_name_the_field() -> None:
     for wrong, field in (
         ({"short_scripts": 0}, "short_scripts"),
