@@ -8,6 +8,7 @@ from enum import StrEnum
 from typing import Any, Final, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.contact_goals import contact_goals
@@ -98,7 +99,7 @@ class History:
     def root_velocity(self) -> Array:
         """Of the pelvis in the last frame, metres a second. (3,)."""
         roots = self.root_positions[-2:]
-        return (roots[-1] - roots[0]) * FPS
+        return np.asarray((roots[-1] - roots[0]) * FPS)
 
     @property
     def angular_velocities(self) -> Array:
@@ -114,7 +115,7 @@ class History:
         return History(*both)
 
 
-def _rows(array: Array) -> Rows:
+def _rows(array: NDArray[np.floating]) -> Rows:
     last = np.round(np.asarray(array, dtype=np.float64)[-HISTORY:], _DIGITS)
     return tuple(tuple(row.ravel().tolist()) for row in last)
 

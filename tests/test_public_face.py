@@ -14,8 +14,8 @@ ROOT = Path(__file__).resolve().parents[1]
 FACES = {
     "planner_service": """Keyframe LongScript Pipeline Planned ScriptLibrary Shelves ShortScript Story StoryRequest
         write_story""",
-    "motion_backend": """Action BodyState Character ContactGoal Motion MotionBackend Posture Skeleton Skill
-        backend_names build_skeleton join load_backend read_clips read_npz write_motion""",
+    "motion_backend": """Action BodyState Character ContactGoal Director Motion MotionBackend Part PartKind Posture
+        Skeleton Skill backend_names build_skeleton join load_backend read_clips read_npz write_motion""",
     "scene_graphs": """Furniture FurnitureGraph Home Layout LayoutIndex Placed UserError built_in_index
         built_in_layouts generate_room graph_from_layout home_from_layouts read_layouts read_scene write_layouts""",
 }

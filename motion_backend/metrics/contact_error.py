@@ -17,6 +17,8 @@ THRESHOLDS = {Skill.SITDOWN: 0.20, Skill.TOUCH: 0.20, Skill.LIEDOWN: 0.30}
 HAND_OVER = 0.30
 STRICT = 0.10
 """What is near enough for strict success, whatever the skill (metres)."""
+PASSES = 0.4
+"""A walk that goes on to somewhere else is past its goal for so long when it is over (seconds)."""
 SUSTAINED = 1.0
 RISEN = (0.85, np.cos(np.radians(30)), 0.1)
 """Share of the standing height, cosine of the trunk's tilt and seconds that count as having risen."""
@@ -55,9 +57,10 @@ def outcome(action: Action, body: Kinematics) -> Outcome:
         return Outcome(done, done, done, None, None, motion.duration if done else None)
     gap = np.hypot(*(body.positions[:, 0, [0, 2]] - np.asarray(action.goal)).T)
     near = gap <= HAND_OVER
-    return _if_completed(
-        body, Outcome(bool(near[-1]), bool(near.any()), bool(gap[-1] <= STRICT), None, None, _first(near, motion.fps))
-    )
+    # Who walks on passes by.
+    end = gap[-round(PASSES * motion.fps) :].min()
+    found = Outcome(bool(end <= HAND_OVER), bool(near.any()), bool(end <= STRICT), None, None, _first(near, motion.fps))
+    return _if_completed(body, found)
 
 
 _FAILED = Outcome(False, False, False, None, None, None)

@@ -199,7 +199,7 @@ def _sinking(legs: Array, shift: Array, skeleton: Skeleton) -> Array:
     height = np.sqrt(np.maximum(length**2 - (level**2).sum(axis=-1), 0.0))
     needed = np.maximum(legs[..., 1] - height, 0.0).max(axis=1)
     if not needed.any():
-        return needed
+        return np.asarray(needed)
     reach, width = SINKS
     early = maximum_filter1d(needed, 2 * reach + 1, mode="constant")
     return np.asarray(gaussian_filter1d(early, width, mode="constant"))

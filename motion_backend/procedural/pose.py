@@ -11,6 +11,7 @@ from math import sqrt
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.rotations import Array
@@ -90,7 +91,7 @@ def concatenate(poses: list[Pose]) -> Pose:
     return Pose(**{f.name: np.concatenate([getattr(p, f.name) for p in poses]) for f in fields(Pose)})
 
 
-def smooth(u: Array | float) -> Array:
+def smooth(u: NDArray[np.floating] | float) -> Array:
     """Minimum-jerk share of the way at share u of the time (0 to 1, clipped)."""
     u = np.minimum(np.maximum(u, 0.0), 1.0)
     return np.asarray(u**3 * (10 - 15 * u + 6 * u**2))

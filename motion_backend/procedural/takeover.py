@@ -9,8 +9,9 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.backend_protocol import History
 from motion_backend.motion import FPS, Motion
+from motion_backend.procedural.arm_solver import SIDES
 from motion_backend.procedural.pose import Pose, smooth
-from motion_backend.procedural.pose_solver import SIDES, SPINE, chest_frame, solve
+from motion_backend.procedural.pose_solver import SPINE, chest_frame, solve
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, Skeleton
 

@@ -31,6 +31,7 @@ from motion_backend.motion import FPS, Action, Character, Emotion, Motion, Skill
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose_solver import solve
 from motion_backend.procedural.walk.gait import walk
+from motion_backend.procedural.walk.gait_character import gait_character
 from motion_backend.procedural.walk.walk_styles import walk_style
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
@@ -221,10 +222,10 @@ def recorded_walks(dataset: Dataset, style: str = "") -> Walks:
 
 
 def matched_walks(speeds: Array, caption: str, skeleton: Skeleton, mood: Emotion = Emotion.NEUTRAL) -> Walks:
-    """A straight walk over open ground at each of these speeds, its middle two seconds."""
+    """A straight walk over open ground at each of these speeds, each in a gait of its own, its middle two seconds."""
     motions = []
     for seed, speed in enumerate(speeds.tolist()):
-        style = replace(walk_style(mood, caption), speed=speed / skeleton.scale)
+        style = replace(walk_style(mood, caption), speed=speed / skeleton.scale, character=gait_character(seed))
         start, way = standing((0.0, 0.0), 0.0, style.bearing, skeleton), np.array([[0.0, 0.0], [0.0, 3.0 + 3 * speed]])
         pose = walk(start, way, None, style, skeleton, np.random.default_rng(seed))
         root, local = solve(pose, skeleton)

@@ -138,7 +138,7 @@ def hero_of(clauses: Sequence[Clause]) -> str:
         doing = [one for some in heroes for one in some if one.subject in busy]
         return max(doing or own, key=lambda clause: _heroic(clause, pronoun)).subject
     opens = ("a ", "an ", "one ", "my ", "our ", *(() if people else ("the ",)))
-    called = [one for one in mains[:1] if one[:1].isupper() and " " not in one and not people]  # "Wen", "Rose"
+    called = [one for one in mains[:1] if _may_be_called(one) and not people]
     opening = [one for one in mains[:1] if one.lower().startswith(opens)]
     living = [subject for subject in (*opening, *called) if _may_live(head_of(subject))]
     return next(iter([*living, *(clause.subject for clause in people)]), "")
@@ -161,7 +161,12 @@ def _is_possessed(subject: str) -> bool:
 
 
 def _may_live(head: str) -> bool:
-    return not is_known(head) and head.lower() not in theme_words()["no_heroes"]
+    return not is_known(head) and theme_words()["no_heroes"].isdisjoint((head.lower(), lemma_of(head)))
+
+
+def _may_be_called(subject: str) -> bool:
+    """Whether a word with a capital may be a name though it is a word too: "Rose", "Wen"; not "Nobody"."""
+    return subject[:1].isupper() and " " not in subject and subject.lower() not in _not_names()
 
 
 def _is_pronoun(subject: str) -> bool:

@@ -317,9 +317,12 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
 
 def _without_asides(words: list[Token], main: int) -> tuple[list[Token], list[list[Token]]]:
     """The words of a clause, and those after a noun that tell of it with a verb of their own: "the flour | the cat has
-    spilled", "a call | that never comes"."""
+    spilled", "a call | that never comes"; but "is told on the phone that he has won", which is what is said."""
+    says = any(lemma_of(word.low) in theme_words()["speech_verbs"] for word in words[main : main + 2])
     for place in range(main + 2, len(words) - 1):
         low, after = words[place].low, words[place + 1 :]
+        if says and low == "that":
+            break
         if low in _RELATIVES:
             tells = verb_place(after[:3]) == 0 or _tells(after)
         else:

@@ -45,17 +45,20 @@ class Spot:
     """touch: low, medium or high."""
 
 
-def spot_to_dict(spot: Spot | None) -> Json:
+def spot_to_dict(spot: Spot | None) -> Json | None:
     """Plain values of a spot, or None of none; what is endless is None."""
-    return spot and {name: (None if value == inf else value) for name, value in vars(spot).items()}
+    if spot is None:
+        return None
+    return {name: (None if value == inf else value) for name, value in vars(spot).items()}
 
 
-def spot_from_dict(row: Json) -> Spot | None:
+def spot_from_dict(row: Json | None) -> Spot | None:
     """The inverse of `spot_to_dict`, also once lists have come back for tuples."""
     if row is None:
         return None
-    plain = {name: inf if value is None else value for name, value in row.items()}
-    return Spot(**{name: tuple(value) if isinstance(value, list) else value for name, value in plain.items()})
+    plain: Json = {name: inf if value is None else value for name, value in row.items()}
+    plain |= {name: tuple(value) for name, value in plain.items() if isinstance(value, list)}
+    return Spot(**plain)
 
 
 def extent(part: Part, u: Point2) -> float:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -78,13 +79,13 @@ class Faulty(Glider):
 
     def advance(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
         motion, after = super().advance(home, part, upcoming, state)
-        spoilt = {
+        ways: dict[str, dict[str, Any]] = {
             "gives up": {"completed": False, "reason": "its weights are gone"},
             "nan": {"root_positions": motion.root_positions * np.float32("nan")},
             "elsewhere": {"root_positions": motion.root_positions + np.float32(3.0)},
             "never done": {"completion": 0.5},
-        }[self.spoil]
-        return replace(motion, **spoilt), after
+        }
+        return replace(motion, **ways[self.spoil]), after
 
 
 @cache
@@ -217,6 +218,7 @@ def test_an_action_of_which_nothing_is_left_is_stood_through() -> None:
 
 
 def test_what_follows_a_part_that_failed_is_left_out_and_the_posture_stays() -> None:
+    assert SIT.spot is not None
     nowhere = replace(SIT, spot=replace(SIT.spot, standing=(50.0, 50.0), point=(50.0, 0.4, 50.4)))
     motion, state = DIRECTOR.act(HOME, nowhere, after(HOME))
     assert not motion.completed

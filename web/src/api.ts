@@ -101,7 +101,7 @@ export interface Report {
     readonly contact_error: number | null;
     readonly pen_mean: number;
     readonly pen_share: number;
-    readonly skate_ratio_loco: number | null;
+    readonly slip: number | null;
     readonly seconds: number;
   };
   readonly keyframes: readonly KeyframeFigures[];

@@ -38,7 +38,7 @@ export function showReport(section: HTMLElement, story: Story, seek: (keyframe: 
     [`${motion.reached} of ${motion.keyframes}`, "moments reached their goal"],
     ...(motion.contact_error === null ? [] : ([[centimetres(motion.contact_error), "from where hands, seat and back should touch, on average"]] as [string, string][])),
     [centimetres(motion.pen_mean), `inside furniture on average; ${percent(motion.pen_share)} of the frames touch any`],
-    ...(motion.skate_ratio_loco === null ? [] : ([[percent(motion.skate_ratio_loco), "of walking is a foot sliding"]] as [string, string][])),
+    ...(motion.slip === null ? [] : ([[`${motion.slip.toFixed(1)} cm/s`, "standing feet slip; people's about 3"]] as [string, string][])),
     [`${Math.round(motion.seconds)} s`, "of motion at 30 frames a second"],
   ];
   const remarks = report.keyframes.flatMap((figure) => remark(figure, story.keyframes[figure.keyframe], seek));

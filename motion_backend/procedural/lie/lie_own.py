@@ -59,9 +59,12 @@ def _none() -> Array:
     return np.zeros(2)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class OwnWay:
-    """What one time of lying has of its own; nothing by itself. Pairs are left and right, or below and above."""
+    """What one time of lying has of its own; nothing by itself. Pairs are left and right, or below and above.
+
+    No two are the same, whatever was drawn.
+    """
 
     askew: float = 0.0
     """Of the body to the left, seen from above (radians)."""
@@ -78,6 +81,10 @@ class OwnWay:
     side_knee: float = 0.0
     hand_along: Array = field(default_factory=_none)
     hand_across: Array = field(default_factory=_none)
+
+
+NOBODY: Final = OwnWay()
+"""Who lies as the tables say."""
 
 
 def drawn_way(own: LieOwn, rng: np.random.Generator) -> OwnWay:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from motion_backend.motion import Emotion
 from motion_backend.procedural.emotion_style import AT_EASE, Bearing, bearing_of
-from motion_backend.procedural.lie.lie_own import LieOwn, OwnWay, drawn_way
+from motion_backend.procedural.lie.lie_own import NOBODY, LieOwn, OwnWay, drawn_way
 from motion_backend.procedural.style_sheet import Radians, read_style_sheet
 
 
@@ -27,7 +27,7 @@ class Lying:
     nod: Radians = 0.0
     turn: Radians = 0.0
     """How far the head is lifted, and turned to the left, from where it rests."""
-    own: OwnWay = field(default_factory=OwnWay)
+    own: OwnWay = NOBODY
 
 
 def lie_style(emotion: Emotion, caption: str) -> Lying:

@@ -26,9 +26,12 @@ def _pair() -> Array:
     return np.zeros(2)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class OwnSeat:
-    """What one time of sitting has of its own; nothing by itself. Pairs are left and right, metres at 1.70 m."""
+    """What one time of sitting has of its own; nothing by itself. Pairs are left and right, metres at 1.70 m.
+
+    No two are the same, whatever was drawn.
+    """
 
     lean: float = 0.0
     """How much farther the trunk folds (share)."""

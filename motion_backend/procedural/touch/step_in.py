@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.procedural.held_poses import UP
@@ -74,7 +75,7 @@ def stepped(whole: Pose, lengths: tuple[int, int, int], step: Step, row: StepIn)
     return replace(whole, ankles=ankles, planted=planted)
 
 
-def _share(at: Array, length: int, begins: float, ends: float) -> Array:
+def _share(at: NDArray[np.integer], length: int, begins: float, ends: float) -> Array:
     return smooth((at / length - begins) / (ends - begins))
 
 

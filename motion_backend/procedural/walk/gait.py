@@ -370,7 +370,7 @@ def _wander(frames: int, rng: np.random.Generator) -> Array:
         one * drift(frames, row.hz, FPS, rng) + other * drift(frames, row.trembles_hz, FPS, rng)
         for one, other in zip(slow, quick, strict=True)
     ]
-    return np.radians(np.stack(wandered, axis=1))
+    return np.asarray(np.radians(np.stack(wandered, axis=1)))
 
 
 def _support(route: Route, steps: Steps, style: Walk, moved: tuple[Array, Array, Array]) -> Array:

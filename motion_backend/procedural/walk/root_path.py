@@ -200,8 +200,10 @@ def _walk(points: Array, tangent: Array, yaw: float, last_turn: float, pace: tup
     along = np.interp(at, time, arc)
     position = np.stack([np.interp(along, arc, points[:, axis]) for axis in (0, 1)], axis=1)
     heading = np.interp(along, arc, tangent)
-    heading = heading + float(rotations.wrap(yaw - tangent[0])) * (1 - smooth(along / row.turn_m))
-    heading = heading + last_turn * smooth((along - (arc[-1] - row.turn_m)) / row.turn_m)
+    # On a way that is shorter all of it is for turning.
+    turns = min(row.turn_m, float(arc[-1]))
+    heading = heading + float(rotations.wrap(yaw - tangent[0])) * (1 - smooth(along / turns))
+    heading = heading + last_turn * smooth((along - (arc[-1] - turns)) / turns)
     # Start from the yaw as given, not wrapped, so that headings of neighbouring pieces join.
     heading = heading + (yaw - float(rotations.wrap(yaw - tangent[0])) - tangent[0])
     return Route(position, heading, np.interp(at, time, limit))

@@ -76,12 +76,12 @@ def _is_free(points: Array | Sequence[Array], walkable: Walkable) -> bool:
 
 AT_THE_SPOT = 0.04
 """A body this near to a standing point (metres) need not walk to it."""
-FACING_IT = 0.12
+FACING_IT = 0.22
 """And this near to the wanted yaw (radians) need not turn."""
 SHORT_WAY = 0.20
-"""A body that faces where it will face steps straight to a place nearer than this (metres)."""
+"""A body that has not to turn round steps straight to a place nearer than this (metres)."""
 TURNING_ROUND = 1.2
-"""A body that arrives turned away from where it will face by more (radians) turns before the last step."""
+"""A body that is, or arrives, turned away from where it will face by more (radians) turns before the last step."""
 NARROW_ARMS = {
     "open": ("embracing", 0.80),
     "balance": ("balance_ahead", 0.80),
@@ -107,9 +107,9 @@ def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Po
 
     Where the way leads `onward` to another place, the body passes by this one in stride, if there is room for that.
     """
-    near = float(np.hypot(goal[0] - body.place[0], goal[1] - body.place[1])) < AT_THE_SPOT
-    turned = facing is None or abs(float(rotations.wrap(facing - body.yaw))) < FACING_IT
-    if near and turned:
+    away = float(np.hypot(goal[0] - body.place[0], goal[1] - body.place[1]))
+    near, to_turn = away < AT_THE_SPOT, 0.0 if facing is None else abs(float(rotations.wrap(facing - body.yaw)))
+    if near and to_turn < FACING_IT:
         if body.stride is not None:
             halt(body, action)
         return
@@ -119,7 +119,7 @@ def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Po
     style = replace(style, bearing=replace(style.bearing, arms=arms), character=gait_character(body.seed))
     path = _way_to(body, goal) if not near else np.array([body.place, goal])
     turning = None
-    if turned and float(np.hypot(goal[0] - body.place[0], goal[1] - body.place[1])) < SHORT_WAY:
+    if away < SHORT_WAY and to_turn < TURNING_ROUND:
         path = np.array([body.place, goal])
     elif not near:
         turning = _turning_place(body, path, goal, facing)

@@ -65,8 +65,8 @@ def test_who_lies_does_what_the_words_say(place: str) -> None:
 
 
 def test_a_row_that_judges_no_caption_is_no_row() -> None:
-    every = [(skill, caption) for skill, some in captions().items() for caption in some]
-    assert [row.words for row in predicates() if not any(row.is_of(*one) for one in every)] == []
+    every = [(Skill(skill), caption) for skill, some in captions().items() for caption in some]
+    assert [row.words for row in predicates() if not any(row.is_of(skill, caption) for skill, caption in every)] == []
 
 
 def test_what_is_missed_is_excused_by_a_note_of_its_own_keyframe_and_of_its_own_kind() -> None:

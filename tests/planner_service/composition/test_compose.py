@@ -95,11 +95,18 @@ def test_a_seed_gives_the_same_script_again_and_seeds_differ() -> None:
     assert len({tuple(keyframe.caption for keyframe in script.keyframes) for script in scripts}) > 1
 
 
-@for_each("theme", ["asdf qwer zxcv", "A banana.", "🚀🚀 blorf", "The universe expands.", "He does not sit down."])
+@for_each("theme", ["asdf qwer zxcv", "A banana.", "🚀🚀 blorf", "The universe expands.", "Nobody sits."])
 def test_a_theme_of_which_nothing_can_be_acted_is_refused_by_its_words(theme: str) -> None:
     with pytest.raises(ThemeError, match=r"Try for example: A person") as error:
         planned(theme)
     assert theme.rstrip(".").split()[-1] in str(error.value)
+
+
+@for_each("theme", ["He does not sit down.", "She never lies down.", "Anna is not sitting."])
+def test_somebody_of_whom_it_is_only_told_what_they_do_not_do_is_seen_standing(theme: str) -> None:
+    script = planned(theme)
+    assert [(keyframe.skill.value, keyframe.caption) for keyframe in script.keyframes] == [("loco", "stand still")]
+    assert all(beat.why == "it is not done" for beat in script.beats)
 
 
 def test_wrong_requests_name_the_field() -> None:

@@ -78,7 +78,13 @@ def test_the_report_says_what_stood_in_and_the_story_keeps_its_words(monkeypatch
     assert walk["performed_as"] == story.actions[0].caption
     assert walk["performed_as"] in captions()["loco"]
     assert sitting["performed_as"] is None
-    assert walk["phases"][0] == {"part": "walk", "start": 0, "stop": walk["phases"][0]["stop"]}
+    assert walk["phases"][0] == {
+        "part": "walk",
+        "start": 0,
+        "stop": walk["phases"][0]["stop"],
+        "backend": "procedural",
+        "fallback": None,
+    }
     assert sitting["phases"][-1]["stop"] == len(story.motion)
     assert walk["notes"] == sitting["notes"] == []
 
