@@ -283,10 +283,15 @@ class _Stage:
 
     def _anywhere(self, room: int, at: Point | None, onward: Point | None) -> Point:
         """A place to wander to: some way off, with room around it, not through the whole house, and not one that the
-        body would have to turn back at to get where it goes next."""
-        start = at or self.walkable.random_point(self.rng, room)
-        points = [self.walkable.random_point(self.rng, room) for _ in range(12)]
-        points = [point for point in points if self.walkable.reachable(start, point)]
+        body would have to turn back at to get where it goes next.
+
+        A body that cannot get into the room from where it is is told of a place there all the same: the motion says so.
+        """
+        found = [self.walkable.random_point(self.rng, room) for _ in range(12)]
+        start = at
+        if start is None or not any(self.walkable.reachable(start, point) for point in found):
+            start = self.walkable.random_point(self.rng, room)
+        points = [point for point in found if self.walkable.reachable(start, point)]
         if not points:
             raise UnreachableError(f"nothing in room {room} can be walked to from {start}")
 

@@ -9,10 +9,11 @@ import pytest
 from for_each import for_each
 
 from motion_backend.motion import Skill
+from motion_backend.scene import scene_of
 from planner_service.grounding.keyframes_to_actions import Place, UnreachableError, act, can_stand, height_of
 from planner_service.scripts.script import Keyframe
 from scene_graphs.affordances.affordances import spots
-from scene_graphs.home import Home, home_from_layouts
+from scene_graphs.home import Home, Room, home_from_layouts
 from scene_graphs.layout import Layout, Placed
 from scene_graphs.navigation.path_planner import Walkable
 
@@ -87,6 +88,23 @@ def test_wandering_goes_some_way_and_stays_on_free_floor() -> None:
     assert WALKABLE.is_free(first.goal)
     assert WALKABLE.is_free(second.goal)
     assert np.hypot(first.goal[0] - second.goal[0], first.goal[1] - second.goal[1]) > 1.0
+
+
+def test_the_first_walk_sets_out_from_where_the_body_begins() -> None:
+    for seed in range(8):
+        (walk,) = grounded(("loco", "walk", None), seed=seed)
+        begins = scene_of(HOME).beginning(seed)[0]
+        assert walk.goal is not None
+        assert np.hypot(walk.goal[0] - begins[0], walk.goal[1] - begins[1]) > 1.0
+
+
+def test_a_body_that_begins_shut_in_makes_no_home_unusable() -> None:
+    """No door leads from the first room to the second."""
+    room = Layout("one", "study", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)))
+    home = Home((Room(room, (0.0, 0.0, 0.0), 0.0), Room(replace(room, id="two"), (5.0, 0.0, 0.0), 0.0)), ())
+    (walk,) = act([keyframe("loco", "walk")], [Place(1)], home, 0)
+    assert walk.goal is not None
+    assert home.room_at(walk.goal) == 1
 
 
 @pytest.mark.parametrize("skill", ["sitdown", "liedown"])

@@ -196,7 +196,7 @@ def test_a_body_of_other_height_steps_straight_to_where_it_sits_down(height: flo
     x, _, z = action.spot.point
     # The seat faces along z: to the sides there is only the weight that goes over either foot.
     assert np.abs(motion.root_positions[:, 0] - x).max() < 0.04
-    assert np.abs(np.diff(motion.root_positions[:, 2])).sum() < 0.42 * height / 1.7 + 0.06
+    assert np.abs(np.diff(motion.root_positions[:, 2])).sum() < 0.42 * height / 1.7 + 0.08
     assert motion.root_positions[-1, 2] == pytest.approx(z, abs=0.02)
 
 

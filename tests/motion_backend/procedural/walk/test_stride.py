@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from for_each import for_each
 
+from motion_backend import rotations
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import FPS, Emotion, Motion
 from motion_backend.procedural.emotion_style import Bearing
@@ -16,6 +17,7 @@ from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose import Pose, concatenate
 from motion_backend.procedural.pose_solver import solve
 from motion_backend.procedural.walk.gait import walk_on
+from motion_backend.procedural.walk.root_path import plan_route
 from motion_backend.procedural.walk.stride import Stride
 from motion_backend.procedural.walk.walk_styles import walk_style
 from motion_backend.procedural.walk.way_junction import through_way, way_from, way_to
@@ -157,3 +159,13 @@ def test_a_short_way_that_is_set_out_on_in_an_arc_ends_where_it_did(length: floa
         for way in (leaving, arriving):
             np.testing.assert_allclose(way[[0, -1]], straight, atol=1e-6)
             assert np.linalg.norm(np.diff(way, axis=0), axis=1).max() < max(0.05, length * (len(way) == 2) + 1e-6)
+
+
+@for_each("length", [0.36, 0.45, 0.6, 0.9])
+def test_a_way_however_short_is_ended_facing_what_it_is_to_face(length: float) -> None:
+    path = np.array([[0.0, 0.0], [0.0, length]])
+    for begins, ends in ((0.5, 0.8), (-0.8, 0.3), (2.5, 0.0), (3.1, 3.0)):
+        route = plan_route(path, begins, ends, 1.0, FPS)
+        assert abs(rotations.wrap(route.heading[-1] - ends)) < 0.01
+        assert abs(rotations.wrap(route.heading[0] - begins)) < 0.15
+        np.testing.assert_allclose(route.position[-1], path[-1], atol=1e-6)
