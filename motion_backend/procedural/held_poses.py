@@ -229,6 +229,17 @@ def idle(pose: Pose, seconds: float, size: float, rng: np.random.Generator, fps:
     return replace(held, spine=spine, head=head, pelvis=held.pelvis + sway, arms=arms)
 
 
+def alive(motion: Pose, size: float, rng: np.random.Generator, fps: int) -> Pose:
+    """Frames that breathe and shift their weight as `idle` does, from none at all at both ends; hands, feet and eyes
+    are where they were."""
+    first, frames = motion.at(0), len(motion)
+    held = idle(first, frames / fps, size, rng, fps)
+    from_ends = np.minimum(np.arange(frames), np.arange(frames)[::-1]) / fps
+    share = smooth(from_ends / idle_table().ease_s)[:, None]
+    spine = motion.spine + share * (held.spine - first.spine)
+    return replace(motion, spine=spine, pelvis=motion.pelvis + share * (held.pelvis - first.pelvis))
+
+
 def _wander(frames: int, row: Idle, rng: np.random.Generator, fps: int) -> Array:
     """Slow wandering with small quick corrections on it, of unit size. (T,)."""
     return drift(frames, row.drift_hz, fps, rng) + row.quick_share * drift(frames, row.quick_hz, fps, rng)

@@ -9,9 +9,10 @@ from typing import Final
 import numpy as np
 
 from motion_backend.backend_protocol import Part
-from motion_backend.motion import Action, PhaseKind
+from motion_backend.motion import FPS, Action, PhaseKind
 from motion_backend.procedural.body_state import Body, Point, spot_of
 from motion_backend.procedural.emotion_style import bearing_of
+from motion_backend.procedural.held_poses import alive
 from motion_backend.procedural.touch.hand_captions import Laid, handling_of, holding, steadies, with_both_hands
 from motion_backend.procedural.touch.hand_contacts import free_palm, free_stroke, is_top, other_hand
 from motion_backend.procedural.touch.kneel import place_to_kneel
@@ -76,7 +77,8 @@ def reach(body: Body, part: Part) -> None:
     laid = replace(laid, stroke=free_stroke(obstacles, spot, laid))
     hold = max(part.hold, MIN_HOLD)
     manner = Manner(bearing, hold, doing, prone)
-    body.add(touch(body.pose, laid, manner, body.skeleton, depth, touch_keys(), body.rng))
+    touched = touch(body.pose, laid, manner, body.skeleton, depth, touch_keys(), body.rng)
+    body.add(alive(touched, bearing.restless, body.rng, FPS))
 
 
 def _knelt_at(body: Body, action: Action) -> Spot | None:
