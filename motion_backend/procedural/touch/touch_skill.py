@@ -26,6 +26,8 @@ REACHED_DOWN = 1.12
 """An arm goes down to what is lower than this (metres at 1.70 m), so that its fingers point down a front."""
 OVERHEAD: Final = 1.65
 """To what is lower nobody stretches (metres at 1.70 m)."""
+CALM: Final = 0.5
+"""How restless one is whose hand is on something, against the same mood with the hands free."""
 MIN_HOLD: Final = 1.2
 """A hand stays at least so long (seconds)."""
 _HEIGHT: Final = re.compile(r"\b(?:low|medium|high)\b", re.IGNORECASE)
@@ -78,7 +80,7 @@ def reach(body: Body, part: Part) -> None:
     hold = max(part.hold, MIN_HOLD)
     manner = Manner(bearing, hold, doing, prone)
     touched = touch(body.pose, laid, manner, body.skeleton, depth, touch_keys(), body.rng)
-    body.add(alive(touched, bearing.restless, body.rng, FPS))
+    body.add(alive(touched, CALM * bearing.restless, body.rng, FPS))
 
 
 def _knelt_at(body: Body, action: Action) -> Spot | None:

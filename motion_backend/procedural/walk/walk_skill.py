@@ -76,7 +76,7 @@ def _is_free(points: Array | Sequence[Array], walkable: Walkable) -> bool:
 
 AT_THE_SPOT = 0.04
 """A body this near to a standing point (metres) need not walk to it."""
-FACING_IT = 0.22
+FACING_IT = 0.12
 """And this near to the wanted yaw (radians) need not turn."""
 SHORT_WAY = 0.20
 """A body that has not to turn round steps straight to a place nearer than this (metres)."""
