@@ -179,7 +179,7 @@ def _refuse_foreign(text: str) -> None:
     foreign = [word for word in words if word in theme_words()["foreign"]]
     plain = [token.low for token in tokens_of(text) if token.text.isalpha() and token.text.islower()]
     if len(plain) > 3 and 2 * sum(map(is_known_word, plain)) < len(plain):
-        raise ThemeError(f"{text[:60]!r} is not English. {LANGUAGE}")
+        raise ThemeError(f"most words of {text[:60]!r} are no everyday English. {LANGUAGE}")
     if not any(re.search(r"[a-z]", word) for word in words) or len(foreign) >= max(2, 0.2 * len(words)):
         raise ThemeError(f"{text[:60]!r} is not English. {LANGUAGE}")
     if len(_CODE.findall(text)) > max(3, len(words) / 3):
