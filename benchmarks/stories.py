@@ -20,7 +20,7 @@ from planner_service.output.story_export import beats_of
 from planner_service.output.storyboard import storyboard
 from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, judge, move
 
-PLAN_MS, SPEED = 300.0, 100.0
+PLAN_MS, SPEED = 300.0, 40.0
 REACHED, CONTACT_CM, PEN_MEAN_CM, PEN_SHARE, SKATE = 95.0, 3.0, 2.0, 5.0, 5.0
 FILM_MS, FILM_MB = 300.0, 1.5
 MINUTE = 60
