@@ -29,6 +29,7 @@ class Limit:
 
 
 LIMITS: Final = (
+    Limit("caption_kept", least=0.95),
     Limit("reached", least=0.98, skills=(Skill.SITDOWN,)),
     Limit("reached", least=0.97, skills=(Skill.LIEDOWN,)),
     Limit("reached", least=0.98, skills=(Skill.TOUCH,)),

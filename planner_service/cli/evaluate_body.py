@@ -26,12 +26,14 @@ if TYPE_CHECKING:
     from planner_service.evaluation.trials import Performance
 
 FIGURES = (
+    "caption_kept",
     "reached", "reached_any", "reached_strict", "contact_error", "contact_mean", "execution_time", "skate_ratio",
     "skate", "slip", "pen_mean", "pen_share", "pen_max", "skin_pen_share", "skin_pen_max", "floor_pen", "floating",
     "self_pen_share", "self_pen_max", "limits_share", "joint_speed", "frozen_share", "zmp_upright", "zmp_rising",
     "jerk", "jerk_peak", "jerk_against_real", "seam_jump", "seam_speed_jump", "bone_deviation",
 )  # fmt: skip
 UNITS = {
+    "caption_kept": "%",
     "reached": "%", "reached_any": "%", "reached_strict": "%", "skate_ratio": "%", "pen_share": "%",
     "self_pen_share": "%", "limits_share": "%", "contact_error": "cm", "pen_mean": "cm", "pen_max": "cm",
     "floor_pen": "cm", "floating": "cm", "self_pen_max": "cm", "seam_jump": "cm", "bone_deviation": "cm",

@@ -23,6 +23,7 @@ from motion_backend.body.self_collision import deepest_pair
 from motion_backend.director import Director
 from motion_backend.emotion_words import emotion_of
 from motion_backend.metrics import story_metrics
+from motion_backend.metrics.caption_predicates import judge_caption
 from motion_backend.metrics.joint_speed import fastest_joint
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.skin_penetration import THIN, skin_penetration
@@ -208,7 +209,10 @@ def perform(trial: Trial) -> Performance:
     around, body = join([led[-1].part(max(len(led[-1]) - FPS, 0), len(led[-1])), motion]), Kinematics.of(motion)
     joint, beyond = worst_joint(motion.local_rotations)
     skin = skin_penetration(motion, actions[-1], where.shapes)
+    verdict = judge_caption(motion, actions[-1], trial.caption)
     besides: dict[str, float | str | None] = {
+        "caption_kept": None if verdict is None else float(verdict.kept),
+        "caption_missed": "" if verdict is None or verdict.kept else "; ".join(verdict.missed),
         "jerk_against_real": jerk_against_real(body) if trial.skill is Skill.LOCO else None,
         "skin_pen_share": skin.share,
         "skin_pen_max": skin.most,
