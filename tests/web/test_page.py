@@ -18,7 +18,10 @@ from running import PATIENCE, RunningService, finished
 
 HERE = Path(__file__).parent
 PAGE = Path(__file__).parents[2] / "planner_service" / "page" / "index.html"
-THEME = "A person is happy at first, but hears on the phone that the job interview went wrong and becomes very sad."
+THEME = (
+    "She comes home happy, walks around and talks on the phone about the interview, sits down on the sofa, cries "
+    "and lies down on the bed."
+)
 NONSENSE = "asdf qwer zxcv"
 LONG = (
     "He wakes up, reads at the desk, sits on the sofa, argues on the phone, drinks, dances, tidies the shelf, "

@@ -92,6 +92,8 @@ NARROW_ARMS = {
 """What arms do where elbows or hands would meet furniture, and the clearance (metres) they need."""
 STAYING = 0.7
 """How long arms take into the pose they are held in where the body stays, and out of it (seconds)."""
+RUNS, ROOM_TO_RUN = 2.0, 6.0
+"""Who is to be faster (m/s) runs, and needs a way so long (metres) to come to that speed and to stop from it."""
 HALTS = 0.6
 """How far a walk goes on that has to stop (metres)."""
 ELBOW_ROOM = 0.26
@@ -118,6 +120,8 @@ def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Po
     arms = arms_on_the_way(body.pose, style.bearing.arms)
     style = replace(style, bearing=replace(style.bearing, arms=arms), character=gait_character(body.seed))
     path = _way_to(body, goal) if not near else np.array([body.place, goal])
+    if style.speed > RUNS and float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum()) < ROOM_TO_RUN:
+        body.note("no room to run: the way is too short")
     turning = None
     if away < SHORT_WAY and to_turn < TURNING_ROUND:
         path = np.array([body.place, goal])
