@@ -19,8 +19,8 @@ from running import PATIENCE, RunningService, finished
 HERE = Path(__file__).parent
 PAGE = Path(__file__).parents[2] / "planner_service" / "page" / "index.html"
 THEME = (
-    "She comes home happy, walks around and talks on the phone about the interview, sits down on the sofa, cries "
-    "and lies down on the bed."
+    "A person is happy at first and walks about the bedroom, opens the wardrobe, hears on the phone that the job "
+    "interview went wrong, sits down on the bed, very sad, and lies down."
 )
 NONSENSE = "asdf qwer zxcv"
 LONG = (
