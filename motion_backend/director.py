@@ -6,6 +6,7 @@ from whom is decided here alone.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -16,11 +17,14 @@ from motion_backend.backends import DEFAULT_BACKEND, load_backend
 from motion_backend.contact_goals import contact_goals
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import Action, Character, Motion, Phase, PhaseKind, Posture, join
+from motion_backend.scene import scene_of
 from motion_backend.state_machine import ENDS, parts_of, shortfall, time_limit
 from scene_graphs.home import Home
 
 MAX_JUMP = 0.25
 """A pelvis that begins farther from where it was (metres) has not gone on from there."""
+PACES = 3
+"""Who paces goes a way so many times."""
 STANDS = 1.0
 """Seconds that a body stands for an action of which nothing is left to do."""
 Step = tuple[Motion, BodyState]
@@ -126,10 +130,12 @@ class Director:
 def _windows(backend: MotionBackend, asked: Request) -> Asking:
     """One window after the other until the part is done (LINGO A.5) or has taken too long."""
     motion, state = yield backend, asked
-    windows, limit = [motion], time_limit(asked.part, _way(asked))
-    while windows[-1].completion < 1 and sum(window.duration for window in windows) <= limit:
+    windows, seconds = [motion], motion.duration
+    # A window without a frame would be followed by others for ever.
+    while windows[-1].completion < 1 and len(windows[-1]) and not _too_long(seconds, asked):
         motion, state = yield backend, replace(asked, state=state)
         windows.append(motion)
+        seconds += motion.duration
     return replace(join(windows), completion=windows[-1].completion), state
 
 
@@ -137,25 +143,38 @@ def fault(motion: Motion, asked: Request) -> str:
     """Why what was made for a part cannot stand; empty where it can."""
     if not motion.completed:
         return motion.reason
+    if motion.completion < 1:
+        return f"the {asked.part.kind} was not done after {motion.duration:.0f} s"
     if not len(motion):
         return ""
+    shapes = (motion.root_positions.shape, motion.local_rotations.shape, motion.contacts.shape)
+    frames, joints = len(motion), len(motion.skeleton.names)
+    if shapes != ((frames, 3), (frames, joints, 4), (frames, 4)):
+        return f"its arrays have the shapes {shapes}"
     arrays = (motion.root_positions, motion.local_rotations, motion.contacts)
     if not all(np.isfinite(array).all() for array in arrays):
         return "its motion has numbers that are not finite"
     gap = float(np.linalg.norm(motion.root_positions[0] - asked.state.history.root_positions[-1]))
     if gap > MAX_JUMP:
         return f"it begins {gap:.1f} m from where the body is"
-    if motion.completion < 1:
-        return f"the {asked.part.kind} was not done after {motion.duration:.0f} s"
+    if _too_long(motion.duration, asked):
+        return f"the {asked.part.kind} took {motion.duration:.0f} s"
     return ""
 
 
+def _too_long(seconds: float, asked: Request) -> bool:
+    # The way is only looked for where somebody takes his time.
+    return seconds > time_limit(asked.part, 0.0) and seconds > time_limit(asked.part, _way(asked))
+
+
 def _way(asked: Request) -> float:
-    """Metres to walk for a part, corners and turning back counted in roughly."""
-    if asked.part.goal is None:
-        return 0.0
+    """Metres to walk for a part, pacing there and back counted in."""
     x, _, z = asked.state.pelvis
-    return 3 * float(np.hypot(asked.part.goal[0] - x, asked.part.goal[1] - z))
+    walkable = scene_of(asked.home).walkable
+    if asked.part.goal is None or not walkable.reachable((x, z), asked.part.goal):
+        return 0.0
+    path = walkable.path((x, z), asked.part.goal)
+    return PACES * float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
 
 
 def _labelled(motion: Motion, part: Part, backend: MotionBackend, fallback: str, why: str) -> Motion:
@@ -201,6 +220,14 @@ def segments_of(motion: Motion) -> tuple[Segment, ...]:
         if not found or found[-1] != segment:
             found.append(segment)
     return tuple(found)
+
+
+def shares(motion: Motion) -> dict[str, float]:
+    """The share of a motion's frames that each backend made; empty where nobody knows."""
+    frames = Counter[str]()
+    for phase in motion.phases:
+        frames[phase.backend] += phase.stop - phase.start
+    return {name: round(count / len(motion), 4) for name, count in frames.most_common() if name}
 
 
 def _advance(backend: MotionBackend, asked: Request) -> Step:

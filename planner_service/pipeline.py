@@ -8,7 +8,7 @@ from typing import Any, get_args
 
 from motion_backend.backends import DEFAULT_BACKEND, require_backend
 from motion_backend.body.scene_collision import Obstacles
-from motion_backend.director import Director
+from motion_backend.director import Director, shares
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.story_figures import story_figures
 from motion_backend.motion import Action, Character, Motion, join
@@ -310,4 +310,5 @@ def judge(planned: Planned, actions: Sequence[Action], motions: Sequence[Motion]
         frame += len(motion)
     whole = join(list(motions))
     report = story_metrics.summarise(figures) | story_figures(whole, actions, segments).to_dict()
+    report["made_by"] = shares(whole)
     return Story(planned, tuple(actions), whole, tuple(segments), tuple(figures), report)

@@ -152,12 +152,13 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
     for line in made.planned.stage.explain():
         console.print(f"  {line}", highlight=False)
     report = made.report
+    movers = _movers(report["made_by"], made.planned.request.backend)
     contact = "–" if report["contact_error"] is None else f"{100 * report['contact_error']:.1f} cm"
     console.print(
         f"\n{report['reached']} of {report['keyframes']} keyframes reached · contact error {contact} · "
         f"inside furniture {100 * report['pen_mean']:.1f} cm mean, {100 * report['pen_share']:.1f} % of frames · "
         f"standing feet slip {report['slip']:.1f} cm/s · {report['seconds']:.0f} s of motion\n"
-        f"planner: {made.planned.script.planner} · motion: {about(made.planned.request.backend)} · "
+        f"planner: {made.planned.script.planner} · motion: {_movers(report['made_by'], made.planned.request.backend)} · "
         f"encoder: {made.planned.script.encoder}",
         highlight=False,
     )
@@ -168,3 +169,9 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
     for note in made.motion.notes:
         console.print(f"done otherwise: keyframe {note.keyframe}: {note.words}", highlight=False)
     console.print(f"\nwritten to {files[0].parent}/: {', '.join(file.name for file in files)}", highlight=False)
+
+
+def _movers(made_by: dict[str, float], asked: str) -> str:
+    """Who moved the body: the backend that was asked for, and for how much of the time another stood in for it."""
+    others = [f"{share:.0%} of the time {about(name)} in its place" for name, share in made_by.items() if name != asked]
+    return ", ".join([about(asked), *others])
