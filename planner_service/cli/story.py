@@ -158,7 +158,7 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
         f"\n{report['reached']} of {report['keyframes']} keyframes reached · contact error {contact} · "
         f"inside furniture {100 * report['pen_mean']:.1f} cm mean, {100 * report['pen_share']:.1f} % of frames · "
         f"standing feet slip {report['slip']:.1f} cm/s · {report['seconds']:.0f} s of motion\n"
-        f"planner: {made.planned.script.planner} · motion: {_movers(report['made_by'], made.planned.request.backend)} · "
+        f"planner: {made.planned.script.planner} · motion: {movers} · "
         f"encoder: {made.planned.script.encoder}",
         highlight=False,
     )
