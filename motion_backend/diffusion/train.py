@@ -1,0 +1,328 @@
+"""The training loop (LINGO A.6): Adam with a falling rate, a slow average of the weights, a checkpoint now and then.
+
+What is drawn in a step depends on the seed and the step alone, so that a run that was broken off goes on as if it had
+not been. A loss that is not finite ends it, with its batch and the last good weights kept.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import torch
+from safetensors.torch import save_file
+from torch import Tensor, nn
+
+from motion_backend.backend_protocol import PartKind
+from motion_backend.diffusion.body_kinematics import Kinematics
+from motion_backend.diffusion.checkpoint import DEVIATION, MEAN, CheckpointError, Weights, read_tensors, save_weights
+from motion_backend.diffusion.completion_scheduler import CompletionScheduler, SchedulerSizes
+from motion_backend.diffusion.conditions import Conditions, MadeOf
+from motion_backend.diffusion.denoiser import Denoiser, DenoiserSizes
+from motion_backend.diffusion.losses import LossWeights, losses
+from motion_backend.diffusion.motion_features import CONTACTS, HISTORY, PLACES, ROOT, TURNS
+from motion_backend.diffusion.noise_schedule import NoiseSchedule
+from motion_backend.diffusion.sampler import Scale
+from motion_backend.diffusion.windows import Batch, WindowBank, Windows
+from scene_graphs.errors import UserError
+
+Shares = Mapping[tuple[MadeOf, PartKind], float]
+WALK_SHARES: Final[Shares] = {
+    (MadeOf.RECORDED, PartKind.WALK): 0.25, (MadeOf.MATCHED, PartKind.WALK): 0.6,
+    (MadeOf.PROCEDURAL, PartKind.WALK): 0.15,
+}  # fmt: skip
+"""Of windows where only walking is learned."""
+SHARES: Final[Shares] = {
+    (MadeOf.RECORDED, PartKind.WALK): 0.08, (MadeOf.MATCHED, PartKind.WALK): 0.12,
+    (MadeOf.PROCEDURAL, PartKind.WALK): 0.15, (MadeOf.PROCEDURAL, PartKind.TURN): 0.02,
+    (MadeOf.RECORDED, PartKind.REACH): 0.03, (MadeOf.KEYED, PartKind.SIT): 0.02, (MadeOf.KEYED, PartKind.LIE): 0.01,
+    (MadeOf.KEYED, PartKind.RISE): 0.01, (MadeOf.KEYED, PartKind.REACH): 0.01,
+    (MadeOf.PROCEDURAL, PartKind.SIT): 0.21, (MadeOf.PROCEDURAL, PartKind.LIE): 0.12,
+    (MadeOf.PROCEDURAL, PartKind.RISE): 0.13, (MadeOf.PROCEDURAL, PartKind.REACH): 0.13,
+}  # fmt: skip
+"""Of windows where all skills are learned; those of which there is no motion fall to the others."""
+FLOORS: Final = ((ROOT, 0.1), (TURNS, 0.04), (PLACES, 0.02), (CONTACTS, 0.3))
+"""Deviations that no feature goes below: what hardly varies is not blown up."""
+SAMPLED: Final = 2048
+"""Windows that mean and deviation are taken from."""
+MAX_NORM: Final = 1.0
+"""Of a gradient."""
+
+
+class TrainingError(UserError):
+    """Training cannot go on; says why and what was kept."""
+
+
+@dataclass(frozen=True)
+class TrainConfig:
+    """How to train; the same config, data and machine give the same bytes."""
+
+    steps: int
+    batch: int = 64
+    rate: float = 1.2e-3
+    """Of `small`; the paper's is 1e-4 with batches of 1024."""
+    final: float = 0.04
+    """Share of the rate that is left at the end of its cosine."""
+    warmup: int = 150
+    """Steps in which the rate rises."""
+    average: float = 0.998
+    """How slowly the averaged weights follow."""
+    history_noise: float = 0.06
+    """Deviations by which history is disturbed at most, so that one's own faults are known."""
+    dropped: float = 0.1
+    """How often text, goals and what it is made of are not told."""
+    facing_dropped: float = 0.5
+    """How often a walk is not told where to face."""
+    save_every: int = 500
+    seed: int = 0
+    losses: LossWeights = LossWeights()
+    noise: NoiseSchedule = NoiseSchedule()
+
+    def rate_at(self, step: int) -> float:
+        """Of Adam, warmed up and then along a cosine."""
+        cosine = 0.5 * (1 + math.cos(math.pi * min(step / self.steps, 1.0)))
+        return self.rate * min(1.0, (step + 1) / max(self.warmup, 1)) * (self.final + (1 - self.final) * cosine)
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return asdict(self)
+
+
+@dataclass
+class Run:
+    """Where a training run is."""
+
+    network: nn.Module
+    average: dict[str, Tensor]
+    scale: Scale
+    optimizer: torch.optim.Optimizer
+    step: int = 0
+    seconds: float = 0.0
+    """Of one core's time."""
+    curve: list[dict[str, float]] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Learner:
+    """One of the two networks in training: what it is, and what its loss is on a batch."""
+
+    kind: str
+    network: nn.Module
+    loss: Callable[[Run, Batch, np.random.Generator], tuple[Tensor, dict[str, float]]]
+    sizes: Mapping[str, Any]
+
+
+def denoiser_learner(sizes: DenoiserSizes, config: TrainConfig, device: str = "cpu") -> Learner:
+    """The motion diffusion module: it guesses clean windows."""
+    torch.manual_seed(config.seed)
+    network, kinematics = Denoiser(sizes).to(device), Kinematics(device)
+
+    def loss(run: Run, batch: Batch, rng: np.random.Generator) -> tuple[Tensor, dict[str, float]]:
+        given = dropped(batch, config, rng).to(device)
+        clean = run.scale.encode(batch.windows.to(device))
+        noise = torch.from_numpy(rng.standard_normal(clean.shape, dtype=np.float32)).to(device)
+        steps = torch.from_numpy(rng.integers(config.noise.steps, size=len(clean))).to(device)
+        noised = config.noise.noised(clean, noise, steps)
+        share = config.history_noise * torch.from_numpy(rng.random((len(clean), 1, 1), dtype=np.float32)).to(device)
+        # The history is never diffused; it is disturbed a little, as what was sampled before is not perfect.
+        noised = torch.cat([clean[:, :HISTORY] + share * noise[:, :HISTORY], noised[:, HISTORY:]], dim=1)
+        with torch.autocast(device, torch.bfloat16, enabled=device != "cpu"):
+            guess = network(noised, steps, network.encode(given))
+        found = losses(guess.float(), clean, run.scale, kinematics, config.losses)
+        return found.total(config.losses), found.numbers()
+
+    return Learner("denoiser", network, loss, sizes.to_dict())
+
+
+def scheduler_learner(sizes: SchedulerSizes, config: TrainConfig, device: str = "cpu") -> Learner:
+    """The completion scheduler: it tells whether a window's action is over."""
+    torch.manual_seed(config.seed)
+    network = CompletionScheduler(sizes).to(device)
+
+    def loss(run: Run, batch: Batch, rng: np.random.Generator) -> tuple[Tensor, dict[str, float]]:
+        clean = run.scale.encode(batch.windows)
+        noise = torch.from_numpy(rng.standard_normal(clean.shape, dtype=np.float32))
+        seen = (clean + config.history_noise * noise).to(device)
+        logits = network.logits(seen, batch.given.text.to(device), batch.given.frame.to(device))
+        wanted = batch.over.float().to(device)
+        found = torch.nn.functional.binary_cross_entropy_with_logits(logits, wanted)
+        right = ((logits > 0) == (wanted > 0.5)).float().mean()
+        return found, {"cross_entropy": float(found.detach()), "right": float(right)}
+
+    return Learner("scheduler", network, loss, sizes.to_dict())
+
+
+def dropped(batch: Batch, config: TrainConfig, rng: np.random.Generator) -> Conditions:
+    """The conditions of a batch, some of them not told."""
+    given, count = batch.given, len(batch.windows)
+
+    def kept(share: float) -> Tensor:
+        return torch.from_numpy(rng.random(count) >= share)
+
+    pelvis = given.pelvis.clone()
+    untold = batch.periodic & ~kept(config.facing_dropped)
+    pelvis[untold, 3:5], pelvis[untold, 6] = 0.0, 0.0
+    return replace(
+        given,
+        has_text=given.has_text * kept(config.dropped),
+        has_pelvis=given.has_pelvis * kept(config.dropped),
+        has_hand=given.has_hand * kept(config.dropped),
+        has_scene=None if given.has_scene is None else given.has_scene * kept(config.dropped),
+        made_of=given.made_of * kept(config.dropped),
+        pelvis=pelvis,
+    )
+
+
+def measured_scale(bank: WindowBank, windows: Windows, seed: int) -> Scale:
+    """Mean and deviation of every feature over windows as they are drawn."""
+    rng = np.random.default_rng([seed, 1])
+    starts, rows = windows.drawn(SAMPLED, rng)
+    flat = bank.batch(starts, rows, rng.random(SAMPLED) < 0.5).windows.flatten(0, 1)
+    deviation = flat.std(dim=0)
+    for part, least in FLOORS:
+        deviation[part] = deviation[part].clamp(min=least)
+    return Scale(flat.mean(dim=0), deviation)
+
+
+def train(
+    learner: Learner,
+    bank: WindowBank,
+    windows: Windows,
+    config: TrainConfig,
+    folder: Path,
+    at_checkpoint: Callable[[Run, Weights], Mapping[str, float]] = lambda _run, _weights: {},
+) -> Weights:
+    """Train to the end, or from where a run in `folder` was broken off; the averaged weights. TrainingError.
+
+    `at_checkpoint` may judge and draw; its figures go into the curve.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    run = _begun(learner, bank, windows, config, folder)
+    parameters = [one for one in learner.network.parameters() if one.requires_grad]
+    recent: list[dict[str, float]] = []
+    learner.network.train()
+    while run.step < config.steps:
+        begun = time.process_time()
+        rng = np.random.default_rng([config.seed, 2, run.step])
+        starts, rows = windows.drawn(config.batch, rng)
+        batch = bank.batch(starts, rows, rng.random(config.batch) < 0.5)
+        loss, told = learner.loss(run, batch, rng)
+        if not bool(torch.isfinite(loss)):
+            raise _not_finite(run, batch, folder)
+        _stepped(run, loss, parameters, config)
+        recent.append(told)
+        run.seconds += time.process_time() - begun
+        if run.step % config.save_every == 0 or run.step == config.steps:
+            means = {name: float(np.mean([one[name] for one in recent])) for name in recent[0]}
+            recent = []
+            _checkpointed(learner, run, config, folder, means, at_checkpoint)
+            learner.network.train()
+    return averaged(learner, run, config)
+
+
+def averaged(learner: Learner, run: Run, config: TrainConfig) -> Weights:
+    """The slow average of a run's weights, as a network of its own."""
+    if isinstance(learner.network, Denoiser):
+        network: nn.Module = Denoiser(learner.network.sizes)
+    else:
+        assert isinstance(learner.network, CompletionScheduler)
+        network = CompletionScheduler(learner.network.sizes)
+    network.load_state_dict({name: tensor.cpu() for name, tensor in run.average.items()})
+    scale = Scale(run.scale.mean.cpu(), run.scale.deviation.cpu())
+    told = {
+        "kind": learner.kind, "sizes": dict(learner.sizes), "noise": asdict(config.noise),
+        "training": {**config.to_dict(), "steps_done": run.step, "core_seconds": round(run.seconds)},
+    }  # fmt: skip
+    return Weights(network.eval().requires_grad_(False), scale, told)
+
+
+def _begun(learner: Learner, bank: WindowBank, windows: Windows, config: TrainConfig, folder: Path) -> Run:
+    """A run at its beginning, or as it was saved."""
+    device = next(learner.network.parameters()).device
+    optimizer = torch.optim.Adam(learner.network.parameters(), lr=config.rate)
+    told = {"config": config.to_dict(), "sizes": dict(learner.sizes), "kind": learner.kind}
+    state = folder / "run.json"
+    if not state.exists():
+        scale = measured_scale(bank, windows, config.seed)
+        scale = Scale(scale.mean.to(device), scale.deviation.to(device))
+        average = {name: tensor.detach().clone() for name, tensor in learner.network.state_dict().items()}
+        return Run(learner.network, average, scale, optimizer)
+    row = json.loads(state.read_text(encoding="utf-8"))
+    if row["told"] != json.loads(json.dumps(told)):
+        raise CheckpointError(f"{folder} holds a run of another config", "give another folder, or the same options")
+    tensors = {name: tensor.to(device) for name, tensor in read_tensors(folder / "run.safetensors").items()}
+    learner.network.load_state_dict(_under("network.", tensors))
+    _fill_optimizer(optimizer, tensors)
+    scale = Scale(tensors[MEAN], tensors[DEVIATION])
+    return Run(
+        learner.network, _under("average.", tensors), scale, optimizer, row["step"], row["seconds"], row["curve"]
+    )
+
+
+def _stepped(run: Run, loss: Tensor, parameters: list[nn.Parameter], config: TrainConfig) -> None:
+    for group in run.optimizer.param_groups:
+        group["lr"] = config.rate_at(run.step)
+    run.optimizer.zero_grad(set_to_none=True)
+    loss.backward()  # type: ignore[no-untyped-call]
+    torch.nn.utils.clip_grad_norm_(parameters, MAX_NORM)
+    run.optimizer.step()
+    run.step += 1
+    follow = 1 - min(config.average, (1 + run.step) / (10 + run.step))
+    with torch.no_grad():
+        for name, tensor in run.network.state_dict().items():
+            run.average[name].lerp_(tensor, follow)
+
+
+def _checkpointed(
+    learner: Learner,
+    run: Run,
+    config: TrainConfig,
+    folder: Path,
+    means: Mapping[str, float],
+    at_checkpoint: Callable[[Run, Weights], Mapping[str, float]],
+) -> None:
+    """The run as it is, and its averaged weights by their step; the last two are what a run goes on from."""
+    weights = averaged(learner, run, config)
+    save_weights(weights, folder / f"step{run.step:06d}")
+    run.curve.append({"step": run.step, "core_seconds": run.seconds, **means})
+    run.curve[-1] |= at_checkpoint(run, weights)
+    tensors = {f"network.{name}": tensor for name, tensor in run.network.state_dict().items()}
+    tensors |= {f"average.{name}": tensor for name, tensor in run.average.items()}
+    tensors |= _optimizer_tensors(run.optimizer) | {MEAN: run.scale.mean, DEVIATION: run.scale.deviation}
+    save_file({name: tensor.detach().cpu().contiguous() for name, tensor in tensors.items()}, folder / "run.part")
+    told = {"config": config.to_dict(), "sizes": dict(learner.sizes), "kind": learner.kind}
+    row = {"told": told, "step": run.step, "seconds": run.seconds, "curve": run.curve}
+    (folder / "run.part").replace(folder / "run.safetensors")
+    (folder / "run.json").write_text(json.dumps(row, indent=1), encoding="utf-8")
+
+
+def _optimizer_tensors(optimizer: torch.optim.Optimizer) -> dict[str, Tensor]:
+    rows = optimizer.state_dict()["state"]
+    return {f"adam.{index}.{name}": torch.as_tensor(value) for index, row in rows.items() for name, value in row.items()}
+
+
+def _fill_optimizer(optimizer: torch.optim.Optimizer, tensors: Mapping[str, Tensor]) -> None:
+    state: dict[int, dict[str, Tensor]] = {}
+    for name, tensor in _under("adam.", tensors).items():
+        index, field_name = name.split(".", 1)
+        # Adam counts its steps on the processor.
+        state.setdefault(int(index), {})[field_name] = tensor.cpu() if field_name == "step" else tensor
+    optimizer.load_state_dict({"state": state, "param_groups": optimizer.state_dict()["param_groups"]})
+
+
+def _under(prefix: str, tensors: Mapping[str, Tensor]) -> dict[str, Tensor]:
+    return {name.removeprefix(prefix): tensor for name, tensor in tensors.items() if name.startswith(prefix)}
+
+
+def _not_finite(run: Run, batch: Batch, folder: Path) -> TrainingError:
+    save_file({"windows": batch.windows.contiguous()}, folder / "bad_batch.safetensors")
+    return TrainingError(
+        f"step {run.step}: the loss is not finite; its batch is in {folder / 'bad_batch.safetensors'}",
+        "the last good weights are kept; look at the batch, or lower the rate",
+    )
