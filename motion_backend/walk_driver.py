@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -23,7 +24,7 @@ from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.takeover import pose_of
 from motion_backend.procedural.walk.stride import Stride
-from motion_backend.procedural.walk.walk_styles import walk_style
+from motion_backend.procedural.walk.walk_styles import Walk, walk_style
 from motion_backend.rotations import Array
 from motion_backend.scene import scene_of
 from motion_backend.skeleton import INDEX
@@ -64,6 +65,11 @@ OWN: Final = frozenset({"speed", "bearing", "character", "release", "stride", "r
 """What a caption may say of a walk that is still a plain one."""
 BORROWED: Final = "borrowed"
 """What a state remembers whose stride was another body's than the one that remembers it."""
+MOST, AGAIN = 5, 15
+"""Stretches of one part, and the frames of the procedural body between two of them at least."""
+LEAST: Final = 12
+"""Frames of a stretch that was cut off, of any use."""
+TOO_SHORT: Final = "the way is too short, or too winding, to get into a stride"
 STARTS_AND_STOPS: Final = "starts, stops and turns on the spot are the rules'"
 
 
@@ -82,71 +88,76 @@ class WalkDriver:
         return self._rules.begin(home, character, seed)
 
     def advance(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
-        """Do a walk. Where the generator has no part in it, all of it is the procedural body's, with the reason."""
+        """Do a walk. What the generator has no part in is the procedural body's, with the reason."""
+        index, made = state.index, list[Motion]()
+        style, why = style_of(part.action), unlike_people(part.action)
+        least = 0
+        for _ in range(MOST):
+            walk = _Walk(home, part, tuple(upcoming), state, style, *self._ruled(home, part, upcoming, state))
+            stretch = None if why else plain_stretch(walk.ruled, self.generator.slowest, least)
+            if not walk.ruled.completed or stretch is None:
+                why = why or (TOO_SHORT if not made else STARTS_AND_STOPS)
+                break
+            history, motion, beyond = self._stretch(walk, stretch)
+            why = walk.astray(motion, self.generator.name)
+            if why:
+                break
+            if stretch[0]:
+                made.append(self._by_rules(walk.ruled.part(0, stretch[0]), STARTS_AND_STOPS))
+            made.append(motion)
+            state = replace(state, history=history.followed_by(motion))
+            if walk.is_over(motion):
+                return join(made), replace(_in_stride(state, walk, beyond), index=index + 1)
+            state, least, why = _in_stride(state, walk, walk.to_goal(beyond)), AGAIN, ""
+        else:
+            walk = _Walk(home, part, tuple(upcoming), state, style, *self._ruled(home, part, upcoming, state))
+            why = STARTS_AND_STOPS
+        if not len(walk.ruled) and not made:
+            return walk.ruled, walk.after
+        made.append(self._by_rules(walk.ruled, walk.ruled.reason or why))
+        return join(made), replace(walk.after, index=index + 1)
+
+    def _ruled(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
+        """The part as the procedural body does it from here on."""
         ruled, after = self._rules.advance(home, part, upcoming, state)
-        if state.memory.get(BORROWED):
+        if state.memory.get(BORROWED) and len(ruled):
             ruled = joined(state.history, ruled)
-        if not len(ruled) or not ruled.completed:
-            return self._by_rules(ruled, ruled.reason), after
-        why = unlike_people(part.action)
-        stretch = None if why else plain_stretch(ruled, self.generator.slowest)
-        if stretch is None:
-            return self._by_rules(ruled, why or "the way is too short to get into a stride"), after
-        walk = _Walk(home, part, tuple(upcoming), state, ruled, after)
-        made, left = self._walked(walk, stretch)
-        if astray := _astray(made, walk):
-            return self._by_rules(ruled, f"{self.generator.name} {astray}"), after
-        deeper = _depth(made, home) - _depth(ruled, home)
-        if deeper > DEEPER:
-            return self._by_rules(ruled, f"{self.generator.name} was {100 * deeper:.0f} cm deeper in furniture"), after
-        return made, left
+            after = replace(after, history=state.history.followed_by(ruled))
+        return ruled, after
 
     def _by_rules(self, motion: Motion, why: str) -> Motion:
         """A motion of the procedural body, labelled so."""
         phases = tuple(replace(phase, backend=self._rules.name, fallback=why) for phase in motion.phases)
         return replace(motion, phases=phases)
 
-    def _walked(self, walk: _Walk, stretch: tuple[int, int]) -> tuple[Motion, BodyState]:
-        """The procedural beginning, the generator's stretch of the way, and the procedural end."""
-        start = stretch[0]
-        history = walk.state.history.followed_by(walk.ruled.part(0, start)) if start else walk.state.history
-        motion, beyond = self._stretch(walk, history, stretch)
-        begun = self._by_rules(walk.ruled.part(0, start), STARTS_AND_STOPS)
-        state = replace(walk.state, history=history.followed_by(motion))
-        onward = _in_stride(state, walk, beyond)
-        if walk.goes_on:
-            return join([begun, motion]), replace(onward, index=walk.after.index, posture=walk.after.posture)
-        ended, after = self._rules.advance(walk.home, walk.part, walk.upcoming, onward)
-        ended = joined(state.history, ended)
-        return join([begun, motion, self._by_rules(ended, STARTS_AND_STOPS)]), replace(
-            after, index=walk.after.index, history=state.history.followed_by(ended)
-        )
+    def _stretch(self, walk: _Walk, stretch: tuple[int, int]) -> tuple[History, Motion, Array]:
+        """What came before, the generator's frames, feet held and ending as a heel comes down, and the way (N, 2) left.
 
-    def _stretch(self, walk: _Walk, history: History, stretch: tuple[int, int]) -> tuple[Motion, Array]:
-        """The generator's frames, feet held and ending as a foot has come down, and the way (N, 2) that is left."""
-        skeleton, (start, stop) = walk.ruled.skeleton, stretch
-        scale = skeleton.scale
+        They end before the body would be in furniture.
+        """
+        skeleton, (start, stop), before = walk.ruled.skeleton, stretch, walk.state.history
+        history = before.followed_by(walk.ruled.part(0, start)) if start else before
+        scale, places = skeleton.scale, walk.way[start:]
         past = Frames(history.root_positions / scale, history.local_rotations)
-        way = Way(walk.way[start:] / scale)
-        rng = np.random.default_rng([walk.state.seed, walk.state.index, 1])
-        made = past
-        for found in windows(self.generator.begin(past, rng), past, Way(way.places[: stop - start + LATER])):
+        rng = np.random.default_rng([walk.state.seed, walk.state.index, len(history), start])
+        made, way = past, Way(places[: stop - start + LATER] / scale)
+        for found in windows(self.generator.begin(past, rng), past, way):
             made = made.then(found)
         made = _carried(made, walk.part.action, len(past))
         root, local, contacts = held(made.root * scale, made.local, skeleton, len(past))
-        positions = skeleton.forward_kinematics(root, local)[0].astype(np.float64)
-        last = _steps_end(positions[len(past) :], way.places[min(stop - start, len(way) - 1)] * scale) + len(past)
-        taken, count = slice(len(past), last + 1), last + 1 - len(past)
         motion = Motion(
-            root_positions=root[taken].astype(np.float32),
-            local_rotations=local[taken].astype(np.float32),
-            contacts=contacts[taken].astype(np.float32),
+            root_positions=root[len(past) :].astype(np.float32),
+            local_rotations=local[len(past) :].astype(np.float32),
+            contacts=contacts[len(past) :].astype(np.float32),
             skeleton=skeleton,
-            actions=np.full(count, walk.part.action.keyframe, dtype=np.int32),
-            phases=(Phase(PhaseKind.WALK, 0, count, self.generator.name),),
+            actions=np.full(len(root) - len(past), walk.part.action.keyframe, dtype=np.int32),
         )
-        at = _nearest(way.places * scale, root[last, [0, 2]])
-        return motion, way.places[at + 1 :] * scale
+        body = Kinematics.of(motion)
+        free = walk.free(body)
+        count = _steps_end(body.positions[:free], places[min(stop - start, len(places) - 1)]) + 1 if free else 0
+        motion = replace(motion.part(0, count), phases=(Phase(PhaseKind.WALK, 0, count, self.generator.name),))
+        gone = _nearest(places[: stop - start + LATER], motion.root_positions[-1, [0, 2]]) if count else 0
+        return history, motion, places[gone + 1 :]
 
 
 @dataclass(frozen=True)
@@ -158,6 +169,7 @@ class _Walk:
     upcoming: tuple[Part, ...]
     state: BodyState
     """Before it."""
+    style: Walk
     ruled: Motion
     after: BodyState
     """What that left."""
@@ -168,24 +180,54 @@ class _Walk:
         told = self.after.memory.get("stride")
         return Stride.from_lists(told) if told else None
 
-    @property
+    @cached_property
     def way(self) -> Array:
         """Where its pelvis goes, without its sway, and on from there where it does not stop. (N, 2)."""
         places = _way_of(self.ruled)
         if self.stride is None:
             return places
-        onward = Way.along(np.concatenate([places[-1:], self.stride.rest[1:]]), max(self.stride.speed, 0.1)).places
+        onward = Way.along(np.concatenate([places[-1:], self.stride.rest[1:]]), max(self.stride.speed, SLOWEST)).places
         return np.concatenate([places, onward[1:]])
 
-    @property
-    def goes_on(self) -> bool:
-        """Whether the next part is walked to without a stop."""
-        return self.stride is not None
+    def to_goal(self, beyond: Array) -> Array:
+        """Of the way that is left what leads to the place of this part: of one that goes on, no more than that."""
+        if self.stride is None or self.part.goal is None or not len(beyond):
+            return beyond
+        return beyond[: _nearest(beyond, np.array(self.part.goal)) + 1]
+
+    def is_over(self, motion: Motion) -> bool:
+        """Whether a motion has passed the place by which the way goes on."""
+        return self.stride is not None and self.part.goal is not None and self._passes(motion) < PASSES
+
+    def _passes(self, motion: Motion) -> float:
+        """How near a motion comes to the place (metres)."""
+        goal = np.asarray(self.part.goal, dtype=np.float64)
+        return float(np.linalg.norm(motion.root_positions[:, [0, 2]] - goal, axis=1).min())
+
+    def free(self, body: Kinematics) -> int:
+        """How many of a body's frames come before it is deeper in furniture than it may be."""
+        obstacles = scene_of(self.home).obstacles
+        most = float(penetration(Kinematics.of(self.ruled), obstacles, None).max()) + DEEPER
+        deep = penetration(body, obstacles, None) > most
+        return int(np.argmax(deep)) if deep.any() else len(deep)
+
+    def astray(self, motion: Motion, name: str) -> str:
+        """Why a generator's frames are of no use; empty where they are."""
+        if len(motion) < LEAST:
+            return f"{name} finds no room"
+        places = motion.root_positions[:, [0, 2]].astype(np.float64)
+        off = np.sqrt(((places[:, None] - self.way[None]) ** 2).sum(axis=2)).min(axis=1)
+        return f"{name} was {100 * off.max():.0f} cm beside the way" if off.max() > OFF else ""
+
+
+def style_of(action: Action) -> Walk:
+    """The way of walking to where an action is done."""
+    return walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
 
 
 def unlike_people(action: Action) -> str:
     """Why no plain walk serves an action; empty where one does."""
-    style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
+    style = style_of(action)
     usual = walk_style(action.emotion, "walk")
     odd = [name for name in vars(style) if name not in OWN and getattr(style, name) != getattr(usual, name)]
     odd += [name for name, most in FREE.items() if getattr(style, name) > max(most, getattr(usual, name))]
@@ -195,8 +237,11 @@ def unlike_people(action: Action) -> str:
     return f"no recorded walk is like {action.caption!r:.40} ({', '.join(odd)})" if odd else ""
 
 
-def plain_stretch(motion: Motion, slowest: float) -> tuple[int, int] | None:
-    """The longest stretch of a motion that is plain walking ahead, from frame to frame; None where it is short."""
+def plain_stretch(motion: Motion, slowest: float, least: int = 0) -> tuple[int, int] | None:
+    """The longest stretch of a motion that is plain walking ahead, from frame to frame; None where it is short.
+
+    It does not begin before frame `least`.
+    """
     if len(motion) < SHORTEST:
         return None
     steps = np.gradient(_way_of(motion), axis=0) * FPS
@@ -212,7 +257,7 @@ def plain_stretch(motion: Motion, slowest: float) -> tuple[int, int] | None:
     walking = [phase for phase in motion.phases if phase.kind is PhaseKind.WALK]
     in_walk = np.zeros(len(motion), dtype=np.bool_)
     for phase in walking:
-        in_walk[phase.start : phase.stop] = True
+        in_walk[max(phase.start, least) : phase.stop] = True
     edges = np.flatnonzero(np.diff(np.concatenate([[False], walks & in_walk, [False]]).astype(np.int8)))
     runs = edges.reshape(-1, 2)
     if not len(runs):
@@ -221,21 +266,6 @@ def plain_stretch(motion: Motion, slowest: float) -> tuple[int, int] | None:
     slower = np.flatnonzero(pace[start:stop] > STOPPING * float(pace.max()))
     stop = start + int(slower[-1]) + 1
     return (start, stop) if stop - start >= SHORTEST else None
-
-
-def _astray(made: Motion, walk: _Walk) -> str:
-    """How a made walk leaves its way; empty where it does not."""
-    places = made.root_positions[:, [0, 2]].astype(np.float64)
-    own = [phase for phase in made.phases if phase.backend not in ("", ProceduralBackend.name)]
-    walked = np.concatenate([places[phase.start : phase.stop] for phase in own])
-    off = np.sqrt(((walked[:, None] - walk.way[None]) ** 2).sum(axis=2)).min(axis=1)
-    if off.max() > OFF:
-        return f"was {100 * off.max():.0f} cm beside the way"
-    if walk.goes_on and walk.part.goal is not None:
-        past = float(np.linalg.norm(places - walk.part.goal, axis=1).min())
-        if past > PASSES:
-            return f"passed the place at {past:.2f} m"
-    return ""
 
 
 def _way_of(motion: Motion) -> Array:
@@ -278,15 +308,9 @@ def _steps_end(positions: Array, end: Array) -> int:
 
 def _in_stride(state: BodyState, walk: _Walk, beyond: Array) -> BodyState:
     """The state that lets the procedural body go on in the stride that the last frames are in."""
-    skeleton, action, goal = walk.ruled.skeleton, walk.part.action, walk.part.goal
-    style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
-    rest = beyond if len(beyond) else np.array([goal])
-    stride = stride_of(state.history, skeleton, style, rest)
+    skeleton = walk.ruled.skeleton
+    rest = beyond if len(beyond) else np.array([walk.part.goal])
+    stride = stride_of(state.history, skeleton, walk.style, rest)
     pose = pose_of(state.history, skeleton).to_lists()
     memory = {"pose": pose, "holds": [None, None], "tail": None, "stride": stride.to_lists(), BORROWED: True}
     return replace(state, backend=ProceduralBackend.name, memory=memory)
-
-
-def _depth(motion: Motion, home: Home) -> float:
-    """How deep a walking body is in furniture and walls at worst (metres)."""
-    return float(penetration(Kinematics.of(motion), scene_of(home).obstacles, None).max())

@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from motion_backend.backend_protocol import BodyState, Part, PartKind
+from motion_backend.backends import MATCHING, given_file
 from motion_backend.matching.frame_matcher import FrameMatcher
 from motion_backend.matching.walk_database import WalkDatabase, build_walk_database
+from motion_backend.mocap.clip import ClipError
 from motion_backend.mocap.dataset_file import read_dataset
 from motion_backend.motion import Character, Motion
 from motion_backend.walk_driver import WalkDriver
@@ -21,7 +23,7 @@ from scene_graphs.home import Home
 class Matching:
     """The generator."""
 
-    name = "matching"
+    name = MATCHING
     slowest = 0.5
 
     def __init__(self, database: WalkDatabase) -> None:
@@ -57,6 +59,16 @@ def _database(file: Path, changed: int) -> WalkDatabase:
     return build_walk_database(read_dataset(file))
 
 
+def of_given_clips() -> MatchingBackend:
+    """The backend for the clips that a setting or an option names. ClipError where none does."""
+    file = given_file(MATCHING)
+    if file is None:
+        raise ClipError("no clips are named", "give --clips FILE or SIMS_CLIPS, made by `sims clips build`")
+    return matching_backend(file)
+
+
 def matching_backend(file: Path) -> MatchingBackend:
     """The backend for a collection of clips. ClipError for a file that holds none, or too little walking."""
-    return MatchingBackend(_database(file, file.stat().st_mtime_ns if file.is_file() else 0))
+    if not file.is_file():
+        raise ClipError(f"{file} is no file", "give --clips FILE or SIMS_CLIPS, made by `sims clips build`")
+    return MatchingBackend(_database(file, file.stat().st_mtime_ns))

@@ -96,12 +96,12 @@ def build_walk_database(dataset: Dataset, split: str | None = None) -> WalkDatab
     seconds = sum(entry.motion.duration for entry in chosen)
     if seconds < LEAST_SECONDS:
         raise ClipError(
-            f"--clips: {seconds:.0f} s of plain recorded walking in pieces of {SHORTEST / FPS:.1f} s or more, "
+            f"{seconds:.0f} s of plain recorded walking in pieces of {SHORTEST / FPS:.1f} s or more, "
             f"{LEAST_SECONDS:.0f} s are needed",
             "add walks of people (skill loco, style neutral) to what `sims clips build` reads",
         )
     if not np.allclose(dataset.skeleton.offsets, build_skeleton().offsets, atol=1e-4):
-        raise ClipError("--clips: its bodies are not 1.70 m tall", "build it again with `sims clips build`")
+        raise ClipError("its bodies are not 1.70 m tall", "build it again with `sims clips build`")
     motions = [way for entry in chosen for way in (entry.motion, mirror(entry.motion))]
     return _of(motions, tuple(entry.name for entry in chosen), tuple(dict.fromkeys(e.subject for e in chosen)))
 
