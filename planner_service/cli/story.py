@@ -18,7 +18,7 @@ from planner_service.library.library import open_shelves
 from planner_service.llm.factory import load_model
 from planner_service.llm.ollama_server import ollama_models
 from planner_service.pipeline import STAGES, Pipeline, RequestError, Story, StoryRequest
-from planner_service.settings import read_settings
+from planner_service.settings import give_backends, read_settings
 from planner_service.themes.beats import clean
 from scene_graphs.furniture import ROOM_TYPES
 
@@ -50,6 +50,9 @@ def story(
         typer.Option(help="A layout file, or the id of a built-in layout; may be given up to 4 times."),
     ] = None,
     backend: Annotated[str | None, typer.Option(help="What moves the body (SIMS_BACKEND; procedural).")] = None,
+    clips: Annotated[
+        Path | None, typer.Option(help="Collection whose walks the backend matching is made of (SIMS_CLIPS).")
+    ] = None,
     name: Annotated[str, typer.Option(help="The character's name; left out: the theme's own, else Sam.")] = "Sam",
     pronouns: Annotated[str, typer.Option(help="he, she or they; left out: as in the theme.")] = "they",
     height: Annotated[float, typer.Option(help="The character's height in metres, 1.2 to 2.2.")] = 1.70,
@@ -59,7 +62,8 @@ def story(
     from planner_service.cli.layouts import chosen_layouts
     from planner_service.output.story_export import FILES, check_writable, write_story
 
-    settings = read_settings(llm_model=model)
+    settings = read_settings(llm_model=model, clips=clips)
+    give_backends(settings)
     check_writable(out, FILES)
     pipeline = Pipeline(open_shelves(settings), load_model(settings), settings.llm_on_failure == "error")
     request = StoryRequest(

@@ -6,7 +6,6 @@ moves the body otherwise, a learned model say, is to come nearer than the rules 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
@@ -26,6 +25,7 @@ from motion_backend.metrics.walk_seconds import LIMBS, WHOLE, Seconds, seconds_o
 from motion_backend.metrics.walk_traits import GiveAway, give_aways
 from motion_backend.mocap.clip import ClipError
 from motion_backend.mocap.dataset_file import Dataset, Entry
+from motion_backend.mocap.plain_walks import RECORDED, is_plain_walk
 from motion_backend.mocap.resampling import low_pass
 from motion_backend.motion import FPS, Action, Character, Emotion, Motion, Skill
 from motion_backend.procedural.held_poses import standing
@@ -42,11 +42,6 @@ from scene_graphs.home import Home, home_from_layouts
 from scene_graphs.layout import Layout
 
 CAPTION: Final = "steadily walking forward"
-PLAIN: Final = re.compile(r"neutral|slow|brisk|normal|^$")
-ODD: Final = re.compile(
-    r"\b(?:run|jog|crawl|sneak|stealth|zombie|hop|jump|balanc|stagger|exaggerat|strid)", re.IGNORECASE
-)
-"""Walks that are not plain, by their style or caption; a caption may say what the style does not."""
 MAX_WINDOWS: Final = 12
 """Of one person, spread over their clips: who walked up and down thirty times is one person still."""
 MAX_SECONDS: Final = 24
@@ -201,14 +196,7 @@ def _as_one(ours: Walks) -> Seconds:
 
 def recorded_walks(dataset: Dataset, style: str = "") -> Walks:
     """Recorded walks, as they were recorded: plain ones, or those whose style has a word."""
-    chosen = [
-        entry
-        for entry in dataset.entries
-        if entry.skill == Skill.LOCO
-        and entry.kind == "real mocap"
-        and not entry.changed
-        and _is_asked_for(entry, style)
-    ]
+    chosen = [entry for entry in dataset.entries if entry.kind == RECORDED and _is_asked_for(entry, style)]
     found = _walks("recorded", [Take(entry.subject, entry.name, entry.motion) for entry in chosen])
     people = np.array(found.groups)
     if len(set(found.groups)) < MIN_PEOPLE:
@@ -291,8 +279,8 @@ def _hall() -> Home:
 
 def _is_asked_for(entry: Entry, style: str) -> bool:
     if style:
-        return style.lower() in entry.style.lower()
-    return bool(PLAIN.search(entry.style.lower())) and not ODD.search(" ".join((entry.style, *entry.captions)))
+        return entry.skill == Skill.LOCO and not entry.changed and style.lower() in entry.style.lower()
+    return is_plain_walk(entry) and not entry.changed
 
 
 def _spread(of: NDArray[np.int64]) -> NDArray[np.int64]:
