@@ -5,7 +5,6 @@ Ten frames a second inside; what comes out is joined to thirty, with feet held w
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Final
@@ -15,7 +14,6 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from motion_backend import rotations
 from motion_backend.diffusion.conditions import HAND, MAX_SECONDS, PELVIS, TIME_UNIT, Conditions, MadeOf
 from motion_backend.diffusion.motion_features import (
     HISTORY,
@@ -30,11 +28,10 @@ from motion_backend.diffusion.motion_features import (
 from motion_backend.diffusion.sampler import Guide, Sampler
 from motion_backend.language.minilm import WIDTH as TEXT_WIDTH
 from motion_backend.language.sentence_encoder import load_encoder
-from motion_backend.mocap.foot_contacts import ANKLES, BALLS, Feet, above_floor, bend_legs
-from motion_backend.mocap.foot_lock import locked
+from motion_backend.mocap.foot_hold import held
 from motion_backend.motion import FPS, Motion
 from motion_backend.rotations import Array
-from motion_backend.skeleton import PARENTS, Skeleton
+from motion_backend.skeleton import Skeleton
 
 NEW: Final = WINDOW - HISTORY
 """Frames that a window adds."""
@@ -172,30 +169,8 @@ def to_motion(poses: Poses, skeleton: Skeleton, keyframe: int = 0, hold_feet: bo
 
 
 def feet_held(poses: Poses, skeleton: Skeleton) -> Poses:
-    """Frames (T, …) at 30 a second with standing feet on the floor and held there, knees bent to it."""
-    places, world = skeleton.forward_kinematics(poses.roots, poses.local)
-    positions = places.astype(np.float64)
-    feet = Feet(positions[:, ANKLES], world[:, ANKLES], world[:, BALLS], skeleton, FPS)
-    shift, carried = locked(feet, positions[:, 0])
-    positions = positions + carried[:, None]
-    feet = replace(feet, ankles=feet.ankles + shift)
-    feet = replace(feet, ankles=feet.ankles + above_floor(feet)).with_bent_toes()
-    turned = bend_legs(skeleton, positions, world, feet.ankles)
-    turned[:, BALLS] = feet.toe_turns
-    return Poses(poses.roots + carried, _local(turned, _below(PARENTS)), feet.contacts())
-
-
-def _below(parents: Sequence[int]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    own = np.arange(1, len(parents))
-    return own, np.array(parents)[1:]
-
-
-def _local(world: Array, below: tuple[NDArray[np.int64], NDArray[np.int64]]) -> Array:
-    """Each joint's rotation in its parent's frame. (T, 22, 4)."""
-    own, parents = below
-    found = world.copy()
-    found[:, own] = rotations.compose(rotations.inverse(world[:, parents]), world[:, own])
-    return rotations.normalize(found)
+    """Frames (T, …) at 30 a second with standing feet on the floor and held there."""
+    return Poses(*held(poses.roots, poses.local, skeleton))
 
 
 def _tensor(values: Array) -> Tensor:

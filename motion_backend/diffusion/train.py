@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
@@ -53,6 +53,8 @@ SAMPLED: Final = 2048
 """Windows that mean and deviation are taken from."""
 MAX_NORM: Final = 1.0
 """Of a gradient."""
+MOMENTS: Final = (0.9, 0.999)
+"""How slowly Adam forgets gradients and their squares: its defaults."""
 
 
 class TrainingError(UserError):
@@ -94,6 +96,31 @@ class TrainConfig:
         return asdict(self)
 
 
+class Adam:
+    """As Kingma and Ba print it; the one of torch loads a compiler first, which takes longer than a small run."""
+
+    def __init__(self, parameters: Sequence[nn.Parameter]) -> None:
+        self.parameters = list(parameters)
+        self.means = [torch.zeros_like(one) for one in self.parameters]
+        self.squares = [torch.zeros_like(one) for one in self.parameters]
+
+    def step(self, rate: float, number: int) -> None:
+        """Go along the gradients, whose norm is cut at `MAX_NORM`; `number` counts from 1."""
+        gradients = [one.grad if one.grad is not None else torch.zeros_like(one) for one in self.parameters]
+        with torch.no_grad():
+            norm = torch.stack([one.square().sum() for one in gradients]).sum().sqrt()
+            torch._foreach_mul_(gradients, float(min(1.0, MAX_NORM / (float(norm) + 1e-6))))
+            torch._foreach_lerp_(self.means, gradients, 1 - MOMENTS[0])
+            torch._foreach_mul_(self.squares, MOMENTS[1])
+            torch._foreach_addcmul_(self.squares, gradients, gradients, 1 - MOMENTS[1])
+            sizes = torch._foreach_sqrt(self.squares)
+            torch._foreach_div_(sizes, math.sqrt(1 - MOMENTS[1] ** number))
+            torch._foreach_add_(sizes, 1e-8)
+            torch._foreach_addcdiv_(self.parameters, self.means, sizes, -rate / (1 - MOMENTS[0] ** number))
+        for one in self.parameters:
+            one.grad = None
+
+
 @dataclass
 class Run:
     """Where a training run is."""
@@ -101,7 +128,7 @@ class Run:
     network: nn.Module
     average: dict[str, Tensor]
     scale: Scale
-    optimizer: torch.optim.Optimizer
+    optimizer: Adam
     step: int = 0
     seconds: float = 0.0
     """Of one core's time."""
@@ -204,7 +231,6 @@ def train(
     """
     folder.mkdir(parents=True, exist_ok=True)
     run = _begun(learner, bank, windows, config, folder)
-    parameters = [one for one in learner.network.parameters() if one.requires_grad]
     recent: list[dict[str, float]] = []
     learner.network.train()
     while run.step < config.steps:
@@ -215,7 +241,7 @@ def train(
         loss, told = learner.loss(run, batch, rng)
         if not bool(torch.isfinite(loss)):
             raise _not_finite(run, batch, folder)
-        _stepped(run, loss, parameters, config)
+        _stepped(run, loss, config)
         recent.append(told)
         run.seconds += time.process_time() - begun
         if run.step % config.save_every == 0 or run.step == config.steps:
@@ -245,7 +271,7 @@ def averaged(learner: Learner, run: Run, config: TrainConfig) -> Weights:
 def _begun(learner: Learner, bank: WindowBank, windows: Windows, config: TrainConfig, folder: Path) -> Run:
     """A run at its beginning, or as it was saved."""
     device = next(learner.network.parameters()).device
-    optimizer = torch.optim.Adam(learner.network.parameters(), lr=config.rate)
+    optimizer = Adam(list(learner.network.parameters()))
     told = {"config": config.to_dict(), "sizes": dict(learner.sizes), "kind": learner.kind}
     state = folder / "run.json"
     if not state.exists():
@@ -258,20 +284,18 @@ def _begun(learner: Learner, bank: WindowBank, windows: Windows, config: TrainCo
         raise CheckpointError(f"{folder} holds a run of another config", "give another folder, or the same options")
     tensors = {name: tensor.to(device) for name, tensor in read_tensors(folder / "run.safetensors").items()}
     learner.network.load_state_dict(_under("network.", tensors))
-    _fill_optimizer(optimizer, tensors)
+    for kind, kept in (("mean", optimizer.means), ("square", optimizer.squares)):
+        for index, tensor in enumerate(kept):
+            tensor.copy_(tensors[f"adam.{kind}.{index}"])
     scale = Scale(tensors[MEAN], tensors[DEVIATION])
     return Run(
         learner.network, _under("average.", tensors), scale, optimizer, row["step"], row["seconds"], row["curve"]
     )
 
 
-def _stepped(run: Run, loss: Tensor, parameters: list[nn.Parameter], config: TrainConfig) -> None:
-    for group in run.optimizer.param_groups:
-        group["lr"] = config.rate_at(run.step)
-    run.optimizer.zero_grad(set_to_none=True)
+def _stepped(run: Run, loss: Tensor, config: TrainConfig) -> None:
     loss.backward()  # type: ignore[no-untyped-call]
-    torch.nn.utils.clip_grad_norm_(parameters, MAX_NORM)
-    run.optimizer.step()
+    run.optimizer.step(config.rate_at(run.step), run.step + 1)
     run.step += 1
     follow = 1 - min(config.average, (1 + run.step) / (10 + run.step))
     with torch.no_grad():
@@ -302,18 +326,9 @@ def _checkpointed(
     (folder / "run.json").write_text(json.dumps(row, indent=1), encoding="utf-8")
 
 
-def _optimizer_tensors(optimizer: torch.optim.Optimizer) -> dict[str, Tensor]:
-    rows = optimizer.state_dict()["state"]
-    return {f"adam.{index}.{name}": torch.as_tensor(value) for index, row in rows.items() for name, value in row.items()}
-
-
-def _fill_optimizer(optimizer: torch.optim.Optimizer, tensors: Mapping[str, Tensor]) -> None:
-    state: dict[int, dict[str, Tensor]] = {}
-    for name, tensor in _under("adam.", tensors).items():
-        index, field_name = name.split(".", 1)
-        # Adam counts its steps on the processor.
-        state.setdefault(int(index), {})[field_name] = tensor.cpu() if field_name == "step" else tensor
-    optimizer.load_state_dict({"state": state, "param_groups": optimizer.state_dict()["param_groups"]})
+def _optimizer_tensors(optimizer: Adam) -> dict[str, Tensor]:
+    kinds = {"mean": optimizer.means, "square": optimizer.squares}
+    return {f"adam.{kind}.{index}": one for kind, kept in kinds.items() for index, one in enumerate(kept)}
 
 
 def _under(prefix: str, tensors: Mapping[str, Tensor]) -> dict[str, Tensor]:

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from motion_backend.diffusion.conditions import MadeOf
+from motion_backend.diffusion.learned_walker import caption_of
 from motion_backend.diffusion.motion_features import HISTORY, STRIDE, Poses
 from motion_backend.diffusion.rollout import WINDOW_SECONDS, PelvisGoal, Rollout, Wish, to_motion
 from motion_backend.diffusion.sampler import Sampler
@@ -48,7 +49,7 @@ class LearnedWalks:
         return float(np.mean([slip(motion) for motion in self.motions]))
 
 
-def walked(sampler: Sampler, speeds: Array, skeleton: Skeleton, seed: int = 0, caption: str = CAPTION) -> LearnedWalks:
+def walked(sampler: Sampler, speeds: Array, skeleton: Skeleton, seed: int = 0) -> LearnedWalks:
     """Straight on at these speeds, from the middle of a walk by rules; all bodies at once."""
     body = Rollout(sampler, skeleton, _beginnings(speeds, skeleton))
     first = body.frame
@@ -58,7 +59,8 @@ def walked(sampler: Sampler, speeds: Array, skeleton: Skeleton, seed: int = 0, c
         here = body.poses.roots[:, -1]
         along = np.sum((here - first.origin) * ahead, axis=1)
         goal = first.origin + ahead * (along + WINDOW_SECONDS * speeds)[:, None]
-        body = body.go_on(Wish(caption, PelvisGoal(goal, first.yaw), made_of=MadeOf.RECORDED), [seed, window])
+        wish = Wish(caption_of(float(speeds.mean())), PelvisGoal(goal, first.yaw), made_of=MadeOf.RECORDED)
+        body = body.go_on(wish, [seed, window])
         errors.append(np.linalg.norm((body.poses.roots[:, -1] - goal)[:, [0, 2]], axis=1))
     motions = [to_motion(_of(body.poses, index), skeleton) for index in range(len(speeds))]
     later = [motion.part(HISTORY * STRIDE + 24, len(motion)) for motion in motions]
