@@ -27,21 +27,25 @@ class DiffusionBackend:
     name = DIFFUSION
     parts = frozenset({PartKind.WALK})
 
-    def __init__(self, folder: Path = WEIGHTS) -> None:
+    def __init__(self, folder: Path | None = None) -> None:
         """CheckpointError where weights are missing or broken."""
-        self._driver = WalkDriver(LearnedGait(walking(folder)))
+        self._sampler = walking() if folder is None else walking(folder)
 
     def begin(self, home: Home, character: Character, seed: int) -> BodyState:
         """Standing in the first room, on a free place that the seed chooses."""
-        return self._driver.begin(home, character, seed)
+        return self._driver(seed).begin(home, character, seed)
 
     def advance(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
         """Walk to where a part asks for."""
-        return self._driver.advance(home, part, upcoming, state)
+        return self._driver(state.seed).advance(home, part, upcoming, state)
+
+    def _driver(self, seed: int) -> WalkDriver:
+        """One body has one person's walk all through a story."""
+        return WalkDriver(LearnedGait(self._sampler, self._sampler.gait_of(seed)))
 
 
 @lru_cache(maxsize=2)
 def walking(folder: Path = WEIGHTS) -> Sampler:
     """The sampler of the weights that walk. CheckpointError."""
     weights, schedule = load_denoiser(folder / "walk")
-    return Sampler(cast(Denoiser, weights.network), weights.scale, schedule)
+    return Sampler(cast(Denoiser, weights.network), weights.scale, schedule, gaits=int(weights.config.get("gaits", 0)))

@@ -32,6 +32,10 @@ FRAME_SHARE: Final = 0.25
 """Of the frame's sinusoid in the text token, which is of length one and not of √(width / 2)."""
 
 
+GAITS: Final = 64
+"""Of whose walks may be told apart; 0 is nobody's."""
+
+
 class MadeOf(IntEnum):
     """Where the motion of a window comes from; the first is told one time in ten in training."""
 
@@ -54,6 +58,8 @@ class Conditions:
     """(B,) frames at 30 a second since the action began; 0 in locomotion, which is periodic (LINGO A.3)."""
     made_of: Tensor
     """(B,) of `MadeOf`."""
+    gait: Tensor
+    """(B,) whose walk it is, from 1 on; 0: not told (ours: the mean of all people is no person's walk)."""
     pelvis: Tensor
     """(B, 9) of `PELVIS`."""
     has_pelvis: Tensor
@@ -98,12 +104,15 @@ class ConditionEncoder(nn.Module):
     def __init__(self, width: int, scene: SceneSizes | None) -> None:
         super().__init__()
         self.text, self.made_of = FramedText(width), nn.Embedding(len(MadeOf), width)
+        self.gait = nn.Embedding(GAITS, width)
+        nn.init.zeros_(self.gait.weight)
         self.hand, self.pelvis = mlp(HAND, width), mlp(PELVIS, width)
         self.scene = SceneEncoder(scene, width) if scene is not None else None
 
     def forward(self, given: Conditions) -> Tensor:
         """(B, 4, width)."""
-        text = self.text(given.text, given.has_text, given.frame) + self.made_of(given.made_of)
+        text = self.text(given.text, given.has_text, given.frame) 
+        text = text + self.made_of(given.made_of) + self.gait(given.gait)
         hand = self.hand(given.hand) * given.has_hand[:, None]
         pelvis = self.pelvis(given.pelvis) * given.has_pelvis[:, None]
         return torch.stack([self._scene(given, text), text, hand, pelvis], dim=1)

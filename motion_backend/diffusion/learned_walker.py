@@ -28,12 +28,14 @@ class LearnedGait:
     """The generator: what the sampler's weights walk like."""
 
     sampler: Sampler
+    gait: int = 0
+    """Whose walk it is; 0: nobody's."""
     name: str = "diffusion"
     slowest: float = 0.5
 
     def begin(self, past: Frames, rng: np.random.Generator) -> Walker:
         """Go on from a body's last frames; the noise of each window comes from `rng`."""
-        return LearnedWalker(self.sampler, past, int(rng.integers(SEEDS)))
+        return LearnedWalker(self.sampler, self.gait, past, int(rng.integers(SEEDS)))
 
 
 @dataclass
@@ -41,6 +43,7 @@ class LearnedWalker:
     """One walk in the making."""
 
     sampler: Sampler
+    gait: int
     past: Frames
     seed: int
     made: int = 0
@@ -54,7 +57,7 @@ class LearnedWalker:
         place = np.array([[ahead.places[-1, 0], 0.0, ahead.places[-1, 1]]])
         pace = float(np.linalg.norm(ahead.places[-1] - self.past.root[-1, [0, 2]])) / WINDOW_SECONDS
         goal = PelvisGoal(place, np.array([float(ahead.yaws[-1])]))
-        wish = Wish(caption_of(pace), goal, made_of=MadeOf.RECORDED)
+        wish = Wish(caption_of(pace), goal, made_of=MadeOf.RECORDED, gait=self.gait)
         poses = body.go_on(wish, [self.seed, self.made]).poses
         keys = Frames(poses.roots[0, HISTORY - 1 :], poses.local[0, HISTORY - 1 :])
         found, self._velocity = spline(keys, self._velocity or _speed(self.past))

@@ -74,6 +74,8 @@ class Wish:
     frame: int = 0
     """Frames at 30 a second since the action began; 0 in locomotion."""
     made_of: MadeOf = MadeOf.RECORDED
+    gait: NDArray[np.int64] | int = 0
+    """Whose walk it is, of each body or of all; 0: nobody's."""
     voxels: NDArray[np.float32] | None = None
     """(B, 64, 32, 32); None where the scene does not matter."""
 
@@ -116,6 +118,7 @@ def conditions(wish: Wish, frame: HeadingFrame) -> Conditions:
         has_text=ones * bool(text.any()),
         frame=torch.full((count,), wish.frame),
         made_of=torch.full((count,), int(wish.made_of)),
+        gait=torch.from_numpy(np.broadcast_to(np.int64(wish.gait), count).copy()),
         pelvis=_tensor(pelvis),
         has_pelvis=ones * (wish.pelvis is not None or wish.hand is not None),
         hand=_tensor(hand),

@@ -54,6 +54,12 @@ class Sampler:
     schedule: NoiseSchedule = NoiseSchedule()
     steps: int = DDIM_STEPS
     """Of DDIM; 0: all of DDPM's."""
+    gaits: int = 0
+    """Of how many people's walks are told apart."""
+
+    def gait_of(self, seed: int) -> int:
+        """Whose walk a body of that seed has; 0 where none are told apart."""
+        return 1 + seed % self.gaits if self.gaits else 0
 
     def windows(self, history: Array, given: Conditions, seed: int | list[int], guide: Guide | None = None) -> Array:
         """What follows history (B, 2, 202) under conditions of B windows, in features. (B, 14, 202).

@@ -34,8 +34,8 @@ from scene_graphs.errors import UserError
 
 Shares = Mapping[tuple[MadeOf, PartKind], float]
 WALK_SHARES: Final[Shares] = {
-    (MadeOf.RECORDED, PartKind.WALK): 0.25, (MadeOf.MATCHED, PartKind.WALK): 0.6,
-    (MadeOf.PROCEDURAL, PartKind.WALK): 0.15,
+    (MadeOf.RECORDED, PartKind.WALK): 0.4, (MadeOf.MATCHED, PartKind.WALK): 0.5,
+    (MadeOf.PROCEDURAL, PartKind.WALK): 0.1,
 }  # fmt: skip
 """Of windows where only walking is learned."""
 SHARES: Final[Shares] = {
@@ -133,6 +133,8 @@ class Run:
     seconds: float = 0.0
     """Of one core's time."""
     curve: list[dict[str, float]] = field(default_factory=list)
+    gaits: int = 0
+    """Of how many people's walks are told apart."""
 
 
 @dataclass(frozen=True)
@@ -202,6 +204,7 @@ def dropped(batch: Batch, config: TrainConfig, rng: np.random.Generator) -> Cond
         has_hand=given.has_hand * kept(config.dropped),
         has_scene=None if given.has_scene is None else given.has_scene * kept(config.dropped),
         made_of=given.made_of * kept(config.dropped),
+        gait=given.gait * kept(config.dropped),
         pelvis=pelvis,
     )
 
@@ -224,13 +227,15 @@ def train(
     config: TrainConfig,
     folder: Path,
     at_checkpoint: Callable[[Run, Weights], Mapping[str, float]] = lambda _run, _weights: {},
+    start: Weights | None = None,
 ) -> Weights:
     """Train to the end, or from where a run in `folder` was broken off; the averaged weights. TrainingError.
 
-    `at_checkpoint` may judge and draw; its figures go into the curve.
+    `at_checkpoint` may judge and draw; its figures go into the curve. A new run begins from `start` where that is
+    given.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    run = _begun(learner, bank, windows, config, folder)
+    run = _begun(learner, bank, windows, config, folder, start)
     recent: list[dict[str, float]] = []
     learner.network.train()
     while run.step < config.steps:
@@ -263,22 +268,27 @@ def averaged(learner: Learner, run: Run, config: TrainConfig) -> Weights:
     scale = Scale(run.scale.mean.cpu(), run.scale.deviation.cpu())
     told = {
         "kind": learner.kind, "sizes": dict(learner.sizes), "noise": asdict(config.noise),
+        "gaits": run.gaits,
         "training": {**config.to_dict(), "steps_done": run.step, "core_seconds": round(run.seconds)},
     }  # fmt: skip
     return Weights(network.eval().requires_grad_(False), scale, told)
 
 
-def _begun(learner: Learner, bank: WindowBank, windows: Windows, config: TrainConfig, folder: Path) -> Run:
+def _begun(
+    learner: Learner, bank: WindowBank, windows: Windows, config: TrainConfig, folder: Path, start: Weights | None
+) -> Run:
     """A run at its beginning, or as it was saved."""
     device = next(learner.network.parameters()).device
     optimizer = Adam(list(learner.network.parameters()))
     told = {"config": config.to_dict(), "sizes": dict(learner.sizes), "kind": learner.kind}
     state = folder / "run.json"
     if not state.exists():
-        scale = measured_scale(bank, windows, config.seed)
+        if start is not None:
+            learner.network.load_state_dict(start.network.state_dict())
+        scale = start.scale if start is not None else measured_scale(bank, windows, config.seed)
         scale = Scale(scale.mean.to(device), scale.deviation.to(device))
         average = {name: tensor.detach().clone() for name, tensor in learner.network.state_dict().items()}
-        return Run(learner.network, average, scale, optimizer)
+        return Run(learner.network, average, scale, optimizer, gaits=len(bank.gaits))
     row = json.loads(state.read_text(encoding="utf-8"))
     if row["told"] != json.loads(json.dumps(told)):
         raise CheckpointError(f"{folder} holds a run of another config", "give another folder, or the same options")
@@ -288,9 +298,8 @@ def _begun(learner: Learner, bank: WindowBank, windows: Windows, config: TrainCo
         for index, tensor in enumerate(kept):
             tensor.copy_(tensors[f"adam.{kind}.{index}"])
     scale = Scale(tensors[MEAN], tensors[DEVIATION])
-    return Run(
-        learner.network, _under("average.", tensors), scale, optimizer, row["step"], row["seconds"], row["curve"]
-    )
+    average, done = _under("average.", tensors), (row["step"], row["seconds"], row["curve"])
+    return Run(learner.network, average, scale, optimizer, *done, gaits=len(bank.gaits))
 
 
 def _stepped(run: Run, loss: Tensor, config: TrainConfig) -> None:

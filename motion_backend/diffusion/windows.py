@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from motion_backend.backend_protocol import PartKind
-from motion_backend.diffusion.conditions import MAX_SECONDS, TIME_UNIT, Conditions, MadeOf
+from motion_backend.diffusion.conditions import GAITS, MAX_SECONDS, TIME_UNIT, Conditions, MadeOf
 from motion_backend.diffusion.dataset import PERIODIC, Stretch
 from motion_backend.diffusion.motion_features import HISTORY, RATE, STRIDE, WINDOW, quat_to_six, twist
 from motion_backend.diffusion.scene_encoder import voxel_image
@@ -115,6 +115,8 @@ class WindowBank:
         self._reached = torch.tensor([begins[i] + (p.stop - 1 if p.reached is None else p.reached) for i, p in rows])
         made = [self.stretches[i].made_of for i, _ in rows]
         self._made_of = torch.tensor([int(one) for one in made])
+        self.gaits = gaits(self.stretches)
+        self._gait = torch.tensor([self.gaits.get(walker(self.stretches[i]), 0) for i, _ in rows])
         self._held = torch.tensor([one is MadeOf.PROCEDURAL for one in made])
         self._low = torch.tensor([begins[i] for i, _ in rows])
         self._high = torch.tensor([begins[i + 1] - 1 for i, _ in rows])
@@ -177,7 +179,7 @@ class WindowBank:
         voxels, has_scene = self._voxels(row, ends, origin, yaw)
         windows = self._features(frames, origin, yaw)
         given = Conditions(
-            text, torch.ones(len(start)), frame, self._made_of[row].clone(), pelvis, has_pelvis,
+            text, torch.ones(len(start)), frame, self._made_of[row].clone(), self._gait[row].clone(), pelvis, has_pelvis,
             hand * has_hand[:, None], has_hand, voxels, has_scene,
         )  # fmt: skip
         _mirror(windows, given, flip)
@@ -232,6 +234,19 @@ class WindowBank:
         if room not in self._scenes:
             self._scenes[room] = Scene(home_from_layouts([built_in_index().layout(room)], 0))
         return self._scenes[room]
+
+
+def walker(stretch: Stretch) -> str:
+    """Who walked what was recorded, or what recordings were put together to."""
+    return stretch.person.removeprefix(f"{MadeOf.MATCHED.name.lower()} ")
+
+
+def gaits(stretches: Sequence[Stretch]) -> dict[str, int]:
+    """A number from 1 on for everybody who was recorded walking; ClipError for more people than can be told apart."""
+    walks = {walker(one) for one in stretches if one.made_of is MadeOf.RECORDED and one.passages[0].kind in PERIODIC}
+    if len(walks) >= GAITS:
+        raise ClipError(f"{len(walks)} people walk in it", f"at most {GAITS - 1} are told apart")
+    return {name: number for number, name in enumerate(sorted(walks), start=1)}
 
 
 def _weights(groups: list[tuple[tuple[MadeOf, PartKind], str]], shares: Mapping[tuple[MadeOf, PartKind], float]) -> Array:

@@ -74,8 +74,12 @@ def diffusion(
         Path | None, typer.Option(help="Clips whose test people judge the walk at every checkpoint.")
     ] = None,
     device: Annotated[str, typer.Option(help="cpu or cuda, where numbers are 16 bits wide.")] = "cpu",
+    start: Annotated[
+        Path | None, typer.Option("--from", help="Weights of the same sizes to begin with, without their suffix.")
+    ] = None,
 ) -> None:
     """Train the motion diffusion module (LINGO A.1 to A.4, A.6)."""
+    from motion_backend.diffusion.checkpoint import load_denoiser
     from motion_backend.diffusion.denoiser import PRESETS
     from motion_backend.diffusion.losses import CONTACT_LOSSES, WALK_LOSSES
     from motion_backend.diffusion.train import SHARES, WALK_SHARES, TrainConfig, denoiser_learner
@@ -93,7 +97,8 @@ def diffusion(
         steps, batch, rate or RATES[preset], save_every=save_every, seed=seed, losses=WALK_LOSSES if learn is Learned.WALK else CONTACT_LOSSES
     )
     people = None if judge is None else read_dataset(judge)
-    _train(denoiser_learner(sizes, config, device), bank, bank.windows(shares), config, out, people)
+    begun = None if start is None else load_denoiser(start)[0]
+    _train(denoiser_learner(sizes, config, device), bank, bank.windows(shares), config, out, people, begun)
 
 
 RATES: Final = {"paper": 1e-4, "small": 1.2e-3, "walk": 1.5e-3}
@@ -126,7 +131,7 @@ def scheduler(
     bank = _bank(_training(datasets), scenes=False)
     config = TrainConfig(steps, batch, 1e-3 if preset == "small" else 1e-4, seed=seed, save_every=save_every)
     learner = scheduler_learner(SCHEDULER_PRESETS[preset], config, device)
-    _train(learner, bank, bank.windows(ending), config, out, None)
+    _train(learner, bank, bank.windows(ending), config, out)
 
 
 def _training(files: list[Path]) -> list[Stretch]:
@@ -147,7 +152,8 @@ def _bank(stretches: list[Stretch], scenes: bool) -> WindowBank:
 
 
 def _train(
-    learner: Learner, bank: WindowBank, windows: Windows, config: TrainConfig, out: Path, people: Dataset | None
+    learner: Learner, bank: WindowBank, windows: Windows, config: TrainConfig, out: Path,
+    people: Dataset | None = None, start: Weights | None = None,
 ) -> None:
     """Train and say how it goes, a line a checkpoint, with the curve and a sheet of samples drawn beside the weights."""
     from motion_backend.diffusion.checkpoint import save_weights
@@ -163,7 +169,7 @@ def _train(
             from motion_backend.diffusion.sampler import Sampler
             from planner_service.evaluation.learned_walks import judged
 
-            sampler = Sampler(weights.network, weights.scale, NoiseSchedule())  # type: ignore[arg-type]
+            sampler = Sampler(weights.network, weights.scale, NoiseSchedule(), gaits=run.gaits)  # type: ignore[arg-type]
             told = judged(sampler, people)
         figures = {**(run.curve[-1] if run.curve else {}), **told}
         console.print(f"step {run.step}: " + ", ".join(f"{k} {v:.4g}" for k, v in figures.items()), soft_wrap=True)
@@ -172,7 +178,7 @@ def _train(
             draw_samples(weights, bank, windows, out / "samples.png")
         return told
 
-    weights = trained(learner, bank, windows, config, out, at_checkpoint)
+    weights = trained(learner, bank, windows, config, out, at_checkpoint, start)
     save_weights(weights, out / learner.kind, half=True)
     console.print(f"trained: {out / learner.kind}.safetensors", soft_wrap=True)
 

@@ -8,7 +8,6 @@ from typing import Final
 
 import numpy as np
 
-from motion_backend.diffusion.conditions import MadeOf
 from motion_backend.diffusion.learned_walker import caption_of
 from motion_backend.diffusion.motion_features import HISTORY, STRIDE, Poses
 from motion_backend.diffusion.rollout import WINDOW_SECONDS, PelvisGoal, Rollout, Wish, to_motion
@@ -54,12 +53,12 @@ def walked(sampler: Sampler, speeds: Array, skeleton: Skeleton, seed: int = 0) -
     body = Rollout(sampler, skeleton, _beginnings(speeds, skeleton))
     first = body.frame
     ahead = np.stack([np.sin(first.yaw), np.zeros(len(speeds)), np.cos(first.yaw)], axis=-1)
-    errors: list[Array] = []
+    gait, errors = np.array([sampler.gait_of(one) for one in range(len(speeds))]), list[Array]()
     for window in range(WINDOWS):
         here = body.poses.roots[:, -1]
         along = np.sum((here - first.origin) * ahead, axis=1)
         goal = first.origin + ahead * (along + WINDOW_SECONDS * speeds)[:, None]
-        wish = Wish(caption_of(float(speeds.mean())), PelvisGoal(goal, first.yaw), made_of=MadeOf.RECORDED)
+        wish = Wish(caption_of(float(speeds.mean())), PelvisGoal(goal, first.yaw), gait=gait)
         body = body.go_on(wish, [seed, window])
         errors.append(np.linalg.norm((body.poses.roots[:, -1] - goal)[:, [0, 2]], axis=1))
     motions = [to_motion(_of(body.poses, index), skeleton) for index in range(len(speeds))]

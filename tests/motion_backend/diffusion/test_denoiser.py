@@ -27,6 +27,7 @@ def told(count: int = 3) -> Conditions:
     ones = torch.ones(count)
     return Conditions(
         torch.randn(count, 384, generator=made), ones, torch.arange(count) * 30, torch.ones(count, dtype=torch.int64),
+        torch.ones(count, dtype=torch.int64),
         torch.randn(count, 9, generator=made), ones, torch.randn(count, 4, generator=made), ones,
         (torch.rand(count, 64, 32, 32, generator=made) < 0.2).float(), ones,
     )  # fmt: skip
