@@ -99,8 +99,8 @@ class WalkDriver:
                 why = why or (TOO_SHORT if not made else STARTS_AND_STOPS)
                 break
             history, motion, beyond = self._stretch(walk, stretch)
-            why = walk.astray(motion, self.generator.name)
-            if why:
+            if len(motion) < LEAST:
+                why = f"{self.generator.name} finds no room"
                 break
             if stretch[0]:
                 made.append(self._by_rules(walk.ruled.part(0, stretch[0]), STARTS_AND_STOPS))
@@ -133,7 +133,7 @@ class WalkDriver:
     def _stretch(self, walk: _Walk, stretch: tuple[int, int]) -> tuple[History, Motion, Array]:
         """What came before, the generator's frames, feet held and ending as a heel comes down, and the way (N, 2) left.
 
-        They end before the body would be in furniture.
+        They end before the body would be in furniture, or beside its way.
         """
         skeleton, (start, stop), before = walk.ruled.skeleton, stretch, walk.state.history
         history = before.followed_by(walk.ruled.part(0, start)) if start else before
@@ -205,19 +205,13 @@ class _Walk:
         return float(np.linalg.norm(motion.root_positions[:, [0, 2]] - goal, axis=1).min())
 
     def free(self, body: Kinematics) -> int:
-        """How many of a body's frames come before it is deeper in furniture than it may be."""
+        """How many of a body's frames come before it is deeper in furniture than it may be, or has lost its way."""
         obstacles = scene_of(self.home).obstacles
         most = float(penetration(Kinematics.of(self.ruled), obstacles, None).max()) + DEEPER
-        deep = penetration(body, obstacles, None) > most
-        return int(np.argmax(deep)) if deep.any() else len(deep)
-
-    def astray(self, motion: Motion, name: str) -> str:
-        """Why a generator's frames are of no use; empty where they are."""
-        if len(motion) < LEAST:
-            return f"{name} finds no room"
-        places = motion.root_positions[:, [0, 2]].astype(np.float64)
+        places = body.positions[:, 0][:, [0, 2]]
         off = np.sqrt(((places[:, None] - self.way[None]) ** 2).sum(axis=2)).min(axis=1)
-        return f"{name} was {100 * off.max():.0f} cm beside the way" if off.max() > OFF else ""
+        lost = (penetration(body, obstacles, None) > most) | (off > OFF)
+        return int(np.argmax(lost)) if lost.any() else len(lost)
 
 
 def style_of(action: Action) -> Walk:
