@@ -105,7 +105,6 @@ class ConditionEncoder(nn.Module):
         super().__init__()
         self.text, self.made_of = FramedText(width), nn.Embedding(len(MadeOf), width)
         self.gait = nn.Embedding(GAITS, width)
-        nn.init.zeros_(self.gait.weight)
         self.hand, self.pelvis = mlp(HAND, width), mlp(PELVIS, width)
         self.scene = SceneEncoder(scene, width) if scene is not None else None
 

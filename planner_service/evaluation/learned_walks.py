@@ -12,6 +12,7 @@ from motion_backend.diffusion.learned_walker import caption_of
 from motion_backend.diffusion.motion_features import HISTORY, STRIDE, Poses
 from motion_backend.diffusion.rollout import WINDOW_SECONDS, PelvisGoal, Rollout, Wish, to_motion
 from motion_backend.diffusion.sampler import Sampler
+from motion_backend.metrics.foot_skate import support_slip
 from motion_backend.metrics.kernel_mmd import discrepancy
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.walk_classifier import told_apart
@@ -24,13 +25,11 @@ from motion_backend.procedural.walk.gait_character import gait_character
 from motion_backend.procedural.walk.walk_styles import walk_style
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
-from planner_service.evaluation.walk_evaluation import CAPTION, Take, Walks, _walks, recorded_walks, spread
+from planner_service.evaluation.walk_evaluation import CAPTION, Take, Walks, recorded_walks, spread, walks_of
 
 WINDOWS: Final = 4
 """Of 1.4 s that are walked: what is judged comes after the first."""
 LIMBS: Final = ("whole body", "legs", "arms")
-NEAR_FLOOR: Final = 0.05
-"""Metres under which a corner of a sole may carry the body."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +44,7 @@ class LearnedWalks:
     @property
     def slip(self) -> float:
         """Mean speed of the best supported point of the soles, cm/s."""
-        return float(np.mean([slip(motion) for motion in self.motions]))
+        return float(np.mean([support_slip(Kinematics.of(motion)) for motion in self.motions]))
 
 
 def walked(sampler: Sampler, speeds: Array, skeleton: Skeleton, seed: int = 0) -> LearnedWalks:
@@ -64,7 +63,7 @@ def walked(sampler: Sampler, speeds: Array, skeleton: Skeleton, seed: int = 0) -
     motions = [to_motion(_of(body.poses, index), skeleton) for index in range(len(speeds))]
     later = [motion.part(HISTORY * STRIDE + 24, len(motion)) for motion in motions]
     takes = [Take(f"walk {index}", f"walk {index}", motion) for index, motion in enumerate(later)]
-    return LearnedWalks(_walks("learned", takes), tuple(later), float(np.median(errors)))
+    return LearnedWalks(walks_of("learned", takes), tuple(later), float(np.median(errors)))
 
 
 def judged(sampler: Sampler, dataset: Dataset, people: int = 48, seed: int = 0) -> Mapping[str, float]:
@@ -80,14 +79,6 @@ def judged(sampler: Sampler, dataset: Dataset, people: int = 48, seed: int = 0) 
     distance = discrepancy(everybody.features, everybody.groups, made.walks.features, made.walks.groups)
     wide = float(np.minimum(spread(everybody, made.walks), 1.0).mean())
     return {**told, "mmd2": distance.value, "spread": wide, "slip": made.slip, "goal_error": made.goal_error}
-
-
-def slip(motion: Motion) -> float:
-    """Mean speed over the floor of the slowest sole corner that is near it, of either foot, cm/s."""
-    soles = Kinematics.of(motion).soles
-    speed = np.linalg.norm(np.diff(soles[..., [0, 2]], axis=0), axis=-1) * motion.fps * 100
-    slowest = np.where(soles[:-1, ..., 1] < NEAR_FLOOR, speed, np.inf).min(axis=(1, 2))
-    return float(slowest[np.isfinite(slowest)].mean()) if np.isfinite(slowest).any() else 0.0
 
 
 def _beginnings(speeds: Array, skeleton: Skeleton) -> Poses:

@@ -54,7 +54,9 @@ def test_a_window_is_forty_two_frames_that_follow_on() -> None:
 
 def test_walks_go_where_they_are_to_go_upright_and_the_same_each_time() -> None:
     past, made, way = walked()
-    assert np.linalg.norm(made.root[-1, [0, 2]] - way.places[-1]) < 0.35
+    # It may be in the middle of a window as it gets there.
+    assert np.linalg.norm(made.root[:, [0, 2]] - way.places[-1], axis=1).min() < 0.15
+    assert np.abs(made.root[:, 0] - way.places[0, 0]).max() < 0.2
     assert (made.root[:, 1] > 0.75).all()
     assert (made.root[:, 1] < 1.0).all()
     again = follow(LearnedGait(walking(), gait=1).begin(past, np.random.default_rng(0)), past, way)
