@@ -181,14 +181,15 @@ def _visible(scene: _Scene, camera: Camera, size: tuple[int, int]) -> tuple[Ints
     viewed, source = clip(camera.view(scene.corners), camera)
     screen = camera.project(viewed, size)
     # A smooth solid is closed: its far side is hidden by its near side, or by none when it is see-through.
-    shown = np.flatnonzero(~scene.is_smooth[source] | _turned_to_us(screen))
+    shown = np.flatnonzero(~scene.is_smooth[source] | turned_to_us(screen))
     nearest, best = empty_buffers(size)
     draw(screen[shown], np.round(4 * scene.opacity[source[shown]]).astype(np.int64), 0, nearest, best)
     # Triangles that the eye's plane cuts are several pieces; none stays none.
     return np.append(source[shown], -1)[nearest].reshape(-1), best.reshape(-1)
 
 
-def _turned_to_us(screen: Real) -> NDArray[np.bool_]:
+def turned_to_us(screen: Real) -> NDArray[np.bool_]:
+    """Which triangles on a picture (F, 3, 3) show their outside. (F,)."""
     x, y = screen[..., 0], screen[..., 1]
     return np.asarray((x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) < (y[:, 1] - y[:, 0]) * (x[:, 2] - x[:, 0]))
 
