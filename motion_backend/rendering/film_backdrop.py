@@ -169,12 +169,12 @@ class Backdrop:
         return np.asarray(SUN_LIGHT * direct + sky + CAMERA_LIGHT * facing, dtype=np.float32)
 
 
-def _cutting(map: ShadowMap, body: Solid) -> tuple[Ints, Array]:
+def _cutting(found: ShadowMap, body: Solid) -> tuple[Ints, Array]:
     """The part of a lamp's map that a body alone covers, and its upper left pixel."""
     from motion_backend.rendering.depth_buffer import draw
 
-    points = map.places(np.asarray(body.vertices, dtype=np.float64))
-    pixels = map.depth.shape[0]
+    points = found.places(np.asarray(body.vertices, dtype=np.float64))
+    pixels = found.depth.shape[0]
     low = np.clip(np.floor(points.min(axis=0)[:2]) - MARGIN, 0, pixels - 1).astype(np.int64)
     high = np.clip(np.ceil(points.max(axis=0)[:2]) + MARGIN, low + 1, pixels).astype(np.int64)
     nearest, depth = empty_buffers((int(high[0] - low[0]), int(high[1] - low[1])))

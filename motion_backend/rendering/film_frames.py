@@ -7,8 +7,6 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
 from motion_backend.motion import Motion
 from motion_backend.rendering.film_backdrop import Backdrop
 from motion_backend.rendering.film_shots import FilmShot

@@ -29,6 +29,8 @@ PITCHES: Final = (0.16, 0.34)
 """From above, in radians: near the eyes of who stands, and over low furniture."""
 NEAREST: Final = 2.3
 """Metres from the middle of what is seen."""
+BACK: Final = 1.06
+"""How much farther away the next camera is tried where a body does not fit."""
 FRAME: Final = 0.84
 """The share of a picture that all of a body keeps within."""
 SAMPLES: Final = 5
@@ -39,6 +41,8 @@ ALIKE: Final = 0.5
 """Radians; two cameras that differ by less look like a mistake and not like a cut."""
 MARGIN: Final = 0.12
 """Metres around joints that skin and hair reach."""
+FAR: Final = 0.08
+"""What a metre of distance counts: faces are seen from near."""
 BLOCKED, HIDDEN, AT_WINDOW, REPEATED, INDOORS = 3.0, 2.5, 2.0, 0.6, 0.3
 """What counts how much: an eye within furniture, a body that is hidden, a curtain, a jump cut, an eye in the room."""
 
@@ -108,6 +112,7 @@ def _camera(
             score = float(shown[index]) + HIDDEN * float(seen)
             score += INDOORS * (room is not None and home.room_at((camera.eye[0], camera.eye[2])) == room)
             score -= AT_WINDOW * at_a_window(sides, eye) + BLOCKED * _blocked(near, camera)
+            score -= FAR * float(np.linalg.norm(eye - np.array([x, y, z])))
             score -= REPEATED * (before is not None and _alike(camera, before))
             if score > most + 1e-6:
                 best, most = camera, score
@@ -124,11 +129,11 @@ def _fitted(
         camera = orbit(target, distance, yaw, pitch, FOV)
         viewed = camera.view(points)
         depth = viewed[:, 2]
-        half = depth * np.tan(FOV / 2) * FRAME
-        if depth.min() > MARGIN and (np.abs(viewed[:, 1]) + MARGIN <= half).all():
-            if (np.abs(viewed[:, 0]) + MARGIN <= half * aspect).all():
-                return camera
-        distance *= 1.06
+        high = depth * np.tan(FOV / 2) * FRAME - MARGIN
+        wide = depth * np.tan(FOV / 2) * FRAME * aspect - MARGIN
+        if depth.min() > MARGIN and (np.abs(viewed[:, 1]) <= high).all() and (np.abs(viewed[:, 0]) <= wide).all():
+            return camera
+        distance *= BACK
 
 
 def _blocked(objects: Sequence[Placed], camera: Camera) -> bool:

@@ -22,7 +22,16 @@ from planner_service.settings import read_settings
 from planner_service.themes.beats import clean
 from scene_graphs.furniture import ROOM_TYPES
 
-SHARES = {"plan": 0.30, "furnish": 0.05, "narrate": 0.02, "act": 0.06, "move": 0.12, "judge": 0.20, "write": 0.25}
+SHARES = {
+    "plan": 0.30,
+    "furnish": 0.05,
+    "narrate": 0.02,
+    "act": 0.06,
+    "move": 0.12,
+    "judge": 0.20,
+    "write": 0.25,
+    "film": 1.0,
+}
 """About how much of the time each stage takes, for the bar."""
 MAX_FILE_LINES = 100_000
 """Bytes of a theme's file that are read."""
@@ -33,7 +42,8 @@ TOLD = {
     "act": "finding where to sit, lie, touch and walk",
     "move": "moving the body",
     "judge": "measuring the motion",
-    "write": "writing the film",
+    "write": "writing the files",
+    "film": "filming",
 }
 
 
@@ -53,14 +63,18 @@ def story(
     name: Annotated[str, typer.Option(help="The character's name; left out: the theme's own, else Sam.")] = "Sam",
     pronouns: Annotated[str, typer.Option(help="he, she or they; left out: as in the theme.")] = "they",
     height: Annotated[float, typer.Option(help="The character's height in metres, 1.2 to 2.2.")] = 1.70,
+    film: Annotated[bool, typer.Option("--film", help="Write film.mp4 too; about as long as it plays.")] = False,
     model: ModelOption = None,
 ) -> None:
     """Turn a story theme into a script, a home, a told story and an animated film."""
     from planner_service.cli.layouts import chosen_layouts
-    from planner_service.output.story_export import FILES, check_writable, write_story
+    from planner_service.output.film import check_film
+    from planner_service.output.story_export import FILES, FILM, check_writable, write_story
 
     settings = read_settings(llm_model=model)
-    check_writable(out, FILES)
+    if film:
+        check_film()
+    check_writable(out, [*FILES, FILM] if film else FILES)
     pipeline = Pipeline(open_shelves(settings), load_model(settings), settings.llm_on_failure == "error")
     request = StoryRequest(
         theme=clean(read_theme(theme)),
@@ -77,12 +91,14 @@ def story(
         task = bar.add_task(TOLD["plan"], total=1.0)
 
         def show(stage: str, share: float) -> None:
-            before = sum(SHARES[s] for s in [*STAGES, "write"][: [*STAGES, "write"].index(stage)])
-            bar.update(task, completed=before + share * SHARES[stage], description=TOLD[stage])
+            # A film takes as long again as all the rest.
+            stages, part = [*STAGES, "write", "film"], 1 - 0.5 * film
+            before = sum(SHARES[s] for s in stages[: stages.index(stage)])
+            bar.update(task, completed=part * (before + share * SHARES[stage]), description=TOLD[stage])
 
         made = pipeline.make(request, show)
         show("write", 0.0)
-        files = write_story(made, out)
+        files = write_story(made, out, film, lambda share: show("film", share))
         bar.update(task, completed=1.0, description="done")
     _close(console, made, files)
 
