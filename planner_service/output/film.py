@@ -130,7 +130,8 @@ def _lettered(text: str, size: tuple[int, int], share: float) -> NDArray[np.floa
     box = page.getbbox() or (0, 0, 1, 1)
     pad = round(0.3 * share * size[1])
     low, high = (max(box[0] - 2 * pad, 0), max(box[1] - pad, 0)), (box[2] + 2 * pad, box[3] + pad)
-    return np.asarray(page.crop((*low, *high)), dtype=np.float32) / 255
+    cover = np.asarray(page.crop((*low, *high)), dtype=np.float32)
+    return cover / np.float32(255)
 
 
 def _lay(picture: Image, letters: NDArray[np.float32], bottom: float) -> None:
