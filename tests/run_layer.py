@@ -41,6 +41,29 @@ RELEASE = {"SIMS_TEST_KILLS": "20", "SIMS_TEST_STORIES": "50", "SIMS_TEST_EXAMPL
 """How much `test-all` tries, where nothing else is asked for."""
 
 
+KERNEL = ROOT / "scene_graphs" / "graph" / "branch_and_bound_kernel.py"
+FIRST_SEARCH = """
+from scene_graphs.graph.edit_distance import exact_distance
+from scene_graphs.layout_library import built_in_index
+index = built_in_index()
+graph = index.graph("study-0000")
+index.search(graph)
+exact_distance(graph, graph, index.costs)
+"""
+
+
+def compile_search() -> None:
+    """The search for rooms is compiled where nobody has searched yet: a part of set-up, and all processes wait for one.
+
+    What was compiled is kept beside the module; processes that begin at once would each compile it.
+    """
+    kept = KERNEL.parent / "__pycache__"
+    if any(file.stat().st_mtime > KERNEL.stat().st_mtime for file in kept.glob(f"{KERNEL.stem}.*.nbi")):
+        return
+    print("· compiling the search for rooms, once", flush=True)
+    subprocess.run([sys.executable, "-c", FIRST_SEARCH], cwd=ROOT, check=True)
+
+
 def computed() -> float:
     """CPU-seconds of all processes that have ended below this one."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -76,7 +99,8 @@ def main() -> int:
     parser.add_argument("layers", choices=LAYERS)
     asked, more = parser.parse_known_args()
     environment = (RELEASE if asked.layers == "test-all" else {}) | dict(os.environ)
-    code, lines = 0, []
+    code, lines = 0, list[str]()
+    compile_search()
     for layer in LAYERS[asked.layers]:
         if asked.layers == "test-all":
             layer = replace(layer, wall=None, cpu=None)  # so much of it is not to be quick
