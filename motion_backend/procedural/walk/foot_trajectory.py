@@ -188,9 +188,10 @@ class Swing:
         flat, usual = 1 - min(self.heel_strike / TIP_UP, 1.0), min(self.clearance, row.usual_m)
         level = flat * min(self.clearance / row.usual_m, 1.0)
         lifted = usual * np.interp(u, *_curve("usual")) + (self.clearance - usual) * np.interp(u, *_curve("lifted"))
-        # What is not rolled off its toes and onto its heel is lifted, and put down, gently.
-        gently = smooth(u / row.gentle_share) * smooth((1 - u) / row.gentle_share)
-        return np.asarray((lifted + level * np.interp(u, *_curve("level"))) * (1 - flat * (1 - gently)))
+        # A foot that does not roll is lifted gently, and put down so where it does not go far ahead.
+        down = flat * (1.0 if self.backwards else 1 - self.size)
+        gently = [1 - share * (1 - smooth(at / row.gentle_share)) for share, at in ((flat, u), (down, 1 - u))]
+        return np.asarray((lifted + level * np.interp(u, *_curve("level"))) * gently[0] * gently[1])
 
     def pitch(self, phase: Array) -> Array:
         """How far the foot is pitched about the floor, heel up positive. (T,)."""

@@ -81,7 +81,9 @@ class LandingPlace:
     scatter_m: float
     uneven_m: float
     ahead_max_rad: float
-    """A foot comes down turned no further ahead of the body than this."""
+    """A foot comes down turned no further ahead of the body than this,"""
+    inwards_max_rad: float
+    """and no further towards the other foot."""
     turn_frames: int
     """It is looked so much before and after for a turn."""
     turn_rad: float
@@ -314,13 +316,13 @@ def _swing_of(
     rows, side = footstep_table(), 1 if beat.index == 0 else -1
     place, shape = rows.place, rows.swing
     at = min(int(np.searchsorted(phase, beat.middle)), len(phase) - 1)
-    heading = _faces(route, at, min(int(np.searchsorted(phase, beat.window[1])), len(phase) - 1), place)
+    heading = _faces(route, at, min(int(np.searchsorted(phase, beat.window[1])), len(phase) - 1), side, place)
     before = max(int(np.searchsorted(phase, beat.window[0])) - 1, 0)
     origin, yaw = feet.ankles[before, beat.index].copy(), float(feet.yaw[before, beat.index])
     beside = feet.ankles[before, 1 - beat.index]
     middle = _stance(beat, route, at, style, place, rng)
     stance, width = _widths(route, at, style, place)
-    target = home_ankle(middle, heading, beat.index, width + side * style.character.width_sides_m, skeleton)
+    target = home_ankle(middle, float(route.heading[at]), beat.index, width + side * style.character.width_sides_m, skeleton)
     apart = min(place.apart_m, place.apart_ratio * stance) * skeleton.scale
     target = _clear_of(beside, target, heading, side, apart)
     # A foot rolls off over its toes as it points then, and lands on its heel as it points there.
@@ -347,10 +349,10 @@ def _swing_of(
     )
 
 
-def _faces(route: Route, at: int, lands: int, place: LandingPlace) -> float:
+def _faces(route: Route, at: int, lands: int, side: int, place: LandingPlace) -> float:
     """Yaw of a foot that lands at one frame and has the body over it at another."""
-    ahead = np.clip(route.heading[at] - route.heading[lands], -place.ahead_max_rad, place.ahead_max_rad)
-    return float(route.heading[lands] + ahead)
+    ahead = side * float(route.heading[at] - route.heading[lands])
+    return float(route.heading[lands] + side * np.clip(ahead, -place.inwards_max_rad, place.ahead_max_rad))
 
 
 def _forward(way: Array, yaw: float, full: float) -> float:
