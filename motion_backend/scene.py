@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from threading import Lock
@@ -11,8 +12,10 @@ from typing import Final
 import numpy as np
 
 from motion_backend.body.scene_collision import Obstacles
+from motion_backend.rotations import Array
 from scene_graphs.geometry.egocentric_heightmap import SceneHeights
 from scene_graphs.home import Home
+from scene_graphs.meshes.convex_shapes import shapes_of
 from scene_graphs.navigation.path_planner import Walkable
 
 _KEPT: Final = 8
@@ -39,6 +42,23 @@ class Scene:
     def obstacles(self) -> Obstacles:
         """Furniture and walls as boxes."""
         return Obstacles.of_home(self.home)
+
+    def depth_about(self, object_id: str) -> Callable[[Array], Array]:
+        """How deep points (N, 3) are in furniture and walls, and in one piece as it is drawn: with what stands in it.
+
+        The depth (N,) is negative or -inf outside.
+        """
+        solid = self.obstacles.solid()
+        drawn = [shape for placed in self.home.objects if placed.id == object_id for shape in shapes_of(placed)]
+
+        def depth(points: Array) -> Array:
+            found, low, high = solid.depth(points), points.min(axis=0), points.max(axis=0)
+            for shape in drawn:
+                if ((shape.low < high) & (shape.high > low)).all():
+                    found = np.maximum(found, shape.depth(points))
+            return np.asarray(found)
+
+        return depth
 
     @cached_property
     def heights(self) -> SceneHeights:
