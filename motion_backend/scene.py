@@ -20,6 +20,10 @@ from scene_graphs.navigation.path_planner import Walkable
 
 _KEPT: Final = 8
 """Homes whose scenes are kept at hand."""
+UPPER: Final = 0.75
+"""Of its height: where a piece is looked at."""
+UNSEEN: Final = frozenset({"rug", "ceiling_lamp"})
+"""What nobody looks at."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +63,24 @@ class Scene:
             return np.asarray(found)
 
         return depth
+
+    def sights(self, room: int | None) -> Array:
+        """What eyes rest on in a room: the upper half of its furniture, its windows and doors. (N, 3)."""
+        return self._sights.get(room, np.zeros((0, 3)))
+
+    @cached_property
+    def _sights(self) -> dict[int | None, Array]:
+        found: dict[int | None, list[tuple[float, float, float]]] = {}
+        for placed in self.home.objects:
+            x, y, z = placed.position
+            if placed.category not in UNSEEN:
+                found.setdefault(int(placed.id.partition("/")[0]), []).append((x, y + UPPER * placed.size[1], z))
+        for wall in self.home.walls:
+            for opening in wall.openings:
+                (x0, z0), (x1, z1) = opening.segment
+                middle = ((x0 + x1) / 2, (opening.bottom + opening.top) / 2, (z0 + z1) / 2)
+                found.setdefault(self.home.room_at((middle[0], middle[2])), []).append(middle)
+        return {room: np.array(points) for room, points in found.items()}
 
     @cached_property
     def heights(self) -> SceneHeights:

@@ -141,20 +141,16 @@ def _looking_there(away: Pose, reached: Pose, row: Approach) -> Pose:
     )
 
 
-def arriving(walked: Pose, goal: Array, hand: str, skeleton: Skeleton, keys: ReachTable) -> Pose:
-    """The frames (T,) of a walk up to a thing, the eyes on the hand's goal (3,) before the body stands and the hand
-    on its way: what `touch` goes on from without a pause."""
+def arriving(walked: Pose, hand: str, keys: ReachTable) -> Pose:
+    """The frames (T,) of a walk up to a thing with the hand on its way: what `touch` goes on from without a pause."""
     row, index = keys.arriving, 0 if hand == "left" else 1
     left = (len(walked) - np.arange(1, len(walked) + 1)) / FPS
-    last = walked.at(len(walked) - 1)
-    look = _looking(last, goal, 0.0, float(yaw_of(last.hips)), skeleton, keys.gaze)
-    eyes = smooth(1 - left / row.eyes_s)[:, None]
     share = row.hand_share * smooth(1 - left / row.hand_s)[:, None]
     wrists, poles = arm_arrays(row.hand, row.hand)
     arms, elbows = walked.arms.copy(), walked.elbows.copy()
     arms[:, index] += share * (wrists[index] - arms[:, index])
     elbows[:, index] += share * (poles[index] - elbows[:, index])
-    return replace(walked, head=walked.head + eyes * (look - walked.head), arms=arms, elbows=elbows)
+    return replace(walked, arms=arms, elbows=elbows)
 
 
 def _varied(bent: Pose, laid: Laid, yaw: float, skeleton: Skeleton, keys: ReachTable, rng: np.random.Generator) -> Pose:

@@ -258,10 +258,8 @@ class ReachVariation:
 class Arriving:
     """The end of a walk to a thing."""
 
-    eyes_s: float
-    """The eyes are on it so long before one stands,"""
     hand_s: float
-    """and the hand begins to rise."""
+    """The hand begins to rise so long before one stands."""
     hand_share: float
     """How far it has, on the way into the arm pose `hand`."""
     hand: str

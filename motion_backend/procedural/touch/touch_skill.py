@@ -38,11 +38,9 @@ def before_thing(body: Body, action: Action) -> tuple[Point, float]:
 
 
 def come_to_thing(body: Body, action: Action) -> None:
-    """The end of the walk just made leads to a thing: eyes on it, the hand on its way."""
+    """The end of the walk just made leads to a thing: the hand is on its way."""
     if body.frames:
-        spot = spot_of(action)
-        goal = np.asarray(spot.point) + HAND_REST * np.asarray(spot.normal)
-        body.frames[-1] = arriving(body.frames[-1], goal, action.hand, body.skeleton, touch_keys().reach)
+        body.frames[-1] = arriving(body.frames[-1], action.hand, touch_keys().reach)
         body.pose = body.frames[-1].at(len(body.frames[-1]) - 1)
 
 
