@@ -20,7 +20,7 @@ from planner_service.library.library import open_shelves
 from planner_service.llm.factory import load_model
 from planner_service.llm.ollama_server import ollama_models
 from planner_service.pipeline import STAGES, Pipeline, RequestError, Story, StoryRequest
-from planner_service.settings import read_settings
+from planner_service.settings import give_backends, read_settings
 from planner_service.themes.beats import clean
 from scene_graphs.furniture import ROOM_TYPES
 
@@ -69,6 +69,9 @@ def story(
         typer.Option(help="A layout file, or the id of a built-in layout; may be given up to 4 times."),
     ] = None,
     backend: Annotated[str | None, typer.Option(help="What moves the body (SIMS_BACKEND; procedural).")] = None,
+    clips: Annotated[
+        Path | None, typer.Option(help="Collection whose walks the backend matching is made of (SIMS_CLIPS).")
+    ] = None,
     name: Annotated[str, typer.Option(help="The character's name; left out: the theme's own, else Sam.")] = "Sam",
     pronouns: Annotated[str, typer.Option(help="he, she or they; left out: as in the theme.")] = "they",
     height: Annotated[float, typer.Option(help="The character's height in metres, 1.2 to 2.2.")] = 1.70,
@@ -80,7 +83,8 @@ def story(
     from planner_service.output.film import check_film
     from planner_service.output.story_export import FILES, FILM, check_writable, write_story
 
-    settings = read_settings(llm_model=model)
+    settings = read_settings(llm_model=model, clips=clips)
+    give_backends(settings)
     if film:
         check_film()
     check_writable(out or OUT, [*FILES, FILM] if film else FILES)
