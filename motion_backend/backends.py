@@ -15,9 +15,15 @@ from scene_graphs.errors import UserError
 
 GROUP: Final = "sims.backends"
 DEFAULT_BACKEND: Final = "procedural"
-_OURS: Final = {"procedural": "motion_backend.procedural.backend:ProceduralBackend"}
+_OURS: Final = {
+    "procedural": "motion_backend.procedural.backend:ProceduralBackend",
+    "physics": "motion_backend.physics.backend:PhysicsBackend",
+}
 """Our backends: name, and where what makes it is defined."""
-_ABOUT: Final = {"procedural": "kinematic, not learned"}
+_ABOUT: Final = {
+    "procedural": "kinematic, not learned",
+    "physics": "simulated (MuJoCo, tracked by model-predictive control, no root force)",
+}
 """What a reader of figures must know of them."""
 
 

@@ -32,5 +32,7 @@ def engine() -> ModuleType:
     except ImportError as error:
         raise EngineError("MuJoCo is not installed", REMEDY, at="backend") from error
     require_version(mujoco.__version__)
+    # What it warns of, states that are not finite, is looked for; it would write a file of its own into any folder.
+    mujoco.set_mju_user_warning(lambda _text: None)
     module: ModuleType = mujoco
     return module

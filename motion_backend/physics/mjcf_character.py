@@ -15,7 +15,6 @@ import numpy as np
 
 from motion_backend.body.capsules import BODIES, Capsule
 from motion_backend.body.segment_masses import SEGMENTS
-from motion_backend.body.zero_moment import GRAVITY
 from motion_backend.rotations import Array
 from motion_backend.skeleton import ANKLE_HEIGHT, INDEX, REFERENCE_HEIGHT, Skeleton, build_skeleton
 
@@ -104,7 +103,7 @@ def mass_of(height: float) -> float:
 
 @lru_cache(maxsize=8)
 def character(height: float) -> tuple[str, str]:
-    """The pelvis with all that hangs on it, and its actuators, for a body of that height (metres). Two pieces of XML."""
+    """XML of the pelvis with all that hangs on it, and of its actuators, for a body of that height (metres)."""
     body = _Body(build_skeleton(height), mass_of(height))
     return body.pelvis(), body.actuators()
 
@@ -157,7 +156,11 @@ class _Body:
             f"{side}_foot", self.offset(f"{side}_ankle"), self.joint(f"{side}_ankle", "ankle"), self.sole(side), toe
         )
         shin = self.body(
-            f"{side}_shin", self.offset(f"{side}_knee"), self.joint(f"{side}_knee", "knee"), self.skin(f"{side}_shin"), foot
+            f"{side}_shin",
+            self.offset(f"{side}_knee"),
+            self.joint(f"{side}_knee", "knee"),
+            self.skin(f"{side}_shin"),
+            foot,
         )
         thigh = self.skin(f"{side}_thigh")
         return self.body(f"{side}_thigh", self.offset(f"{side}_hip"), self.joint(f"{side}_hip", "hip"), thigh, shin)

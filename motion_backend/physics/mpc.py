@@ -1,14 +1,15 @@
 """Receding-horizon control without training: an iterative linear-quadratic regulator that tracks a plan in MuJoCo.
 
-Every few frames the next ones are simulated with the last controls, linearised about what was simulated (about the plan
-contacts would be a millimetre in or out, and the model would have no floor), improved by a Riccati recursion with a line
-search (Li and Todorov 2004; Tassa et al. 2012), and the first of them are played. The last control is part of the
-state, so that a price on its change is exact within the horizon and across its seam. Controls run linearly through a
-frame. Nothing acts on the body but its joints, gravity and contacts.
+Every few frames the next ones are simulated with the last controls, linearised about what was simulated (about the
+plan contacts would be a millimetre in or out, and the model would have no floor), improved by a Riccati recursion with
+a line search (Li and Todorov 2004; Tassa et al. 2012), and the first of them are played. The last control is part of
+the state, so that a price on its change is exact within the horizon and across its seam. Controls run linearly through
+a frame. Nothing acts on the body but its joints, gravity and contacts.
 """
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
@@ -54,6 +55,8 @@ FADES: Final = 0.9
 """What is left of the last offset in every frame that has entered the horizon."""
 SHARES: Final = (1.0, 0.6, 0.3, 0.1)
 """Of an improvement, tried from the boldest on."""
+CLOSELY: Final = 6
+"""So many frames of a horizon are linearised one by one, later ones by pairs: they are done again before they come."""
 REGULAR: Final = 1e-3
 """Added to the price of controls, so that there always is a best one."""
 
@@ -114,7 +117,7 @@ class Controller:
     contacts: ContactReader
 
     def improve(self, now: Moment, at: int, ahead: Array, effort: Effort) -> Roll:
-        """The controls of the next frames from frame `at` on, begun with the offsets that the last plan left (K, 30)."""
+        """The controls of the next frames from frame `at` on, begun with the offsets (K, 30) that the last plan left."""
         frames = min(effort.horizon, len(self.reference) - 1 - at)
         last = now.control - self.reference.controls[at]
         tries = [self.roll(now, at, _fading(ahead, frames)), self.roll(now, at, np.zeros((frames, NU)))]
@@ -137,10 +140,16 @@ class Controller:
         return best
 
     def roll(
-        self, now: Moment, at: int, offsets: Array, gains: Gains | None = None, about: Roll | None = None, share: float = 0
+        self,
+        now: Moment,
+        at: int,
+        offsets: Array,
+        gains: Gains | None = None,
+        about: Roll | None = None,
+        share: float = 0,
     ) -> Roll:
         """Simulate some frames with offsets (H, 30), changed by a share of what the gains say about another roll."""
-        model, data, plan = self.models.fine, self.data, self.reference
+        data, plan = self.data, self.reference
         self._set(now)
         states, cost, last = [now.state], 0.0, now.control - plan.controls[at]
         played = np.empty_like(offsets)
@@ -209,7 +218,7 @@ class Controller:
         return SLIDING * float(velocity @ velocity)
 
     def _planted_rows(self, at: int) -> Array | None:
-        """Velocities of planted sole points by the body's velocity: Jacobian rows (3 N, 36); None where there are none."""
+        """Jacobian rows (3 N, 36) of the velocities of planted sole points; None where there are none."""
         mujoco, model, data = engine(), self.models.fine, self.data
         planted = self.reference.planted[at].reshape(2, 2)
         if not planted.any():
@@ -239,13 +248,15 @@ class Controller:
         """The Riccati recursion over a horizon's linear models; the state z is (δx, δ last offset)."""
         plan, frames = self.reference, len(about.offsets)
         before = np.concatenate([last[None], about.offsets[:-1]])
-        models = linearise(
+        every = [i for i in range(frames) if i < CLOSELY or (i - CLOSELY) % 2 == 0]
+        found = linearise(
             self.models.coarse,
             [
                 Frame(about.states[i], plan.controls[at + i] + before[i], plan.controls[at + i + 1] + about.offsets[i])
-                for i in range(frames)
+                for i in every
             ],
         )
+        models = [found[bisect_right(every, i) - 1] for i in range(frames)]
         add, answer = [np.zeros(0)] * frames, [np.zeros(0)] * frames
         value, slope = np.zeros((NX + NU, NX + NU)), np.zeros(NX + NU)
         value[:NX, :NX], slope[:NX] = self._stage(about.states[frames], at + frames, AT_THE_END)
@@ -288,11 +299,6 @@ def moment_of(reference: Reference, at: int) -> Moment:
     """A body that is exactly where the plan has it."""
     state = State(reference.qpos[at].copy(), reference.qvel[at].copy())
     return Moment(state, np.zeros(NV), reference.controls[at].copy())
-
-
-def offsets_left(roll: Roll, played: int) -> Array:
-    """What a plan has left once some frames of it are played. (K, 30)."""
-    return roll.offsets[played:].copy()
 
 
 def stacked(moments: Sequence[Moment]) -> tuple[Array, Array]:

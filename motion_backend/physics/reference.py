@@ -30,7 +30,7 @@ FASTEST: Final = 8.0
 
 @dataclass(frozen=True)
 class Plan:
-    """T frames of a kinematic body: its end is the end of what is to be done, and what comes after is looked ahead at."""
+    """T frames of a kinematic body."""
 
     roots: Array
     """(T, 3)."""
@@ -45,6 +45,10 @@ class Plan:
     def part(self, frames: slice) -> Plan:
         """Some of the frames."""
         return Plan(self.roots[frames], self.local[frames], self.contacts[frames])
+
+    def last(self, frames: int) -> Plan:
+        """Its last frame, so often."""
+        return Plan(*(np.repeat(rows[-1:], max(frames, 0), axis=0) for rows in (self.roots, self.local, self.contacts)))
 
     def followed_by(self, later: Plan) -> Plan:
         """One after the other."""
@@ -79,6 +83,11 @@ class Reference:
 
     def __len__(self) -> int:
         return len(self.qpos)
+
+    def part(self, frames: slice) -> Reference:
+        """Some of the frames."""
+        rows = (self.qpos, self.qvel, self.controls, self.planted, self.wrists)
+        return Reference(*(row[frames] for row in rows))
 
     @staticmethod
     def of(plan: Plan, skeleton: Skeleton) -> Reference:
@@ -138,7 +147,9 @@ def _without_collars(roots: Array, local: Array, skeleton: Skeleton) -> Array:
     positions, world = skeleton.forward_kinematics(roots, local)
     found = np.array(local)
     for side, sign in SIDES:
-        collar, shoulder, elbow, wrist = (INDEX[f"{side}_{joint}"] for joint in ("collar", "shoulder", "elbow", "wrist"))
+        collar, shoulder, elbow, wrist = (
+            INDEX[f"{side}_{joint}"] for joint in ("collar", "shoulder", "elbow", "wrist")
+        )
         frames = np.flatnonzero(np.linalg.norm(local[:, collar, :3], axis=1) > TURNED / 2)
         if not len(frames):
             continue
