@@ -34,10 +34,8 @@ STEP: Final = 1 / 120
 """Seconds of a simulated step; four make a frame. At 1/60 feet slide three times as fast."""
 COARSE_STEP: Final = 1 / 60
 """Seconds of a step of the model that is linearised."""
-SOLVER: Final = "Newton", 50
-"""Of what is simulated, and its most iterations: with 6 states went to infinity."""
-COARSE_SOLVER: Final = "PGS", 30
-"""Of what is linearised: its derivatives differ by a thousandth, in half the time where few contacts are."""
+ITERATIONS: Final = 50
+"""Of the solver, at most: with 6 states went to infinity."""
 CONTACT_TIME: Final = 2.04
 """Steps in which a rigid contact is resolved; below two MuJoCo calls it unstable."""
 
@@ -76,12 +74,12 @@ def models_of(height: float, boxes: Obstacles) -> Models:
 
 @lru_cache(maxsize=32)
 def _models(height: float, rows: tuple[tuple[float, ...], ...]) -> Models:
-    fine = engine().MjModel.from_xml_string(_world(height, rows, STEP, SOLVER))
-    coarse = engine().MjModel.from_xml_string(_world(height, rows, COARSE_STEP, COARSE_SOLVER))
+    fine = engine().MjModel.from_xml_string(_world(height, rows, STEP))
+    coarse = engine().MjModel.from_xml_string(_world(height, rows, COARSE_STEP))
     return Models(fine, coarse)
 
 
-def _world(height: float, rows: tuple[tuple[float, ...], ...], step: float, solver: tuple[str, int]) -> str:
+def _world(height: float, rows: tuple[tuple[float, ...], ...], step: float) -> str:
     pelvis, actuators = character(height)
     boxes = "".join(_box(np.array(row[:3]), np.array(row[3:6]), row[6]) for row in rows)
     spare = "".join(
@@ -89,8 +87,8 @@ def _world(height: float, rows: tuple[tuple[float, ...], ...], step: float, solv
     )
     return f"""<mujoco model="sims">
 <compiler angle="degree"/>
-<option timestep="{step:.9g}" integrator="implicitfast" gravity="0 {-GRAVITY} 0" solver="{solver[0]}"
- iterations="{solver[1]}" ls_iterations="{solver[1]}"><flag eulerdamp="disable" autoreset="disable"/></option>
+<option timestep="{step:.9g}" integrator="implicitfast" gravity="0 {-GRAVITY} 0" iterations="{ITERATIONS}"
+ ls_iterations="{ITERATIONS}"><flag eulerdamp="disable" autoreset="disable"/></option>
 <size memory="8M"/>
 <default><geom condim="3" friction="1 .05 .05" solref="{CONTACT_TIME * step:.6g} 1" contype="1" conaffinity="2"/>
 <default class="body"><geom contype="2" conaffinity="1"/></default></default>

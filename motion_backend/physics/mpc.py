@@ -117,7 +117,7 @@ class Controller:
     contacts: ContactReader
 
     def improve(self, now: Moment, at: int, ahead: Array, effort: Effort) -> Roll:
-        """The controls of the next frames from frame `at` on, begun with the offsets (K, 30) that the last plan left."""
+        """The controls of the frames from `at` on, begun with the offsets (K, 30) that the last plan left."""
         frames = min(effort.horizon, len(self.reference) - 1 - at)
         last = now.control - self.reference.controls[at]
         tries = [self.roll(now, at, _fading(ahead, frames)), self.roll(now, at, np.zeros((frames, NU)))]
