@@ -98,9 +98,18 @@ def controls(qpos: Array, qvel: Array) -> Array:
         found[:, joint.control] = qpos[:, joint.qpos] + LEAD * qvel[:, joint.qvel]
     for joint in _BALLS:
         led = rotations.rotvec_to_quat(LEAD * qvel[:, joint.qvel : joint.qvel + 3])
-        turn = rotations.compose(_xyzw(qpos[:, joint.qpos : joint.qpos + 4]), led)
-        found[:, joint.control : joint.control + 3] = rotations.quat_to_rotvec(turn)
+        turn = _xyzw(qpos[:, joint.qpos : joint.qpos + 4])
+        target = rotations.quat_to_rotvec(rotations.compose(turn, led))
+        found[:, joint.control : joint.control + 3] = _nearest_map(target, rotations.quat_to_rotvec(turn))
     return found
+
+
+def _nearest_map(turn: Array, other: Array) -> Array:
+    """A rotation vector (T, 3), written the longer way round where that is nearer to another: servos know no circle."""
+    angle = rotations.length(turn)
+    longer = turn * (1 - 2 * np.pi / np.maximum(angle, 1e-9))
+    nearer = rotations.length(longer - other) < rotations.length(turn - other)
+    return np.where(nearer, longer, turn)
 
 
 def _slots() -> Iterator[tuple[int, int, bool]]:

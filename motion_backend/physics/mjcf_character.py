@@ -48,7 +48,8 @@ DRIVES: Final = {
 }
 """By joint, at 1.70 m. Half and double the torques change hardly anything: torque is not what is lacking."""
 DAMPING: Final = 0.1
-"""Seconds: a joint's damping over its stiffness."""
+"""Seconds: a servo's damping over its stiffness. It is part of the servo, so that a joint's torque is what is limited:
+damping of the joint itself would take more than the limit at the speed at which an arm is raised."""
 ARMATURE: Final = 0.24
 """kg m² about every joint axis, at 1.70 m: what a robot's gears and rotors add. No human has it; with a twelfth of it
 feet slide three times as fast, because the light shank is thrown about by every change of contact."""
@@ -170,9 +171,8 @@ class _Body:
 
     def joint(self, name: str, kind: str) -> str:
         drive = DRIVES[kind]
-        damping = DAMPING * drive.stiffness * self.strength
         # Inertia is mass times length squared.
-        own = f'damping="{damping:.6g}" armature="{ARMATURE * self.strength * self.scale:.6g}"'
+        own = f'armature="{ARMATURE * self.strength * self.scale:.6g}"'
         if not drive.axis:
             return f'<joint name="{name}" type="ball" {own}/>'
         low, high = drive.low, drive.high
@@ -186,11 +186,12 @@ class _Body:
         for name, kind in _chain():
             drive = DRIVES[kind]
             most = drive.torque * self.strength
-            strength = f'kp="{drive.stiffness * self.strength:.6g}" forcerange="{-most:.6g} {most:.6g}"'
+            stiffness = drive.stiffness * self.strength
+            servo = f'kp="{stiffness:.6g}" kv="{DAMPING * stiffness:.6g}" forcerange="{-most:.6g} {most:.6g}"'
             axes = [""] if drive.axis else ["1 0 0", "0 1 0", "0 0 1"]
             for axis in axes:
                 gear = f'gear="{axis} 0 0 0" ' if axis else ""
-                rows.append(f'<position joint="{name}" {gear}{strength}/>')
+                rows.append(f'<position joint="{name}" {gear}{servo}/>')
         return "".join(rows)
 
     def skin(self, name: str, joint: str | None = None) -> str:
