@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from types import ModuleType
 from typing import Final
@@ -24,11 +27,24 @@ def require_version(version: str) -> None:
         raise EngineError(f"MuJoCo {version:.20} was not tried; {TESTED[0]}.{TESTED[1]} was", REMEDY, at="backend")
 
 
+@contextmanager
+def _without_windows() -> Iterator[None]:
+    """MuJoCo is told not to look for something to draw with, which would start a process."""
+    asked = os.environ.get("MUJOCO_GL")
+    os.environ["MUJOCO_GL"] = asked if asked is not None else "disable"
+    try:
+        yield
+    finally:
+        if asked is None:
+            del os.environ["MUJOCO_GL"]
+
+
 @cache
 def engine() -> ModuleType:
     """The module `mujoco`. EngineError where it is missing or of another version."""
     try:
-        import mujoco
+        with _without_windows():
+            import mujoco
     except ImportError as error:
         raise EngineError("MuJoCo is not installed", REMEDY, at="backend") from error
     require_version(mujoco.__version__)

@@ -122,6 +122,8 @@ class Controller:
         last = now.control - self.reference.controls[at]
         tries = [self.roll(now, at, _fading(ahead, frames)), self.roll(now, at, np.zeros((frames, NU)))]
         best = min(tries, key=_cost)
+        if not np.isfinite(best.cost):
+            return tries[1]
         for _ in range(effort.rounds):
             gains = self._gains(best, at, last)
             found = self._searched(now, at, best, gains)
@@ -152,7 +154,7 @@ class Controller:
         data, plan = self.data, self.reference
         self._set(now)
         states, cost, last = [now.state], 0.0, now.control - plan.controls[at]
-        played = np.empty_like(offsets)
+        played = np.zeros_like(offsets)
         before = about_before = last
         for index in range(len(offsets)):
             offset = offsets[index]
