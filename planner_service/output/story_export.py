@@ -195,7 +195,14 @@ def story_to_dict(story: Story) -> dict[str, Any]:
             for action, (start, stop) in zip(story.actions, story.segments, strict=True)
         ],
         "motion": {"frames": len(story.motion), "fps": story.motion.fps, "duration": round(story.motion.duration, 3)},
+        "physics": story.report["physics"],
     }
+
+
+def physics_mode(story: Story) -> str:
+    """What moved the joints of a simulated body; "none" for a kinematic one."""
+    physics = story.report["physics"]
+    return str(physics["mode"]) if physics else "none"
 
 
 def beats_of(story: Story) -> ActedBeats:
@@ -218,7 +225,7 @@ def report_to_dict(story: Story) -> dict[str, Any]:
         "language_model": asdict(planned.spent) if planned.spent else None,
         "encoder": planned.script.encoder,
         "backend": planned.request.backend,
-        "physics_mode": "none",
+        "physics_mode": physics_mode(story),
         "seed": planned.request.seed,
         **beats_of(story).to_dict(),
         "repairs": list(planned.script.repairs),
