@@ -16,25 +16,17 @@ from scene_graphs.errors import UserError
 
 GROUP: Final = "sims.backends"
 DEFAULT_BACKEND: Final = "procedural"
-<<<<<<< HEAD
 MATCHING: Final = "matching"
 _OURS: Final = {
     "procedural": "motion_backend.procedural.backend:ProceduralBackend",
-    MATCHING: "motion_backend.matching.backend:of_given_clips",
-=======
-_OURS: Final = {
-    "procedural": "motion_backend.procedural.backend:ProceduralBackend",
     "physics": "motion_backend.physics.backend:PhysicsBackend",
->>>>>>> physics
+    MATCHING: "motion_backend.matching.backend:of_given_clips",
 }
 """Our backends: name, and where what makes it is defined."""
 _ABOUT: Final = {
     "procedural": "kinematic, not learned",
-<<<<<<< HEAD
     MATCHING: "recorded walks of your clips by motion matching, nothing else",
-=======
     "physics": "simulated (MuJoCo, tracked by model-predictive control, no root force)",
->>>>>>> physics
 }
 """What a reader of figures must know of them."""
 _given: dict[str, Path] = {}
