@@ -226,7 +226,10 @@ def _labelled(motion: Motion, part: Part, backend: MotionBackend, fallback: str,
     phases = motion.phases
     if not phases and len(motion):
         phases = (Phase(PHASE_OF[part.kind], 0, len(motion)),)
-    phases = tuple(replace(phase, backend=backend.name, fallback=fallback) for phase in phases)
+    # A backend may say itself who made a phase of it.
+    phases = tuple(
+        replace(phase, backend=phase.backend or backend.name, fallback=phase.fallback or fallback) for phase in phases
+    )
     return replace(motion, phases=phases, completed=not why, reason=why)
 
 

@@ -11,6 +11,7 @@ from motion_backend.director import Director, shares
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.story_figures import story_figures
 from motion_backend.motion import Action, Character, Motion, join
+from motion_backend.physics.physics_record import physics_of
 from motion_backend.scene import scene_of
 from planner_service.composition.compose import compose, script_of
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, METHODS, Request
@@ -311,4 +312,5 @@ def judge(planned: Planned, actions: Sequence[Action], motions: Sequence[Motion]
     whole = join(list(motions))
     report = story_metrics.summarise(figures) | story_figures(whole, actions, segments).to_dict()
     report["made_by"] = shares(whole)
+    report["physics"] = physics_of(whole)
     return Story(planned, tuple(actions), whole, tuple(segments), tuple(figures), report)

@@ -37,11 +37,12 @@ def standing(feet: Feet, pelvis: Array) -> tuple[Flags, Flags]:
     return found[0], found[1]
 
 
-def locked(feet: Feet, pelvis: Array) -> tuple[Array, Array]:
+def locked(feet: Feet, pelvis: Array, fixed: int = 0, slack: float = 0.0) -> tuple[Array, Array]:
     """How far ankles must move for feet to stand on the floor and to stay there, (T, 2, 3), and the pelvis with them.
 
     The pelvis, (T, 3), rises and sinks with the foot that stands, so that its leg keeps its length: a leg that is
-    nearly straight pays for a centimetre with ten degrees of its knee. Metres.
+    nearly straight pays for a centimetre with ten degrees of its knee. Metres. The first `fixed` frames do not move,
+    and a foot that stands in the last of them stays there. Soles that stand within `slack` over the floor are left so.
     """
     heels, balls = standing(feet, pelvis)
     shift = np.zeros_like(feet.ankles)
@@ -50,8 +51,13 @@ def locked(feet: Feet, pelvis: Array) -> tuple[Array, Array]:
         stances = runs(without_brief(heels[:, side] | balls[:, side]))
         for start, stop in stances:
             back = -np.concatenate([[[0.0, 0.0]], np.cumsum(way[start : stop - 1], axis=0)])
-            shift[start:stop, side][:, [0, 2]] = back - back.mean(axis=0)
-            shift[start:stop, side, 1] = -feet.soles[start:stop, side, :, 1].min(axis=1)
+            there = back[fixed - 1 - start] if start < fixed < stop else back.mean(axis=0)
+            shift[start:stop, side][:, [0, 2]] = back - there
+            low = feet.soles[start:stop, side, :, 1].min(axis=1)
+            shift[start:stop, side, 1] = np.clip(low, 0.0, slack) - low
+        if fixed:
+            shift[:fixed, side] = 0.0
+            stances = [(0, fixed), *((max(start, fixed), stop) for start, stop in stances if stop > fixed)]
         _pass_over(shift[:, side], stances)
     length = np.linalg.norm(shift, axis=-1, keepdims=True)
     shift *= np.minimum(1.0, MAX_FOOT_SHIFT / np.maximum(length, 1e-9))

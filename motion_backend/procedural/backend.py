@@ -18,6 +18,7 @@ from motion_backend.procedural.balance_pass import balanced
 from motion_backend.procedural.body_state import Body
 from motion_backend.procedural.collision_avoidance.arm_clearance import Around, arms_clear
 from motion_backend.procedural.emotion_style import Bearing
+from motion_backend.procedural.gaze import gazing
 from motion_backend.procedural.held_poses import idle, standing
 from motion_backend.procedural.pose import Pose, concatenate
 from motion_backend.procedural.pose_solver import hips_within, released, solve
@@ -111,7 +112,7 @@ def _to_motion(body: Body, part: Part) -> Motion:
     pose, start = concatenate(body.frames), body.begun
     if body.tail is not None:
         pose, start = carried_on(body.tail, pose), body.tail.at(0)
-    pose = hips_within(balanced(pose, body.phases, body.skeleton), body.skeleton)
+    pose = hips_within(balanced(gazing(pose, body, part), body.phases, body.skeleton), body.skeleton)
     pose = arms_clear(pose, start, around, body.skeleton)
     body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)
