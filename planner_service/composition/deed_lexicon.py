@@ -15,6 +15,7 @@ from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS
 from planner_service.themes.lexicon import gerund, lemma_of
 from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.things import things
 from planner_service.themes.verb_finder import tokens_of
 from scene_graphs import furniture
 from scene_graphs.data_tables import read_table, require_known, table
@@ -58,21 +59,12 @@ class DeedRow:
 
 
 @table
-class KeptThings:
-    """Things, and the furniture where they are, the likeliest first."""
-
-    things: str
-    at: tuple[str, ...]
-
-
-@table
 class DeedTable:
     """data/deeds.toml."""
 
     not_furniture: str
     rooms: dict[str, tuple[str, ...]]
     usual: dict[str, dict[str, tuple[str, ...]]]
-    kept: tuple[KeptThings, ...]
     stands_on: dict[str, str]
     seats_at: dict[str, tuple[str, ...]]
     deed: tuple[DeedRow, ...]
@@ -96,15 +88,6 @@ class DeedTable:
             for pattern in map(_pattern, row.says):
                 for first in pattern[0] or ("",):
                     found.setdefault(first, []).append((pattern, row))
-        return found
-
-    @cached_property
-    def places(self) -> Mapping[str, tuple[str, ...]]:
-        """Where each thing is."""
-        found: dict[str, tuple[str, ...]] = {}
-        for kept in self.kept:
-            for thing in kept.things.split():
-                found.setdefault(thing, kept.at)
         return found
 
 
@@ -209,7 +192,7 @@ def _by_things(clause: Clause, about: str) -> DeedRow | None:
 
 def _kept(clause: Clause, about: str) -> tuple[str, ...]:
     """Where the first thing is that a clause names after its verb, or means by "it"."""
-    places = deed_table().places
+    places = things()
     found = next((places[word] for word in clause.lemmas[1:] if word in places), ())
     if found or not _IT & set(clause.lemmas[1:]):
         return found
@@ -222,7 +205,7 @@ def _lemmas(text: str) -> list[str]:
 
 def where(text: str) -> tuple[str, ...]:
     """Furniture that words name, else where the first thing is that they name."""
-    places = deed_table().places
+    places = things()
     return tuple(pieces_in(text)) or next((places[word] for word in _lemmas(text) if word in places), ())
 
 
@@ -233,7 +216,7 @@ def standing_at(clause: Clause) -> tuple[str, ...]:
 
 def names_things(clause: Clause) -> bool:
     """Whether a clause names furniture or things, which "it" may mean later."""
-    return bool(pieces_in(clause.text)) or any(word in deed_table().places for word in clause.lemmas)
+    return bool(pieces_in(clause.text)) or any(word in things() for word in clause.lemmas)
 
 
 def _fits(pattern: Pattern, lemmas: Sequence[str]) -> bool:

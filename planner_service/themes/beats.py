@@ -149,7 +149,8 @@ def _bounded(text: str, most: int = 300) -> str:
 
 def _kind(clause: Clause, who: str) -> BeatKind:
     words = theme_words()
-    if clause.quotes or (clause.verb in words["speech_verbs"] and words["not_said"].isdisjoint(clause.lemmas)):
+    says = clause.verb in words["speech_verbs"] and words["not_said"].isdisjoint(clause.lemmas)
+    if says or any(len(quote.split()) > 1 or quote[-1] in ".,!?" for quote in clause.quotes):
         return "speech" if not who else "other"
     if who or clause.aside:
         return "other"
