@@ -134,12 +134,14 @@ def hero_of(clauses: Sequence[Clause]) -> str:
         if not _is_pronoun(one.subject) and (one.joint not in _ASIDE or (one.sentence, one.place) < first)
     ]
     if not nouns and pronoun:
-        nouns = _stand_for(told, pronoun, first)
-    deeds = Counter(one.doer for one in clauses if not ((one.denied and not one.unable) or one.aside or _is_state(one)))
+        nouns = _stand_for(clauses, pronoun, first)
+    acting = [one for one in clauses if not ((one.denied and not one.unable) or one.aside)]
+    busy = {one.doer for one in acting}
+    deeds = Counter(one.doer for one in acting if not _is_state(one))
     if nouns:
         own = [one for one in nouns if one is told[0] or not _is_possessed(one.subject)] or nouns
-        heroes = [own, nouns] if not any(deeds[one.subject] for one in own) else [own]
-        doing = [one for some in heroes for one in some if deeds[one.subject]]
+        heroes = [own, nouns] if busy.isdisjoint({one.subject for one in own}) else [own]
+        doing = [one for some in heroes for one in some if one.subject in busy]
         return max(doing or own, key=lambda one: _heroic(one, pronoun) + min(deeds[one.subject], 4) / 8).subject
     opens = ("a ", "an ", "one ", "my ", "our ", *(() if people else ("the ",)))
     called = [one for one in mains[:1] if _may_be_called(one) and not people]
@@ -148,16 +150,16 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     return next(iter([*living, *(clause.subject for clause in people)]), "")
 
 
-def _stand_for(told: Sequence[Clause], pronoun: str, first: tuple[int, int]) -> list[Clause]:
+def _stand_for(clauses: Sequence[Clause], pronoun: str, first: tuple[int, int]) -> list[Clause]:
     """Subjects that a pronoun may stand for though nobody knows them for people: "the bosun cannot sleep, so he …",
     "he … so the tenor writes"; `first` is the place of the first pronoun."""
-    deeds = Counter(one.doer for one in told)
+    deeds = Counter(one.doer for one in clauses)
     found = []
-    for one in told:
+    for one in clauses:
         near = one.sentence in (first[0], first[0] - 1) and (one.sentence, one.place) < first
         alive = one.subject.lower().startswith(("the ", "a ", "an ")) and not _is_plural(one.subject)
         acts = one.joint in _MAIN_JOINTS and not _is_state(one) and (near or deeds[one.subject] > 1)
-        if acts and alive and pronouns_of(one.subject) in ("", pronoun) and _may_live(head_of(one.subject)):
+        if acts and alive and not one.aside and pronouns_of(one.subject) in ("", pronoun) and _may_live(head_of(one.subject)):
             found.append(one)
     return found
 

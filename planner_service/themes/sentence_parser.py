@@ -15,6 +15,7 @@ from typing import Any, Final
 
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_third_person, lemma_of, verb_of
 from planner_service.themes.theme_words import theme_words
+from planner_service.themes.things import things
 from planner_service.themes.verb_finder import Token, is_plural, plain, tokens_of, verb_place
 from planner_service.themes.verb_group import verb_group
 
@@ -282,7 +283,8 @@ def _is_noun_list(last: _Piece, piece: _Piece) -> bool:
     if {end, word} <= theme_words()["body"]:
         return True  # "on his hands and knees"
     if is_third_person(word):
-        return is_plural(end) and len(last.tokens) > 2 and last.tokens[-2].low not in grammar().marks
+        listed = is_plural(end) and len(last.tokens) > 2 and last.tokens[-2].low not in grammar().marks
+        return listed and (piece.joint != "," or word in things() or lemma_of(word) in things())
     return is_noun(end) and word == verb_of(word)
 
 

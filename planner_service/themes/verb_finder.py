@@ -155,7 +155,8 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
     opens_noun = tokens[0].low in grammar().marks | grammar().numbers
     if before.endswith("ing") and not is_noun(before) and opens_noun and at <= 1:
         return False  # "some jumping jacks"
-    if tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word):
+    opened = tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word)
+    if opened and not _has_own_mark(tokens, at):
         return False  # "under the sofa cushions"
     if word == base:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
@@ -166,6 +167,12 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
         follower = after.low if after is not None else ""
         return _goes_on(follower) or is_adjective(follower) or is_noun(follower)
     return True
+
+
+def _has_own_mark(tokens: Sequence[Token], at: int) -> bool:
+    """Whether the noun there begins anew with its own mark: "by lamplight | an archivist", not "under the sofa"."""
+    mark = next((place for place in range(at, 0, -1) if tokens[place].low in grammar().marks), 0)
+    return mark > 1 and tokens[mark - 1].low not in grammar().prepositions | grammar().marks
 
 
 def _has_object(after: Token | None) -> bool:
