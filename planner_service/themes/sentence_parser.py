@@ -17,7 +17,7 @@ from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_th
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import Token, is_plural, plain, tokens_of, verb_place
-from planner_service.themes.verb_group import verb_group
+from planner_service.themes.verb_group import is_past, verb_group
 
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
 _SEMI: Final = re.compile(r"\n+|;\s+|:\s+|\s+[–—]\s*|\s*[–—]\s+|\s+-{1,2}\s+|…\s*|\.{2,}\s*|\s*[()\[\]]\s*")
@@ -60,6 +60,8 @@ class Clause:
     """Whether it is not done since it cannot be: "cannot sleep"."""
     perfect: bool = False
     """Whether it had been done before."""
+    past: bool | None = None
+    """Whether it is told in the simple past, and not in the present; None where its verb does not tell."""
     aside: bool = False
     """Whether it is only spoken of: of a noun ("the letter she had hidden"), or supposed ("if he calls")."""
     quotes: tuple[str, ...] = ()
@@ -338,7 +340,7 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     lemmas = _lemmas(words[group.place :])
     first = Clause(
         _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, joint, denied=group.denied,
-        unable=group.unable, perfect=group.perfect, aside=supposed, quotes=_quotes(tokens, quotes), sentence=sentence,
+        unable=group.unable, perfect=group.perfect, past=is_past(words, group), aside=supposed, quotes=_quotes(tokens, quotes), sentence=sentence,
     )  # fmt: skip
     parted = not group.denied or group.unable
     parts = _parted(first, words, group.place, piece.source) if parted else [first]

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from planner_service.themes.lexicon import grammar, verb_of
+from planner_service.themes.lexicon import grammar, past, verb_of
 from planner_service.themes.verb_finder import Token, verb_place
 
 _EXPECTED: Final = frozenset(("supposed", "meant", "expected", "due", "scheduled"))
@@ -36,6 +36,17 @@ def verb_group(words: Sequence[Token]) -> VerbGroup:
         group.place += step
     group.place = min(group.place, len(words) - 1)
     return group
+
+
+def is_past(words: Sequence[Token], group: VerbGroup) -> bool | None:
+    """Whether the first of a clause's verbs is in the simple past; None where its form does not tell, or helps."""
+    if not words or group.denied:
+        return None
+    low = words[min(group.place, len(words) - 1)].low
+    first, base = next((token.low for token in words if verb_of(token.low)), ""), verb_of(low)
+    if first != low or not base or low in grammar().auxiliaries or base == past(base):
+        return None
+    return low == past(base) if low != base and not low.endswith("ing") else None
 
 
 def _step(words: Sequence[Token], group: VerbGroup) -> int:
