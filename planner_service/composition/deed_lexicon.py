@@ -13,6 +13,7 @@ from planner_service.scripts.captions import captions
 from planner_service.scripts.script import EMOTIONS
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS
+from planner_service.themes.details import details_of
 from planner_service.themes.lexicon import gerund, lemma_of
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.things import things
@@ -149,14 +150,34 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     return Deed(found, skill, tuple(dict.fromkeys(order)), False)
 
 
+def unshown(clause: Clause) -> tuple[str, ...]:
+    """What a clause tells besides its deed, and neither furniture nor the deed's own saying has: "for her ladyship"."""
+    row = said_row(clause)
+    known = _words_of(row.says) if row is not None else frozenset[str]()
+    return tuple(
+        text for text in details_of(clause) if not pieces_in(text) and known.isdisjoint(word for word in _lemmas(text))
+    )
+
+
+@cache
+def _words_of(sayings: tuple[str, ...]) -> frozenset[str]:
+    """Base forms of the longer words of a row's sayings."""
+    words = re.findall(r"[a-z]{4,}", " ".join(sayings))
+    return frozenset(form for word in words for form in _forms(word))
+
+
 def _named(clause: Clause, about: str) -> list[str]:
     """Furniture that a clause names, or means by "it" and "there"."""
     return pieces_in(clause.text) or (pieces_in(about)[-1:] if _IT & set(clause.lemmas[1:]) else [])
 
 
 def row_of(clause: Clause, about: str) -> DeedRow | None:
-    """The row whose saying tells most of the clause's words, from its verb on; else from a later -ing on; else by its
-    things."""
+    """The row that a clause's words say; else by its things."""
+    return said_row(clause) or _by_things(clause, about)
+
+
+def said_row(clause: Clause) -> DeedRow | None:
+    """The row whose saying tells most of the clause's words, from its verb on; else from a later -ing on."""
     ways, starts = deed_table().ways, list(_starts(clause))
     for anchored in (True, False):  # patterns that begin with a gap fit any verb, where no other does
         for lemmas in starts:
@@ -164,7 +185,7 @@ def row_of(clause: Clause, about: str) -> DeedRow | None:
                        if _fits(pattern, lemmas)]  # fmt: skip
             if fitting:
                 return max(fitting, key=lambda one: sum(map(bool, one[0])))[1]
-    return _by_things(clause, about)
+    return None
 
 
 def _starts(clause: Clause) -> Iterator[tuple[str, ...]]:
