@@ -19,12 +19,14 @@ DEFAULT_BACKEND: Final = "procedural"
 MATCHING: Final = "matching"
 _OURS: Final = {
     "procedural": "motion_backend.procedural.backend:ProceduralBackend",
+    "physics": "motion_backend.physics.backend:PhysicsBackend",
     MATCHING: "motion_backend.matching.backend:of_given_clips",
 }
 """Our backends: name, and where what makes it is defined."""
 _ABOUT: Final = {
     "procedural": "kinematic, not learned",
     MATCHING: "recorded walks of your clips by motion matching, nothing else",
+    "physics": "simulated (MuJoCo, tracked by model-predictive control, no root force)",
 }
 """What a reader of figures must know of them."""
 _given: dict[str, Path] = {}
