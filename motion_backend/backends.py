@@ -20,6 +20,7 @@ MATCHING: Final = "matching"
 DIFFUSION: Final = "diffusion"
 _OURS: Final = {
     "procedural": "motion_backend.procedural.backend:ProceduralBackend",
+    "physics": "motion_backend.physics.backend:PhysicsBackend",
     MATCHING: "motion_backend.matching.backend:of_given_clips",
     DIFFUSION: "motion_backend.diffusion.backend:DiffusionBackend",
 }
@@ -27,7 +28,11 @@ _OURS: Final = {
 _ABOUT: Final = {
     "procedural": "kinematic, not learned",
     MATCHING: "recorded walks of your clips by motion matching, nothing else",
+<<<<<<< HEAD
     DIFFUSION: "walks learned from recorded people, nothing else",
+=======
+    "physics": "simulated (MuJoCo, tracked by model-predictive control, no root force)",
+>>>>>>> matching
 }
 """What a reader of figures must know of them."""
 _given: dict[str, Path] = {}
