@@ -28,11 +28,8 @@ _OURS: Final = {
 _ABOUT: Final = {
     "procedural": "kinematic, not learned",
     MATCHING: "recorded walks of your clips by motion matching, nothing else",
-<<<<<<< HEAD
     DIFFUSION: "walks learned from recorded people, nothing else",
-=======
     "physics": "simulated (MuJoCo, tracked by model-predictive control, no root force)",
->>>>>>> matching
 }
 """What a reader of figures must know of them."""
 _given: dict[str, Path] = {}
