@@ -48,4 +48,6 @@ class DiffusionBackend:
 def walking(folder: Path = WEIGHTS) -> Sampler:
     """The sampler of the weights that walk. CheckpointError."""
     weights, schedule = load_denoiser(folder / "walk")
-    return Sampler(cast(Denoiser, weights.network), weights.scale, schedule, gaits=int(weights.config.get("gaits", 0)))
+    strides = None if weights.strides is None else weights.strides.double().numpy()
+    gaits = int(weights.config.get("gaits", 0))
+    return Sampler(cast(Denoiser, weights.network), weights.scale, schedule, gaits=gaits, strides=strides)

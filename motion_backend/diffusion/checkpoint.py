@@ -21,7 +21,7 @@ from motion_backend.diffusion.sampler import Scale
 from scene_graphs.errors import UserError
 
 FORMAT: Final = 1
-MEAN, DEVIATION = "scale.mean", "scale.deviation"
+MEAN, DEVIATION, STRIDES = "scale.mean", "scale.deviation", "strides"
 
 
 class CheckpointError(UserError):
@@ -36,6 +36,8 @@ class Weights:
     scale: Scale
     config: Mapping[str, Any] = field(default_factory=dict)
     """Kind, sizes, and how it was trained."""
+    strides: Tensor | None = None
+    """(gaits, N, 2, 202) histories of everybody's walk, as the model itself walks; None where it has none."""
 
 
 def save_weights(weights: Weights, path: Path, half: bool = False) -> None:
@@ -44,6 +46,8 @@ def save_weights(weights: Weights, path: Path, half: bool = False) -> None:
     if half:
         tensors = {name: tensor.half() for name, tensor in tensors.items()}
     tensors |= {MEAN: weights.scale.mean.cpu().float(), DEVIATION: weights.scale.deviation.cpu().float()}
+    if weights.strides is not None:
+        tensors[STRIDES] = weights.strides.half()
     written = path.with_suffix(".safetensors.part")
     save_file(tensors, written)
     path.with_suffix(".json").write_text(json.dumps({"format": FORMAT, **weights.config}, indent=1), encoding="utf-8")
@@ -99,13 +103,14 @@ def _filled(network: nn.Module, config: dict[str, Any], path: Path) -> Weights:
     scale = Scale(tensors.pop(MEAN, torch.zeros(0)), tensors.pop(DEVIATION, torch.zeros(0)))
     if scale.mean.shape != (FEATURES,) or scale.deviation.shape != (FEATURES,):
         raise _broken(where, f"it has no scale of {FEATURES} features")
+    strides = tensors.pop(STRIDES, None)
     try:
         network.load_state_dict(tensors)
     except RuntimeError as error:
         raise _broken(where, "its tensors are not those of its config") from error
     if not all(bool(torch.isfinite(tensor).all()) for tensor in (*tensors.values(), scale.mean, scale.deviation)):
         raise _broken(where, "it holds numbers that are not finite")
-    return Weights(network.eval().requires_grad_(False), scale, config)
+    return Weights(network.eval().requires_grad_(False), scale, config, strides)
 
 
 def _broken(path: Path, why: str) -> CheckpointError:

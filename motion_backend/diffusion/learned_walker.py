@@ -8,18 +8,19 @@ from typing import Final
 import numpy as np
 
 from motion_backend import rotations
+from motion_backend.backend_protocol import History
 from motion_backend.diffusion.conditions import MadeOf
-from motion_backend.diffusion.motion_features import HISTORY, RATE, STRIDE, Poses
-from motion_backend.diffusion.rollout import WINDOW_SECONDS, PelvisGoal, Rollout, Wish
+from motion_backend.diffusion.motion_features import HISTORY, STRIDE, HeadingFrame, Poses, from_features, to_features
+from motion_backend.diffusion.rollout import PelvisGoal, Rollout, Wish
 from motion_backend.diffusion.sampler import Sampler
-from motion_backend.mocap.clip_captions import ways_to_say
-from motion_backend.motion import FPS, Skill
+from motion_backend.motion import Motion
 from motion_backend.rotations import Array
 from motion_backend.skeleton import build_skeleton
+from motion_backend.stride_takeover import joined
 from motion_backend.walk_generator import Ahead, Frames, Walker
 
-SLOW, BRISK = 0.85, 1.35
-"""Metres a second below which a walk is called slow, and above which brisk, in what was learned from."""
+CAPTION: Final = "a person walks"
+"""What all plain walks are called among others in what was learned from; how fast says the goal."""
 SEEDS: Final = 2**31
 
 
@@ -52,23 +53,45 @@ class LearnedWalker:
     """At the end of the last window, of the pelvis and of the rotations' components, a window frame."""
 
     def window(self, ahead: Ahead) -> Frames:
-        """The next 42 frames."""
-        body = Rollout(self.sampler, build_skeleton(), _known(self.past))
+        """The next 42 frames. Who has just begun goes on in the stride of his gait; what he is off it dies away.
+
+        A model that is shown another body's stride walks on in it, whosever walk it is told to have.
+        """
+        known = _known(self.past)
+        if not self.made:
+            known = self._in_stride(known)
+            self._velocity = _key_speed(known)
+        body = Rollout(self.sampler, build_skeleton(), known)
         place = np.array([[ahead.places[-1, 0], 0.0, ahead.places[-1, 1]]])
-        pace = float(np.linalg.norm(ahead.places[-1] - self.past.root[-1, [0, 2]])) / WINDOW_SECONDS
-        goal = PelvisGoal(place, np.array([float(ahead.yaws[-1])]))
-        wish = Wish(caption_of(pace), goal, made_of=MadeOf.RECORDED, gait=self.gait)
+        goal = PelvisGoal(place)
+        wish = Wish(CAPTION, goal, made_of=MadeOf.RECORDED, gait=self.gait)
         poses = body.go_on(wish, [self.seed, self.made]).poses
         keys = Frames(poses.roots[0, HISTORY - 1 :], poses.local[0, HISTORY - 1 :])
-        found, self._velocity = spline(keys, self._velocity or _speed(self.past))
+        assert self._velocity is not None
+        found, self._velocity = spline(keys, self._velocity)
+        if not self.made:
+            found = _eased(self.past, found)
         self.made += 1
         self.past = self.past.then(found)[-HISTORY * STRIDE :]
         return found
 
 
-def caption_of(pace: float) -> str:
-    """What a walk at that pace (metres a second) is called in what was learned from."""
-    return ways_to_say(Skill.LOCO, "slow" if pace < SLOW else "brisk" if pace > BRISK else "neutral", "")[0]
+    def _in_stride(self, known: Poses) -> Poses:
+        """The history of the walker's own gait that is most like that of a body (1, 2, …), in its place."""
+        frame, skeleton = HeadingFrame.of(known), build_skeleton()
+        history = to_features(known, frame, skeleton)
+        return from_features(self.sampler.stride_like(history[0], self.gait)[None], frame)
+
+
+def _eased(past: Frames, found: Frames) -> Frames:
+    """Frames that begin as the body was, in place and in speed; what it was off dies away."""
+    still = np.zeros((len(past), 4))
+    motion = Motion(
+        found.root.astype(np.float32), found.local.astype(np.float32), np.zeros((len(found), 4), np.float32),
+        build_skeleton(), np.zeros(len(found), np.int32),
+    )  # fmt: skip
+    eased = joined(History.of(past.root, past.local, still), motion)
+    return Frames(eased.root_positions.astype(np.float64), eased.local_rotations.astype(np.float64))
 
 
 def spline(keys: Frames, velocity: tuple[Array, Array]) -> tuple[Frames, tuple[Array, Array]]:
@@ -97,9 +120,7 @@ def _known(past: Frames) -> Poses:
     return Poses(root[None], local[None], np.zeros((1, HISTORY, 4)))
 
 
-def _speed(past: Frames) -> tuple[Array, Array]:
-    """Of the last frame, a frame of a window."""
-    if len(past) < 2:
-        return np.zeros(3), np.zeros_like(past.local[-1])
-    turns = rotations.continuous(past.local[-2:])
-    return (past.root[-1] - past.root[-2]) * FPS / RATE, (turns[1] - turns[0]) * FPS / RATE
+def _key_speed(known: Poses) -> tuple[Array, Array]:
+    """From the first to the last frame of a history (1, 2, …), a frame of a window."""
+    turns = rotations.continuous(known.local[0])
+    return known.roots[0, 1] - known.roots[0, 0], turns[1] - turns[0]

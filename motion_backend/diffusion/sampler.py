@@ -15,14 +15,17 @@ from torch import Tensor
 
 from motion_backend.diffusion.conditions import Conditions
 from motion_backend.diffusion.denoiser import Denoiser
-from motion_backend.diffusion.motion_features import FEATURES, HISTORY, WINDOW
+from motion_backend.diffusion.motion_features import FEATURES, HISTORY, PLACES, WINDOW
 from motion_backend.diffusion.noise_schedule import NoiseSchedule, ddim_step, ddpm_step
 from motion_backend.rotations import Array
+from motion_backend.skeleton import INDEX
 
 DDIM_STEPS: Final = 10
 """Of sampling, where nothing else is asked for: five are as good, twenty are no better."""
 PULL: Final = 0.5
 """Share of what is left to the goal by which guidance moves each clean guess in the last windows of an action."""
+LEGS: Final = [PLACES.start + 3 * (INDEX[name] - 1) + axis for name in ("left_ankle", "right_ankle") for axis in (0, 1, 2)]
+"""Features by which the moment of a stride is told."""
 Guide = Callable[[Tensor], Tensor]
 """Moves a clean guess (B, 14, 202), in metres and rotations, towards what it is to come to."""
 
@@ -56,10 +59,20 @@ class Sampler:
     """Of DDIM; 0: all of DDPM's."""
     gaits: int = 0
     """Of how many people's walks are told apart."""
+    strides: Array | None = None
+    """(gaits, N, 2, 202) histories of each, of the model's own walking."""
 
     def gait_of(self, seed: int) -> int:
         """Whose walk a body of that seed has; 0 where none are told apart."""
         return 1 + seed % self.gaits if self.gaits else 0
+
+    def stride_like(self, history: Array, gait: int) -> Array:
+        """The history of somebody's walk whose legs are most like those of another (2, 202); that one where none is."""
+        if self.strides is None or not gait:
+            return history
+        own = self.strides[gait - 1]
+        away = np.square((own - history)[..., LEGS]).sum(axis=(1, 2))
+        return np.asarray(own[int(np.argmin(away))])
 
     def windows(self, history: Array, given: Conditions, seed: int | list[int], guide: Guide | None = None) -> Array:
         """What follows history (B, 2, 202) under conditions of B windows, in features. (B, 14, 202).
