@@ -1,4 +1,4 @@
-"""What the model is told besides its history: four tokens for scene, text, hand goal and pelvis goal (LINGO A.2 to A.4).
+"""What the model is told besides its history: tokens for scene, text, hand goal and pelvis goal (LINGO A.2 to A.4).
 
 Each can be masked, which leaves zeros in its place: goals where an action has none, the scene where it does not matter,
 the text for what was learned without. Goals are in the heading frame of the window (motion_features.py).
@@ -20,8 +20,8 @@ from motion_backend.language.minilm import WIDTH as TEXT_WIDTH
 TOKENS: Final = 4
 """Scene, text, hand, pelvis."""
 PELVIS: Final = 9
-"""Of the pelvis goal: x and z as printed; then (ours, for seats and beds) height, sine and cosine of the facing, whether
-height and facing are told, seconds to go, and whether these are told."""
+"""Of the pelvis goal: x and z as printed; then (ours, for seats and beds) height, sine and cosine of the facing,
+whether height and facing are told, seconds to go, and whether these are told."""
 HAND: Final = 4
 """Of the hand goal: its place, and 1 for the left hand, -1 for the right."""
 MAX_SECONDS: Final = 6.0
@@ -110,7 +110,7 @@ class ConditionEncoder(nn.Module):
 
     def forward(self, given: Conditions) -> Tensor:
         """(B, 4, width)."""
-        text = self.text(given.text, given.has_text, given.frame) 
+        text = self.text(given.text, given.has_text, given.frame)
         text = text + self.made_of(given.made_of) + self.gait(given.gait)
         hand = self.hand(given.hand) * given.has_hand[:, None]
         pelvis = self.pelvis(given.pelvis) * given.has_pelvis[:, None]

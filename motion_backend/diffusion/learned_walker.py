@@ -75,7 +75,6 @@ class LearnedWalker:
         self.past = self.past.then(found)[-HISTORY * STRIDE :]
         return found
 
-
     def _in_stride(self, known: Poses) -> Poses:
         """The history of the walker's own gait that is most like that of a body (1, 2, …), in its place."""
         frame, skeleton = HeadingFrame.of(known), build_skeleton()

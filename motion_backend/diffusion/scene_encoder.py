@@ -20,7 +20,7 @@ CHANNELS, SIDE, PATCH = 64, 32, 8
 
 @dataclass(frozen=True)
 class SceneSizes:
-    """Of the vision transformer; the paper's by default. It prints neither the width inside nor that of the networks."""
+    """Of the vision transformer; the paper's by default. It does not print the width of the networks."""
 
     layers: int = 6
     heads: int = 16

@@ -83,8 +83,8 @@ class TrainConfig:
     """How often a walk is not told where to face."""
     save_every: int = 500
     seed: int = 0
-    losses: LossWeights = LossWeights()
-    noise: NoiseSchedule = NoiseSchedule()
+    losses: LossWeights = field(default_factory=LossWeights)
+    noise: NoiseSchedule = field(default_factory=NoiseSchedule)
 
     def rate_at(self, step: int) -> float:
         """Of Adam, warmed up and then along a cosine."""

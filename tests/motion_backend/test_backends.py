@@ -22,6 +22,8 @@ from planner_service.settings import SettingsError, read_settings
 from scene_graphs.generation.generate_room import generate_room
 from scene_graphs.home import home_from_layouts
 
+OURS = "procedural, physics, matching, diffusion"
+
 
 @pytest.fixture
 def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
@@ -47,7 +49,7 @@ def test_ours_are_there_and_say_what_they_are() -> None:
 
 
 def test_a_backend_of_others_is_there_where_its_package_is(installed: Path) -> None:  # noqa: ARG001
-    assert backend_names() == ("procedural", "physics", "matching", "broken", "ghost")
+    assert backend_names() == ("procedural", "physics", "matching", "diffusion", "broken", "ghost")
     assert "ghost" not in sys.modules, "nothing is imported before it is asked for"
     assert load_backend("ghost").name == "ghost"
     assert read_settings(backend="ghost").backend == "ghost"
@@ -57,14 +59,14 @@ def test_nobody_takes_the_name_of_one_of_ours(installed: Path) -> None:
     points = next(installed.glob("*.dist-info")) / "entry_points.txt"
     points.write_text("[sims.backends]\nprocedural = ghost:Ghost\n")
     _forget()
-    assert backend_names() == ("procedural", "physics", "matching")
+    assert backend_names() == ("procedural", "physics", "matching", "diffusion")
     assert type(load_backend("procedural")).__name__ == "ProceduralBackend"
 
 
 def test_an_unknown_name_is_refused_with_the_names_there_are(installed: Path) -> None:  # noqa: ARG001
-    with pytest.raises(UnknownBackendError, match=r"^backend: 'magic' is none of procedural, physics, matching, broken, ghost$"):
+    with pytest.raises(UnknownBackendError, match=rf"^backend: 'magic' is none of {OURS}, broken, ghost$"):
         load_backend("magic")
-    with pytest.raises(SettingsError, match=r"^SIMS_BACKEND: .*'magic' is none of procedural, physics, matching, broken, ghost"):
+    with pytest.raises(SettingsError, match=rf"^SIMS_BACKEND: .*'magic' is none of {OURS}, broken, ghost"):
         read_settings(backend="magic")
 
 

@@ -180,21 +180,21 @@ def test_a_run_that_was_broken_off_ends_in_the_same_bytes(tmp_path: Path) -> Non
     windows, config = bank.windows({WALK: 1.0}), TrainConfig(4, batch=3, save_every=2, warmup=1)
     whole = train(denoiser_learner(TINY, config), bank, windows, config, tmp_path / "whole")
 
-    class Broken(Exception):
+    class BrokenOffError(Exception):
         pass
 
     def breaks(_run: object, _weights: object) -> dict[str, float]:
         if (tmp_path / "parts" / "run.json").exists():
-            raise Broken
+            raise BrokenOffError
         return {}
 
-    with pytest.raises(Broken):
+    with pytest.raises(BrokenOffError):
         train(denoiser_learner(TINY, config), bank, windows, config, tmp_path / "parts", breaks)
     parts = train(denoiser_learner(TINY, config), bank, windows, config, tmp_path / "parts")
     for one, other in zip(whole.network.state_dict().values(), parts.network.state_dict().values(), strict=True):
         assert torch.equal(one, other)
+    other_config = replace(config, rate=1.0)
     with pytest.raises(CheckpointError, match="another config"):
-        other_config = replace(config, rate=1.0)
         train(denoiser_learner(TINY, other_config), bank, windows, other_config, tmp_path / "parts")
 
 
@@ -223,7 +223,7 @@ def test_weights_come_back_from_disk_and_broken_ones_are_named(tmp_path: Path) -
     tensors, config = path.with_suffix(".safetensors"), path.with_suffix(".json")
     whole = tensors.read_bytes()
     tensors.write_bytes(whole[: len(whole) // 2])
-    with pytest.raises(CheckpointError, match="denoiser.safetensors: it is damaged"):
+    with pytest.raises(CheckpointError, match=r"denoiser\.safetensors: it is damaged"):
         load_denoiser(path)
     tensors.write_bytes(whole)
     row = json.loads(config.read_text())
