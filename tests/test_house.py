@@ -23,6 +23,7 @@ PACKAGES = {
 HOMES = {
     "torch": {"motion_backend/language"},
     "safetensors": {"motion_backend/language"},
+    "mujoco": {"motion_backend/physics"},
     "networkx": {"scene_graphs"},
     "numba": {"scene_graphs"},
     "shapely": {"scene_graphs"},
@@ -178,7 +179,7 @@ def test_importing_the_planner_loads_nothing_heavy() -> None:
     modules = (
         "planner_service.cli, planner_service.api.app, planner_service.pipeline, motion_backend.procedural.backend"
     )
-    heavy = ["torch", "matplotlib", "trimesh", "openai", "anthropic", "pydantic_ai", "av"]
+    heavy = ["torch", "mujoco", "matplotlib", "trimesh", "openai", "anthropic", "pydantic_ai", "av"]
     code = f"import sys, {modules}; print([name for name in {heavy!r} if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
