@@ -45,7 +45,7 @@ HOMES = {
     "openai": {"planner_service/llm"},
     "anthropic": {"planner_service/llm"},
     "httpx2": {"planner_service/llm"},
-    "av": {"planner_service/extraction"},
+    "av": {"planner_service/extraction", "motion_backend/formats"},
     "faster_whisper": {"planner_service/extraction"},
 }
 """Where a third-party library may be imported; libraries not named here may be used anywhere they are needed."""
