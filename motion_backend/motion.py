@@ -199,6 +199,17 @@ class Motion:
     simulated: tuple[Simulated, ...] = ()
     """What a physics engine had a part in; empty for a kinematic body."""
 
+    @staticmethod
+    def empty(skeleton: Skeleton) -> Motion:
+        """No frames."""
+        return Motion(
+            root_positions=np.zeros((0, 3), np.float32),
+            local_rotations=np.zeros((0, len(skeleton.names), 4), np.float32),
+            contacts=np.zeros((0, 4), np.float32),
+            skeleton=skeleton,
+            actions=np.zeros(0, np.int32),
+        )
+
     def __len__(self) -> int:
         return int(self.root_positions.shape[0])
 

@@ -35,7 +35,7 @@ ROLES = {
     *("client", "backend", "train", "dataset"),
 }
 """Names that every family repeats."""
-NOUNS_IN_ING = {"skinning", "resampling", "rendering", "grounding", "arm_swing"}
+NOUNS_IN_ING = {"skinning", "resampling", "rendering", "grounding", "arm_swing", "matching"}
 """Words of the field that end so."""
 
 

@@ -29,6 +29,7 @@ from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.skin_penetration import THIN, skin_penetration
 from motion_backend.metrics.smoothness import bone_deviation, jerk_against_real, seam_jump, seam_speed_jump
 from motion_backend.motion import FPS, Action, Character, Motion, Skill, join
+from motion_backend.scene import scene_of
 from planner_service.grounding.keyframes_to_actions import Place, UnreachableError, act, can_stand, height_of
 from planner_service.scripts.caption_actions import look_of
 from planner_service.scripts.script import Keyframe
@@ -149,7 +150,8 @@ class Performance:
 def setting(room: str) -> Setting:
     """The library's room of that id. Raises LayoutError where there is none."""
     home = home_from_layouts([built_in_index().layout(room)], 0)
-    return Setting(home, Walkable(home), Obstacles.of_home(home), Director.of("procedural"))
+    scene = scene_of(home)
+    return Setting(home, scene.walkable, scene.obstacles, Director.of("procedural"))
 
 
 def places_for(skill: Skill, caption: str, where: Setting) -> tuple[str, ...]:

@@ -19,6 +19,7 @@ from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.story_words import story_words, title_of
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe
+from planner_service.themes.details import core_of
 from planner_service.themes.protagonist import cast_by, name_in
 from scene_graphs.furniture import class_of, display_name, is_known
 
@@ -103,7 +104,8 @@ class _Teller:
         if beat.kind == "undone":
             told = left_undone(beat, self.hero, self.voice)
         else:
-            told = None if beat.why or beat.kind == "other" else event(beat, self.hero, self.voice)
+            shown = beat.model_copy(update={"text": core_of(beat.text, beat.unshown)})
+            told = None if beat.why or beat.kind == "other" else event(shown, self.hero, self.voice)
         return [Phrase(told.text, adjective=told.adjective, begins=True, negated=told.negated)] if told else []
 
     def _thought(self, beat: Beat) -> list[Phrase]:
@@ -120,6 +122,7 @@ class _Teller:
             if beat.kind not in ("deed", "feeling", "speech") or beat.why or beat.who:
                 return [*self._unshown(number), *_begun(phrases)]
             self.told.add(number)
+            beat = beat.model_copy(update={"text": core_of(beat.text, beat.unshown)})
             if told := event(beat, self.hero, self.voice):
                 return _begun(self._with_event(told, phrases))
         return _begun(phrases)
