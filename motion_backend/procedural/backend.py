@@ -144,11 +144,5 @@ def _freed(frames: Pose, skeleton: Skeleton) -> Pose:
 
 def _nothing(body: Body, part: Part) -> Motion:
     """No frames: the body is where it is to be."""
-    return Motion(
-        root_positions=np.zeros((0, 3), dtype=np.float32),
-        local_rotations=np.zeros((0, len(body.skeleton.names), 4), dtype=np.float32),
-        contacts=np.zeros((0, 4), dtype=np.float32),
-        skeleton=body.skeleton,
-        actions=np.zeros(0, dtype=np.int32),
-        notes=tuple(Note(part.action.keyframe, words) for words in body.otherwise),
-    )
+    notes = tuple(Note(part.action.keyframe, words) for words in body.otherwise)
+    return replace(Motion.empty(body.skeleton), notes=notes)
