@@ -224,5 +224,7 @@ def turned_to(pose: Pose, looks: list[Look], posture: Posture, skeleton: Skeleto
         head += share[:, None] * (rotations.quat_to_rotvec(wanted) - pose.head)
         spine[:, 1] += share * trunk
     begun = smooth(np.arange(len(pose)) / (row.begin_s * FPS))[:, None]
-    head, spine = (begun * gaussian_filter1d(way, row.smoothed_s * FPS, axis=0, mode="nearest") for way in (head, spine))
+    head, spine = (
+        begun * gaussian_filter1d(way, row.smoothed_s * FPS, axis=0, mode="nearest") for way in (head, spine)
+    )
     return replace(pose, head=pose.head + head, spine=pose.spine + spine)

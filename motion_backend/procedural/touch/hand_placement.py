@@ -22,7 +22,7 @@ from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.pose_solver import chest_frame
 from motion_backend.procedural.touch.hand_captions import Laid
 from motion_backend.procedural.touch.hand_contacts import is_top
-from motion_backend.procedural.touch.touch_keys import HandPlacement
+from motion_backend.procedural.touch.reach_keys import HandPlacement
 from motion_backend.rotations import Array
 from motion_backend.skeleton import HAND_REST, Skeleton
 
@@ -98,9 +98,7 @@ def _tries(
     return replace(tries, reach=reach, reaching=reaching, palms=palms, pressing=pressing, elbows=elbows)
 
 
-def _cost(
-    arm: Arm, tried: Pose, normal: Array, wrist: Array, seen: Depth, scale: float, row: HandPlacement
-) -> Array:
+def _cost(arm: Arm, tried: Pose, normal: Array, wrist: Array, seen: Depth, scale: float, row: HandPlacement) -> Array:
     """What an arm costs that is in something, hovers, or is strained. (N,)."""
     joints = arm.joints()
     upper, lower = arm_rotations(arm.limb, arm.side)

@@ -24,10 +24,8 @@ from motion_backend.procedural.touch.hand_captions import Laid
 from motion_backend.procedural.touch.hand_contacts import is_top
 from motion_backend.procedural.touch.hand_placement import Depth, placed
 from motion_backend.procedural.touch.kneel import down_on_knees, prone
-from motion_backend.procedural.touch.step_in import Step, shifted, step_before, stepped
-from motion_backend.procedural.touch.touch_keys import (
+from motion_backend.procedural.touch.reach_keys import (
     Approach,
-    Prone,
     ReachEffort,
     ReachGaze,
     ReachingHand,
@@ -35,8 +33,9 @@ from motion_backend.procedural.touch.touch_keys import (
     ReachTable,
     ReachVariation,
     ThighHand,
-    TouchKeys,
 )
+from motion_backend.procedural.touch.step_in import Step, shifted, step_before, stepped
+from motion_backend.procedural.touch.touch_keys import Prone, TouchKeys
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
 from motion_backend.skeleton import ARM_LENGTH, INDEX, Skeleton
