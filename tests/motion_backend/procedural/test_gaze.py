@@ -56,7 +56,10 @@ def test_the_head_of_who_lies_only_rolls_on_its_pillow() -> None:
 
 
 def test_in_the_second_before_a_hand_is_there_the_head_points_at_the_thing() -> None:
-    for piece, height, caption in (("shelf", "medium", "touch medium height"), ("table", "medium", "touch medium height")):
+    for piece, height, caption in (
+        ("shelf", "medium", "touch medium height"),
+        ("table", "medium", "touch medium height"),
+    ):
         body = touched(piece, height, caption)
         spot, motion = body.action.spot, body.motion
         assert spot is not None
