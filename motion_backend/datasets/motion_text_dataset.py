@@ -66,6 +66,12 @@ class MotionTextDataset:
         found.pop("", None)
         object.__setattr__(self, "grouped", {group: tuple(sorted(found[group])) for group in sorted(found)})
 
+    @property
+    def wordings(self) -> tuple[str, ...]:
+        """All that may be drawn or asked for, in an order of their own."""
+        said = {wording for clip in self.clips for wording in (*clip.wordings, *map(mirror_words, clip.wordings))}
+        return tuple(sorted(said.union(*self.grouped.values())))
+
     def draw(self, count: int, rng: np.random.Generator) -> Drawn:
         """Some clips by chance, half of those that may be mirrored."""
         rows, wordings, groups = [], [], []

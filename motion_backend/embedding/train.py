@@ -172,9 +172,9 @@ def _resume(
         with safe_open(path, "pt") as file:
             told, tensors = file.metadata(), {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
     except (SafetensorError, OSError) as error:
-        raise TrainingError(f"it is damaged: {error}", "move it away to begin anew", at=path) from error
+        raise TrainingError(f"{path} is damaged: {error}", "move it away to begin anew") from error
     if told.get("run") != _run_of(config, sizes):
-        raise TrainingError("it is of a run with other settings", "give another --out, or move it away", at=path)
+        raise TrainingError(f"{path} is of a run with other settings", "give another --out, or move it away")
     model.load_state_dict(_under("model.", tensors))
     kept: dict[int, dict[str, Tensor]] = {}
     for name, value in _under("optimizer.", tensors).items():
