@@ -1,4 +1,4 @@
-"""Captioned clips as a learner draws them: 300 frames each, in any of their wordings, as they are or mirrored (SIMS 4.1)."""
+"""Captioned clips as a learner draws them: 300 frames each, in any of their wordings, mirrored or not (SIMS 4.1)."""
 
 from __future__ import annotations
 

@@ -66,7 +66,8 @@ def train(
 ) -> tuple[TextMotionAutoencoder, Normalization]:
     """Learn from captioned clips; `features` are those of every wording. Goes on from a checkpoint in `folder`.
 
-    TrainingError when a loss is no number (its batch is saved beside the checkpoint), or a checkpoint is of another run.
+    TrainingError when a loss is no number (its batch is saved beside the checkpoint), or a checkpoint is of another
+    run.
     """
     torch.set_num_threads(1)
     scale = normalization_of(dataset)

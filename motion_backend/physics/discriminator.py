@@ -12,9 +12,9 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
+from motion_backend.physics.observations import STATE_SIZE
 from motion_backend.physics.policies import EMBEDDING_SIZE, mlp
 from motion_backend.physics.training_fault import stop_if_not_finite
-from motion_backend.physics.observations import STATE_SIZE
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class DiscriminatorTrainer:
     def step(self, clips: Steps, policy: Steps, folder: Path | None = None) -> dict[str, float]:
         """One AMP step; returns the loss, the penalty, and how many of both sides are told rightly.
 
-        TrainingFault when the loss is no number; the batch is saved in `folder`.
+        TrainingFaultError when the loss is no number; the batch is saved in `folder`.
         """
         loss, penalty, verdicts = discriminator_loss(self.discriminator, clips, policy, self.config.penalty)
         stop_if_not_finite(loss, {"clips": clips.joined, "policy": policy.joined}, folder)

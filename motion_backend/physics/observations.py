@@ -1,7 +1,7 @@
 """What a policy sees (SIMS 3.3): the state s of its body, the egocentric heightmap h, and the contact goal g.
 
-All three are told in the heading frame: origin at the pelvis, +Z where it heads on the floor, +Y up. Arrays are batches:
-N bodies at one moment, or N frames of one body; sizes are those of a body of 1.70 m.
+All three are told in the heading frame: origin at the pelvis, +Z where it heads on the floor, +Y up. Arrays are
+batches: N bodies at one moment, or N frames of one body; sizes are those of a body of 1.70 m.
 """
 
 from __future__ import annotations

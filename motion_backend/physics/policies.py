@@ -9,6 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import pairwise
 from typing import Final
 
 import torch
@@ -119,5 +120,5 @@ def log_probability(mean: Tensor, log_std: Tensor, actions: Tensor) -> Tensor:
 def mlp(inputs: int, hidden: Sequence[int], outputs: int) -> nn.Sequential:
     """Linear layers with ELU between them."""
     sizes = [inputs, *hidden]
-    layers = [part for a, b in zip(sizes, sizes[1:], strict=False) for part in (nn.Linear(a, b), nn.ELU())]
+    layers = [part for a, b in pairwise(sizes) for part in (nn.Linear(a, b), nn.ELU())]
     return nn.Sequential(*layers, nn.Linear(sizes[-1], outputs))

@@ -164,7 +164,7 @@ class PPO:
     def update(self, rollout: Rollout, folder: Path | None = None) -> dict[str, float]:
         """Learn from a rollout; returns losses, the divergence, and how many batches it came to.
 
-        TrainingFault when a loss is no number; the batch is saved in `folder`.
+        TrainingFaultError when a loss is no number; the batch is saved in `folder`.
         """
         told = _flat(rollout, advantages(rollout, self.config.gamma, self.config.lam))
         figures: dict[str, float] = {}

@@ -15,12 +15,12 @@ from scene_graphs.errors import UserError
 FILE: Final = "fault.npz"
 
 
-class TrainingFault(UserError):
+class TrainingFaultError(UserError):
     """A loss is no number."""
 
 
 def stop_if_not_finite(loss: Tensor, batch: Mapping[str, Tensor], folder: Path | None) -> None:
-    """Raise TrainingFault for a loss that is no number, with the batch saved as `fault.npz` where a folder is given."""
+    """Raise TrainingFaultError for a loss that is no number; the batch is saved as `fault.npz` where a folder is given."""
     if torch.isfinite(loss):
         return
     where = "not saved"
@@ -30,4 +30,4 @@ def stop_if_not_finite(loss: Tensor, batch: Mapping[str, Tensor], folder: Path |
         where = f"saved in {folder / FILE}"
     bad = [name for name, value in batch.items() if not torch.isfinite(value).all()]
     told = f"the batch has numbers that are none in {', '.join(bad)}" if bad else "the batch itself is sound"
-    raise TrainingFault(f"the loss is {loss.item()}; {told}, {where}", "lower the rate, or look at the batch")
+    raise TrainingFaultError(f"the loss is {loss.item()}; {told}, {where}", "lower the rate, or look at the batch")

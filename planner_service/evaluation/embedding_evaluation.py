@@ -1,4 +1,4 @@
-"""Whether words find their motion: retrieval over clips that the embedding has not learned from, our own and people's."""
+"""Whether words find their motion: retrieval over clips that the embedding has not learned from, ours and people's."""
 
 from __future__ import annotations
 

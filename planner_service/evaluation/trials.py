@@ -29,6 +29,7 @@ from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.skin_penetration import THIN, skin_penetration
 from motion_backend.metrics.smoothness import bone_deviation, jerk_against_real, seam_jump, seam_speed_jump
 from motion_backend.motion import FPS, Action, Character, Emotion, Motion, Skill, join
+from motion_backend.scene import scene_of
 from planner_service.grounding.keyframes_to_actions import Place, UnreachableError, act, can_stand, height_of
 from planner_service.scripts.caption_actions import look_of
 from planner_service.scripts.script import Keyframe
@@ -149,7 +150,8 @@ class Performance:
 def setting(room: str) -> Setting:
     """The library's room of that id. Raises LayoutError where there is none."""
     home = home_from_layouts([built_in_index().layout(room)], 0)
-    return Setting(home, Walkable(home), Obstacles.of_home(home), Director.of("procedural"))
+    scene = scene_of(home)
+    return Setting(home, scene.walkable, scene.obstacles, Director.of("procedural"))
 
 
 def places_for(skill: Skill, caption: str, where: Setting) -> tuple[str, ...]:
@@ -199,9 +201,12 @@ def _over(placed: Placed, point: NDArray[np.float64]) -> bool:
     return bool(abs(cos * x - sin * z) <= placed.size[0] / 2 and abs(sin * x + cos * z) <= placed.size[2] / 2)
 
 
-def perform(trial: Trial) -> Performance:
-    """Act one trial and judge it. Raises UnreachableError or NoPath where its room has no place for it."""
-    where, (keyframes, actions, motions) = setting(trial.room), act_trial(trial)
+def perform(trial: Trial, director: Director | None = None) -> Performance:
+    """Act one trial and judge it; its own action by another director, what leads up to it always kinematically.
+
+    Raises UnreachableError or NoPath where its room has no place for it.
+    """
+    where, (keyframes, actions, motions) = setting(trial.room), act_trial(trial, director)
     motion, led = motions[-1], motions[:-1]
     figures = story_metrics.judge(motion, actions[-1], where.obstacles)
     around, body = join([led[-1].part(max(len(led[-1]) - FPS, 0), len(led[-1])), motion]), Kinematics.of(motion)
@@ -225,7 +230,7 @@ def perform(trial: Trial) -> Performance:
 
 
 def act_trial(
-    trial: Trial, led_alike: bool = False
+    trial: Trial, director: Director | None = None, led_alike: bool = False
 ) -> tuple[tuple[Keyframe, ...], tuple[Action, ...], tuple[Motion, ...]]:
     """Act one trial: what it is as a script, and a motion an action, its own the last. Raises as `perform` does.
 
@@ -235,7 +240,7 @@ def act_trial(
     keyframes, actions = _actions(trial, where, luck)
     own = replace(actions[-1], caption="", emotion=Emotion.NEUTRAL) if led_alike else actions[-1]
     led, state = _lead(trial.room, _start(where, actions[0], luck), actions[:-1], own)
-    motion, _ = where.director.act(where.home, actions[-1], state)
+    motion, _ = (director or where.director).act(where.home, actions[-1], state)
     return keyframes, actions, (*led, motion)
 
 

@@ -23,6 +23,7 @@ from motion_backend.formats.glb_film import film_glb
 from motion_backend.formats.npz import npz_bytes, read_npz
 from motion_backend.metrics import story_metrics
 from motion_backend.motion import Action, Motion
+from motion_backend.scene import scene_of
 from planner_service.grounding.furnish import Furnished
 from planner_service.jobs import serialization
 from planner_service.jobs.serialization import summary_of_home, summary_of_script
@@ -77,7 +78,7 @@ class OpenStory:
     @cached_property
     def obstacles(self) -> Obstacles:
         """Furniture and walls, for measuring."""
-        return Obstacles.of_home(self.stage.home)
+        return scene_of(self.stage.home).obstacles
 
     @cached_property
     def acted(self) -> Story:

@@ -47,7 +47,7 @@ def test_ours_are_there_and_say_what_they_are() -> None:
 
 
 def test_a_backend_of_others_is_there_where_its_package_is(installed: Path) -> None:  # noqa: ARG001
-    assert backend_names() == ("procedural", "broken", "ghost")
+    assert backend_names() == ("procedural", "physics", "broken", "ghost")
     assert "ghost" not in sys.modules, "nothing is imported before it is asked for"
     assert load_backend("ghost").name == "ghost"
     assert read_settings(backend="ghost").backend == "ghost"
@@ -57,14 +57,14 @@ def test_nobody_takes_the_name_of_one_of_ours(installed: Path) -> None:
     points = next(installed.glob("*.dist-info")) / "entry_points.txt"
     points.write_text("[sims.backends]\nprocedural = ghost:Ghost\n")
     _forget()
-    assert backend_names() == ("procedural",)
+    assert backend_names() == ("procedural", "physics")
     assert type(load_backend("procedural")).__name__ == "ProceduralBackend"
 
 
 def test_an_unknown_name_is_refused_with_the_names_there_are(installed: Path) -> None:  # noqa: ARG001
-    with pytest.raises(UnknownBackendError, match=r"^backend: 'magic' is none of procedural, broken, ghost$"):
+    with pytest.raises(UnknownBackendError, match=r"^backend: 'magic' is none of procedural, physics, broken, ghost$"):
         load_backend("magic")
-    with pytest.raises(SettingsError, match=r"^SIMS_BACKEND: .*'magic' is none of procedural, broken, ghost"):
+    with pytest.raises(SettingsError, match=r"^SIMS_BACKEND: .*'magic' is none of procedural, physics, broken, ghost"):
         read_settings(backend="magic")
 
 

@@ -96,20 +96,44 @@ class ReachingHand:
     pressing_share: float
     """How far the palm lies as the surface does while it is still off it."""
     low_m: float
-    points_down: float
-    """Fingers whose direction has this much of down in it point down."""
+
+
+@table
+class HandPlacement:
+    """How a hand lies on a surface, and its elbow: ways that are tried, and what they cost."""
+
+    top_turns_rad: tuple[float, ...]
+    """On a top, inwards from straight ahead;"""
+    front_turns_rad: tuple[float, ...]
+    """on a front, inwards from straight up."""
+    tips_rad: tuple[float, ...]
+    """Of the fingers into the surface."""
+    swings_rad: tuple[float, ...]
+    """Of the elbow, outwards and up."""
+    deep_per_m: float
+    """Skin in something."""
+    hover_per_m: float
+    """Air between the palm and the surface."""
+    strain_per_rad: float
+    """A shoulder beyond its range."""
+    bend_per_rad: float
+    """A wrist bent."""
+    unlike_per_rad: float
+    """A hand that lies otherwise than it is told to: its wrist cannot."""
+    turn_per_rad: float
+    tip_per_rad: float
+    swing_per_rad: float
 
 
 @table
 class ReachingElbow:
-    """Where the elbow of a reaching arm points."""
+    """Where the elbow of a reaching arm points by itself."""
 
     behind: ElbowPole
     """Of a lowered hand;"""
     raised_by: ElbowPole
     """how that changes as the hand is raised."""
     low: ElbowPole
-    pointing_down: ElbowPole
     over_edge: ElbowPole
     """Onto a high top."""
 
@@ -234,10 +258,8 @@ class ReachVariation:
 class Arriving:
     """The end of a walk to a thing."""
 
-    eyes_s: float
-    """The eyes are on it so long before one stands,"""
     hand_s: float
-    """and the hand begins to rise."""
+    """The hand begins to rise so long before one stands."""
     hand_share: float
     """How far it has, on the way into the arm pose `hand`."""
     hand: str
@@ -253,6 +275,7 @@ class ReachTable:
     free_arm: FreeArm
     thigh: ThighHand
     hand: ReachingHand
+    placement: HandPlacement
     elbow: ReachingElbow
     search: ReachSearch
     effort: ReachEffort

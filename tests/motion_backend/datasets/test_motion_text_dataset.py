@@ -78,7 +78,8 @@ def test_the_same_chance_draws_the_same() -> None:
 
 def test_clips_of_a_collection_keep_their_captions_and_short_ones_go() -> None:
     words = dict.fromkeys(("skill", "style", "emotion", "subject", "kind", "licence", "source", "split"), "x")
-    whole = Entry(name="a", captions=("walk", "stroll"), changed=(), motion=tumbling(40), hands=np.zeros((40, 2), bool), **words)  # type: ignore[arg-type]  # fmt: skip
+    own = {"captions": ("walk", "stroll"), "changed": (), "motion": tumbling(40), "hands": np.zeros((40, 2), bool)}
+    whole = Entry(name="a", **words, **own)  # type: ignore[arg-type]
     short = replace(whole, motion=tumbling(10))
     (one,) = motion_texts([whole, short])
     assert (one.wordings, one.group, one.states.shape) == (("walk", "stroll"), "x", (40, STATE_SIZE))

@@ -21,7 +21,7 @@ from motion_backend.embedding.text_motion_autoencoder import (
     text_loss,
 )
 from motion_backend.embedding.text_motion_embedding import EmbeddingError, TextMotionEmbedding
-from motion_backend.embedding.train import CHECKPOINT, TrainConfig, TrainingError, train
+from motion_backend.embedding.train import CHECKPOINT, Report, TrainConfig, TrainingError, train
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.physics.observations import STATE_SIZE
 
@@ -41,8 +41,10 @@ DATASET = MotionTextDataset(
 FEATURES = dict(zip(DATASET.wordings, ENCODER.encode(DATASET.wordings), strict=True))
 
 
-def trained(folder: Path, features: dict[str, Floats] = FEATURES, config: TrainConfig = QUICK, **more: object) -> TextMotionEmbedding:  # fmt: skip
-    model, scale = train(DATASET, features, folder, config, SMALL, **more)  # type: ignore[arg-type]
+def trained(
+    folder: Path, features: dict[str, Floats] = FEATURES, config: TrainConfig = QUICK, **more: Report
+) -> TextMotionEmbedding:
+    model, scale = train(DATASET, features, folder, config, SMALL, **more)
     return TextMotionEmbedding(model, scale, ENCODER, frozenset({"r"}))
 
 
@@ -94,14 +96,14 @@ def test_words_find_the_motion_they_were_learned_with(embedding: TextMotionEmbed
 
 
 def test_a_run_that_was_cut_off_goes_on_as_if_it_had_not_been(tmp_path: Path, embedding: TextMotionEmbedding) -> None:
-    class CutOff(Exception):
+    class CutOffError(Exception):
         pass
 
     def cut(step: int, _terms: dict[str, float]) -> None:
         if step == 10:
-            raise CutOff
+            raise CutOffError
 
-    with pytest.raises(CutOff):
+    with pytest.raises(CutOffError):
         trained(tmp_path, report=cut)
     np.testing.assert_array_equal(trained(tmp_path).motions(MOTIONS), embedding.motions(MOTIONS))
     with pytest.raises(TrainingError, match="other settings"):

@@ -16,7 +16,7 @@ from motion_backend.physics.discriminator import (
     discriminator_loss,
     style_reward,
 )
-from motion_backend.physics.training_fault import FILE, TrainingFault
+from motion_backend.physics.training_fault import FILE, TrainingFaultError
 
 SMALL = DiscriminatorConfig(state=6, text=4, hidden=(32, 16), rate=3e-3)
 
@@ -82,7 +82,7 @@ def test_a_loss_that_is_no_number_stops_training_and_keeps_the_batch(tmp_path: P
     trainer = DiscriminatorTrainer(SMALL)
     policy = steps(-0.5, 8)
     policy.after[3, 2] = torch.inf
-    with pytest.raises(TrainingFault, match="in policy"):
+    with pytest.raises(TrainingFaultError, match="in policy"):
         trainer.step(steps(0.5, 8), policy, tmp_path)
     with np.load(tmp_path / FILE) as kept:
         assert kept["policy"].shape == (8, 16)

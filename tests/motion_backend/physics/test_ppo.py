@@ -12,7 +12,7 @@ from torch import nn
 
 from motion_backend.physics.policies import Value, log_probability, mlp
 from motion_backend.physics.ppo import PPO, Outcome, PPOConfig, Rollout, RunningNormalization, advantages
-from motion_backend.physics.training_fault import FILE, TrainingFault
+from motion_backend.physics.training_fault import FILE, TrainingFaultError
 
 STEP, PRICE, LENGTH, COUNT = 0.2, 0.1, 15, 128
 """Points on a line are moved by STEP times an action, pay for being away from 0 and for acting, and live so long."""
@@ -137,7 +137,7 @@ def test_a_loss_that_is_no_number_stops_training_and_keeps_the_batch(tmp_path: P
     told = learner.collect(Points(1), 4)
     told.rewards[2, 3] = np.nan
     before = [one.clone() for one in learner.policy.parameters()]
-    with pytest.raises(TrainingFault, match="advantages"):
+    with pytest.raises(TrainingFaultError, match="advantages"):
         learner.update(told, tmp_path)
     assert all(torch.equal(a, b) for a, b in zip(before, learner.policy.parameters(), strict=True))
     with np.load(tmp_path / FILE) as kept:
