@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Final
@@ -22,6 +22,7 @@ from motion_backend.embedding.text_motion_autoencoder import (
     autoencoder_loss,
     contrast_loss,
 )
+from motion_backend.embedding.text_motion_embedding import LARGEST
 from motion_backend.physics.observations import STATE_FLOOR
 from scene_graphs.errors import UserError
 
@@ -70,19 +71,15 @@ def train(
     run.
     """
     torch.set_num_threads(1)
-    scale = normalization_of(dataset)
     with torch.random.fork_rng():
         torch.manual_seed(config.seed)
-        model = TextMotionAutoencoder(sizes)
-        optimizer = torch.optim.AdamW(model.parameters(), config.rate, weight_decay=config.decay)
-        first = _resume(folder / CHECKPOINT, model, optimizer, config, sizes)
-        model.train()
-        for step in range(first, config.steps):
-            terms = _step(model, optimizer, dataset, features, scale, config, step, folder)
+        run = _Run(dataset, features, folder, config, sizes)
+        for step in range(run.resume(), config.steps):
+            terms = run.step(step)
             if (step + 1) % config.save_every == 0 or step + 1 == config.steps:
-                _save(folder / CHECKPOINT, model, optimizer, config, sizes, step + 1)
+                run.save(step + 1)
                 report(step + 1, terms)
-    return model.eval(), scale
+    return run.model.eval(), run.scale
 
 
 def normalization_of(dataset: MotionTextDataset) -> Normalization:
@@ -92,42 +89,90 @@ def normalization_of(dataset: MotionTextDataset) -> Normalization:
     return Normalization.of(frames[np.sort(chosen)].astype(np.float32), STATE_FLOOR)
 
 
-def _step(
-    model: TextMotionAutoencoder,
-    optimizer: torch.optim.Optimizer,
-    dataset: MotionTextDataset,
-    features: Mapping[str, Floats],
-    scale: Normalization,
-    config: TrainConfig,
-    step: int,
-    folder: Path,
-) -> dict[str, float]:
-    """One batch; its chance hangs on seed and step alone, so that a resumed run is the same run."""
-    rng = np.random.default_rng([config.seed, step])
-    torch.manual_seed(int(rng.integers(1 << 31)))
-    for group in optimizer.param_groups:
-        group["lr"] = config.rate * _rate_share(step, config.steps)
-    drawn = dataset.draw(config.batch, rng)
-    states = torch.from_numpy(np.clip(scale.apply(drawn.states), -10.0, 10.0))
-    total, terms, z = autoencoder_loss(model, states, _stack(features, drawn.wordings))
-    names = list(dataset.grouped)
-    told = [index for index, group in enumerate(drawn.groups) if group]
-    contrast = torch.zeros(())
-    if config.contrast and told:
-        said = [dataset.grouped[name][rng.integers(len(dataset.grouped[name]))] for name in names]
-        right = torch.tensor([names.index(drawn.groups[index]) for index in told])
-        contrast = contrast_loss(z[told], model.encode_text(_stack(features, said)), right)
-    loss = total + config.contrast * contrast
-    if not torch.isfinite(loss):
-        np.savez(folder / f"batch{step}.npz", states=drawn.states, wordings=np.array(drawn.wordings))
-        raise TrainingError(
-            f"step {step}: the loss is {loss.item()}", f"look at batch{step}.npz, lower --rate", at=folder
-        )
-    optimizer.zero_grad()
-    loss.backward()
-    nn.utils.clip_grad_norm_(model.parameters(), MAX_GRADIENT)
-    optimizer.step()
-    return dict(zip(("motion", "align", "text", "contrast"), [*terms.tolist(), contrast.item()], strict=True))
+class _Run:
+    """A model on its way, and what it learns from."""
+
+    def __init__(
+        self,
+        dataset: MotionTextDataset,
+        features: Mapping[str, Floats],
+        folder: Path,
+        config: TrainConfig,
+        sizes: AutoencoderConfig,
+    ) -> None:
+        self.dataset, self.features, self.config = dataset, features, config
+        self.path = folder / CHECKPOINT
+        self.scale = normalization_of(dataset)
+        self.model = TextMotionAutoencoder(sizes).train()
+        self.optimizer = torch.optim.AdamW(self.model.parameters(), config.rate, weight_decay=config.decay)
+        # What must be the same for a run to be gone on with.
+        told: dict[str, Any] = asdict(replace(config, save_every=0)) | asdict(sizes)
+        self.name = json.dumps(told, sort_keys=True)
+
+    def step(self, step: int) -> dict[str, float]:
+        """One batch; its chance hangs on seed and step alone, so that a resumed run is the same run."""
+        rng = np.random.default_rng([self.config.seed, step])
+        torch.manual_seed(int(rng.integers(1 << 31)))
+        for group in self.optimizer.param_groups:
+            group["lr"] = self.config.rate * _rate_share(step, self.config.steps)
+        drawn = self.dataset.draw(self.config.batch, rng)
+        states = torch.from_numpy(np.clip(self.scale.apply(drawn.states), -LARGEST, LARGEST))
+        total, terms, z = autoencoder_loss(self.model, states, self._features_of(drawn.wordings))
+        contrast = self._contrast(z, drawn.groups, rng)
+        loss = total + self.config.contrast * contrast
+        if not torch.isfinite(loss):
+            kept = self.path.with_name(f"batch{step}.npz")
+            np.savez(kept, states=drawn.states, wordings=np.array(drawn.wordings))
+            raise TrainingError(f"step {step}: the loss is {loss.item()}", f"look at {kept}, or lower the rate")
+        self.optimizer.zero_grad()
+        loss.backward()
+        nn.utils.clip_grad_norm_(self.model.parameters(), MAX_GRADIENT)
+        self.optimizer.step()
+        return dict(zip(("motion", "align", "text", "contrast"), [*terms.tolist(), contrast.item()], strict=True))
+
+    def _contrast(self, z: Tensor, groups: Sequence[str], rng: np.random.Generator) -> Tensor:
+        """Every clip that has a group against one wording of each group."""
+        told = [index for index, group in enumerate(groups) if group]
+        if not self.config.contrast or not told:
+            return torch.zeros(())
+        grouped = self.dataset.grouped
+        said = [some[rng.integers(len(some))] for some in grouped.values()]
+        names = list(grouped)
+        right = torch.tensor([names.index(groups[index]) for index in told])
+        return contrast_loss(z[told], self.model.encode_text(self._features_of(said)), right)
+
+    def _features_of(self, wordings: Sequence[str]) -> Tensor:
+        return torch.from_numpy(np.stack([self.features[wording] for wording in wordings]))
+
+    def save(self, step: int) -> None:
+        """Everything the run needs to go on, put in place at once."""
+        tensors = {f"model.{name}": value for name, value in self.model.state_dict().items()}
+        for index, moments in self.optimizer.state_dict()["state"].items():
+            tensors |= {f"optimizer.{index}.{name}": moments[name] for name in _MOMENTS}
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        aside = self.path.with_suffix(".writing")
+        whole = {name: value.contiguous() for name, value in tensors.items()}
+        save_file(whole, aside, {"run": self.name, "step": str(step)})
+        aside.replace(self.path)
+
+    def resume(self) -> int:
+        """Take over what a checkpoint holds; the step to go on with, 0 where there is none. TrainingError."""
+        if not self.path.is_file():
+            return 0
+        try:
+            with safe_open(self.path, "pt") as file:
+                told, tensors = file.metadata(), {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
+        except (SafetensorError, OSError) as error:
+            raise TrainingError(f"{self.path} is damaged: {error}", "move it away to begin anew") from error
+        if told.get("run") != self.name:
+            raise TrainingError(f"{self.path} is of a run with other settings", "give another --out, or move it away")
+        self.model.load_state_dict(_under("model.", tensors))
+        kept: dict[int, dict[str, Tensor]] = {}
+        for name, value in _under("optimizer.", tensors).items():
+            index, moment = name.split(".")
+            kept.setdefault(int(index), {})[moment] = value
+        self.optimizer.load_state_dict({"state": kept, "param_groups": self.optimizer.state_dict()["param_groups"]})
+        return int(told["step"])
 
 
 def _rate_share(step: int, steps: int) -> float:
@@ -136,60 +181,5 @@ def _rate_share(step: int, steps: int) -> float:
     return float(min((step + 1) / WARMS_UP, 1.0) * (LAST_RATE + (1 - LAST_RATE) * (1 + np.cos(np.pi * share)) / 2))
 
 
-def _stack(features: Mapping[str, Floats], wordings: list[str] | tuple[str, ...]) -> Tensor:
-    return torch.from_numpy(np.stack([features[wording] for wording in wordings]))
-
-
-def _save(
-    path: Path,
-    model: TextMotionAutoencoder,
-    optimizer: torch.optim.Optimizer,
-    config: TrainConfig,
-    sizes: AutoencoderConfig,
-    step: int,
-) -> None:
-    """Everything a run needs to go on, put in place at once."""
-    tensors = {f"model.{name}": value for name, value in model.state_dict().items()}
-    for index, moments in optimizer.state_dict()["state"].items():
-        tensors |= {f"optimizer.{index}.{name}": moments[name] for name in _MOMENTS}
-    path.parent.mkdir(parents=True, exist_ok=True)
-    aside = path.with_suffix(".writing")
-    told = {"run": _run_of(config, sizes), "step": str(step)}
-    save_file({name: value.contiguous() for name, value in tensors.items()}, aside, told)
-    aside.replace(path)
-
-
-def _resume(
-    path: Path,
-    model: TextMotionAutoencoder,
-    optimizer: torch.optim.Optimizer,
-    config: TrainConfig,
-    sizes: AutoencoderConfig,
-) -> int:
-    """Take over what a checkpoint holds; the step to go on with, 0 where there is none. TrainingError."""
-    if not path.is_file():
-        return 0
-    try:
-        with safe_open(path, "pt") as file:
-            told, tensors = file.metadata(), {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
-    except (SafetensorError, OSError) as error:
-        raise TrainingError(f"{path} is damaged: {error}", "move it away to begin anew") from error
-    if told.get("run") != _run_of(config, sizes):
-        raise TrainingError(f"{path} is of a run with other settings", "give another --out, or move it away")
-    model.load_state_dict(_under("model.", tensors))
-    kept: dict[int, dict[str, Tensor]] = {}
-    for name, value in _under("optimizer.", tensors).items():
-        index, moment = name.split(".")
-        kept.setdefault(int(index), {})[moment] = value
-    optimizer.load_state_dict({"state": kept, "param_groups": optimizer.state_dict()["param_groups"]})
-    return int(told["step"])
-
-
 def _under(prefix: str, tensors: Mapping[str, Tensor]) -> dict[str, Tensor]:
     return {name.removeprefix(prefix): value for name, value in tensors.items() if name.startswith(prefix)}
-
-
-def _run_of(config: TrainConfig, sizes: AutoencoderConfig) -> str:
-    """What must be the same for a run to be gone on with."""
-    told: dict[str, Any] = asdict(replace(config, save_every=0)) | asdict(sizes)
-    return json.dumps(told, sort_keys=True)

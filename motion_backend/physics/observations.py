@@ -184,10 +184,11 @@ def goal_places(action: Action, skeleton: Skeleton, leaning: Sequence[ContactGoa
     """Where contact bodies are to be, in the world (15, 3), and the valid-contact mask (15,).
 
     A walk and a rise bring the pelvis to standing height over the goal; sitting, lying and reaching bring it, or the
-    hand, to its contact. `leaning` are contacts of head and hands besides (`leaning_of` a plan); what a skill does not
-    use is left out.
+    hand, to its contact. `leaning` are contacts of head and hands of who sits or lies (`leaning_of` a plan); what a
+    skill does not use is left out.
     """
-    goals = (*contact_goals(action), *leaning)
+    rests = action.skill in (Skill.SITDOWN, Skill.LIEDOWN)
+    goals = (*contact_goals(action), *(leaning if rests else ()))
     over = action.goal if action.skill is Skill.LOCO else action.spot.standing if action.spot is not None else None
     if action.skill in (Skill.LOCO, Skill.STANDUP, Skill.GETUP) and over is not None:
         goals = (ContactGoal("pelvis", (over[0], skeleton.standing_height, over[1])),)

@@ -20,7 +20,7 @@ class TrainingFaultError(UserError):
 
 
 def stop_if_not_finite(loss: Tensor, batch: Mapping[str, Tensor], folder: Path | None) -> None:
-    """Raise TrainingFaultError for a loss that is no number; the batch is saved as `fault.npz` where a folder is given."""
+    """Raise TrainingFaultError for a loss that is no number; its batch is saved as `fault.npz` in a folder, if any."""
     if torch.isfinite(loss):
         return
     where = "not saved"

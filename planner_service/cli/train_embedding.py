@@ -57,7 +57,7 @@ def embedding(
 
     console = Console(markup=False, highlight=False)
     check_writable(out, (ACTED, WEIGHTS))
-    acted, recorded = _acted(out / ACTED, rooms, workers, console).entries, _recorded(clips)
+    acted, recorded = _acted(out / ACTED, rooms, workers, console).entries, recorded_clips(clips)
     learned, asked = _of(acted, TRAIN), _of(acted, TEST)
     dataset = MotionTextDataset(motion_texts(learned) + motion_texts(_of(recorded, TRAIN), grouped=False))
     encoder = load_encoder()
@@ -106,7 +106,8 @@ def _acted(file: Path, rooms: int, workers: int, console: Console) -> Dataset:
     return made
 
 
-def _recorded(file: Path | None) -> Sequence[Entry]:
+def recorded_clips(file: Path | None) -> Sequence[Entry]:
+    """The recorded people of a collection; none without one."""
     from motion_backend.mocap.dataset_file import read_dataset
 
     return [] if file is None else [entry for entry in read_dataset(file).entries if entry.kind == RECORDED]
