@@ -21,8 +21,8 @@ PACKAGES = {
     "planner_service": {"prompts", "scene_graphs", "motion_backend"},
 }
 HOMES = {
-    "torch": {"motion_backend/language"},
-    "safetensors": {"motion_backend/language"},
+    "torch": {"motion_backend/language", "motion_backend/embedding", "motion_backend/physics"},
+    "safetensors": {"motion_backend/language", "motion_backend/embedding"},
     "mujoco": {"motion_backend/physics"},
     "networkx": {"scene_graphs"},
     "numba": {"scene_graphs"},

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import islice
 from typing import Any, Final
@@ -28,9 +28,13 @@ from motion_backend.metrics.joint_speed import fastest_joint
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.skin_penetration import THIN, skin_penetration
 from motion_backend.metrics.smoothness import bone_deviation, jerk_against_real, seam_jump, seam_speed_jump
+<<<<<<< HEAD
 from motion_backend.motion import FPS, Action, Character, Motion, Skill, join
 from motion_backend.procedural.touch.hand_captions import handling_of
 from motion_backend.procedural.touch.hand_contacts import is_top
+=======
+from motion_backend.motion import FPS, Action, Character, Emotion, Motion, Skill, join
+>>>>>>> embedding
 from motion_backend.scene import scene_of
 from planner_service.grounding.keyframes_to_actions import Place, UnreachableError, act, can_stand, height_of
 from planner_service.scripts.caption_actions import look_of
@@ -220,10 +224,8 @@ def perform(trial: Trial, director: Director | None = None) -> Performance:
 
     Raises UnreachableError or NoPath where its room has no place for it.
     """
-    where, luck = setting(trial.room), _luck(trial)
-    keyframes, actions = _actions(trial, where, luck)
-    led, state = _lead(trial.room, _start(where, actions[0], luck), actions[:-1], actions[-1])
-    motion, _ = (director or where.director).act(where.home, actions[-1], state)
+    where, (keyframes, actions, motions) = setting(trial.room), act_trial(trial, director)
+    motion, led = motions[-1], motions[:-1]
     figures = story_metrics.judge(motion, actions[-1], where.obstacles)
     around, body = join([led[-1].part(max(len(led[-1]) - FPS, 0), len(led[-1])), motion]), Kinematics.of(motion)
     joint, beyond = worst_joint(motion.local_rotations)
@@ -242,7 +244,22 @@ def perform(trial: Trial, director: Director | None = None) -> Performance:
         "joint_speed_joint": fastest_joint(motion.local_rotations, motion.fps)[0],
         "self_pen_pair": " in ".join(deepest_pair(body.motion.skeleton, body.positions, body.world)),
     }
-    return Performance(trial, where.home, keyframes, actions, (*led, motion), figures, besides)
+    return Performance(trial, where.home, keyframes, actions, motions, figures, besides)
+
+
+def act_trial(
+    trial: Trial, director: Director | None = None, led_alike: bool = False
+) -> tuple[tuple[Keyframe, ...], tuple[Action, ...], tuple[Motion, ...]]:
+    """Act one trial: what it is as a script, and a motion an action, its own the last. Raises as `perform` does.
+
+    `led_alike` leaves its caption out of what is led up to: all captions of a place share one lead, at half the time.
+    """
+    where, luck = setting(trial.room), _luck(trial)
+    keyframes, actions = _actions(trial, where, luck)
+    own = replace(actions[-1], caption="", emotion=Emotion.NEUTRAL) if led_alike else actions[-1]
+    led, state = _lead(trial.room, _start(where, actions[0], luck), actions[:-1], own)
+    motion, _ = (director or where.director).act(where.home, actions[-1], state)
+    return keyframes, actions, (*led, motion)
 
 
 def piece_of(trial: Trial) -> str:
