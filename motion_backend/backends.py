@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
 from typing import Final
 
 from motion_backend.backend_protocol import MotionBackend
@@ -15,10 +16,20 @@ from scene_graphs.errors import UserError
 
 GROUP: Final = "sims.backends"
 DEFAULT_BACKEND: Final = "procedural"
-_OURS: Final = {"procedural": "motion_backend.procedural.backend:ProceduralBackend"}
+MATCHING: Final = "matching"
+_OURS: Final = {
+    "procedural": "motion_backend.procedural.backend:ProceduralBackend",
+    "physics": "motion_backend.physics.backend:PhysicsBackend",
+    MATCHING: "motion_backend.matching.backend:of_given_clips",
+}
 """Our backends: name, and where what makes it is defined."""
-_ABOUT: Final = {"procedural": "kinematic, not learned"}
+_ABOUT: Final = {
+    "procedural": "kinematic, not learned",
+    MATCHING: "recorded walks of your clips by motion matching, nothing else",
+    "physics": "simulated (MuJoCo, tracked by model-predictive control, no root force)",
+}
 """What a reader of figures must know of them."""
+_given: dict[str, Path] = {}
 
 
 class UnknownBackendError(UserError):
@@ -27,6 +38,18 @@ class UnknownBackendError(UserError):
 
 class BrokenBackendError(UserError):
     """There is a backend of that name, but it cannot be loaded here; says why."""
+
+
+def give_file(name: str, file: Path | None) -> None:
+    """Name the file that a backend of ours works by, in this process; None leaves it as it is."""
+    if file is not None and _given.get(name) != file:
+        _given[name] = file
+        check_backend.cache_clear()
+
+
+def given_file(name: str) -> Path | None:
+    """The file that a backend of ours is to work by; None where nobody named one."""
+    return _given.get(name)
 
 
 def backend_names() -> tuple[str, ...]:
@@ -52,6 +75,8 @@ def load_backend(name: str) -> MotionBackend:
     entry = _registered()[name]
     try:
         made = entry.load()()
+    except UserError as error:
+        raise BrokenBackendError(f"{name!r} cannot be used: {error.fault}", error.remedy, at="backend") from error
     except Exception as error:  # whatever somebody else's code may raise
         raise _broken(entry, f"{type(error).__name__}: {error}") from error
     if lacking := [part for part in ("begin", "advance") if not callable(getattr(made, part, None))]:

@@ -6,6 +6,7 @@ from whom is decided here alone.
 
 from __future__ import annotations
 
+import logging
 from collections import Counter
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -18,6 +19,7 @@ from motion_backend.contact_goals import contact_goals
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import Action, Character, Motion, Phase, PhaseKind, Posture, join
 from motion_backend.scene import scene_of
+from motion_backend.skeleton import build_skeleton
 from motion_backend.state_machine import ENDS, parts_of, shortfall, time_limit
 from scene_graphs.home import Home
 
@@ -27,6 +29,9 @@ PACES = 3
 """Who paces goes a way so many times."""
 STANDS = 1.0
 """Seconds that a body stands for an action of which nothing is left to do."""
+MAX_REASON = 200
+"""Characters of somebody else's error that are told."""
+log = logging.getLogger("sims.motion")
 Step = tuple[Motion, BodyState]
 Asking = Generator[tuple[MotionBackend, Request], Step, Step]
 """Yields what is asked of whom, is sent what was made, and returns what came of it."""
@@ -56,7 +61,13 @@ class Director:
 
     def begin(self, home: Home, character: Character, seed: int) -> BodyState:
         """The body standing in the home, before its first action."""
-        return self.backend.begin(home, character, seed)
+        try:
+            return self.backend.begin(home, character, seed)
+        except Exception:
+            if self.fallback is None:
+                raise
+            log.warning("%s raised an exception at the beginning", self.backend.name, exc_info=True)
+            return self.fallback.begin(home, character, seed)
 
     def act(self, home: Home, action: Action, state: BodyState, following: Action | None = None) -> Step:
         """Act out one action from a state; the backend knows what `following` will ask of it."""
@@ -64,7 +75,7 @@ class Director:
         backend, asked = next(acting)
         while True:
             try:
-                backend, asked = acting.send(_advance(backend, asked))
+                backend, asked = acting.send(self._advance(backend, asked))
             except StopIteration as done:
                 found: Step = done.value
                 return found
@@ -83,7 +94,7 @@ class Director:
         while waiting:
             for backend in {id(backend): backend for backend, _ in waiting.values()}.values():
                 mine = [index for index, (asked_of, _) in waiting.items() if asked_of is backend]
-                steps = advance_many(backend, [waiting[index][1] for index in mine])
+                steps = self._advance_many(backend, [waiting[index][1] for index in mine])
                 for index, step in zip(mine, steps, strict=True):
                     try:
                         waiting[index] = actings[index].send(step)
@@ -91,6 +102,25 @@ class Director:
                         done[index] = finished.value
                         del waiting[index]
         return [done[index] for index in range(len(takes))]
+
+    def _advance(self, backend: MotionBackend, asked: Request) -> Step:
+        """What a backend makes; where another stands behind it, an exception is a fault as others are."""
+        if backend is not self.backend or self.fallback is None:
+            return _advance(backend, asked)
+        try:
+            return _made(_advance(backend, asked))
+        except Exception as error:  # whatever somebody else's code may raise; who interrupts is no Exception
+            log.warning("%s raised an exception at a %s", backend.name, asked.part.kind, exc_info=True)
+            return _raised(error, asked), asked.state
+
+    def _advance_many(self, backend: MotionBackend, requests: Sequence[Request]) -> list[Step]:
+        if backend is not self.backend or self.fallback is None:
+            return advance_many(backend, requests)
+        try:
+            return [_made(step) for step in advance_many(backend, requests)]
+        except Exception:  # at which of them is seen one by one
+            pass
+        return [self._advance(backend, asked) for asked in requests]
 
     def _acting(self, take: Take) -> Asking:
         """An action part by part; what follows a part that failed is left out."""
@@ -125,6 +155,20 @@ class Director:
             raise ValueError(f"{why}, and no backend stands behind it")
         motion, state = yield from _windows(self.fallback, asked)
         return _labelled(motion, asked.part, self.fallback, why, fault(motion, asked)), state
+
+
+def _made(step: Step) -> Step:
+    """TypeError where a backend gave something else than a motion and a state."""
+    motion, state = step
+    if not isinstance(motion, Motion) or not isinstance(state, BodyState):
+        raise TypeError(f"a motion and a body state are wanted, not {type(motion).__name__}, {type(state).__name__}")
+    return step
+
+
+def _raised(error: Exception, asked: Request) -> Motion:
+    """No frames, and what was raised as the reason."""
+    why = f"it raised {error!r:.{MAX_REASON}}"
+    return replace(Motion.empty(build_skeleton(asked.state.height)), completed=False, reason=why)
 
 
 def _windows(backend: MotionBackend, asked: Request) -> Asking:
@@ -181,7 +225,10 @@ def _labelled(motion: Motion, part: Part, backend: MotionBackend, fallback: str,
     phases = motion.phases
     if not phases and len(motion):
         phases = (Phase(PHASE_OF[part.kind], 0, len(motion)),)
-    phases = tuple(replace(phase, backend=backend.name, fallback=fallback) for phase in phases)
+    # A backend may say itself who made a phase of it.
+    phases = tuple(
+        replace(phase, backend=phase.backend or backend.name, fallback=phase.fallback or fallback) for phase in phases
+    )
     return replace(motion, phases=phases, completed=not why, reason=why)
 
 

@@ -91,6 +91,41 @@ class Note:
 
 
 @dataclass(frozen=True)
+class Force:
+    """How strongly something pressed on a part of a simulated body."""
+
+    body: str
+    """One of the 15 contact bodies (body/capsules.py)."""
+    on: str
+    """What it pressed on: "floor", or "things", furniture and walls."""
+    newtons: float
+    """Its median while it pressed."""
+    most: float
+    """Its largest mean over a frame, newtons."""
+    seconds: float
+    """How long it pressed."""
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """What a physics engine made of a part of a keyframe."""
+
+    keyframe: int
+    mode: str
+    """What moved the joints: "mpc", model-predictive control."""
+    seconds: float
+    root_force_newtons: float = 0.0
+    """What pushed the pelvis besides its joints and what it touched."""
+    resets: int = 0
+    """How often the body was set onto its plan."""
+    rewinds: int = 0
+    """How often it fell, and was gone back from."""
+    rewound_seconds: float = 0.0
+    """What was thrown away in that."""
+    forces: tuple[Force, ...] = ()
+
+
+@dataclass(frozen=True)
 class Character:
     """Who acts: the name and pronouns the story uses, and the height the body has (metres)."""
 
@@ -161,6 +196,19 @@ class Motion:
     """What it is made of, in order; empty where nobody knows."""
     notes: tuple[Note, ...] = ()
     """What was done otherwise than captions say."""
+    simulated: tuple[Simulated, ...] = ()
+    """What a physics engine had a part in; empty for a kinematic body."""
+
+    @staticmethod
+    def empty(skeleton: Skeleton) -> Motion:
+        """No frames."""
+        return Motion(
+            root_positions=np.zeros((0, 3), np.float32),
+            local_rotations=np.zeros((0, len(skeleton.names), 4), np.float32),
+            contacts=np.zeros((0, 4), np.float32),
+            skeleton=skeleton,
+            actions=np.zeros(0, np.int32),
+        )
 
     def __len__(self) -> int:
         return int(self.root_positions.shape[0])
@@ -191,6 +239,7 @@ class Motion:
             actions=self.actions[window],
             phases=tuple(cut),
             notes=tuple(note for note in self.notes if note.keyframe in served),
+            simulated=tuple(one for one in self.simulated if one.keyframe in served),
         )
 
 
@@ -213,4 +262,5 @@ def join(motions: list[Motion]) -> Motion:
             for phase in motion.phases
         ),
         notes=tuple(note for motion in motions for note in motion.notes),
+        simulated=tuple(one for motion in motions for one in motion.simulated),
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from threading import Lock
@@ -11,12 +12,18 @@ from typing import Final
 import numpy as np
 
 from motion_backend.body.scene_collision import Obstacles
+from motion_backend.rotations import Array
 from scene_graphs.geometry.egocentric_heightmap import SceneHeights
 from scene_graphs.home import Home
+from scene_graphs.meshes.convex_shapes import shapes_of
 from scene_graphs.navigation.path_planner import Walkable
 
 _KEPT: Final = 8
 """Homes whose scenes are kept at hand."""
+UPPER: Final = 0.75
+"""Of its height: where a piece is looked at."""
+UNSEEN: Final = frozenset({"rug", "ceiling_lamp"})
+"""What nobody looks at."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +46,41 @@ class Scene:
     def obstacles(self) -> Obstacles:
         """Furniture and walls as boxes."""
         return Obstacles.of_home(self.home)
+
+    def depth_about(self, object_id: str) -> Callable[[Array], Array]:
+        """How deep points (N, 3) are in furniture and walls, and in one piece as it is drawn: with what stands in it.
+
+        The depth (N,) is negative or -inf outside.
+        """
+        solid = self.obstacles.solid()
+        drawn = [shape for placed in self.home.objects if placed.id == object_id for shape in shapes_of(placed)]
+
+        def depth(points: Array) -> Array:
+            found, low, high = solid.depth(points), points.min(axis=0), points.max(axis=0)
+            for shape in drawn:
+                if ((shape.low < high) & (shape.high > low)).all():
+                    found = np.maximum(found, shape.depth(points))
+            return np.asarray(found)
+
+        return depth
+
+    def sights(self, room: int | None) -> Array:
+        """What eyes rest on in a room: the upper half of its furniture, its windows and doors. (N, 3)."""
+        return self._sights.get(room, np.zeros((0, 3)))
+
+    @cached_property
+    def _sights(self) -> dict[int | None, Array]:
+        found: dict[int | None, list[tuple[float, float, float]]] = {}
+        for placed in self.home.objects:
+            x, y, z = placed.position
+            if placed.category not in UNSEEN:
+                found.setdefault(int(placed.id.partition("/")[0]), []).append((x, y + UPPER * placed.size[1], z))
+        for wall in self.home.walls:
+            for opening in wall.openings:
+                (x0, z0), (x1, z1) = opening.segment
+                middle = ((x0 + x1) / 2, (opening.bottom + opening.top) / 2, (z0 + z1) / 2)
+                found.setdefault(self.home.room_at((middle[0], middle[2])), []).append(middle)
+        return {room: np.array(points) for room, points in found.items()}
 
     @cached_property
     def heights(self) -> SceneHeights:

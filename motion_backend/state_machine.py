@@ -49,8 +49,9 @@ ENDS: Final[dict[Skill, Posture]] = {
     Skill.GETUP: Posture.STANDING,
 }
 """The posture each skill leaves the body in."""
-PATIENCE: Final = 10.0
-"""Seconds for every part, besides its way and its hold, as UniHSI gives each of its steps."""
+PATIENCE: Final = 15.0
+"""Seconds for every part, besides its way and its hold. UniHSI gives each of its steps 10, and who gets up slowly from
+the floor takes those."""
 STUCK_SPEED: Final = 0.2
 """Metres a second: who walks more slowly is stuck."""
 

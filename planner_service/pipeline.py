@@ -7,11 +7,12 @@ from dataclasses import dataclass, field, replace
 from typing import Any, get_args
 
 from motion_backend.backends import DEFAULT_BACKEND, require_backend
-from motion_backend.body.scene_collision import Obstacles
 from motion_backend.director import Director, shares
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.story_figures import story_figures
 from motion_backend.motion import Action, Character, Motion, join
+from motion_backend.physics.physics_record import physics_of
+from motion_backend.scene import scene_of
 from planner_service.composition.compose import compose, script_of
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, METHODS, Request
 from planner_service.grounding.furnish import Furnished, furnish
@@ -301,7 +302,7 @@ def move(director: Director, planned: Planned, actions: Sequence[Action], progre
 
 def judge(planned: Planned, actions: Sequence[Action], motions: Sequence[Motion], progress: Progress) -> Story:
     """Figures for every keyframe and the whole, and the motion in one piece."""
-    obstacles = Obstacles.of_home(planned.home)
+    obstacles = scene_of(planned.home).obstacles
     figures, segments, frame = [], [], 0
     for index, (motion, action) in enumerate(zip(motions, actions, strict=True)):
         progress("judge", index / len(actions))
@@ -311,4 +312,5 @@ def judge(planned: Planned, actions: Sequence[Action], motions: Sequence[Motion]
     whole = join(list(motions))
     report = story_metrics.summarise(figures) | story_figures(whole, actions, segments).to_dict()
     report["made_by"] = shares(whole)
+    report["physics"] = physics_of(whole)
     return Story(planned, tuple(actions), whole, tuple(segments), tuple(figures), report)

@@ -15,7 +15,7 @@ from typing import Final
 
 import structlog
 
-from planner_service.settings import Settings, SettingsError
+from planner_service.settings import Settings, SettingsError, give_backends
 
 FIRST_WAIT, MAX_WAIT_SECONDS = 0.2, 15.0
 """Seconds before a worker that died is started again; doubled while it keeps dying."""
@@ -103,6 +103,7 @@ def environment(settings: Settings, worker_id: str) -> dict[str, str]:
         "SIMS_DATA_DIR": str(settings.data_dir.absolute()),
         "SIMS_DATABASE_URL": database_url(settings),  # never empty: an empty one would leave it to `.env`
         "SIMS_BACKEND": settings.backend,
+        "SIMS_CLIPS": str(settings.clips.absolute()) if settings.clips else None,
         "SIMS_LAYOUTS": str(settings.layouts.absolute()) if settings.layouts else None,
         "SIMS_LLM_API_KEY": settings.llm_api_key.get_secret_value(),
         "SIMS_LOG_LEVEL": settings.log_level,
@@ -125,6 +126,7 @@ def serve(settings: Settings) -> None:
     from planner_service.components import open_parts
 
     check_exposure(settings)
+    give_backends(settings)
     check_backend(settings.backend)
     parts = open_parts(settings)
     supervisor = Supervisor(settings)

@@ -32,6 +32,8 @@ class Settings(BaseSettings):
     """PostgreSQL, as postgresql://user:password@host/name; empty for the SQLite file in `data_dir`."""
     backend: str = "procedural"
     """What moves the body where a request names nothing else."""
+    clips: Path | None = None
+    """A collection of clips (`sims clips build`), whose walks the backend `matching` is made of."""
     layouts: Path | None = None
     """An extra layout file, read beside the built-in library."""
     llm_model: str = ""
@@ -128,6 +130,13 @@ class Settings(BaseSettings):
     def cache_dir(self) -> Path:
         """Derived files that may be deleted at any time."""
         return self.data_dir / "cache"
+
+
+def give_backends(settings: Settings) -> None:
+    """Tell the backends of this process the files that they work by."""
+    from motion_backend.backends import MATCHING, give_file
+
+    give_file(MATCHING, settings.clips)
 
 
 def read_settings(**options: object) -> Settings:

@@ -26,10 +26,18 @@ HEAVY = (
 
 
 class Forked:
-    """A process that has imported `sims` and forks for every command; Unix alone. Use it in `with`, in one thread."""
+    """A process that has imported `sims` and forks for every command; Unix alone. Use it in `with`, in one thread.
+
+    What says where packages are is for the process itself: `path`, as PYTHONPATH.
+    """
+
+    def __init__(self, path: str | None = None) -> None:
+        self._environment = os.environ | ({"PYTHONPATH": path} if path else {})
 
     def __enter__(self) -> Self:
-        self._process = subprocess.Popen([sys.executable, __file__], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self._process = subprocess.Popen(
+            [sys.executable, __file__], stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=self._environment
+        )
         return self
 
     def __exit__(

@@ -26,19 +26,59 @@ class Layer:
     """Seconds that all its processes together may compute."""
     workers: int
     """Processes that share the tests."""
-    more: tuple[str, ...] = ()
-    """What else pytest is told."""
+    starts_nothing: bool = False
+    """Whether no test starts a process or a server: then one may be forked."""
+
+    @property
+    def shared(self) -> list[str]:
+        """How pytest is told to share the tests among processes; those of a file stay together."""
+        if self.starts_nothing and sys.platform == "linux":
+            # A plugin that is not wanted takes longer to load than many tests; files by name would come line by line.
+            return [
+                "-q",
+                "-p",
+                "forked_workers",
+                "--forks",
+                str(self.workers),
+                "-p",
+                "no:xdist",
+                "-p",
+                "no:schemathesis",
+            ]
+        return ["--numprocesses", str(self.workers), "--dist", "loadfile", "--no-loadscope-reorder"]
 
 
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-# Its plugin takes longer to load than many tests, and only those of the service want it.
-FAST = Layer("not service and not sweep", 240, 250, min(CORES, 4), ("-p", "no:schemathesis"))
+FAST = Layer("not service and not sweep", 240, 250, min(CORES, 4), starts_nothing=True)
 # Tests of a whole service mostly wait for it: three files at a time on two cores.
 SERVICE = Layer("service and not sweep", 480, None, min(CORES, 4) + 1)
 SWEEP = Layer("sweep", None, None, CORES)
 LAYERS = {"test": (FAST,), "test-service": (SERVICE,), "test-all": (FAST, SERVICE, SWEEP)}
 RELEASE = {"SIMS_TEST_KILLS": "20", "SIMS_TEST_STORIES": "50", "SIMS_TEST_EXAMPLES": "many"}
 """How much `test-all` tries, where nothing else is asked for."""
+
+
+KERNEL = ROOT / "scene_graphs" / "graph" / "branch_and_bound_kernel.py"
+FIRST_SEARCH = """
+from scene_graphs.graph.edit_distance import exact_distance
+from scene_graphs.layout_library import built_in_index
+index = built_in_index()
+graph = index.graph("study-0000")
+index.search(graph)
+exact_distance(graph, graph, index.costs)
+"""
+
+
+def compile_search() -> None:
+    """The search for rooms is compiled where nobody has searched yet: a part of set-up, and all processes wait for one.
+
+    What was compiled is kept beside the module; processes that begin at once would each compile it.
+    """
+    kept = KERNEL.parent / "__pycache__"
+    if any(file.stat().st_mtime > KERNEL.stat().st_mtime for file in kept.glob(f"{KERNEL.stem}.*.nbi")):
+        return
+    print("· compiling the search for rooms, once", flush=True)
+    subprocess.run([sys.executable, "-c", FIRST_SEARCH], cwd=ROOT, check=True)
 
 
 def computed() -> float:
@@ -49,18 +89,10 @@ def computed() -> float:
 
 def run(layer: Layer, more: list[str], environment: dict[str, str]) -> tuple[int, float, float]:
     """Pytest's exit code, and the wall and CPU seconds it took."""
-    command = [sys.executable, "-m", "pytest", "-m", layer.chosen]
-    command += [
-        "--numprocesses",
-        str(layer.workers),
-        "--dist",
-        "loadfile",
-        "--no-loadscope-reorder",
-        *layer.more,
-        *more,
-    ]
+    command = [sys.executable, "-m", "pytest", "-m", layer.chosen, *layer.shared, *more]
+    path = os.pathsep.join(filter(None, [str(ROOT / "tests"), environment.get("PYTHONPATH")]))
     began, before = time.monotonic(), computed()
-    code = subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
+    code = subprocess.run(command, cwd=ROOT, env=environment | {"PYTHONPATH": path}, check=False).returncode
     return code, time.monotonic() - began, computed() - before
 
 
@@ -76,7 +108,8 @@ def main() -> int:
     parser.add_argument("layers", choices=LAYERS)
     asked, more = parser.parse_known_args()
     environment = (RELEASE if asked.layers == "test-all" else {}) | dict(os.environ)
-    code, lines = 0, []
+    code, lines = 0, list[str]()
+    compile_search()
     for layer in LAYERS[asked.layers]:
         if asked.layers == "test-all":
             layer = replace(layer, wall=None, cpu=None)  # so much of it is not to be quick

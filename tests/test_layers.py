@@ -33,6 +33,44 @@ def test_a_fast_test_gets_nothing_live(fixture: str, request: pytest.FixtureRequ
         request.getfixturevalue(fixture)
 
 
+SHARED = """
+import os, pytest
+
+@pytest.fixture
+def broken():
+    raise ValueError
+
+def test_good(tmp_path): print("heard"); assert not list(tmp_path.iterdir())
+def test_bad(): print("said"); assert 1 == 2
+def test_error(broken): pass
+@pytest.mark.skip(reason="not here")
+def test_skipped(): pass
+"""
+
+
+@pytest.mark.service
+@pytest.mark.parametrize(
+    ("last", "says"),
+    [
+        ("def test_last(): pass", "2 failed, 3 passed, 2 skipped, 2 errors"),
+        ("def test_last(): os._exit(3)", "a process ended with 3 after test_0.py::test_last"),
+    ],
+)
+def test_what_becomes_of_a_test_in_a_forked_process_is_told_even_if_it_ends_the_process(
+    last: str, says: str, tmp_path: Path
+) -> None:
+    for number, more in enumerate((last, "")):
+        (tmp_path / f"test_{number}.py").write_text(SHARED + more, encoding="utf-8")
+    (tmp_path / "sentences-none.npz").touch()  # so that nothing is encoded for them
+    (tmp_path / "pytest.ini").touch()
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parent), "SIMS_TEST_CACHE": str(tmp_path)}
+    command = [sys.executable, "-m", "pytest", "-q", *LAYERS["test"][0].shared, "-p", "no:cacheprovider"]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert says in done.stdout
+    assert "heard" not in done.stdout
+
+
 @pytest.mark.service
 def test_a_marked_test_may() -> None:
     assert subprocess.run([sys.executable, "-c", "pass"], check=True).returncode == 0

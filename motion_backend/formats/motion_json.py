@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motion_backend.motion import ContactGoal, Motion, Note, Phase, PhaseKind
+from motion_backend.motion import ContactGoal, Force, Motion, Note, Phase, PhaseKind, Simulated
 from motion_backend.skeleton import Skeleton
 
 DIGITS = 6
@@ -34,6 +35,7 @@ def motion_to_dict(motion: Motion) -> dict[str, Any]:
         "reason": motion.reason,
         "phases": [phase_to_dict(phase) for phase in motion.phases],
         "notes": [{"keyframe": note.keyframe, "words": note.words} for note in motion.notes],
+        "simulated": [asdict(one) for one in motion.simulated],
     }
 
 
@@ -56,6 +58,7 @@ def dict_to_motion(data: dict[str, Any]) -> Motion:
         reason=str(data.get("reason", "")),
         phases=tuple(_dict_to_phase(phase) for phase in data.get("phases", [])),
         notes=tuple(Note(note["keyframe"], str(note["words"])) for note in data.get("notes", [])),
+        simulated=tuple(dict_to_simulated(row) for row in data.get("simulated", [])),
     )
 
 
@@ -68,6 +71,11 @@ def phase_to_dict(phase: Phase) -> dict[str, Any]:
 def _dict_to_phase(row: dict[str, Any]) -> Phase:
     kind, start, stop = PhaseKind(row["part"]), int(row["start"]), int(row["stop"])
     return Phase(kind, start, stop, str(row.get("backend", "")), str(row.get("fallback") or ""))
+
+
+def dict_to_simulated(row: dict[str, Any]) -> Simulated:
+    """What a physics engine made of a part, from its fields as `dataclasses.asdict` has them."""
+    return Simulated(**row | {"forces": tuple(Force(**force) for force in row["forces"])})
 
 
 def json_bytes(motion: Motion) -> bytes:

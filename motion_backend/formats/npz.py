@@ -13,8 +13,10 @@ Motions as bare numbers: world joint positions, (T, 22, 3) float32, little-endia
 from __future__ import annotations
 
 import io
+import json
 import zipfile
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -22,7 +24,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
-from motion_backend.motion import ContactGoal, Floats, Motion, Note, Phase, PhaseKind
+from motion_backend.formats.motion_json import dict_to_simulated
+from motion_backend.motion import ContactGoal, Floats, Motion, Note, Phase, PhaseKind, Simulated
 from motion_backend.skeleton import Skeleton
 
 VERSION = 1
@@ -57,6 +60,7 @@ def npz_bytes(motion: Motion) -> bytes:
         "phase_frames": np.array([(phase.start, phase.stop) for phase in motion.phases], dtype=np.int32).reshape(-1, 2),
         "note_keyframes": np.array([note.keyframe for note in motion.notes], dtype=np.int32),
         "note_words": np.array([note.words for note in motion.notes], dtype=np.str_),
+        "simulated": np.array([json.dumps(asdict(one)) for one in motion.simulated], dtype=np.str_),
     }
     return archive(arrays)
 
@@ -98,7 +102,14 @@ def read_npz(file: Path | str | BinaryIO) -> Motion:
             reason=str(data["reason"]),
             phases=_phases(data),
             notes=tuple(Note(keyframe, str(words)) for keyframe, words in notes),
+            simulated=_simulated(data),
         )
+
+
+def _simulated(data: Mapping[str, NDArray[Any]]) -> tuple[Simulated, ...]:
+    """What a physics engine made; files of earlier versions have nothing of it."""
+    rows = data["simulated"].tolist() if "simulated" in data else []
+    return tuple(dict_to_simulated(json.loads(row)) for row in rows)
 
 
 def _phases(data: Mapping[str, NDArray[Any]]) -> tuple[Phase, ...]:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from motion_backend import rotations
+from motion_backend.metrics.joint_speed import joint_speeds
 from motion_backend.mocap.foot_contacts import BALLS, Feet
 from motion_backend.mocap.rest_pose import LIMBS, Rest, Source, shortest_turn
 from motion_backend.rotations import Array
@@ -121,8 +122,7 @@ def fastest_turn(local: Array, fps: float) -> float:
     """Radians a second of the fastest joint but the toes. (T, 22, 4)."""
     if len(local) < 2:
         return 0.0
-    dots = np.delete(np.abs(np.sum(local[1:] * local[:-1], axis=-1)), BALLS, axis=1)
-    return float(2 * np.arccos(np.clip(dots, 0.0, 1.0)).max() * fps)
+    return float(np.delete(joint_speeds(local, fps), BALLS, axis=1).max())
 
 
 def faults(

@@ -139,6 +139,12 @@ def _patient(sure: Flags, near: Flags) -> Flags:
     kept = np.zeros(len(sure), dtype=np.bool_)
     for start, stop in runs(near):
         kept[start:stop] = sure[start:stop].any()
+    return without_brief(kept)
+
+
+def without_brief(flags: Flags) -> Flags:
+    """Brief gaps closed, then brief stretches dropped. (T,)."""
+    kept = flags.copy()
     for start, stop in runs(~kept):
         if stop - start < BRIEF and start > 0 and stop < len(kept):
             kept[start:stop] = True

@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from motion_backend.mocap.foot_contacts import BALLS, BRIEF, MAX_FOOT_SHIFT, Feet, Flags, runs
+from motion_backend.mocap.foot_contacts import BALLS, MAX_FOOT_SHIFT, Feet, Flags, runs, without_brief
 from motion_backend.mocap.resampling import low_pass
 from motion_backend.rotations import Array
 
@@ -33,25 +33,31 @@ def standing(feet: Feet, pelvis: Array) -> tuple[Flags, Flags]:
     for points, height in ((feet.soles[:, :, 0], 0.0), (feet.balls, rest)):
         still = np.linalg.norm(_rate(points[..., [0, 2]], feet.fps), axis=-1) < most
         flags = still & (points[..., 1] < height + LOW)
-        found.append(np.stack([_without_brief(flags[:, side]) for side in range(2)], axis=1))
+        found.append(np.stack([without_brief(flags[:, side]) for side in range(2)], axis=1))
     return found[0], found[1]
 
 
-def locked(feet: Feet, pelvis: Array) -> tuple[Array, Array]:
+def locked(feet: Feet, pelvis: Array, fixed: int = 0, slack: float = 0.0) -> tuple[Array, Array]:
     """How far ankles must move for feet to stand on the floor and to stay there, (T, 2, 3), and the pelvis with them.
 
     The pelvis, (T, 3), rises and sinks with the foot that stands, so that its leg keeps its length: a leg that is
-    nearly straight pays for a centimetre with ten degrees of its knee. Metres.
+    nearly straight pays for a centimetre with ten degrees of its knee. Metres. The first `fixed` frames do not move,
+    and a foot that stands in the last of them stays there. Soles that stand within `slack` over the floor are left so.
     """
     heels, balls = standing(feet, pelvis)
     shift = np.zeros_like(feet.ankles)
     for side in range(2):
         way = np.where(balls[:-1, side, None], _steps(feet.balls[:, side]), _steps(feet.soles[:, side, 0]))
-        stances = runs(_without_brief(heels[:, side] | balls[:, side]))
+        stances = runs(without_brief(heels[:, side] | balls[:, side]))
         for start, stop in stances:
             back = -np.concatenate([[[0.0, 0.0]], np.cumsum(way[start : stop - 1], axis=0)])
-            shift[start:stop, side][:, [0, 2]] = back - back.mean(axis=0)
-            shift[start:stop, side, 1] = -feet.soles[start:stop, side, :, 1].min(axis=1)
+            there = back[fixed - 1 - start] if start < fixed < stop else back.mean(axis=0)
+            shift[start:stop, side][:, [0, 2]] = back - there
+            low = feet.soles[start:stop, side, :, 1].min(axis=1)
+            shift[start:stop, side, 1] = np.clip(low, 0.0, slack) - low
+        if fixed:
+            shift[:fixed, side] = 0.0
+            stances = [(0, fixed), *((max(start, fixed), stop) for start, stop in stances if stop > fixed)]
         _pass_over(shift[:, side], stances)
     length = np.linalg.norm(shift, axis=-1, keepdims=True)
     shift *= np.minimum(1.0, MAX_FOOT_SHIFT / np.maximum(length, 1e-9))
@@ -70,18 +76,6 @@ def _rate(points: Array, fps: float) -> Array:
 def _steps(points: Array) -> Array:
     """From each frame to the next over the floor. (T, 3) to (T - 1, 2)."""
     return np.asarray(np.diff(points[:, [0, 2]], axis=0))
-
-
-def _without_brief(flags: Flags) -> Flags:
-    """Brief gaps closed, then brief contacts dropped. (T,)."""
-    kept = flags.copy()
-    for start, stop in runs(~kept):
-        if stop - start < BRIEF and start > 0 and stop < len(kept):
-            kept[start:stop] = True
-    for start, stop in runs(kept):
-        if stop - start < BRIEF:
-            kept[start:stop] = False
-    return kept
 
 
 def _pass_over(shift: Array, stances: list[tuple[int, int]]) -> None:

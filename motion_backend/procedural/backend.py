@@ -18,6 +18,7 @@ from motion_backend.procedural.balance_pass import balanced
 from motion_backend.procedural.body_state import Body
 from motion_backend.procedural.collision_avoidance.arm_clearance import Around, arms_clear
 from motion_backend.procedural.emotion_style import Bearing
+from motion_backend.procedural.gaze import gazing
 from motion_backend.procedural.held_poses import idle, standing
 from motion_backend.procedural.pose import Pose, concatenate
 from motion_backend.procedural.pose_solver import hips_within, released, solve
@@ -111,7 +112,7 @@ def _to_motion(body: Body, part: Part) -> Motion:
     pose, start = concatenate(body.frames), body.begun
     if body.tail is not None:
         pose, start = carried_on(body.tail, pose), body.tail.at(0)
-    pose = hips_within(balanced(pose, body.phases, body.skeleton), body.skeleton)
+    pose = hips_within(balanced(gazing(pose, body, part), body.phases, body.skeleton), body.skeleton)
     pose = arms_clear(pose, start, around, body.skeleton)
     body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)
@@ -143,11 +144,5 @@ def _freed(frames: Pose, skeleton: Skeleton) -> Pose:
 
 def _nothing(body: Body, part: Part) -> Motion:
     """No frames: the body is where it is to be."""
-    return Motion(
-        root_positions=np.zeros((0, 3), dtype=np.float32),
-        local_rotations=np.zeros((0, len(body.skeleton.names), 4), dtype=np.float32),
-        contacts=np.zeros((0, 4), dtype=np.float32),
-        skeleton=body.skeleton,
-        actions=np.zeros(0, dtype=np.int32),
-        notes=tuple(Note(part.action.keyframe, words) for words in body.otherwise),
-    )
+    notes = tuple(Note(part.action.keyframe, words) for words in body.otherwise)
+    return replace(Motion.empty(body.skeleton), notes=notes)

@@ -40,29 +40,6 @@ MIRROR = np.array([-1.0, 1.0, 1.0])
 
 
 @table
-class Glance:
-    """Looks at something aside, now and then, and back: bounds that chance keeps."""
-
-    first_min_s: float
-    first_max_s: float
-    stay_min_s: float
-    stay_max_s: float
-    turn_s: float
-    wait_min_s: float
-    wait_max_s: float
-    last_s: float
-    """None begins later than this before the end."""
-    aside_min_rad: float
-    aside_max_rad: float
-    down_min_rad: float
-    down_max_rad: float
-    trunk_share: float
-    """Of a look aside: how far the trunk turns with the head."""
-    size_max_ratio: float
-    """The most restless look aside no farther than this."""
-
-
-@table
 class Shift:
     """The weight goes to another place now and then: bounds that chance keeps."""
 
@@ -105,7 +82,6 @@ class Idle:
     sway_m: float
     sway_down_share: float
     """Of the sway: the weight on one leg."""
-    glance: Glance
     shift: Shift
 
 
@@ -204,22 +180,21 @@ class Seat:
 
 
 def idle(pose: Pose, seconds: float, size: float, rng: np.random.Generator, fps: int) -> Pose:
-    """Hold a single pose for a while, alive: breath, a slow shift of weight, a wandering gaze."""
+    """Hold a single pose for a while, alive: breath, a slow shift of weight, a head that is never quite still."""
     row, frames = idle_table(), max(round(seconds * fps), 1)
     held, time = pose.repeat(frames), np.arange(1, frames + 1)
     ease = (1 - np.exp(-time / (row.ease_s * fps)))[:, None]
     slow = [_wander(frames, row, rng, fps) for _ in range(4)]
     breath = np.sin(2 * np.pi * (row.breath_hz * time / fps + rng.uniform() + row.breath_uneven_share * slow[3]))
-    aside, down = _glances(frames, size, rng, fps)
     lies = abs(float(rotations.rotate(pose.hips, UP)[1])) < LIES
     moved = (
         (row.least_share + (1 - row.least_share) * size)
         * (row.lying_share if lies else 1.0)
-        * _bends(slow, _shifts(frames, rng, fps), aside, row)
+        * _bends(slow, _shifts(frames, rng, fps), row)
     )
     moved[:, 0] += row.breath_rad * breath
     spine = held.spine + ease * moved
-    nod, turn = row.head_forward_rad * size * slow[2] + down, row.head_turn_rad * size * slow[3] + aside
+    nod, turn = row.head_forward_rad * size * slow[2], row.head_turn_rad * size * slow[3]
     head = held.head + ease * np.stack([nod, turn, row.head_side_rad * slow[0]], axis=1)
     on_feet = bool(pose.planted.min() > 0 and pose.pelvis[1] > row.on_feet_above_m)
     way = np.stack([slow[0], -row.sway_down_share * np.abs(slow[0]), slow[1]], axis=1)
@@ -245,13 +220,13 @@ def _wander(frames: int, row: Idle, rng: np.random.Generator, fps: int) -> Array
     return drift(frames, row.drift_hz, fps, rng) + row.quick_share * drift(frames, row.quick_hz, fps, rng)
 
 
-def _bends(slow: list[Array], shift: tuple[Array, Array], aside: Array, row: Idle) -> Array:
+def _bends(slow: list[Array], shift: tuple[Array, Array], row: Idle) -> Array:
     """How the trunk bends and turns while it holds, besides its breath: forwards, to the left, to the side. (T, 3)."""
     forward, side = shift
     return np.stack(
         [
             row.spine_forward_rad * slow[0] + forward,
-            row.spine_turn_rad * slow[1] + row.glance.trunk_share * aside,
+            row.spine_turn_rad * slow[1],
             row.spine_side_rad * slow[2] + side,
         ],
         axis=1,
@@ -270,21 +245,6 @@ def _shifts(frames: int, rng: np.random.Generator, fps: int) -> tuple[Array, Arr
         place = wanted
         at += take + rng.uniform(row.wait_min_s, row.wait_max_s) * fps
     return forward, side
-
-
-def _glances(frames: int, size: float, rng: np.random.Generator, fps: int) -> tuple[Array, Array]:
-    """Looks at something aside, now and then, and back: turns of the head to the left and down, radians. (T,) twice."""
-    row, aside, down = idle_table().glance, np.zeros(frames), np.zeros(frames)
-    size = min(size, row.size_max_ratio)
-    at = int(rng.uniform(row.first_min_s, row.first_max_s) * fps)
-    while at + row.last_s * fps < frames:
-        stay, turn = int(rng.uniform(row.stay_min_s, row.stay_max_s) * fps), int(row.turn_s * fps)
-        time = np.arange(frames) - at
-        look = smooth(time / turn) * smooth((stay + turn - time) / turn)
-        aside += look * float(rng.choice([-1.0, 1.0]) * rng.uniform(row.aside_min_rad, row.aside_max_rad)) * size
-        down += look * float(rng.uniform(row.down_min_rad, row.down_max_rad)) * size
-        at += stay + turn + int(rng.uniform(row.wait_min_s, row.wait_max_s) * fps)
-    return aside, down
 
 
 def shoulders(pose: Pose, skeleton: Skeleton) -> Array:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from motion_backend import rotations
-from motion_backend.body.joint_limits import aside_within, overbent
+from motion_backend.body.joint_limits import overbent, within
 from motion_backend.inverse_kinematics import Limb, leg_rotations, two_bone
 from motion_backend.procedural.arm_solver import SIDES, Arm, hanging_from
 from motion_backend.procedural.pose import Pose
@@ -37,7 +37,7 @@ def trunk_and_legs(pose: Pose, skeleton: Skeleton) -> Array:
     for name in SPINE:
         local[:, INDEX[name]] = third
     half = rotations.rotvec_to_quat(pose.head / 2)
-    local[:, INDEX["neck"]] = local[:, INDEX["head"]] = half
+    local[:, INDEX["neck"]] = local[:, INDEX["head"]] = within("neck", half)
     for index, (name, _) in enumerate(SIDES):
         _solve_leg(local, pose, skeleton, index, name)
     return local
@@ -86,7 +86,7 @@ def _solve_leg(local: Array, pose: Pose, skeleton: Skeleton, index: int, name: s
     local[:, INDEX[f"{name}_hip"]] = rotations.compose(rotations.inverse(pose.hips), thigh)
     local[:, INDEX[f"{name}_knee"]] = rotations.compose(rotations.inverse(thigh), shin)
     foot = rotations.compose(rotations.inverse(shin), pose.feet[:, index])
-    local[:, INDEX[f"{name}_ankle"]] = aside_within(f"{name}_ankle", foot)
+    local[:, INDEX[f"{name}_ankle"]] = within(f"{name}_ankle", foot, loaded=True)
     local[:, INDEX[f"{name}_foot"]] = rotations.axis_to_quat("x", -pose.toes[:, index])
 
 

@@ -30,8 +30,9 @@ CURTAIN = 0.20
 """How far into a room what hangs before a window may reach (metres)."""
 STRIDE = 0.62
 """Metres the root goes between two poses of a walk in one picture."""
-_SEEN = [INDEX[n] for n in ("pelvis", "head", "spine3", "left_knee", "right_knee", "left_foot", "right_foot")]
-_HANDS = [INDEX["left_wrist"], INDEX["right_wrist"]]
+SEEN = [INDEX[n] for n in ("pelvis", "head", "spine3", "left_knee", "right_knee", "left_foot", "right_foot")]
+HANDS = [INDEX["left_wrist"], INDEX["right_wrist"]]
+"""Joints that a picture should show."""
 _SHOULDERS = [INDEX["left_shoulder"], INDEX["right_shoulder"]]
 
 
@@ -71,8 +72,8 @@ def _along_the_way(roots: NDArray[np.floating], start: int, stop: int) -> Shot:
 
 
 def _at_full_reach(joints: NDArray[np.floating], start: int, stop: int) -> Shot:
-    reach = np.linalg.norm(joints[start:stop, _HANDS] - joints[start:stop, _SHOULDERS], axis=-1)
-    level = np.linalg.norm((joints[start:stop, _HANDS] - joints[start:stop, :1])[..., [0, 2]], axis=-1)
+    reach = np.linalg.norm(joints[start:stop, HANDS] - joints[start:stop, _SHOULDERS], axis=-1)
+    level = np.linalg.norm((joints[start:stop, HANDS] - joints[start:stop, :1])[..., [0, 2]], axis=-1)
     score = (reach + 2.0 * level).max(axis=1)
     longest = np.flatnonzero(score > score.max() - 0.02)
     frame = int(longest[len(longest) // 2])
@@ -92,24 +93,24 @@ def choose_camera(home: Home | None, motion: Motion, joints: NDArray[np.floating
     distance = max(half_height, half_width / aspect) / np.tan(FOV / 2) + 0.5 * half_width
     distance = max(distance, 3.0)
     cameras = [orbit((x, y, z), distance, float(yaw), PITCH, FOV) for yaw in YAWS]
-    wanted = _liking(motion, shot)
+    wanted = liking(motion, shot)
     if home is not None:
         near = [o for o in home.objects if np.hypot(o.position[0] - x, o.position[2] - z) < distance + 1.0]
         room = home.room_at((x, z))
         sides = [side for wall in home.walls if (side := Side.of(wall, home)) is not None]
         for index, camera in enumerate(cameras):
-            wanted[index] += 2.0 * visible_share(near, camera.eye, poses[0, _SEEN + _HANDS])
+            wanted[index] += 2.0 * visible_share(near, camera.eye, poses[0, SEEN + HANDS])
             wanted[index] += 0.3 * (room is not None and home.room_at((camera.eye[0], camera.eye[2])) == room)
-            wanted[index] -= 2.0 * _at_a_window(sides, np.asarray(camera.eye))
+            wanted[index] -= 2.0 * at_a_window(sides, np.asarray(camera.eye))
     return cameras[int(np.argmax(np.round(wanted, 4)))]
 
 
-def _at_a_window(sides: Sequence[Side], eye: Array) -> bool:
+def at_a_window(sides: Sequence[Side], eye: Array) -> bool:
     """Whether a camera is so near to a wall, on its room's side, that curtains may hang before it."""
     return any(side.faces(eye[[0, 2]]) and side.distance(eye[[0, 2]]) < CURTAIN for side in sides)
 
 
-def _liking(motion: Motion, shot: Shot) -> Array:
+def liking(motion: Motion, shot: Shot) -> Array:
     """How much each yaw shows of the body: three-quarter views of a face, long sides of who lies or walks. (16,)."""
     turn = motion.local_rotations[shot.frame, 0].astype(np.float64)
     ahead, up = rotations.rotate(turn, np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]))

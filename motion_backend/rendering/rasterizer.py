@@ -1,4 +1,4 @@
-"""Cameras, and which pixels triangles cover from there: spans of rows, then fragments, all of a scene at once.
+"""Cameras: where triangles are in the picture that is taken from there.
 
 Frame: Y up, metres. Pixels count from a picture's top left corner; `nearness` grows towards the eye and is linear
 across a triangle in the picture: one over depth, or minus depth in a parallel view.
@@ -101,39 +101,7 @@ def clip(viewed: Real, camera: Camera) -> tuple[Real, Ints]:
     return np.concatenate(pieces), np.concatenate(sources)
 
 
-def fragments(screen: Real, width: int, height: int) -> tuple[Ints, Ints, Real]:
-    """Pixel, triangle and nearness of everything every triangle covers. screen: (F, 3, 3) as from `Camera.project`."""
-    x, y, near = screen[..., 0], screen[..., 1], screen[..., 2]
-    dx, dy = np.roll(x, -1, axis=1) - x, np.roll(y, -1, axis=1) - y
-    area = dx[:, 0] * dy[:, 1] - dy[:, 0] * dx[:, 1]
-    sign = np.where(area < 0, -1.0, 1.0)[:, None]
-    # Inside means a·x + b·y + c >= 0 for all three edges.
-    a, b = -dy * sign, dx * sign
-    c = -(a * x + b * y)
-    first = np.clip(np.ceil(y.min(axis=1) - 0.5), 0, height).astype(np.int64)
-    last = np.clip(np.ceil(y.max(axis=1) - 0.5), 0, height).astype(np.int64)
-    outside = (x.max(axis=1) < 0) | (x.min(axis=1) > width) | (np.abs(area) < 1e-9)
-    face, row = _spread(np.where(outside, 0, last - first), first)
-    middle = row + 0.5
-    left, right = np.zeros(len(face)), np.full(len(face), float(width))
-    for edge in range(3):
-        slope, rest = a[face, edge], b[face, edge] * middle + c[face, edge]
-        crossing = -rest / np.where(slope == 0, 1.0, slope)
-        left = np.where(slope > 0, np.maximum(left, crossing), left)
-        right = np.where(slope < 0, np.minimum(right, crossing), right)
-        right = np.where((slope == 0) & (rest < 0), -1.0, right)
-    start = np.ceil(left - 0.5).astype(np.int64)
-    span, column = _spread(np.maximum(np.ceil(right - 0.5).astype(np.int64) - start, 0), start)
-    safe = np.where(np.abs(area) < 1e-9, 1.0, area)
-    near1, near2 = near[:, 1] - near[:, 0], near[:, 2] - near[:, 0]
-    by_x = (near1 * -dy[:, 2] - near2 * dy[:, 0]) / safe
-    by_y = (near2 * dx[:, 0] - near1 * -dx[:, 2]) / safe
-    line = near[face, 0] + by_x[face] * (0.5 - x[face, 0]) + by_y[face] * (middle - y[face, 0])
-    return row[span] * width + column, face[span], line[span] + by_x[face][span] * column
-
-
-def _spread(counts: Ints, starts: Ints) -> tuple[Ints, Ints]:
-    """Repeat each index as often as counted; beside it a number that runs up from its start."""
-    index = np.repeat(np.arange(len(counts)), counts)
-    run = np.arange(len(index)) - np.repeat(np.cumsum(counts) - counts, counts)
-    return index, run + starts[index]
+def empty_buffers(size: tuple[int, int]) -> tuple[Ints, Array]:
+    """No triangle (-1), infinitely far away, in every pixel: (height, width) each."""
+    width, height = size
+    return np.full((height, width), -1), np.full((height, width), -np.inf)

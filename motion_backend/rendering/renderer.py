@@ -13,14 +13,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motion_backend.rendering.rasterizer import Camera, Ints, Real, clip, fragments
+from motion_backend.rendering.rasterizer import Camera, Ints, Real, clip, empty_buffers
+from motion_backend.rendering.shadow_map import SKY, SUN, ShadowMap
 from motion_backend.rotations import Array
 
 Image = NDArray[np.uint8]
 
 SUN_LIGHT, SKY_LIGHT, BOUNCE_LIGHT, CAMERA_LIGHT = 0.70, 0.45, 0.24, 0.12
-SHADOW_REACH = 3.2
-"""Metres around the target that shadows are drawn for."""
 GRID = 0.5
 """Metres between the floor's lines."""
 HORIZON = np.array([0.90, 0.91, 0.92])
@@ -28,33 +27,8 @@ HAZE_START, HAZE_DEPTH = 5.0, 4.0
 """Metres around the target that are clear, and over which all fades behind them."""
 SHADOW_OFFSET = 0.02
 """Metres off a surface at which light is looked up, so that it does not shade itself."""
-
-
-@dataclass(frozen=True)
-class _Lamp:
-    """A light far away, and the map of what it reaches first."""
-
-    direction: Array
-    """Unit vector towards it."""
-    pixels: int
-    blur: float
-    """Metres around a point that its share of light is taken from."""
-    taps: Array
-    """Where the map is read, in blur radii; each of a pixel's four samples turns them further. (N, 2)."""
-
-
-_SUN = _Lamp(
-    np.array([0.35, 0.86, 0.37]) / np.linalg.norm([0.35, 0.86, 0.37]),
-    640,
-    0.013,
-    np.array([[0.9, 0.1], [-0.1, 0.9], [-0.9, -0.1], [0.1, -0.9], [0.35, 0.3], [-0.3, -0.35]]),
-)
-_SKY = _Lamp(
-    np.array([0.0, 1.0, 0.0]),
-    288,
-    0.10,
-    np.array([[0.2, 0.1], [0.9, 0.3], [0.1, 0.95], [-0.75, 0.55], [-0.7, -0.6], [0.35, -0.85]]),
-)
+OPEN_SKY = 0.35
+"""The share of the sky's light that comes from the sides, and reaches what lies under something."""
 
 
 @dataclass(frozen=True)
@@ -86,29 +60,66 @@ def render(
 
     Without shadows it takes less than half the time.
     """
-    if ground is not None:
-        solids = [*solids, _floor(camera, ground)]
-    scene = _Scene.of(solids)
-    large = (2 * size[0], 2 * size[1])
-    triangle, nearness = (_quarters(a, size) for a in _visible(scene, camera, large))
-    # A pixel that one triangle fills is shaded once, in its middle; all others at their four samples.
-    whole = np.flatnonzero((triangle[:, 0] >= 0) & (triangle == triangle[:, :1]).all(axis=1))
-    torn = np.setdiff1d(np.flatnonzero(triangle.max(axis=1) >= 0), whole, assume_unique=True)
-    row, sample = np.nonzero(triangle[torn] >= 0)
-    pixel = np.concatenate([whole, torn[row]])
-    x = 2 * (pixel % size[0]) + np.concatenate([np.full(len(whole), 1.0), sample % 2 + 0.5])
-    y = 2 * (pixel // size[0]) + np.concatenate([np.full(len(whole), 1.0), sample // 2 + 0.5])
-    near = np.concatenate([nearness[whole].mean(axis=1), nearness[torn][row, sample]])
-    points = camera.unproject(x.astype(np.float32), y.astype(np.float32), near.astype(np.float32), large)
-    drawn = np.concatenate([triangle[whole, 0], triangle[torn][row, sample]])
-    quarter = np.concatenate([whole % 2 + 2 * (whole // size[0] % 2), sample])
-    shades = _shade(scene, camera, drawn, points, quarter if shadows else None)
-    color = np.tile(_to_linear(HORIZON).astype(np.float32), (size[0] * size[1], 1))
-    color[whole] = shades[: len(whole)]
-    mixed = np.tile(_to_linear(HORIZON).astype(np.float32), (len(torn), 4, 1))
-    mixed[row, sample] = shades[len(whole) :]
-    color[torn] = mixed.mean(axis=1)
-    return _to_srgb_bytes(color).reshape(size[1], size[0], 3)
+    seen = Samples.of(solids, camera, size, ground)
+    unshaded = np.ones(len(seen.points), dtype=np.float32)
+    return seen.picture(shade(seen, *(light(seen) if shadows else (unshaded, unshaded))))
+
+
+@dataclass(frozen=True)
+class Samples:
+    """What a camera sees, point by point: a pixel that one triangle fills in its middle, all others at four samples."""
+
+    scene: _Scene
+    camera: Camera
+    size: tuple[int, int]
+    points: Real
+    """(N, 3) float32 on surfaces: those of `whole`, then those of `torn`."""
+    triangle: Ints
+    """Which one each lies on. (N,)."""
+    quarter: Ints
+    """Which of a picture's four samples each is taken as. (N,)."""
+    whole: Ints
+    torn: Ints
+    """Pixels."""
+    place: tuple[Ints, Ints]
+    """Where in `torn`, and in its four samples, each point of the second kind belongs."""
+    nearness: Array
+    """Of what is nearest, over twice the size; minus infinity for nothing. (2 height, 2 width)."""
+
+    @staticmethod
+    def of(solids: Sequence[Solid], camera: Camera, size: tuple[int, int], ground: float | None = 0.0) -> Samples:
+        """What is nearest; `ground` is the height of an endless floor, None for none."""
+        if ground is not None:
+            solids = [*solids, _floor(camera, ground)]
+        scene = _Scene.of(solids)
+        large = (2 * size[0], 2 * size[1])
+        visible = _visible(scene, camera, large)
+        triangle, nearness = (_quarters(a, size) for a in visible)
+        whole = np.flatnonzero((triangle[:, 0] >= 0) & (triangle == triangle[:, :1]).all(axis=1))
+        torn = np.setdiff1d(np.flatnonzero(triangle.max(axis=1) >= 0), whole, assume_unique=True)
+        row, sample = np.nonzero(triangle[torn] >= 0)
+        pixel = np.concatenate([whole, torn[row]])
+        x = 2 * (pixel % size[0]) + np.concatenate([np.full(len(whole), 1.0), sample % 2 + 0.5])
+        y = 2 * (pixel // size[0]) + np.concatenate([np.full(len(whole), 1.0), sample // 2 + 0.5])
+        near = np.concatenate([nearness[whole].mean(axis=1), nearness[torn][row, sample]])
+        points = camera.unproject(x.astype(np.float32), y.astype(np.float32), near.astype(np.float32), large)
+        drawn = np.concatenate([triangle[whole, 0], triangle[torn][row, sample]])
+        quarter = np.concatenate([whole % 2 + 2 * (whole // size[0] % 2), sample])
+        depth = visible[1].reshape(large[::-1])
+        return Samples(scene, camera, size, points, drawn, quarter, whole, torn, (row, sample), depth)
+
+    def spread(self, values: Real, empty: Real) -> Real:
+        """Values of points (N, K) as values of pixels (height, width, K); `empty` (K,) where there is nothing."""
+        pixels = np.tile(np.asarray(empty, dtype=np.float32), (self.size[0] * self.size[1], 1))
+        pixels[self.whole] = values[: len(self.whole)]
+        mixed = np.tile(np.asarray(empty, dtype=np.float32), (len(self.torn), 4, 1))
+        mixed[self.place] = values[len(self.whole) :]
+        pixels[self.torn] = mixed.mean(axis=1)
+        return pixels.reshape(self.size[1], self.size[0], -1)
+
+    def picture(self, colors: Real) -> Image:
+        """Linear colours of points (N, 3) as a picture."""
+        return to_srgb_bytes(self.spread(colors, to_linear(HORIZON)))
 
 
 def _quarters(samples: NDArray[Any], size: tuple[int, int]) -> NDArray[Any]:
@@ -144,7 +155,7 @@ class _Scene:
             flats.append(flat / np.maximum(np.linalg.norm(flat, axis=-1, keepdims=True), 1e-12))
             normals.append(np.zeros_like(shape) if solid.normals is None else np.asarray(solid.normals)[solid.faces])
             color = np.asarray(solid.color, dtype=np.float64)[..., :3]
-            colors.append(np.broadcast_to(_to_linear(color), (len(shape), 3)))
+            colors.append(np.broadcast_to(to_linear(color), (len(shape), 3)))
         return cls(
             np.concatenate(corners),
             np.concatenate(normals).astype(np.float32),
@@ -165,69 +176,55 @@ def _floor(camera: Camera, height: float) -> Solid:
 
 def _visible(scene: _Scene, camera: Camera, size: tuple[int, int]) -> tuple[Ints, Array]:
     """For every pixel the nearest triangle (-1 for none) and its nearness."""
+    from motion_backend.rendering.depth_buffer import draw
+
     viewed, source = clip(camera.view(scene.corners), camera)
     screen = camera.project(viewed, size)
     # A smooth solid is closed: its far side is hidden by its near side, or by none when it is see-through.
-    shown = ~scene.is_smooth[source] | _turned_to_us(screen)
-    partly = shown & (scene.opacity[source] < 1)
-    best = np.full(size[0] * size[1], -np.inf)
-    layers = []
-    for chosen in (np.flatnonzero(shown & ~partly), np.flatnonzero(partly)):
-        pixel, piece, nearness = fragments(screen[chosen], *size)
-        triangle = source[chosen][piece]
-        if partly[chosen].any():
-            kept = _kept(scene, triangle, (pixel % size[0], pixel // size[0]))
-            pixel, triangle, nearness = pixel[kept], triangle[kept], nearness[kept]
-        np.maximum.at(best, pixel, nearness)
-        layers.append((pixel, triangle, nearness))
-    nearest = np.full(size[0] * size[1], -1)
-    for pixel, triangle, nearness in layers:
-        won = np.flatnonzero(nearness == best[pixel])
-        nearest[pixel[won]] = triangle[won]
-    return nearest, best
+    shown = np.flatnonzero(~scene.is_smooth[source] | turned_to_us(screen))
+    nearest, best = empty_buffers(size)
+    draw(screen[shown], np.round(4 * scene.opacity[source[shown]]).astype(np.int64), 0, nearest, best)
+    # Triangles that the eye's plane cuts are several pieces; none stays none.
+    return np.append(source[shown], -1)[nearest].reshape(-1), best.reshape(-1)
 
 
-def _kept(scene: _Scene, triangle: Ints, place: tuple[Ints, Ints]) -> NDArray[np.bool_]:
-    """Which fragments of see-through solids are there: these are holes in a pattern over a pixel's samples."""
-    order = (place[0] % 2) * 2 ^ (place[1] % 2) * 3
-    return np.asarray(order < scene.opacity[triangle] * 4 - 0.5)
-
-
-def _turned_to_us(screen: Real) -> NDArray[np.bool_]:
+def turned_to_us(screen: Real) -> NDArray[np.bool_]:
+    """Which triangles on a picture (F, 3, 3) show their outside. (F,)."""
     x, y = screen[..., 0], screen[..., 1]
     return np.asarray((x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) < (y[:, 1] - y[:, 0]) * (x[:, 2] - x[:, 0]))
 
 
-def _shade(scene: _Scene, camera: Camera, triangle: Ints, points: Real, quarter: Ints | None) -> Real:
-    """Linear colours of surface points; `quarter` says which of a picture's four samples each one is. (N, 3).
-
-    Without it all light reaches them.
-    """
-    normal = scene.flat[triangle]
-    smooth = np.flatnonzero(scene.is_smooth[triangle])
-    normal[smooth] = _interpolated(scene, triangle[smooth], points[smooth])
-    if camera.span is None:
-        ray = np.asarray(camera.eye, dtype=np.float32) - points
-        distance = np.sqrt(_dot(ray, ray))
-        facing = _dot(normal, ray) / distance
-    else:
-        distance = np.zeros(len(points), dtype=np.float32)
-        facing = normal @ -camera.axes[2].astype(np.float32)
-    normal[facing < 0] *= -1
-    sun = sky = np.ones(len(points), dtype=np.float32)
-    if quarter is not None:
-        sun, sky = _light(scene, camera, points + SHADOW_OFFSET * normal, quarter)
-    direct = np.maximum(normal @ _SUN.direction.astype(np.float32), 0.0) * sun
+def shade(seen: Samples, sun: Real, sky: Real) -> Real:
+    """Linear colours of what is seen, of whose two lights these shares (N,) reach each point. (N, 3)."""
+    scene, camera, triangle, points = seen.scene, seen.camera, seen.triangle, seen.points
+    normal, distance, facing = _surface(seen)
+    direct = np.maximum(normal @ SUN.direction.astype(np.float32), 0.0) * sun
     up = 0.5 + 0.5 * normal[:, 1]
-    light = SUN_LIGHT * direct + sky * (SKY_LIGHT * up + BOUNCE_LIGHT * (1 - up)) + CAMERA_LIGHT * np.abs(facing)
+    bright = SUN_LIGHT * direct + sky * (SKY_LIGHT * up + BOUNCE_LIGHT * (1 - up)) + CAMERA_LIGHT * facing
     ground = np.flatnonzero((np.abs(points[:, 1]) < 0.006) & (normal[:, 1] > 0.99))
-    light[ground] *= _grid(points[ground], distance[ground])
-    color = scene.color[triangle] * light[:, None]
+    bright[ground] *= _grid(points[ground], distance[ground])
+    color = scene.color[triangle] * bright[:, None]
     away = np.hypot(points[:, 0] - camera.target[0], points[:, 2] - camera.target[2])
     far = np.flatnonzero(away > HAZE_START)
     haze = np.minimum((away[far, None] - HAZE_START) / HAZE_DEPTH, 1.0)
-    color[far] += (_to_linear(HORIZON) - color[far]) * haze
+    color[far] += (to_linear(HORIZON) - color[far]) * haze
     return np.asarray(color)
+
+
+def _surface(seen: Samples) -> tuple[Real, Real, Real]:
+    """Normals towards the eye (N, 3), how far from it (N,) and the cosine of the angle to it (N,)."""
+    normal = seen.scene.flat[seen.triangle]
+    smooth = np.flatnonzero(seen.scene.is_smooth[seen.triangle])
+    normal[smooth] = _interpolated(seen.scene, seen.triangle[smooth], seen.points[smooth])
+    if seen.camera.span is None:
+        ray = np.asarray(seen.camera.eye, dtype=np.float32) - seen.points
+        distance = np.sqrt(_dot(ray, ray))
+        facing = _dot(normal, ray) / distance
+    else:
+        distance = np.zeros(len(seen.points), dtype=np.float32)
+        facing = normal @ -seen.camera.axes[2].astype(np.float32)
+    normal[facing < 0] *= -1
+    return normal, distance, np.abs(facing)
 
 
 def _interpolated(scene: _Scene, triangle: Ints, points: Real) -> Real:
@@ -246,36 +243,13 @@ def _dot(a: Real, b: Real) -> Real:
     return np.asarray(np.einsum("nk,nk->n", a, b))
 
 
-def _light(scene: _Scene, camera: Camera, points: Real, quarter: Ints) -> tuple[Real, Real]:
+def light(seen: Samples) -> tuple[Real, Real]:
     """Shares of the sun and of the sky that reach points. (N,) each."""
-    casting = scene.corners[(scene.opacity >= 1) & scene.casts]
-    reach = SHADOW_REACH if camera.span is None else max(SHADOW_REACH, 0.8 * camera.span)
-    turn = quarter.astype(np.float32) * np.float32(np.pi / 8)
-    cos, sin = np.cos(turn), np.sin(turn)
-    shares = []
-    for lamp in (_SUN, _SKY):
-        view, depth = _shadow_map(lamp, casting, camera, reach)
-        x, y, height = view.project(view.view(points), (lamp.pixels, lamp.pixels)).T
-        lit = np.zeros(len(points), dtype=np.float32)
-        for u, v in (lamp.taps * (lamp.blur * lamp.pixels / (2 * reach))).astype(np.float32):
-            column = np.clip(x + (u * cos - v * sin), 0, lamp.pixels - 1).astype(np.int32)
-            row = np.clip(y + (u * sin + v * cos), 0, lamp.pixels - 1).astype(np.int32)
-            lit += depth[row * lamp.pixels + column] < height + 0.02
-        shares.append(lit / len(lamp.taps))
-    return shares[0], 0.35 + 0.65 * shares[1]
-
-
-def _shadow_map(lamp: _Lamp, corners: Array, camera: Camera, reach: float) -> tuple[Camera, Real]:
-    """A parallel view from the light, and the nearness of what it meets first in every pixel. (pixels ** 2,)."""
-    x, y, z = (np.asarray(camera.target) + 6.0 * lamp.direction).tolist()
-    view = Camera((x, y, z), camera.target, span=2 * reach)
-    size = (lamp.pixels, lamp.pixels)
-    pixel, _, nearness = fragments(view.project(view.view(corners), size), *size)
-    depth = np.full(size, -np.inf)
-    np.maximum.at(depth.reshape(-1), pixel, nearness)
-    # Nothing casts a shadow on what lies beyond the map: points there read its border.
-    depth[[0, -1]] = depth[:, [0, -1]] = -np.inf
-    return view, depth.astype(np.float32).reshape(-1)
+    normal = _surface(seen)[0]
+    points = seen.points + SHADOW_OFFSET * normal
+    casting = seen.scene.corners[(seen.scene.opacity >= 1) & seen.scene.casts]
+    sun, sky = (ShadowMap.of(lamp, casting, seen.camera).shares(points, seen.quarter) for lamp in (SUN, SKY))
+    return sun, OPEN_SKY + (1 - OPEN_SKY) * sky
 
 
 def _grid(points: Real, distance: Real) -> Real:
@@ -285,11 +259,13 @@ def _grid(points: Real, distance: Real) -> Real:
     return np.asarray(1.0 - 0.22 * np.clip(1.5 - np.minimum(x, z) / width, 0, 1))
 
 
-def _to_linear(color: Array) -> Array:
+def to_linear(color: Array) -> Array:
+    """Of sRGB, 0 to 1."""
     return np.asarray(np.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4))
 
 
-def _to_srgb_bytes(light: Real) -> Image:
+def to_srgb_bytes(light: Real) -> Image:
+    """Of linear light, 0 to 1."""
     light = np.clip(light, 0.0, 1.0)
     color = np.where(light <= 0.0031308, light * 12.92, 1.055 * light ** (1 / 2.4) - 0.055)
     return np.asarray(np.round(color * 255), dtype=np.uint8)

@@ -14,17 +14,20 @@ from planner_service.cli import (
     evaluate,
     extract_command,
     layouts,
+    play,
     record_command,
     scripts,
     service,
     story,
     tasks,
+    train_embedding,
 )
 from planner_service.user_errors import explain
 from scene_graphs.errors import UserError
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 app.command("story")(story.story)
+app.command("play")(play.play)
 app.command("extract")(extract_command.extract)
 app.command("record")(record_command.record)
 app.command("task")(tasks.task)
@@ -37,6 +40,7 @@ app.add_typer(layouts.app, name="layouts")
 app.add_typer(service.app, name="models")
 app.add_typer(evaluate.app, name="evaluate")
 app.add_typer(clips.app, name="clips")
+app.add_typer(train_embedding.app, name="train")
 
 
 @app.callback()

@@ -1,4 +1,4 @@
-"""`sims clips build|list|sheet`: other people's motion on our body, as a collection in one file.
+"""`sims clips build|list|match|sheet`: other people's motion on our body, as a collection in one file.
 
 `sims clips sheet`: contact sheets of a collection's clips, of one caption, or of all that our body can do.
 """
@@ -182,6 +182,43 @@ def build(
     )
     if lost:
         raise typer.Exit(1)
+
+
+@app.command()
+def match(
+    file: Annotated[Path, typer.Argument(help="A collection that `sims clips build` wrote, with recorded walks.")],
+    out: Annotated[Path, typer.Option(help="Write the walks here, as a collection.")],
+    hours: Annotated[float, typer.Option(min=0.001, max=40.0, help="How much walking.")] = 1.0,
+    rooms: Annotated[
+        int, typer.Option(min=0, max=400, help="Rooms of the library that half of it leads through; 0 for none.")
+    ] = 40,
+    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same walks.")] = 0,
+    everybody: Annotated[
+        bool, typer.Option("--everybody", help="From everybody's walks, not only from those meant for training.")
+    ] = False,
+) -> None:
+    """Put recorded walks together to hours of walking any way, by motion matching: what a learned walk is taught by."""
+    import numpy as np
+
+    from motion_backend.matching.matched_walks import matched_walks
+    from motion_backend.matching.walk_database import build_walk_database
+    from motion_backend.mocap.dataset_file import dataset_bytes, read_dataset
+    from scene_graphs.home import home_from_layouts
+    from scene_graphs.layout_library import built_in_index
+
+    check_writable(out.parent, [out.name])
+    database = build_walk_database(read_dataset(file), None if everybody else "train")
+    layouts = built_in_index().layouts
+    drawn = np.random.default_rng(seed).permutation(len(layouts))[:rooms]
+    homes = [home_from_layouts([built_in_index().layout(layouts[index].id)], 0) for index in drawn]
+    dataset = matched_walks(database, hours, seed, homes)
+    content = dataset_bytes(dataset)
+    write_files(out.parent, {out.name: lambda path: path.write_bytes(content)})
+    Console(markup=False, highlight=False).print(
+        f"{len(dataset.entries)} walks, {dataset.frames / 30 / 60:.1f} minutes, put together from "
+        f"{len(database.clips)} recorded ones of {len(database.people)} people, {len(content) / 1e6:.1f} MB in {out}",
+        soft_wrap=True,
+    )
 
 
 @app.command("list")

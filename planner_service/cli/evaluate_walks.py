@@ -16,6 +16,7 @@ from planner_service.cli.console import plain_table
 if TYPE_CHECKING:
     from motion_backend.metrics.kernel_mmd import Distance
     from motion_backend.metrics.walk_classifier import Told
+    from motion_backend.mocap.dataset_file import Dataset
     from planner_service.evaluation.walk_evaluation import WalkReport, Walks
 
 SHOWN = {"m": (100.0, "cm"), "rad": (180 / np.pi, "°"), "m/s": (1.0, "m/s"), "1/s": (1.0, "1/s"), "": (1.0, "")}
@@ -23,6 +24,8 @@ SHOWN = {"m": (100.0, "cm"), "rad": (180 / np.pi, "°"), "m/s": (1.0, "m/s"), "1
 FAR = 1.0
 """Features farther apart than this many standard deviations are marked."""
 MAX_GIVE_AWAYS = 20
+COMPARED = ("whole body", "legs", "knees", "arms", "trunk and head")
+"""Limbs by which backends are compared."""
 TELLS = 0.65
 """Area under the curve from which a trait by itself gives a body away."""
 
@@ -33,6 +36,10 @@ def walks(
     caption: Annotated[str, typer.Option(help="How ours walk.")] = "steadily walking forward",
     rooms: Annotated[int, typer.Option(min=1, max=100, help="Rooms of the library that ours walk in.")] = 6,
     seeds: Annotated[int, typer.Option(min=1, max=100, help="Seeds in each room and mood.")] = 3,
+    backend: Annotated[
+        list[str] | None,
+        typer.Option(help="Instead: backends beside each other, judged by people none is made of; repeatable."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of tables.")] = False,
 ) -> None:
     """Compare our walks with recorded ones: the baseline that a learned motion is to beat.
@@ -44,6 +51,9 @@ def walks(
     from motion_backend.mocap.dataset_file import read_dataset
     from planner_service.evaluation.walk_evaluation import evaluate_walks
 
+    if backend:
+        _compare(read_dataset(clips), backend, caption, (rooms, seeds), as_json)
+        return
     report = evaluate_walks(read_dataset(clips), style, caption, rooms, seeds)
     console = Console(markup=False, highlight=False)
     if as_json:
@@ -66,6 +76,35 @@ def walks(
         soft_wrap=True,
     )
     console.print(_jerk(report))
+
+
+def _compare(dataset: Dataset, names: list[str], caption: str, size: tuple[int, int], as_json: bool) -> None:
+    from motion_backend.backends import require_backend
+    from planner_service.evaluation.walk_comparison import compare_walks
+
+    for name in names:
+        require_backend(name)
+    found = compare_walks(dataset, names, caption, *size)
+    console = Console(markup=False, highlight=False)
+    if as_json:
+        console.print_json(json.dumps([one.to_dict() for one in found]))
+        return
+    columns = ("whole", "legs", "knees", "arms", "trunk", "MMD²", "spread", "slip", "own", "reached")
+    table = plain_table("told from strangers", *columns, right=columns)
+    for one in found:
+        told = [f"{one.auc[limb]:.2f}" if one.auc else "–" for limb in COMPARED]
+        far = "–" if one.distance is None else f"{one.distance.value:.3f}"
+        own = f"{one.made_by.get(one.name, 0):.0%}" if one.made_by else "–"
+        table.add_row(
+            f"{one.name}, {one.place}", *told, far, f"{one.spread:.2f}", f"{one.slip:.1f}", own, f"{one.reached:.0%}"
+        )
+    console.print(table)
+    console.print(
+        f"AUC of a classifier that has seen none of the people it is asked about, on the test side of the collection; "
+        f"slip of the best supported point, cm/s; own: frames that no other backend made; {size[1]} walks in the hall, "
+        f"{size[0]} rooms; physics_mode none, “{caption}”",
+        soft_wrap=True,
+    )
 
 
 def _classified(report: WalkReport) -> Table:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
+from itertools import chain, count
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
@@ -18,14 +20,27 @@ from planner_service.library.library import open_shelves
 from planner_service.llm.factory import load_model
 from planner_service.llm.ollama_server import ollama_models
 from planner_service.pipeline import STAGES, Pipeline, RequestError, Story, StoryRequest
-from planner_service.settings import read_settings
+from planner_service.settings import give_backends, read_settings
 from planner_service.themes.beats import clean
 from scene_graphs.furniture import ROOM_TYPES
 
-SHARES = {"plan": 0.30, "furnish": 0.05, "narrate": 0.02, "act": 0.06, "move": 0.12, "judge": 0.20, "write": 0.25}
+SHARES = {
+    "plan": 0.30,
+    "furnish": 0.05,
+    "narrate": 0.02,
+    "act": 0.06,
+    "move": 0.12,
+    "judge": 0.20,
+    "write": 0.25,
+    "film": 1.0,
+}
 """About how much of the time each stage takes, for the bar."""
 MAX_FILE_LINES = 100_000
 """Bytes of a theme's file that are read."""
+OUT = Path("out")
+"""Where stories go that nobody gave a folder."""
+MAX_NAME = 60
+"""Letters of a folder's name."""
 TOLD = {
     "plan": "finding what is done, and how",
     "furnish": "finding rooms that fit",
@@ -33,13 +48,17 @@ TOLD = {
     "act": "finding where to sit, lie, touch and walk",
     "move": "moving the body",
     "judge": "measuring the motion",
-    "write": "writing the film",
+    "write": "writing the files",
+    "film": "filming",
 }
 
 
 def story(
     theme: Annotated[str, typer.Argument(help="What happens, in your own words; @FILE reads it from a file.")],
-    out: Annotated[Path, typer.Option(help="Folder for the story's files.")] = Path("out/story"),
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for the story's files; left out: a new one in out/, named after the title."),
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same story.")] = 0,
     rooms: Annotated[
         str | None,
@@ -50,17 +69,21 @@ def story(
         typer.Option(help="A layout file, or the id of a built-in layout; may be given up to 4 times."),
     ] = None,
     backend: Annotated[str | None, typer.Option(help="What moves the body (SIMS_BACKEND; procedural).")] = None,
+    clips: Annotated[
+        Path | None, typer.Option(help="Collection whose walks the backend matching is made of (SIMS_CLIPS).")
+    ] = None,
     name: Annotated[str, typer.Option(help="The character's name; left out: the theme's own, else Sam.")] = "Sam",
     pronouns: Annotated[str, typer.Option(help="he, she or they; left out: as in the theme.")] = "they",
     height: Annotated[float, typer.Option(help="The character's height in metres, 1.2 to 2.2.")] = 1.70,
+    film: Annotated[bool, typer.Option("--film", help="Write film.mp4 too; about as long as it plays.")] = False,
     model: ModelOption = None,
 ) -> None:
     """Turn a story theme into a script, a home, a told story and an animated film."""
     from planner_service.cli.layouts import chosen_layouts
-    from planner_service.output.story_export import FILES, check_writable, write_story
 
-    settings = read_settings(llm_model=model)
-    check_writable(out, FILES)
+    settings = read_settings(llm_model=model, clips=clips)
+    give_backends(settings)
+    check_output(out, film)
     pipeline = Pipeline(open_shelves(settings), load_model(settings), settings.llm_on_failure == "error")
     request = StoryRequest(
         theme=clean(read_theme(theme)),
@@ -73,18 +96,45 @@ def story(
     console = Console(markup=False)
     if not settings.llm_model and (line := hint(ollama_models(settings.ollama_url))):
         console.print(line, highlight=False, soft_wrap=True)
+    produce(pipeline, request, out, film, console)
+
+
+def check_output(out: Path | None, film: bool) -> None:
+    """Fail before the work, not after it. OutputError, FilmUnavailableError."""
+    from planner_service.output.film import check_film
+    from planner_service.output.story_export import FILES, FILM, check_writable
+
+    if film:
+        check_film()
+    check_writable(out or OUT, [*FILES, FILM] if film else FILES)
+
+
+def produce(pipeline: Pipeline, request: StoryRequest, out: Path | None, film: bool, console: Console) -> None:
+    """Make a story, write its files and say how it went, with a bar while it takes."""
+    from planner_service.output.story_export import write_story
+
     with _bar(console) as bar:
         task = bar.add_task(TOLD["plan"], total=1.0)
 
         def show(stage: str, share: float) -> None:
-            before = sum(SHARES[s] for s in [*STAGES, "write"][: [*STAGES, "write"].index(stage)])
-            bar.update(task, completed=before + share * SHARES[stage], description=TOLD[stage])
+            # A film takes as long again as all the rest.
+            stages, part = [*STAGES, "write", "film"], 1 - 0.5 * film
+            before = sum(SHARES[s] for s in stages[: stages.index(stage)])
+            bar.update(task, completed=part * (before + share * SHARES[stage]), description=TOLD[stage])
 
         made = pipeline.make(request, show)
         show("write", 0.0)
-        files = write_story(made, out)
+        folder = out or new_folder(OUT, made.planned.told.title)
+        files = write_story(made, folder, film, lambda share: show("film", share))
         bar.update(task, completed=1.0, description="done")
     _close(console, made, files)
+
+
+def new_folder(parent: Path, title: str) -> Path:
+    """A folder named after a title that is not there yet, so that no other story is overwritten."""
+    name = re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")[:MAX_NAME] or "story"
+    numbers = chain([""], (f"-{number}" for number in count(2)))
+    return next(folder for number in numbers if not (folder := parent / f"{name}{number}").exists())
 
 
 def hint(models: Sequence[str] | None) -> str:
@@ -132,43 +182,48 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
 
     console.print(f"\n{made.planned.told.title}\n", style="bold", highlight=False)
     console.print(made.planned.told.text + "\n", highlight=False)
-    figures = ("seconds", "reached", "contact", "inside")
-    table = plain_table("#", "skill", "caption", "furniture", *figures, right=("#", *figures))
-    # What the other columns leave of the line.
-    longest = max(console.width - 68, 12)
+    table = plain_table(
+        "#", "moment", "at", "seconds", "reached", "off by", right=("#", "seconds", "off by"), fold=True
+    )
     for action, figure in zip(made.actions, made.figures, strict=True):
-        error = "" if figure.contact_error is None else f"{100 * figure.contact_error:.1f} cm"
         table.add_row(
             str(figure.keyframe),
-            figure.skill,
-            action.caption if len(action.caption) <= longest else action.caption[: longest - 1] + "…",
-            (action.object_id or "floor")[:16],
+            action.caption,
+            action.object_id or "the floor",
             f"{figure.seconds:.1f}",
             "yes" if figure.reached else Text(f"no {figure.reason}", style="red"),
-            error,
-            f"{100 * figure.pen_max:.1f} cm",
+            "" if figure.contact_error is None else _cm(figure.contact_error),
         )
     console.print(table)
     for line in made.planned.stage.explain():
         console.print(f"  {line}", highlight=False)
-    report = made.report
-    movers = _movers(report["made_by"], made.planned.request.backend)
-    contact = "–" if report["contact_error"] is None else f"{100 * report['contact_error']:.1f} cm"
-    console.print(
-        f"\n{report['reached']} of {report['keyframes']} keyframes reached · contact error {contact} · "
-        f"inside furniture {100 * report['pen_mean']:.1f} cm mean, {100 * report['pen_share']:.1f} % of frames · "
-        f"standing feet slip {report['slip']:.1f} cm/s · {report['seconds']:.0f} s of motion\n"
-        f"planner: {made.planned.script.planner} · motion: {movers} · "
-        f"encoder: {made.planned.script.encoder}",
-        highlight=False,
-    )
+    console.print(f"\n{_figures(made.report)}", highlight=False)
     for line in beats_of(made).lines():
         console.print(line, highlight=False, soft_wrap=True)
+    movers = _movers(made.report["made_by"], made.planned.request.backend)
+    console.print(
+        f"planner: {made.planned.script.planner} · motion: {movers} · encoder: {made.planned.script.encoder}",
+        highlight=False,
+    )
     if made.planned.spent is not None:
         console.print(f"language model: {made.planned.spent}", highlight=False)
     for note in made.motion.notes:
         console.print(f"done otherwise: keyframe {note.keyframe}: {note.words}", highlight=False)
     console.print(f"\nwritten to {files[0].parent}/: {', '.join(file.name for file in files)}", highlight=False)
+
+
+def _figures(report: dict[str, Any]) -> str:
+    """How well it was done, in a sentence; all figures stand in report.json."""
+    off = "" if report["contact_error"] is None else f" Seat, bed and hand are {_cm(report['contact_error'])} off."
+    return (
+        f"{report['reached']} of {report['keyframes']} moments were done, in {report['seconds']:.0f} s.{off} "
+        f"The body is in furniture {100 * report['pen_share']:.1f} % of the time, and a foot that stands slips "
+        f"{report['slip']:.1f} cm a second."
+    )
+
+
+def _cm(metres: float) -> str:
+    return f"{100 * metres:.1f} cm"
 
 
 def _movers(made_by: dict[str, float], asked: str) -> str:

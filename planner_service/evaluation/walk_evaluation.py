@@ -6,7 +6,6 @@ moves the body otherwise, a learned model say, is to come nearer than the rules 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
@@ -26,6 +25,7 @@ from motion_backend.metrics.walk_seconds import LIMBS, WHOLE, Seconds, seconds_o
 from motion_backend.metrics.walk_traits import GiveAway, give_aways
 from motion_backend.mocap.clip import ClipError
 from motion_backend.mocap.dataset_file import Dataset, Entry
+from motion_backend.mocap.plain_walks import RECORDED, is_plain_walk
 from motion_backend.mocap.resampling import low_pass
 from motion_backend.motion import FPS, Action, Character, Emotion, Motion, Skill
 from motion_backend.procedural.held_poses import standing
@@ -42,11 +42,6 @@ from scene_graphs.home import Home, home_from_layouts
 from scene_graphs.layout import Layout
 
 CAPTION: Final = "steadily walking forward"
-PLAIN: Final = re.compile(r"neutral|slow|brisk|normal|^$")
-ODD: Final = re.compile(
-    r"\b(?:run|jog|crawl|sneak|stealth|zombie|hop|jump|balanc|stagger|exaggerat|strid)", re.IGNORECASE
-)
-"""Walks that are not plain, by their style or caption; a caption may say what the style does not."""
 MAX_WINDOWS: Final = 12
 """Of one person, spread over their clips: who walked up and down thirty times is one person still."""
 MAX_SECONDS: Final = 24
@@ -201,15 +196,8 @@ def _as_one(ours: Walks) -> Seconds:
 
 def recorded_walks(dataset: Dataset, style: str = "") -> Walks:
     """Recorded walks, as they were recorded: plain ones, or those whose style has a word."""
-    chosen = [
-        entry
-        for entry in dataset.entries
-        if entry.skill == Skill.LOCO
-        and entry.kind == "real mocap"
-        and not entry.changed
-        and _is_asked_for(entry, style)
-    ]
-    found = _walks("recorded", [Take(entry.subject, entry.name, entry.motion) for entry in chosen])
+    chosen = [entry for entry in dataset.entries if entry.kind == RECORDED and _is_asked_for(entry, style)]
+    found = walks_of("recorded", [Take(entry.subject, entry.name, entry.motion) for entry in chosen])
     people = np.array(found.groups)
     if len(set(found.groups)) < MIN_PEOPLE:
         what = f"walks called {style!r:.40}" if style else "plain walks"
@@ -238,26 +226,26 @@ def matched_walks(speeds: Array, caption: str, skeleton: Skeleton, mood: Emotion
         )
         middle = (len(motion) - 60) // 2
         motions.append(Take(f"seed {seed}", f"seed {seed}", motion.part(middle, middle + 60)))
-    return _walks("at recorded speeds", motions)
+    return walks_of("at recorded speeds", motions)
 
 
 def room_walks(caption: str, rooms: int, seeds: int) -> Walks:
     """Walks to places of library rooms, as trials of the body have them."""
     trials = plan_trials({Skill.LOCO: [caption]}, rooms, seeds)
-    return _walks(
+    return walks_of(
         "in rooms", [Take(trial.room, trial.room, made) for trial in trials for made in perform(trial).motions]
     )
 
 
 def mood_walks(caption: str, mood: Emotion, seeds: int) -> Walks:
     """From somewhere in an empty hall to both its ends in a mood, as a backend walks that is told no more than that."""
-    home, director = _hall(), Director.of("procedural")
+    home, director = hall(), Director.of("procedural")
     motions = []
     for seed in range(seeds):
         state = director.begin(home, Character(), seed)
         actions = [Action(Skill.LOCO, caption, mood, goal=goal, keyframe=index) for index, goal in enumerate(ENDS)]
         motions += [Take(f"seed {seed}", f"seed {seed}", motion) for motion, _ in director.play(home, actions, state)]
-    return _walks(mood, motions)
+    return walks_of(mood, motions)
 
 
 def jerk_bins(recorded: Walks, ours: Walks) -> tuple[JerkBin, ...]:
@@ -285,14 +273,15 @@ def spread(recorded: Walks, ours: Walks) -> Array:
 
 
 @lru_cache(maxsize=1)
-def _hall() -> Home:
+def hall() -> Home:
+    """An empty hall, the same one each time."""
     return home_from_layouts([GROUND], 0)
 
 
 def _is_asked_for(entry: Entry, style: str) -> bool:
     if style:
-        return style.lower() in entry.style.lower()
-    return bool(PLAIN.search(entry.style.lower())) and not ODD.search(" ".join((entry.style, *entry.captions)))
+        return entry.skill == Skill.LOCO and not entry.changed and style.lower() in entry.style.lower()
+    return is_plain_walk(entry) and not entry.changed
 
 
 def _spread(of: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -300,7 +289,8 @@ def _spread(of: NDArray[np.int64]) -> NDArray[np.int64]:
     return of[np.unique(np.linspace(0, len(of) - 1, min(len(of), MAX_WINDOWS)).round().astype(np.int64))]
 
 
-def _walks(name: str, takes: Sequence[Take]) -> Walks:
+def walks_of(name: str, takes: Sequence[Take]) -> Walks:
+    """What steady walking there is in takes."""
     # What a camera shakes is smoothed out of recordings: both are compared without it.
     smooth = [low_pass(take.motion.joint_positions().astype(np.float64), take.motion.fps, RULER) for take in takes]
     rows = [row for take, positions in zip(takes, smooth, strict=True) for row in _windows_of(take, positions)]

@@ -68,11 +68,11 @@ class Furnished:
         return named
 
     def explain(self) -> list[str]:
-        """One line a room: which, how far from what was asked, what stands for what."""
+        """One line a room: which, what stands for what, what is missing, what was moved."""
         lines = []
         for number, match in enumerate(self.matches):
-            line = f"{match.room_type.replace('_', ' ')}: {match.layout_id}, graph distance {match.distance}"
-            line += "" if match.exact else " (not proven least)"
+            line = f"{match.room_type.replace('_', ' ')}: {match.layout_id}"
+            line += "" if match.exact else " (another may fit better)"
             given = [f"{asked} → {got} ({level})" for asked, got, level in match.substitutions]
             pulls = [f"{self._name(number, pull)} pulled out by {pull.distance:.2f} m" for pull in match.pulls]
             lines.append("; ".join([line, *given, *[f"missing {name}" for name in match.missing], *pulls]))

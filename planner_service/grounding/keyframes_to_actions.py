@@ -16,7 +16,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from motion_backend.body.scene_collision import Obstacles
 from motion_backend.motion import Action, Emotion, Skill
 from motion_backend.procedural.lie.lie_pose import place_to_lie
 from motion_backend.procedural.sit.sit_skill import seat_for
@@ -204,7 +203,7 @@ class _Stage:
 
     @cached_property
     def _elbows(self) -> ElbowRoom:
-        return ElbowRoom(self.walkable, Obstacles.of_home(self.home).solid())
+        return ElbowRoom(self.walkable, scene_of(self.home).obstacles.solid())
 
     def _reachable(self, placed: Placed, need: str) -> list[Spot]:
         """Spots whose standing point can be walked to, best first: as they come, the nearer side first when lying."""

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from motion_backend.motion import Skill
+from motion_backend.scene import scene_of
 from planner_service.grounding.keyframes_to_actions import NEEDS, Place, can_stand
 from planner_service.scripts.script import LongScript, PlannedKeyframe
 from scene_graphs.affordances.affordances import spots
@@ -20,7 +21,6 @@ from scene_graphs.furniture import Furniture, canonical, display_name, group_of,
 from scene_graphs.graph.furniture_graph import FurnitureGraph, needs_of, offers
 from scene_graphs.graph.script_objects import Grounding, Offers, ground_script
 from scene_graphs.home import Home
-from scene_graphs.navigation.path_planner import Walkable
 
 ScriptGraphs = Mapping[str, Sequence[tuple[int | None, FurnitureGraph]]]
 """Room type to the graph of every short script that plays there, by the script's number."""
@@ -123,7 +123,7 @@ class Placing:
 
 def usable_offers(home: Home) -> dict[str, frozenset[str]]:
     """What each object of a home can be used for by a body that walks there: object id to sit, lie, touch."""
-    walkable = Walkable(home)
+    walkable = scene_of(home).walkable
     start = walkable.random_point(np.random.default_rng(0), 0)
     return {
         placed.id: frozenset(

@@ -24,7 +24,7 @@ from planner_service.jobs.worker_lock import hold_name
 from planner_service.library.library import Shelves
 from planner_service.llm.factory import load_model
 from planner_service.pipeline import Pipeline
-from planner_service.settings import Settings
+from planner_service.settings import Settings, give_backends
 from planner_service.store.database import database_url, open_engine
 from planner_service.store.story_store import Stories
 from scene_graphs.layout_library import compile_search
@@ -55,6 +55,7 @@ def run_worker(settings: Settings, supervised: bool = False) -> None:
         threading.Thread(target=_end_with_supervisor, daemon=True).start()
     url = database_url(settings)
     engine = open_engine(url)
+    give_backends(settings)
     shelves = Shelves(engine, settings.cache_dir, settings.layouts)
     pipeline = Pipeline(shelves, load_model(settings), settings.llm_on_failure == "error")
     hold = hold_name(engine, settings)

@@ -16,6 +16,7 @@ from motion_backend.formats.motion_json import phase_to_dict
 from motion_backend.formats.npz import write_npz
 from motion_backend.metrics.figure_limits import held_against
 from planner_service.grounding.keyframes_to_actions import action_to_dict
+from planner_service.output.film import write_film
 from planner_service.output.storyboard import storyboard
 from planner_service.pipeline import Planned, Story
 from planner_service.scripts.acted_beats import ActedBeats, acted_beats, shot_of
@@ -24,6 +25,7 @@ from scene_graphs.errors import UserError
 from scene_graphs.home import home_to_dict
 
 Writer = Callable[[Path], object]
+FILM = "film.mp4"
 FILES = ("story.md", "story.json", "report.json", "motion.npz", "motion.bvh", "film.glb", "storyboard.png")
 
 
@@ -31,9 +33,12 @@ class OutputError(UserError):
     """The folder for a story's files cannot be written."""
 
 
-def write_story(story: Story, folder: Path) -> list[Path]:
+def write_story(
+    story: Story, folder: Path, film: bool = False, show: Callable[[float], None] = lambda _: None
+) -> list[Path]:
     """All files of a story in `folder`: story.md, story.json, report.json, motion.npz, motion.bvh, film.glb,
-    storyboard.png. A file of that name from an earlier story is replaced; OutputError leaves everything as it was.
+    storyboard.png, and where it is asked for film.mp4, of which `show` is told which share is done. A file of that
+    name from an earlier story is replaced; OutputError and FilmUnavailableError leave everything as it was.
     """
     writers: dict[str, Writer] = {
         "story.md": lambda path: path.write_text(story_to_markdown(story), encoding="utf-8"),
@@ -44,6 +49,8 @@ def write_story(story: Story, folder: Path) -> list[Path]:
         "film.glb": lambda path: path.write_bytes(film_glb(story.planned.home, story.motion)),
         "storyboard.png": lambda path: _write_storyboard(story, path),
     }
+    if film:
+        writers[FILM] = lambda path: write_film(story, path, show=show)
     return write_files(folder, writers)
 
 
@@ -188,7 +195,14 @@ def story_to_dict(story: Story) -> dict[str, Any]:
             for action, (start, stop) in zip(story.actions, story.segments, strict=True)
         ],
         "motion": {"frames": len(story.motion), "fps": story.motion.fps, "duration": round(story.motion.duration, 3)},
+        "physics": story.report.get("physics"),
     }
+
+
+def physics_mode(story: Story) -> str:
+    """What moved the joints of a simulated body; "none" for a kinematic one."""
+    physics = story.report.get("physics")
+    return str(physics["mode"]) if physics else "none"
 
 
 def beats_of(story: Story) -> ActedBeats:
@@ -211,7 +225,7 @@ def report_to_dict(story: Story) -> dict[str, Any]:
         "language_model": asdict(planned.spent) if planned.spent else None,
         "encoder": planned.script.encoder,
         "backend": planned.request.backend,
-        "physics_mode": "none",
+        "physics_mode": physics_mode(story),
         "seed": planned.request.seed,
         **beats_of(story).to_dict(),
         "repairs": list(planned.script.repairs),

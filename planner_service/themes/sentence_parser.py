@@ -20,6 +20,7 @@ from planner_service.themes.verb_finder import Token, is_plural, plain, tokens_o
 from planner_service.themes.verb_group import is_past, verb_group
 
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
+_PLAIN: Final = re.compile(r"[A-Za-z ,'’-]+[.!?]?\s*")
 _SEMI: Final = re.compile(r"\n+|;\s+|:\s+|\s+[–—]\s*|\s*[–—]\s+|\s+-{1,2}\s+|…\s*|\.{2,}\s*|\s*[()\[\]]\s*")
 _HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
 _THAT: Final = frozenset(("that", "how", "what", "why", "if", "whether", "which", "who"))
@@ -110,8 +111,16 @@ def _next_subject(pieces: Sequence[_Piece], piece: _Piece) -> str:
 
 def sentences_of(text: str) -> list[str]:
     """The sentences, lines and list items of a text, without marks at their ends."""
-    parts = [part for line in _SEMI.split(_BULLET.sub("", text)) if line.strip() for part in _segmenter().segment(line)]
+    parts = [part for line in _SEMI.split(_BULLET.sub("", text)) if line.strip() for part in _segments(line)]
     return [part.strip(' \t.!?,;:-–—"“”') for part in parts if re.search(r"\w", part)]
+
+
+def _segments(line: str) -> list[str]:
+    # What has no mark but commas before its end is one sentence: the library takes longer than all else to say so.
+    if _PLAIN.fullmatch(line):
+        return [line]
+    found: list[str] = _segmenter().segment(line)
+    return found
 
 
 @cache

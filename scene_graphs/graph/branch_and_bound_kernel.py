@@ -8,18 +8,17 @@ only where the very module that calls has changed.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, Final, NamedTuple, TypeVar, cast
+from typing import Final, NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
+
+from scene_graphs.jit import compiled
 
 Ints = NDArray[np.int64]
 Costs = NDArray[np.int32]
 Flags = NDArray[np.bool_]
 Bytes = NDArray[np.uint8]
-_F = TypeVar("_F", bound=Callable[..., Any])
 
 UNMAPPED: Final = -1
 NONE: Final = -1
@@ -29,15 +28,6 @@ _ENTER, _LEFT_OUT = -1, -2
 _FULL: Final = 255
 _BLOCK: Final = 4096
 _BUCKETS: Final = 4096
-
-
-def compiled(function: _F) -> _F:
-    """Compile at the first call, and keep what was compiled beside the module or in the user's cache, if one can be
-    written."""
-    try:
-        return cast(_F, numba.njit(cache=True, nogil=True)(function))
-    except RuntimeError:  # There is no folder to keep it in.
-        return cast(_F, numba.njit(nogil=True)(function))
 
 
 class Rooms(NamedTuple):

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from scene_graphs.home import Home
-from scene_graphs.layout import Array
-from scene_graphs.meshes.furniture_mesh import home_meshes
+from scene_graphs.layout import Array, Placed
+from scene_graphs.meshes.furniture_mesh import furniture_meshes, home_meshes
 from scene_graphs.meshes.mesh_primitives import Mesh
 
 WALL = "wall"
@@ -49,6 +49,11 @@ def convex_shapes(home: Home, least: float = 0.0) -> tuple[ConvexShape, ...]:
     return tuple(
         shape for mesh in _seen(home_meshes(home)) for shape in _shapes(mesh) if shape.thickness >= max(least, 1e-6)
     )
+
+
+def shapes_of(placed: Placed) -> tuple[ConvexShape, ...]:
+    """A piece of furniture as it is drawn, but what is soft."""
+    return tuple(shape for mesh in _seen(furniture_meshes(placed)) for shape in _shapes(mesh))
 
 
 def _seen(meshes: Iterable[Mesh]) -> Iterator[Mesh]:

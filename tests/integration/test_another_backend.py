@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-import subprocess
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
+from forking import Forked
 from running import SHORT, RunningService, finished
 from stranger import install
 from test_service_inputs import (  # noqa: F401 - they are tests here as well, on the service below
@@ -60,7 +61,7 @@ def test_a_request_chooses_among_all_backends(client: httpx.Client) -> None:
     ours = finished(client, client.post("/v1/motions", json=asked).json()["id"])
     assert (ours["backend"], ours["state"]) == ("procedural", "succeeded")
     detail = refused(client.post("/v1/stories", json={"theme": SHORT, "backend": "magic"}), "/backend")
-    assert detail == "Input should be 'procedural', 'broken' or 'ghost'"
+    assert detail == "Input should be 'procedural', 'matching', 'broken' or 'ghost'"
 
 
 def test_the_description_names_all_backends(client: httpx.Client) -> None:
@@ -79,15 +80,16 @@ def test_a_backend_that_cannot_be_loaded_is_a_503_that_says_why(client: httpx.Cl
     assert "no_such_library" in answer.json()["detail"]
 
 
-@pytest.mark.parametrize("words", [["serve", "--port", "0"], ["story", SHORT]])
-@pytest.mark.parametrize(("name", "says"), [("broken", "cannot be loaded"), ("magic", "is none of procedural, ")])
 def test_a_backend_that_is_missing_or_broken_is_one_line_on_a_terminal(
-    environment: dict[str, str], tmp_path: Path, words: list[str], name: str, says: str
+    environment: dict[str, str], tmp_path: Path
 ) -> None:
-    given = os.environ | environment | {"SIMS_BACKEND": name, "SIMS_DATA_DIR": str(tmp_path)}
-    done = subprocess.run(RunningService.command(*words), env=given, cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 2
-    assert "ready at" not in done.stdout
-    (line,) = done.stderr.splitlines()
-    assert line.startswith("sims: ")
-    assert f"{name!r} {says}" in line
+    said = {"broken": "cannot be loaded", "magic": "is none of procedural, "}
+    with Forked(environment["PYTHONPATH"]) as forked:
+        for words, name in product((["serve", "--port", "0"], ["story", SHORT]), said):
+            given = os.environ | environment | {"SIMS_BACKEND": name, "SIMS_DATA_DIR": str(tmp_path)}
+            code, output, error = forked.run(words, tmp_path, given)
+            assert code == 2
+            assert b"ready at" not in output
+            (line,) = error.decode().splitlines()
+            assert line.startswith("sims: ")
+            assert f"{name!r} {said[name]}" in line

@@ -10,7 +10,6 @@ import os
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 from typing import Any
 
 import httpx
@@ -195,14 +194,14 @@ def test_stories_are_listed_newest_first_page_after_page(client: httpx.Client) -
     assert all(item["state"] in ENDED for item in pages)
 
 
-def test_a_service_stops_gracefully_and_goes_on_when_it_starts_again(tmp_path: Path) -> None:
-    service = RunningService(tmp_path).start()
-    with service.client() as client:
+def test_a_service_stops_gracefully_and_goes_on_when_it_starts_again(running: RunningService) -> None:
+    with running.client() as client:
         story = post(client, theme=SEVERAL).json()
         while client.get(story["links"]["self"]).json()["motion"]["frames"] == 0:
             time.sleep(0.01)
     begun = time.monotonic()
-    assert service.stop() == 0
+    assert running.stop() == 0
     assert time.monotonic() - begun < 10
-    with service, service.client() as client:
+    running.start()
+    with running.client() as client:
         assert finished(client, story["id"])["state"] == "succeeded"

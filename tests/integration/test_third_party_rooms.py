@@ -75,15 +75,13 @@ def test_chairs_that_a_table_blocks_can_be_pulled_out(step: int) -> None:
 
 
 @pytest.mark.sweep
-def test_stories_are_played_in_them_and_say_which_chairs_were_pulled_out() -> None:
+def test_stories_are_played_in_them() -> None:
     playable = [layout for layout in rooms() if layout.room_type in THEMES]
-    pipeline, keyframes, reached, said = Pipeline(Shelves(cache=encoded())), 0, 0, 0
+    pipeline, keyframes, reached = Pipeline(Shelves(cache=encoded())), 0, 0
     sample = playable[:: len(playable) // 9]
     for layout in sample:
         request = StoryRequest(THEMES[layout.room_type], rooms=(layout.room_type,), layouts=(layout,), seed=1)
         story = pipeline.make(request)
         keyframes += story.report["keyframes"]
         reached += story.report["reached"]
-        said += any("pulled out" in line for line in story.planned.stage.explain())
     assert reached >= 0.95 * keyframes
-    assert said >= 1

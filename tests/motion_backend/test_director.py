@@ -157,6 +157,69 @@ def test_what_one_fails_at_another_does_and_says_why(spoil: str, why: str) -> No
     assert state.backend == "procedural"
 
 
+class Raising(Glider):
+    """One that raises something in its second window."""
+
+    def __init__(self, what: BaseException) -> None:
+        super().__init__()
+        self.what = what
+
+    def advance(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
+        if state.backend == self.name:
+            raise self.what
+        return super().advance(home, part, upcoming, state)
+
+
+class Speechless(Glider):
+    """One that returns nothing, and cannot begin."""
+
+    def begin(self, home: Home, character: Character, seed: int) -> BodyState:  # noqa: ARG002
+        raise RuntimeError("no weights")
+
+    def advance(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> Any:  # noqa: ARG002
+        return None
+
+
+def test_what_one_raises_at_another_does_and_says_what_was_raised() -> None:
+    walk, state = DAY[0], after(HOME)
+    own, _ = DIRECTOR.act(HOME, walk, state)
+    error = ValueError("no such\nlayer " + 300 * "x")
+    for broken, why in (
+        (Raising(error), r"it raised ValueError('no such\nlayer xxx"),
+        (Speechless(), "it raised TypeError('cannot unpack"),
+    ):
+        director = Director(broken, DIRECTOR.backend)
+        for motion, left in (director.act(HOME, walk, state), *director.act_many([Take(HOME, walk, state)] * 2)):
+            (segment,) = segments_of(motion)
+            assert segment.backend == left.backend == "procedural"
+            assert segment.fallback is not None
+            assert segment.fallback.startswith(why)
+            assert len(segment.fallback) < 260
+            assert motion.root_positions.tobytes() == own.root_positions.tobytes()
+
+
+def test_who_cannot_begin_is_begun_for() -> None:
+    who = Character()
+    assert Director(Speechless(), DIRECTOR.backend).begin(HOME, who, 3) == DIRECTOR.begin(HOME, who, 3)
+    with pytest.raises(RuntimeError, match="no weights"):
+        Director(Speechless()).begin(HOME, who, 3)
+
+
+def test_only_what_another_can_stand_in_for_is_caught() -> None:
+    """Who interrupts is obeyed; the default backend's exceptions, and those of one that stands alone, are bugs."""
+    state, error = after(HOME), ValueError("a bug")
+    for director, wanted in (
+        (Director(Raising(KeyboardInterrupt()), DIRECTOR.backend), KeyboardInterrupt),
+        (Director(Raising(SystemExit()), DIRECTOR.backend), SystemExit),
+        (Director(Raising(error)), ValueError),
+        (Director(Faulty("gives up"), Raising(error)), ValueError),
+    ):
+        with pytest.raises(wanted):
+            director.act(HOME, DAY[0], state)
+        with pytest.raises(wanted):
+            director.act_many([Take(HOME, DAY[0], state)])
+
+
 def test_many_bodies_at_once_do_what_each_does_alone() -> None:
     director = Director(Glider(), DIRECTOR.backend)
     takes = [Take(HOME, SIT, after(HOME, seed=seed), rise(SIT)) for seed in (3, 4)]

@@ -247,7 +247,7 @@ def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move) -> Pose:
         ankles[:, index] = before.ankles[index] + way * (after.ankles[index] - before.ankles[index])
         rise = float(after.ankles[index, 1] - before.ankles[index, 1])
         # A foot that goes onto the other knee goes over it.
-        ankles[:, index, 1] += max(min(MAX_LIFT, LIFT * gap), min(RISES * rise, OVER)) * np.sin(np.pi * share)
+        ankles[:, index, 1] += max(min(MAX_LIFT, LIFT * gap), min(RISES * rise, OVER)) * np.sin(np.pi * share) ** 2
         feet[:, index] = rotations.slerp(before.feet[index], after.feet[index], way[:, 0])
         knees[:, index] = before.knees[index] + way * (after.knees[index] - before.knees[index])
         stands = np.where(share <= 0, before.planted[index], np.where(share >= 1, after.planted[index], 0.0))

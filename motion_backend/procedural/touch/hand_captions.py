@@ -44,12 +44,12 @@ class Laid:
     normal: Array
     """(3,) out of the surface."""
     hand: str
-    down: bool = False
-    """Whether fingers point down a front."""
     other: tuple[Array, Array] | None = None
     """The other hand's wrist (3,) and palm (4,)."""
     stroke: Array = field(default_factory=lambda: np.zeros(3))
     """(3,) along the surface, as far as hands may go that way and its opposite (metres)."""
+    elbows: Array = field(default_factory=lambda: np.zeros((2, 3)))
+    """(2, 3) where the elbows of hands that are laid point, in the chest's frame (see `hand_placement.placed`)."""
 
     @property
     def hands(self) -> tuple[tuple[int, Array, Array], ...]:

@@ -1,4 +1,4 @@
-"""How hands are laid on a surface: palms against it, fingers clear of what stands there, the other hand beside."""
+"""Where hands are laid on a surface: which suit a caption, where the other hand lies, how far both may go on it."""
 
 from __future__ import annotations
 
@@ -15,8 +15,6 @@ from scene_graphs.affordances.affordances import Spot
 
 FINGER: Final = 0.02
 """Half a finger's thickness (metres)."""
-FINGER_POINTS: Final = (0.05, 0.10, 0.14)
-"""Where along the fingers, before the wrist, it is looked whether they are in something (metres)."""
 APART: Final = 0.24
 """Between two hands laid side by side (metres at 1.70 m)."""
 NARROWER: Final = (1.0, 0.85, 0.7)
@@ -26,11 +24,9 @@ TWO_HANDS: Final = 0.8
 TOP: Final = 0.7
 """A surface is a top where its normal has more of up in it than this, else a front (cosine)."""
 UP_FRONT, INTO_FRONT = 0.8, 0.2
-"""How much fingers laid on a front point up it, or down, and how much into it before they are laid flat."""
+"""How much fingers laid on a front point up it, and how much into it before they are laid flat."""
 ELBOW: Final = 0.11
 """From the middle of a forearm to what is beside it (metres)."""
-TURNS: Final = (0.0, 0.5, -0.5, 1.0, -1.0, 1.5, -1.5)
-"""How far a hand is turned inwards on the surface where its fingers would be in something else (radians)."""
 STROKES: Final = (0.14, 0.11, 0.09, 0.07, 0.05, 0.03)
 """How far hands go to either side in wiping, the first that there is room for (metres)."""
 
@@ -52,14 +48,12 @@ def is_top(normal: Array | tuple[float, float, float]) -> bool:
     return bool(normal[1] > TOP)
 
 
-def other_hand(
-    obstacles: Obstacles, spot: Spot, laid: tuple[Array, str, bool], scale: float
-) -> tuple[Array, Array] | None:
+def other_hand(obstacles: Obstacles, spot: Spot, laid: tuple[Array, str], scale: float) -> tuple[Array, Array] | None:
     """Wrist and palm of the other hand, beside the first on the same surface; None where that is too narrow.
 
-    `laid` is the first hand's wrist, its side, and whether its fingers point down.
+    `laid` is the first hand's wrist and its side.
     """
-    wrist, hand, down = laid
+    wrist, hand = laid
     normal = np.asarray(spot.normal, dtype=np.float64)
     left, _ = along_surface(spot)
     along, other = (-left, "right") if hand == "left" else (left, "left")
@@ -68,23 +62,8 @@ def other_hand(
         inside = float(obstacles.depth((beside - (HAND_REST + FINGER) * normal)[None])[0])
         over = float(obstacles.solid().depth((beside + ELBOW * normal)[None])[0])
         if inside > 0 and over < -ELBOW:
-            return beside, free_palm(obstacles, spot, beside, other, down)
+            return beside, palm_on(normal, spot.facing, other)
     return None
-
-
-def free_palm(obstacles: Obstacles, spot: Spot, wrist: Array, hand: str, down: bool = False) -> Array:
-    """The hand laid straight ahead, or turned aside where its fingers would be in something else."""
-    others = obstacles.solid()
-    others = others.only(np.array([owner != spot.object_id for owner in others.owners], dtype=bool))
-    fingers = np.array([[along, 0.0, 0.0] for along in FINGER_POINTS]) * (1.0 if hand == "left" else -1.0)
-    inward = (-1.0 if hand == "left" else 1.0) * (-1.0 if down else 1.0)
-    normal = np.asarray(spot.normal, dtype=np.float64)
-    straight = palm_on(normal, spot.facing, hand, down)
-    turns = [rotations.rotvec_to_quat(angle * inward * normal) for angle in TURNS]
-    palms = [rotations.compose(turn, straight) for turn in turns]
-    depths = [float(np.max(others.depth(wrist + rotations.rotate(palm, fingers)), initial=-1.0)) for palm in palms]
-    clear = next((index for index, depth in enumerate(depths) if depth < -FINGER), int(np.argmin(depths)))
-    return palms[clear]
 
 
 def free_stroke(obstacles: Obstacles, spot: Spot, laid: Laid) -> Array:
@@ -109,11 +88,11 @@ def along_surface(spot: Spot) -> tuple[Array, Array]:
     return left, rotations.cross(left, normal)
 
 
-def palm_on(normal: Array, facing: float, hand: str, down: bool = False) -> Array:
-    """World rotation of a hand laid flat on a surface: palm against it, fingers forwards, or up or down it. (4,)."""
+def palm_on(normal: Array, facing: float, hand: str) -> Array:
+    """World rotation of a hand laid flat on a surface: palm against it, fingers forwards, or up it. (4,)."""
     side = 1.0 if hand == "left" else -1.0
     ahead = np.array([np.sin(facing), 0.0, np.cos(facing)])
-    up = np.array([0.0, -UP_FRONT if down else UP_FRONT, 0.0])
+    up = np.array([0.0, UP_FRONT, 0.0])
     fingers = ahead if is_top(normal) else up + INTO_FRONT * ahead
     fingers = rotations.normalize(fingers - (fingers @ normal) * normal)
     x, y = side * fingers, normal

@@ -13,8 +13,7 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.procedural.held_poses import UP, bend, shoulders, upright
 from motion_backend.procedural.pose import Pose
-from motion_backend.procedural.touch.hand_captions import Laid
-from motion_backend.procedural.touch.hand_contacts import is_top, palm_on
+from motion_backend.procedural.touch.hand_contacts import palm_on
 from motion_backend.procedural.touch.touch_keys import Foot, KneelingBody, KneelPose, KneelTable, Prone
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
@@ -139,14 +138,6 @@ def prone(knees: Pose, goal: Array, index: int, skeleton: Skeleton, row: Prone) 
     elbows[bearing] = row.bearing_elbow.of(bearing)
     palms[bearing] = palm_on(UP, yaw, ("left", "right")[bearing])
     return replace(pose, reach=reach, reaching=reaching, palms=palms, elbows=elbows, pressing=reaching.copy())
-
-
-def elbows_out(pose: Pose, laid: Laid, row: Prone) -> Pose:
-    """A prone pose with the elbow of a hand on the thing out to its side, and below a hand on a front."""
-    elbows = pose.elbows.copy()
-    for index, *_ in laid.hands:
-        elbows[index] = (row.top_elbow if is_top(laid.normal) else row.front_elbow).of(index)
-    return replace(pose, elbows=elbows)
 
 
 def _ahead(pose: Pose) -> Array:

@@ -22,18 +22,20 @@ from motion_backend.procedural.sit.sit_transition import knees_over_feet
 from motion_backend.procedural.touch.hand_actions import Way, deed
 from motion_backend.procedural.touch.hand_captions import Laid
 from motion_backend.procedural.touch.hand_contacts import is_top
-from motion_backend.procedural.touch.kneel import down_on_knees, elbows_out, prone
-from motion_backend.procedural.touch.step_in import Depth, Step, shifted, step_before, stepped
-from motion_backend.procedural.touch.touch_keys import (
+from motion_backend.procedural.touch.hand_placement import Depth, placed
+from motion_backend.procedural.touch.kneel import down_on_knees, prone
+from motion_backend.procedural.touch.reach_keys import (
     Approach,
     ReachEffort,
     ReachGaze,
+    ReachingHand,
     ReachSearch,
     ReachTable,
     ReachVariation,
     ThighHand,
-    TouchKeys,
 )
+from motion_backend.procedural.touch.step_in import Step, shifted, step_before, stepped
+from motion_backend.procedural.touch.touch_keys import Prone, TouchKeys
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
 from motion_backend.skeleton import ARM_LENGTH, INDEX, Skeleton
@@ -88,10 +90,11 @@ def touch(
         pace *= max(1.0, float(start.pelvis[1] - bent.pelvis[1]) / (row.deep_m * skeleton.scale))
     # A raised arm is near the end of its range.
     poles = float(not raised) * varied.elbow_ratio * rng.normal(size=(2, 3))
+    elbows = _prone_elbows(laid, keys.kneel.prone) if manner.prone else _elbows(laid, skeleton, keys.reach) + poles
+    laid = placed(bent, laid, elbows, depth, skeleton, keys.reach.placement)
 
     def hand(off: float, tilt: float) -> Pose:
-        posed = _hand_at(bent, laid.tilted(tilt), off, yaw, skeleton, keys.reach)
-        return elbows_out(posed, laid, keys.kneel.prone) if manner.prone else _poled(posed, laid, poles)
+        return _hand_at(bent, laid.tilted(tilt), off, yaw, skeleton, keys.reach)
 
     above, reached = hand(over, 0.0), hand(0.0, 0.0)
     away = replace(start, reach=above.reach, palms=above.palms)
@@ -137,20 +140,16 @@ def _looking_there(away: Pose, reached: Pose, row: Approach) -> Pose:
     )
 
 
-def arriving(walked: Pose, goal: Array, hand: str, skeleton: Skeleton, keys: ReachTable) -> Pose:
-    """The frames (T,) of a walk up to a thing, the eyes on the hand's goal (3,) before the body stands and the hand
-    on its way: what `touch` goes on from without a pause."""
+def arriving(walked: Pose, hand: str, keys: ReachTable) -> Pose:
+    """The frames (T,) of a walk up to a thing with the hand on its way: what `touch` goes on from without a pause."""
     row, index = keys.arriving, 0 if hand == "left" else 1
     left = (len(walked) - np.arange(1, len(walked) + 1)) / FPS
-    last = walked.at(len(walked) - 1)
-    look = _looking(last, goal, 0.0, float(yaw_of(last.hips)), skeleton, keys.gaze)
-    eyes = smooth(1 - left / row.eyes_s)[:, None]
     share = row.hand_share * smooth(1 - left / row.hand_s)[:, None]
     wrists, poles = arm_arrays(row.hand, row.hand)
     arms, elbows = walked.arms.copy(), walked.elbows.copy()
     arms[:, index] += share * (wrists[index] - arms[:, index])
     elbows[:, index] += share * (poles[index] - elbows[:, index])
-    return replace(walked, head=walked.head + eyes * (look - walked.head), arms=arms, elbows=elbows)
+    return replace(walked, arms=arms, elbows=elbows)
 
 
 def _varied(bent: Pose, laid: Laid, yaw: float, skeleton: Skeleton, keys: ReachTable, rng: np.random.Generator) -> Pose:
@@ -175,14 +174,6 @@ def _free_hand_varied(bent: Pose, laid: Laid, row: ReachVariation, rng: np.rando
     aside = row.wrist_arms * rng.normal(size=(2, 3))
     aside[[index for index, *_ in laid.hands]] = 0.0
     return replace(bent, arms=bent.arms + aside)
-
-
-def _poled(posed: Pose, laid: Laid, poles: Array) -> Pose:
-    """The elbows of hands that are laid point a little elsewhere. `poles` (2, 3)."""
-    elbows = posed.elbows.copy()
-    for index, *_ in laid.hands:
-        elbows[index] += poles[index]
-    return replace(posed, elbows=elbows)
 
 
 def _free_arm(bent: Pose, laid: Laid, doing: str, skeleton: Skeleton, keys: ReachTable) -> Pose:
@@ -222,34 +213,39 @@ def _hand_at(bent: Pose, laid: Laid, off: float, yaw: float, skeleton: Skeleton,
     row = keys.hand
     reaching, pressing = bent.reaching.copy(), bent.pressing.copy()
     reach, palms, elbows = bent.reach.copy(), bent.palms.copy(), bent.elbows.copy()
-    raised = float(np.clip((laid.wrist[1] / skeleton.scale - row.raised_from_m) / row.raised_within_m, 0.0, 1.0))
     # Onto a top the hand comes over its edge from the body's side.
-    behind = row.behind_share + row.behind_raised_share * raised
+    behind = row.behind_share + row.behind_raised_share * _raised(laid, skeleton, row)
     back = off * laid.normal[1] * behind * np.array([np.sin(yaw), 0.0, np.cos(yaw)])
     for index, wrist, palm in laid.hands:
         reaching[index], reach[index], palms[index] = 1.0, wrist + off * laid.normal - back, palm
         pressing[index] = 1.0 if off == 0.0 else row.pressing_share
-        elbows[index] = _elbow(laid, (index, wrist, palm), raised, skeleton, keys)
+        elbows[index] = laid.elbows[index]
     posed = replace(bent, reach=reach, reaching=reaching, palms=palms, pressing=pressing, elbows=elbows)
     # The same place held from the chest, so that the arm swings there round its shoulder.
     return replace(posed, arms=released(posed, skeleton).arms)
 
 
-def _elbow(laid: Laid, hand: tuple[int, Array, Array], raised: float, skeleton: Skeleton, keys: ReachTable) -> Array:
-    """Where the elbow of a hand on a surface points: a raised hand hangs it below, a lowered one keeps it behind. (3,).
+def _raised(laid: Laid, skeleton: Skeleton, row: ReachingHand) -> float:
+    """How far a hand is raised, 0 to 1."""
+    return float(np.clip((laid.wrist[1] / skeleton.scale - row.raised_from_m) / row.raised_within_m, 0.0, 1.0))
 
-    `hand` is its index, wrist and palm.
-    """
-    index, wrist, palm = hand
-    poles, fingers = keys.elbow, np.array([1.0 if index == 0 else -1.0, 0.0, 0.0])
+
+def _elbows(laid: Laid, skeleton: Skeleton, keys: ReachTable) -> Array:
+    """Where elbows point by themselves: below a raised hand and before a front, else behind. (2, 3)."""
+    poles, raised = keys.elbow, _raised(laid, skeleton, keys.hand)
     if is_top(laid.normal) and raised > 0:
-        return poles.over_edge.of(index)
-    # The palm of a hand that points down a front looks forwards only with the elbow below.
-    if float(rotations.rotate(palm, fingers)[1]) < -keys.hand.points_down:
-        return poles.pointing_down.of(index)
-    if wrist[1] < keys.hand.low_m * skeleton.scale:
-        return poles.low.of(index)
-    return poles.behind.of(index) + raised * poles.raised_by.of(index)
+        return np.stack([poles.over_edge.of(index) for index in (0, 1)])
+    if laid.wrist[1] < keys.hand.low_m * skeleton.scale:
+        return np.stack([poles.low.of(index) for index in (0, 1)])
+    # The hand on its way to a front is close before the body: an elbow behind would take the forearm through it.
+    hangs = raised if is_top(laid.normal) else 1.0
+    return np.stack([poles.behind.of(index) + hangs * poles.raised_by.of(index) for index in (0, 1)])
+
+
+def _prone_elbows(laid: Laid, row: Prone) -> Array:
+    """The same of who is prone: out to their sides, and below a hand on a front. (2, 3)."""
+    pole = row.top_elbow if is_top(laid.normal) else row.front_elbow
+    return np.stack([pole.of(index) for index in (0, 1)])
 
 
 def _reaching(start: Pose, laid: Laid, skeleton: Skeleton, depth: Depth, keys: ReachTable) -> Pose:

@@ -5,7 +5,6 @@ The numbers are rows of data/transitions/reach.toml.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -15,12 +14,12 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.procedural.held_poses import UP
 from motion_backend.procedural.pose import Pose, smooth
-from motion_backend.procedural.touch.touch_keys import StepIn
+from motion_backend.procedural.touch.hand_placement import Depth
+from motion_backend.procedural.touch.reach_keys import StepIn
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
 
-Depth = Callable[[Array], Array]
 ALONG: Final = np.linspace(0.0, 1.0, 4)[:, None]
 """Where along a foot it is looked for room."""
 

@@ -14,7 +14,7 @@ from motion_backend.procedural.body_state import Body, Point, spot_of
 from motion_backend.procedural.emotion_style import bearing_of
 from motion_backend.procedural.held_poses import alive
 from motion_backend.procedural.touch.hand_captions import Laid, handling_of, holding, steadies, with_both_hands
-from motion_backend.procedural.touch.hand_contacts import free_palm, free_stroke, is_top, other_hand
+from motion_backend.procedural.touch.hand_contacts import free_stroke, other_hand, palm_on
 from motion_backend.procedural.touch.kneel import place_to_kneel
 from motion_backend.procedural.touch.reach import Manner, arriving, touch
 from motion_backend.procedural.touch.touch_keys import touch_keys
@@ -22,8 +22,6 @@ from motion_backend.procedural.walk.walk_skill import go
 from motion_backend.skeleton import HAND_REST
 from scene_graphs.affordances.affordances import Spot
 
-REACHED_DOWN = 1.12
-"""An arm goes down to what is lower than this (metres at 1.70 m), so that its fingers point down a front."""
 OVERHEAD: Final = 1.65
 """To what is lower nobody stretches (metres at 1.70 m)."""
 CALM: Final = 0.5
@@ -40,11 +38,9 @@ def before_thing(body: Body, action: Action) -> tuple[Point, float]:
 
 
 def come_to_thing(body: Body, action: Action) -> None:
-    """The end of the walk just made leads to a thing: eyes on it, the hand on its way."""
+    """The end of the walk just made leads to a thing: the hand is on its way."""
     if body.frames:
-        spot = spot_of(action)
-        goal = np.asarray(spot.point) + HAND_REST * np.asarray(spot.normal)
-        body.frames[-1] = arriving(body.frames[-1], goal, action.hand, body.skeleton, touch_keys().reach)
+        body.frames[-1] = arriving(body.frames[-1], action.hand, touch_keys().reach)
         body.pose = body.frames[-1].at(len(body.frames[-1]) - 1)
 
 
@@ -67,19 +63,19 @@ def reach(body: Body, part: Part) -> None:
     normal = np.asarray(spot.normal, dtype=np.float64)
     goal = np.asarray(spot.point) + HAND_REST * normal
     obstacles, scale = body.scene.obstacles, body.skeleton.scale
-    depth = obstacles.solid().depth
-    down = bool(not is_top(normal) and goal[1] < REACHED_DOWN * scale and not prone)
-    palm = free_palm(obstacles, spot, goal, action.hand, down)
+    palm = palm_on(normal, spot.facing, action.hand)
     doing = handling_of(action.caption)
     both = with_both_hands(action.caption) or (steadies(action.caption) and not any(holding(body.pose)))
-    other = other_hand(obstacles, spot, (goal, action.hand, down), scale) if both else None
+    other = other_hand(obstacles, spot, (goal, action.hand), scale) if both else None
     if with_both_hands(action.caption) and other is None:
         body.note("no room for both hands: one hand")
-    laid = Laid(goal, palm, normal, action.hand, down, other)
+    laid = Laid(goal, palm, normal, action.hand, other)
     laid = replace(laid, stroke=free_stroke(obstacles, spot, laid))
     hold = max(part.hold, MIN_HOLD)
     manner = Manner(bearing, hold, doing, prone)
-    touched = touch(body.pose, laid, manner, body.skeleton, depth, touch_keys(), body.rng)
+    touched = touch(
+        body.pose, laid, manner, body.skeleton, body.scene.depth_about(spot.object_id), touch_keys(), body.rng
+    )
     body.add(alive(touched, CALM * bearing.restless, body.rng, FPS))
 
 

@@ -101,6 +101,8 @@ class FootInAir:
 
     usual_m: float
     """Of the ball of a walking foot."""
+    gentle_share: float
+    """Of the way through the air, over which a flat foot is lifted, and put down."""
     hangs_from_m: float
     """A foot that is lifted higher than this hangs down by"""
     droop_rad_per_m: float
@@ -182,11 +184,14 @@ class Swing:
 
     def height(self, u: Array) -> Array:
         """How high the ball of the foot is at shares of its way through the air. (T,)."""
-        usual_m = foot_table().air.usual_m
-        level = (1 - min(self.heel_strike / TIP_UP, 1.0)) * min(self.clearance / usual_m, 1.0)
-        usual = min(self.clearance, usual_m)
+        row = foot_table().air
+        flat, usual = 1 - min(self.heel_strike / TIP_UP, 1.0), min(self.clearance, row.usual_m)
+        level = flat * min(self.clearance / row.usual_m, 1.0)
         lifted = usual * np.interp(u, *_curve("usual")) + (self.clearance - usual) * np.interp(u, *_curve("lifted"))
-        return np.asarray(lifted + level * np.interp(u, *_curve("level")))
+        # A foot that does not roll is lifted gently, and put down so where it does not go far ahead.
+        down = flat * (1.0 if self.backwards else 1 - self.size)
+        gently = [1 - share * (1 - smooth(at / row.gentle_share)) for share, at in ((flat, u), (down, 1 - u))]
+        return np.asarray((lifted + level * np.interp(u, *_curve("level"))) * gently[0] * gently[1])
 
     def pitch(self, phase: Array) -> Array:
         """How far the foot is pitched about the floor, heel up positive. (T,)."""

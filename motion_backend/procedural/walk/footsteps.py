@@ -80,6 +80,10 @@ class LandingPlace:
     back_max_mps: float
     scatter_m: float
     uneven_m: float
+    ahead_max_rad: float
+    """A foot comes down turned no further ahead of the body than this,"""
+    inwards_max_rad: float
+    """and no further towards the other foot."""
     turn_frames: int
     """It is looked so much before and after for a turn."""
     turn_rad: float
@@ -312,21 +316,20 @@ def _swing_of(
     rows, side = footstep_table(), 1 if beat.index == 0 else -1
     place, shape = rows.place, rows.swing
     at = min(int(np.searchsorted(phase, beat.middle)), len(phase) - 1)
-    heading = float(route.heading[at])
+    heading = _faces(route, at, min(int(np.searchsorted(phase, beat.window[1])), len(phase) - 1), side, place)
     before = max(int(np.searchsorted(phase, beat.window[0])) - 1, 0)
     origin, yaw = feet.ankles[before, beat.index].copy(), float(feet.yaw[before, beat.index])
     beside = feet.ankles[before, 1 - beat.index]
     middle = _stance(beat, route, at, style, place, rng)
     stance, width = _widths(route, at, style, place)
-    target = home_ankle(middle, heading, beat.index, width + side * style.character.width_sides_m, skeleton)
+    target = home_ankle(middle, float(route.heading[at]), beat.index, width + side * style.character.width_sides_m, skeleton)
     apart = min(place.apart_m, place.apart_ratio * stance) * skeleton.scale
     target = _clear_of(beside, target, heading, side, apart)
-    ahead = np.array([np.sin(heading), np.cos(heading)])
-    forward = float((target - origin)[[0, 2]] @ ahead) / (shape.full_stride_m * skeleton.scale)
-    stride = float(np.clip(forward, -1.0, 1.0))
+    # A foot rolls off over its toes as it points then, and lands on its heel as it points there.
+    leaves, stride = (_forward(target - origin, points, shape.full_stride_m * skeleton.scale) for points in (yaw, heading))
     dragged = shape.drag_clearance_share if style.drag and beat.index == 1 else 1.0
     clearance = style.clearance * style.character.clearance_sides_ratio**side
-    rolled = np.radians(shape.heel_off_deg) * style.roll * abs(stride) ** shape.heel_off_power
+    rolled = np.radians(shape.heel_off_deg) * style.roll * abs(leaves) ** shape.heel_off_power
     return Swing(
         origin,
         target,
@@ -339,11 +342,22 @@ def _swing_of(
         heel_strike=TIP_UP * style.strike * abs(stride) * (0.0 if beat.hop else 1.0),
         scuff=np.radians(style.scuff) * float(np.clip(stride / shape.scuff_stride_share, 0.0, 1.0)),
         round=_way_round(origin, target, beside, heading, side) * skeleton.scale,
-        backwards=stride < -shape.backwards_share,
+        backwards=leaves + stride < -2 * shape.backwards_share,
         swings_out=np.radians(shape.swings_out_deg) * style.character.of_side("toes_swing", "ratio", side),
         # The first heel rises from the first frame on, not before.
         rise=min(HEEL_RISE, max(beat.window[0] - float(phase[0]), foot_table().way.rise_min_phase)),
     )
+
+
+def _faces(route: Route, at: int, lands: int, side: int, place: LandingPlace) -> float:
+    """Yaw of a foot that lands at one frame and has the body over it at another."""
+    ahead = side * float(route.heading[at] - route.heading[lands])
+    return float(route.heading[lands] + side * np.clip(ahead, -place.inwards_max_rad, place.ahead_max_rad))
+
+
+def _forward(way: Array, yaw: float, full: float) -> float:
+    """How much of a full step a way is for who looks that way; negative backwards."""
+    return float(np.clip((way[0] * np.sin(yaw) + way[2] * np.cos(yaw)) / full, -1.0, 1.0))
 
 
 def _stance(beat: _Beat, route: Route, at: int, style: Walk, place: LandingPlace, rng: np.random.Generator) -> Array:

@@ -163,6 +163,8 @@ class Knees:
 
     foot_ratio: float
     """As the foot does, so much more than as the pelvis does."""
+    foot_max_rad: float
+    """But not as a foot that is turned further from the pelvis."""
 
 
 @table
@@ -425,6 +427,7 @@ def _gaze(route: Route, style: Walk, hip_turn: Array, moved: tuple[Array, Array]
 def _knees(hips: Array, feet: Array) -> Array:
     """Knees point between where the pelvis (T, 4) and the foot (T, 2) yaw point. (T, 2, 3)."""
     forward = np.array([0.0, 0.0, 1.0])
-    pelvis = rotations.rotate(rotations.yaw_to_quat(yaw_of(hips)), forward)
-    foot = rotations.rotate(rotations.yaw_to_quat(feet), forward)
-    return rotations.normalize(pelvis[:, None] + carriage().knees.foot_ratio * foot)
+    row, ahead = carriage().knees, yaw_of(hips)[:, None]
+    off = np.clip(rotations.wrap(feet - ahead), -row.foot_max_rad, row.foot_max_rad)
+    pelvis, foot = (rotations.rotate(rotations.yaw_to_quat(yaw), forward) for yaw in (ahead, ahead + off))
+    return rotations.normalize(pelvis + row.foot_ratio * foot)

@@ -24,10 +24,8 @@ SAME_PLACE, STRAIGHT = 1e-9, 1e-6
 class TurningInPlace:
     """Turns on the spot."""
 
-    in_place_from_rad: float
-    """A body turns on the spot before it walks off in a direction further away,"""
-    left_to_steps_rad: float
-    """but leaves this much of the turn to its first steps."""
+    min_rad: float
+    """What of a turn finds no room on the way is done on the spot, if it is more than this."""
     rad_per_s: float
     more_s: float
     """How much longer a turn takes."""
@@ -50,6 +48,20 @@ class Shuffle:
 
 
 @table
+class TurningOnTheWay:
+    """A body turns into its way, and to what it goes to, while it steps along: aside or backwards as it begins."""
+
+    m_per_rad: float
+    """Over so much of the way,"""
+    min_m: float
+    """no less than this,"""
+    min_m_per_rad: float
+    """and over less of a short way, but no less than this."""
+    still_m: float
+    """It is done so long before the end, which is the slow part."""
+
+
+@table
 class PathSpeed:
     """How fast a way is gone."""
 
@@ -65,8 +77,8 @@ class PathSpeed:
     """slows down,"""
     push_from_mps: float
     """as if it were no slower."""
-    turn_m: float
-    """Over which it comes to face its way, and what it goes to."""
+    backwards_mps: float
+    """Who goes aside or backwards, while turning, is no faster."""
 
 
 @table
@@ -74,6 +86,7 @@ class RootPathTable:
     """data/gait/root_path.toml."""
 
     turn: TurningInPlace
+    way: TurningOnTheWay
     shuffle: Shuffle
     speed: PathSpeed
 
@@ -133,25 +146,52 @@ def plan_route(
         return _joined([_shuffle(points, start_yaw, 0.0, fps), _turn(points[-1], start_yaw, start_yaw + turn, fps)])
     tangent = _tangents(points)
     tangent = tangent + _less_turning(tangent, aside, start_yaw, end_yaw)
+    first = float(rotations.wrap(tangent[0] - start_yaw))
+    last = 0.0 if end_yaw is None else float(rotations.wrap(end_yaw - tangent[-1]))
+    turns = _turns_on_the_way(first, last, length, begun_mps is not None)
+    before, after = first - turns.first, last - turns.last
     pieces: list[Route] = []
-    first_turn = float(rotations.wrap(tangent[0] - start_yaw))
-    yaw = start_yaw
-    if abs(first_turn) > rows.turn.in_place_from_rad and begun_mps is None:
-        # The last third of the turn is left to the first steps, as people do.
-        yaw = start_yaw + first_turn - np.sign(first_turn) * rows.turn.left_to_steps_rad
-        pieces.append(_turn(points[0], start_yaw, yaw, fps))
-    last_turn = 0.0 if end_yaw is None else float(rotations.wrap(end_yaw - tangent[-1]))
-    walked = _walk(
-        points,
-        tangent,
-        yaw,
-        last_turn if abs(last_turn) <= rows.turn.in_place_from_rad else 0.0,
-        (speed, fps, begun_mps),
-    )
-    pieces.append(walked)
-    if abs(last_turn) > rows.turn.in_place_from_rad:
-        pieces.append(_turn(points[-1], float(walked.heading[-1]), float(walked.heading[-1]) + last_turn, fps))
+    if before:
+        pieces.append(_turn(points[0], start_yaw, start_yaw + before, fps))
+    pieces.append(_walk(points, tangent + (start_yaw + first - tangent[0]), turns, (speed, fps, begun_mps)))
+    if after:
+        arrived = float(pieces[-1].heading[-1])
+        pieces.append(_turn(points[-1], arrived, arrived + after, fps))
     return _joined(pieces)
+
+
+@dataclass(frozen=True)
+class _Turns:
+    """What a body turns while it goes along, beside the bends of its way."""
+
+    first: float
+    """Into the way, at its beginning (radians)."""
+    last: float
+    """To what it goes to, at its end."""
+    first_m: float
+    """Over so much of the way."""
+    last_m: float
+
+    def to_go(self, arc: Array) -> Array:
+        """How far it faces from the way so far along it. (M,) radians."""
+        row = root_path_table().way
+        begun = smooth((arc - arc[-1] + self.last_m + row.still_m) / self.last_m)
+        return np.asarray(self.last * begun - self.first * (1 - smooth(arc / self.first_m)))
+
+
+def _turns_on_the_way(first: float, last: float, length: float, in_stride: bool) -> _Turns:
+    """What of the first and the last turn there is room for on a way of that length; who is under way does all."""
+    rows = root_path_table()
+    row, free = rows.way, max(length - rows.way.still_m, SPACING)
+    wanted = [max(row.m_per_rad * abs(turn), row.min_m) if turn else SPACING for turn in (first, last)]
+    share = min(1.0, free / sum(wanted))
+    done, over = [], []
+    for turn, metres in zip((first, last), wanted, strict=True):
+        most = metres * share / row.min_m_per_rad
+        rest = abs(turn) - most
+        done.append(turn if in_stride or rest < rows.turn.min_rad else float(np.sign(turn)) * most)
+        over.append(metres * share)
+    return _Turns(done[0], done[1], over[0], over[1])
 
 
 def _joined(pieces: list[Route]) -> Route:
@@ -191,29 +231,26 @@ def _tangents(points: Array) -> Array:
     return np.asarray(gaussian_filter1d(yaw, root_path_table().speed.bends_m / SPACING, mode="nearest"))
 
 
-def _walk(points: Array, tangent: Array, yaw: float, last_turn: float, pace: tuple[float, int, float | None]) -> Route:
+def _walk(points: Array, tangent: Array, turns: _Turns, pace: tuple[float, int, float | None]) -> Route:
     (speed, fps, begun), row = pace, root_path_table().speed
     arc = SPACING * np.arange(len(points))
-    limit = _speed_limits(tangent, speed, row, begun)
+    to_go = turns.to_go(arc)
+    limit = _speed_limits(tangent, to_go, speed, row, begun)
     time = np.concatenate([[0.0], np.cumsum(2 * SPACING / (limit[1:] + limit[:-1]))])
     at = np.arange(1, int(np.ceil(time[-1] * fps)) + 1) / fps
     along = np.interp(at, time, arc)
     position = np.stack([np.interp(along, arc, points[:, axis]) for axis in (0, 1)], axis=1)
-    heading = np.interp(along, arc, tangent)
-    # On a way that is shorter all of it is for turning.
-    turns = min(row.turn_m, float(arc[-1]))
-    heading = heading + float(rotations.wrap(yaw - tangent[0])) * (1 - smooth(along / turns))
-    heading = heading + last_turn * smooth((along - (arc[-1] - turns)) / turns)
-    # Start from the yaw as given, not wrapped, so that headings of neighbouring pieces join.
-    heading = heading + (yaw - float(rotations.wrap(yaw - tangent[0])) - tangent[0])
-    return Route(position, heading, np.interp(at, time, limit))
+    return Route(position, np.interp(along, arc, tangent + to_go), np.interp(at, time, limit))
 
 
-def _speed_limits(tangent: Array, speed: float, row: PathSpeed, begun: float | None) -> Array:
-    """How fast each point of a path is passed: slowly in bends, quickening and slowing down as bodies can. (M,)."""
-    bend = np.abs(np.gradient(tangent, SPACING))
-    limit = np.minimum(speed, row.aside_max_mps2**0.5 / np.maximum(bend, STRAIGHT) ** 0.5)
-    limit = np.minimum(limit, row.turn_max_rad_per_s / np.maximum(bend, STRAIGHT))
+def _speed_limits(tangent: Array, to_go: Array, speed: float, row: PathSpeed, begun: float | None) -> Array:
+    """How fast each point of a path is passed by a body that faces `to_go` (M,) from it: slowly in bends and turns,
+    quickening and slowing down as bodies can. (M,)."""
+    bend, turn = (np.maximum(np.abs(np.gradient(yaw, SPACING)), STRAIGHT) for yaw in (tangent, tangent + to_go))
+    limit = np.minimum(speed, (row.aside_max_mps2 / bend) ** 0.5)
+    limit = np.minimum(limit, row.turn_max_rad_per_s / turn)
+    ahead = np.clip(np.cos(to_go), 0.0, 1.0)
+    limit = np.minimum(limit, row.backwards_mps + ahead * max(speed - row.backwards_mps, 0.0))
     limit[0], limit[-1] = row.end_mps if begun is None else begun, row.end_mps
     push, brake = (rate * max(speed, row.push_from_mps) for rate in (row.push_per_s, row.brake_per_s))
     for i in range(1, len(limit)):

@@ -8,10 +8,12 @@ from sample_motions import standing_still, tumbling
 from scipy.spatial import ConvexHull
 
 from motion_backend import rotations
+from motion_backend.body.capsules import SOLE
 from motion_backend.body.segment_masses import SEGMENTS, centres_of_mass
 from motion_backend.body.zero_moment import GRAVITY, nearest_in_hull, zero_moment_points
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import Motion
+from motion_backend.skeleton import INDEX, build_skeleton
 
 
 def centres(motion: Motion) -> np.ndarray:
@@ -21,6 +23,34 @@ def centres(motion: Motion) -> np.ndarray:
 
 def test_the_parts_of_a_body_weigh_what_the_whole_does() -> None:
     assert sum(segment.share for segment in SEGMENTS) == pytest.approx(1, abs=2e-4)
+
+
+def test_the_centre_of_each_limb_lies_where_de_leva_has_it_on_its_bone() -> None:
+    """Shares of the way from its joint to the next; the mean of women and men."""
+    known = {"shoulder": ("elbow", 0.576), "elbow": ("wrist", 0.457), "hip": ("knee", 0.385), "knee": ("ankle", 0.442)}
+    bones = build_skeleton(1.70).offsets
+    for segment in SEGMENTS:
+        side, _, name = segment.joint.partition("_")
+        if name not in known:
+            continue
+        end, share = known[name]
+        bone = bones[INDEX[f"{side}_{end}"]]
+        along = np.dot(segment.centre, bone) / np.dot(bone, bone)
+        assert along == pytest.approx(share, abs=0.01), segment.joint
+        assert np.linalg.norm(segment.centre - along * bone) < 0.01
+
+
+def test_the_centres_of_trunk_head_hands_and_feet_lie_within_them() -> None:
+    tops = {"pelvis": "spine1", "spine2": "spine3", "spine3": "neck"}
+    bones, centres_of = build_skeleton(1.70).offsets, {one.joint: np.array(one.centre) for one in SEGMENTS}
+    for joint, top in tops.items():
+        assert 0.3 < centres_of[joint][1] / bones[INDEX[top]][1] < 0.7
+    assert 0.03 < centres_of["head"][1] < 0.10
+    for side, sign in (("left", 1), ("right", -1)):
+        assert 0.05 < sign * centres_of[f"{side}_wrist"][0] < 0.09  # the palm
+        foot, heel, toes = centres_of[f"{side}_ankle"], SOLE[0], SOLE[1]
+        assert foot[2] - heel[2] == pytest.approx(0.43 * (toes[2] - heel[2]), abs=0.015)
+        assert heel[1] < foot[1] < 0
 
 
 def test_a_standing_body_has_its_centre_in_the_middle_at_the_height_that_people_have_it() -> None:

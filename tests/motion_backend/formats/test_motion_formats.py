@@ -14,11 +14,13 @@ from hypothesis import strategies as st
 from sample_motions import tumbling
 
 from motion_backend import rotations
+from motion_backend.body.capsules import SOLE
 from motion_backend.formats import FORMATS, encode, write_motion
 from motion_backend.formats.bvh import bvh_text, quats_to_zxy
 from motion_backend.formats.motion_json import json_bytes, read_json
 from motion_backend.formats.npz import npz_bytes, raw_bytes, read_npz, read_raw
 from motion_backend.mocap.readers.bvh_reader import read_bvh
+from motion_backend.skeleton import INDEX, build_skeleton
 
 ANGLES = st.floats(-np.pi, np.pi)
 AXES = np.eye(3)
@@ -74,6 +76,29 @@ def test_bvh_positions_come_back_within_a_tenth_of_a_millimetre(height: float):
     assert again.skeleton.names == motion.skeleton.names
     assert again.fps == motion.fps
     np.testing.assert_allclose(again.joint_positions(), motion.joint_positions(), atol=1e-4)
+
+
+def test_the_tips_of_a_bvh_are_those_of_the_body():
+    """Crown, toes and fingers end the body's height, its soles and its reach; both sides are alike."""
+    tips, joint = {}, ""
+    for line in bvh_text(tumbling(1, height=1.7), unit=1.0).splitlines():
+        words = line.split()
+        if words[:1] == ["JOINT"]:
+            joint = words[1]
+        elif words[:2] == ["End", "Site"]:
+            joint = f"{joint} tip"
+        elif words[:1] == ["OFFSET"] and joint.endswith("tip"):
+            tips[joint.removesuffix(" tip")] = np.array(words[1:], dtype=float)
+            joint = ""
+    skeleton = build_skeleton(1.7)
+    ends = {name: skeleton.rest_positions[INDEX[name]] + tip for name, tip in tips.items()}
+    assert ends["head"][1] + skeleton.standing_height == pytest.approx(1.70, abs=0.02)
+    assert ends["left_wrist"][0] - ends["right_wrist"][0] == pytest.approx(1.70, abs=0.12)
+    for side in ("left", "right"):
+        ankle = skeleton.rest_positions[INDEX[f"{side}_ankle"]]
+        assert ends[f"{side}_foot"][2] - ankle[2] == pytest.approx(SOLE[1, 2], abs=0.01)
+    for name in ("wrist", "foot"):
+        np.testing.assert_allclose(tips[f"left_{name}"], tips[f"right_{name}"] * [-1, 1, 1], atol=1e-9)
 
 
 def test_bvh_in_metres_says_the_same_as_in_centimetres():

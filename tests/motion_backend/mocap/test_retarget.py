@@ -15,7 +15,7 @@ from small_home import small_home
 from motion_backend import rotations
 from motion_backend.director import Director
 from motion_backend.mocap.clip import Clip, ClipError, make_bones, make_clip
-from motion_backend.mocap.foot_contacts import ANKLES, BALLS, Feet, no_faster, runs
+from motion_backend.mocap.foot_contacts import ANKLES, BALLS, Feet, no_faster, runs, travel
 from motion_backend.mocap.foot_lock import locked
 from motion_backend.mocap.joint_map import FAMILIES, checked_map, find_map, read_map
 from motion_backend.mocap.readers import clip_of_motion, read_clips
@@ -260,6 +260,27 @@ def test_a_hovering_foot_is_put_down_and_the_pelvis_comes_half_way_where_the_oth
     np.testing.assert_allclose(shift[:, 0, 1], -0.02, atol=1e-4)
     np.testing.assert_allclose(carried[:, 1], -0.01, atol=1e-4)
     assert not carried[:, [0, 2]].any()
+
+
+@for_each(
+    ("feet_back", "pelvis_on", "walks"),
+    [(0.6, 0.0, True), (0.6, 0.08, True), (0.6, 0.12, False), (0.28, 0.0, True), (0.22, 0.0, False)],
+)
+def test_who_treads_backwards_faster_than_25_cm_a_second_and_hardly_gets_on_walks_on_the_spot(
+    feet_back: float, pelvis_on: float, walks: bool
+) -> None:
+    """On a treadmill; the pelvis may drift by 10 cm a second."""
+    feet, pelvis = standing_feet(frames=90)
+    seconds = np.arange(90) / 30
+    for side in range(2):
+        stands = (np.arange(90) // 15) % 2 == side
+        feet.ankles[:, side, 1] += np.where(stands, 0.0, 0.1)
+    feet.ankles[:, :, 2] -= feet_back * seconds[:, None]
+    pelvis[:, 2] += pelvis_on * seconds
+    found = travel(feet, pelvis)
+    assert (found is not None) == walks
+    if found is not None:
+        assert found[-1, 2] == pytest.approx(feet_back * seconds[-1], rel=0.1)
 
 
 def test_a_foot_in_the_air_goes_smoothly_from_one_stance_to_the_next() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,10 +13,7 @@ from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.pose_solver import solve
-from motion_backend.procedural.touch.hand_contacts import free_palm
-from motion_backend.rotations import rotate
 from motion_backend.skeleton import INDEX, build_skeleton
-from scene_graphs.affordances.affordances import Spot
 
 SKELETON = build_skeleton()
 HIPS = standing((0.0, 0.0), 0.0, Bearing(arms=("hips", "hips")), SKELETON).repeat(60)
@@ -50,20 +49,17 @@ def test_a_segment_begins_with_the_elbows_it_was_given_and_never_snaps() -> None
     assert np.linalg.norm(np.diff(swung, axis=0), axis=1).max() < 0.05
 
 
+def test_who_drifts_towards_a_wall_swings_the_elbow_out_where_it_would_be_in_it() -> None:
+    way = np.linspace(0.0, 0.12, len(HIPS))[:, None] * [1.0, 0.0, 0.0]
+    drifting = replace(HIPS, pelvis=HIPS.pelvis + way, ankles=HIPS.ankles + way[:, None])
+    wall = wall_at(joints(drifting, "left_elbow")[-1, 0] - 0.02)
+    swung = elbows_clear(drifting, SKELETON, wall)
+    before, after = (wall.depth(joints(pose, "left_elbow")) for pose in (drifting, swung))
+    assert before.max() == pytest.approx(0.02, abs=0.005)
+    assert before[:20].max() < -0.03
+    assert after.max() < -0.03
+
+
 def test_arms_that_are_clear_are_left_alone() -> None:
     swung = elbows_clear(HIPS, SKELETON, wall_at(joints(HIPS, "left_elbow")[0, 0] + 0.06))
     assert (swung.elbows == HIPS.elbows).all()
-
-
-def test_fingers_that_would_be_in_what_is_below_are_turned_aside() -> None:
-    """A hand on a screen, right over what the screen stands on."""
-    screen = boxes(((0.0, 0.75, 0.0), (0.5, 0.25, 0.02)), ((0.0, 0.25, 0.0), (0.6, 0.25, 0.2)))
-    spot = Spot("touch", "0/0", (0.0, 0.53, 0.02), (0.0, 0.0, 1.0), np.pi, (0.0, 0.5), np.pi, height="low")
-    wrist = np.array([0.0, 0.53, 0.08])
-    for hand, side in (("left", 1.0), ("right", -1.0)):
-        palm = free_palm(screen, spot, wrist, hand, down=True)
-        tips = wrist + 0.14 * side * rotate(palm, np.array([1.0, 0.0, 0.0]))
-        assert tips[1] > 0.51
-        assert abs(tips[2] - wrist[2]) < 0.01
-        free = free_palm(screen.only(np.array([True, False])), spot, wrist, hand, down=True)
-        assert side * rotate(free, np.array([1.0, 0.0, 0.0]))[1] < -0.9

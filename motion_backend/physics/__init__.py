@@ -1,0 +1,1 @@
+"""The body under gravity: MuJoCo simulates it, and what moves it are its own joints."""

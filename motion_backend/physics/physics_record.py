@@ -1,0 +1,78 @@
+"""What is told of a simulated motion: by keyframe who moved the joints, falls and resets, and what pressed on what."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any, Final
+
+import numpy as np
+
+from motion_backend.motion import FPS, Force, Motion, Simulated
+from motion_backend.physics.contact_forces import TOUCHED, Pressure
+from motion_backend.rotations import Array
+
+MODE: Final = "mpc"
+PRESSES: Final = 5.0
+"""Newtons from which a body counts as pressing on something."""
+LEAST: Final = 0.1
+"""Seconds: what is touched for less is not told of."""
+
+
+def forces_of(pressures: Sequence[Pressure]) -> tuple[Force, ...]:
+    """What pressed on which of the 15 contact bodies in some frames."""
+    floor = np.array([pressure.floor for pressure in pressures])
+    things = np.array([pressure.things for pressure in pressures])
+    found = [
+        _force(name, on, rows[:, index])
+        for on, rows in (("floor", floor), ("things", things))
+        for index, name in enumerate(TOUCHED)
+    ]
+    return tuple(force for force in found if force.seconds >= LEAST)
+
+
+def _force(name: str, on: str, newtons: Array) -> Force:
+    pressing = newtons[newtons > PRESSES]
+    if not len(pressing):
+        return Force(name, on, 0.0, 0.0, 0.0)
+    median, most = round(float(np.median(pressing)), 1), round(float(pressing.max()), 1)
+    return Force(name, on, median, most, round(len(pressing) / FPS, 2))
+
+
+def physics_of(motion: Motion) -> dict[str, Any] | None:
+    """For a story's report; None where nothing was simulated."""
+    rows = motion.simulated
+    if not rows:
+        return None
+    keyframes = sorted({row.keyframe for row in rows})
+    return {
+        "mode": rows[0].mode,
+        "root_force_newtons": max(row.root_force_newtons for row in rows),
+        **_sums(rows),
+        "keyframes": [
+            {"keyframe": keyframe} | _sums(own) | {"forces": [asdict(force) for force in _merged(own)]}
+            for keyframe in keyframes
+            for own in [[row for row in rows if row.keyframe == keyframe]]
+        ],
+    }
+
+
+def _sums(rows: Sequence[Simulated]) -> dict[str, float]:
+    return {
+        "seconds": round(sum(row.seconds for row in rows), 2),
+        "resets": sum(row.resets for row in rows),
+        "rewinds": sum(row.rewinds for row in rows),
+        "rewound_seconds": round(sum(row.rewound_seconds for row in rows), 2),
+    }
+
+
+def _merged(rows: Sequence[Simulated]) -> list[Force]:
+    """The forces of a keyframe's parts: the mean of their medians by how long they lasted."""
+    found: dict[tuple[str, str], Force] = {}
+    for force in (force for row in rows for force in row.forces):
+        known = found.setdefault((force.body, force.on), Force(force.body, force.on, 0.0, 0.0, 0.0))
+        seconds = known.seconds + force.seconds
+        mean = (known.newtons * known.seconds + force.newtons * force.seconds) / seconds
+        most = max(known.most, force.most)
+        found[force.body, force.on] = Force(force.body, force.on, round(mean, 1), most, round(seconds, 2))
+    return list(found.values())

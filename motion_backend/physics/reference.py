@@ -1,0 +1,166 @@
+"""What the simulated body is to follow: a kinematic plan as positions, speeds, controls and planted feet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion_backend import rotations
+from motion_backend.inverse_kinematics import arm_rotations, leg_rotations, two_bone
+from motion_backend.motion import FPS
+from motion_backend.physics.generalized_coordinates import controls, fold, speeds
+from motion_backend.physics.mjcf_character import SIDES
+from motion_backend.rotations import Array
+from motion_backend.skeleton import INDEX, Skeleton
+
+LIFT: Final = 0.012
+"""Metres that feet swing higher than planned, at 1.70 m: simulated ones hang lower by as much and graze the floor."""
+LIFTED_IN: Final = 5
+"""Frames in which a foot comes to that height, and in which it comes down again."""
+LONGEST_SWING: Final = 1.2
+"""Seconds: a foot that is off the floor for longer is not in a step."""
+TURNED: Final = 1e-3
+"""A collar turned by less (radians) counts as at rest."""
+FASTEST: Final = 8.0
+"""Metres a second: a pelvis that is planned faster jumps."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """T frames of a kinematic body."""
+
+    roots: Array
+    """(T, 3)."""
+    local: Array
+    """(T, 22, 4) xyzw."""
+    contacts: Array
+    """(T, 4)."""
+
+    def __len__(self) -> int:
+        return len(self.roots)
+
+    def part(self, frames: slice) -> Plan:
+        """Some of the frames."""
+        return Plan(self.roots[frames], self.local[frames], self.contacts[frames])
+
+    def last(self, frames: int) -> Plan:
+        """Its last frame, so often."""
+        return Plan(*(np.repeat(rows[-1:], max(frames, 0), axis=0) for rows in (self.roots, self.local, self.contacts)))
+
+    def followed_by(self, later: Plan) -> Plan:
+        """One after the other."""
+        return Plan(
+            np.concatenate([self.roots, later.roots]),
+            np.concatenate([self.local, later.local]),
+            np.concatenate([self.contacts, later.contacts]),
+        )
+
+    def jump(self) -> int | None:
+        """The first frame that a body cannot come to from the one before, or that has no finite numbers."""
+        steps = np.linalg.norm(np.diff(self.roots, axis=0), axis=1) * FPS
+        bad = np.concatenate([[False], ~(steps <= FASTEST)])
+        bad |= ~np.isfinite(self.roots).all(axis=1) | ~np.isfinite(self.local).all(axis=(1, 2))
+        return int(bad.argmax()) if bad.any() else None
+
+
+@dataclass(frozen=True)
+class Reference:
+    """T frames in the simulated body's numbers."""
+
+    qpos: Array
+    """(T, 45)."""
+    qvel: Array
+    """(T, 36)."""
+    controls: Array
+    """(T, 30)."""
+    planted: NDArray[np.bool_]
+    """(T, 4): left heel, left ball, right heel, right ball are to stay where they are."""
+    wrists: Array
+    """(T, 2, 4) local rotations, xyzw."""
+
+    def __len__(self) -> int:
+        return len(self.qpos)
+
+    def part(self, frames: slice) -> Reference:
+        """Some of the frames."""
+        rows = (self.qpos, self.qvel, self.controls, self.planted, self.wrists)
+        return Reference(*(row[frames] for row in rows))
+
+    @staticmethod
+    def of(plan: Plan, skeleton: Skeleton) -> Reference:
+        """With feet that swing a little higher, and arms that reach as far without their collars."""
+        local = _without_collars(plan.roots, _feet_lifted(plan, skeleton), skeleton)
+        qpos = fold(plan.roots, local)
+        qvel = speeds(qpos)
+        wrists = local[:, [INDEX[f"{side}_wrist"] for side, _ in SIDES]]
+        return Reference(qpos, qvel, controls(qpos, qvel), plan.contacts > 0.5, wrists)
+
+
+def _feet_lifted(plan: Plan, skeleton: Skeleton) -> Array:
+    """Local rotations (T, 22, 4) of a plan whose feet swing a little higher, as they are turned."""
+    positions, world = skeleton.forward_kinematics(plan.roots, plan.local)
+    local = np.array(plan.local, dtype=np.float64)
+    for index, (side, _) in enumerate(SIDES):
+        lift = _lift(plan.contacts[:, 2 * index : 2 * index + 2].max(axis=1) > 0.5) * skeleton.scale
+        frames = np.flatnonzero(lift)
+        if not len(frames):
+            continue
+        hip, knee, ankle = (positions[frames, INDEX[f"{side}_{joint}"]] for joint in ("hip", "knee", "ankle"))
+        target = ankle.astype(np.float64)
+        target[:, 1] += lift[frames]
+        limb = two_bone(hip.astype(np.float64), target, (knee - hip).astype(np.float64), _bones(skeleton, side, _LEG))
+        thigh, shin = leg_rotations(limb)
+        foot = world[frames, INDEX[f"{side}_ankle"]]
+        local[frames, INDEX[f"{side}_hip"]] = rotations.compose(rotations.inverse(world[frames, 0]), thigh)
+        local[frames, INDEX[f"{side}_knee"]] = rotations.compose(rotations.inverse(thigh), shin)
+        local[frames, INDEX[f"{side}_ankle"]] = rotations.compose(rotations.inverse(shin), foot)
+    return local
+
+
+_LEG: Final = ("knee", "ankle")
+_ARM: Final = ("elbow", "wrist")
+
+
+def _bones(skeleton: Skeleton, side: str, joints: tuple[str, str]) -> tuple[float, float]:
+    upper, lower = (float(np.linalg.norm(skeleton.offsets[INDEX[f"{side}_{joint}"]])) for joint in joints)
+    return upper, lower
+
+
+def _lift(planted: NDArray[np.bool_]) -> Array:
+    """How much higher a foot is to be, from whether it is planted (T,); metres at 1.70 m. (T,)."""
+    lift = np.zeros(len(planted))
+    edges = np.flatnonzero(np.diff(np.concatenate([[True], planted, [True]]).astype(np.int8)))
+    for start, stop in edges.reshape(-1, 2):
+        # A swing that goes on beyond what is known is not in its middle where that ends.
+        if stop - start <= LONGEST_SWING * FPS and start > 0 and stop < len(planted):
+            inside = np.minimum(np.arange(1, stop - start + 1), np.arange(stop - start, 0, -1)) / (LIFTED_IN + 1)
+            share = np.minimum(inside, 1.0)
+            lift[start:stop] = LIFT * share**2 * (3 - 2 * share)
+    return lift
+
+
+def _without_collars(roots: Array, local: Array, skeleton: Skeleton) -> Array:
+    """Local rotations whose collars are at rest, and whose wrists are where they were as far as arms can reach."""
+    positions, world = skeleton.forward_kinematics(roots, local)
+    found = np.array(local)
+    for side, sign in SIDES:
+        collar, shoulder, elbow, wrist = (
+            INDEX[f"{side}_{joint}"] for joint in ("collar", "shoulder", "elbow", "wrist")
+        )
+        frames = np.flatnonzero(np.linalg.norm(local[:, collar, :3], axis=1) > TURNED / 2)
+        if not len(frames):
+            continue
+        chest = world[frames, INDEX["spine3"]]
+        rest = skeleton.offsets[collar] + skeleton.offsets[shoulder]
+        at = positions[frames, INDEX["spine3"]] + rotations.rotate(chest, rest)
+        pole = (positions[frames, elbow] - positions[frames, shoulder]).astype(np.float64)
+        limb = two_bone(at, positions[frames, wrist].astype(np.float64), pole, _bones(skeleton, side, _ARM))
+        upper, lower = arm_rotations(limb, int(sign))
+        found[frames, collar] = rotations.IDENTITY
+        found[frames, shoulder] = rotations.compose(rotations.inverse(chest), upper)
+        found[frames, elbow] = rotations.compose(rotations.inverse(upper), lower)
+        found[frames, wrist] = rotations.compose(rotations.inverse(lower), world[frames, wrist])
+    return found

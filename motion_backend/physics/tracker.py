@@ -1,0 +1,119 @@
+"""A plan followed to its end: window by window, with rewinding after a fall, and a counted reset where that fails."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+
+from motion_backend import rotations
+from motion_backend.motion import FPS
+from motion_backend.physics.contact_forces import ContactReader, Pressure
+from motion_backend.physics.engine import engine
+from motion_backend.physics.mjcf_character import NU
+from motion_backend.physics.mjcf_scene import Models
+from motion_backend.physics.mpc import Controller, Effort, Moment, moment_of
+from motion_backend.physics.reference import Reference
+from motion_backend.rotations import Array
+
+EFFORTS: Final = (Effort(), Effort(24, 2), Effort(28, 2, 2), Effort(30, 2, 2))
+"""The usual one, and what is tried after the first, the second and the third fall at a place."""
+BACK: Final = (1.3, 2.0, 3.0)
+"""Seconds that are gone back before each of those."""
+RECOVERED: Final = 1.0
+"""Seconds beyond the fall after which it is left behind."""
+FALLEN: Final = 0.4
+"""A pelvis farther from its plan (metres) has fallen, or was carried off."""
+TIPPED: Final = 1.3
+"""And so has one that is turned away from it by more (radians)."""
+
+
+@dataclass
+class Tracked:
+    """What came of a plan: a moment and a pressure for each of its frames, the first being where it began."""
+
+    moments: list[Moment]
+    pressures: list[Pressure]
+    resets: list[int] = field(default_factory=list)
+    """Frames in which the body was set onto the plan."""
+    rewinds: list[int] = field(default_factory=list)
+    """Frames in which it had fallen, and was gone back from."""
+    rewound: int = 0
+    """Frames that were thrown away."""
+    ahead: Array = field(default_factory=lambda: np.zeros((0, NU)))
+    """Offsets of controls for what comes next. (K, 30)."""
+
+
+@dataclass(frozen=True)
+class Tracker:
+    """What does not change from frame to frame."""
+
+    models_at: Callable[[int], Models]
+    """The window that a frame is simulated in."""
+    reference: Reference
+    scale: float
+    """Of the body, against 1.70 m."""
+    between: Callable[[], None] = lambda: None
+    """Called between any two windows; may raise."""
+
+    def track(self, start: Moment, ahead: Array, frames: int) -> Tracked:
+        """Follow so many frames of the reference from where a body is; the rest of it is looked ahead at."""
+        done = Tracked([start], [Pressure()], ahead=ahead)
+        data, reader = self._scratch()
+        falls, beyond = 0, 0
+        while len(done.moments) <= frames:
+            self.between()
+            at = len(done.moments) - 1
+            self._window(done, EFFORTS[falls], data, reader, frames - at)
+            at = len(done.moments) - 1
+            if self._fallen(done.moments[-1], at):
+                falls, beyond = self._recovered(done, falls), max(beyond, at)
+            elif falls and at > beyond + RECOVERED * FPS:
+                falls = beyond = 0
+        return done
+
+    def _scratch(self) -> tuple[Any, ContactReader]:
+        model = self.models_at(0).fine
+        return engine().MjData(model), ContactReader.of(model, self.scale)
+
+    def _window(self, done: Tracked, effort: Effort, data: Any, reader: ContactReader, left: int) -> None:
+        """Plan a horizon and play its first frames."""
+        at = len(done.moments) - 1
+        controller = Controller(self.models_at(at), data, self.reference, reader)
+        found = controller.improve(done.moments[-1], at, done.ahead, effort)
+        played = min(effort.played, left)
+        moments, pressures = controller.play(done.moments[-1], at, found.offsets[:played])
+        done.moments += moments
+        done.pressures += pressures
+        done.ahead = found.offsets[played:]
+
+    def _fallen(self, now: Moment, at: int) -> bool:
+        if not now.finite:
+            return True
+        planned = self.reference.qpos[at]
+        away = float(np.linalg.norm(now.state.qpos[:3] - planned[:3]))
+        turned = rotations.quat_to_rotvec(rotations.compose(rotations.inverse(_xyzw(planned)), _xyzw(now.state.qpos)))
+        return away > FALLEN or float(np.linalg.norm(turned)) > TIPPED
+
+    def _recovered(self, done: Tracked, falls: int) -> int:
+        """Go back before a fall, farther each time; else set the body onto the plan. How often it has fallen now."""
+        at = len(done.moments) - 1
+        done.ahead = np.zeros((0, NU))
+        if falls < len(BACK) and done.moments[0].finite:
+            back = max(at - round(BACK[falls] * FPS), 0)
+            done.rewinds.append(at)
+            done.rewound += at - back
+            del done.moments[back + 1 :], done.pressures[back + 1 :]
+            return falls + 1
+        done.resets.append(at)
+        done.moments[at] = moment_of(self.reference, at)
+        for frame, moment in enumerate(done.moments):
+            if not moment.finite:
+                done.moments[frame] = moment_of(self.reference, frame)
+        return 0
+
+
+def _xyzw(qpos: Array) -> Array:
+    return np.array([*qpos[4:7], qpos[3]])

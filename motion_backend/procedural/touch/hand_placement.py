@@ -1,0 +1,124 @@
+"""How a hand lies on a surface: turned on it and its elbow swung until the skin of its palm meets it and nothing else.
+
+Its wrist is where the contact goal says. A wrist bends only so far, so that a palm that is merely asked for lies askew,
+with its fingers in the surface: ways to turn the hand, to tip its fingers and to swing the elbow are tried together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from motion_backend import rotations
+from motion_backend.body.joint_limits import out_of_cone
+from motion_backend.inverse_kinematics import Limb, arm_rotations
+from motion_backend.procedural.arm_solver import Arm
+from motion_backend.procedural.collision_avoidance.elbow_collision import arm_points, in_trunk
+from motion_backend.procedural.held_poses import shoulders
+from motion_backend.procedural.pose import Pose
+from motion_backend.procedural.pose_solver import chest_frame
+from motion_backend.procedural.touch.hand_captions import Laid
+from motion_backend.procedural.touch.hand_contacts import is_top
+from motion_backend.procedural.touch.reach_keys import HandPlacement
+from motion_backend.rotations import Array
+from motion_backend.skeleton import HAND_REST, Skeleton
+
+Depth = Callable[[Array], Array]
+PALM: Final = np.array(
+    [
+        [0.00, -0.023, 0.000], [0.03, -0.027, 0.045], [0.03, -0.027, -0.035], [0.06, -0.031, 0.070],
+        [0.08, -0.032, 0.015], [0.08, -0.032, -0.044], [0.10, -0.028, 0.072], [0.11, -0.027, -0.045],
+        [0.13, -0.032, 0.047], [0.14, -0.032, -0.047], [0.15, -0.033, 0.015], [0.165, -0.033, 0.049],
+        [0.165, -0.030, -0.020], [0.172, -0.027, 0.015],
+    ]
+)  # fmt: skip
+"""The under side of a left hand from its wrist: along the fingers, out of its back, towards the thumb (metres at
+1.70 m, the mannequin's)."""
+FOREARM: Final = np.array([[0.0, 0.042], [0.6, 0.034]])
+"""Shares of a forearm from the elbow, and how thick it is there (metres at 1.70 m)."""
+
+
+def placed(bent: Pose, laid: Laid, elbows: Array, seen: Depth, skeleton: Skeleton, row: HandPlacement) -> Laid:
+    """The same hands as they best lie where a bent single pose has them, and where their elbows then point.
+
+    `elbows` (2, 3) is where they would point by themselves, `seen` says how deep points (N, 3) are in what is there.
+    """
+    found, poles = replace(laid, elbows=elbows.copy()), elbows.copy()
+    for place, (index, wrist, palm) in enumerate(laid.hands):
+        tried = _tries(bent, (index, wrist, palm), laid, elbows[index], skeleton, row)
+        chest = chest_frame(tried, skeleton)
+        arm = Arm.of(tried, skeleton, index, chest)
+        points = arm_points(arm, Limb(*(bone[:, None] for bone in arm.limb)), skeleton.scale)
+        own = row.deep_per_m * in_trunk(points, chest, skeleton.scale)[:, 0]
+        cost = own + _cost(arm, tried, laid.normal, wrist, seen, skeleton.scale, row) + _unusual(laid, row)
+        best = int(np.argmin(cost))
+        poles[index] = tried.elbows[best, index]
+        chosen = tried.palms[best, index]
+        other = found.other
+        found = replace(found, palm=chosen) if place == 0 or other is None else replace(found, other=(other[0], chosen))
+    return replace(found, elbows=poles)
+
+
+def _grid(laid: Laid, row: HandPlacement) -> tuple[Array, Array, Array]:
+    """Turns of the hand on the surface, tips of its fingers into it and swings of its elbow that are tried. (N,)."""
+    turns = row.top_turns_rad if is_top(laid.normal) else row.front_turns_rad
+    turn, tip, swing = np.meshgrid(turns, row.tips_rad, row.swings_rad, indexing="ij")
+    return turn.ravel(), tip.ravel(), swing.ravel()
+
+
+def _unusual(laid: Laid, row: HandPlacement) -> Array:
+    """What it costs to lie otherwise than straight ahead, or up a front. (N,)."""
+    turn, tip, swing = _grid(laid, row)
+    return np.asarray(row.turn_per_rad * np.abs(turn) + row.tip_per_rad * tip + row.swing_per_rad * np.abs(swing))
+
+
+def _tries(
+    bent: Pose, hand: tuple[int, Array, Array], laid: Laid, pole: Array, skeleton: Skeleton, row: HandPlacement
+) -> Pose:
+    """The pose with its hand laid in every way of the grid: its index, wrist and palm are given, and where its elbow
+    points. N frames."""
+    index, wrist, palm = hand
+    side = 1.0 if index == 0 else -1.0
+    turn, tip, swing = _grid(laid, row)
+    tries = bent.repeat(len(turn))
+    reach, reaching, palms = tries.reach.copy(), tries.reaching.copy(), tries.palms.copy()
+    pressing, elbows = tries.pressing.copy(), tries.elbows.copy()
+    reach[:, index], reaching[:, index], pressing[:, index] = wrist, 1.0, 1.0
+    shoulder, (chest, _) = shoulders(bent.repeat(1), skeleton)[0, index], chest_frame(bent.repeat(1), skeleton)
+    along = rotations.normalize(rotations.rotate(rotations.inverse(chest[0]), wrist - shoulder))
+    # Inwards is clockwise for the left hand, seen from above the surface.
+    turned = rotations.rotvec_to_quat((-side * turn)[:, None] * laid.normal)
+    tipped = rotations.axis_to_quat("z", -side * tip)
+    palms[:, index] = rotations.compose(rotations.compose(turned, palm), tipped)
+    # About the line from shoulder to wrist: outwards and up from where it points by itself.
+    elbows[:, index] = rotations.rotate(rotations.rotvec_to_quat((side * swing)[:, None] * along), pole)
+    return replace(tries, reach=reach, reaching=reaching, palms=palms, pressing=pressing, elbows=elbows)
+
+
+def _cost(arm: Arm, tried: Pose, normal: Array, wrist: Array, seen: Depth, scale: float, row: HandPlacement) -> Array:
+    """What an arm costs that is in something, hovers, or is strained. (N,)."""
+    joints = arm.joints()
+    upper, lower = arm_rotations(arm.limb, arm.side)
+    hand = rotations.compose(lower, joints[f"{arm.name}_wrist"])
+    skin = arm.wrist[:, None] + scale * rotations.rotate(hand[:, None], PALM * [float(arm.side), 1.0, 1.0])
+    gap = (skin - wrist) @ normal + HAND_REST
+    share, thick = FOREARM.T
+    along = arm.elbow[:, None] + share[:, None] * arm.lengths[1] * arm.limb.lower[:, None]
+    points = np.concatenate([skin, along], axis=1)
+    deep = seen(points.reshape(-1, 3)).reshape(points.shape[:2]) + np.append(np.zeros(len(PALM)), scale * thick)
+    deepest = np.maximum(np.maximum(deep, 0.0).sum(axis=1), -gap.min(axis=1))
+    strain = out_of_cone(f"{arm.name}_shoulder", rotations.compose(rotations.inverse(arm.clavicle), upper))
+    bend = rotations.length(rotations.quat_to_rotvec(joints[f"{arm.name}_wrist"]))[:, 0]
+    unlike = rotations.length(
+        rotations.quat_to_rotvec(rotations.compose(rotations.inverse(hand), tried.palms[:, arm.which]))
+    )[:, 0]
+    return np.asarray(
+        row.deep_per_m * deepest
+        + row.hover_per_m * np.maximum(gap.min(axis=1), 0.0)
+        + row.strain_per_rad * strain
+        + row.bend_per_rad * bend
+        + row.unlike_per_rad * unlike
+    )

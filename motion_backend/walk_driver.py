@@ -1,0 +1,310 @@
+"""Parts of kind walk by any generator of walking frames: the way, starts, stops and turns are the procedural body's.
+
+That body walks the part first. Where it goes ahead at a walking pace its frames give way to the generator's, which go
+the same way at the same speed; then it takes over again in the stride that the generator left the body in, and comes
+to the place, the stop and the turn that the part asks for. Every phase says who made it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from motion_backend import rotations
+from motion_backend.backend_protocol import BodyState, History, Part
+from motion_backend.metrics.joint_trajectories import Kinematics
+from motion_backend.metrics.penetration import penetration
+from motion_backend.mocap.foot_hold import held
+from motion_backend.motion import FPS, Action, Character, Motion, Phase, PhaseKind, Skill, join
+from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.procedural.emotion_style import Bearing
+from motion_backend.procedural.takeover import pose_of
+from motion_backend.procedural.walk.stride import Stride
+from motion_backend.procedural.walk.walk_styles import Walk, walk_style
+from motion_backend.rotations import Array
+from motion_backend.scene import scene_of
+from motion_backend.skeleton import INDEX
+from motion_backend.stride_takeover import joined, stride_of, strides_landing
+from motion_backend.walk_generator import Frames, WalkGenerator, Way, windows, yaw_of
+from scene_graphs.home import Home
+
+SMOOTH: Final = 6.0
+"""Width of the bell (frames) that takes a body's sway out of its way."""
+AHEAD: Final = np.radians(35.0)
+"""Who moves farther from where he faces does not walk ahead."""
+STARTED, STOPPING = 0.55, 0.85
+"""Of the fastest pace of a walk: from the first on it has been started, below the second it is being stopped."""
+SHORTEST: Final = 30
+"""Frames that are worth a generator's."""
+BEND: Final = 1.2
+"""Radians a metre that a way bends at most where it is walked by recorded frames, which are straight for the most."""
+SLOWEST: Final = 0.1
+"""Metres in two thirds of a second, under which a bend is not told."""
+FASTEST: Final = 2.0
+"""Metres a second, beyond which people run."""
+LATER: Final = 12
+"""Frames of its way beyond the stretch that a generator is to walk, in which its last step may end."""
+OFF: Final = 0.2
+"""Metres beside its way at which a generator's body has lost it."""
+PASSES: Final = 0.2
+"""Metres from a place within which it is passed by."""
+DEEPER: Final = 0.02
+"""Metres by which a generator's body may be deeper in furniture than the procedural one."""
+CARRIAGE_S: Final = 0.5
+"""Seconds in which a mood's bend of trunk and head comes and goes."""
+_BENT: Final = {"spine1": 1 / 3, "spine2": 1 / 3, "spine3": 1 / 3}
+_NODS: Final = {"neck": 0.5, "head": 0.5}
+"""Shares of the joints that bend."""
+FREE: Final = {"bounce": 0.02, "sway": 0.06, "swing": 26.0, "twist": 10.0, "hips": 7.0, "elbow": 25.0}
+"""What captions of plain walks may ask for, up to this: people do that of themselves."""
+OWN: Final = frozenset({"speed", "bearing", "character", "release", "stride", "roll", "strike", *FREE})
+"""What a caption may say of a walk that is still a plain one."""
+BORROWED: Final = "borrowed"
+"""What a state remembers whose stride was another body's than the one that remembers it."""
+MOST, AGAIN = 5, 15
+"""Stretches of one part, and the frames of the procedural body between two of them at least."""
+LEAST: Final = 12
+"""Frames of a stretch that was cut off, of any use."""
+TOO_SHORT: Final = "the way is too short, or too winding, to get into a stride"
+STARTS_AND_STOPS: Final = "starts, stops and turns on the spot are the rules'"
+
+
+@dataclass(frozen=True)
+class WalkDriver:
+    """Walks parts by a generator's frames."""
+
+    generator: WalkGenerator
+
+    @property
+    def _rules(self) -> ProceduralBackend:
+        return ProceduralBackend()
+
+    def begin(self, home: Home, character: Character, seed: int) -> BodyState:
+        """Standing in the home, as the procedural body does."""
+        return self._rules.begin(home, character, seed)
+
+    def advance(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
+        """Do a walk. What the generator has no part in is the procedural body's, with the reason."""
+        index, made = state.index, list[Motion]()
+        style, why = style_of(part.action), unlike_people(part.action)
+        least = 0
+        for _ in range(MOST):
+            walk = _Walk(home, part, tuple(upcoming), state, style, *self._ruled(home, part, upcoming, state))
+            stretch = None if why else plain_stretch(walk.ruled, self.generator.slowest, least)
+            if not walk.ruled.completed or stretch is None:
+                why = why or (TOO_SHORT if not made else STARTS_AND_STOPS)
+                break
+            history, motion, beyond = self._stretch(walk, stretch)
+            if len(motion) < LEAST:
+                why = f"{self.generator.name} finds no room"
+                break
+            if stretch[0]:
+                made.append(self._by_rules(walk.ruled.part(0, stretch[0]), STARTS_AND_STOPS))
+            made.append(motion)
+            state = replace(state, history=history.followed_by(motion))
+            if walk.is_over(motion):
+                return join(made), replace(_in_stride(state, walk, beyond), index=index + 1)
+            state, least, why = _in_stride(state, walk, walk.to_goal(beyond)), AGAIN, ""
+        else:
+            walk = _Walk(home, part, tuple(upcoming), state, style, *self._ruled(home, part, upcoming, state))
+            why = STARTS_AND_STOPS
+        if not len(walk.ruled) and not made:
+            return walk.ruled, walk.after
+        made.append(self._by_rules(walk.ruled, walk.ruled.reason or why))
+        return join(made), replace(walk.after, index=index + 1)
+
+    def _ruled(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
+        """The part as the procedural body does it from here on."""
+        ruled, after = self._rules.advance(home, part, upcoming, state)
+        if state.memory.get(BORROWED) and len(ruled):
+            ruled = joined(state.history, ruled)
+            after = replace(after, history=state.history.followed_by(ruled))
+        return ruled, after
+
+    def _by_rules(self, motion: Motion, why: str) -> Motion:
+        """A motion of the procedural body, labelled so."""
+        phases = tuple(replace(phase, backend=self._rules.name, fallback=why) for phase in motion.phases)
+        return replace(motion, phases=phases)
+
+    def _stretch(self, walk: _Walk, stretch: tuple[int, int]) -> tuple[History, Motion, Array]:
+        """What came before, the generator's frames, feet held and ending as a heel comes down, and the way (N, 2) left.
+
+        They end before the body would be in furniture, or beside its way.
+        """
+        skeleton, (start, stop), before = walk.ruled.skeleton, stretch, walk.state.history
+        history = before.followed_by(walk.ruled.part(0, start)) if start else before
+        scale, places = skeleton.scale, walk.way[start:]
+        past = Frames(history.root_positions / scale, history.local_rotations)
+        rng = np.random.default_rng([walk.state.seed, walk.state.index, len(history), start])
+        made, way = past, Way(places[: stop - start + LATER] / scale)
+        for found in windows(self.generator.begin(past, rng), past, way):
+            made = made.then(found)
+        made = _carried(made, walk.part.action, len(past))
+        root, local, contacts = held(made.root * scale, made.local, skeleton, len(past))
+        motion = Motion(
+            root_positions=root[len(past) :].astype(np.float32),
+            local_rotations=local[len(past) :].astype(np.float32),
+            contacts=contacts[len(past) :].astype(np.float32),
+            skeleton=skeleton,
+            actions=np.full(len(root) - len(past), walk.part.action.keyframe, dtype=np.int32),
+        )
+        body = Kinematics.of(motion)
+        free = walk.free(body)
+        count = _steps_end(body.positions[:free], places[min(stop - start, len(places) - 1)]) + 1 if free else 0
+        motion = replace(motion.part(0, count), phases=(Phase(PhaseKind.WALK, 0, count, self.generator.name),))
+        gone = _nearest(places[: stop - start + LATER], motion.root_positions[-1, [0, 2]]) if count else 0
+        return history, motion, places[gone + 1 :]
+
+
+@dataclass(frozen=True)
+class _Walk:
+    """A walk as the procedural body did it."""
+
+    home: Home
+    part: Part
+    upcoming: tuple[Part, ...]
+    state: BodyState
+    """Before it."""
+    style: Walk
+    ruled: Motion
+    after: BodyState
+    """What that left."""
+
+    @property
+    def stride(self) -> Stride | None:
+        """What the procedural body was in at the end; None where it stopped."""
+        told = self.after.memory.get("stride")
+        return Stride.from_lists(told) if told else None
+
+    @cached_property
+    def way(self) -> Array:
+        """Where its pelvis goes, without its sway, and on from there where it does not stop. (N, 2)."""
+        places = _way_of(self.ruled)
+        if self.stride is None:
+            return places
+        onward = Way.along(np.concatenate([places[-1:], self.stride.rest[1:]]), max(self.stride.speed, SLOWEST)).places
+        return np.concatenate([places, onward[1:]])
+
+    def to_goal(self, beyond: Array) -> Array:
+        """Of the way that is left what leads to the place of this part: of one that goes on, no more than that."""
+        if self.stride is None or self.part.goal is None or not len(beyond):
+            return beyond
+        return beyond[: _nearest(beyond, np.array(self.part.goal)) + 1]
+
+    def is_over(self, motion: Motion) -> bool:
+        """Whether a motion has passed the place by which the way goes on."""
+        return self.stride is not None and self.part.goal is not None and self._passes(motion) < PASSES
+
+    def _passes(self, motion: Motion) -> float:
+        """How near a motion comes to the place (metres)."""
+        goal = np.asarray(self.part.goal, dtype=np.float64)
+        return float(np.linalg.norm(motion.root_positions[:, [0, 2]] - goal, axis=1).min())
+
+    def free(self, body: Kinematics) -> int:
+        """How many of a body's frames come before it is deeper in furniture than it may be, or has lost its way."""
+        obstacles = scene_of(self.home).obstacles
+        most = float(penetration(Kinematics.of(self.ruled), obstacles, None).max()) + DEEPER
+        places = body.positions[:, 0][:, [0, 2]]
+        off = np.sqrt(((places[:, None] - self.way[None]) ** 2).sum(axis=2)).min(axis=1)
+        lost = (penetration(body, obstacles, None) > most) | (off > OFF)
+        return int(np.argmax(lost)) if lost.any() else len(lost)
+
+
+def style_of(action: Action) -> Walk:
+    """The way of walking to where an action is done."""
+    return walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
+
+
+def unlike_people(action: Action) -> str:
+    """Why no plain walk serves an action; empty where one does."""
+    style = style_of(action)
+    usual = walk_style(action.emotion, "walk")
+    odd = [name for name in vars(style) if name not in OWN and getattr(style, name) != getattr(usual, name)]
+    odd += [name for name, most in FREE.items() if getattr(style, name) > max(most, getattr(usual, name))]
+    odd += ["arms"] * (style.bearing.arms != usual.bearing.arms) + ["wobble"] * bool(usual.wobble)
+    if style.speed > FASTEST:
+        return "nobody runs in recorded walks"
+    return f"no recorded walk is like {action.caption!r:.40} ({', '.join(odd)})" if odd else ""
+
+
+def plain_stretch(motion: Motion, slowest: float, least: int = 0) -> tuple[int, int] | None:
+    """The longest stretch of a motion that is plain walking ahead, from frame to frame; None where it is short.
+
+    It does not begin before frame `least`.
+    """
+    if len(motion) < SHORTEST:
+        return None
+    steps = np.gradient(_way_of(motion), axis=0) * FPS
+    pace = np.linalg.norm(steps, axis=1)
+    facing = _smooth(np.unwrap(yaw_of(motion.local_rotations[:, 0].astype(np.float64))))
+    ahead = np.abs(rotations.wrap(np.arctan2(steps[:, 0], steps[:, 1]) - facing)) < AHEAD
+    scale = motion.skeleton.scale
+    walks = ahead & (pace > max(slowest * scale, STARTED * float(pace.max()))) & (pace < FASTEST * scale)
+    yaw, gone = np.unwrap(np.arctan2(steps[:, 0], steps[:, 1])), np.cumsum(pace) / FPS
+    reach = FPS // 3
+    turned = np.abs(yaw[2 * reach :] - yaw[: -2 * reach]) / np.maximum(gone[2 * reach :] - gone[: -2 * reach], SLOWEST)
+    walks &= np.pad(turned * scale, (reach, reach), mode="edge") < BEND
+    walking = [phase for phase in motion.phases if phase.kind is PhaseKind.WALK]
+    in_walk = np.zeros(len(motion), dtype=np.bool_)
+    for phase in walking:
+        in_walk[max(phase.start, least) : phase.stop] = True
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], walks & in_walk, [False]]).astype(np.int8)))
+    runs = edges.reshape(-1, 2)
+    if not len(runs):
+        return None
+    start, stop = runs[int(np.argmax(runs[:, 1] - runs[:, 0]))].tolist()
+    quick = np.flatnonzero(pace[start:stop] > STOPPING * float(pace.max()))
+    stop = start + int(quick.max(initial=-1)) + 1
+    return (start, stop) if stop - start >= SHORTEST else None
+
+
+def _way_of(motion: Motion) -> Array:
+    """Where a pelvis goes, without its sway. (T, 2)."""
+    return _smooth(motion.root_positions[:, [0, 2]].astype(np.float64))
+
+
+def _smooth(values: Array) -> Array:
+    from scipy.ndimage import gaussian_filter1d
+
+    return np.asarray(gaussian_filter1d(values, SMOOTH, axis=0, mode="nearest"))
+
+
+def _nearest(places: Array, place: Array) -> int:
+    return int(np.argmin(np.sum((places - place) ** 2, axis=1)))
+
+
+def _carried(made: Frames, action: Action, fixed: int) -> Frames:
+    """Trunk and head bent as a mood bends them, besides what the generator does."""
+    plain, moody = walk_style(action.emotion, "walk").bearing, Bearing()
+    lean, nod = np.radians(plain.lean - moody.lean), np.radians(plain.head - moody.head)
+    if not lean and not nod:
+        return made
+    ease = np.clip((np.arange(len(made)) - fixed + 1) / (CARRIAGE_S * FPS), 0.0, 1.0)
+    local = made.local.copy()
+    for joints, angle in ((_BENT, lean), (_NODS, nod)):
+        for name, share in joints.items():
+            bend = rotations.axis_to_quat("x", ease * share * angle)
+            local[:, INDEX[name]] = rotations.compose(local[:, INDEX[name]], bend)
+    return Frames(made.root, local)
+
+
+def _steps_end(positions: Array, end: Array) -> int:
+    """Of the frames (T, 22, 3) in which a heel comes down the one that is nearest to a place (2,)."""
+    landing = strides_landing(positions)
+    if not len(landing):
+        return len(positions) - 1
+    return int(landing[_nearest(positions[landing, 0][:, [0, 2]], end)])
+
+
+def _in_stride(state: BodyState, walk: _Walk, beyond: Array) -> BodyState:
+    """The state that lets the procedural body go on in the stride that the last frames are in."""
+    skeleton = walk.ruled.skeleton
+    rest = beyond if len(beyond) else np.array([walk.part.goal])
+    stride = stride_of(state.history, skeleton, walk.style, rest)
+    pose = pose_of(state.history, skeleton).to_lists()
+    memory = {"pose": pose, "holds": [None, None], "tail": None, "stride": stride.to_lists(), BORROWED: True}
+    return replace(state, backend=ProceduralBackend.name, memory=memory)

@@ -1,0 +1,144 @@
+"""A story as film.mp4: shots of the body acting it out, its title at the beginning, its told words as captions."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion_backend.formats.mp4 import write_mp4
+from motion_backend.rendering.film_frames import film_frames
+from motion_backend.rendering.film_shots import film_shots
+from scene_graphs.errors import UserError
+
+if TYPE_CHECKING:
+    from motion_backend.rendering.renderer import Image
+    from planner_service.narration.narrator import Told
+    from planner_service.pipeline import Story
+
+SIZE: Final = (1280, 720)
+"""Pixels across and down."""
+TITLE_SECONDS: Final = 2.5
+MAX_LETTERS: Final = 66
+"""Of a line of a caption."""
+MAX_LINES: Final = 2
+TEXT_HEIGHT, TITLE_HEIGHT = 0.042, 0.085
+"""Of the picture's height."""
+SHADE: Final = 0.62
+"""How much of a picture's light stays under its words."""
+SENTENCE: Final = re.compile(r"[^.!?…]+[.!?…]*[\"”’']*\s*")
+
+
+class FilmUnavailableError(UserError):
+    """No film can be written here; says what is missing."""
+
+
+def check_film() -> None:
+    """FilmUnavailableError where the library that writes films is not installed; nothing is loaded."""
+    if find_spec("av") is None:
+        raise FilmUnavailableError(
+            "writing film.mp4 needs a library that is not installed", 'pip install "sims-stories[video]"', at="--film"
+        )
+
+
+@dataclass(frozen=True)
+class Subtitle:
+    """Words that are shown from frame start to stop (exclusive)."""
+
+    start: int
+    stop: int
+    text: str
+
+
+def write_film(
+    story: Story, path: Path, size: tuple[int, int] = SIZE, show: Callable[[float], None] = lambda _: None
+) -> Path:
+    """Film a story; `show` is told which share is done. FilmUnavailableError."""
+    check_film()
+    motion, told = story.motion, story.planned.told
+    shots = film_shots(story.planned.home, motion, [start for start, _ in story.segments], size[0] / size[1])
+    words = [(line, _lettered(line.text, size, TEXT_HEIGHT)) for line in subtitles(told, story.segments)]
+    title = _lettered(told.title, size, TITLE_HEIGHT)
+    titled = round(TITLE_SECONDS * motion.fps)
+
+    def dressed(frame: int, picture: Image) -> Image:
+        for line, letters in words:
+            if line.start <= frame < line.stop and frame >= titled:
+                _lay(picture, letters, 0.94)
+        if frame < titled:
+            _lay(picture, title, 0.58)
+        return picture
+
+    def counted() -> Iterator[Image]:
+        for number, picture in enumerate(film_frames(story.planned.home, motion, shots, size, dressed)):
+            show(number / len(motion))
+            yield picture
+
+    return write_mp4(counted(), path, motion.fps)
+
+
+def subtitles(told: Told, segments: Sequence[tuple[int, int]]) -> list[Subtitle]:
+    """The told sentences, each from the first frame of what it tells until the next one begins.
+
+    Sentences that tell no keyframe are shown with the one that follows. `segments` are frames of keyframes.
+    """
+    begun: list[tuple[int, str]] = []
+    waiting = ""
+    for sentence in SENTENCE.finditer(told.text):
+        waiting += sentence.group()
+        shown = [k for span in told.spans if sentence.start() <= span.start < sentence.end() for k in span.keyframes]
+        if shown:
+            begun.append((segments[min(shown)][0], waiting))
+            waiting = ""
+    if waiting and begun:
+        begun[-1] = (begun[-1][0], begun[-1][1] + waiting)
+    stops = [*(start for start, _ in begun[1:]), segments[-1][1] if segments else 0]
+    return [
+        piece
+        for (start, text), stop in zip(begun, stops, strict=True)
+        if stop > start
+        for piece in _pages(start, stop, text)
+    ]
+
+
+def _pages(start: int, stop: int, text: str) -> Iterator[Subtitle]:
+    """Words that do not fit into one picture follow each other, each for as long as its letters ask."""
+    lines = textwrap.wrap(" ".join(text.split()), MAX_LETTERS)
+    pages = ["\n".join(lines[i : i + MAX_LINES]) for i in range(0, len(lines), MAX_LINES)]
+    letters = np.cumsum([0, *map(len, pages)])
+    cuts = (start + (stop - start) * letters / max(letters[-1], 1)).round().astype(int).tolist()
+    return (Subtitle(*cut, page) for cut, page in zip(pairwise(cuts), pages, strict=True))
+
+
+def _lettered(text: str, size: tuple[int, int], share: float) -> NDArray[np.float32]:
+    """White words as how much of each pixel they cover, cut to what they fill. (h, w)."""
+    from matplotlib import font_manager
+    from PIL import Image as Pictures
+    from PIL import ImageDraw, ImageFont
+
+    font = ImageFont.truetype(font_manager.findfont("DejaVu Sans"), round(share * size[1]))
+    page = Pictures.new("L", size)
+    ImageDraw.Draw(page).multiline_text((size[0] / 2, size[1] / 2), text, 255, font, anchor="mm", align="center")
+    box = page.getbbox() or (0, 0, 1, 1)
+    pad = round(0.3 * share * size[1])
+    low, high = (max(box[0] - 2 * pad, 0), max(box[1] - pad, 0)), (box[2] + 2 * pad, box[3] + pad)
+    cover = np.asarray(page.crop((*low, *high)), dtype=np.float32)
+    return cover / np.float32(255)
+
+
+def _lay(picture: Image, letters: NDArray[np.float32], bottom: float) -> None:
+    """Words on a darker band, in the middle of a picture, ending at that share of its height."""
+    height, width = letters.shape
+    top = round(bottom * picture.shape[0]) - height
+    left = (picture.shape[1] - width) // 2
+    part = picture[top : top + height, left : left + width]
+    cover = letters[: part.shape[0], : part.shape[1], None]
+    part[:] = (SHADE * part * (1 - cover) + 255 * cover).astype(np.uint8)

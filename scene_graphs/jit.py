@@ -1,0 +1,19 @@
+"""Functions that are compiled for this machine when they are first called. Imported late: numba takes half a second."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+import numba
+
+_F = TypeVar("_F", bound=Callable[..., Any])
+
+
+def compiled(function: _F) -> _F:
+    """Compile at the first call, and keep what was compiled beside the module or in the user's cache, if one can be
+    written. The interpreter's lock is released while it runs."""
+    try:
+        return cast(_F, numba.njit(cache=True, nogil=True)(function))
+    except RuntimeError:  # There is no folder to keep it in.
+        return cast(_F, numba.njit(nogil=True)(function))

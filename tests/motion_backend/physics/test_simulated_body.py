@@ -1,0 +1,109 @@
+"""The body in MuJoCo: the product's joints and back, what it weighs, and what stands around it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from acted import lain, sat, touched
+from simulated import NOTHING, empty_room, plan_of, walk
+
+from motion_backend.body.scene_collision import Obstacles
+from motion_backend.body.segment_masses import centres_of_mass
+from motion_backend.motion import Motion
+from motion_backend.physics.engine import EngineError, engine, require_version
+from motion_backend.physics.generalized_coordinates import fold, unfold
+from motion_backend.physics.mjcf_character import NQ, NU, NV, SIMULATED, mass_of
+from motion_backend.physics.mjcf_scene import SLOTS, models_of, near_way
+from motion_backend.physics.reference import Reference
+from motion_backend.skeleton import INDEX
+
+FEET = [INDEX[f"{side}_{joint}"] for side in ("left", "right") for joint in ("ankle", "foot")]
+OTHERS = [
+    index for name, index in INDEX.items() if "shoulder" not in name and "elbow" not in name and index not in FEET
+]
+
+
+def motions() -> list[Motion]:
+    others = (sat("chair", "sitting still"), lain("bed", "lying still"), touched("shelf", "high", "touch high height"))
+    return [walk(), *(one.motion for one in others)]
+
+
+def test_a_plan_becomes_the_simulated_body_and_comes_back() -> None:
+    for motion in motions():
+        reference = Reference.of(replace(plan_of(motion), contacts=np.ones((len(motion), 4))), motion.skeleton)
+        found = motion.skeleton.forward_kinematics(*unfold(reference.qpos, reference.wrists))[0]
+        away = np.linalg.norm(found - motion.joint_positions(), axis=-1)
+        assert away[:, FEET].max() < 0.001
+        assert away[:, OTHERS].max() < 0.01
+        # Arms without collars begin elsewhere, and end where they did.
+        assert away.max() < 0.05
+
+
+def test_simulated_joints_are_where_ours_are() -> None:
+    motion, mujoco = walk(), engine()
+    model = empty_room().fine
+    data = mujoco.MjData(model)
+    qpos = fold(motion.root_positions, motion.local_rotations)
+    places = motion.joint_positions()
+    for frame in range(0, len(motion), 20):
+        data.qpos[:] = qpos[frame]
+        mujoco.mj_kinematics(model, data)
+        for side in ("left", "right"):
+            for body, joint in (("foot", "ankle"), ("toe", "foot"), ("shin", "knee"), ("hand", "wrist")):
+                np.testing.assert_allclose(
+                    data.body(f"{side}_{body}").xpos, places[frame, INDEX[f"{side}_{joint}"]], atol=0.001
+                )
+
+
+@pytest.mark.parametrize("height", [1.2, 1.7, 2.0])
+def test_a_body_weighs_what_its_segments_do(height: float) -> None:
+    model = models_of(height, NOTHING).fine
+    assert (model.nq, model.nv, model.nu) == (NQ, NV, NU)
+    assert model.body_mass.sum() == pytest.approx(mass_of(height), rel=1e-3)
+    for joint in SIMULATED:
+        own = model.joint(joint.name)
+        assert (own.qposadr[0], own.dofadr[0]) == (joint.qpos, joint.qvel)
+
+
+def test_the_centre_of_mass_is_that_of_the_kinematic_body() -> None:
+    motion, mujoco = walk(), engine()
+    model = empty_room().fine
+    data = mujoco.MjData(model)
+    data.qpos[:] = fold(motion.root_positions, motion.local_rotations)[40]
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    positions, world = motion.skeleton.forward_kinematics(motion.root_positions[40:41], motion.local_rotations[40:41])
+    ours = centres_of_mass(motion.skeleton, positions.astype(np.float64), world)[0]
+    np.testing.assert_allclose(data.body("pelvis").subtree_com, ours, atol=0.01)
+
+
+def test_of_many_boxes_the_nearest_are_met_and_none_has_to_have_a_size() -> None:
+    rng = np.random.default_rng(0)
+    centers = rng.uniform([-2, 0, -2], [2, 1, 2], (500, 3))
+    halves = rng.uniform(0, 0.3, (500, 3)) * (rng.random((500, 1)) > 0.2)
+    many = Obstacles(centers, halves, rng.uniform(-3, 3, 500), ("box",) * 500, np.zeros(500, dtype=bool))
+    way = np.full((4, 2, 3), 0.5)
+    near = near_way(way, many)
+    assert len(near.owners) == SLOTS
+    gaps = [-many.inside(way[0, :1], index)[0] for index in range(500)]
+    tops = many.centers[:, 1] + many.halves[:, 1]
+    farthest = max(-near.inside(way[0, :1], index)[0] for index in range(SLOTS))
+    assert sorted(np.array(gaps)[tops > 0.04])[SLOTS - 1] == pytest.approx(farthest)
+    assert models_of(1.7, near).fine.ngeom == empty_room().fine.ngeom
+
+
+def test_nothing_pushes_the_pelvis() -> None:
+    model = empty_room().fine
+    # Every actuator drives a joint, and none of them is the free joint of the pelvis.
+    assert (model.actuator_trnid[:, 0] != model.joint("root").id).all()
+    assert model.nu == NU
+    assert not model.neq
+
+
+@pytest.mark.parametrize("version", ["3.16.4", "3.18.0", "4.17.0", "2.3", "abc", ""])
+def test_another_engine_is_refused_with_the_remedy(version: str) -> None:
+    with pytest.raises(EngineError, match=r"3\.17 was.*mujoco>=3\.17,<3\.18"):
+        require_version(version)
+    require_version("3.17.3")

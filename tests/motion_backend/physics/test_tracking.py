@@ -1,0 +1,136 @@
+"""Plans followed by a body under gravity: it stands, walks, weighs what it weighs, and is moved by its joints alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from simulated import empty_room, plan_of, stood, tracked, tracker_of, walk, walked
+
+from motion_backend.body.zero_moment import GRAVITY
+from motion_backend.physics import linear_model
+from motion_backend.physics.contact_forces import Pressure
+from motion_backend.physics.engine import engine
+from motion_backend.physics.mjcf_character import NU, mass_of
+from motion_backend.physics.mpc import SLIDING, Controller, Moment, moment_of
+from motion_backend.physics.reference import Plan
+from motion_backend.physics.tracker import Tracked, Tracker
+
+
+def away(plan: Plan, done: Tracked) -> np.ndarray:
+    """How far the pelvis is from its plan. (T,) metres."""
+    places = np.array([moment.state.qpos[:3] for moment in done.moments])
+    return np.linalg.norm(places - plan.roots[: len(places)], axis=1)
+
+
+def test_a_body_stands_for_three_seconds_and_the_floor_carries_its_weight() -> None:
+    plan, done = stood()
+    assert not done.rewinds
+    assert away(plan, done).max() < 0.05
+    carried = np.mean([pressure.total for pressure in done.pressures[-30:]])
+    assert carried == pytest.approx(mass_of(1.70) * GRAVITY, rel=0.05)
+    assert done.pressures[-1].planted.tolist() == [1, 1, 1, 1]
+
+
+def test_a_body_walks_for_two_seconds() -> None:
+    plan, done = walked()
+    assert not done.rewinds
+    assert away(plan, done).max() < 0.08
+    planted = np.array([pressure.planted.reshape(2, 2).max(axis=1) for pressure in done.pressures[1:]])
+    assert (planted.sum(axis=1) < 2).any(), "no foot was lifted"
+    assert planted.any(axis=1).mean() > 0.95
+
+
+def test_the_recorded_controls_alone_make_the_same_states() -> None:
+    # What else pushed the body would be missing here.
+    _, done = walked()
+    mujoco, model = engine(), empty_room().fine
+    data = mujoco.MjData(model)
+    data.qpos[:], data.qvel[:] = done.moments[0].state
+    for before, after in zip(done.moments[:30], done.moments[1:31], strict=True):
+        for step in range(4):
+            data.ctrl[:] = before.control + (after.control - before.control) * ((step + 1) / 4)
+            mujoco.mj_step(model, data)
+        np.testing.assert_array_equal(data.qpos, after.state.qpos)
+        np.testing.assert_array_equal(data.qvel, after.state.qvel)
+
+
+def test_results_do_not_depend_on_the_number_of_threads(monkeypatch: pytest.MonkeyPatch) -> None:
+    plan = plan_of(walk())
+    found = []
+    for threads in (1, 3):
+        monkeypatch.setattr(linear_model, "threads", lambda count=threads: count)
+        found.append(tracked(plan, 4).moments[-1].state.qpos)
+    np.testing.assert_array_equal(*found)
+
+
+def test_a_state_that_is_not_finite_is_planned_again_and_then_reset() -> None:
+    plan = plan_of(walk())
+    tracker = tracker_of(plan)
+    broken = moment_of(tracker.reference, 0)
+    broken.state.qvel[3] = np.nan
+    done = tracker.track(broken, np.zeros((0, NU)), 8)
+    assert len(done.resets) == 1
+    assert all(moment.finite for moment in done.moments)
+
+
+def test_a_fall_is_gone_back_from_three_times_and_then_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    plan = plan_of(walk())
+    efforts = []
+
+    def falls(_self: Tracker, done: Tracked, effort: object, *_rest: object) -> None:
+        """A body that is carried off after a second, every time."""
+        efforts.append(effort)
+        reference, at = tracker.reference, len(done.moments)
+        moment = moment_of(reference, at)
+        if at >= 30 and len(done.resets) == 0:
+            moment.state.qpos[0] += 1.0
+        done.moments.append(moment)
+        done.pressures.append(Pressure())
+
+    tracker = tracker_of(plan)
+    monkeypatch.setattr(Tracker, "_window", falls)
+    done = tracker.track(moment_of(tracker.reference, 0), np.zeros((0, NU)), 60)
+    assert done.rewinds == [30, 30, 30]
+    assert done.resets == [30]
+    assert len(done.moments) == 61
+    assert len(set(map(str, efforts))) == 4
+
+
+def test_a_plan_that_jumps_or_is_not_finite_is_known_by_the_frame() -> None:
+    plan = plan_of(walk())
+    assert plan.jump() is None
+    roots = plan.roots.copy()
+    roots[50:] += 2.0
+    assert replace(plan, roots=roots).jump() == 50
+    roots = plan.roots.copy()
+    roots[7] = np.nan
+    assert replace(plan, roots=roots).jump() == 7
+
+
+@pytest.mark.sweep
+@pytest.mark.parametrize("height", [1.2, 2.0])
+def test_small_and_tall_bodies_stand(height: float) -> None:
+    plan, done = stood(height, 1)
+    assert not done.rewinds
+    assert away(plan, done).max() < 0.05
+    carried = np.mean([pressure.total for pressure in done.pressures[-10:]])
+    assert carried == pytest.approx(mass_of(height) * GRAVITY, rel=0.1)
+
+
+def test_a_moment_knows_whether_it_is_finite() -> None:
+    moment = moment_of(tracker_of(plan_of(walk())).reference, 3)
+    assert moment.finite
+    assert not Moment(moment.state, np.full_like(moment.warm, np.inf), moment.control).finite
+
+
+def test_the_price_of_sliding_is_that_of_its_jacobian() -> None:
+    tracker = tracker_of(plan_of(walk()))
+    data, reader = tracker._scratch()
+    controller = Controller(empty_room(), data, tracker.reference, reader)
+    for at in range(10, 40, 3):
+        data.qpos[:], data.qvel[:] = tracker.reference.qpos[at], tracker.reference.qvel[at] + 0.1
+        rows = controller._planted_rows(at)
+        wanted = 0.0 if rows is None else SLIDING * float(((rows @ data.qvel) ** 2).sum())
+        assert controller._sliding(at) == pytest.approx(wanted)

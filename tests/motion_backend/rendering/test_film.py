@@ -1,0 +1,104 @@
+"""A film shows the body in every frame: shots follow each other without a gap, and each frame is the picture it was."""
+
+from __future__ import annotations
+
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from acted import SMALL, sat, walked
+
+from motion_backend.formats.mp4 import write_mp4
+from motion_backend.motion import Motion, join
+from motion_backend.rendering.camera import SEEN
+from motion_backend.rendering.film_backdrop import Backdrop
+from motion_backend.rendering.film_frames import film_frames
+from motion_backend.rendering.film_shots import LONGEST, SHORTEST, FilmShot, film_shots
+from motion_backend.rendering.motion_figures import body_solids, home_props
+from motion_backend.rendering.rasterizer import orbit
+from motion_backend.rendering.renderer import render
+from planner_service.narration.narrator import Span, Told
+from planner_service.output.film import subtitles
+
+SIZE = (96, 54)
+
+
+@cache
+def acted() -> Motion:
+    return join([walked("walk").motion, sat("sofa", "sit").motion])
+
+
+@cache
+def shots() -> tuple[FilmShot, ...]:
+    return tuple(film_shots(SMALL, acted(), [0, len(walked("walk").motion)], 16 / 9))
+
+
+def test_shots_follow_each_other_without_a_gap():
+    assert shots()[0].start == 0
+    assert shots()[-1].stop == len(acted())
+    assert all(one.stop == other.start for one, other in pairwise(shots()))
+    seconds = [(shot.stop - shot.start) / acted().fps for shot in shots()]
+    assert min(seconds) >= 0.6 * SHORTEST
+    assert max(seconds) <= LONGEST + SHORTEST
+
+
+def test_the_body_is_in_the_picture_all_the_time():
+    joints = acted().joint_positions()[:, SEEN].astype(np.float64)
+    for shot in shots():
+        for frame in range(shot.start, shot.stop):
+            x, y, _ = np.moveaxis(shot.camera.project(shot.camera.view(joints[frame]), (160, 90)), -1, 0)
+            assert ((x > 0) & (x < 160) & (y > 0) & (y < 90)).mean() > 0.9, (shot, frame)
+
+
+def test_no_camera_is_in_furniture():
+    for shot in shots():
+        for placed in SMALL.objects:
+            local = np.abs(placed.to_local(shot.camera.eye))
+            half = np.array([placed.size[0] / 2, placed.size[1], placed.size[2] / 2])
+            assert (local > half).any(), (shot, placed.id)
+
+
+def test_a_body_put_into_a_still_picture_looks_as_if_all_had_been_drawn():
+    body = body_solids(acted(), [40])[0]
+    x, _, z = acted().joint_positions()[40, 0].tolist()
+    camera = orbit((x, 0.9, z), 3.0, 0.7, 0.3)
+    still = [prop.solid for prop in home_props(SMALL)]
+    whole = render([*still, body], camera, SIZE).astype(int)
+    backdrop = Backdrop.of(still, camera, SIZE)
+    made = backdrop.with_body(body).astype(int)
+    assert (np.abs(made - render(still, camera, SIZE)).max(axis=-1) > 20).mean() > 0.05
+    off = np.abs(made - whole).max(axis=-1)
+    assert off.mean() < 2.0
+    assert (off > 40).mean() < 0.03
+
+
+def test_a_body_that_is_not_in_the_picture_leaves_it_as_it_was():
+    body = body_solids(acted(), [40])[0]
+    camera = orbit((0.0, 40.0, 0.0), 3.0, 0.7, 0.3)
+    still = [prop.solid for prop in home_props(SMALL)]
+    assert (Backdrop.of(still, camera, SIZE).with_body(body) == render(still, camera, SIZE)).all()
+
+
+def test_a_film_has_all_frames_and_the_same_bytes_again(tmp_path: Path):
+    motion = acted().part(0, 20)
+    few = [FilmShot(0, 20, shots()[0].camera)]
+    one, again = (
+        write_mp4(film_frames(SMALL, motion, few, SIZE), tmp_path / name, motion.fps) for name in ("a.mp4", "b.mp4")
+    )
+    assert one.read_bytes() == again.read_bytes()
+    av = pytest.importorskip("av")
+    with av.open(str(one)) as film:
+        shown = [frame.to_ndarray(format="rgb24") for frame in film.decode(video=0)]
+    assert len(shown) == 20
+    drawn = next(iter(film_frames(SMALL, motion, few, SIZE)))
+    assert np.abs(shown[0].astype(int) - drawn).mean() < 8
+
+
+def test_every_sentence_is_shown_while_what_it_tells_is_done():
+    text = "It was late. She came home. She thought of him, and sat down. Then she slept."
+    spans = [Span(text.index(word), text.index(word) + 4, (k,)) for k, word in enumerate(("came", "sat ", "slept"))]
+    shown = subtitles(Told("Late", text, tuple(spans)), [(0, 60), (60, 200), (200, 300)])
+    assert " ".join(line.text.replace("\n", " ") for line in shown) == text
+    assert [(line.start, line.stop) for line in shown] == [(0, 60), (60, 200), (200, 300)]
