@@ -20,6 +20,7 @@ from planner_service.cli import (
     service,
     story,
     tasks,
+    train_embedding,
 )
 from planner_service.user_errors import explain
 from scene_graphs.errors import UserError
@@ -39,6 +40,7 @@ app.add_typer(layouts.app, name="layouts")
 app.add_typer(service.app, name="models")
 app.add_typer(evaluate.app, name="evaluate")
 app.add_typer(clips.app, name="clips")
+app.add_typer(train_embedding.app, name="train")
 
 
 @app.callback()
