@@ -257,8 +257,8 @@ def plain_stretch(motion: Motion, slowest: float, least: int = 0) -> tuple[int, 
     if not len(runs):
         return None
     start, stop = runs[int(np.argmax(runs[:, 1] - runs[:, 0]))].tolist()
-    slower = np.flatnonzero(pace[start:stop] > STOPPING * float(pace.max()))
-    stop = start + int(slower[-1]) + 1
+    quick = np.flatnonzero(pace[start:stop] > STOPPING * float(pace.max()))
+    stop = start + int(quick.max(initial=-1)) + 1
     return (start, stop) if stop - start >= SHORTEST else None
 
 

@@ -1,8 +1,8 @@
 """A pytest plugin: processes that share the tests are forked from the one that has collected them (`--forks N`).
 
-What is imported, read and compiled is so once and not in each of them, which is a tenth of all that the fast layer
-computes. A file's tests stay together; who is free takes the next file. For tests that start nothing and on Linux alone:
-whoever forks a process with threads in it, or one that somebody else knows by its number, does not know what he gets.
+What is imported, read and compiled is so once and not in each of them. A file's tests stay together; who is free takes
+the next file. For tests that start nothing, and on Linux alone: who forks a process that has threads, or that others
+know by its number, does not know what he gets.
 """
 
 from __future__ import annotations
@@ -53,7 +53,8 @@ def pytest_runtestloop(session: pytest.Session) -> bool | None:
     try:
         _report(session, workers)
     finally:
-        for pid in workers.values():
+        for source, pid in workers.items():
+            source.close()
             with suppress(ProcessLookupError, ChildProcessError):
                 os.kill(pid, signal.SIGKILL)
                 os.waitpid(pid, 0)

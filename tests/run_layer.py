@@ -33,8 +33,18 @@ class Layer:
     def shared(self) -> list[str]:
         """How pytest is told to share the tests among processes; those of a file stay together."""
         if self.starts_nothing and sys.platform == "linux":
-            # A plugin that is not wanted takes longer to load than many tests.
-            return ["-p", "forked_workers", "--forks", str(self.workers), "-p", "no:xdist", "-p", "no:schemathesis"]
+            # A plugin that is not wanted takes longer to load than many tests; files by name would come line by line.
+            return [
+                "-q",
+                "-p",
+                "forked_workers",
+                "--forks",
+                str(self.workers),
+                "-p",
+                "no:xdist",
+                "-p",
+                "no:schemathesis",
+            ]
         return ["--numprocesses", str(self.workers), "--dist", "loadfile", "--no-loadscope-reorder"]
 
 

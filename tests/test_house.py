@@ -23,6 +23,7 @@ PACKAGES = {
 HOMES = {
     "torch": {"motion_backend/language", "motion_backend/embedding", "motion_backend/physics"},
     "safetensors": {"motion_backend/language", "motion_backend/embedding"},
+    "mujoco": {"motion_backend/physics"},
     "networkx": {"scene_graphs"},
     "numba": {"scene_graphs"},
     "shapely": {"scene_graphs"},
@@ -44,7 +45,7 @@ HOMES = {
     "openai": {"planner_service/llm"},
     "anthropic": {"planner_service/llm"},
     "httpx2": {"planner_service/llm"},
-    "av": {"planner_service/extraction"},
+    "av": {"planner_service/extraction", "motion_backend/formats"},
     "faster_whisper": {"planner_service/extraction"},
 }
 """Where a third-party library may be imported; libraries not named here may be used anywhere they are needed."""
@@ -178,7 +179,7 @@ def test_importing_the_planner_loads_nothing_heavy() -> None:
     modules = (
         "planner_service.cli, planner_service.api.app, planner_service.pipeline, motion_backend.procedural.backend"
     )
-    heavy = ["torch", "matplotlib", "trimesh", "openai", "anthropic", "pydantic_ai", "av"]
+    heavy = ["torch", "mujoco", "matplotlib", "trimesh", "openai", "anthropic", "pydantic_ai", "av"]
     code = f"import sys, {modules}; print([name for name in {heavy!r} if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

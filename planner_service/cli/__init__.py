@@ -14,6 +14,7 @@ from planner_service.cli import (
     evaluate,
     extract_command,
     layouts,
+    play,
     record_command,
     scripts,
     service,
@@ -26,6 +27,7 @@ from scene_graphs.errors import UserError
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 app.command("story")(story.story)
+app.command("play")(play.play)
 app.command("extract")(extract_command.extract)
 app.command("record")(record_command.record)
 app.command("task")(tasks.task)

@@ -38,9 +38,7 @@ def walks(
     seeds: Annotated[int, typer.Option(min=1, max=100, help="Seeds in each room and mood.")] = 3,
     backend: Annotated[
         list[str] | None,
-        typer.Option(
-            help="Instead: backends beside each other, judged by people none is made of; repeatable."
-        ),
+        typer.Option(help="Instead: backends beside each other, judged by people none is made of; repeatable."),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of tables.")] = False,
 ) -> None:

@@ -80,14 +80,10 @@ def story(
 ) -> None:
     """Turn a story theme into a script, a home, a told story and an animated film."""
     from planner_service.cli.layouts import chosen_layouts
-    from planner_service.output.film import check_film
-    from planner_service.output.story_export import FILES, FILM, check_writable, write_story
 
     settings = read_settings(llm_model=model, clips=clips)
     give_backends(settings)
-    if film:
-        check_film()
-    check_writable(out or OUT, [*FILES, FILM] if film else FILES)
+    check_output(out, film)
     pipeline = Pipeline(open_shelves(settings), load_model(settings), settings.llm_on_failure == "error")
     request = StoryRequest(
         theme=clean(read_theme(theme)),
@@ -100,6 +96,23 @@ def story(
     console = Console(markup=False)
     if not settings.llm_model and (line := hint(ollama_models(settings.ollama_url))):
         console.print(line, highlight=False, soft_wrap=True)
+    produce(pipeline, request, out, film, console)
+
+
+def check_output(out: Path | None, film: bool) -> None:
+    """Fail before the work, not after it. OutputError, FilmUnavailableError."""
+    from planner_service.output.film import check_film
+    from planner_service.output.story_export import FILES, FILM, check_writable
+
+    if film:
+        check_film()
+    check_writable(out or OUT, [*FILES, FILM] if film else FILES)
+
+
+def produce(pipeline: Pipeline, request: StoryRequest, out: Path | None, film: bool, console: Console) -> None:
+    """Make a story, write its files and say how it went, with a bar while it takes."""
+    from planner_service.output.story_export import write_story
+
     with _bar(console) as bar:
         task = bar.add_task(TOLD["plan"], total=1.0)
 
@@ -111,9 +124,8 @@ def story(
 
         made = pipeline.make(request, show)
         show("write", 0.0)
-        files = write_story(
-            made, out or new_folder(OUT, made.planned.told.title), film, lambda share: show("film", share)
-        )
+        folder = out or new_folder(OUT, made.planned.told.title)
+        files = write_story(made, folder, film, lambda share: show("film", share))
         bar.update(task, completed=1.0, description="done")
     _close(console, made, files)
 

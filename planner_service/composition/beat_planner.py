@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from motion_backend.motion import Skill
-from planner_service.composition.deed_lexicon import Deed, deed_of
+from planner_service.composition.deed_lexicon import Deed, deed_of, unshown
 from planner_service.composition.keyframe_writer import UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
 from planner_service.composition.request import RULES, Record, Request
@@ -115,7 +115,8 @@ def _with_reasons(
         known = index in shown or (index in writer.moody and one.beat.emotion in moods)
         why = "" if known else writer.why.get(index, UNSHOWN)
         kind = "feeling" if index in writer.moody else one.beat.kind
-        beats.append(one.beat.model_copy(update={"why": why, "kind": kind}))
+        besides = unshown(one.clause) if known and kind == "deed" else ()
+        beats.append(one.beat.model_copy(update={"why": why, "kind": kind, "unshown": besides}))
     return tuple(beats)
 
 

@@ -13,8 +13,10 @@ from planner_service.scripts.captions import captions
 from planner_service.scripts.script import EMOTIONS
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS
+from planner_service.themes.details import details_of
 from planner_service.themes.lexicon import gerund, lemma_of
 from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.things import things
 from planner_service.themes.verb_finder import tokens_of
 from scene_graphs import furniture
 from scene_graphs.data_tables import read_table, require_known, table
@@ -58,21 +60,12 @@ class DeedRow:
 
 
 @table
-class KeptThings:
-    """Things, and the furniture where they are, the likeliest first."""
-
-    things: str
-    at: tuple[str, ...]
-
-
-@table
 class DeedTable:
     """data/deeds.toml."""
 
     not_furniture: str
     rooms: dict[str, tuple[str, ...]]
     usual: dict[str, dict[str, tuple[str, ...]]]
-    kept: tuple[KeptThings, ...]
     stands_on: dict[str, str]
     seats_at: dict[str, tuple[str, ...]]
     deed: tuple[DeedRow, ...]
@@ -96,15 +89,6 @@ class DeedTable:
             for pattern in map(_pattern, row.says):
                 for first in pattern[0] or ("",):
                     found.setdefault(first, []).append((pattern, row))
-        return found
-
-    @cached_property
-    def places(self) -> Mapping[str, tuple[str, ...]]:
-        """Where each thing is."""
-        found: dict[str, tuple[str, ...]] = {}
-        for kept in self.kept:
-            for thing in kept.things.split():
-                found.setdefault(thing, kept.at)
         return found
 
 
@@ -166,14 +150,34 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     return Deed(found, skill, tuple(dict.fromkeys(order)), False)
 
 
+def unshown(clause: Clause) -> tuple[str, ...]:
+    """What a clause tells besides its deed, and neither furniture nor the deed's own saying has: "for her ladyship"."""
+    row = said_row(clause)
+    known = _words_of(row.says) if row is not None else frozenset[str]()
+    return tuple(
+        text for text in details_of(clause) if not pieces_in(text) and known.isdisjoint(word for word in _lemmas(text))
+    )
+
+
+@cache
+def _words_of(sayings: tuple[str, ...]) -> frozenset[str]:
+    """Base forms of the longer words of a row's sayings."""
+    words = re.findall(r"[a-z]{4,}", " ".join(sayings))
+    return frozenset(form for word in words for form in _forms(word))
+
+
 def _named(clause: Clause, about: str) -> list[str]:
     """Furniture that a clause names, or means by "it" and "there"."""
     return pieces_in(clause.text) or (pieces_in(about)[-1:] if _IT & set(clause.lemmas[1:]) else [])
 
 
 def row_of(clause: Clause, about: str) -> DeedRow | None:
-    """The row whose saying tells most of the clause's words, from its verb on; else from a later -ing on; else by its
-    things."""
+    """The row that a clause's words say; else by its things."""
+    return said_row(clause) or _by_things(clause, about)
+
+
+def said_row(clause: Clause) -> DeedRow | None:
+    """The row whose saying tells most of the clause's words, from its verb on; else from a later -ing on."""
     ways, starts = deed_table().ways, list(_starts(clause))
     for anchored in (True, False):  # patterns that begin with a gap fit any verb, where no other does
         for lemmas in starts:
@@ -181,7 +185,7 @@ def row_of(clause: Clause, about: str) -> DeedRow | None:
                        if _fits(pattern, lemmas)]  # fmt: skip
             if fitting:
                 return max(fitting, key=lambda one: sum(map(bool, one[0])))[1]
-    return _by_things(clause, about)
+    return None
 
 
 def _starts(clause: Clause) -> Iterator[tuple[str, ...]]:
@@ -209,7 +213,7 @@ def _by_things(clause: Clause, about: str) -> DeedRow | None:
 
 def _kept(clause: Clause, about: str) -> tuple[str, ...]:
     """Where the first thing is that a clause names after its verb, or means by "it"."""
-    places = deed_table().places
+    places = things()
     found = next((places[word] for word in clause.lemmas[1:] if word in places), ())
     if found or not _IT & set(clause.lemmas[1:]):
         return found
@@ -222,7 +226,7 @@ def _lemmas(text: str) -> list[str]:
 
 def where(text: str) -> tuple[str, ...]:
     """Furniture that words name, else where the first thing is that they name."""
-    places = deed_table().places
+    places = things()
     return tuple(pieces_in(text)) or next((places[word] for word in _lemmas(text) if word in places), ())
 
 
@@ -233,7 +237,7 @@ def standing_at(clause: Clause) -> tuple[str, ...]:
 
 def names_things(clause: Clause) -> bool:
     """Whether a clause names furniture or things, which "it" may mean later."""
-    return bool(pieces_in(clause.text)) or any(word in deed_table().places for word in clause.lemmas)
+    return bool(pieces_in(clause.text)) or any(word in things() for word in clause.lemmas)
 
 
 def _fits(pattern: Pattern, lemmas: Sequence[str]) -> bool:

@@ -83,7 +83,9 @@ class Judgement:
         """Those of the missing that the script says are not acted; all where the theme was refused."""
         if self.script is None:
             return self.missing
-        said = [one.beat.text for one in planned_beats(self.script).outcomes if not one.acted]
+        outcomes = planned_beats(self.script).outcomes
+        said = [one.beat.text for one in outcomes if not one.acted]
+        said += [text for one in outcomes if one.acted for text in one.beat.unshown]
         texts = {index: self.label.beats[index].text for index in self.missing}
         return tuple(index for index, text in texts.items() if any(same_words(text, other) for other in said))
 
@@ -94,6 +96,11 @@ class Judgement:
         return tuple(
             index for index, stems in words.items() if any(3 * len(stems & one) > 2 * len(stems) for one in sentences)
         )
+
+    def told_as_done(self, story: str) -> tuple[int, ...]:
+        """Those of the told that the script does not name as not acted; what it names is told as a thought or as left
+        undone, or its words stand in the telling of another beat."""
+        return tuple(index for index in self.told(story) if index not in self.named)
 
     @cached_property
     def unasked(self) -> tuple[int, ...]:

@@ -29,6 +29,8 @@ from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.skin_penetration import THIN, skin_penetration
 from motion_backend.metrics.smoothness import bone_deviation, jerk_against_real, seam_jump, seam_speed_jump
 from motion_backend.motion import FPS, Action, Character, Emotion, Motion, Skill, join
+from motion_backend.procedural.touch.hand_captions import handling_of
+from motion_backend.procedural.touch.hand_contacts import is_top
 from motion_backend.scene import scene_of
 from planner_service.grounding.keyframes_to_actions import Place, UnreachableError, act, can_stand, height_of
 from planner_service.scripts.caption_actions import look_of
@@ -60,6 +62,10 @@ _IN_CHAIR: Final = re.compile(r"\bchair\b", re.IGNORECASE)
 _ON_EDGE: Final = re.compile(r"\bfoot on the floor\b", re.IGNORECASE)
 _CHAIRS: Final = frozenset({"dining_chair", "armchair", "office_chair", "lounge_chair", "dressing_chair"})
 _WITH_ARMRESTS: Final = frozenset({"armchair", "multi_seat_sofa", "loveseat_sofa", "l_shaped_sofa"})
+
+_SAT_ON: Final = frozenset({"seat", "sofa"})
+_HUNG: Final = frozenset({"pendant_lamp", "ceiling_lamp", "wall_lamp"})
+_ON_TOPS: Final = frozenset({"pick", "put", "wash"})
 
 
 @dataclass(frozen=True, order=True)
@@ -177,7 +183,7 @@ def places_for(skill: Skill, caption: str, where: Setting) -> tuple[str, ...]:
 def _serves(caption: str, need: str, placed: Placed, spot: Spot, home: Home) -> bool:
     """Whether a spot has what the words of a caption ask for."""
     if need == "touch":
-        return spot.height == height_of(caption) if _HEIGHT.search(caption) else True
+        return _handled(caption, placed, spot) and (spot.height == height_of(caption) or not _HEIGHT.search(caption))
     if need == "lie":
         return True
     if _AT_TABLE.search(caption):
@@ -185,6 +191,14 @@ def _serves(caption: str, need: str, placed: Placed, spot: Spot, home: Home) -> 
     if _ARMRESTS.search(caption):
         return placed.category in _WITH_ARMRESTS
     return placed.category in _CHAIRS if _IN_CHAIR.search(caption) else True
+
+
+def _handled(caption: str, placed: Placed, spot: Spot) -> bool:
+    """Whether what hands do in a caption is done at such a piece: nobody washes a chair or turns a ceiling lamp."""
+    doing = handling_of(caption)
+    if doing and (furniture.class_of(placed.category) in _SAT_ON or placed.category in _HUNG):
+        return False
+    return is_top(spot.normal) if doing in _ON_TOPS else True
 
 
 def _table_before(spot: Spot, home: Home) -> bool:

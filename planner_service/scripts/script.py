@@ -171,6 +171,8 @@ class Beat(BaseModel):
     """Whose deed it is where it is not the story's person's: "the neighbour", "it"."""
     why: Line = ""
     """Why no keyframe shows it; empty where one does."""
+    unshown: tuple[Line, ...] = ()
+    """What its words tell besides, which no keyframe shows: "for her ladyship"."""
 
     @property
     def asked(self) -> bool:

@@ -7,9 +7,10 @@ from dataclasses import field
 from functools import cache
 from typing import Final
 
-from planner_service.composition.deed_lexicon import DeedRow, deed_table, says
+from planner_service.composition.deed_lexicon import DeedRow, says
 from planner_service.scripts.captions import captions
 from planner_service.themes.lexicon import Words, lemma_of
+from planner_service.themes.things import things
 from scene_graphs.data_tables import read_table, require_known, table
 from scene_graphs.furniture import is_known
 
@@ -67,7 +68,7 @@ def household() -> Household:
 
 def kept_at(thing: str) -> tuple[str, ...]:
     """Furniture where a thing is looked for, the likeliest first; anything may lie on a table."""
-    places = deed_table().places
+    places = things()
     found = next((places[word] for word in map(lemma_of, reversed(_head(thing))) if word in places), ())
     return tuple(dict.fromkeys((*found, *household().tables)))
 

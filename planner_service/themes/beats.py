@@ -33,6 +33,8 @@ _ROOMS: Final = {
 }
 _LOUDER: Final = {"stressed": ("drunk", "angry", "sad", "hurried"), "relaxed": ("drunk",)}
 """Moods that a mere hint of another one does not end within a sentence: who is angry paces with anger."""
+_FEW, _STRAY = 3, 0.34
+"""Clauses of a text from which its tense is known, and the share of them that may stray from it."""
 _QUOTED: Final = re.compile(r"«\d+»")
 EXPRESSIONS: Final = {
     verb: mood
@@ -108,7 +110,17 @@ def beats_of(theme: str) -> tuple[ReadBeat, ...]:
 def read_beats(clauses: Sequence[Clause]) -> tuple[ReadBeat, ...]:
     """What clauses say happens to whom they are about."""
     hero = hero_of(clauses)
-    return tuple(_moods([_read(clause, hero) for clause in clauses]))
+    return tuple(_moods([_read(clause, hero) for clause in _in_tense(clauses)]))
+
+
+def _in_tense(clauses: Sequence[Clause]) -> list[Clause]:
+    """Clauses told in the other tense than nearly all of a text marked as what had happened before: "her aunt taught
+    her; now she bakes"."""
+    told = [clause.past for clause in clauses if clause.past is not None and not clause.aside]
+    share = sum(told) / max(len(told), 1)
+    if len(told) < _FEW or share > _STRAY:
+        return list(clauses)
+    return [replace(clause, perfect=clause.perfect or bool(clause.past)) for clause in clauses]
 
 
 def _read(clause: Clause, hero: str) -> ReadBeat:
@@ -149,7 +161,8 @@ def _bounded(text: str, most: int = 300) -> str:
 
 def _kind(clause: Clause, who: str) -> BeatKind:
     words = theme_words()
-    if clause.quotes or (clause.verb in words["speech_verbs"] and words["not_said"].isdisjoint(clause.lemmas)):
+    says = clause.verb in words["speech_verbs"] and words["not_said"].isdisjoint(clause.lemmas)
+    if says or any(len(quote.split()) > 1 or quote[-1] in ".,!?" for quote in clause.quotes):
         return "speech" if not who else "other"
     if who or clause.aside:
         return "other"

@@ -38,8 +38,6 @@ class EnglishGrammar:
     postures: Words
     """Verbs beside which a second deed stands without a joint."""
     denials: Words
-    unchanging: Words
-    """Verbs whose past is their base form."""
     refusals: Words
     """Verbs that deny the deed after them."""
     wishes: Words

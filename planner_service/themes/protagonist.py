@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache, lru_cache
@@ -10,8 +11,9 @@ from typing import Final
 
 from motion_backend.motion import Character
 from planner_service.themes.lexicon import grammar, is_third_person, is_verb, kinds_of, lemma_of
-from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.theme_words import theme_words
+from planner_service.themes.things import things
 from planner_service.themes.verb_finder import tokens_of
 from scene_graphs.furniture import is_known
 
@@ -49,7 +51,7 @@ _KINDS: Final = re.compile(
 _CAPITALISED: Final = re.compile(
     r"(?P<before>^|[.!?]\s+|\S\s+)(?P<name>[A-Z][a-zà-öø-ÿ]{1,19})\s+(?=(?P<verb>[a-z]+)\b)"
 )
-_ASIDE: Final = frozenset(("while", "until", "when", "after", "before", "because", "as", "since"))
+_ASIDE: Final = frozenset(("while", "until", "when", "after", "before", "because", "as", "since", "once"))
 """Joints of clauses that tell more often than others of somebody else."""
 _MAIN_JOINTS: Final = frozenset(("", ",", "and", "but", "so", "then", "to", "ing"))
 """What joins main clauses: whom a theme is about does what these tell."""
@@ -62,9 +64,15 @@ def cast_by(theme: str, character: Character) -> Character:
     default = Character()
     if (character.name, character.pronouns) != (default.name, default.pronouns):
         return character
-    name = name_in(theme)
+    name = name_in(theme) or _name_of_hero(theme)
     pronouns = _PRONOUNS_OF.get(name.lower()) or _pronouns_in(theme, bool(name)) or default.pronouns
     return replace(character, name=name or default.name, pronouns=pronouns)
+
+
+def _name_of_hero(theme: str) -> str:
+    """The name in whom a theme is about, where it stands beside no verb: "thinks Paloma", "Elspeth, tired, …"."""
+    hero = hero_of(clauses_of_text(theme))
+    return next((token.text for token in tokens_of(hero) if is_name(token.text)), "")
 
 
 def name_in(theme: str) -> str:
@@ -131,12 +139,16 @@ def hero_of(clauses: Sequence[Clause]) -> str:
         for one in people
         if not _is_pronoun(one.subject) and (one.joint not in _ASIDE or (one.sentence, one.place) < first)
     ]
-    busy = {one.doer for one in clauses if not ((one.denied and not one.unable) or one.aside)}
+    if not nouns and pronoun:
+        nouns = _stand_for(clauses, pronoun, first)
+    acting = [one for one in clauses if not ((one.denied and not one.unable) or one.aside)]
+    busy = {one.doer for one in acting}
+    deeds = Counter(one.doer for one in acting if not _is_state(one))
     if nouns:
         own = [one for one in nouns if one is told[0] or not _is_possessed(one.subject)] or nouns
         heroes = [own, nouns] if busy.isdisjoint({one.subject for one in own}) else [own]
         doing = [one for some in heroes for one in some if one.subject in busy]
-        return max(doing or own, key=lambda clause: _heroic(clause, pronoun)).subject
+        return max(doing or own, key=lambda one: _heroic(one, pronoun) + min(deeds[one.subject], 4) / 8).subject
     opens = ("a ", "an ", "one ", "my ", "our ", *(() if people else ("the ",)))
     called = [one for one in mains[:1] if _may_be_called(one) and not people]
     opening = [one for one in mains[:1] if one.lower().startswith(opens)]
@@ -144,16 +156,37 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     return next(iter([*living, *(clause.subject for clause in people)]), "")
 
 
-def _heroic(clause: Clause, pronoun: str) -> int:
+def _stand_for(clauses: Sequence[Clause], pronoun: str, first: tuple[int, int]) -> list[Clause]:
+    """Subjects that a pronoun may stand for though nobody knows them for people: "the bosun cannot sleep, so he …",
+    "he … so the tenor writes"; `first` is the place of the first pronoun."""
+    deeds = Counter(one.doer for one in clauses)
+    found = []
+    for one in clauses:
+        near = one.sentence in (first[0], first[0] - 1) and (one.sentence, one.place) < first
+        alive = one.subject.lower().startswith(("the ", "a ", "an ")) and not _is_plural(one.subject)
+        acts = one.joint in _MAIN_JOINTS and not _is_state(one) and (near or deeds[one.subject] > 1)
+        if (
+            acts
+            and alive
+            and not one.aside
+            and pronouns_of(one.subject) in ("", pronoun)
+            and _may_live(head_of(one.subject))
+        ):
+            found.append(one)
+    return found
+
+
+def _is_state(clause: Clause) -> bool:
+    """Whether it says how somebody is, or what they wish, and not what they do."""
+    return clause.verb in theme_words()["state_verbs"] | grammar().wishes | {"have", "need", "like", "love", "hate"}
+
+
+def _heroic(clause: Clause, pronoun: str) -> float:
     """How well a subject may be whom a theme is about, whose pronoun is "he", "she" or unknown."""
     own = pronouns_of(clause.subject)
     fits = 0 if not (pronoun and own) else 4 if own == pronoun else -8
-    return (
-        fits
-        - 2 * _is_possessed(clause.subject)
-        - 2 * (bool(pronoun) and _is_plural(clause.subject))
-        - (clause.joint in _ASIDE)
-    )
+    several = _is_plural(clause.subject)
+    return fits - 2 * _is_possessed(clause.subject) - (1 + bool(pronoun)) * several / 2 - (clause.joint in _ASIDE)
 
 
 def _is_possessed(subject: str) -> bool:
@@ -161,7 +194,13 @@ def _is_possessed(subject: str) -> bool:
 
 
 def _may_live(head: str) -> bool:
-    return not is_known(head) and theme_words()["no_heroes"].isdisjoint((head.lower(), lemma_of(head)))
+    return not is_known(head) and _lifeless().isdisjoint((head.lower(), lemma_of(head)))
+
+
+@cache
+def _lifeless() -> frozenset[str]:
+    """Nouns for what does things and is nobody: animals, the weather, and whatever is kept somewhere."""
+    return theme_words()["no_heroes"] | theme_words()["body"] | frozenset(things())
 
 
 def _may_be_called(subject: str) -> bool:
@@ -237,7 +276,8 @@ def head_of(subject: str) -> str:
     """The noun of a subject: "the old nurse after her shift" is "nurse", "a boy of six" is "boy"."""
     words: list[str] = []
     for token in tokens_of(subject):
-        if words and (token.low in grammar().prepositions or token.low in ("of", "who", "and", ",")):
+        stops = grammar().prepositions | grammar().adverbs | {"of", "who", "and", ","}
+        if words and token.low in stops:
             break
         words.append(token.text)
     return words[-1] if words else ""

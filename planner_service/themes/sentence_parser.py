@@ -10,12 +10,14 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
+from itertools import groupby
 from typing import Any, Final
 
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_third_person, lemma_of, verb_of
 from planner_service.themes.theme_words import theme_words
+from planner_service.themes.things import things
 from planner_service.themes.verb_finder import Token, is_plural, plain, tokens_of, verb_place
-from planner_service.themes.verb_group import verb_group
+from planner_service.themes.verb_group import is_past, verb_group
 
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
 _PLAIN: Final = re.compile(r"[A-Za-z ,'’-]+[.!?]?\s*")
@@ -59,6 +61,8 @@ class Clause:
     """Whether it is not done since it cannot be: "cannot sleep"."""
     perfect: bool = False
     """Whether it had been done before."""
+    past: bool | None = None
+    """Whether it is told in the simple past, and not in the present; None where its verb does not tell."""
     aside: bool = False
     """Whether it is only spoken of: of a noun ("the letter she had hidden"), or supposed ("if he calls")."""
     quotes: tuple[str, ...] = ()
@@ -88,6 +92,7 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
         for piece in (pieces := _pieces(sentence)):
             parts = _clause(piece, quotes, number)
             own = parts[0].subject or (_next_subject(pieces, piece) if not told else "")
+            own = doer if own.lower() in _RELATIVES and doer else own
             told.append(
                 [replace(part, doer=part.subject if part.aside else own or doer, place=len(told)) for part in parts]
             )
@@ -155,13 +160,26 @@ def _pieces(sentence: str) -> list[_Piece]:
                 current.append(token)
         else:
             led = token.low in _HEROES and _is_led(joint, current) and current[-1:] and current[-1].low not in _THAT
-            if led and verb_place(current) is not None:
+            so = led or _is_outcome(current, tokens[place:])
+            if so and verb_place(current) is not None:
                 cut.append(_Piece(joint, tuple(current), source))
-                joint, current = ",", []
+                joint, current = "," if led else "so", []
+                if token.low == "that":
+                    continue
             current.append(token)
     if current:
         cut.append(_Piece(joint, tuple(current), source))
     return _whole(cut)
+
+
+def _is_outcome(current: Sequence[Token], rest: Sequence[Token]) -> bool:
+    """Whether words tell what came of it: "laughs so hard | that she falls", "is so tired | he sits down"."""
+    so = next((place for place, token in enumerate(current) if token.low == "so"), None)
+    if so is None or not so + 1 < len(current) <= so + 4:
+        return False
+    after = rest[1:] if rest[0].low == "that" else rest
+    acts = len(after) > 1 and after[0].low in _HEROES and after[1].low not in grammar().modals
+    return acts and verb_place(after[:5]) is not None
 
 
 def _is_led(joint: str, current: Sequence[Token]) -> bool:
@@ -227,17 +245,25 @@ def _whole(pieces: list[_Piece]) -> list[_Piece]:
     whole: list[_Piece] = []
     waiting: _Piece | None = None
     for place, piece in enumerate(pieces):
+        led = waiting is not None
         if waiting is not None:
             joint = waiting.joint if waiting.joint not in (",", "") else piece.joint if piece.joint != "," else ""
-            piece = replace(piece, joint=joint, tokens=waiting.tokens + piece.tokens)
+            mark = _comma(waiting) if piece.joint == "," else ()
+            piece = replace(piece, joint=joint, tokens=(*waiting.tokens, *mark, *piece.tokens))
             waiting = None
         if verb_place(piece.tokens) is not None and not (whole and _is_noun_list(whole[-1], piece)):
             whole.append(piece)
-        elif whole and not _opens(piece, pieces[place + 1 :]):
+        elif whole and not (led or _opens(piece, pieces[place + 1 :]) or _leads(piece, pieces[place + 1 :])):
             whole[-1] = replace(whole[-1], tokens=whole[-1].tokens + piece.tokens)
         else:
             waiting = piece
     return [*whole, waiting] if waiting is not None else whole
+
+
+def _comma(piece: _Piece) -> tuple[Token, ...]:
+    """The comma behind a piece: "The baker, up since two, wipes the glass" has no "two wipes"."""
+    end = piece.tokens[-1].end
+    return (Token(",", end, end + 1),)
 
 
 def _opens(piece: _Piece, after: Sequence[_Piece]) -> bool:
@@ -246,6 +272,13 @@ def _opens(piece: _Piece, after: Sequence[_Piece]) -> bool:
         return False
     first = after[0].tokens[0]
     return after[0].joint == "," and (first.low in grammar().subjects or first.text[:1].isupper())
+
+
+def _leads(piece: _Piece, after: Sequence[_Piece]) -> bool:
+    """Whether a name is who does what follows what is told of them: "and Elspeth, still in her gown, beats them"."""
+    named = len(piece.tokens) <= 2 and piece.tokens[0].text[:1].isupper() and not is_noun(piece.tokens[0].low)
+    acting = next((one for one in after[:2] if verb_place(one.tokens) == 0), None)
+    return named and piece.joint in ("and", "but", "so", "while") and acting is not None
 
 
 def _is_noun_list(last: _Piece, piece: _Piece) -> bool:
@@ -262,7 +295,8 @@ def _is_noun_list(last: _Piece, piece: _Piece) -> bool:
     if {end, word} <= theme_words()["body"]:
         return True  # "on his hands and knees"
     if is_third_person(word):
-        return is_plural(end) and len(last.tokens) > 2 and last.tokens[-2].low not in grammar().marks
+        listed = is_plural(end) and len(last.tokens) > 2 and last.tokens[-2].low not in grammar().marks
+        return listed and (piece.joint != "," or word in things() or lemma_of(word) in things())
     return is_noun(end) and word == verb_of(word)
 
 
@@ -303,8 +337,9 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
         return [Clause(piece.text, "", "", _lemmas(tokens), joint, quotes=_quotes(tokens, quotes), sentence=sentence)]
     place -= 2 * ([token.low for token in tokens[max(place - 2, 0) : place]] == ["no", "longer"])
     subject = _subject(tokens[:place])
-    if subject.startswith("«"):
+    if subject.startswith("«") or (not place and _is_inverted(tokens)):
         subject = _inverted(tokens[place + 1 :])
+        tokens = [*tokens[: place + 1], *tokens[place + 1 + len(subject.split()) :]]
     denials = grammar().denials - grammar().subjects
     lead = tokens[:place] if not subject else [t for t in tokens[:place] if t.low in denials]
     words = (lead if any(token.low in grammar().denials for token in lead) else []) + tokens[place:]
@@ -316,7 +351,8 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     lemmas = _lemmas(words[group.place :])
     first = Clause(
         _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, joint, denied=group.denied,
-        unable=group.unable, perfect=group.perfect, aside=supposed, quotes=_quotes(tokens, quotes), sentence=sentence,
+        unable=group.unable, perfect=group.perfect, past=is_past(words, group), aside=supposed,
+        quotes=_quotes(tokens, quotes), sentence=sentence,
     )  # fmt: skip
     parted = not group.denied or group.unable
     parts = _parted(first, words, group.place, piece.source) if parted else [first]
@@ -371,6 +407,12 @@ def _aside(words: list[Token], source: str) -> list[Clause]:
     return [Clause(_text(source, words), subject, lemmas[0] if lemmas else "", lemmas, "that", aside=True)]
 
 
+def _is_inverted(words: Sequence[Token]) -> bool:
+    """Whether a clause only says who thinks or says what stands beside it: "…, thinks Paloma"."""
+    verbs = theme_words()["speech_verbs"] | theme_words()["thought_verbs"]
+    return lemma_of(words[0].low) in verbs and 2 <= len(words) <= 3 and _inverted(words[1:]) != ""
+
+
 def _inverted(after: Sequence[Token]) -> str:
     """Who says it, where that stands after the verb: "“Who is there?” shouted Barnaby"."""
     if after and after[0].text[:1].isupper():
@@ -380,7 +422,7 @@ def _inverted(after: Sequence[Token]) -> str:
 
 def _before(tokens: Sequence[Token], subject: str) -> Sequence[Token]:
     """Where, when or how it is done, where that stands before who does it: "in the kitchen Anna reads"."""
-    if not subject or tokens[0].low not in grammar().prepositions:
+    if not subject or not tokens or tokens[0].low not in grammar().prepositions:
         return ()
     size = len(subject.split())
     texts = [token.text for token in tokens]
@@ -443,7 +485,11 @@ def _is_purpose(clause: Clause, words: Sequence[Token], place: int) -> bool:
 
 def _subject(tokens: Sequence[Token]) -> str:
     """Who does it, of the words before the verb: those after the last comma-like stretch of time or place."""
-    words = [token.text for token in tokens]
+    parts = [list(part) for is_mark, part in groupby(tokens, lambda token: token.text == ",") if not is_mark]
+    if len(parts) > 1:  # "the baker, up since two, …", "one evening, Anna, tired, …"
+        last = next((at for at in reversed(range(len(parts))) if _may_act(parts[at])), 0)
+        tokens = [token for part in parts[last:] for token in part]
+    words = [token.text for token in tokens if token.text != ","]
     while words and (words[-1].lower() in grammar().adverbs or words[-1].lower().endswith("ly")):
         words.pop()
     if words and words[-1].lower() in grammar().subjects:
@@ -462,6 +508,17 @@ def _subject(tokens: Sequence[Token]) -> str:
     starts = [place for place in starts if (timed and words[place].islower()) or _is_called(words[place:])]
     words = words[starts[-1] :] if starts else words  # "after dinner Jonas …", "that night the man …"
     return " ".join(words)
+
+
+def _may_act(words: Sequence[Token]) -> bool:
+    """Whether words between commas may be who does it."""
+    known, first = grammar(), next((word for word in words if word.low not in grammar().adverbs), words[0])
+    if len(words) == 1 and first.low in known.marks:
+        return False  # "No, …"
+    return first.low in known.subjects or (
+        first.low not in known.prepositions
+        and (first.low in known.marks or (first.text[:1].isupper() and not is_adjective(first.low)))
+    )
 
 
 def _only_describes(word: str) -> bool:

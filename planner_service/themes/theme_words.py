@@ -15,6 +15,7 @@ class ThemeWords:
     """Nouns for people."""
     memory_verbs: str
     speech_verbs: str
+    thought_verbs: str
     not_said: str
     """What is answered or said with more than words."""
     unable_verbs: str

@@ -26,11 +26,17 @@ _SLANG: Final = {
     "n": "and", "n'": "and", "'n'": "and", "cant": "can not", "wont": "will not", "gonna": "going to", "&": "and",
     "wanna": "want to", "gotta": "have to", "cuz": "because", "bc": "because", "w/": "with",
 }  # fmt: skip
+_LONG: Final = (
+    ("by the time", "when"), ("rather than", "instead of"), ("(?<!the )till", "until"), ("which is to say", "and"),
+)  # fmt: skip
+"""Joints of several words, and those that say the same."""
 _SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|had|have|should)nt\b")
 
 
 _SEEMS: Final = frozenset(("feels", "felt", "seems", "looks", "gets", "becomes"))
 """Verbs after which an adjective stands, besides the forms of be."""
+_PARTICLES: Final = frozenset(("up", "down", "out", "off", "away", "back"))
+_NOMINATIVES: Final = frozenset(("he", "she", "they", "i", "we"))
 _OBJECTS: Final = frozenset(("him", "them", "me", "himself", "herself", "back", "home", "and"))
 
 
@@ -60,7 +66,8 @@ def plain(text: str) -> str:
     text = _CONTRACTION.sub(lambda m: _SHORT.get(m[1].lower(), f"{m[1]} not"), text)
     for short, whole in _ENDS:
         text = re.sub(rf"(?i)(?<=\w){short}\b", whole, text)
-    text = re.sub(r"(?i)\bby the time\b", "when", re.sub(r"(?i)\brather than\b", "instead of", text))
+    for long, short in _LONG:
+        text = re.sub(rf"(?i)\b{long}\b", short, text)
     return re.sub(
         r"\b(I|[Hh]e|[Ss]he|[Tt]hey|[Ww]e)'d\b", r"\1 had", re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s\b", r"\1 is", text)
     )
@@ -98,9 +105,16 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
     at = place - 1
     while at >= 0 and is_adverb(tokens[at].low):
         at -= 1
-    if at < 0:
+    if at < 0 or tokens[at].text == ",":
+        later = {token.low for token in tokens[place + 1 :]}
+        if word == base and is_noun(word) and not later.isdisjoint(_NOMINATIVES):
+            return False  # "inch by inch he …"
+        if at >= 0 and word == base != past(base):
+            return False  # nobody is told to do things
         return _opens(word, base, tokens[place + 1].low if place + 1 < len(tokens) else "")
     before = tokens[at].low
+    if before.startswith("«") and word != base:
+        return True
     if before in grammar().subjects or before in grammar().modals or before in ("do", "does", "did"):
         return True
     if before == "to":
@@ -120,7 +134,7 @@ def _opens(word: str, base: str, after: str) -> bool:
     if word.endswith("ing"):
         return not is_noun(word) or bool(after)
     sure = is_third_person(word) or participle(base) != past(base) == word  # "fell", "woke"
-    if is_adjective(word) and not (sure or after in grammar().marks | grammar().prepositions):
+    if is_adjective(word) and not (sure or after in grammar().marks | grammar().prepositions | _PARTICLES):
         return False
     if is_third_person(word) or word != base:
         return not (is_noun(word) and verb_of(after) and not (is_noun(after) or after.endswith("ing")))
@@ -141,17 +155,22 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
     opens_noun = tokens[0].low in grammar().marks | grammar().numbers
     if before.endswith("ing") and not is_noun(before) and opens_noun and at <= 1:
         return False  # "some jumping jacks"
-    if tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word):
+    opened = tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word)
+    if opened and not _has_own_mark(tokens, at):
         return False  # "under the sofa cushions"
     if word == base:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
-        return (base in grammar().unchanging and named) or (
-            is_plural(before) and (not is_noun(word) or _has_object(after))
-        )
+        return (past(base) == base and named) or (is_plural(before) and (not is_noun(word) or _has_object(after)))
     if is_noun(word) and word.endswith("s"):
         follower = after.low if after is not None else ""
         return _goes_on(follower) or is_adjective(follower) or is_noun(follower)
     return True
+
+
+def _has_own_mark(tokens: Sequence[Token], at: int) -> bool:
+    """Whether the noun there begins anew with its own mark: "by lamplight | an archivist", not "under the sofa"."""
+    mark = next((place for place in range(at, 0, -1) if tokens[place].low in grammar().marks), 0)
+    return mark > 1 and tokens[mark - 1].low not in grammar().prepositions | grammar().marks
 
 
 def _has_object(after: Token | None) -> bool:
@@ -161,5 +180,5 @@ def _has_object(after: Token | None) -> bool:
 def _goes_on(after: str) -> bool:
     """Whether a verb may go on with a word, or end there."""
     known = grammar()
-    goes = known.marks | known.prepositions | known.adverbs | known.subjects | _OBJECTS
+    goes = known.marks | known.prepositions | known.adverbs | known.subjects | _OBJECTS | _PARTICLES
     return not after or after in goes or after.endswith("ly")

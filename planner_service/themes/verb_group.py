@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from planner_service.themes.lexicon import grammar, verb_of
+from planner_service.themes.lexicon import grammar, past, verb_of
 from planner_service.themes.verb_finder import Token, verb_place
 
+_EXPECTED: Final = frozenset(("supposed", "meant", "expected", "due", "scheduled"))
+"""What is only wished for by others: "is supposed to revise"."""
 _MAX_WORDS: Final = 6
 """Words within which the deed of an aspect stands: "spends the whole long evening reading"."""
 
@@ -36,6 +38,17 @@ def verb_group(words: Sequence[Token]) -> VerbGroup:
     return group
 
 
+def is_past(words: Sequence[Token], group: VerbGroup) -> bool | None:
+    """Whether the first of a clause's verbs is in the simple past; None where its form does not tell, or helps."""
+    if not words or group.denied:
+        return None
+    low = words[min(group.place, len(words) - 1)].low
+    first, base = next((token.low for token in words if verb_of(token.low)), ""), verb_of(low)
+    if first != low or not base or low in grammar().auxiliaries or base == past(base):
+        return None
+    return low == past(base) if low != base and not low.endswith("ing") else None
+
+
 def _step(words: Sequence[Token], group: VerbGroup) -> int:
     """How many words to go on by, noting what they say; 0 where the deed itself stands."""
     at = group.place
@@ -51,6 +64,9 @@ def _step(words: Sequence[Token], group: VerbGroup) -> int:
     if low in ("should", "might") and verb_place(words[at + 1 : at + 3]) is not None:
         group.denied = True
         return 1
+    if low in grammar().be and ahead in _EXPECTED and [token.low for token in words[at + 2 : at + 3]] == ["to"]:
+        group.denied = True
+        return 3
     if low in grammar().auxiliaries and (low in grammar().modals or _verb_follows(words, at) or _hinders(words, at)):
         group.perfect |= low == "had"
         return 1
@@ -74,7 +90,7 @@ def _denying_step(words: Sequence[Token], group: VerbGroup, low: str, base: str,
         step = near.index("to") + 1
     elif base in ("decide", "try", "choose", "prefer", "promise") and ahead == "not":
         step = 3 if len(near) > 2 and near[2] == "to" else 2
-    elif ahead in ("to", "from") and base in grammar().refusals | (grammar().wishes if ahead == "to" else set()):
+    elif ahead in ("to", "from") and base in grammar().refusals | (_wishes(words[:at]) if ahead == "to" else set()):
         step = 2
     elif ahead.endswith("ing") and base in grammar().refusals | {"consider", "imagine", "stop"}:
         step = 1
@@ -82,6 +98,12 @@ def _denying_step(words: Sequence[Token], group: VerbGroup, low: str, base: str,
         return 0
     group.denied = True
     return step
+
+
+def _wishes(before: Sequence[Token]) -> frozenset[str]:
+    """Verbs that only wish for the deed after them: "would like to sleep", but not "likes to sleep"."""
+    would = any(token.low in ("would", "'d") for token in before)
+    return grammar().wishes | ({"like", "love"} if would else frozenset())
 
 
 def _passing_step(words: Sequence[Token], at: int, low: str, base: str) -> int:
@@ -112,7 +134,8 @@ def _verb_follows(words: Sequence[Token], at: int) -> bool:
         if helper in known.be:
             return bool(base) and low.endswith("ing")
         if helper in known.have:
-            return bool(base) and low != base and not low.endswith("ing")
+            passed = any(one.low == "been" for one in words[at + 1 : at + 4])
+            return bool(base) and low != base and (passed or not low.endswith("ing"))
         return bool(base)
     return False
 

@@ -61,7 +61,7 @@ def test_a_request_chooses_among_all_backends(client: httpx.Client) -> None:
     ours = finished(client, client.post("/v1/motions", json=asked).json()["id"])
     assert (ours["backend"], ours["state"]) == ("procedural", "succeeded")
     detail = refused(client.post("/v1/stories", json={"theme": SHORT, "backend": "magic"}), "/backend")
-    assert detail == "Input should be 'procedural', 'broken' or 'ghost'"
+    assert detail == "Input should be 'procedural', 'matching', 'broken' or 'ghost'"
 
 
 def test_the_description_names_all_backends(client: httpx.Client) -> None:

@@ -46,6 +46,27 @@ def box(center: tuple[float, float, float], size: tuple[float, float, float], ow
     return Obstacles(np.array([center]), np.array([size]) / 2, np.zeros(1), (owner,), np.zeros(1, dtype=bool))
 
 
+# Seams
+
+
+@pytest.mark.parametrize(("late", "counts"), [(-1, False), (0, True), (1, False)])
+def test_only_what_happens_at_a_seam_is_a_jump_of_the_seam(late: int, counts: bool) -> None:
+    """Frame 29 is the last of one action and 30 the first of the next; what comes a frame later is the body's own."""
+    root = np.zeros((60, 3))
+    root[30 + late :, 0] = 0.2
+    motion = replace(standing_still(root=root), actions=np.repeat([0, 1], 30).astype(np.int32))
+    assert smoothness.seam_jump(motion) == pytest.approx(0.2 if counts else 0.0, abs=1e-4)
+
+
+@pytest.mark.parametrize(("late", "counts"), [(-1, False), (0, True), (1, True), (2, False)])
+def test_only_a_change_of_pace_at_a_seam_is_one_of_the_seam(late: int, counts: bool) -> None:
+    """Steps before, across and after the seam make two changes of pace that belong to it."""
+    root = np.zeros((60, 3))
+    root[:, 0] = np.cumsum(np.arange(60) >= 30 + late) / FPS
+    motion = replace(standing_still(root=root), actions=np.repeat([0, 1], 30).astype(np.int32))
+    assert smoothness.seam_speed_jump(motion) == pytest.approx(1.0 if counts else 0.0, abs=1e-2)
+
+
 # Feet
 
 

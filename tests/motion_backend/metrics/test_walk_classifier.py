@@ -103,6 +103,11 @@ def test_halves_keep_takes_whole_and_cut_a_single_one_in_time() -> None:
         assert len(set(half[body.takes == take].tolist())) == 1
     for name in PEOPLE:
         assert 0.3 < half[body.people == name].mean() < 0.7
+    both = body[np.isin(body.takes, ["a 0", "a 1"])]
+    assert {take: set(halves(both)[both.takes == take].tolist()) for take in ("a 0", "a 1")} in (
+        {"a 0": {True}, "a 1": {False}},
+        {"a 0": {False}, "a 1": {True}},
+    )
     single = halves(body[body.takes == "a 0"])
     assert single.tolist() == sorted(single.tolist(), reverse=True)
     assert single.any()

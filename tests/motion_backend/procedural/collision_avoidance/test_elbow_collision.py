@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,9 +13,7 @@ from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.pose_solver import solve
-from motion_backend.rotations import rotate
 from motion_backend.skeleton import INDEX, build_skeleton
-from scene_graphs.affordances.affordances import Spot
 
 SKELETON = build_skeleton()
 HIPS = standing((0.0, 0.0), 0.0, Bearing(arms=("hips", "hips")), SKELETON).repeat(60)
@@ -47,6 +47,17 @@ def test_a_segment_begins_with_the_elbows_it_was_given_and_never_snaps() -> None
     swung = joints(elbows_clear(HIPS, SKELETON, wall_at(joints(HIPS, "left_elbow")[0, 0])), "left_elbow")
     np.testing.assert_allclose(swung[0], joints(HIPS, "left_elbow")[0], atol=1e-9)
     assert np.linalg.norm(np.diff(swung, axis=0), axis=1).max() < 0.05
+
+
+def test_who_drifts_towards_a_wall_swings_the_elbow_out_where_it_would_be_in_it() -> None:
+    way = np.linspace(0.0, 0.12, len(HIPS))[:, None] * [1.0, 0.0, 0.0]
+    drifting = replace(HIPS, pelvis=HIPS.pelvis + way, ankles=HIPS.ankles + way[:, None])
+    wall = wall_at(joints(drifting, "left_elbow")[-1, 0] - 0.02)
+    swung = elbows_clear(drifting, SKELETON, wall)
+    before, after = (wall.depth(joints(pose, "left_elbow")) for pose in (drifting, swung))
+    assert before.max() == pytest.approx(0.02, abs=0.005)
+    assert before[:20].max() < -0.03
+    assert after.max() < -0.03
 
 
 def test_arms_that_are_clear_are_left_alone() -> None:

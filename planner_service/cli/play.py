@@ -1,0 +1,119 @@
+"""`sims play SCRIPT.json`: a script of one's own, acted out in a home."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Annotated, Any, Final
+
+import typer
+from pydantic import ValidationError
+from rich.console import Console
+
+from motion_backend.motion import Character
+from planner_service.cli.story import check_output, produce
+from planner_service.library.library import open_shelves
+from planner_service.pipeline import Pipeline, RequestError, StoryRequest
+from planner_service.scripts.captions import captions, synonyms
+from planner_service.scripts.script import Keyframe, PlannedKeyframe
+from planner_service.settings import read_settings
+from planner_service.tasks.task_plan import MAX_KEYFRAMES
+from scene_graphs.furniture import catalogue, display_name, is_known
+
+MAX_BYTES: Final = 1 << 20
+"""Of a script's file."""
+KEYS: Final = ("script", "keyframes")
+"""Under which a story.json, a long or a short script has its keyframes."""
+
+
+def play(
+    script: Annotated[Path, typer.Argument(help="Keyframes as JSON: a list, a script that has some, or a story.json.")],
+    out: Annotated[Path | None, typer.Option(help="Folder for the files; left out: a new one in out/.")] = None,
+    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same motion.")] = 0,
+    layout: Annotated[
+        list[str] | None,
+        typer.Option(help="A layout file, or the id of a built-in layout; may be given up to 4 times."),
+    ] = None,
+    backend: Annotated[str | None, typer.Option(help="What moves the body (SIMS_BACKEND; procedural).")] = None,
+    height: Annotated[float, typer.Option(help="The character's height in metres, 1.2 to 2.2.")] = 1.70,
+    film: Annotated[bool, typer.Option("--film", help="Write film.mp4 too; about as long as it plays.")] = False,
+) -> None:
+    """Act out a script of your own: nothing is planned, a home is found for it unless one is given."""
+    from planner_service.cli.layouts import chosen_layouts
+
+    settings = read_settings()
+    keyframes = read_keyframes(script)
+    check_output(out, film)
+    console = Console(markup=False)
+    for line in unknown_captions(keyframes):
+        console.print(line, highlight=False, soft_wrap=True)
+    pipeline = Pipeline(open_shelves(settings))
+    request = StoryRequest(
+        theme=script.stem,
+        keyframes=tuple(keyframes),
+        layouts=chosen_layouts(layout or [], pipeline.shelves),
+        seed=seed,
+        backend=backend or settings.backend,
+        character=Character(height=height),
+    )
+    produce(pipeline, request, out, film, console)
+
+
+def read_keyframes(path: Path) -> list[Keyframe]:
+    """The keyframes of a file. RequestError names the place in it, and what would be right there."""
+    rows = _rows(path)
+    if not isinstance(rows, list) or not rows:
+        raise RequestError(f"{path.name}: holds no keyframes", "a list of them, or an object that has `keyframes`")
+    if len(rows) > MAX_KEYFRAMES:
+        raise RequestError(f"{path.name}: has {len(rows)} keyframes, at most {MAX_KEYFRAMES} are acted")
+    faults: list[str] = []
+    keyframes = [_keyframe(row, f"keyframes.{number}", faults) for number, row in enumerate(rows)]
+    if faults:
+        raise RequestError(f"{path.name}: {'; '.join(faults)}", at="script")
+    return [keyframe for keyframe in keyframes if keyframe is not None]
+
+
+def _rows(path: Path) -> Any:
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+        found = json.loads(data) if len(data) <= MAX_BYTES else None
+    except OSError as error:
+        raise RequestError(f"{path}: cannot be read: {error.strerror or error}", at="script") from error
+    except (ValueError, RecursionError) as error:
+        raise RequestError(f"{path.name}: is not JSON: {error}", at="script") from error
+    for key in KEYS:
+        if isinstance(found, dict) and key in found:
+            found = found[key]
+    return found
+
+
+def _keyframe(row: Any, where: str, faults: list[str]) -> Keyframe | None:
+    """A keyframe at known furniture; else what is wrong with it is added to the faults."""
+    try:
+        keyframe = PlannedKeyframe.model_validate(row)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        faults.append(f"{'.'.join([where, *map(str, first['loc'])])}: {first['msg']}")
+        return None
+    if not keyframe.on_floor and not is_known(keyframe.piece[0]):
+        words = sorted(map(display_name, catalogue().class_of))
+        faults.append(f"{where}.furniture: {keyframe.furniture!r} is not known{_nearest(keyframe.piece[0], words)}")
+    return keyframe
+
+
+def unknown_captions(keyframes: Sequence[Keyframe]) -> list[str]:
+    """Where captions stand that are none of the body's own: their words are read as far as they go."""
+    known = {skill: [*rows, *synonyms().get(skill, {})] for skill, rows in captions().items()}
+    return [
+        f"keyframes.{number}.caption: {keyframe.caption!r} is read word by word{_nearest(keyframe.caption, rows)}"
+        for number, keyframe in enumerate(keyframes)
+        if keyframe.caption not in (rows := known[keyframe.skill])
+    ]
+
+
+def _nearest(word: str, known: Sequence[str]) -> str:
+    found = get_close_matches(word, known, n=3, cutoff=0.4)
+    return f"; perhaps {', '.join(map(repr, found))}" if found else ""

@@ -1,0 +1,50 @@
+"""What a clause tells besides its deed: with what, as what, for whom, since when; no keyframe shows that."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Final
+
+from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, verb_of
+from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.verb_finder import Token, tokens_of
+
+_LEADS: Final = frozenset(
+    ("with", "without", "for", "like", "as", "despite", "after", "since", "before", "until")
+)
+"""Words before which a deed has been told, and after which stands how, for whom or when."""
+_MARKS: Final = frozenset((",", ";"))
+_FEWEST: Final = 2
+"""Words that a deed is told in at least."""
+
+
+def details_of(clause: Clause) -> tuple[str, ...]:
+    """Stretches of a clause after its deed, in its words: "draws out a chair | for a lady, | thirty years gone"."""
+    tokens = [token for token in tokens_of(clause.text) if token.text[:1].isalnum() or token.text in _MARKS]
+    verb = next((at for at, token in enumerate(tokens) if lemma_of(token.text) == clause.verb), None)
+    if not clause.verb or verb is None or clause.quotes:
+        return ()
+    starts = [at for at in range(verb + _FEWEST, len(tokens)) if _starts(tokens, at)]
+    found = [_words(clause.text, tokens[start:end]) for start, end in pairwise([*starts, len(tokens)])]
+    return tuple(text for text in found if len(text.split()) > 1)
+
+
+def core_of(text: str, details: Sequence[str]) -> str:
+    """A clause's words without its details."""
+    for detail in details:
+        text = text.replace(detail, "")
+    return " ".join(text.split()).rstrip(" ,;").replace(" ,", ",")
+
+
+def _starts(tokens: Sequence[Token], at: int) -> bool:
+    """Whether a detail begins there: at a leading word, or at a deed beside."""
+    low, before = tokens[at].low, tokens[at - 1]
+    beside = low.endswith("ing") and bool(verb_of(low)) and not is_noun(low) and is_noun(before.low)
+    return low in _LEADS or (beside and not is_adjective(before.low) and before.low not in grammar().prepositions)
+
+
+def _words(text: str, tokens: Sequence[Token]) -> str:
+    while tokens and tokens[0].text in _MARKS:
+        tokens = tokens[1:]
+    return text[tokens[0].start : tokens[-1].end].strip(" ,;") if tokens else ""

@@ -1,0 +1,34 @@
+"""Things that people have at home, and the furniture where they are kept."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+
+from scene_graphs.data_tables import read_table, table
+
+
+@table
+class KeptThings:
+    """Things, and the furniture where they are, the likeliest first."""
+
+    things: str
+    at: tuple[str, ...]
+
+
+@table
+class ThingTable:
+    """data/things.toml."""
+
+    kept: tuple[KeptThings, ...]
+
+
+@cache
+def things() -> Mapping[str, tuple[str, ...]]:
+    """Where each thing is, by its base form."""
+    known: ThingTable = read_table("planner_service", "things.toml", ThingTable)
+    found: dict[str, tuple[str, ...]] = {}
+    for kept in known.kept:
+        for thing in kept.things.split():
+            found.setdefault(thing, kept.at)
+    return found
