@@ -211,8 +211,9 @@ class Request:
 class MotionBackend(Protocol):
     """What moves the body. One segment a part, each reproducible alone from the state it starts in.
 
-    A backend may have two things more. `parts`, the kinds of parts it can do: others are done by the fallback.
-    `advance_many(requests)`, for which one pass over many bodies is cheaper than one after the other.
+    A backend may have three things more. `parts`, the kinds of parts it can do: others are done by the fallback.
+    `advance_many(requests)`, for which one pass over many bodies is cheaper than one after the other. `between`, a
+    function without arguments that others put there: what takes long calls it often, and it raises to cancel.
     """
 
     name: str

@@ -14,7 +14,7 @@ from motion_backend.rotations import Array
 from motion_backend.skeleton import HAND_REST, LYING_REST, SEATED_REST
 
 _REST: Final = {Skill.SITDOWN: SEATED_REST, Skill.LIEDOWN: LYING_REST, Skill.TOUCH: HAND_REST}
-_BODY_OF: Final = {"pelvis": "pelvis", "left_wrist": "left_hand", "right_wrist": "right_hand"}
+_BODY_OF: Final = {"pelvis": "pelvis", "head": "head", "left_wrist": "left_hand", "right_wrist": "right_hand"}
 """The contact body whose place a joint's goal gives."""
 
 

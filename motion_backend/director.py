@@ -167,8 +167,7 @@ def _made(step: Step) -> Step:
 
 def _raised(error: Exception, asked: Request) -> Motion:
     """No frames, and what was raised as the reason."""
-    words = " ".join(str(error).split())
-    why = f"it raised {type(error).__name__}" + (f": {words:.{MAX_REASON}}" if words else "")
+    why = f"it raised {error!r:.{MAX_REASON}}"
     return replace(Motion.empty(build_skeleton(asked.state.height)), completed=False, reason=why)
 
 

@@ -22,6 +22,14 @@ PARENTS = (-1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9, 12, 13, 14, 16, 17, 18,
 INDEX = {name: index for index, name in enumerate(JOINTS)}
 REFERENCE_HEIGHT = 1.70
 
+
+def other_side(name: str) -> str:
+    """The joint on the other side of the body: left_knee of right_knee; those in the middle are their own."""
+    side, _, rest = name.partition("_")
+    return {"left": f"right_{rest}", "right": f"left_{rest}"}.get(side, name)
+
+
+
 _OFFSETS = {
     "pelvis": (0.0, 0.0, 0.0),
     "left_hip": (0.088, 0.0, 0.0),

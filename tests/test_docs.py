@@ -15,7 +15,7 @@ from planner_service.cli import app
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 TOPS = ("prompts", "scene_graphs", "motion_backend", "planner_service", "benchmarks", "docs", "tests")
-GROUPS = "scripts|layouts|clips|evaluate"
+GROUPS = "scripts|layouts|clips|evaluate|train"
 PATH = re.compile(rf"(?<![\w/.-])(?:{'|'.join(TOPS)})/[\w./-]*\w(?:\.\w+)?/?")
 BUILT = {"planner_service/page"}
 """What `make page` makes where Node is installed, and git does not hold."""

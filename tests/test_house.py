@@ -21,8 +21,8 @@ PACKAGES = {
     "planner_service": {"prompts", "scene_graphs", "motion_backend"},
 }
 HOMES = {
-    "torch": {"motion_backend/language"},
-    "safetensors": {"motion_backend/language"},
+    "torch": {"motion_backend/language", "motion_backend/embedding", "motion_backend/physics"},
+    "safetensors": {"motion_backend/language", "motion_backend/embedding"},
     "mujoco": {"motion_backend/physics"},
     "networkx": {"scene_graphs"},
     "numba": {"scene_graphs"},
@@ -45,7 +45,7 @@ HOMES = {
     "openai": {"planner_service/llm"},
     "anthropic": {"planner_service/llm"},
     "httpx2": {"planner_service/llm"},
-    "av": {"planner_service/extraction"},
+    "av": {"planner_service/extraction", "motion_backend/formats"},
     "faster_whisper": {"planner_service/extraction"},
 }
 """Where a third-party library may be imported; libraries not named here may be used anywhere they are needed."""

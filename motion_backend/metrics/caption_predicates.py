@@ -266,6 +266,29 @@ def _slope(values: Array, fps: int) -> Array:
     return np.asarray(np.gradient(values) * fps) if len(values) > 1 else np.zeros(len(values))
 
 
+def _trunk_aside(body: Kinematics) -> Array:
+    """Degrees that the trunk leans to the left. (T,)."""
+    ahead, trunk = _heading(body), _trunk(body)
+    left = np.stack([ahead[:, 2], np.zeros(len(ahead)), -ahead[:, 0]], axis=-1)
+    return np.asarray(np.degrees(np.arctan2(np.sum(trunk * left, axis=-1), trunk[:, 1])))
+
+
+def _yaw(vectors: Array) -> Array:
+    """Where vectors (T, 3) point on the floor, continuous (degrees). (T,)."""
+    return np.asarray(np.degrees(np.unwrap(np.arctan2(vectors[:, 0], vectors[:, 2]))))
+
+
+def _off_the_way(body: Kinematics) -> Array:
+    """Degrees between where the hips look and where the pelvis goes. (T,)."""
+    pelvis = body.positions[:, INDEX["pelvis"]] * [1.0, 0.0, 1.0]
+    return _angle(np.gradient(pelvis, axis=0), _heading(body)) if len(pelvis) > 1 else np.zeros(len(pelvis))
+
+
+def _in_all(values: Array) -> Array:
+    """The range of values (T,), the same in every frame. (T,)."""
+    return np.broadcast_to(np.ptp(values), values.shape)
+
+
 def _travel(points: Array) -> Array:
     """The largest extent along an axis of where points (T, 2, 3) go, the same in every frame (metres). (T, 2)."""
     return np.broadcast_to(np.ptp(points, axis=0).max(axis=-1), points.shape[:2])
@@ -304,6 +327,11 @@ MEASURES: Final[dict[str, Callable[[Kinematics], Array]]] = {
     "trunk_pitch": lambda body: np.degrees(np.arctan2(np.sum(_trunk(body) * _heading(body), -1), _trunk(body)[:, 1])),
     "trunk_tilt": lambda body: _angle(_trunk(body), np.array([0.0, 1.0, 0.0])),
     "face_down": lambda body: _pitch(_front(body, "head")),
+    "face_left": lambda body: (_yaw(_front(body, "head")) - _yaw(_heading(body)) + 180) % 360 - 180,
+    # Degrees: how far the trunk sways from side to side in all, and the hips turn in all; off the way that is gone.
+    "trunk_sway": lambda body: _in_all(_trunk_aside(body)),
+    "turned": lambda body: _in_all(_yaw(_heading(body))),
+    "off_the_way": _off_the_way,
     # Degrees that the left of the pelvis points below the horizontal: on the left side above 0, on the right below.
     "left_down": lambda body: _pitch(rotations.rotate(body.world[:, INDEX["pelvis"]], np.array([1.0, 0.0, 0.0]))),
     "pelvis_pitch": lambda body: _pitch(_front(body, "pelvis")),

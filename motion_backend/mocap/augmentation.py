@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.mocap.resampling import sample_positions, sample_rotations
 from motion_backend.motion import ContactGoal, Motion
-from motion_backend.skeleton import INDEX, JOINTS
+from motion_backend.skeleton import INDEX, JOINTS, other_side
 
 SPEEDS = (0.7, 1.3)
 """Slowest and fastest that a motion may be played and still look like one."""
@@ -23,7 +23,7 @@ def _other_side(word: str) -> str:
     return {"left": "right", "right": "left"}.get(word, word)
 
 
-SWAPPED = [INDEX[re.sub("^(left|right)", lambda side: _other_side(side[0]), joint)] for joint in JOINTS]
+SWAPPED = [INDEX[other_side(joint)] for joint in JOINTS]
 _ACROSS = np.array([-1.0, 1.0, 1.0])
 _TURNED = np.array([1.0, -1.0, -1.0, 1.0])
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from motion_backend.datasets.splits import splits
 from motion_backend.mocap.augmentation import BACKWARDS, change_speed, mirror, mirror_words, reverse, sped_times
 from motion_backend.mocap.clip import Clip, ClipError
 from motion_backend.mocap.clip_captions import (
@@ -21,7 +22,7 @@ from motion_backend.mocap.clip_captions import (
     read_labels,
     ways_to_say,
 )
-from motion_backend.mocap.dataset_file import Dataset, Entry, splits
+from motion_backend.mocap.dataset_file import Dataset, Entry
 from motion_backend.mocap.fidelity_report import Fidelity
 from motion_backend.mocap.joint_map import JointMap
 from motion_backend.mocap.near_duplicates import Copy, joined_subjects

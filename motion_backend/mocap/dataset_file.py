@@ -12,9 +12,7 @@ import lzma
 import tokenize
 import zipfile
 import zlib
-from collections.abc import Sequence
 from dataclasses import dataclass
-from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +28,6 @@ from motion_backend.skeleton import JOINTS, PARENTS, Skeleton
 VERSION = 1
 MAX_FRAMES, MAX_CLIPS, MAX_MANIFEST_BYTES = 5_000_000, 100_000, 64 << 20
 """What is read at most: 5 million frames are 46 hours."""
-TEST_SHARE = 0.2
 _DAMAGED = (
     OSError, EOFError, ValueError, TypeError, KeyError, AttributeError, RuntimeError, SyntaxError,
     tokenize.TokenError, zipfile.BadZipFile, zlib.error, lzma.LZMAError,
@@ -95,24 +92,6 @@ class Dataset:
 
 def _worth_showing(entry: Entry) -> tuple[bool, int]:
     return not entry.changed, len(entry.motion)
-
-
-def splits(subjects: Sequence[tuple[str, int]], seed: int = 0) -> dict[str, str]:
-    """Every subject's side, train or test, from (subject, frames): about a fifth of all frames is for testing.
-
-    Subjects come in an order that only their names and the seed decide; one alone is for training.
-    """
-    frames: dict[str, int] = {}
-    for subject, count in subjects:
-        frames[subject] = frames.get(subject, 0) + count
-    order = sorted(frames, key=lambda subject: sha256(f"{seed}:{subject}".encode()).digest())
-    left = TEST_SHARE * sum(frames.values())
-    sides = dict.fromkeys(frames, "train")
-    for subject in order:
-        if frames[subject] <= 1.25 * left and len(order) > 1:
-            sides[subject] = "test"
-            left -= frames[subject]
-    return sides
 
 
 def dataset_bytes(dataset: Dataset) -> bytes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
@@ -78,15 +79,22 @@ class ContactReader:
                 away = np.linalg.norm(self.foot_points(data, side) - data.contact.pos[index], axis=1)
                 pressure.soles[side, away.argmin()] += share * force[0]
 
-    def foot_points(self, data: Any, side: int) -> Array:
-        """Heel, heel, ball, ball, toe, toe of a foot in the world. (6, 3)."""
-        foot, toe = self.feet[side]
-        below = np.array([[x, y - TOES[2], z] for x, y, z in TOES[:2]])
-        return np.concatenate([self._placed(data, foot, SOLE_POINTS), self._placed(data, toe, below)])
+    @cached_property
+    def sole(self) -> Array:
+        """Two points of the heel and two of the ball, in the foot's frame. (4, 3)."""
+        return self.scale * SOLE_POINTS
 
-    def _placed(self, data: Any, body: int, points: Array) -> Array:
-        placed: Array = data.xpos[body] + self.scale * points @ data.xmat[body].reshape(3, 3).T
+    def sole_points(self, data: Any, side: int) -> Array:
+        """Heel, heel, ball, ball of a foot in the world. (4, 3)."""
+        foot, _ = self.feet[side]
+        placed: Array = data.xpos[foot] + self.sole @ data.xmat[foot].reshape(3, 3).T
         return placed
+
+    def foot_points(self, data: Any, side: int) -> Array:
+        """The same and both ends of the toes. (6, 3)."""
+        _, toe = self.feet[side]
+        below = self.scale * np.array([[x, y - TOES[2], z] for x, y, z in TOES[:2]])
+        return np.concatenate([self.sole_points(data, side), data.xpos[toe] + below @ data.xmat[toe].reshape(3, 3).T])
 
 
 def _index(name: str) -> int:

@@ -20,7 +20,7 @@ from motion_backend.motion import FPS
 from motion_backend.physics.contact_forces import ContactReader, Pressure
 from motion_backend.physics.engine import engine
 from motion_backend.physics.linear_model import NX, Frame, State, linearise
-from motion_backend.physics.mjcf_character import NU, NV, SIMULATED, SOLE_POINTS
+from motion_backend.physics.mjcf_character import NU, NV, SIMULATED
 from motion_backend.physics.mjcf_scene import Models
 from motion_backend.physics.reference import Reference
 from motion_backend.rotations import Array
@@ -213,11 +213,19 @@ class Controller:
 
     def _sliding(self, at: int) -> float:
         """The price of planted points that move, of the body as its data have it."""
-        rows = self._planted_rows(at)
-        if rows is None:
+        planted = self.reference.planted[at].reshape(2, 2)
+        if not planted.any():
             return 0.0
-        velocity = rows @ self.data.qvel
-        return SLIDING * float(velocity @ velocity)
+        mujoco, model, data, cost, velocity = engine(), self.models.fine, self.data, 0.0, np.empty(6)
+        for stage in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_comVel):
+            stage(model, data)
+        for side, (foot, _) in enumerate(self.contacts.feet):
+            if planted[side].any():
+                mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_XBODY, foot, velocity, 0)
+                arms = self.contacts.sole @ data.xmat[foot].reshape(3, 3).T
+                moves = velocity[3:] + np.cross(velocity[:3], arms[np.repeat(planted[side], 2)])
+                cost += SLIDING * float((moves * moves).sum())
+        return cost
 
     def _planted_rows(self, at: int) -> Array | None:
         """Jacobian rows (3 N, 36) of the velocities of planted sole points; None where there are none."""
@@ -229,7 +237,7 @@ class Controller:
         mujoco.mj_comPos(model, data)
         rows = []
         for side, (foot, _) in enumerate(self.contacts.feet):
-            points = self.contacts.foot_points(data, side)[: len(SOLE_POINTS)].reshape(2, 2, 3)
+            points = self.contacts.sole_points(data, side).reshape(2, 2, 3)
             for point in points[planted[side]].reshape(-1, 3):
                 row = np.empty((3, NV))
                 mujoco.mj_jac(model, data, row, None, point, foot)

@@ -109,6 +109,9 @@ class Tracker:
             return falls + 1
         done.resets.append(at)
         done.moments[at] = moment_of(self.reference, at)
+        for frame, moment in enumerate(done.moments):
+            if not moment.finite:
+                done.moments[frame] = moment_of(self.reference, frame)
         return 0
 
 

@@ -102,6 +102,8 @@ class Look(NamedTuple):
     """(3,) world."""
     share: Array
     """How far the head goes there, 0 to 1. (T,)."""
+    trunk: bool = True
+    """Whether the trunk turns with it: not while hands work."""
 
 
 def gaze_table() -> Gaze:
@@ -146,7 +148,9 @@ def _at_the_hand(pose: Pose, part: Part, row: Gaze) -> Iterator[Look]:
     target = _contact(part)
     if target is not None and len(there):
         at = np.arange(len(pose)) / FPS
-        yield Look(target, smooth(at / row.touching.take_s) * smooth((at[there[-1]] - at) / row.touching.leave_s))
+        yield Look(
+            target, smooth(at / row.touching.take_s) * smooth((at[there[-1]] - at) / row.touching.leave_s), False
+        )
 
 
 def _contact(part: Part) -> Array | None:
@@ -218,11 +222,13 @@ def turned_to(pose: Pose, looks: list[Look], posture: Posture, skeleton: Skeleto
         share = look.share * smooth((row.lost_rad - np.abs(turn)) / (row.lost_rad - row.turn_max_rad))
         turn = np.clip(turn, -most, most)
         nod = np.clip(np.arctan2(-y, np.hypot(x, z)), row.nod_min_rad, row.nod_max_rad)
-        trunk = 0.0 * turn if lies else row.trunk_share * turn
+        trunk = row.trunk_share * turn if look.trunk and not lies else np.zeros_like(turn)
         nod = pose.head[:, 0] if lies else nod
         wanted = rotations.compose(rotations.yaw_to_quat(turn - trunk), rotations.axis_to_quat("x", nod))
         head += share[:, None] * (rotations.quat_to_rotvec(wanted) - pose.head)
         spine[:, 1] += share * trunk
     begun = smooth(np.arange(len(pose)) / (row.begin_s * FPS))[:, None]
-    head, spine = (begun * gaussian_filter1d(way, row.smoothed_s * FPS, axis=0, mode="nearest") for way in (head, spine))
+    head, spine = (
+        begun * gaussian_filter1d(way, row.smoothed_s * FPS, axis=0, mode="nearest") for way in (head, spine)
+    )
     return replace(pose, head=pose.head + head, spine=pose.spine + spine)

@@ -21,6 +21,7 @@ from planner_service.cli import (
     story,
     tasks,
     train,
+    train_embedding,
 )
 from planner_service.user_errors import explain
 from scene_graphs.errors import UserError
@@ -40,6 +41,7 @@ app.add_typer(layouts.app, name="layouts")
 app.add_typer(service.app, name="models")
 app.add_typer(evaluate.app, name="evaluate")
 app.add_typer(clips.app, name="clips")
+train.app.command("embedding")(train_embedding.embedding)
 app.add_typer(train.app, name="train")
 
 

@@ -18,6 +18,7 @@ from rich.table import Table
 
 from planner_service.cli.console import plain_table
 from planner_service.cli.evaluate_body import body
+from planner_service.cli.evaluate_embedding import embedding
 from planner_service.cli.evaluate_physics import physics
 from planner_service.cli.evaluate_walks import walks
 from planner_service.llm.factory import load_model
@@ -106,6 +107,7 @@ def _script_table(figures: Sequence[ScriptFigure]) -> Table:
 app = typer.Typer(no_args_is_help=True, help="Measure the planner against written labels, and the body in many rooms.")
 app.command()(body)
 app.command()(walks)
+app.command()(embedding)
 app.command()(physics)
 app.command()(scripts)
 

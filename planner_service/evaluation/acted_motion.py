@@ -13,7 +13,7 @@ import numpy as np
 
 from motion_backend.diffusion.dataset import Stretch, followed
 from motion_backend.motion import FPS, Skill
-from planner_service.evaluation.trials import Trial, acted, places_for, setting
+from planner_service.evaluation.trials import Trial, act_trial, places_for, setting
 from planner_service.grounding.keyframes_to_actions import UnreachableError
 from planner_service.scripts.captions import captions, synonyms
 from scene_graphs.layout_library import built_in_index
@@ -55,7 +55,7 @@ def _acted(trial: Trial, rng: np.random.Generator) -> Stretch | None:
     if not places_for(trial.skill, trial.caption, setting(trial.room)):
         return None
     try:
-        _, actions, motions = acted(trial)
+        _, actions, motions = act_trial(trial)
     except (UnreachableError, NoPath):
         return None
     if not all(motion.completed for motion in motions):

@@ -97,6 +97,11 @@ class Judgement:
             index for index, stems in words.items() if any(3 * len(stems & one) > 2 * len(stems) for one in sentences)
         )
 
+    def told_as_done(self, story: str) -> tuple[int, ...]:
+        """Those of the told that the script does not name as not acted; what it names is told as a thought or as left
+        undone, or its words stand in the telling of another beat."""
+        return tuple(index for index in self.told(story) if index not in self.named)
+
     @cached_property
     def unasked(self) -> tuple[int, ...]:
         """Keyframes that show no beat, with those that lead to them.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -68,9 +68,14 @@ class Figure:
         return self.limit is not None and self.limit.missed(self.value)
 
 
-def plan_trials(captions: Mapping[Skill, Sequence[str]], rooms: int, seeds: int) -> list[Trial]:
-    """Every caption in as many rooms of the library, in an order by chance, as have what it needs, with every seed."""
-    every = [layout.id for layout in built_in_index().layouts]
+def plan_trials(
+    captions: Mapping[Skill, Sequence[str]], rooms: int, seeds: int, without: Collection[str] = ()
+) -> list[Trial]:
+    """Every caption in as many rooms of the library, in an order by chance, as have what it needs, with every seed.
+
+    Rooms in `without` are left out.
+    """
+    every = [layout.id for layout in built_in_index().layouts if layout.id not in without]
     order = [every[index] for index in np.random.default_rng(0).permutation(len(every))]
     wanted = [(skill, caption) for skill, some in captions.items() for caption in some]
     left = dict.fromkeys(wanted, rooms)

@@ -101,6 +101,7 @@ def _feet(motion: Motion, plan: Motion) -> dict[str, float]:
         "slip": support_slip(body),
         "skate": skate_speed(body),
         "skate_ratio": skate_ratio(body),
+        "skate_ratio_planned": skate_ratio(planned),
         "floor_pen": floor_penetration(body),
         "jerk_ratio": jerk(body.positions, motion.fps) / max(jerk(planned.positions, plan.fps), 1e-6),
         "away": float(away),
@@ -151,7 +152,18 @@ def summed(rows: Sequence[Row]) -> Iterator[tuple[str, int, dict[str, tuple[floa
 def figures_of(rows: Sequence[Row]) -> dict[str, tuple[float, float, float]]:
     """Each figure's mean over rows that have it, and its interval: Wilson's for shares, else by drawing rows anew."""
     found = {}
-    for name in ("reached", "contact_error", "slip", "skate", "skate_ratio", "floor_pen", "jerk_ratio", "away", "cpu"):
+    for name in (
+        "reached",
+        "contact_error",
+        "slip",
+        "skate",
+        "skate_ratio",
+        "skate_ratio_planned",
+        "floor_pen",
+        "jerk_ratio",
+        "away",
+        "cpu",
+    ):
         values = np.array([row[name] for row in rows if row.get(name) is not None], dtype=np.float64)
         if len(values):
             low, high = _wilson(values) if name == "reached" else _drawn(values)

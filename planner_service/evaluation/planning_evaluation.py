@@ -196,6 +196,7 @@ def beat_figures(themes: Sequence[Judgement]) -> list[Figure]:
     ]
     stories = [narrate(one.script, Character()).text if one.script else "" for one in played]
     told = [(len(one.told(text)), len(one.missing)) for one, text in zip(played, stories, strict=True)]
+    as_done = [(len(one.told_as_done(text)), len(one.missing)) for one, text in zip(played, stories, strict=True)]
     unasked = share("screen time: unasked", [(one.unasked_seconds, one.seconds) for one in played])
     deeds = share("keyframes a beat", [(one.deeds, len(one.actable)) for one in played])
     forbidden = figure("keyframes: forbidden", labels, [len(one.forbidden) for one in played], sum, 0.0, "held_out")
@@ -205,6 +206,7 @@ def beat_figures(themes: Sequence[Judgement]) -> list[Figure]:
     return [
         *beats,
         share("beats: not acted, yet told", told),
+        share("beats: not acted, yet told as done", as_done),
         replace(unasked, limit=UNASKED, sense="most"),
         replace(forbidden, sense="most", unit=""),
         replace(deeds, limit=DEEDS, sense="most", unit=""),

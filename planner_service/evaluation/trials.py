@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import islice
 from typing import Any, Final
@@ -28,7 +28,9 @@ from motion_backend.metrics.joint_speed import fastest_joint
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.skin_penetration import THIN, skin_penetration
 from motion_backend.metrics.smoothness import bone_deviation, jerk_against_real, seam_jump, seam_speed_jump
-from motion_backend.motion import FPS, Action, Character, Motion, Skill, join
+from motion_backend.motion import FPS, Action, Character, Emotion, Motion, Skill, join
+from motion_backend.procedural.touch.hand_captions import handling_of
+from motion_backend.procedural.touch.hand_contacts import is_top
 from motion_backend.scene import scene_of
 from planner_service.grounding.keyframes_to_actions import Place, UnreachableError, act, can_stand, height_of
 from planner_service.scripts.caption_actions import look_of
@@ -60,6 +62,10 @@ _IN_CHAIR: Final = re.compile(r"\bchair\b", re.IGNORECASE)
 _ON_EDGE: Final = re.compile(r"\bfoot on the floor\b", re.IGNORECASE)
 _CHAIRS: Final = frozenset({"dining_chair", "armchair", "office_chair", "lounge_chair", "dressing_chair"})
 _WITH_ARMRESTS: Final = frozenset({"armchair", "multi_seat_sofa", "loveseat_sofa", "l_shaped_sofa"})
+
+_SAT_ON: Final = frozenset({"seat", "sofa"})
+_HUNG: Final = frozenset({"pendant_lamp", "ceiling_lamp", "wall_lamp"})
+_ON_TOPS: Final = frozenset({"pick", "put", "wash"})
 
 
 @dataclass(frozen=True, order=True)
@@ -177,7 +183,7 @@ def places_for(skill: Skill, caption: str, where: Setting) -> tuple[str, ...]:
 def _serves(caption: str, need: str, placed: Placed, spot: Spot, home: Home) -> bool:
     """Whether a spot has what the words of a caption ask for."""
     if need == "touch":
-        return spot.height == height_of(caption) if _HEIGHT.search(caption) else True
+        return _handled(caption, placed, spot) and (spot.height == height_of(caption) or not _HEIGHT.search(caption))
     if need == "lie":
         return True
     if _AT_TABLE.search(caption):
@@ -185,6 +191,14 @@ def _serves(caption: str, need: str, placed: Placed, spot: Spot, home: Home) -> 
     if _ARMRESTS.search(caption):
         return placed.category in _WITH_ARMRESTS
     return placed.category in _CHAIRS if _IN_CHAIR.search(caption) else True
+
+
+def _handled(caption: str, placed: Placed, spot: Spot) -> bool:
+    """Whether what hands do in a caption is done at such a piece: nobody washes a chair or turns a ceiling lamp."""
+    doing = handling_of(caption)
+    if doing and (furniture.class_of(placed.category) in _SAT_ON or placed.category in _HUNG):
+        return False
+    return is_top(spot.normal) if doing in _ON_TOPS else True
 
 
 def _table_before(spot: Spot, home: Home) -> bool:
@@ -201,24 +215,13 @@ def _over(placed: Placed, point: NDArray[np.float64]) -> bool:
     return bool(abs(cos * x - sin * z) <= placed.size[0] / 2 and abs(sin * x + cos * z) <= placed.size[2] / 2)
 
 
-def acted(
-    trial: Trial, director: Director | None = None
-) -> tuple[tuple[Keyframe, ...], tuple[Action, ...], tuple[Motion, ...]]:
-    """Act one trial: its script, and an action and a motion a keyframe. Raises UnreachableError or NoPath."""
-    where, luck = setting(trial.room), _luck(trial)
-    keyframes, actions = _actions(trial, where, luck)
-    led, state = _lead(trial.room, _start(where, actions[0], luck), actions[:-1], actions[-1])
-    motion, _ = (director or where.director).act(where.home, actions[-1], state)
-    return keyframes, actions, (*led, motion)
-
-
 def perform(trial: Trial, director: Director | None = None) -> Performance:
     """Act one trial and judge it; its own action by another director, what leads up to it always kinematically.
 
     Raises UnreachableError or NoPath where its room has no place for it.
     """
-    where = setting(trial.room)
-    keyframes, actions, (*led, motion) = acted(trial, director)
+    where, (keyframes, actions, motions) = setting(trial.room), act_trial(trial, director)
+    motion, led = motions[-1], motions[:-1]
     figures = story_metrics.judge(motion, actions[-1], where.obstacles)
     around, body = join([led[-1].part(max(len(led[-1]) - FPS, 0), len(led[-1])), motion]), Kinematics.of(motion)
     joint, beyond = worst_joint(motion.local_rotations)
@@ -237,7 +240,22 @@ def perform(trial: Trial, director: Director | None = None) -> Performance:
         "joint_speed_joint": fastest_joint(motion.local_rotations, motion.fps)[0],
         "self_pen_pair": " in ".join(deepest_pair(body.motion.skeleton, body.positions, body.world)),
     }
-    return Performance(trial, where.home, keyframes, actions, (*led, motion), figures, besides)
+    return Performance(trial, where.home, keyframes, actions, motions, figures, besides)
+
+
+def act_trial(
+    trial: Trial, director: Director | None = None, led_alike: bool = False
+) -> tuple[tuple[Keyframe, ...], tuple[Action, ...], tuple[Motion, ...]]:
+    """Act one trial: what it is as a script, and a motion an action, its own the last. Raises as `perform` does.
+
+    `led_alike` leaves its caption out of what is led up to: all captions of a place share one lead, at half the time.
+    """
+    where, luck = setting(trial.room), _luck(trial)
+    keyframes, actions = _actions(trial, where, luck)
+    own = replace(actions[-1], caption="", emotion=Emotion.NEUTRAL) if led_alike else actions[-1]
+    led, state = _lead(trial.room, _start(where, actions[0], luck), actions[:-1], own)
+    motion, _ = (director or where.director).act(where.home, actions[-1], state)
+    return keyframes, actions, (*led, motion)
 
 
 def piece_of(trial: Trial) -> str:

@@ -11,10 +11,12 @@ import threading
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
-from typing import Final
+from typing import Any, Final
+
+from sqlalchemy.exc import InterfaceError, OperationalError
 
 from motion_backend.backend_protocol import BodyState
 from motion_backend.body.scene_collision import Obstacles
@@ -43,6 +45,8 @@ _DONE: Final = {"plan": 0.05, "furnish": 0.10, "narrate": 0.12, "act": 0.20, "mo
 """Share of the whole that is done after a stage."""
 AT_ONCE: Final = 4
 """Stories that a worker has in the making where a language model is waited for."""
+ASKED_EVERY: Final = 2.0
+"""Seconds between two looks whether somebody still wants an action that takes long."""
 _OPEN: Final = AT_ONCE
 """Stories whose home and actions a worker keeps at hand."""
 
@@ -162,6 +166,10 @@ class Maker:
         else:
             state = BodyState.from_dict(self.store.segment(story_id, position - 1)[1])
             first = self._end_of(story_id, position - 1)
+        backend: Any = director.backend
+        if hasattr(backend, "between"):
+            done = _DONE["act"] + index / len(story.actions) * (_DONE["move"] - _DONE["act"])
+            backend.between = _now_and_then(lambda: self.store.go_on(story_id, round(done, 4)))
         motion, after = director.act(home, action, state, following)
         figures = story_metrics.judge(motion, action, story.obstacles)
         summary = {
@@ -262,6 +270,21 @@ class Maker:
     def _end_of(self, story_id: str, position: int) -> int:
         found = self.store.get(story_id, position - 1).artifacts
         return int(found[0].summary["end"])
+
+
+def _now_and_then(ask: Callable[[], None]) -> Callable[[], None]:
+    """Asks the first time that it is called, and then not before some seconds have passed."""
+    asked = -ASKED_EVERY
+
+    def between() -> None:
+        nonlocal asked
+        if time.monotonic() - asked >= ASKED_EVERY:
+            asked = time.monotonic()
+            # Whether it is wanted can be asked again; what is made will be stored when the database is back.
+            with suppress(OperationalError, InterfaceError):
+                ask()
+
+    return between
 
 
 def _to_bytes(value: Json) -> bytes:

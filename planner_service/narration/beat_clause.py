@@ -11,7 +11,7 @@ from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.story_words import story_words
 from planner_service.narration.tense import bases, form_of, in_past, says_how
 from planner_service.scripts.script import Beat
-from planner_service.themes.lexicon import participle, past
+from planner_service.themes.lexicon import is_adjective, is_noun, participle, past
 
 WAS: Final = "\ue000"
 """Stands for was or were until the subject is known; no theme has it."""
@@ -54,8 +54,9 @@ def event(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
     quotes = iter(_QUOTE.findall(beat.text))
     words = _own_clause(_QUOTE.sub(_SAID, beat.text))
     at = next((at for at, word in enumerate(words) if not _is_adverb(word)), 0)
-    told = _head(words[at:], beat.kind == "feeling")
-    if told is None:
+    listed = beat.kind == "feeling" and "," in beat.text
+    told = None if listed else _head(words[at:], beat.kind == "feeling")
+    if told is None or (beat.kind == "feeling" and hero in ("he", "she") and _is_bare_noun(words[at:])):
         return None
     verb, rest, ing = told
     text = of_voice(" ".join([*words[:at], verb, *_shifted(rest, ing)]), hero, voice).rstrip(" .,;:!?")
@@ -130,11 +131,19 @@ def _head(words: Sequence[str], feeling: bool) -> tuple[str, Sequence[str], bool
     if first in _helpers():
         goes_on = _helpers()[first] == WAS and form_of(after) == "ing" and not feeling
         return _head(rest, feeling) if goes_on else (_helpers()[first], rest, False)
-    adjective = form_of(first) not in ("present", "ing") and says_how(first) and after not in ("down", "up", "out")
+    plain = form_of(first) not in ("present", "ing", "past") or is_adjective(first)  # "laughed" says what is done
+    adjective = plain and says_how(first) and after not in ("down", "up", "out")
     if feeling and (adjective or (first in ("in", "at") and rest)):
         return WAS, words, False
     told = in_past(first)
     return (told, rest, form_of(first) == "ing") if told else None
+
+
+def _is_bare_noun(words: Sequence[str]) -> bool:
+    """Whether what "he" or "she" might do is no form of theirs: "love, money, weather"."""
+    first = _bare(words[0])
+    known = first in _helpers() or first in ("to", "not", "without", "instead", "no")
+    return not known and is_noun(first) and form_of(first) is None and past(first) != first and not is_adjective(first)
 
 
 def _shifted(words: Sequence[str], ing: bool) -> list[str]:

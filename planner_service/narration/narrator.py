@@ -34,6 +34,8 @@ _MAX_WORDS: Final = 22
 _SHORT: Final = 18
 """Words of two beats that may stand in one sentence."""
 _PLACE: Final = re.compile(r"\b(?:on|in|at|by|into|onto|under|beside|near|to|from|around|against|before|behind) \w+")
+_NOBODY: Final = frozenset(("they", "he", "she", "somebody", "someone", "everybody", "everyone", "nobody"))
+"""Of whom nothing need be said."""
 Rows = Sequence[tuple[int, PlannedKeyframe]]
 
 
@@ -144,7 +146,7 @@ class _Teller:
         if last.skill == Skill.LOCO:
             return [*before, plain, last, *after]
         if last.skill == Skill.TOUCH or last.stays:
-            known = last.stays or _PLACE.search(told.text) or (before and before[-1].leads)
+            known = last.stays or _PLACE.search(told.text) or (before and before[-1].leads) or last.at == self.here
             text = told.text if known else f"{told.text} at {last.at}"
             return [*before, replace(plain, text=text, keyframes=last.keyframes, mood=last.mood), *after]
         place = re.search(r" (?:on|in)(?:to)? (the .+)$", last.text)
@@ -299,7 +301,7 @@ def _introduction(theme: str, voice: Voice) -> str:
 
 def _others(script: LongScript, hero: str, voice: Voice, variety: Variety) -> str:
     """A sentence about the people whose deeds the theme has and nobody shows."""
-    known = story_words().lists["people"] - {"they", "he", "she"}
+    known = story_words().lists["people"] - _NOBODY
     theirs = [beat.who for beat in script.beats if beat.who != voice.name]
     who = [re.sub(r"^(?:The|An?|His|Her|Their|My) ", lambda one: one[0].lower(), one) for one in theirs]
     people = [one for one in who if known & {*one.lower().split()} or name_in(f"{one} sits")]

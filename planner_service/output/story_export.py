@@ -195,13 +195,13 @@ def story_to_dict(story: Story) -> dict[str, Any]:
             for action, (start, stop) in zip(story.actions, story.segments, strict=True)
         ],
         "motion": {"frames": len(story.motion), "fps": story.motion.fps, "duration": round(story.motion.duration, 3)},
-        "physics": story.report["physics"],
+        "physics": story.report.get("physics"),
     }
 
 
 def physics_mode(story: Story) -> str:
     """What moved the joints of a simulated body; "none" for a kinematic one."""
-    physics = story.report["physics"]
+    physics = story.report.get("physics")
     return str(physics["mode"]) if physics else "none"
 
 

@@ -97,8 +97,11 @@ class ActedBeats:
         return [
             f"{self.acted} of {self.asked} beats of your theme are acted; {share}",
             *(f"not acted: {one.beat.text} ({one.why})" for one in self.missing),
-            *(f"not shown of “{one.beat.text}”: {'; '.join(one.beat.unshown)}" for one in self.outcomes
-              if one.acted and one.beat.unshown),
+            *(
+                f"not shown of “{one.beat.text}”: {'; '.join(one.beat.unshown)}"
+                for one in self.outcomes
+                if one.acted and one.beat.unshown
+            ),
             *(f"left undone, as asked: {one.beat.text}" for one in self.undone),
         ]
 

@@ -10,15 +10,17 @@ from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.verb_finder import Token, tokens_of
 
-_LEADS: Final = frozenset(("with", "without", "for", "like", "as", "despite", "after", "since", "before", "until", "by"))
+_LEADS: Final = frozenset(("with", "without", "for", "like", "as", "despite", "after", "since", "before", "until"))
 """Words before which a deed has been told, and after which stands how, for whom or when."""
+_REASONS: Final = frozenset(("after", "since", "before", "until", "for"))
+"""Those of them that tell why or when."""
 _MARKS: Final = frozenset((",", ";"))
 _FEWEST: Final = 2
 """Words that a deed is told in at least."""
 
 
 def details_of(clause: Clause) -> tuple[str, ...]:
-    """Stretches of a clause after its deed, in its words: "draws out a chair | for her ladyship, | thirty years gone"."""
+    """Stretches of a clause after its deed, in its words: "draws out a chair | for a lady, | thirty years gone"."""
     tokens = [token for token in tokens_of(clause.text) if token.text[:1].isalnum() or token.text in _MARKS]
     verb = next((at for at, token in enumerate(tokens) if lemma_of(token.text) == clause.verb), None)
     if not clause.verb or verb is None or clause.quotes:
@@ -29,19 +31,15 @@ def details_of(clause: Clause) -> tuple[str, ...]:
 
 
 def core_of(text: str, details: Sequence[str]) -> str:
-    """A clause's words without its details."""
+    """A clause's words without its details, but for those that tell why or when."""
     for detail in details:
-        text = text.replace(detail, "")
+        text = text if detail.split()[0].lower() in _REASONS else text.replace(detail, "")
     return " ".join(text.split()).rstrip(" ,;").replace(" ,", ",")
 
 
 def _starts(tokens: Sequence[Token], at: int) -> bool:
-    """Whether a detail begins there: at a mark, at a leading word, or at a deed beside."""
+    """Whether a detail begins there: at a leading word, or at a deed beside."""
     low, before = tokens[at].low, tokens[at - 1]
-    if tokens[at].text in _MARKS:
-        return True
-    if before.text in _MARKS:
-        return False
     beside = low.endswith("ing") and bool(verb_of(low)) and not is_noun(low) and is_noun(before.low)
     return low in _LEADS or (beside and not is_adjective(before.low) and before.low not in grammar().prepositions)
 

@@ -11,7 +11,7 @@ from typing import Final
 
 from motion_backend.motion import Character
 from planner_service.themes.lexicon import grammar, is_third_person, is_verb, kinds_of, lemma_of
-from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import tokens_of
@@ -64,9 +64,15 @@ def cast_by(theme: str, character: Character) -> Character:
     default = Character()
     if (character.name, character.pronouns) != (default.name, default.pronouns):
         return character
-    name = name_in(theme)
+    name = name_in(theme) or _name_of_hero(theme)
     pronouns = _PRONOUNS_OF.get(name.lower()) or _pronouns_in(theme, bool(name)) or default.pronouns
     return replace(character, name=name or default.name, pronouns=pronouns)
+
+
+def _name_of_hero(theme: str) -> str:
+    """The name in whom a theme is about, where it stands beside no verb: "thinks Paloma", "Elspeth, tired, …"."""
+    hero = hero_of(clauses_of_text(theme))
+    return next((token.text for token in tokens_of(hero) if is_name(token.text)), "")
 
 
 def name_in(theme: str) -> str:
@@ -159,7 +165,13 @@ def _stand_for(clauses: Sequence[Clause], pronoun: str, first: tuple[int, int]) 
         near = one.sentence in (first[0], first[0] - 1) and (one.sentence, one.place) < first
         alive = one.subject.lower().startswith(("the ", "a ", "an ")) and not _is_plural(one.subject)
         acts = one.joint in _MAIN_JOINTS and not _is_state(one) and (near or deeds[one.subject] > 1)
-        if acts and alive and not one.aside and pronouns_of(one.subject) in ("", pronoun) and _may_live(head_of(one.subject)):
+        if (
+            acts
+            and alive
+            and not one.aside
+            and pronouns_of(one.subject) in ("", pronoun)
+            and _may_live(head_of(one.subject))
+        ):
             found.append(one)
     return found
 

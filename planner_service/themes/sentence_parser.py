@@ -245,6 +245,7 @@ def _whole(pieces: list[_Piece]) -> list[_Piece]:
     whole: list[_Piece] = []
     waiting: _Piece | None = None
     for place, piece in enumerate(pieces):
+        led = waiting is not None
         if waiting is not None:
             joint = waiting.joint if waiting.joint not in (",", "") else piece.joint if piece.joint != "," else ""
             mark = _comma(waiting) if piece.joint == "," else ()
@@ -252,7 +253,7 @@ def _whole(pieces: list[_Piece]) -> list[_Piece]:
             waiting = None
         if verb_place(piece.tokens) is not None and not (whole and _is_noun_list(whole[-1], piece)):
             whole.append(piece)
-        elif whole and not (_opens(piece, pieces[place + 1 :]) or _leads(piece, pieces[place + 1 :])):
+        elif whole and not (led or _opens(piece, pieces[place + 1 :]) or _leads(piece, pieces[place + 1 :])):
             whole[-1] = replace(whole[-1], tokens=whole[-1].tokens + piece.tokens)
         else:
             waiting = piece
@@ -274,7 +275,7 @@ def _opens(piece: _Piece, after: Sequence[_Piece]) -> bool:
 
 
 def _leads(piece: _Piece, after: Sequence[_Piece]) -> bool:
-    """Whether a name is who does what follows what is told of them: "and Elspeth, still in her gown, beats the flames"."""
+    """Whether a name is who does what follows what is told of them: "and Elspeth, still in her gown, beats them"."""
     named = len(piece.tokens) <= 2 and piece.tokens[0].text[:1].isupper() and not is_noun(piece.tokens[0].low)
     acting = next((one for one in after[:2] if verb_place(one.tokens) == 0), None)
     return named and piece.joint in ("and", "but", "so", "while") and acting is not None
@@ -338,6 +339,7 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     subject = _subject(tokens[:place])
     if subject.startswith("«") or (not place and _is_inverted(tokens)):
         subject = _inverted(tokens[place + 1 :])
+        tokens = [*tokens[: place + 1], *tokens[place + 1 + len(subject.split()) :]]
     denials = grammar().denials - grammar().subjects
     lead = tokens[:place] if not subject else [t for t in tokens[:place] if t.low in denials]
     words = (lead if any(token.low in grammar().denials for token in lead) else []) + tokens[place:]
@@ -349,7 +351,8 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     lemmas = _lemmas(words[group.place :])
     first = Clause(
         _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, joint, denied=group.denied,
-        unable=group.unable, perfect=group.perfect, past=is_past(words, group), aside=supposed, quotes=_quotes(tokens, quotes), sentence=sentence,
+        unable=group.unable, perfect=group.perfect, past=is_past(words, group), aside=supposed,
+        quotes=_quotes(tokens, quotes), sentence=sentence,
     )  # fmt: skip
     parted = not group.denied or group.unable
     parts = _parted(first, words, group.place, piece.source) if parted else [first]
@@ -424,7 +427,8 @@ def _before(tokens: Sequence[Token], subject: str) -> Sequence[Token]:
     size = len(subject.split())
     texts = [token.text for token in tokens]
     starts = (at for at in range(len(texts) - size, -1, -1) if texts[at : at + size] == subject.split())
-    return tokens[: next(starts, 0)]
+    before = tokens[: next(starts, 0)]
+    return before[:-1] if before and before[-1].text == "," else before
 
 
 def _placed(clause: Clause, before: Sequence[Token], source: str) -> Clause:

@@ -160,9 +160,7 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
         return False  # "under the sofa cushions"
     if word == base:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
-        return (past(base) == base and named) or (
-            is_plural(before) and (not is_noun(word) or _has_object(after))
-        )
+        return (past(base) == base and named) or (is_plural(before) and (not is_noun(word) or _has_object(after)))
     if is_noun(word) and word.endswith("s"):
         follower = after.low if after is not None else ""
         return _goes_on(follower) or is_adjective(follower) or is_noun(follower)
@@ -182,5 +180,5 @@ def _has_object(after: Token | None) -> bool:
 def _goes_on(after: str) -> bool:
     """Whether a verb may go on with a word, or end there."""
     known = grammar()
-    goes = known.marks | known.prepositions | known.adverbs | known.subjects | _OBJECTS
+    goes = known.marks | known.prepositions | known.adverbs | known.subjects | _OBJECTS | _PARTICLES
     return not after or after in goes or after.endswith("ly")

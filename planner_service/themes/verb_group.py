@@ -90,9 +90,7 @@ def _denying_step(words: Sequence[Token], group: VerbGroup, low: str, base: str,
         step = near.index("to") + 1
     elif base in ("decide", "try", "choose", "prefer", "promise") and ahead == "not":
         step = 3 if len(near) > 2 and near[2] == "to" else 2
-    elif ahead == "to" and base in ("like", "love") and any(token.low in ("would", "'d") for token in words[:at]):
-        step = 2
-    elif ahead in ("to", "from") and base in grammar().refusals | (grammar().wishes if ahead == "to" else set()):
+    elif ahead in ("to", "from") and base in grammar().refusals | (_wishes(words[:at]) if ahead == "to" else set()):
         step = 2
     elif ahead.endswith("ing") and base in grammar().refusals | {"consider", "imagine", "stop"}:
         step = 1
@@ -100,6 +98,12 @@ def _denying_step(words: Sequence[Token], group: VerbGroup, low: str, base: str,
         return 0
     group.denied = True
     return step
+
+
+def _wishes(before: Sequence[Token]) -> frozenset[str]:
+    """Verbs that only wish for the deed after them: "would like to sleep", but not "likes to sleep"."""
+    would = any(token.low in ("would", "'d") for token in before)
+    return grammar().wishes | ({"like", "love"} if would else frozenset())
 
 
 def _passing_step(words: Sequence[Token], at: int, low: str, base: str) -> int:

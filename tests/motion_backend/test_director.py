@@ -185,8 +185,8 @@ def test_what_one_raises_at_another_does_and_says_what_was_raised() -> None:
     own, _ = DIRECTOR.act(HOME, walk, state)
     error = ValueError("no such\nlayer " + 300 * "x")
     for broken, why in (
-        (Raising(error), "it raised ValueError: no such layer xxx"),
-        (Speechless(), "it raised TypeError"),
+        (Raising(error), r"it raised ValueError('no such\nlayer xxx"),
+        (Speechless(), "it raised TypeError('cannot unpack"),
     ):
         director = Director(broken, DIRECTOR.backend)
         for motion, left in (director.act(HOME, walk, state), *director.act_many([Take(HOME, walk, state)] * 2)):

@@ -50,7 +50,7 @@ def _swung(arm: Arm, angles: Array) -> Limb:
     return Limb(*(_about(bone[:, None], axis, angles) for bone in arm.limb))
 
 
-def _points(arm: Arm, limb: Limb, scale: float) -> Array:
+def arm_points(arm: Arm, limb: Limb, scale: float) -> Array:
     """Places along the middle of upper arm, forearm and hand. (7, ..., 3)."""
     upper, lower = arm.lengths[0] * limb.upper, arm.lengths[1] * limb.lower
     shoulder = arm.shoulder if limb.upper.ndim == 2 else arm.shoulder[:, None]
@@ -74,13 +74,13 @@ def elbows_clear(pose: Pose, skeleton: Skeleton, obstacles: Obstacles) -> Pose:
     elbows = pose.elbows.copy()
     for index in (0, 1):
         arm = Arm.of(pose, skeleton, index, chest)
-        before = _depth(_points(arm, arm.limb, scale), obstacles, scale)
+        before = _depth(arm_points(arm, arm.limb, scale), obstacles, scale)
         strained = _beyond(arm, arm.limb)
         for frames in _about_each((before >= SEEN) | (strained > STRAINED)):
             part, body = arm.part(frames), (chest[0][frames], chest[1][frames])
             swing = _swing(part, body, obstacles, scale, ends=frames.stop < len(pose))
             swung = _swung(part, swing[:, None])
-            after, strain = _depth(_points(part, swung, scale), obstacles, scale), _beyond(part, swung)
+            after, strain = _depth(arm_points(part, swung, scale), obstacles, scale), _beyond(part, swung)
             # A hand that cannot follow its forearm may turn over on the way: then it is better left alone.
             deep = before[frames].max()
             if after.max() <= deep and (deep >= SEEN or strain.max() <= strained[frames].max()):
@@ -104,8 +104,8 @@ def _swing(arm: Arm, chest: tuple[Array, Array], obstacles: Obstacles, scale: fl
     (T,) radians.
     """
     tries = _swung(arm, SWINGS)
-    points = _points(arm, tries, scale)
-    deep = np.maximum(_depth(points, obstacles, scale) - SEEN, 0.0) + _in_trunk(points, chest, scale)
+    points = arm_points(arm, tries, scale)
+    deep = np.maximum(_depth(points, obstacles, scale) - SEEN, 0.0) + in_trunk(points, chest, scale)
     cost = DEEP * deep + BEYOND * _beyond(arm, tries) + FAR * SWINGS**2
     if ends:
         cost[-1, SWINGS != 0.0] = np.inf
@@ -121,7 +121,7 @@ def _depth(points: Array, obstacles: Obstacles, scale: float) -> Array:
     return np.asarray(np.maximum((deep + skin).max(axis=0), 0.0))
 
 
-def _in_trunk(points: Array, chest: tuple[Array, Array], scale: float) -> Array:
+def in_trunk(points: Array, chest: tuple[Array, Array], scale: float) -> Array:
     """How deep elbow and forearm are in the body's own trunk, by an arm's points (7, T, A, 3). (T, A) metres."""
     waist, neck = (chest[1] + rotations.rotate(chest[0], end * scale) for end in TRUNK)
     away = _from_line(points[1:5], waist[:, None], neck[:, None])

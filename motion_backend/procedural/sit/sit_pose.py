@@ -16,17 +16,8 @@ from motion_backend.procedural.sit.sit_keys import SitPose, Surface, Trunk
 from motion_backend.procedural.sit.sit_legs import Room, bends_a_leg, seated_legs
 from motion_backend.procedural.sit.sit_own import NOBODY
 from motion_backend.procedural.sit.sit_styles import Seated
-from motion_backend.procedural.touch.hand_rests import (
-    HOLDS,
-    Handholds,
-    Hold,
-    Holds,
-    Pair,
-    at_rest,
-    hold_of,
-    lay_hands,
-    on_thing,
-)
+from motion_backend.procedural.touch.hand_rests import HOLDS, Hold, Holds, at_rest, hold_of, lay_hands, on_thing
+from motion_backend.procedural.touch.handholds import Handholds, Pair
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, Skeleton
 

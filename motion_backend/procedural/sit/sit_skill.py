@@ -23,19 +23,8 @@ from motion_backend.procedural.sit.sit_pose import LEANS_BACK, ON_TABLE, Place, 
 from motion_backend.procedural.sit.sit_styles import Seated, sit_style
 from motion_backend.procedural.sit.sit_transition import sit_down, stand_up
 from motion_backend.procedural.touch.gestures import gesture
-from motion_backend.procedural.touch.hand_rests import (
-    BACK,
-    HOLDS,
-    TABLE_REACH,
-    Hold,
-    Holds,
-    Pair,
-    elbow_room,
-    follow,
-    handholds,
-    on_thing,
-    table_before,
-)
+from motion_backend.procedural.touch.hand_rests import BACK, HOLDS, Hold, Holds, follow, on_thing
+from motion_backend.procedural.touch.handholds import TABLE_REACH, Pair, elbow_room, handholds, table_before
 from motion_backend.procedural.walk.walk_skill import go
 from motion_backend.rotations import Array
 from scene_graphs.affordances.affordances import Spot

@@ -48,9 +48,7 @@ def is_top(normal: Array | tuple[float, float, float]) -> bool:
     return bool(normal[1] > TOP)
 
 
-def other_hand(
-    obstacles: Obstacles, spot: Spot, laid: tuple[Array, str], scale: float
-) -> tuple[Array, Array] | None:
+def other_hand(obstacles: Obstacles, spot: Spot, laid: tuple[Array, str], scale: float) -> tuple[Array, Array] | None:
     """Wrist and palm of the other hand, beside the first on the same surface; None where that is too narrow.
 
     `laid` is the first hand's wrist and its side.

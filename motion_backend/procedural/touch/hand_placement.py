@@ -14,14 +14,15 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.body.joint_limits import out_of_cone
-from motion_backend.inverse_kinematics import arm_rotations
+from motion_backend.inverse_kinematics import Limb, arm_rotations
 from motion_backend.procedural.arm_solver import Arm
+from motion_backend.procedural.collision_avoidance.elbow_collision import arm_points, in_trunk
 from motion_backend.procedural.held_poses import shoulders
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.pose_solver import chest_frame
 from motion_backend.procedural.touch.hand_captions import Laid
 from motion_backend.procedural.touch.hand_contacts import is_top
-from motion_backend.procedural.touch.touch_keys import HandPlacement
+from motion_backend.procedural.touch.reach_keys import HandPlacement
 from motion_backend.rotations import Array
 from motion_backend.skeleton import HAND_REST, Skeleton
 
@@ -48,8 +49,12 @@ def placed(bent: Pose, laid: Laid, elbows: Array, seen: Depth, skeleton: Skeleto
     found, poles = replace(laid, elbows=elbows.copy()), elbows.copy()
     for place, (index, wrist, palm) in enumerate(laid.hands):
         tried = _tries(bent, (index, wrist, palm), laid, elbows[index], skeleton, row)
-        arm = Arm.of(tried, skeleton, index, chest_frame(tried, skeleton))
-        best = int(np.argmin(_cost(arm, tried, laid.normal, wrist, seen, skeleton.scale, row) + _unusual(laid, row)))
+        chest = chest_frame(tried, skeleton)
+        arm = Arm.of(tried, skeleton, index, chest)
+        points = arm_points(arm, Limb(*(bone[:, None] for bone in arm.limb)), skeleton.scale)
+        own = row.deep_per_m * in_trunk(points, chest, skeleton.scale)[:, 0]
+        cost = own + _cost(arm, tried, laid.normal, wrist, seen, skeleton.scale, row) + _unusual(laid, row)
+        best = int(np.argmin(cost))
         poles[index] = tried.elbows[best, index]
         chosen = tried.palms[best, index]
         other = found.other
@@ -93,9 +98,7 @@ def _tries(
     return replace(tries, reach=reach, reaching=reaching, palms=palms, pressing=pressing, elbows=elbows)
 
 
-def _cost(
-    arm: Arm, tried: Pose, normal: Array, wrist: Array, seen: Depth, scale: float, row: HandPlacement
-) -> Array:
+def _cost(arm: Arm, tried: Pose, normal: Array, wrist: Array, seen: Depth, scale: float, row: HandPlacement) -> Array:
     """What an arm costs that is in something, hovers, or is strained. (N,)."""
     joints = arm.joints()
     upper, lower = arm_rotations(arm.limb, arm.side)

@@ -24,10 +24,8 @@ from motion_backend.procedural.touch.hand_captions import Laid
 from motion_backend.procedural.touch.hand_contacts import is_top
 from motion_backend.procedural.touch.hand_placement import Depth, placed
 from motion_backend.procedural.touch.kneel import down_on_knees, prone
-from motion_backend.procedural.touch.step_in import Step, shifted, step_before, stepped
-from motion_backend.procedural.touch.touch_keys import (
+from motion_backend.procedural.touch.reach_keys import (
     Approach,
-    Prone,
     ReachEffort,
     ReachGaze,
     ReachingHand,
@@ -35,8 +33,9 @@ from motion_backend.procedural.touch.touch_keys import (
     ReachTable,
     ReachVariation,
     ThighHand,
-    TouchKeys,
 )
+from motion_backend.procedural.touch.step_in import Step, shifted, step_before, stepped
+from motion_backend.procedural.touch.touch_keys import Prone, TouchKeys
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
 from motion_backend.skeleton import ARM_LENGTH, INDEX, Skeleton
@@ -232,13 +231,15 @@ def _raised(laid: Laid, skeleton: Skeleton, row: ReachingHand) -> float:
 
 
 def _elbows(laid: Laid, skeleton: Skeleton, keys: ReachTable) -> Array:
-    """Where elbows point by themselves: a raised hand hangs its own below, a lowered one keeps it behind. (2, 3)."""
+    """Where elbows point by themselves: below a raised hand and before a front, else behind. (2, 3)."""
     poles, raised = keys.elbow, _raised(laid, skeleton, keys.hand)
     if is_top(laid.normal) and raised > 0:
         return np.stack([poles.over_edge.of(index) for index in (0, 1)])
     if laid.wrist[1] < keys.hand.low_m * skeleton.scale:
         return np.stack([poles.low.of(index) for index in (0, 1)])
-    return np.stack([poles.behind.of(index) + raised * poles.raised_by.of(index) for index in (0, 1)])
+    # The hand on its way to a front is close before the body: an elbow behind would take the forearm through it.
+    hangs = raised if is_top(laid.normal) else 1.0
+    return np.stack([poles.behind.of(index) + hangs * poles.raised_by.of(index) for index in (0, 1)])
 
 
 def _prone_elbows(laid: Laid, row: Prone) -> Array:

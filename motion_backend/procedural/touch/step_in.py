@@ -15,7 +15,7 @@ from motion_backend import rotations
 from motion_backend.procedural.held_poses import UP
 from motion_backend.procedural.pose import Pose, smooth
 from motion_backend.procedural.touch.hand_placement import Depth
-from motion_backend.procedural.touch.touch_keys import StepIn
+from motion_backend.procedural.touch.reach_keys import StepIn
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton

@@ -73,7 +73,9 @@ def reach(body: Body, part: Part) -> None:
     laid = replace(laid, stroke=free_stroke(obstacles, spot, laid))
     hold = max(part.hold, MIN_HOLD)
     manner = Manner(bearing, hold, doing, prone)
-    touched = touch(body.pose, laid, manner, body.skeleton, body.scene.depth_about(spot.object_id), touch_keys(), body.rng)
+    touched = touch(
+        body.pose, laid, manner, body.skeleton, body.scene.depth_about(spot.object_id), touch_keys(), body.rng
+    )
     body.add(alive(touched, CALM * bearing.restless, body.rng, FPS))
 
 

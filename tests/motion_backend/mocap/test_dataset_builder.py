@@ -16,12 +16,13 @@ from hypothesis import strategies as st
 from sample_motions import tumbling
 
 from motion_backend import rotations
+from motion_backend.datasets.splits import splits
 from motion_backend.formats.bvh import write_bvh
 from motion_backend.mocap.augmentation import change_speed, mirror, mirror_words, reverse
 from motion_backend.mocap.clip import ClipError
 from motion_backend.mocap.clip_captions import WAYS, labels_of, read_labels, skill_of, subject_of, ways_to_say
 from motion_backend.mocap.dataset_builder import Kept, Unread, collect, folder_labels, motion_files, read_folder
-from motion_backend.mocap.dataset_file import Dataset, Entry, dataset_bytes, read_dataset, splits
+from motion_backend.mocap.dataset_file import Dataset, Entry, dataset_bytes, read_dataset
 from motion_backend.mocap.near_duplicates import Copy, joined_subjects, near_copies
 from motion_backend.mocap.readers import read_clips
 from motion_backend.skeleton import INDEX

@@ -13,7 +13,7 @@ from motion_backend.physics import linear_model
 from motion_backend.physics.contact_forces import Pressure
 from motion_backend.physics.engine import engine
 from motion_backend.physics.mjcf_character import NU, mass_of
-from motion_backend.physics.mpc import Moment, moment_of
+from motion_backend.physics.mpc import SLIDING, Controller, Moment, moment_of
 from motion_backend.physics.reference import Plan
 from motion_backend.physics.tracker import Tracked, Tracker
 
@@ -72,7 +72,7 @@ def test_a_state_that_is_not_finite_is_planned_again_and_then_reset() -> None:
     broken.state.qvel[3] = np.nan
     done = tracker.track(broken, np.zeros((0, NU)), 8)
     assert len(done.resets) == 1
-    assert all(moment.finite for moment in done.moments[done.resets[0] :])
+    assert all(moment.finite for moment in done.moments)
 
 
 def test_a_fall_is_gone_back_from_three_times_and_then_counted(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -123,3 +123,14 @@ def test_a_moment_knows_whether_it_is_finite() -> None:
     moment = moment_of(tracker_of(plan_of(walk())).reference, 3)
     assert moment.finite
     assert not Moment(moment.state, np.full_like(moment.warm, np.inf), moment.control).finite
+
+
+def test_the_price_of_sliding_is_that_of_its_jacobian() -> None:
+    tracker = tracker_of(plan_of(walk()))
+    data, reader = tracker._scratch()
+    controller = Controller(empty_room(), data, tracker.reference, reader)
+    for at in range(10, 40, 3):
+        data.qpos[:], data.qvel[:] = tracker.reference.qpos[at], tracker.reference.qvel[at] + 0.1
+        rows = controller._planted_rows(at)
+        wanted = 0.0 if rows is None else SLIDING * float(((rows @ data.qvel) ** 2).sum())
+        assert controller._sliding(at) == pytest.approx(wanted)

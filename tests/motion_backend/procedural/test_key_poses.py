@@ -29,7 +29,7 @@ from motion_backend.procedural.sit.sit_legs import WAYS, Room
 from motion_backend.procedural.sit.sit_pose import SURFACES, Place
 from motion_backend.procedural.sit.sit_styles import Seated
 from motion_backend.procedural.sit.sit_transition import NOTHING, sit_down, stand_up
-from motion_backend.procedural.touch.hand_rests import Handholds
+from motion_backend.procedural.touch.handholds import Handholds
 from motion_backend.skeleton import LYING_REST, SEATED_REST, build_skeleton
 from scene_graphs import data_tables
 from scene_graphs.data_tables import TableError, read_table

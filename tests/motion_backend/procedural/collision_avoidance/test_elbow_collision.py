@@ -13,9 +13,7 @@ from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.pose_solver import solve
-from motion_backend.rotations import rotate
 from motion_backend.skeleton import INDEX, build_skeleton
-from scene_graphs.affordances.affordances import Spot
 
 SKELETON = build_skeleton()
 HIPS = standing((0.0, 0.0), 0.0, Bearing(arms=("hips", "hips")), SKELETON).repeat(60)

@@ -30,7 +30,8 @@ from motion_backend.procedural.sit.sit_legs import WAYS, Room, seated_legs
 from motion_backend.procedural.sit.sit_pose import SURFACES, Place
 from motion_backend.procedural.sit.sit_pose import seated as settled
 from motion_backend.procedural.sit.sit_styles import sit_style
-from motion_backend.procedural.touch.hand_rests import HOLDS, Handholds, at_rest, handholds, lay_hands
+from motion_backend.procedural.touch.hand_rests import HOLDS, at_rest, lay_hands
+from motion_backend.procedural.touch.handholds import Handholds, handholds
 from motion_backend.skeleton import INDEX, build_skeleton
 from planner_service.scripts.captions import captions
 from scene_graphs.affordances.affordances import floor_spot

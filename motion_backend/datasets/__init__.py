@@ -1,0 +1,1 @@
+"""Captioned motion as learners want it: wordings, mirrors, sides of a split, and scales."""

@@ -1,0 +1,1 @@
+"""One space for words and motion: the language-aware embedding of SIMS 3.3."""
