@@ -84,7 +84,7 @@ class Conditions:
         return replace(self, **{name: None if mask is None else torch.zeros_like(mask) for name, mask in masks.items()})
 
 
-class FramedText(nn.Module):
+class FramedText(nn.Module):  # type: ignore[misc]
     """Frame-embedded text (LINGO A.3): sentence features through an MLP, plus the frame's waves, through another."""
 
     def __init__(self, width: int) -> None:
@@ -95,10 +95,10 @@ class FramedText(nn.Module):
     def forward(self, text: Tensor, has_text: Tensor, frame: Tensor) -> Tensor:
         """(B, 384), (B,) and (B,) to (B, width)."""
         words = self.words(text) * has_text[:, None]
-        return self.both(words + FRAME_SHARE * sinusoid(frame, self.width).to(words))  # type: ignore[no-any-return]
+        return self.both(words + FRAME_SHARE * sinusoid(frame, self.width).to(words))
 
 
-class ConditionEncoder(nn.Module):
+class ConditionEncoder(nn.Module):  # type: ignore[misc]
     """The four tokens, before the step's embedding is added to each."""
 
     def __init__(self, width: int, scene: SceneSizes | None) -> None:
@@ -119,4 +119,4 @@ class ConditionEncoder(nn.Module):
     def _scene(self, given: Conditions, like: Tensor) -> Tensor:
         if self.scene is None or given.voxels is None or given.has_scene is None:
             return torch.zeros_like(like)
-        return self.scene(given.voxels) * given.has_scene[:, None]  # type: ignore[no-any-return]
+        return self.scene(given.voxels) * given.has_scene[:, None]

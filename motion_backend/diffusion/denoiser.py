@@ -49,7 +49,7 @@ PRESETS: Final = {
 """`small` is what a laptop runs; `walk` is smaller still and sees no voxels, for weights that only walk."""
 
 
-class Denoiser(nn.Module):
+class Denoiser(nn.Module):  # type: ignore[misc]
     """x_t, step and conditions to the clean window."""
 
     positions: Tensor

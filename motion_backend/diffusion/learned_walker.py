@@ -24,7 +24,7 @@ CAPTION: Final = "a person walks"
 SEEDS: Final = 2**31
 
 
-@dataclass(frozen=True)
+@dataclass
 class LearnedGait:
     """The generator: what the sampler's weights walk like."""
 

@@ -303,7 +303,7 @@ def _begun(
 
 
 def _stepped(run: Run, loss: Tensor, config: TrainConfig) -> None:
-    loss.backward()  # type: ignore[no-untyped-call]
+    loss.backward()
     run.optimizer.step(config.rate_at(run.step), run.step + 1)
     run.step += 1
     follow = 1 - min(config.average, (1 + run.step) / (10 + run.step))

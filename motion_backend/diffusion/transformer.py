@@ -22,7 +22,7 @@ def mlp(inputs: int, width: int) -> nn.Sequential:
     return nn.Sequential(nn.Linear(inputs, width), nn.SiLU(), nn.Linear(width, width))
 
 
-class Layer(nn.Module):
+class Layer(nn.Module):  # type: ignore[misc]
     """Self-attention and a two-layer network, normalised after each as printed, or before each, which learns faster."""
 
     def __init__(self, width: int, heads: int, hidden: int, norm_first: bool) -> None:
@@ -51,7 +51,7 @@ class Layer(nn.Module):
         return self.narrower(functional.gelu(self.wider(x), approximate="tanh"))
 
 
-class Encoder(nn.Module):
+class Encoder(nn.Module):  # type: ignore[misc]
     """Layer after layer; those that normalise first end in one more normalisation."""
 
     def __init__(self, layers: int, width: int, heads: int, hidden: int, norm_first: bool) -> None:

@@ -178,7 +178,7 @@ def _train(
             from motion_backend.diffusion.sampler import Sampler
             from planner_service.evaluation.learned_walks import judged
 
-            sampler = Sampler(weights.network, weights.scale, NoiseSchedule(), gaits=run.gaits)  # type: ignore[arg-type]
+            sampler = Sampler(weights.network, weights.scale, NoiseSchedule(), gaits=run.gaits)
             told = judged(sampler, people)
         figures = {**(run.curve[-1] if run.curve else {}), **told}
         console.print(f"step {run.step}: " + ", ".join(f"{k} {v:.4g}" for k, v in figures.items()), soft_wrap=True)
