@@ -153,7 +153,7 @@ def test_a_layer_is_that_of_torch(norm_first: bool) -> None:
     )
     theirs.self_attn.in_proj_weight.data = ours.queries_keys_values.weight.data
     theirs.self_attn.in_proj_bias.data = ours.queries_keys_values.bias.data
-    theirs.self_attn.out_proj = ours.joined  # type: ignore[assignment]
+    theirs.self_attn.out_proj = ours.joined
     theirs.linear1, theirs.linear2, theirs.norm1, theirs.norm2 = (
         ours.wider, ours.narrower, ours.first_norm, ours.second_norm,
     )  # fmt: skip
