@@ -118,9 +118,9 @@ def scheduler(
 ) -> None:
     """Train the completion scheduler (LINGO A.5): whether the action of a window is over."""
     from motion_backend.diffusion.completion_scheduler import SCHEDULER_PRESETS
+    from motion_backend.diffusion.train import SHARES, TrainConfig, scheduler_learner
     from motion_backend.diffusion.conditions import MadeOf
     from motion_backend.diffusion.dataset import PERIODIC
-    from motion_backend.diffusion.train import SHARES, TrainConfig, scheduler_learner
 
     if preset not in SCHEDULER_PRESETS:
         raise RequestError(f"{preset!r:.40} is none of {', '.join(SCHEDULER_PRESETS)}", at="--preset")

@@ -10,10 +10,10 @@ from motion_backend import rotations
 from motion_backend.diffusion.motion_features import (
     CONTACTS,
     FEATURES,
-    PLACES,
-    ROOT,
     HeadingFrame,
+    PLACES,
     Poses,
+    ROOT,
     from_features,
     six_to_quat,
     smoothly_joined,
