@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.backend_protocol import History
@@ -32,7 +33,7 @@ WIDEST: Final = 0.09
 _SIDES: Final = ("left", "right")
 
 
-def strides_landing(positions: Array) -> Array:
+def strides_landing(positions: Array) -> NDArray[np.int64]:
     """Frames in which a heel comes down: the feet are farthest apart along the way. (T, 22, 3) to (N,)."""
     ahead = _ahead(positions[:, 0])
     apart = np.einsum("tc,tc->t", (_ankle(positions, "left") - _ankle(positions, "right"))[:, [0, 2]], ahead)

@@ -111,7 +111,7 @@ def _of(motions: Sequence[Motion], clips: tuple[str, ...], people: tuple[str, ..
     for motion in motions:
         root, local = motion.root_positions.astype(np.float64), motion.local_rotations.astype(np.float64)
         heading = heading_of(local[:, 0])
-        left = np.arange(len(root))[::-1]
+        left = np.arange(len(root), dtype=np.float64)[::-1]
         columns.append((root, local, heading, features_of(root, local, heading, motion.skeleton), left))
     root, local, heading, features, left = (np.concatenate(column) for column in zip(*columns, strict=True))
     return WalkDatabase(root, local, heading, features, left.astype(np.int64), clips, people)
@@ -171,4 +171,5 @@ def features_now(root: Array, local: Array, skeleton: Skeleton) -> Array:
         root, local = np.repeat(root, 2, axis=0), np.repeat(local, 2, axis=0)
     ankles = skeleton.forward_kinematics(root[-2:], local[-2:])[0][:, _ANKLES].astype(np.float64)
     heading = yaw_of(local[-1:, 0])
-    return pose_features(root[-1:], ankles[-1:], ankles[1:] - ankles[:1], root[-1:] - root[-2:-1], heading)[0]
+    found = pose_features(root[-1:], ankles[-1:], ankles[1:] - ankles[:1], root[-1:] - root[-2:-1], heading)
+    return np.asarray(found[0])

@@ -86,8 +86,8 @@ class Reference:
 
     def part(self, frames: slice) -> Reference:
         """Some of the frames."""
-        rows = (self.qpos, self.qvel, self.controls, self.planted, self.wrists)
-        return Reference(*(row[frames] for row in rows))
+        moving = (self.qpos[frames], self.qvel[frames], self.controls[frames])
+        return Reference(*moving, self.planted[frames], self.wrists[frames])
 
     @staticmethod
     def of(plan: Plan, skeleton: Skeleton) -> Reference:
