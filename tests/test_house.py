@@ -21,9 +21,7 @@ PACKAGES = {
     "planner_service": {"prompts", "scene_graphs", "motion_backend"},
 }
 HOMES = {
-    "torch": {
-        "motion_backend/language", "motion_backend/embedding", "motion_backend/physics", "motion_backend/diffusion",
-    },  # fmt: skip
+    "torch": {f"motion_backend/{room}" for room in ("language", "embedding", "physics", "diffusion")},
     "safetensors": {"motion_backend/language", "motion_backend/embedding"},
     "mujoco": {"motion_backend/physics"},
     "networkx": {"scene_graphs"},
