@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import torch
-import torch.nn.functional as F
 from torch import Tensor
+from torch.nn import functional
 
 from motion_backend.diffusion.motion_features import JOINT_COUNT, PLACES, ROOT, TURNS
 from motion_backend.skeleton import build_skeleton
@@ -43,7 +43,7 @@ def told_joints(features: Tensor) -> Tensor:
 
 def matrices(six: Tensor) -> Tensor:
     """Rotation matrices from their first two columns, made orthonormal. (..., 6) to (..., 3, 3)."""
-    first = F.normalize(six[..., :3], dim=-1)
+    first = functional.normalize(six[..., :3], dim=-1)
     second = six[..., 3:] - (first * six[..., 3:]).sum(-1, keepdim=True) * first
-    second = F.normalize(second, dim=-1)
+    second = functional.normalize(second, dim=-1)
     return torch.stack([first, second, torch.cross(first, second, dim=-1)], dim=-1)

@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final, cast
+from typing import Any, Final
 
 import torch
 from safetensors import SafetensorError
@@ -77,7 +77,8 @@ def load_scheduler(path: Path) -> Weights:
 def read_tensors(path: Path) -> dict[str, Tensor]:
     """All tensors of a file. CheckpointError where it is missing, cut off or something else."""
     try:
-        return cast(dict[str, Tensor], load_file(path))
+        found: dict[str, Tensor] = load_file(path)
+        return found
     except FileNotFoundError as error:
         raise _broken(path, "it is missing") from error
     except (SafetensorError, OSError, ValueError) as error:

@@ -44,7 +44,7 @@ class SchedulerSizes:
 SCHEDULER_PRESETS: Final = {"paper": SchedulerSizes(), "small": SchedulerSizes(3, 8, 128, 256, True)}
 
 
-class CompletionScheduler(nn.Module):
+class CompletionScheduler(nn.Module):  # type: ignore[misc]
     """Windows, words and frame numbers to how sure it is that the action is over."""
 
     positions: Tensor

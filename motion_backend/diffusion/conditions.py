@@ -1,4 +1,4 @@
-"""What the model is told besides its history: four tokens for scene, text, hand goal and pelvis goal (LINGO A.2 to A.4).
+"""What the model is told besides its history: tokens for scene, text, hand goal and pelvis goal (LINGO A.2 to A.4).
 
 Each can be masked, which leaves zeros in its place: goals where an action has none, the scene where it does not matter,
 the text for what was learned without. Goals are in the heading frame of the window (motion_features.py).
@@ -20,8 +20,8 @@ from motion_backend.language.minilm import WIDTH as TEXT_WIDTH
 TOKENS: Final = 4
 """Scene, text, hand, pelvis."""
 PELVIS: Final = 9
-"""Of the pelvis goal: x and z as printed; then (ours, for seats and beds) height, sine and cosine of the facing, whether
-height and facing are told, seconds to go, and whether these are told."""
+"""Of the pelvis goal: x and z as printed; then (ours, for seats and beds) height, sine and cosine of the facing,
+whether height and facing are told, seconds to go, and whether these are told."""
 HAND: Final = 4
 """Of the hand goal: its place, and 1 for the left hand, -1 for the right."""
 MAX_SECONDS: Final = 6.0
@@ -84,7 +84,7 @@ class Conditions:
         return replace(self, **{name: None if mask is None else torch.zeros_like(mask) for name, mask in masks.items()})
 
 
-class FramedText(nn.Module):
+class FramedText(nn.Module):  # type: ignore[misc]
     """Frame-embedded text (LINGO A.3): sentence features through an MLP, plus the frame's waves, through another."""
 
     def __init__(self, width: int) -> None:
@@ -95,10 +95,10 @@ class FramedText(nn.Module):
     def forward(self, text: Tensor, has_text: Tensor, frame: Tensor) -> Tensor:
         """(B, 384), (B,) and (B,) to (B, width)."""
         words = self.words(text) * has_text[:, None]
-        return self.both(words + FRAME_SHARE * sinusoid(frame, self.width).to(words))  # type: ignore[no-any-return]
+        return self.both(words + FRAME_SHARE * sinusoid(frame, self.width).to(words))
 
 
-class ConditionEncoder(nn.Module):
+class ConditionEncoder(nn.Module):  # type: ignore[misc]
     """The four tokens, before the step's embedding is added to each."""
 
     def __init__(self, width: int, scene: SceneSizes | None) -> None:
@@ -110,7 +110,7 @@ class ConditionEncoder(nn.Module):
 
     def forward(self, given: Conditions) -> Tensor:
         """(B, 4, width)."""
-        text = self.text(given.text, given.has_text, given.frame) 
+        text = self.text(given.text, given.has_text, given.frame)
         text = text + self.made_of(given.made_of) + self.gait(given.gait)
         hand = self.hand(given.hand) * given.has_hand[:, None]
         pelvis = self.pelvis(given.pelvis) * given.has_pelvis[:, None]
@@ -119,4 +119,4 @@ class ConditionEncoder(nn.Module):
     def _scene(self, given: Conditions, like: Tensor) -> Tensor:
         if self.scene is None or given.voxels is None or given.has_scene is None:
             return torch.zeros_like(like)
-        return self.scene(given.voxels) * given.has_scene[:, None]  # type: ignore[no-any-return]
+        return self.scene(given.voxels) * given.has_scene[:, None]

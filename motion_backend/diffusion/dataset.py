@@ -106,7 +106,9 @@ def read_stretches(path: Path) -> list[Stretch]:
                 arrays = {name: _checked(file[name], name) for name in _ARRAYS}
                 rows = json.loads(bytes(file["stretches"]))
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
-        raise ClipError(f"{path.name} cannot be read ({error})", "give a file of `sims clips build` or `train act`") from error
+        raise ClipError(
+            f"{path.name} cannot be read ({error})", "give a file of `sims clips build` or `train act`"
+        ) from error
     if not own:
         return stretches_of(read_dataset(path))
     bounds = np.cumsum([0, *(int(row["frames"]) for row in rows["rows"])])
@@ -155,9 +157,7 @@ def _of_clip(entry: Entry) -> Stretch:
     )
 
 
-def _touched(
-    motion: Motion, hands: NDArray[np.bool_]
-) -> tuple[tuple[float, float, float] | None, bool, int | None]:
+def _touched(motion: Motion, hands: NDArray[np.bool_]) -> tuple[tuple[float, float, float] | None, bool, int | None]:
     """Where and when the hand that rests longest on something rests; nothing where none does."""
     if not hands.any():
         return None, False, None
@@ -219,7 +219,6 @@ def followed(actions: Sequence[Action], motions: Sequence[Motion], name: str, ro
     )  # fmt: skip
 
 
-
 def _hand_goal(motion: Motion, places: NDArray[np.float32]) -> tuple[tuple[float, float, float] | None, bool, int]:
     goal = next((goal for goal in motion.goals if goal.joint.endswith("_wrist")), None)
     if goal is None:
@@ -227,7 +226,6 @@ def _hand_goal(motion: Motion, places: NDArray[np.float32]) -> tuple[tuple[float
     left = goal.joint.startswith("left")
     away = np.linalg.norm(places[:, -2 if left else -1] - np.array(goal.position), axis=-1)
     return goal.position, left, int(np.argmax(away < away.min() + NEAR))
-
 
 
 def people(stretches: Iterable[Stretch]) -> dict[str, float]:

@@ -7,7 +7,7 @@ position. The first two frames are the end of the window before; they come in cl
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any, Final
 
 import torch
@@ -28,7 +28,7 @@ class DenoiserSizes:
     width: int = 512
     hidden: int = 512
     norm_first: bool = False
-    scene: SceneSizes | None = SceneSizes()
+    scene: SceneSizes | None = field(default_factory=SceneSizes)
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -49,7 +49,7 @@ PRESETS: Final = {
 """`small` is what a laptop runs; `walk` is smaller still and sees no voxels, for weights that only walk."""
 
 
-class Denoiser(nn.Module):
+class Denoiser(nn.Module):  # type: ignore[misc]
     """x_t, step and conditions to the clean window."""
 
     positions: Tensor

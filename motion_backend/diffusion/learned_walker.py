@@ -24,7 +24,7 @@ CAPTION: Final = "a person walks"
 SEEDS: Final = 2**31
 
 
-@dataclass(frozen=True)
+@dataclass
 class LearnedGait:
     """The generator: what the sampler's weights walk like."""
 
@@ -74,7 +74,6 @@ class LearnedWalker:
         self.made += 1
         self.past = self.past.then(found)[-HISTORY * STRIDE :]
         return found
-
 
     def _in_stride(self, known: Poses) -> Poses:
         """The history of the walker's own gait that is most like that of a body (1, 2, …), in its place."""

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import Final
 
 import torch
-import torch.nn.functional as F
 from torch import Tensor
+from torch.nn import functional
 
 from motion_backend.diffusion.body_kinematics import Kinematics, told_joints
 from motion_backend.diffusion.motion_features import CONTACTS, FEATURES, HISTORY, PLACES, ROOT, TURNS
@@ -82,7 +82,7 @@ class Losses:
 def losses(guess: Tensor, clean: Tensor, scale: Scale, kinematics: Kinematics, weights: LossWeights) -> Losses:
     """Of guessed windows against clean ones, both as the network sees them. (B, 16, 202)."""
     new = slice(HISTORY, None)
-    gap = F.smooth_l1_loss(guess[:, new], clean[:, new], reduction="none")
+    gap = functional.smooth_l1_loss(guess[:, new], clean[:, new], reduction="none")
     told, true = scale.decode(guess), scale.decode(clean)
     wanted = told_joints(true)[:, HISTORY - 1 :]  # (B, 15, 22, 3), the last known frame first
     made = torch.cat([wanted[:, :1], kinematics.joints(told[:, new])], dim=1)
@@ -95,7 +95,7 @@ def losses(guess: Tensor, clean: Tensor, scale: Scale, kinematics: Kinematics, w
         bones=((made - wanted)[:, 1:].square().sum(-1) * _joint_weights(weights).to(gap)).mean(),
         velocity=(speeds - wanted_speeds).square().sum(-1).mean(),
         slide=(speeds[:, :, FEET].square().sum(-1) * standing).mean(),
-        floor=F.relu(lowest - made[:, 1:, FEET, 1]).square().mean(),
+        floor=functional.relu(lowest - made[:, 1:, FEET, 1]).square().mean(),
     )
 
 

@@ -112,7 +112,7 @@ def to_features(poses: Poses, frame: HeadingFrame, skeleton: Skeleton) -> Array:
 
 
 def from_features(features: Array, frame: HeadingFrame) -> Poses:
-    """Poses in the world from root and rotations; positions follow by forward kinematics, so bones keep their length."""
+    """Poses in the world from root and rotations; positions follow by forward kinematics, so bones cannot stretch."""
     frames = frame.along_time()
     local = six_to_quat(features[..., TURNS].reshape(*features.shape[:-1], JOINT_COUNT, 6))
     turn = np.broadcast_to(rotations.yaw_to_quat(frames.yaw), local[..., 0, :].shape)

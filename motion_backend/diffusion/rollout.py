@@ -149,7 +149,7 @@ def _time(seconds: float) -> float:
 
 @lru_cache(maxsize=512)
 def sentence(caption: str) -> Array:
-    """A caption's features (384,); zeros, which are no text, where the encoder that was learned with is not installed."""
+    """A caption's features (384,); zeros, which are no text, where the encoder that was learned with is missing."""
     encoder = load_encoder()
     if encoder.name == "hashing":
         return np.zeros(TEXT_WIDTH)

@@ -6,7 +6,7 @@ The noise process is noise_schedule.py, the network denoiser.py; here is the loo
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
@@ -24,7 +24,9 @@ DDIM_STEPS: Final = 10
 """Of sampling, where nothing else is asked for: five are as good, twenty are no better."""
 PULL: Final = 0.5
 """Share of what is left to the goal by which guidance moves each clean guess in the last windows of an action."""
-LEGS: Final = [PLACES.start + 3 * (INDEX[name] - 1) + axis for name in ("left_ankle", "right_ankle") for axis in (0, 1, 2)]
+LEGS: Final = [
+    PLACES.start + 3 * (INDEX[name] - 1) + axis for name in ("left_ankle", "right_ankle") for axis in (0, 1, 2)
+]
 """Features by which the moment of a stride is told."""
 Guide = Callable[[Tensor], Tensor]
 """Moves a clean guess (B, 14, 202), in metres and rotations, towards what it is to come to."""
@@ -54,7 +56,7 @@ class Sampler:
 
     denoiser: Denoiser
     scale: Scale
-    schedule: NoiseSchedule = NoiseSchedule()
+    schedule: NoiseSchedule = field(default_factory=NoiseSchedule)
     steps: int = DDIM_STEPS
     """Of DDIM; 0: all of DDPM's."""
     gaits: int = 0

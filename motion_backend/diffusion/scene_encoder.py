@@ -20,7 +20,7 @@ CHANNELS, SIDE, PATCH = 64, 32, 8
 
 @dataclass(frozen=True)
 class SceneSizes:
-    """Of the vision transformer; the paper's by default. It prints neither the width inside nor that of the networks."""
+    """Of the vision transformer; the paper's by default. It does not print the width of the networks."""
 
     layers: int = 6
     heads: int = 16
@@ -35,7 +35,7 @@ def voxel_image(pair: Occupancy) -> np.ndarray[tuple[int, ...], np.dtype[np.floa
     return pair.reshape(CHANNELS, SIDE, SIDE).astype(np.float32)
 
 
-class SceneEncoder(nn.Module):
+class SceneEncoder(nn.Module):  # type: ignore[misc]
     """(B, 64, 32, 32) to one token of the denoiser's width, read off where no patch is."""
 
     def __init__(self, sizes: SceneSizes, out: int) -> None:
@@ -52,4 +52,4 @@ class SceneEncoder(nn.Module):
         patches = self.patches(voxels).flatten(2).transpose(1, 2)  # (B, 16, width)
         reader = self.reader.expand(len(patches), -1, -1)
         read: Tensor = self.encoder(torch.cat([reader, patches], dim=1) + self.positions)[:, 0]
-        return self.out(read)  # type: ignore[no-any-return]
+        return self.out(read)

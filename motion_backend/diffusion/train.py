@@ -83,8 +83,8 @@ class TrainConfig:
     """How often a walk is not told where to face."""
     save_every: int = 500
     seed: int = 0
-    losses: LossWeights = LossWeights()
-    noise: NoiseSchedule = NoiseSchedule()
+    losses: LossWeights = field(default_factory=LossWeights)
+    noise: NoiseSchedule = field(default_factory=NoiseSchedule)
 
     def rate_at(self, step: int) -> float:
         """Of Adam, warmed up and then along a cosine."""
@@ -303,7 +303,7 @@ def _begun(
 
 
 def _stepped(run: Run, loss: Tensor, config: TrainConfig) -> None:
-    loss.backward()  # type: ignore[no-untyped-call]
+    loss.backward()
     run.optimizer.step(config.rate_at(run.step), run.step + 1)
     run.step += 1
     follow = 1 - min(config.average, (1 + run.step) / (10 + run.step))

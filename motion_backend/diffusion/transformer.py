@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import torch
-import torch.nn.functional as F
 from torch import Tensor, nn
+from torch.nn import functional
 
 
 def sinusoid(values: Tensor, width: int) -> Tensor:
@@ -22,7 +22,7 @@ def mlp(inputs: int, width: int) -> nn.Sequential:
     return nn.Sequential(nn.Linear(inputs, width), nn.SiLU(), nn.Linear(width, width))
 
 
-class Layer(nn.Module):
+class Layer(nn.Module):  # type: ignore[misc]
     """Self-attention and a two-layer network, normalised after each as printed, or before each, which learns faster."""
 
     def __init__(self, width: int, heads: int, hidden: int, norm_first: bool) -> None:
@@ -44,14 +44,14 @@ class Layer(nn.Module):
         batch, tokens, width = x.shape
         split = self.queries_keys_values(x).view(batch, tokens, 3, self.heads, width // self.heads)
         queries, keys, values = split.permute(2, 0, 3, 1, 4)  # (batch, heads, tokens, width / heads) each
-        found = F.scaled_dot_product_attention(queries, keys, values)
+        found = functional.scaled_dot_product_attention(queries, keys, values)
         return self.joined(found.transpose(1, 2).reshape(batch, tokens, width))
 
     def _mixed(self, x: Tensor) -> Tensor:
-        return self.narrower(F.gelu(self.wider(x), approximate="tanh"))
+        return self.narrower(functional.gelu(self.wider(x), approximate="tanh"))
 
 
-class Encoder(nn.Module):
+class Encoder(nn.Module):  # type: ignore[misc]
     """Layer after layer; those that normalise first end in one more normalisation."""
 
     def __init__(self, layers: int, width: int, heads: int, hidden: int, norm_first: bool) -> None:

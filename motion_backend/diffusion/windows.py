@@ -19,7 +19,7 @@ from torch import Tensor
 from motion_backend.backend_protocol import PartKind
 from motion_backend.diffusion.conditions import GAITS, MAX_SECONDS, TIME_UNIT, Conditions, MadeOf
 from motion_backend.diffusion.dataset import PERIODIC, Stretch
-from motion_backend.diffusion.motion_features import HISTORY, RATE, STRIDE, WINDOW, quat_to_six, twist
+from motion_backend.diffusion.motion_features import HISTORY, STRIDE, WINDOW, quat_to_six, twist
 from motion_backend.diffusion.scene_encoder import voxel_image
 from motion_backend.mocap.augmentation import SWAPPED, mirror_words
 from motion_backend.mocap.clip import ClipError
@@ -36,7 +36,7 @@ LEAD: Final = HISTORY * STRIDE
 SPAN: Final = (WINDOW - 1) * STRIDE
 """From a window's first frame to its last."""
 HELD: Final = 45
-"""Frames by which windows of our own body run past a passage's end: its last frame is held, so that one learns to stay."""
+"""Frames by which windows of our own body run past a passage's end: its last frame is held; so one learns to stay."""
 SEATS: Final = (PartKind.SIT, PartKind.LIE, PartKind.RISE)
 """Passages whose goal has a height and a facing."""
 _OFFSET: Final = HISTORY - 1
@@ -159,8 +159,8 @@ class WindowBank:
             over = 0 if passage.kind in PERIODIC else HELD
             high = max(begin + passage.stop - SPAN + over, low + 1)
             return [at for at in range(low, high, every) if at + LEAD < begin + passage.stop]
-        low = max(low, begin)
-        return [at for at in range(low, begin + passage.stop - LEAD, every) if at + SPAN < int(self._begins[index + 1])]
+        ends = int(self._begins[index + 1])
+        return [at for at in range(max(low, begin), begin + passage.stop - LEAD, every) if at + SPAN < ends]
 
     def batch(self, starts: NDArray[np.int64], rows: NDArray[np.int64], flips: NDArray[np.bool_]) -> Batch:
         """Windows with their conditions; those with a flip are seen in a mirror."""
@@ -179,8 +179,8 @@ class WindowBank:
         voxels, has_scene = self._voxels(row, ends, origin, yaw)
         windows = self._features(frames, origin, yaw)
         given = Conditions(
-            text, torch.ones(len(start)), frame, self._made_of[row].clone(), self._gait[row].clone(), pelvis, has_pelvis,
-            hand * has_hand[:, None], has_hand, voxels, has_scene,
+            text, torch.ones(len(start)), frame, self._made_of[row].clone(), self._gait[row].clone(),
+            pelvis, has_pelvis, hand * has_hand[:, None], has_hand, voxels, has_scene,
         )  # fmt: skip
         _mirror(windows, given, flip)
         over = ~periodic & (start + SPAN >= self._reached[row])
@@ -249,7 +249,9 @@ def gaits(stretches: Sequence[Stretch]) -> dict[str, int]:
     return {name: number for number, name in enumerate(sorted(walks), start=1)}
 
 
-def _weights(groups: list[tuple[tuple[MadeOf, PartKind], str]], shares: Mapping[tuple[MadeOf, PartKind], float]) -> Array:
+def _weights(
+    groups: list[tuple[tuple[MadeOf, PartKind], str]], shares: Mapping[tuple[MadeOf, PartKind], float]
+) -> Array:
     """Of windows, by the share of their group, the same for everybody in it."""
     counts: dict[tuple[tuple[MadeOf, PartKind], str], int] = {}
     for group in groups:

@@ -94,7 +94,12 @@ def diffusion(
     stretches = [one for one in _training(datasets) if learn is not Learned.WALK or one.plain]
     bank = _bank(stretches, scenes=sizes.scene is not None)
     config = TrainConfig(
-        steps, batch, rate or RATES[preset], save_every=save_every, seed=seed, losses=WALK_LOSSES if learn is Learned.WALK else CONTACT_LOSSES
+        steps,
+        batch,
+        rate or RATES[preset],
+        save_every=save_every,
+        seed=seed,
+        losses=WALK_LOSSES if learn is Learned.WALK else CONTACT_LOSSES,
     )
     people = None if judge is None else read_dataset(judge)
     begun = None if start is None else load_denoiser(start)[0]
@@ -118,16 +123,14 @@ def scheduler(
 ) -> None:
     """Train the completion scheduler (LINGO A.5): whether the action of a window is over."""
     from motion_backend.diffusion.completion_scheduler import SCHEDULER_PRESETS
-    from motion_backend.diffusion.train import SHARES, TrainConfig, scheduler_learner
     from motion_backend.diffusion.conditions import MadeOf
     from motion_backend.diffusion.dataset import PERIODIC
+    from motion_backend.diffusion.train import SHARES, TrainConfig, scheduler_learner
 
     if preset not in SCHEDULER_PRESETS:
         raise RequestError(f"{preset!r:.40} is none of {', '.join(SCHEDULER_PRESETS)}", at="--preset")
     # Recordings end where the camera stopped, not where an action was over.
-    ending = {
-        key: share for key, share in SHARES.items() if key[0] is MadeOf.PROCEDURAL and key[1] not in PERIODIC
-    }
+    ending = {key: share for key, share in SHARES.items() if key[0] is MadeOf.PROCEDURAL and key[1] not in PERIODIC}
     bank = _bank(_training(datasets), scenes=False)
     config = TrainConfig(steps, batch, 1e-3 if preset == "small" else 1e-4, seed=seed, save_every=save_every)
     learner = scheduler_learner(SCHEDULER_PRESETS[preset], config, device)
@@ -152,11 +155,17 @@ def _bank(stretches: list[Stretch], scenes: bool) -> WindowBank:
 
 
 def _train(
-    learner: Learner, bank: WindowBank, windows: Windows, config: TrainConfig, out: Path,
-    people: Dataset | None = None, start: Weights | None = None,
+    learner: Learner,
+    bank: WindowBank,
+    windows: Windows,
+    config: TrainConfig,
+    out: Path,
+    people: Dataset | None = None,
+    start: Weights | None = None,
 ) -> None:
-    """Train and say how it goes, a line a checkpoint, with the curve and a sheet of samples drawn beside the weights."""
+    """Train and say how it goes, a line a checkpoint; the curve and a sheet of samples are drawn beside the weights."""
     from motion_backend.diffusion.checkpoint import save_weights
+    from motion_backend.diffusion.own_strides import with_own_strides
     from motion_backend.diffusion.train import train as trained
     from planner_service.output.training_pictures import draw_curve, draw_samples
 
@@ -169,7 +178,7 @@ def _train(
             from motion_backend.diffusion.sampler import Sampler
             from planner_service.evaluation.learned_walks import judged
 
-            sampler = Sampler(weights.network, weights.scale, NoiseSchedule(), gaits=run.gaits)  # type: ignore[arg-type]
+            sampler = Sampler(weights.network, weights.scale, NoiseSchedule(), gaits=run.gaits)
             told = judged(sampler, people)
         figures = {**(run.curve[-1] if run.curve else {}), **told}
         console.print(f"step {run.step}: " + ", ".join(f"{k} {v:.4g}" for k, v in figures.items()), soft_wrap=True)
@@ -179,6 +188,8 @@ def _train(
         return told
 
     weights = trained(learner, bank, windows, config, out, at_checkpoint, start)
+    if learner.kind == "denoiser":
+        weights = with_own_strides(weights, bank, config.seed)
     save_weights(weights, out / learner.kind, half=True)
     console.print(f"trained: {out / learner.kind}.safetensors", soft_wrap=True)
 

@@ -139,12 +139,21 @@ def test_the_scene_is_read_from_sixteen_patches_and_one_token_more() -> None:
 def test_a_layer_is_that_of_torch(norm_first: bool) -> None:
     """An oracle that others wrote: the same weights in torch's own layer give the same answer."""
     torch.manual_seed(0)
-    ours, theirs = Layer(16, 4, 32, norm_first), torch.nn.TransformerEncoderLayer(
-        16, 4, 32, 0.0, lambda x: torch.nn.functional.gelu(x, approximate="tanh"), batch_first=True, norm_first=norm_first
+    ours, theirs = (
+        Layer(16, 4, 32, norm_first),
+        torch.nn.TransformerEncoderLayer(
+            16,
+            4,
+            32,
+            0.0,
+            lambda x: torch.nn.functional.gelu(x, approximate="tanh"),
+            batch_first=True,
+            norm_first=norm_first,
+        ),
     )
     theirs.self_attn.in_proj_weight.data = ours.queries_keys_values.weight.data
     theirs.self_attn.in_proj_bias.data = ours.queries_keys_values.bias.data
-    theirs.self_attn.out_proj = ours.joined  # type: ignore[assignment]
+    theirs.self_attn.out_proj = ours.joined
     theirs.linear1, theirs.linear2, theirs.norm1, theirs.norm2 = (
         ours.wider, ours.narrower, ours.first_norm, ours.second_norm,
     )  # fmt: skip

@@ -10,10 +10,10 @@ from motion_backend import rotations
 from motion_backend.diffusion.motion_features import (
     CONTACTS,
     FEATURES,
-    HeadingFrame,
     PLACES,
-    Poses,
     ROOT,
+    HeadingFrame,
+    Poses,
     from_features,
     six_to_quat,
     smoothly_joined,

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 import torch
+from numpy.typing import NDArray
 from sample_motions import tumbling
 
 from motion_backend.backend_protocol import PartKind
@@ -31,7 +33,7 @@ TINY = DenoiserSizes(1, 2, 16, 16, True, None)
 WALK, REACH = (MadeOf.RECORDED, PartKind.WALK), (MadeOf.PROCEDURAL, PartKind.REACH)
 
 
-def words(texts: list[str]) -> np.ndarray:
+def words(texts: Sequence[str]) -> NDArray[np.float32]:
     """Features that differ from text to text."""
     return np.stack([np.random.default_rng(list(text.encode())).normal(size=384) for text in texts]).astype(np.float32)
 
@@ -141,7 +143,7 @@ def overfitted(folder: Path, steps: int, sizes: DenoiserSizes) -> float:
     config = TrainConfig(steps, batch=12, rate=3e-3, warmup=20, average=0.97, save_every=steps, dropped=0.0)
     weights = train(denoiser_learner(sizes, config), bank, windows, config, folder)
     batch = bank.batch(starts, rows, np.zeros(3, dtype=np.bool_))
-    sampler = Sampler(weights.network, weights.scale)  # type: ignore[arg-type]
+    sampler = Sampler(weights.network, weights.scale)
     made = sampler.windows(batch.windows[:, :HISTORY].double().numpy(), batch.given, 0)
     kinematics = Kinematics()
     wanted = kinematics.joints(batch.windows[:, HISTORY:])
@@ -180,27 +182,27 @@ def test_a_run_that_was_broken_off_ends_in_the_same_bytes(tmp_path: Path) -> Non
     windows, config = bank.windows({WALK: 1.0}), TrainConfig(4, batch=3, save_every=2, warmup=1)
     whole = train(denoiser_learner(TINY, config), bank, windows, config, tmp_path / "whole")
 
-    class Broken(Exception):
+    class BrokenOffError(Exception):
         pass
 
     def breaks(_run: object, _weights: object) -> dict[str, float]:
         if (tmp_path / "parts" / "run.json").exists():
-            raise Broken
+            raise BrokenOffError
         return {}
 
-    with pytest.raises(Broken):
+    with pytest.raises(BrokenOffError):
         train(denoiser_learner(TINY, config), bank, windows, config, tmp_path / "parts", breaks)
     parts = train(denoiser_learner(TINY, config), bank, windows, config, tmp_path / "parts")
     for one, other in zip(whole.network.state_dict().values(), parts.network.state_dict().values(), strict=True):
         assert torch.equal(one, other)
+    other_config = replace(config, rate=1.0)
     with pytest.raises(CheckpointError, match="another config"):
-        other_config = replace(config, rate=1.0)
         train(denoiser_learner(TINY, other_config), bank, windows, other_config, tmp_path / "parts")
 
 
 def test_a_loss_that_is_not_finite_ends_training_and_keeps_batch_and_weights(tmp_path: Path) -> None:
     good, bad = two_people()
-    bad.roots[40] = np.nan
+    bad.roots[39] = np.nan
     bank = bank_of([good, bad])
     windows, config = bank.windows({WALK: 1.0}), TrainConfig(500, batch=1, save_every=1, warmup=1)
     with pytest.raises(TrainingError, match="not finite"):
@@ -223,7 +225,7 @@ def test_weights_come_back_from_disk_and_broken_ones_are_named(tmp_path: Path) -
     tensors, config = path.with_suffix(".safetensors"), path.with_suffix(".json")
     whole = tensors.read_bytes()
     tensors.write_bytes(whole[: len(whole) // 2])
-    with pytest.raises(CheckpointError, match="denoiser.safetensors: it is damaged"):
+    with pytest.raises(CheckpointError, match=r"denoiser\.safetensors: it is damaged"):
         load_denoiser(path)
     tensors.write_bytes(whole)
     row = json.loads(config.read_text())
