@@ -17,15 +17,18 @@ from scene_graphs.errors import UserError
 GROUP: Final = "sims.backends"
 DEFAULT_BACKEND: Final = "procedural"
 MATCHING: Final = "matching"
+DIFFUSION: Final = "diffusion"
 _OURS: Final = {
     "procedural": "motion_backend.procedural.backend:ProceduralBackend",
     "physics": "motion_backend.physics.backend:PhysicsBackend",
     MATCHING: "motion_backend.matching.backend:of_given_clips",
+    DIFFUSION: "motion_backend.diffusion.backend:DiffusionBackend",
 }
 """Our backends: name, and where what makes it is defined."""
 _ABOUT: Final = {
     "procedural": "kinematic, not learned",
     MATCHING: "recorded walks of your clips by motion matching, nothing else",
+    DIFFUSION: "walks learned from recorded people, nothing else",
     "physics": "simulated (MuJoCo, tracked by model-predictive control, no root force)",
 }
 """What a reader of figures must know of them."""

@@ -87,9 +87,9 @@ class Way:
         x, z = self.places[min(FPS // 2, len(self) - 1)] - self.places[0]
         return float(np.arctan2(x, z))
 
-    def reached(self, place: Array, since: int) -> int:
-        """The frame of the way that is nearest to a place (2,), of those that come shortly after one."""
-        near = self.places[since : since + NEAR]
+    def reached(self, place: Array, since: int, made: int = 0) -> int:
+        """The frame of the way that is nearest to a place (2,), of those that come shortly after one; `made` since."""
+        near = self.places[since : since + max(NEAR, made + NEAR // 2)]
         return since + int(np.argmin(np.sum((near - place) ** 2, axis=1)))
 
     def ahead(self, frame: int) -> Ahead:
@@ -137,7 +137,7 @@ def windows(walker: Walker, past: Frames, way: Way) -> Iterator[Frames]:
         found = walker.window(way.ahead(frame))
         yield found
         made += len(found)
-        frame = way.reached(found.root[-1, [0, 2]], frame)
+        frame = way.reached(found.root[-1, [0, 2]], frame, len(found))
 
 
 def yaw_of(turns: Array) -> Array:

@@ -35,7 +35,10 @@ ROLES = {
     *("client", "backend", "train", "dataset"),
 }
 """Names that every family repeats."""
-NOUNS_IN_ING = {"skinning", "resampling", "rendering", "grounding", "arm_swing", "matching"}
+NOUNS_IN_ING = {
+    *("skinning", "resampling", "rendering", "grounding", "arm_swing", "matching"),
+    *("embedding", "text_motion_embedding", "train_embedding", "evaluate_embedding"),
+}
 """Words of the field that end so."""
 
 

@@ -21,7 +21,9 @@ PACKAGES = {
     "planner_service": {"prompts", "scene_graphs", "motion_backend"},
 }
 HOMES = {
-    "torch": {"motion_backend/language", "motion_backend/embedding", "motion_backend/physics"},
+    "torch": {
+        "motion_backend/language", "motion_backend/embedding", "motion_backend/physics", "motion_backend/diffusion",
+    },  # fmt: skip
     "safetensors": {"motion_backend/language", "motion_backend/embedding"},
     "mujoco": {"motion_backend/physics"},
     "networkx": {"scene_graphs"},

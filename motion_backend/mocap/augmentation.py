@@ -23,7 +23,7 @@ def _other_side(word: str) -> str:
     return {"left": "right", "right": "left"}.get(word, word)
 
 
-_SWAPPED = [INDEX[other_side(joint)] for joint in JOINTS]
+SWAPPED = [INDEX[other_side(joint)] for joint in JOINTS]
 _ACROSS = np.array([-1.0, 1.0, 1.0])
 _TURNED = np.array([1.0, -1.0, -1.0, 1.0])
 
@@ -31,13 +31,13 @@ _TURNED = np.array([1.0, -1.0, -1.0, 1.0])
 def mirror(motion: Motion) -> Motion:
     """The same as seen in a mirror at x = 0: sides swapped, x negated, turns about y and z reversed."""
     goals = tuple(
-        ContactGoal(JOINTS[_SWAPPED[INDEX[goal.joint]]], (-goal.position[0], goal.position[1], goal.position[2]))
+        ContactGoal(JOINTS[SWAPPED[INDEX[goal.joint]]], (-goal.position[0], goal.position[1], goal.position[2]))
         for goal in motion.goals
     )
     return replace(
         motion,
         root_positions=(motion.root_positions * _ACROSS).astype(np.float32),
-        local_rotations=(motion.local_rotations[:, _SWAPPED] * _TURNED).astype(np.float32),
+        local_rotations=(motion.local_rotations[:, SWAPPED] * _TURNED).astype(np.float32),
         contacts=motion.contacts[:, [2, 3, 0, 1]],
         goals=goals,
     )

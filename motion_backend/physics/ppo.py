@@ -21,16 +21,6 @@ Floats = NDArray[np.float32]
 Flags = NDArray[np.bool_]
 
 
-class GaussianPolicy(Protocol):
-    """What PPO asks of a policy: mean actions of observations, and a spread that is learned."""
-
-    log_std: Tensor
-
-    def __call__(self, observed: Tensor) -> Tensor:
-        """Mean actions (B, A) of observations (B, O)."""
-        ...
-
-
 class VectorEnvironment(Protocol):
     """N bodies that are stepped together and begin anew by themselves."""
 
@@ -129,7 +119,10 @@ def advantages(rollout: Rollout, gamma: float, lam: float) -> Floats:
 
 
 class PPO:
-    """A policy, its critic, and what both are taught with."""
+    """A policy, its critic, and what both are taught with.
+
+    A policy gives mean actions (B, A) of observations (B, O), and has a `log_std` (A,) that is learned.
+    """
 
     def __init__(self, policy: nn.Module, value: nn.Module, size: int, config: PPOConfig, seed: int = 0) -> None:
         self.policy, self.value, self.config = policy, value, config

@@ -20,6 +20,7 @@ from planner_service.cli import (
     service,
     story,
     tasks,
+    train,
     train_embedding,
 )
 from planner_service.user_errors import explain
@@ -40,7 +41,8 @@ app.add_typer(layouts.app, name="layouts")
 app.add_typer(service.app, name="models")
 app.add_typer(evaluate.app, name="evaluate")
 app.add_typer(clips.app, name="clips")
-app.add_typer(train_embedding.app, name="train")
+train.app.command("embedding")(train_embedding.embedding)
+app.add_typer(train.app, name="train")
 
 
 @app.callback()

@@ -16,19 +16,12 @@ if TYPE_CHECKING:
     from motion_backend.embedding.caption_retrieval import Retrieval
     from motion_backend.mocap.dataset_file import Dataset, Entry
 
-app = typer.Typer(no_args_is_help=True)
 ACTED: Final = "acted.npz"
 WEIGHTS: Final = "text_motion.safetensors"
 RECORDED: Final = "real mocap"
 """The kind of clips that is learned from besides our own."""
 
 
-@app.callback()
-def train() -> None:
-    """Train what the body learns."""
-
-
-@app.command()
 def embedding(
     out: Annotated[Path, typer.Option(help="Folder for clips, checkpoints and weights; a run goes on where it was.")],
     rooms: Annotated[int, typer.Option(min=2, max=400, help="Rooms that every caption is acted in.")] = 12,

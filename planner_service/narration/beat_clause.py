@@ -56,7 +56,7 @@ def event(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
     at = next((at for at, word in enumerate(words) if not _is_adverb(word)), 0)
     listed = beat.kind == "feeling" and "," in beat.text
     told = None if listed else _head(words[at:], beat.kind == "feeling")
-    if told is None or (hero in ("he", "she") and _is_bare_noun(words[at:])):
+    if told is None or (beat.kind == "feeling" and hero in ("he", "she") and _is_bare_noun(words[at:])):
         return None
     verb, rest, ing = told
     text = of_voice(" ".join([*words[:at], verb, *_shifted(rest, ing)]), hero, voice).rstrip(" .,;:!?")

@@ -34,7 +34,7 @@ _MAX_WORDS: Final = 22
 _SHORT: Final = 18
 """Words of two beats that may stand in one sentence."""
 _PLACE: Final = re.compile(r"\b(?:on|in|at|by|into|onto|under|beside|near|to|from|around|against|before|behind) \w+")
-_NOBODY: Final = frozenset("they he she somebody someone everybody everyone nobody".split())
+_NOBODY: Final = frozenset(("they", "he", "she", "somebody", "someone", "everybody", "everyone", "nobody"))
 """Of whom nothing need be said."""
 Rows = Sequence[tuple[int, PlannedKeyframe]]
 

@@ -10,10 +10,10 @@ from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.verb_finder import Token, tokens_of
 
-_LEADS: Final = frozenset(
-    ("with", "without", "for", "like", "as", "despite", "after", "since", "before", "until")
-)
+_LEADS: Final = frozenset(("with", "without", "for", "like", "as", "despite", "after", "since", "before", "until"))
 """Words before which a deed has been told, and after which stands how, for whom or when."""
+_REASONS: Final = frozenset(("after", "since", "before", "until", "for"))
+"""Those of them that tell why or when."""
 _MARKS: Final = frozenset((",", ";"))
 _FEWEST: Final = 2
 """Words that a deed is told in at least."""
@@ -31,9 +31,11 @@ def details_of(clause: Clause) -> tuple[str, ...]:
 
 
 def core_of(text: str, details: Sequence[str]) -> str:
-    """A clause's words without its details."""
+    """A clause's words without its details, but for those that tell why or when."""
+    reasons = False  # what follows them belongs to them: "after a quarrel | with her boss"
     for detail in details:
-        text = text.replace(detail, "")
+        reasons = reasons or detail.split()[0].lower() in _REASONS
+        text = text if reasons else text.replace(detail, "")
     return " ".join(text.split()).rstrip(" ,;").replace(" ,", ",")
 
 

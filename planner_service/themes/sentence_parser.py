@@ -427,7 +427,8 @@ def _before(tokens: Sequence[Token], subject: str) -> Sequence[Token]:
     size = len(subject.split())
     texts = [token.text for token in tokens]
     starts = (at for at in range(len(texts) - size, -1, -1) if texts[at : at + size] == subject.split())
-    return tokens[: next(starts, 0)]
+    before = tokens[: next(starts, 0)]
+    return before[:-1] if before and before[-1].text == "," else before
 
 
 def _placed(clause: Clause, before: Sequence[Token], source: str) -> Clause:

@@ -47,7 +47,7 @@ def test_ours_are_there_and_say_what_they_are() -> None:
 
 
 def test_a_backend_of_others_is_there_where_its_package_is(installed: Path) -> None:  # noqa: ARG001
-    assert backend_names() == ("procedural", "physics", "matching", "broken", "ghost")
+    assert backend_names() == ("procedural", "physics", "matching", "diffusion", "broken", "ghost")
     assert "ghost" not in sys.modules, "nothing is imported before it is asked for"
     assert load_backend("ghost").name == "ghost"
     assert read_settings(backend="ghost").backend == "ghost"
@@ -57,7 +57,7 @@ def test_nobody_takes_the_name_of_one_of_ours(installed: Path) -> None:
     points = next(installed.glob("*.dist-info")) / "entry_points.txt"
     points.write_text("[sims.backends]\nprocedural = ghost:Ghost\n")
     _forget()
-    assert backend_names() == ("procedural", "physics", "matching")
+    assert backend_names() == ("procedural", "physics", "matching", "diffusion")
     assert type(load_backend("procedural")).__name__ == "ProceduralBackend"
 
 

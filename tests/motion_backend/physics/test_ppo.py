@@ -59,9 +59,9 @@ def test_ppo_comes_near_the_best_control_of_a_point() -> None:
     with torch.random.fork_rng():
         torch.manual_seed(0)
         policy, value = Line(), Value(1, (32,))
-    learner = PPO(policy, value, 1, PPOConfig(gamma=0.95, rate=5e-3, value_rate=5e-3, batch=512), seed=0)
+    learner = PPO(policy, value, 1, PPOConfig(gamma=0.95, rate=1e-2, value_rate=1e-2, batch=2048, epochs=4), seed=0)
     environment = Points(0)
-    for _ in range(30):
+    for _ in range(20):
         learner.update(learner.collect(environment, 16))
 
     def learned(x: np.ndarray) -> np.ndarray:
@@ -69,14 +69,14 @@ def test_ppo_comes_near_the_best_control_of_a_point() -> None:
             return policy(torch.from_numpy(learner.scale.apply(x))).numpy()
 
     nothing, best = mean_return(np.zeros_like), max(mean_return(lambda x, k=k: -k * x) for k in np.linspace(0, 5, 51))
-    assert mean_return(learned) > nothing + 0.9 * (best - nothing)
+    assert mean_return(learned) > nothing + 0.95 * (best - nothing)
 
 
 def rollout(steps: int = 12, count: int = 3, seed: int = 0) -> Rollout:
     rng = np.random.default_rng(seed)
     rewards, values, next_values = rng.normal(size=(3, steps, count)).astype(np.float32)
     over = rng.random((2, steps, count)) < 0.15
-    next_values[:-1] = np.where(over.any(axis=0)[:-1], next_values[:-1], values[1:])
+    next_values[:-1] = np.where((over[0] | over[1])[:-1], next_values[:-1], values[1:])
     empty = np.zeros((steps, count, 1), np.float32)
     return Rollout(empty, empty, rewards, rewards, values, next_values, over[0], over[1])
 

@@ -22,6 +22,7 @@ from planner_service.composition.deed_lexicon import (
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.lexicon import past, third_person
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
+from planner_service.themes.things import things
 from scene_graphs import furniture
 
 FILLINGS = ("the old", "the", "", "herself", "a")
@@ -248,7 +249,8 @@ def test_words_make_one_think_of_a_room() -> None:
 
 def test_every_furniture_word_of_the_table_is_known_and_affords_what_is_done_there() -> None:
     table = deed_table()
-    words = {word for kept in table.kept for word in kept.at} | set(table.stands_on.values()) | set(table.seats_at)
+    words = {word for places in things().values() for word in places}
+    words |= {*table.stands_on.values(), *table.seats_at}
     words |= {seat for seats in table.seats_at.values() for seat in seats}
     words |= {piece for those in table.usual.values() for pieces in those.values() for piece in pieces}
     words |= {piece for row in table.deed for piece in row.at if piece != "floor"}

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 
 from motion_backend.motion import Character
 from planner_service.pipeline import StoryRequest
-from planner_service.themes.protagonist import cast_by
+from planner_service.themes.protagonist import cast_by, hero_of
+from planner_service.themes.sentence_parser import clauses_of_text
 
 
 @for_each(
@@ -49,3 +50,12 @@ def test_a_character_that_somebody_chose_stays(theme: str, name: str, pronouns: 
 def test_a_request_acts_with_the_person_of_its_theme() -> None:
     assert StoryRequest("Anna comes home.").character == Character("Anna", "she")
     assert StoryRequest("Anna comes home.", character=Character("Bo", "he")).character == Character("Bo", "he")
+
+
+def test_who_acts_is_whom_a_theme_is_about() -> None:
+    def hero(theme: str) -> str:
+        return hero_of(clauses_of_text(theme))
+
+    assert hero("Once the last guest has gone, Teodor flings himself on the couch and kicks off his boots.") == "Teodor"
+    assert hero("The bosun cannot sleep, so he rolls off the bed.") == "The bosun"
+    assert hero("He rests his voice. So the tenor writes notes, claps and stamps.") == "the tenor"

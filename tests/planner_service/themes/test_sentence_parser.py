@@ -84,6 +84,11 @@ def test_no_word_of_any_text_is_read_twice(text: str) -> None:
         ("He sits next to the window.", ["sits next to the window"]),
         ("In the kitchen Anna reads.", ["reads in the kitchen"]),
         ("She reads and then, in the kitchen, she cooks.", ["reads", "cooks in the kitchen"]),
+        ("I laughed so hard I had to sit down.", ["laughed so hard", "had to sit down"]),
+        ("The baker, up since two, wipes the glass and hums.", ["wipes the glass", "hums"]),
+        ("He writes notes, claps, stamps and bows.", ["writes notes", "claps", "stamps", "bows"]),
+        ("By lamplight an archivist sorts letters.", ["sorts letters by lamplight"]),
+        ("Inch by inch he lowers himself onto the bed.", ["lowers himself onto the bed"]),
         ("1. wake up\n2. cook\n- go out", ["wake up", "cook", "go out"]),
         ("The man then suddenly falls and finally he sleeps.", ["falls", "sleeps"]),
         # slang

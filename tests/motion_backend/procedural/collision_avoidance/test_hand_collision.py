@@ -8,7 +8,7 @@ import numpy as np
 from for_each import for_each
 
 from motion_backend.body.scene_collision import Obstacles
-from motion_backend.procedural.collision_avoidance.hand_collision import arms_in, hands_clear
+from motion_backend.procedural.collision_avoidance.hand_collision import THICKNESS, _way_out, arms_in, hands_clear
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose import Pose
@@ -27,6 +27,23 @@ def wrists(pose: Pose) -> np.ndarray:
     root, local = solve(pose, SKELETON)
     positions = SKELETON.forward_kinematics(root, local)[0].astype(np.float64)
     return positions[:, [INDEX["left_wrist"], INDEX["right_wrist"]]]
+
+
+@for_each(
+    ("hand", "out"),
+    [((0.45, 1.0, 0.0), (1.0, 0.0, 0.0)), ((0.0, 1.0, 0.27), (0.0, 0.0, 1.0)), ((0.45, 1.97, 0.0), (0.0, 1.0, 0.0))],
+)
+def test_a_hand_in_a_box_goes_out_by_the_nearest_of_the_sides_it_came_from_or_over_its_top(
+    hand: tuple[float, float, float], out: tuple[float, float, float]
+) -> None:
+    box = Obstacles(
+        np.array([[0.0, 1.0, 0.0]]), np.array([[0.5, 1.0, 0.3]]), np.zeros(1), ("0/box",), np.zeros(1, bool)
+    )
+    (way,) = _way_out(np.array([[hand]]), np.array([[1.0, 1.4, 1.0]]), box)
+    inside = np.dot(box.halves[0] + box.centers[0] * [0, 1, 0] - hand, out)
+    np.testing.assert_allclose(way, (inside + THICKNESS) * np.array(out), atol=1e-9)
+    away = np.array([[[hand[0] + 3.0, hand[1], hand[2]]]])
+    assert not _way_out(away, np.array([[4.0, 1.4, 1.0]]), box).any()
 
 
 def test_open_arms_stay_open_where_there_is_room() -> None:

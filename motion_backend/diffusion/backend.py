@@ -1,0 +1,53 @@
+"""The backend `diffusion`: parts made by the model that was learned (LINGO A), from the weights that ship with it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Final, cast
+
+from motion_backend.backend_protocol import BodyState, Part, PartKind
+from motion_backend.backends import DIFFUSION
+from motion_backend.diffusion.checkpoint import load_denoiser
+from motion_backend.diffusion.denoiser import Denoiser
+from motion_backend.diffusion.learned_walker import LearnedGait
+from motion_backend.diffusion.sampler import Sampler
+from motion_backend.motion import Character, Motion
+from motion_backend.walk_driver import WalkDriver
+from scene_graphs.home import Home
+
+WEIGHTS: Final = Path(__file__).resolve().parents[1] / "data" / "weights" / "diffusion"
+"""What ships with the package."""
+
+
+class DiffusionBackend:
+    """Walks as the model learned it from people; all else is left to the backend behind it."""
+
+    name = DIFFUSION
+    parts = frozenset({PartKind.WALK})
+
+    def __init__(self, folder: Path | None = None) -> None:
+        """CheckpointError where weights are missing or broken."""
+        self._sampler = walking() if folder is None else walking(folder)
+
+    def begin(self, home: Home, character: Character, seed: int) -> BodyState:
+        """Standing in the first room, on a free place that the seed chooses."""
+        return self._driver(seed).begin(home, character, seed)
+
+    def advance(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
+        """Walk to where a part asks for."""
+        return self._driver(state.seed).advance(home, part, upcoming, state)
+
+    def _driver(self, seed: int) -> WalkDriver:
+        """One body has one person's walk all through a story."""
+        return WalkDriver(LearnedGait(self._sampler, self._sampler.gait_of(seed)))
+
+
+@lru_cache(maxsize=2)
+def walking(folder: Path = WEIGHTS) -> Sampler:
+    """The sampler of the weights that walk. CheckpointError."""
+    weights, schedule = load_denoiser(folder / "walk")
+    strides = None if weights.strides is None else weights.strides.double().numpy()
+    gaits = int(weights.config.get("gaits", 0))
+    return Sampler(cast(Denoiser, weights.network), weights.scale, schedule, gaits=gaits, strides=strides)

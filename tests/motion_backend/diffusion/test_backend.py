@@ -1,0 +1,125 @@
+"""Walking by the weights that ship: frames that follow on, the ways of a home, and what happens without weights."""
+
+from __future__ import annotations
+
+import shutil
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from small_home import small_home
+
+from motion_backend import rotations
+from motion_backend.backends import BrokenBackendError, load_backend
+from motion_backend.diffusion import backend
+from motion_backend.diffusion.backend import WEIGHTS, DiffusionBackend, walking
+from motion_backend.diffusion.checkpoint import CheckpointError
+from motion_backend.diffusion.learned_walker import LearnedGait
+from motion_backend.director import Director, shares
+from motion_backend.motion import Action, Character, Emotion, Motion, Skill
+from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.skeleton import build_skeleton
+from motion_backend.walk_generator import Ahead, Frames, Way, follow
+
+
+def standing_at_the_origin() -> Frames:
+    """A body that has just been put there, facing +Z, its arms hanging."""
+    state = ProceduralBackend().begin(small_home(), Character(), 3)
+    root, local = state.history.root_positions * [0.0, 1.0, 0.0], state.history.local_rotations.copy()
+    local[:, 0] = rotations.compose(rotations.yaw_to_quat(-state.yaw), local[:, 0])
+    return Frames(root, local)
+
+
+def straight(past: Frames, speed: float, seconds: float = 6.0) -> Way:
+    ahead = np.array([0.0, 1.0]) * speed
+    return Way(past.root[-1, [0, 2]] + np.arange(round(30 * seconds))[:, None] / 30 * ahead)
+
+
+@cache
+def walked(seed: int = 0) -> tuple[Frames, Frames, Way]:
+    past = standing_at_the_origin()
+    way = straight(past, 1.2)
+    generator = LearnedGait(walking(), gait=1 + seed)
+    return past, follow(generator.begin(past, np.random.default_rng(seed)), past, way), way
+
+
+def test_a_window_is_forty_two_frames_that_follow_on() -> None:
+    past = standing_at_the_origin()
+    walker = LearnedGait(walking()).begin(past, np.random.default_rng(0))
+    first = walker.window(straight(past, 1.0).ahead(0))
+    assert len(first) == 42
+    joined = past.then(first)
+    assert np.linalg.norm(np.diff(joined.root, axis=0), axis=1).max() * 30 < 2.5
+    assert np.allclose(np.linalg.norm(joined.local, axis=-1), 1, atol=1e-6)
+
+
+def test_walks_go_where_they_are_to_go_upright_and_the_same_each_time() -> None:
+    past, made, way = walked()
+    # It may be in the middle of a window as it gets there.
+    assert np.linalg.norm(made.root[:, [0, 2]] - way.places[-1], axis=1).min() < 0.15
+    assert np.abs(made.root[:, 0]).max() < 0.3
+    assert len(made) < 1.2 * len(way) + 42
+    assert (made.root[:, 1] > 0.75).all()
+    assert (made.root[:, 1] < 1.0).all()
+    again = follow(LearnedGait(walking(), gait=1).begin(past, np.random.default_rng(0)), past, way)
+    assert np.array_equal(again.root, made.root)
+
+
+def test_windows_are_joined_without_a_seam() -> None:
+    """Where one window ends and the next begins joints change their speed no more than elsewhere."""
+    _, made, _ = walked()
+    places = build_skeleton().forward_kinematics(made.root, made.local)[0]
+    jumps = np.linalg.norm(np.diff(places, 2, axis=0), axis=-1).max(axis=1) * 30
+    seams = np.arange(42, len(made) - 2, 42)
+    at_seams = jumps[np.concatenate([seams - 2, seams - 1, seams])]
+    assert np.median(at_seams) < np.percentile(np.delete(jumps, seams), 99)
+
+
+def test_two_bodies_walk_in_two_gaits() -> None:
+    _, one, _ = walked(0)
+    _, other, _ = walked(3)
+    frames = min(len(one), len(other))
+    assert np.abs(one.local[:frames] - other.local[:frames]).max() > 0.05
+
+
+def across_the_room(name: str) -> Motion:
+    home, director = small_home(), Director.of(name)
+    state = director.begin(home, Character(), 5)
+    goals = [(5.0, 0.6), (0.6, 3.2)]
+    actions = [
+        Action(Skill.LOCO, "walk to the shelf", Emotion.NEUTRAL, goal=goal, keyframe=index)
+        for index, goal in enumerate(goals)
+    ]
+    *_, (motion, _) = director.play(home, actions, state)
+    return motion
+
+
+def test_the_backend_walks_the_ways_of_a_home_and_says_what_it_made() -> None:
+    motion = across_the_room("diffusion")
+    assert motion.completed
+    made = shares(motion)
+    assert set(made) == {"diffusion", "procedural"}
+    assert made["diffusion"] > 0.3
+    assert all(phase.fallback for phase in motion.phases if phase.backend == "procedural")
+
+
+@pytest.mark.parametrize("fault", ["missing", "cut off"])
+def test_without_its_weights_the_backend_is_broken_and_says_which(
+    fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "weights"
+    if fault == "cut off":
+        shutil.copytree(WEIGHTS, folder)
+        whole = (folder / "walk.safetensors").read_bytes()
+        (folder / "walk.safetensors").write_bytes(whole[:1000])
+    with pytest.raises(CheckpointError):
+        DiffusionBackend(folder)
+    monkeypatch.setattr(backend, "walking", lambda: walking(folder))
+    with pytest.raises(BrokenBackendError, match=r"'diffusion' cannot be used: .*walk\."):
+        load_backend("diffusion")
+
+
+def test_a_way_that_bends_is_told_by_where_it_is_in_a_window() -> None:
+    places = np.stack([np.linspace(0.0, 1.0, 42), np.linspace(0.0, 1.0, 42)], axis=1)
+    assert Ahead(places).yaws[-1] == pytest.approx(np.pi / 4)

@@ -1,0 +1,15 @@
+from planner_service.themes.details import core_of, details_of
+from planner_service.themes.sentence_parser import clauses_of_text
+
+
+def test_what_a_clause_tells_besides_its_deed_is_parted_from_it() -> None:
+    (clause,) = clauses_of_text("She draws out the chair for her ladyship with a tray on her fingertips.")
+    assert details_of(clause) == ("for her ladyship", "with a tray on her fingertips")
+    assert core_of(clause.text, details_of(clause)) == clause.text
+    (clause,) = clauses_of_text("She fries the eggs with a song for her ladyship.")
+    assert core_of(clause.text, details_of(clause)) == "fries the eggs for her ladyship"
+
+
+def test_what_a_deed_is_done_to_is_no_detail_of_it() -> None:
+    (clause,) = clauses_of_text("He looks for his keys.")
+    assert details_of(clause) == ()
