@@ -29,7 +29,6 @@ def other_side(name: str) -> str:
     return {"left": f"right_{rest}", "right": f"left_{rest}"}.get(side, name)
 
 
-
 _OFFSETS = {
     "pelvis": (0.0, 0.0, 0.0),
     "left_hip": (0.088, 0.0, 0.0),

@@ -41,14 +41,14 @@ def pytest_runtestloop(session: pytest.Session) -> bool | None:
     os.close(feed)
     workers: dict[BinaryIO, int] = {}
     for worker in range(number):
-        source, sink = os.pipe()
+        reading, writing = os.pipe()
         if not (pid := os.fork()):
             folder = temporary / f"fork{worker}"
             folder.mkdir()
             session.config._tmp_path_factory._basetemp = folder  # type: ignore[attr-defined]
-            _work(session, files, ahead, os.fdopen(sink, "wb"))
-        os.close(sink)
-        workers[os.fdopen(source, "rb")] = pid
+            _work(session, files, ahead, os.fdopen(writing, "wb"))
+        os.close(writing)
+        workers[os.fdopen(reading, "rb")] = pid
     os.close(ahead)
     try:
         _report(session, workers)

@@ -21,8 +21,8 @@ PACKAGES = {
     "planner_service": {"prompts", "scene_graphs", "motion_backend"},
 }
 HOMES = {
-    "torch": {"motion_backend/language", "motion_backend/diffusion", "motion_backend/embedding", "motion_backend/physics"},
-    "safetensors": {"motion_backend/language", "motion_backend/diffusion", "motion_backend/embedding"},
+    "torch": {f"motion_backend/{room}" for room in ("language", "embedding", "physics", "diffusion")},
+    "safetensors": {f"motion_backend/{room}" for room in ("language", "embedding", "diffusion")},
     "mujoco": {"motion_backend/physics"},
     "networkx": {"scene_graphs"},
     "numba": {"scene_graphs"},

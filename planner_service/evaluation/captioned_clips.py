@@ -32,7 +32,7 @@ def act_clips(trials: Sequence[Trial], workers: int, progress: Progress = lambda
     found: list[tuple[Trial, Motion]] = []
     done = 0
     for batch in in_processes(_act_batch, batches, workers):
-        found += [one for one in batch if one[1] is not None]
+        found += [(trial, motion) for trial, motion in batch if motion is not None]
         done += len(batch)
         progress(done, len(trials))
     found.sort(key=lambda one: one[0])

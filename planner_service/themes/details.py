@@ -32,8 +32,10 @@ def details_of(clause: Clause) -> tuple[str, ...]:
 
 def core_of(text: str, details: Sequence[str]) -> str:
     """A clause's words without its details, but for those that tell why or when."""
+    reasons = False  # what follows them belongs to them: "after a quarrel | with her boss"
     for detail in details:
-        text = text if detail.split()[0].lower() in _REASONS else text.replace(detail, "")
+        reasons = reasons or detail.split()[0].lower() in _REASONS
+        text = text if reasons else text.replace(detail, "")
     return " ".join(text.split()).rstrip(" ,;").replace(" ,", ",")
 
 

@@ -322,11 +322,13 @@ def _swing_of(
     beside = feet.ankles[before, 1 - beat.index]
     middle = _stance(beat, route, at, style, place, rng)
     stance, width = _widths(route, at, style, place)
-    target = home_ankle(middle, float(route.heading[at]), beat.index, width + side * style.character.width_sides_m, skeleton)
+    width += side * style.character.width_sides_m
+    target = home_ankle(middle, float(route.heading[at]), beat.index, width, skeleton)
     apart = min(place.apart_m, place.apart_ratio * stance) * skeleton.scale
     target = _clear_of(beside, target, heading, side, apart)
     # A foot rolls off over its toes as it points then, and lands on its heel as it points there.
-    leaves, stride = (_forward(target - origin, points, shape.full_stride_m * skeleton.scale) for points in (yaw, heading))
+    full = shape.full_stride_m * skeleton.scale
+    leaves, stride = (_forward(target - origin, points, full) for points in (yaw, heading))
     dragged = shape.drag_clearance_share if style.drag and beat.index == 1 else 1.0
     clearance = style.clearance * style.character.clearance_sides_ratio**side
     rolled = np.radians(shape.heel_off_deg) * style.roll * abs(leaves) ** shape.heel_off_power

@@ -110,8 +110,13 @@ def test_a_target_that_is_far_is_not_seen() -> None:
     assert away_from(bed, near.root)[0] == pytest.approx(NEAR - 0.01)
     np.testing.assert_array_equal(heightmap(SCENE, "0/bed", far), np.full((2, 25, 25), -far.root[0, 1]))
     np.testing.assert_array_equal(heightmap(SCENE, None, near), heightmap(SCENE, "0/bed", far))
-    both = BodyMoment(*(np.concatenate([getattr(m, name)[:1] for m in (near, far)]) for name in
-                        ("positions", "world", "local", "velocity", "spins")))  # fmt: skip
+    both = BodyMoment(
+        np.concatenate([near.positions, far.positions]),
+        np.concatenate([near.world, far.world]),
+        np.concatenate([near.local, far.local]),
+        np.concatenate([near.velocity, far.velocity]),
+        np.concatenate([near.spins, far.spins]),
+    )
     np.testing.assert_array_equal(heightmap(SCENE, "0/bed", both)[0], heightmap(SCENE, "0/bed", near)[0])
 
 

@@ -76,7 +76,7 @@ def rollout(steps: int = 12, count: int = 3, seed: int = 0) -> Rollout:
     rng = np.random.default_rng(seed)
     rewards, values, next_values = rng.normal(size=(3, steps, count)).astype(np.float32)
     over = rng.random((2, steps, count)) < 0.15
-    next_values[:-1] = np.where(over.any(axis=0)[:-1], next_values[:-1], values[1:])
+    next_values[:-1] = np.where((over[0] | over[1])[:-1], next_values[:-1], values[1:])
     empty = np.zeros((steps, count, 1), np.float32)
     return Rollout(empty, empty, rewards, rewards, values, next_values, over[0], over[1])
 

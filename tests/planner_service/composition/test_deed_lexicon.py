@@ -249,7 +249,8 @@ def test_words_make_one_think_of_a_room() -> None:
 
 def test_every_furniture_word_of_the_table_is_known_and_affords_what_is_done_there() -> None:
     table = deed_table()
-    words = {word for places in things().values() for word in places} | set(table.stands_on.values()) | set(table.seats_at)
+    words = {word for places in things().values() for word in places}
+    words |= {*table.stands_on.values(), *table.seats_at}
     words |= {seat for seats in table.seats_at.values() for seat in seats}
     words |= {piece for those in table.usual.values() for pieces in those.values() for piece in pieces}
     words |= {piece for row in table.deed for piece in row.at if piece != "floor"}
