@@ -176,8 +176,8 @@ def main() -> int:
         sys.exit(f"install.py: Python {platform.python_version()} is too old; PYTHON=python3.11 takes another")
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     # What writes and reads films is an extra, whose wheels hold code under the GPL; who sets up here passes nothing on.
-    extras = {"const": "[dev]", "default": "[video]"}
-    parser.add_argument("--dev", action="store_const", help="the developers' tools too", **extras)
+    tools = "the developers' tools too"
+    parser.add_argument("--dev", action="store_const", const="[dev]", default="[video]", help=tools)
     parser.add_argument("--torch-index", default="", metavar="URL", help="take torch from there")
     parser.add_argument("--print-torch-index", action="store_true", help="only say where torch would be taken from")
     given = parser.parse_args()

@@ -156,7 +156,7 @@ class WalkDriver:
         free = walk.free(body)
         count = _steps_end(body.positions[:free], places[min(stop - start, len(places) - 1)]) + 1 if free else 0
         motion = replace(motion.part(0, count), phases=(Phase(PhaseKind.WALK, 0, count, self.generator.name),))
-        gone = _nearest(places[: stop - start + LATER], motion.root_positions[-1, [0, 2]]) if count else 0
+        gone = _nearest(places[: stop - start + LATER], root[len(past) + count - 1, [0, 2]]) if count else 0
         return history, motion, places[gone + 1 :]
 
 

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.motion import FPS
@@ -27,7 +28,7 @@ _BALLS: Final = [joint for joint in SIMULATED if not joint.axis]
 _HINGES: Final = [joint for joint in SIMULATED if joint.axis]
 
 
-def fold(roots: Array, local: Array) -> Array:
+def fold(roots: NDArray[np.floating], local: NDArray[np.floating]) -> Array:
     """Pelvis (T, 3) and local rotations (T, 22, 4) xyzw to positions (T, 45); signs are continuous in time."""
     qpos = np.zeros((len(roots), NQ))
     qpos[:, :3], qpos[:, 3:7] = roots, _wxyz(rotations.continuous(np.asarray(local[:, 0], dtype=np.float64)))

@@ -55,7 +55,7 @@ def tracked(plan: Plan, frames: int, height: float = 1.70) -> Tracked:
 def stood(height: float = 1.70, seconds: int = 3) -> tuple[Plan, Tracked]:
     """A body that is to stand still."""
     state = after(HOME, height=height)
-    plan = Plan(*(rows[-1:] for rows in (state.history.root_positions, state.history.local_rotations)), np.ones((1, 4)))
+    plan = Plan(state.history.root_positions[-1:], state.history.local_rotations[-1:], np.ones((1, 4)))
     plan = plan.last(30 * seconds + 31)
     return plan, tracked(plan, 30 * seconds, height)
 

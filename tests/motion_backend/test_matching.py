@@ -178,7 +178,7 @@ def test_what_no_recorded_walk_is_like_is_left_to_the_rules() -> None:
         (lambda kept: tuple(replace(one, changed=("mirrored",)) for one in kept), "0 s of plain recorded walking"),
     ],
 )
-def test_too_little_recorded_walking_is_refused(spoiled, why: str) -> None:  # type: ignore[no-untyped-def]
+def test_too_little_recorded_walking_is_refused(spoiled, why: str) -> None:
     few = replace(clips(), entries=spoiled(clips().entries))
     with pytest.raises(ClipError, match=why):
         build_walk_database(few)

@@ -233,7 +233,7 @@ def _tangents(points: Array) -> Array:
 
 def _walk(points: Array, tangent: Array, turns: _Turns, pace: tuple[float, int, float | None]) -> Route:
     (speed, fps, begun), row = pace, root_path_table().speed
-    arc = SPACING * np.arange(len(points))
+    arc = SPACING * np.arange(len(points), dtype=np.float64)
     to_go = turns.to_go(arc)
     limit = _speed_limits(tangent, to_go, speed, row, begun)
     time = np.concatenate([[0.0], np.cumsum(2 * SPACING / (limit[1:] + limit[:-1]))])

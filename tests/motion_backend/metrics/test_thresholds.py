@@ -313,11 +313,11 @@ def test_who_has_risen_stands_for_a_tenth_of_a_second_at_the_end(skill: Skill, f
 # Time
 
 
-def test_every_part_may_take_ten_seconds_its_hold_and_five_for_a_metre_of_way() -> None:
+def test_every_part_may_take_fifteen_seconds_its_hold_and_five_for_a_metre_of_way() -> None:
     sit = Part(PartKind.SIT, Action(Skill.SITDOWN, "", Emotion.NEUTRAL, hold=2.0))
-    assert time_limit(sit, 0.0) == pytest.approx(10.0)
-    assert time_limit(sit, 3.0) == pytest.approx(25.0)
-    assert time_limit(replace(sit, kind=PartKind.HOLD, hold=2.0), 0.0) == pytest.approx(12.0)
+    assert time_limit(sit, 0.0) == pytest.approx(15.0)
+    assert time_limit(sit, 3.0) == pytest.approx(30.0)
+    assert time_limit(replace(sit, kind=PartKind.HOLD, hold=2.0), 0.0) == pytest.approx(17.0)
 
 
 # Smoothness

@@ -62,7 +62,7 @@ def test_results_do_not_depend_on_the_number_of_threads(monkeypatch: pytest.Monk
     for threads in (1, 3):
         monkeypatch.setattr(linear_model, "threads", lambda count=threads: count)
         found.append(tracked(plan, 4).moments[-1].state.qpos)
-    np.testing.assert_array_equal(*found)
+    np.testing.assert_array_equal(found[0], found[1])
 
 
 def test_a_state_that_is_not_finite_is_planned_again_and_then_reset() -> None:

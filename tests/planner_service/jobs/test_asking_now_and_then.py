@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import pytest
 from sqlalchemy.exc import OperationalError
 
@@ -11,7 +13,7 @@ from planner_service.store.story_store import StoryGone
 
 def test_it_is_asked_at_once_and_then_only_after_some_seconds(monkeypatch: pytest.MonkeyPatch) -> None:
     now, asked = [100.0], []
-    monkeypatch.setattr(story_stages.time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
     between = story_stages._now_and_then(lambda: asked.append(now[0]))
     for passed in (0.0, 0.5, 1.0, 1.0, 5.0):
         now[0] += passed
