@@ -137,7 +137,8 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     nouns = [
         one
         for one in people
-        if not _is_pronoun(one.subject) and (one.joint not in _ASIDE or (one.sentence, one.place) < first)
+        if not _is_pronoun(one.subject)
+        and ((one.sentence, one.place) < first or not (one.joint in _ASIDE or _is_relative(one.subject, pronoun)))
     ]
     if not nouns and pronoun:
         nouns = _stand_for(clauses, pronoun, first)
@@ -154,6 +155,11 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     opening = [one for one in mains[:1] if one.lower().startswith(opens)]
     living = [subject for subject in (*opening, *called) if _may_live(head_of(subject))]
     return next(iter([*living, *(clause.subject for clause in people)]), "")
+
+
+def _is_relative(subject: str, pronoun: str) -> bool:
+    """Whether this is somebody of the person that a pronoun names, and not that person: of "her brother" to "she"."""
+    return bool(pronoun) and _is_possessed(subject) and pronouns_of(subject) not in ("", pronoun)
 
 
 def _stand_for(clauses: Sequence[Clause], pronoun: str, first: tuple[int, int]) -> list[Clause]:

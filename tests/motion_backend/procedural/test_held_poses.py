@@ -32,15 +32,6 @@ def held(size: float = 1.0, lies: bool = False, seconds: float = 60.0) -> Pose:
     return idle(pose, seconds, size, np.random.default_rng(4), FPS)
 
 
-def test_the_trunk_turns_with_a_head_that_looks_aside_and_less_than_it() -> None:
-    turned = [idle(stood(), 30.0, 1.0, np.random.default_rng(seed), FPS) for seed in range(6)]
-    head, trunk = (np.concatenate([getattr(one, part)[:, TURN] for one in turned]) for part in ("head", "spine"))
-    looks = np.abs(head) > 0.15
-    assert 0.02 < looks.mean() < 0.6
-    with_it = np.polyfit(head[looks], trunk[looks], 1)[0]
-    assert 0.1 < with_it < 0.5
-
-
 def test_who_stands_breathes_fifteen_times_a_minute_or_so_and_sways_by_millimetres() -> None:
     pose = held()
     power = np.abs(np.fft.rfft(pose.arms[:, 0, 2] - pose.arms[:, 0, 2].mean()))
