@@ -61,14 +61,17 @@ def test_a_request_chooses_among_all_backends(client: httpx.Client) -> None:
     ours = finished(client, client.post("/v1/motions", json=asked).json()["id"])
     assert (ours["backend"], ours["state"]) == ("procedural", "succeeded")
     detail = refused(client.post("/v1/stories", json={"theme": SHORT, "backend": "magic"}), "/backend")
-    assert detail == "Input should be 'procedural', 'matching', 'broken' or 'ghost'"
+    assert detail == "Input should be 'procedural', 'physics', 'matching', 'diffusion', 'broken' or 'ghost'"
 
 
 def test_the_description_names_all_backends(client: httpx.Client) -> None:
     schemas = client.get("/openapi.json").json()["components"]["schemas"]
     for ask in ("StoryAsk", "MotionAsk"):
         named = schemas[ask]["properties"]["backend"]["anyOf"]
-        assert {"type": "string", "enum": ["procedural", "broken", "ghost"]} in named
+        assert {
+            "type": "string",
+            "enum": ["procedural", "physics", "matching", "diffusion", "broken", "ghost"],
+        } in named
 
 
 def test_a_backend_that_cannot_be_loaded_is_a_503_that_says_why(client: httpx.Client) -> None:
