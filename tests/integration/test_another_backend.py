@@ -65,6 +65,7 @@ def test_a_request_chooses_among_all_backends(client: httpx.Client) -> None:
 
 
 def test_the_description_names_all_backends(client: httpx.Client) -> None:
+    names = ["procedural", "physics", "matching", "diffusion", "broken", "ghost"]
     schemas = client.get("/openapi.json").json()["components"]["schemas"]
     for ask in ("StoryAsk", "MotionAsk"):
         named = schemas[ask]["properties"]["backend"]["anyOf"]
