@@ -60,6 +60,11 @@ def backend_names() -> tuple[str, ...]:
     return tuple(_registered())
 
 
+def offered_backends() -> tuple[str, ...]:
+    """Those that can be asked for here: not one of ours that works by a file which nobody named."""
+    return tuple(name for name in backend_names() if name != MATCHING or given_file(name))
+
+
 def about(name: str) -> str:
     """A backend by its name and, of ours, what kind of motion it makes."""
     return f"{name} ({_ABOUT[name]})" if name in _ABOUT else name

@@ -64,7 +64,7 @@ def test_what_becomes_of_a_test_in_a_forked_process_is_told_even_if_it_ends_the_
     (tmp_path / "sentences-none.npz").touch()  # so that nothing is encoded for them
     (tmp_path / "pytest.ini").touch()
     environment = os.environ | {"PYTHONPATH": str(Path(__file__).parent), "SIMS_TEST_CACHE": str(tmp_path)}
-    command = [sys.executable, "-m", "pytest", "-q", *LAYERS["test"][0].shared, "-p", "no:cacheprovider"]
+    command = [sys.executable, "-m", "pytest", *LAYERS["test"][0].shared, "-p", "no:cacheprovider"]
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 1
     assert says in done.stdout

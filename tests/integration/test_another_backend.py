@@ -61,11 +61,11 @@ def test_a_request_chooses_among_all_backends(client: httpx.Client) -> None:
     ours = finished(client, client.post("/v1/motions", json=asked).json()["id"])
     assert (ours["backend"], ours["state"]) == ("procedural", "succeeded")
     detail = refused(client.post("/v1/stories", json={"theme": SHORT, "backend": "magic"}), "/backend")
-    assert detail == "Input should be 'procedural', 'physics', 'matching', 'diffusion', 'broken' or 'ghost'"
+    assert detail == "Input should be 'procedural', 'physics', 'diffusion', 'broken' or 'ghost'"
 
 
 def test_the_description_names_all_backends(client: httpx.Client) -> None:
-    names = ["procedural", "physics", "matching", "diffusion", "broken", "ghost"]
+    names = ["procedural", "physics", "diffusion", "broken", "ghost"]
     schemas = client.get("/openapi.json").json()["components"]["schemas"]
     for ask in ("StoryAsk", "MotionAsk"):
         named = schemas[ask]["properties"]["backend"]["anyOf"]

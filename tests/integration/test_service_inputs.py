@@ -59,7 +59,7 @@ def refused(answer: httpx.Response, pointer: str, status: int = 422) -> str:
         ({"theme": SHORT, "home": {"rooms": [{"layout": 5}]}}, "/home/rooms/0/layout"),
         ({"theme": SHORT, "short_scripts": 13}, "/short_scripts"),
         ({"theme": SHORT, "method": "magic"}, "/method"),
-        ({"theme": SHORT, "backend": "physics"}, "/backend"),
+        ({"theme": SHORT, "backend": "magic"}, "/backend"),
         ({"theme": SHORT, "seed": -1}, "/seed"),
         ({"theme": SHORT, "seed": 2**53}, "/seed"),
         ({"theme": SHORT, "seed": True}, "/seed"),

@@ -9,7 +9,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, GetJsonSchema
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticKnownError
 
-from motion_backend.backends import UnknownBackendError, backend_names, require_backend
+from motion_backend.backends import UnknownBackendError, offered_backends, require_backend
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, Method
 from planner_service.pipeline import MAX_HEIGHT, MAX_SEED, MIN_HEIGHT
@@ -36,17 +36,17 @@ def _known(name: str) -> str:
     try:
         require_backend(name)
     except UnknownBackendError as error:
-        *others, last = map(repr, backend_names())
+        *others, last = map(repr, offered_backends())
         expected = f"{', '.join(others)} or {last}" if others else last
         raise PydanticKnownError("literal_error", {"expected": expected}) from error
     return name
 
 
 class _NamesThereAre:
-    """Those that are registered when the schema is asked for, as its enum."""
+    """Those that can be asked for when the schema is, as its enum."""
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        return handler(schema) | {"enum": list(backend_names())}
+        return handler(schema) | {"enum": list(offered_backends())}
 
 
 BackendName = Annotated[str, AfterValidator(_known), _NamesThereAre()]
