@@ -38,7 +38,7 @@ def play(
     ] = None,
     backend: Annotated[str | None, typer.Option(help="What moves the body (SIMS_BACKEND; procedural).")] = None,
     height: Annotated[float, typer.Option(help="The character's height in metres, 1.2 to 2.2.")] = 1.70,
-    film: Annotated[bool, typer.Option("--film", help="Write film.mp4 too: a minute of it takes a minute or two.")] = False,
+    film: Annotated[bool, typer.Option("--film", help="Write film.mp4 too, in a minute or two.")] = False,
 ) -> None:
     """Act out a script of your own: nothing is planned, a home is found for it unless one is given."""
     from planner_service.cli.layouts import chosen_layouts

@@ -75,7 +75,7 @@ def story(
     name: Annotated[str, typer.Option(help="The character's name; left out: the theme's own, else Sam.")] = "Sam",
     pronouns: Annotated[str, typer.Option(help="he, she or they; left out: as in the theme.")] = "they",
     height: Annotated[float, typer.Option(help="The character's height in metres, 1.2 to 2.2.")] = 1.70,
-    film: Annotated[bool, typer.Option("--film", help="Write film.mp4 too: a minute of it takes a minute or two.")] = False,
+    film: Annotated[bool, typer.Option("--film", help="Write film.mp4 too, in a minute or two.")] = False,
     model: ModelOption = None,
 ) -> None:
     """Turn a story theme into a script, a home, a told story and an animated film."""
