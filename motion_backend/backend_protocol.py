@@ -42,6 +42,10 @@ class PartKind(StrEnum):
     """Stay in the pose one has come to."""
 
 
+class Unwanted(Exception):  # noqa: N818
+    """Nobody wants the motion any more: raised by who is asked between two windows, and no fault of a backend."""
+
+
 @dataclass(frozen=True)
 class Part:
     """One element (k, h, g, z) of SIMS Eq. 6: a skill with its goals; caption and mood stand in the action.

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from motion_backend.backend_protocol import BodyState, MotionBackend, Part, PartKind, Request
+from motion_backend.backend_protocol import BodyState, MotionBackend, Part, PartKind, Request, Unwanted
 from motion_backend.backends import DEFAULT_BACKEND, load_backend
 from motion_backend.contact_goals import contact_goals
 from motion_backend.metrics.joint_trajectories import Kinematics
@@ -109,6 +109,8 @@ class Director:
             return _advance(backend, asked)
         try:
             return _made(_advance(backend, asked))
+        except Unwanted:
+            raise
         except Exception as error:  # whatever somebody else's code may raise; who interrupts is no Exception
             log.warning("%s raised an exception at a %s", backend.name, asked.part.kind, exc_info=True)
             return _raised(error, asked), asked.state
@@ -118,6 +120,8 @@ class Director:
             return advance_many(backend, requests)
         try:
             return [_made(step) for step in advance_many(backend, requests)]
+        except Unwanted:
+            raise
         except Exception:  # at which of them is seen one by one
             pass
         return [self._advance(backend, asked) for asked in requests]

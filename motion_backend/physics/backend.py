@@ -163,7 +163,9 @@ class Task:
         roots, local = unfold(qpos, self.reference.wrists[1 : len(done.moments)])
         keyframe = int(planned.actions[0])
         record = Simulated(
-            keyframe, MODE, round(len(qpos) / FPS, 3), resets=len(done.resets), rewinds=len(done.rewinds),
+            keyframe, MODE, round(len(qpos) / FPS, 3),
+            max((float(pressure.root[0]) for pressure in done.pressures[1:]), default=0.0),
+            resets=len(done.resets), rewinds=len(done.rewinds),
             rewound_seconds=round(done.rewound / FPS, 2), forces=forces_of(done.pressures[1:]),
         )  # fmt: skip
         resets = tuple(

@@ -23,6 +23,10 @@ def _zeros() -> Array:
     return np.zeros(len(TOUCHED))
 
 
+ROOT: Final = 6
+"""Degrees of freedom of the pelvis."""
+
+
 @dataclass(frozen=True)
 class Pressure:
     """Mean forces over a frame, in newtons, at right angles to what they act on."""
@@ -33,6 +37,9 @@ class Pressure:
     """Of walls and furniture. (15,)."""
     soles: Array = field(default_factory=lambda: np.zeros((len(SIDES), 6)))
     """By the nearest point of a foot: heel, heel, ball, ball, toe, toe. (2, 6)."""
+
+    root: Array = field(default_factory=lambda: np.zeros(1))
+    """The greatest force or torque on the pelvis besides weight and contacts, newtons or newton metres. (1,)."""
 
     @property
     def planted(self) -> Array:
@@ -99,3 +106,9 @@ class ContactReader:
 
 def _index(name: str) -> int:
     return TOUCHED.index(name) if name in TOUCHED else -1
+
+
+def root_force(data: Any) -> float:
+    """What pushes the pelvis in a step besides weight and contacts: applied to it, or by servos, springs or damping."""
+    own = (data.qfrc_applied[:ROOT], data.qfrc_actuator[:ROOT], data.qfrc_passive[:ROOT], data.xfrc_applied)
+    return max(float(np.abs(forces).max()) for forces in own)

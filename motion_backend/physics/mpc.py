@@ -17,7 +17,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from motion_backend.motion import FPS
-from motion_backend.physics.contact_forces import ContactReader, Pressure
+from motion_backend.physics.contact_forces import ContactReader, Pressure, root_force
 from motion_backend.physics.engine import engine
 from motion_backend.physics.linear_model import NX, Frame, State, linearise
 from motion_backend.physics.mjcf_character import NU, NV, SIMULATED
@@ -199,6 +199,7 @@ class Controller:
             step(model, data)
             if pressure is not None:
                 self.contacts.read(model, data, pressure, 1 / steps)
+                pressure.root[0] = max(pressure.root[0], root_force(data))
         return pressure or Pressure()
 
     def _planned(self, at: int) -> State:

@@ -15,6 +15,7 @@ from pydantic_core import from_json
 from sqlalchemy import Connection, Engine, Row, Select, bindparam, delete, func, select, update
 from sqlalchemy.exc import IntegrityError
 
+from motion_backend.backend_protocol import Unwanted
 from planner_service.llm.budget import Spent
 from planner_service.pipeline import StoryRequest, request_from_dict, request_to_dict
 from planner_service.store.tables import CANCELLED, artifacts, idempotency_keys, stage_times, stories, workflow_status
@@ -50,7 +51,7 @@ _SHOWN: Final = (
 )
 
 
-class StoryGone(LookupError):  # noqa: N818
+class StoryGone(Unwanted, LookupError):  # noqa: N818
     """A story that is not there, or no longer wanted."""
 
 

@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from small_home import DIRECTOR, after, contact, rise, small_home, to
 
-from motion_backend.backend_protocol import HISTORY, BodyState, History, Part, PartKind, Request
+from motion_backend.backend_protocol import HISTORY, BodyState, History, Part, PartKind, Request, Unwanted
 from motion_backend.contact_goals import contact_goals, positions_and_mask
 from motion_backend.director import Director, Segment, Take, segments_of
 from motion_backend.metrics.smoothness import seam_jump
@@ -211,6 +211,7 @@ def test_only_what_another_can_stand_in_for_is_caught() -> None:
     for director, wanted in (
         (Director(Raising(KeyboardInterrupt()), DIRECTOR.backend), KeyboardInterrupt),
         (Director(Raising(SystemExit()), DIRECTOR.backend), SystemExit),
+        (Director(Raising(Unwanted()), DIRECTOR.backend), Unwanted),
         (Director(Raising(error)), ValueError),
         (Director(Faulty("gives up"), Raising(error)), ValueError),
     ):

@@ -12,6 +12,7 @@ from simulated import NOTHING, empty_room, plan_of, walk
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.body.segment_masses import centres_of_mass
 from motion_backend.motion import Motion
+from motion_backend.physics.contact_forces import root_force
 from motion_backend.physics.engine import EngineError, engine, require_version
 from motion_backend.physics.generalized_coordinates import fold, unfold
 from motion_backend.physics.mjcf_character import NQ, NU, NV, SIMULATED, mass_of
@@ -107,3 +108,15 @@ def test_another_engine_is_refused_with_the_remedy(version: str) -> None:
     with pytest.raises(EngineError, match=r"3\.17 was.*mujoco>=3\.17,<3\.18"):
         require_version(version)
     require_version("3.17.3")
+
+
+def test_whatever_pushes_the_pelvis_besides_weight_and_contacts_is_seen() -> None:
+    mujoco, model = engine(), empty_room().fine
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data)
+    assert root_force(data) == 0
+    for forces in (data.xfrc_applied[3], data.qfrc_applied):
+        forces[1] = 5.0
+        mujoco.mj_step(model, data)
+        assert root_force(data) == 5
+        forces[1] = 0.0
