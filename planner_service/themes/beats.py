@@ -33,6 +33,8 @@ _ROOMS: Final = {
 }
 _LOUDER: Final = {"stressed": ("drunk", "angry", "sad", "hurried"), "relaxed": ("drunk",)}
 """Moods that a mere hint of another one does not end within a sentence: who is angry paces with anger."""
+_MEANWHILE: Final = frozenset(("after", "once", "when", "until", "as"))
+"""Joints after which what had been done belongs to the story: "once he had paid, he sat down"."""
 _FEW, _STRAY = 3, 0.34
 """Clauses of a text from which its tense is known, and the share of them that may stray from it."""
 _QUOTED: Final = re.compile(r"«\d+»")
@@ -129,6 +131,8 @@ def _read(clause: Clause, hero: str) -> ReadBeat:
     who = "" if clause.aside or is_hero(clause.doer, hero) else clause.doer
     led = bool(who) and bool(clause.subject) and not clause.text.lower().startswith(who.lower())
     text = f"{who} {clause.text}" if led else clause.text
+    if clause.aside and clause.subject and clause.subject.lower() not in text.lower():  # "the door slam"
+        text = f"{clause.subject} {text}"
     if not clause.verb:
         text = clause.text
     quotes = iter(clause.quotes)
@@ -168,7 +172,8 @@ def _kind(clause: Clause, who: str) -> BeatKind:
         return "other"
     if clause.denied and not (clause.unable and clause.verb in words["unable_verbs"]):
         return "undone"
-    if clause.perfect or (clause.verb in words["memory_verbs"] and not clause.unable) or clause.joint == "since":
+    before = clause.perfect and clause.joint not in _MEANWHILE
+    if before or (clause.verb in words["memory_verbs"] and not clause.unable) or clause.joint == "since":
         return "memory"
     return "feeling" if is_feeling(clause) else "deed"
 
@@ -176,8 +181,8 @@ def _kind(clause: Clause, who: str) -> BeatKind:
 def is_feeling(clause: Clause) -> bool:
     """Whether a clause says nothing but how somebody feels: "becomes very sad"; or is words without a verb."""
     words = theme_words()
-    if not clause.verb:
-        return bool(feelings(clause.text))
+    if not clause.verb:  # "a cold kitchen" hints at a mood and is none
+        return any(feeling.sure for feeling in feelings(clause.text))
     if not words["posed"].isdisjoint(clause.lemmas):
         return False
     rest = [word for word in clause.lemmas[1:] if word not in words["state_words"]]

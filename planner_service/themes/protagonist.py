@@ -134,10 +134,12 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     people = [clause for clause in told if is_person(clause.subject)]
     pronoun = next((one.subject.lower() for one in people if one.subject.lower() in ("he", "she")), "")
     first = min(((one.sentence, one.place) for one in people if _is_pronoun(one.subject)), default=(len(clauses), 0))
+    opens = bool(mains) and _is_pronoun(mains[0])  # then who has no name is somebody else: "he … the baby wakes"
     nouns = [
         one
         for one in people
         if not _is_pronoun(one.subject)
+        and (not opens or (one.sentence, one.place) < first or is_name(one.subject.split()[0]))
         and ((one.sentence, one.place) < first or not (one.joint in _ASIDE or _is_relative(one.subject, pronoun)))
     ]
     if not nouns and pronoun:
@@ -150,9 +152,9 @@ def hero_of(clauses: Sequence[Clause]) -> str:
         heroes = [own, nouns] if busy.isdisjoint({one.subject for one in own}) else [own]
         doing = [one for some in heroes for one in some if one.subject in busy]
         return max(doing or own, key=lambda one: _heroic(one, pronoun) + min(deeds[one.subject], 4) / 8).subject
-    opens = ("a ", "an ", "one ", "my ", "our ", *(() if people else ("the ",)))
+    articles = ("a ", "an ", "one ", "my ", "our ", *(() if people else ("the ",)))
     called = [one for one in mains[:1] if _may_be_called(one) and not people]
-    opening = [one for one in mains[:1] if one.lower().startswith(opens)]
+    opening = [one for one in mains[:1] if one.lower().startswith(articles)]
     living = [subject for subject in (*opening, *called) if _may_live(head_of(subject))]
     return next(iter([*living, *(clause.subject for clause in people)]), "")
 

@@ -30,7 +30,15 @@ _SUPPOSING: Final = frozenset(("if", "unless"))
 _RELATIVES: Final = frozenset(("that", "which", "who"))
 _MANNER: Final = frozenset(("way", "time", "moment", "minute", "day", "night", "morning", "year"))
 """Nouns that say no more than how or when what is told of them was: "the way he was taught"."""
+_TIMES: Final = _MANNER | frozenset(
+    "evening afternoon hour week weekend month second later ago midnight noon dawn dusk monday tuesday wednesday thursday "
+    "friday saturday sunday soon long last past half quarter late early".split()
+)
+"""Words that tell when, and nothing more."""
+_SENSES: Final = frozenset(("hear", "see", "watch", "listen", "feel", "notice", "let", "overhear"))
+"""Verbs beside which stands what somebody else does: "hears the door slam"."""
 _ARTICLES: Final = frozenset(("the", "a", "an"))
+_OBJECTS: Final = frozenset(("him", "her", "them", "it", "me", "us"))
 _OWNERS: Final = frozenset(("his", "her", "their", "its", "my", "our"))
 _LATER_JOINTS: Final = frozenset(("before", "until", "while"))
 _NO_JOINTS: Final = {"once": ("at", "for", "more", "all"), "while": ("a", "long", "little", "short")}
@@ -91,7 +99,8 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
         doer = ""
         for piece in (pieces := _pieces(sentence)):
             parts = _clause(piece, quotes, number)
-            own = parts[0].subject or (_next_subject(pieces, piece) if not told else "")
+            parts = _sharing(_main(told[-1]), parts) if told else parts
+            own = _main(parts).subject or (_next_subject(pieces, piece) if not told else "")
             own = doer if own.lower() in _RELATIVES and doer else own
             told.append(
                 [replace(part, doer=part.subject if part.aside else own or doer, place=len(told)) for part in parts]
@@ -106,7 +115,25 @@ def _next_subject(pieces: Sequence[_Piece], piece: _Piece) -> str:
     """Who does what opens a sentence without a subject: "before going to bed, she brushes her teeth"."""
     if piece.joint not in grammar().earlier | grammar().with_gerund | {"before", "until", "while", "when"}:
         return ""
-    return next((part.subject for other in pieces for part in _clause(other, (), 0)[:1] if part.subject), "")
+    mains = (_main(_clause(other, (), 0)) for other in pieces)
+    return next((main.subject for main in mains if main.subject), "")
+
+
+def _main(parts: Sequence[Clause]) -> Clause:
+    """Of the clauses of a piece the one with its subject: what is told before it has no verb."""
+    return next((part for part in parts if part.verb), parts[0])
+
+
+def _sharing(before: Clause, parts: list[Clause]) -> list[Clause]:
+    """A clause that shares the denial of the one before, whose verb is in its base form too: "does not eat | or drink",
+    "wants to sit | and rest"."""
+    first = _main(parts)
+    shares = before.denied and first.verb and not first.subject and first.joint in ("or", "nor", "and", ",")
+    bare = first.text.split(" ", 1)[0].lower() == first.verb and re.search(rf"\b{re.escape(before.verb)}\b", before.text)
+    plain_present = first.joint != "or" and before.doer.lower() in ("i", "you", "we", "they")
+    if not shares or not bare or plain_present:
+        return parts
+    return [replace(part, denied=True, unable=before.unable) if part is first else part for part in parts]
 
 
 def sentences_of(text: str) -> list[str]:
@@ -159,7 +186,8 @@ def _pieces(sentence: str) -> list[_Piece]:
             if token.low in grammar().with_gerund:
                 current.append(token)
         else:
-            led = token.low in _HEROES and _is_led(joint, current) and current[-1:] and current[-1].low not in _THAT
+            starts = token.low in _HEROES or _opens_main(current, tokens[place:])
+            led = starts and _is_led(joint, current) and current[-1:] and current[-1].low not in _THAT
             so = led or _is_outcome(current, tokens[place:])
             if so and verb_place(current) is not None:
                 cut.append(_Piece(joint, tuple(current), source))
@@ -180,6 +208,16 @@ def _is_outcome(current: Sequence[Token], rest: Sequence[Token]) -> bool:
     after = rest[1:] if rest[0].low == "that" else rest
     acts = len(after) > 1 and after[0].low in _HEROES and after[1].low not in grammar().modals
     return acts and verb_place(after[:5]) is not None
+
+
+def _opens_main(current: Sequence[Token], rest: Sequence[Token]) -> bool:
+    """Whether a noun and its verb follow what is a whole clause already: "before he drinks it | the baby wakes"."""
+    if rest[0].low not in _ARTICLES | _OWNERS or not current or current[-1].low in grammar().prepositions:
+        return False
+    verb, place = verb_place(current), verb_place(rest[1:5])
+    if verb is None or verb == len(current) - 1 or not place or not _tells(rest):
+        return False
+    return grammar().marks.isdisjoint(token.low for token in rest[1 : place + 1])
 
 
 def _is_led(joint: str, current: Sequence[Token]) -> bool:
@@ -349,20 +387,46 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     supposed = joint in _SUPPOSING or piece.tokens[0].low in ("if", "though")
     words, told_of = _without_asides(words, group.place)
     lemmas = _lemmas(words[group.place :])
+    hindered = joint in ("before", "until") and words[0].low in ("can", "could")  # "before he could drink it"
     first = Clause(
-        _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, joint, denied=group.denied,
+        _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, joint, denied=group.denied or hindered,
         unable=group.unable, perfect=group.perfect, past=is_past(words, group), aside=supposed,
         quotes=_quotes(tokens, quotes), sentence=sentence,
     )  # fmt: skip
     parted = not group.denied or group.unable
     parts = _parted(first, words, group.place, piece.source) if parted else [first]
-    asides = [replace(one, sentence=sentence) for words in told_of for one in _aside(words, piece.source)]
-    return [_placed(parts[0], _before(tokens[:place], subject), piece.source), *parts[1:], *asides]
+    asides = [replace(one, sentence=sentence) for some in told_of for one in _aside(some, words, piece.source)]
+    before = () if first.quotes else _before(tokens[:place], subject)
+    besides = [
+        Clause(_text(piece.source, some), "", "", _lemmas(some), ",", sentence=sentence)
+        for some in _besides(tokens[:place], subject, before)
+    ]
+    return [*besides, _placed(parts[0], before, piece.source), *parts[1:], *asides]
+
+
+def _besides(tokens: Sequence[Token], subject: str, before: Sequence[Token]) -> list[list[Token]]:
+    """What is told before a verb of who does it, and of nothing else: "Barefoot, | her hair wet, | Anna walks in"."""
+    own = subject.split()
+    starts = (at for at in range(len(tokens) - len(own), -1, -1) if [one.text for one in tokens[at : at + len(own)]] == own)
+    at = next(starts, 0) if own else 0
+    taken = {*before, *tokens[at : at + len(own)]}
+    stretches = groupby(tokens, lambda token: token.text != "," and token not in taken)
+    return [words for is_told, some in stretches if is_told and _tells_something(words := list(some))]
+
+
+def _tells_something(words: Sequence[Token]) -> bool:
+    """Whether words say more than when, and how often: "her hair wet", not "one evening" and "now"."""
+    known = grammar()
+    small = known.adverbs | known.prepositions | known.marks | known.joints | known.auxiliaries | known.numbers
+    said = (token.low for token in words if token.text[:1].isalpha() and token.low not in small | known.subjects)
+    return any(lemma_of(low) not in _TIMES for low in said)
 
 
 def _without_asides(words: list[Token], main: int) -> tuple[list[Token], list[list[Token]]]:
     """The words of a clause, and those after a noun that tell of it with a verb of their own: "the flour | the cat has
     spilled", "a call | that never comes"; but "is told on the phone that he has won", which is what is said."""
+    if place := _sensed(words, main):
+        return words[:place], [words[place:]]
     says = any(lemma_of(word.low) in theme_words()["speech_verbs"] for word in words[main : main + 2])
     for place in range(main + 2, len(words) - 1):
         low, after = words[place].low, words[place + 1 :]
@@ -378,10 +442,27 @@ def _without_asides(words: list[Token], main: int) -> tuple[list[Token], list[li
     return words, []
 
 
+def _sensed(words: Sequence[Token], main: int) -> int:
+    """Where the verb stands of what somebody else is heard or seen doing: "hears the door | slam"; 0 for none."""
+    if not words or lemma_of(words[main].low) not in _SENSES:
+        return 0
+    for place in range(main + 2, len(words)):
+        low, before = words[place].low, words[place - 1].low
+        if low in grammar().subjects | _THAT | {"and", "or", ",", "to"}:
+            return 0
+        doing = verb_of(low) == low and not is_adjective(low) or (low.endswith("ing") and bool(verb_of(low)))
+        marked = any(token.low in grammar().marks for token in words[main + 1 : place - 1]) and is_noun(before)
+        after = words[place + 1].low if place + 1 < len(words) else ""
+        goes_on = not after or after in grammar().prepositions | grammar().marks | grammar().adverbs or after.endswith("ly")
+        if doing and goes_on and before not in grammar().prepositions | grammar().marks and (marked or before in _OBJECTS):
+            return place
+    return 0
+
+
 def _ends_noun(before: str, word: str) -> bool:
     """Whether a word is a noun, told by the word before it where it may be an adjective too: "the light"."""
     known = grammar()
-    if word == "one" or word in known.marks | known.prepositions or verb_of(before) == "let":
+    if word == "one" or word in known.marks | known.prepositions | known.subjects or verb_of(before) == "let":
         return False
     return is_noun(word) and (not is_adjective(word) or before in known.marks)
 
@@ -398,13 +479,19 @@ def _tells(words: Sequence[Token]) -> bool:
     return finite or word in grammar().auxiliaries or is_third_person(word)
 
 
-def _aside(words: list[Token], source: str) -> list[Clause]:
-    """What is told of a noun: it happened before or elsewhere, and somebody may have done it."""
+def _aside(words: list[Token], main: Sequence[Token], source: str) -> list[Clause]:
+    """What is told of a noun of the main clause: it happened before or elsewhere, and somebody may have done it."""
     head = words[1:] if words[0].low in _RELATIVES else words
     place = verb_place(head) or 0
-    subject = _subject(head[:place]) or words[0].text
+    subject = _subject(head[:place]) or (words[0].text if place else _last_noun(main))
     lemmas = _lemmas(head[place:])
     return [Clause(_text(source, words), subject, lemmas[0] if lemmas else "", lemmas, "that", aside=True)]
+
+
+def _last_noun(words: Sequence[Token]) -> str:
+    """The noun at the end of words, with its mark: "the door"."""
+    start = next((at for at in range(len(words) - 1, 0, -1) if words[at].low in grammar().marks), len(words) - 1)
+    return " ".join(token.text for token in words[start:])
 
 
 def _is_inverted(words: Sequence[Token]) -> bool:

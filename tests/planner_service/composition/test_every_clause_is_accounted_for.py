@@ -1,0 +1,76 @@
+"""Whatever a theme says ends in one place: acted by keyframes, or named as not acted; and nothing else is told as done."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cache
+
+from examples import tries
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from motion_backend.language.sentence_encoder import HashingEncoder
+from motion_backend.motion import Character
+from planner_service.composition.compose import compose
+from planner_service.composition.request import Request
+from planner_service.narration.narrator import narrate
+from planner_service.scripts.acted_beats import planned_beats
+from planner_service.scripts.built_in_scripts import built_in
+from planner_service.scripts.script import LongScript
+from planner_service.scripts.script_library import Features, ScriptLibrary
+from planner_service.themes.beats import ThemeError
+
+KNOWN = ("reads a book", "sits on the sofa", "washes the dishes", "falls asleep", "opens the window", "dances")
+UNKNOWN = ("yodels a ballad", "blorfs the frimble", "governs the universe", "quandles", "zibbered her cousin")
+DENIED = ("does not yodel", "never blorfs the frimble", "refuses to swim")
+BESIDES = ("quilted slippers", "a bag of plums", "barefoot as ever", "under protest", "like a heron")
+LEADS = ("Barefoot", "Sour as vinegar", "Her umbrella dripping", "Up since two")
+OTHERS = ("the kettle whistles", "her cousin yodels", "the neighbours quarrel")
+JOINTS = (", ", " and ", ", then ", " but ", " before she ", " while ", "; ", ". She ")
+SMALL = frozenset("a the she her and then but before while does not never to of as ever since under like on refuses".split())
+
+
+@dataclass(frozen=True)
+class Told:
+    """A theme, and the stretches it is made of."""
+
+    text: str
+    stretches: tuple[str, ...]
+    strange: tuple[str, ...]
+    """Those of them that no body at home can show."""
+
+
+@st.composite
+def themes(draw: st.DrawFn) -> Told:
+    """One to four clauses that joints join, with what is told besides before, after and between them."""
+    lead = draw(st.sampled_from(("", *LEADS)))
+    clauses = draw(st.lists(st.sampled_from(KNOWN + UNKNOWN + DENIED + OTHERS), min_size=1, max_size=4, unique=True))
+    besides = draw(st.sampled_from(("", *BESIDES)))
+    text, own = f"{lead}, she" if lead else "She", True
+    for place, clause in enumerate(clauses):
+        joint = draw(st.sampled_from(JOINTS)) if place else " "
+        joint = " while " if clause in OTHERS and joint.endswith("he ") else joint
+        joint = "; she " if clause not in OTHERS and not own and joint in (", ", " and ", "; ") else joint
+        own = clause not in OTHERS
+        text += (joint if place or own else ". Meanwhile ") + clause
+    text += f", {besides}." if besides else "."
+    strange = tuple(one for one in clauses if one in UNKNOWN + OTHERS)
+    return Told(text, tuple(filter(None, (lead, *clauses, besides))), strange)
+
+
+@cache
+def library() -> ScriptLibrary:
+    return ScriptLibrary(built_in(), Features(HashingEncoder()))
+
+
+def planned(theme: str) -> LongScript | None:
+    try:
+        return compose(theme, library(), Request())
+    except ThemeError:
+        return None
+
+
+def words_of(*texts: str) -> set[str]:
+    """Words that tell something."""
+    return set(re.findall(r"[a-z]+", " ".join(texts).lower())) - SMALL
