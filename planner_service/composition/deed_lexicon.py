@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from typing import Final
 
@@ -14,8 +14,9 @@ from planner_service.scripts.script import EMOTIONS
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS
 from planner_service.themes.details import details_of
-from planner_service.themes.lexicon import gerund, lemma_of
+from planner_service.themes.lexicon import gerund, grammar, lemma_of, verb_of
 from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import tokens_of
 from scene_graphs import furniture
@@ -37,6 +38,11 @@ _UNDER: Final = re.compile(r"\b(?:under|beneath|underneath|behind|beside|next to
 _AT: Final = re.compile(r"\b(?:at|by|near|beside|before|behind|in front of|next to)\b")
 _STATES: Final = frozenset(("be", "have", "become", "need", "like", "love", "hate", "know", "miss", "own"))
 _EXPRESSED: Final = frozenset(EXPRESSIONS)
+_REFERS: Final = frozenset(("it", "them"))
+_MAX_FRAGMENT: Final = 4
+"""Words of a sentence without a verb that may stand for a deed."""
+_SMALL: Final = frozenset("with the on of in at to a and while body for both left right hand hands height".split())
+"""Words of captions that say nothing of what is done."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
 Pattern = tuple[frozenset[str], ...]
 """Base forms of each word; an empty set is a gap."""
@@ -116,6 +122,8 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
 
     `about` are the words that "it" and "there" may mean furniture of.
     """
+    if not clause.verb and (fragment := _deed_of_fragment(clause)):
+        return fragment
     found = row_of(clause, about)
     if found is None:
         return None
@@ -150,6 +158,23 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     return Deed(found, skill, tuple(dict.fromkeys(order)), False)
 
 
+def _deed_of_fragment(clause: Clause) -> Deed | None:
+    """The deed of words without a verb that stand for one: "Sleep.", "Then bed."; None of any others."""
+    words = [token.low for token in tokens_of(clause.text) if token.text[:1].isalpha()]
+    told = [word for word in words if word not in grammar().adverbs | grammar().joints]
+    if clause.place or clause.joint or not 0 < len(told) <= _MAX_FRAGMENT or told[0] in theme_words()["body"]:
+        return None
+    if verb_of(told[0]) == told[0]:
+        verb = replace(clause, verb=told[0], lemmas=tuple(map(lemma_of, told)))
+        return deed_of(verb) if said_row(verb) else None
+    rests = [word for word in told if word not in grammar().prepositions | grammar().marks]
+    piece = next(iter(pieces_in(" ".join(rests))), "")
+    for skill in (Skill.LIEDOWN, Skill.SITDOWN):
+        if len(rests) == 1 and piece and affords(piece, NEEDS[skill]):
+            return Deed(DeedRow((rests[0],), skill), skill, (piece,), True)
+    return None
+
+
 def unshown(clause: Clause) -> tuple[str, ...]:
     """What a clause tells besides its deed, and neither furniture nor the deed's own saying has: "for her ladyship"."""
     row = said_row(clause)
@@ -172,8 +197,19 @@ def _named(clause: Clause, about: str) -> list[str]:
 
 
 def row_of(clause: Clause, about: str) -> DeedRow | None:
-    """The row that a clause's words say; else by its things."""
-    return said_row(clause) or _by_things(clause, about)
+    """The row that a clause's words say, with what "it" means in place of it where that says more; else by its
+    things."""
+    meant = _meant(clause, about)
+    return (said_row(meant) if meant != clause else None) or said_row(clause) or _by_things(clause, about)
+
+
+def _meant(clause: Clause, about: str) -> Clause:
+    """A clause with the thing that was named last in place of "it" and "them"."""
+    known = things()
+    noun = next((word for word in reversed(_lemmas(about)) if word in known), "") if about else ""
+    if not noun or _REFERS.isdisjoint(clause.lemmas[1:]):
+        return clause
+    return replace(clause, lemmas=(clause.verb, *(noun if one in _REFERS else one for one in clause.lemmas[1:])))
 
 
 def said_row(clause: Clause) -> DeedRow | None:
@@ -189,6 +225,8 @@ def said_row(clause: Clause) -> DeedRow | None:
 
 
 def _starts(clause: Clause) -> Iterator[tuple[str, ...]]:
+    if clause.verb in theme_words()["speech_verbs"] and len(clause.lemmas) > 1:  # "says into the phone"
+        yield ("talk", *clause.lemmas[1:])
     yield ("cannot", *clause.lemmas) if clause.unable else clause.lemmas
     words = {token.low for token in tokens_of(clause.text)}
     for place, lemma in enumerate(clause.lemmas[1:], 1):
@@ -250,6 +288,20 @@ def _fits(pattern: Pattern, lemmas: Sequence[str]) -> bool:
     if not first:  # a gap
         return any(_fits(rest, lemmas[skip:]) for skip in range(min(_MAX_GAP, len(lemmas)) + 1))
     return bool(lemmas) and lemmas[0] in first and _fits(rest, lemmas[1:])
+
+
+def described(clause: Clause, skill: Skill) -> tuple[str, ...]:
+    """The caption of a skill that a clause has all words of, two at least: "runs about, her arms wide open"."""
+    words = {*clause.lemmas, *_lemmas(clause.text)}
+    fitting = [(len(tells), caption) for caption, tells in _captions_told(skill) if tells <= words]
+    return (max(fitting)[1],) if fitting else ()
+
+
+@cache
+def _captions_told(skill: Skill) -> tuple[tuple[str, frozenset[str]], ...]:
+    """Captions with the base forms of those of their words that tell something, where these are two or more."""
+    told = ((caption, frozenset(_lemmas(caption)) - _SMALL) for caption in captions()[skill.value])
+    return tuple((caption, words) for caption, words in told if len(words) > 1)
 
 
 def says(ways: Iterable[str], lemmas: Sequence[str]) -> bool:

@@ -20,6 +20,7 @@ from planner_service.composition.deed_lexicon import (
     DeedRow,
     deed_of,
     deed_table,
+    described,
     names_things,
     room_of,
     standing_at,
@@ -154,6 +155,8 @@ class KeyframeWriter:
         match deed.skill:
             case Skill.STANDUP | Skill.GETUP:
                 self._rise(index, deed, mood)
+            case Skill.LOCO if self._goes_on(read, deed):
+                self._show(index)
             case Skill.LOCO if deed.row.seated and self._resting is not None and self._resting.skill is Skill.SITDOWN:
                 self._rest(index, read, deed, mood, Skill.SITDOWN, deed.row.seated)
             case Skill.LOCO:
@@ -166,6 +169,11 @@ class KeyframeWriter:
             case _:
                 shown = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
                 self._rest(index, read, deed, mood, deed.skill, shown)
+
+    def _goes_on(self, read: ReadBeat, deed: Deed) -> bool:
+        """Whether it is done where one rests, and shows no more: "sits in the dark, listening"."""
+        beside = read.clause.joint in ("ing", ",") and read.clause.text.split()[0].endswith("ing")
+        return beside and self._resting is not None and deed.row.captions == _STANDING.captions and not deed.named
 
     def _stays(self, index: int, beats: Sequence[ReadBeat]) -> bool:
         """Whether who wakes at a beat goes on lying, or gets up only at the next deed: then it is shown lying."""
@@ -193,6 +201,7 @@ class KeyframeWriter:
         """Sit or lie: where one rests already if that does, with the caption of what is done there."""
         resting = self._resting
         here = resting is not None and self._same_place(resting, deed, skill)
+        captions = described(read.clause, skill) or captions
         shown = captions or captions_of(skill, mood)
         if resting is not None and here and resting.skill is skill:
             generic = deed.row.rests or deed.row.captions
@@ -246,7 +255,8 @@ class KeyframeWriter:
         return len(last) == 2 and last[0] in (Skill.SITDOWN, Skill.LIEDOWN) and last[1] is Skill.TOUCH
 
     def _walk(self, index: int, read: ReadBeat, deed: Deed, mood: Emotion) -> None:
-        captions = deed.row.captions or manner_of(read) or captions_of(Skill.LOCO, mood)
+        captions = described(read.clause, Skill.LOCO) or deed.row.captions or manner_of(read)
+        captions = captions or captions_of(Skill.LOCO, mood)
         caption = self._one_of(captions, mood, index, Skill.LOCO)
         last = self.keyframes[-1] if self.keyframes else None
         piece = next((one for one in deed.pieces if self._has(one)), "floor")

@@ -85,7 +85,7 @@ def thought(beat: Beat, hero: str, voice: Voice) -> str | None:
         rest, done = rest[2:], ["not", participle(rest[1])]
     elif not base or base in ("can", "may", "will"):
         return None
-    elif verb == "used" or (verb == "had" and form_of(_bare((rest or [""])[0]))):
+    elif verb == "used" or (verb == "had" and form_of(_bare(next((one for one in rest if not _is_adverb(one)), "")))):
         done = []
     else:
         done = [participle(base)]

@@ -12,7 +12,7 @@ from motion_backend.motion import Emotion
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
 from planner_service.themes.lexicon import is_known_word
-from planner_service.themes.protagonist import head_of, hero_of, is_hero
+from planner_service.themes.protagonist import called, head_of, hero_of, is_hero
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import tokens_of
@@ -37,6 +37,10 @@ _MEANWHILE: Final = frozenset(("after", "once", "when", "until", "as"))
 """Joints after which what had been done belongs to the story: "once he had paid, he sat down"."""
 _FEW, _STRAY = 3, 0.34
 """Clauses of a text from which its tense is known, and the share of them that may stray from it."""
+_RECEIVERS: Final = frozenset(("phone", "telephone", "receiver"))
+"""What is said into these is seen."""
+_OF_ONESELF: Final = re.compile(r"\bI(?:'m)?\b")
+"""By this word one tells how one feels."""
 _QUOTED: Final = re.compile(r"«\d+»")
 EXPRESSIONS: Final = {
     verb: mood
@@ -112,7 +116,8 @@ def beats_of(theme: str) -> tuple[ReadBeat, ...]:
 def read_beats(clauses: Sequence[Clause]) -> tuple[ReadBeat, ...]:
     """What clauses say happens to whom they are about."""
     hero = hero_of(clauses)
-    return tuple(_moods([_read(clause, hero) for clause in _in_tense(clauses)]))
+    pronoun = called(clauses, hero)
+    return tuple(_moods([_read(clause, hero, pronoun) for clause in _in_tense(clauses)]))
 
 
 def _in_tense(clauses: Sequence[Clause]) -> list[Clause]:
@@ -125,10 +130,10 @@ def _in_tense(clauses: Sequence[Clause]) -> list[Clause]:
     return [replace(clause, perfect=clause.perfect or bool(clause.past)) for clause in clauses]
 
 
-def _read(clause: Clause, hero: str) -> ReadBeat:
+def _read(clause: Clause, hero: str, pronoun: str) -> ReadBeat:
     if head_of(clause.doer).lower() in ("tear", "tears"):  # they run where somebody weeps
         clause = replace(clause, verb="weep", lemmas=("weep", *clause.lemmas[1:]))
-    who = "" if clause.aside or is_hero(clause.doer, hero) else clause.doer
+    who = "" if clause.aside or is_hero(clause.doer, hero, pronoun) else clause.doer
     led = bool(who) and bool(clause.subject) and not clause.text.lower().startswith(who.lower())
     text = f"{who} {clause.text}" if led else clause.text
     if clause.aside and clause.subject and clause.subject.lower() not in text.lower():  # "the door slam"
@@ -143,6 +148,9 @@ def _read(clause: Clause, hero: str) -> ReadBeat:
     if not sure and clause.subject:
         named, of_subject = _emotion(f"{clause.subject} {clause.text}")  # "a tired student …"
         emotion, sure = (named, True) if of_subject else (emotion, sure)
+    if not sure and not who:
+        own = " ".join(quote for quote in clause.quotes if _OF_ONESELF.search(quote))
+        emotion, sure = _emotion(own) if own and _emotion(own)[1] else (emotion, sure)
     if not sure and not who and (shown := EXPRESSIONS.get(clause.verb)):
         emotion, sure = shown, True
     if (kind == "other" or (kind == "undone" and not clause.unable)) and not sure:
@@ -166,7 +174,8 @@ def _bounded(text: str, most: int = 300) -> str:
 def _kind(clause: Clause, who: str) -> BeatKind:
     words = theme_words()
     says = clause.verb in words["speech_verbs"] and words["not_said"].isdisjoint(clause.lemmas)
-    if says or any(len(quote.split()) > 1 or quote[-1] in ".,!?" for quote in clause.quotes):
+    quotes = any(len(quote.split()) > 1 or quote[-1] in ".,!?" for quote in clause.quotes)
+    if says or (quotes and _RECEIVERS.isdisjoint(clause.lemmas)):
         return "speech" if not who else "other"
     if who or clause.aside:
         return "other"
@@ -214,8 +223,11 @@ def _moods(read: Sequence[ReadBeat]) -> list[ReadBeat]:
     for index, one in enumerate(read):
         after = read[index + 1] if index + 1 < len(read) else None
         together = after is not None and after.clause.sentence == one.clause.sentence
-        if one.felt is not None:
-            before = read[index - 1] if index else one
+        before = read[index - 1] if index else one
+        spoken = index > 0 and before.sure and before.beat.kind == one.beat.kind == "speech"
+        if spoken:  # how it is said tells less than what is said: "“I am so happy!” she shouts"
+            mood = before.felt or mood
+        elif one.felt is not None:
             if one.sure or mood not in _LOUDER.get(one.felt, ()) or before.clause.sentence != one.clause.sentence:
                 mood = one.felt
         elif mood is Emotion.NEUTRAL and after is not None and together and after.beat.kind == "feeling" and after.felt:

@@ -65,7 +65,8 @@ def cast_by(theme: str, character: Character) -> Character:
     if (character.name, character.pronouns) != (default.name, default.pronouns):
         return character
     name = name_in(theme) or _name_of_hero(theme)
-    pronouns = _PRONOUNS_OF.get(name.lower()) or _pronouns_in(theme, bool(name)) or default.pronouns
+    told = called(clauses_of_text(theme), name) if name else ""
+    pronouns = _PRONOUNS_OF.get(name.lower()) or told or _pronouns_in(theme, bool(name)) or default.pronouns
     return replace(character, name=name or default.name, pronouns=pronouns)
 
 
@@ -132,7 +133,7 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     if mains and mains[0].lower() == "you":
         return "you"
     people = [clause for clause in told if is_person(clause.subject)]
-    pronoun = next((one.subject.lower() for one in people if one.subject.lower() in ("he", "she")), "")
+    pronoun = _told_most(clauses)
     first = min(((one.sentence, one.place) for one in people if _is_pronoun(one.subject)), default=(len(clauses), 0))
     opens = bool(mains) and _is_pronoun(mains[0])  # then who has no name is somebody else: "he … the baby wakes"
     nouns = [
@@ -146,6 +147,10 @@ def hero_of(clauses: Sequence[Clause]) -> str:
         nouns = _stand_for(clauses, pronoun, first)
     acting = [one for one in clauses if not ((one.denied and not one.unable) or one.aside)]
     busy = {one.doer for one in acting}
+    fitting = [one for one in nouns if pronouns_of(one.subject) in ("", pronoun or pronouns_of(one.subject))]
+    nouns = fitting or nouns
+    if pronoun in {doer.lower() for doer in busy}:  # who is called so is busy
+        busy |= {one.subject for one in fitting[:1]}
     deeds = Counter(one.doer for one in acting if not _is_state(one))
     if nouns:
         own = [one for one in nouns if one is told[0] or not _is_possessed(one.subject)] or nouns
@@ -157,6 +162,18 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     opening = [one for one in mains[:1] if one.lower().startswith(articles)]
     living = [subject for subject in (*opening, *called) if _may_live(head_of(subject))]
     return next(iter([*living, *(clause.subject for clause in people)]), "")
+
+
+def _told_most(clauses: Sequence[Clause]) -> str:
+    """The pronoun that does most of what is done, the first of two that do as much; "" where there is none."""
+    doers = (one.doer.lower() for one in clauses if not one.aside)
+    counted = Counter(doer for doer in doers if doer in ("he", "she"))
+    return next((pronoun for pronoun, _ in counted.most_common(1)), "")
+
+
+def called(clauses: Sequence[Clause], hero: str) -> str:
+    """The pronoun by which clauses call whom they are about: as the name tells, else the one that does most."""
+    return pronouns_of(hero) or (_told_most(clauses) if hero.lower() not in _FIRST_PERSON else "")
 
 
 def _is_relative(subject: str, pronoun: str) -> bool:
@@ -172,7 +189,8 @@ def _stand_for(clauses: Sequence[Clause], pronoun: str, first: tuple[int, int]) 
     for one in clauses:
         near = one.sentence in (first[0], first[0] - 1) and (one.sentence, one.place) < first
         alive = one.subject.lower().startswith(("the ", "a ", "an ")) and not _is_plural(one.subject)
-        acts = one.joint in _MAIN_JOINTS and not _is_state(one) and (near or deeds[one.subject] > 1)
+        opens = (one.sentence, one.place) == (0, 0)
+        acts = one.joint in _MAIN_JOINTS and (opens or not _is_state(one)) and (near or deeds[one.subject] > 1)
         if (
             acts
             and alive
@@ -254,8 +272,9 @@ def names_somebody(clause: Clause) -> bool:
     return any(word.lower() in theme_words()["people"] or word.lower() in _PRONOUNS_OF for word in words)
 
 
-def is_hero(subject: str, hero: str) -> bool:
-    """Whether a subject is whom the theme is about. Nobody named: it goes on with who it was about."""
+def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
+    """Whether a subject is whom the theme is about, whom it calls by a pronoun. Nobody named: it goes on with who it
+    was about."""
     if not subject or subject.lower() == hero.lower():
         return True
     if subject.lower() == "one" and _is_plural(hero):  # of several people the one is played who does something
@@ -264,7 +283,7 @@ def is_hero(subject: str, hero: str) -> bool:
     if low in _FIRST_PERSON:
         return main in _FIRST_PERSON or not main
     if low in _SUBJECTS:
-        return low in ("they", "who") or pronouns_of(hero) in ("", low)
+        return low in ("they", "who") or (pronoun or pronouns_of(hero)) in ("", low)
     if head_of(subject).lower() in theme_words()["body"]:
         return True
     if hero and head_of(subject).lower() == head_of(hero).lower():

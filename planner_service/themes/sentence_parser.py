@@ -31,7 +31,7 @@ _RELATIVES: Final = frozenset(("that", "which", "who"))
 _MANNER: Final = frozenset(("way", "time", "moment", "minute", "day", "night", "morning", "year"))
 """Nouns that say no more than how or when what is told of them was: "the way he was taught"."""
 _TIMES: Final = _MANNER | frozenset(
-    "evening afternoon hour week weekend month second later ago midnight noon dawn dusk monday tuesday wednesday thursday "
+    "today tonight tomorrow yesterday evening afternoon hour week weekend month second later ago midnight noon dawn dusk monday tuesday wednesday thursday "
     "friday saturday sunday soon long last past half quarter late early".split()
 )
 """Words that tell when, and nothing more."""
@@ -352,11 +352,18 @@ def _in_time(pieces: Sequence[_Piece]) -> list[int]:
                 ordered.append(place)
             else:
                 ordered.insert(len(ordered) - 1, place)
+        elif place - 1 in ordered[:-1] and _goes_beside(piece):  # "switches it on after she has sat there, | listening"
+            ordered.insert(ordered.index(place - 1) + 1, place)
         else:
             ordered.append(place)
     if later:
         return [*ordered[1:], ordered[0]]
     return [*ordered[1:2], ordered[0], *ordered[2:]] if first_is_later else ordered
+
+
+def _goes_beside(piece: _Piece) -> bool:
+    """Whether a gerund tells what else was done in the clause just before it."""
+    return piece.joint == "," and piece.tokens[0].low.endswith("ing") and bool(verb_of(piece.tokens[0].low))
 
 
 def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:

@@ -64,6 +64,9 @@ def _step(words: Sequence[Token], group: VerbGroup) -> int:
     if low in ("should", "might") and verb_place(words[at + 1 : at + 3]) is not None:
         group.denied = True
         return 1
+    if low in grammar().do and [token.low for token in words[at + 1 :]] == ["not"]:  # "her husband does not"
+        group.denied = True
+        return 0
     if low in grammar().be and ahead in _EXPECTED and [token.low for token in words[at + 2 : at + 3]] == ["to"]:
         group.denied = True
         return 3
