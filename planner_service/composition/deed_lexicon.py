@@ -162,7 +162,7 @@ def _deed_of_fragment(clause: Clause) -> Deed | None:
     """The deed of words without a verb that stand for one: "Sleep.", "Then bed."; None of any others."""
     words = [token.low for token in tokens_of(clause.text) if token.text[:1].isalpha()]
     told = [word for word in words if word not in grammar().adverbs | grammar().joints]
-    if clause.place or clause.joint or not 0 < len(told) <= _MAX_FRAGMENT or told[0] in theme_words()["body"]:
+    if clause.place or clause.joint not in ("", "then") or not 0 < len(told) <= _MAX_FRAGMENT or told[0] in theme_words()["body"]:
         return None
     if verb_of(told[0]) == told[0]:
         verb = replace(clause, verb=told[0], lemmas=tuple(map(lemma_of, told)))

@@ -90,7 +90,7 @@ class Judgement:
         return tuple(index for index, text in texts.items() if any(same_words(text, other) for other in said))
 
     def told(self, story: str) -> tuple[int, ...]:
-        """Those of the missing that a sentence of the story tells nevertheless, be it as a thought or as not done."""
+        """Those of the missing that a sentence of the story's events tells nevertheless: `Told.events`."""
         sentences = [_stems(sentence) for sentence in _SENTENCE.split(story)]
         words = {index: _stems(self.label.beats[index].text) for index in self.missing}
         return tuple(
@@ -98,8 +98,8 @@ class Judgement:
         )
 
     def told_as_done(self, story: str) -> tuple[int, ...]:
-        """Those of the told that the script does not name as not acted; what it names is told as a thought or as left
-        undone, or its words stand in the telling of another beat."""
+        """Those of the told that the script does not name as not acted; the words of what it names stand in the telling
+        of another beat."""
         return tuple(index for index in self.told(story) if index not in self.named)
 
     @cached_property

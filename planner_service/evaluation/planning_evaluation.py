@@ -194,7 +194,7 @@ def beat_figures(themes: Sequence[Judgement]) -> list[Figure]:
         share("beats: the rest, named as not acted", [_named_rest(one) for one in played]),
         share("beats: all not acted, named as such", [(len(one.named), len(one.missing)) for one in played], NAMED),
     ]
-    stories = [narrate(one.script, Character()).text if one.script else "" for one in played]
+    stories = [narrate(one.script, Character()).events if one.script else "" for one in played]
     told = [(len(one.told(text)), len(one.missing)) for one, text in zip(played, stories, strict=True)]
     as_done = [(len(one.told_as_done(text)), len(one.missing)) for one, text in zip(played, stories, strict=True)]
     unasked = share("screen time: unasked", [(one.unasked_seconds, one.seconds) for one in played])

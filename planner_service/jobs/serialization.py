@@ -58,13 +58,15 @@ def furnished_from_dict(row: Json) -> Furnished:
 def told_to_dict(told: Told) -> Json:
     """Title, text and which words tell which keyframes."""
     spans = [{"start": span.start, "end": span.end, "keyframes": list(span.keyframes)} for span in told.spans]
-    return {"title": told.title, "text": told.text, "spans": spans}
+    thoughts = [[span.start, span.end] for span in told.thoughts]
+    return {"title": told.title, "text": told.text, "spans": spans, "thoughts": thoughts}
 
 
 def told_from_dict(row: Json) -> Told:
     """The inverse of `told_to_dict`."""
     spans = (Span(span["start"], span["end"], tuple(span["keyframes"])) for span in row["spans"])
-    return Told(row["title"], row["text"], tuple(spans))
+    thoughts = (Span(start, end, ()) for start, end in row.get("thoughts", ()))
+    return Told(row["title"], row["text"], tuple(spans), tuple(thoughts))
 
 
 def action_from_dict(row: Json) -> Action:

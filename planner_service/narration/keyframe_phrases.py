@@ -126,6 +126,8 @@ class Phrase:
     """Whether it should end with it."""
     negated: bool = False
     """Whether it says that something is not done."""
+    is_thought: bool = False
+    """Whether it is only remembered, wished for or left undone."""
 
     @property
     def whole(self) -> str:

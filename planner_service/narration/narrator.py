@@ -55,6 +55,15 @@ class Told:
     title: str
     text: str
     spans: tuple[Span, ...]
+    thoughts: tuple[Span, ...] = ()
+    """What is told and no keyframe shows: remembered, wished for, or left undone."""
+
+    @property
+    def events(self) -> str:
+        """The text without its thoughts: what is told as happening."""
+        ends = [0, *(span.end for span in self.thoughts)]
+        starts = [*(span.start for span in self.thoughts), len(self.text)]
+        return "".join(self.text[end:start] for end, start in zip(ends, starts, strict=True))
 
 
 def narrate(script: LongScript, character: Character, seed: int = 0, places: Places | None = None) -> Told:
@@ -63,9 +72,11 @@ def narrate(script: LongScript, character: Character, seed: int = 0, places: Pla
     variety = Variety(seed, zlib.crc32(script.theme.encode()))
     hero = cast_by(script.theme, Character()).pronouns
     phrases = _Teller(script, hero, voice, variety, places or {}).phrases()
-    text, spans = _Writer(voice, variety, _introduction(script.theme, voice)).write(_sentences(phrases, variety))
-    text = " ".join(filter(None, (text, _others(script, hero, voice, variety))))
-    return Told(title_of(script.theme, script.beats[-1].emotion if script.beats else "neutral"), text, spans)
+    writer = _Writer(voice, variety, _introduction(script.theme, voice))
+    writer.write(_sentences(phrases, variety))
+    text = " ".join(filter(None, (writer.text, _others(script, hero, voice, variety))))
+    title = title_of(script.theme, script.beats[-1].emotion if script.beats else "neutral")
+    return Told(title, text, tuple(writer.spans), tuple(writer.thoughts))
 
 
 class _Teller:
@@ -108,13 +119,16 @@ class _Teller:
         else:
             shown = beat.model_copy(update={"text": core_of(beat.text, beat.unshown)})
             told = None if beat.why or beat.kind == "other" else event(shown, self.hero, self.voice)
-        return [Phrase(told.text, adjective=told.adjective, begins=True, negated=told.negated)] if told else []
+        if told is None:
+            return []
+        thought = beat.kind == "undone"
+        return [Phrase(told.text, adjective=told.adjective, begins=True, negated=told.negated, is_thought=thought)]
 
     def _thought(self, beat: Beat) -> list[Phrase]:
         told = thought(beat, self.hero, self.voice)
         if told and told.split()[0] == self.voice["they"]:
             told = self.voice.fill(self.variety.pick(story_words().thoughts), clause=told)
-        return [Phrase(told, begins=True, ends=True)] if told else []
+        return [Phrase(told, begins=True, ends=True, is_thought=True)] if told else []
 
     def _shown(self, number: int | None, rows: Rows) -> list[Phrase]:
         """A beat and its keyframes."""
@@ -242,8 +256,9 @@ class _Writer:
         self.first = introduction
         self.text = ""
         self.spans: list[Span] = []
+        self.thoughts: list[Span] = []
 
-    def write(self, sentences: Sequence[Sequence[Phrase]]) -> tuple[str, tuple[Span, ...]]:
+    def write(self, sentences: Sequence[Sequence[Phrase]]) -> None:
         """The text of all sentences in paragraphs as long as each other."""
         count = -(-len(sentences) // MAX_SENTENCES)
         starts = {round(number * len(sentences) / count) for number in range(count)} if count else set()
@@ -255,7 +270,6 @@ class _Writer:
             late = at + 1 - joint >= SENTENCES_A_JOINT and phrases[0].begins and at not in starts
             joint = at + 1 if late else joint
             self._sentence(phrases, named, self.variety.pick(story_words().joints) if late else "")
-        return self.text, tuple(self.spans)
 
     def _sentence(self, phrases: Sequence[Phrase], named: bool, opening: str) -> None:
         start = len(self.text)
@@ -280,7 +294,10 @@ class _Writer:
             if at:
                 link = "but" if phrases[0].negated else "and"
                 self._say(f", {link} " if crowded else f" {link} ") if at == len(phrases) - 1 else self._say(", ")
+            told = len(self.text)
             self._say(phrase.whole.replace(WAS, was), phrase.keyframes)
+            if phrase.is_thought:
+                self.thoughts.append(Span(told, len(self.text), ()))
         self.text = f"{self.text[:start]}{self.text[start:][:1].upper()}{self.text[start + 1 :]}."
 
     def _say(self, words: str, keyframes: tuple[int, ...] = ()) -> None:
