@@ -14,7 +14,7 @@ from planner_service.scripts.script import EMOTIONS
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS
 from planner_service.themes.details import details_of
-from planner_service.themes.lexicon import gerund, grammar, lemma_of, verb_of
+from planner_service.themes.lexicon import gerund, grammar, is_noun, lemma_of, verb_of
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
@@ -33,10 +33,10 @@ _WAYS: Final = re.compile(
     re.IGNORECASE,
 )
 """A way through a home, whatever the verb that goes it."""
-_FLOOR: Final = re.compile(r"(?<!feet )(?<!foot )\bon the (?:\w+ )?(?:floor|ground|rug|carpet)\b")
+_FLOOR: Final = re.compile(r"(?<!feet )(?<!foot )\bon(?:to)? the (?:\w+ )?(?:floor|ground|rug|carpet)\b")
 _UNDER: Final = re.compile(r"\b(?:under|beneath|underneath|behind|beside|next to)\b")
 _AT: Final = re.compile(r"\b(?:at|by|near|beside|before|behind|in front of|next to)\b")
-_STATES: Final = frozenset(("be", "have", "become", "need", "like", "love", "hate", "know", "miss", "own"))
+_STATES: Final = frozenset(("be", "have", "become", "need", "like", "love", "hate", "know", "miss", "own", "do"))
 _EXPRESSED: Final = frozenset(EXPRESSIONS)
 _REFERS: Final = frozenset(("it", "them"))
 _MAX_FRAGMENT: Final = 4
@@ -125,7 +125,7 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     if not clause.verb and (fragment := _deed_of_fragment(clause)):
         return fragment
     found = row_of(clause, about)
-    if found is None:
+    if found is None or _is_of_body(clause, found):
         return None
     named = _named(clause, about)
     skill = found.skill
@@ -156,6 +156,14 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
         return None
     order = (*kept, *found.at) if found.things else (*found.at, *kept)
     return Deed(found, skill, tuple(dict.fromkeys(order)), False)
+
+
+def _is_of_body(clause: Clause, row: DeedRow) -> bool:
+    """Whether only a part of the body does it, or has it done to it: "his heart raced", "opens one eye"."""
+    body = theme_words()["body"]
+    races = row.skill is Skill.LOCO and not row.mood and bool(body & set(_lemmas(clause.subject)[-1:]))
+    noun = next((lemma for lemma in clause.lemmas[1:] if lemma in body or (is_noun(lemma) and lemma != "one")), "")
+    return races or (row.skill is Skill.TOUCH and not row.captions and noun in body and noun not in things())
 
 
 def _deed_of_fragment(clause: Clause) -> Deed | None:

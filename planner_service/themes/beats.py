@@ -117,7 +117,8 @@ def read_beats(clauses: Sequence[Clause]) -> tuple[ReadBeat, ...]:
     """What clauses say happens to whom they are about."""
     hero = hero_of(clauses)
     pronoun = called(clauses, hero)
-    return tuple(_moods([_read(clause, hero, pronoun) for clause in _in_tense(clauses)]))
+    told = (clause for clause in _in_tense(clauses) if clause.verb or clause.text.lower() != hero.lower())
+    return tuple(_moods([_read(clause, hero, pronoun) for clause in told]))
 
 
 def _in_tense(clauses: Sequence[Clause]) -> list[Clause]:
@@ -127,7 +128,11 @@ def _in_tense(clauses: Sequence[Clause]) -> list[Clause]:
     share = sum(told) / max(len(told), 1)
     if len(told) < _FEW or share > _STRAY:
         return list(clauses)
-    return [replace(clause, perfect=clause.perfect or bool(clause.past)) for clause in clauses]
+    before = ((clause, clause.past and _is_one_word(clause)) for clause in clauses)
+    return [
+        replace(clause, verb="") if is_state else replace(clause, perfect=clause.perfect or bool(clause.past))
+        for clause, is_state in before
+    ]
 
 
 def _read(clause: Clause, hero: str, pronoun: str) -> ReadBeat:
@@ -199,6 +204,11 @@ def is_feeling(clause: Clause) -> bool:
         f"{clause.subject} " if head_of(clause.subject).lower() in words["body"] else ""
     )  # "her heart is in her mouth"
     return clause.verb in words["state_verbs"] and bool(feelings(own + clause.text)) and len(rest) <= 4
+
+
+def _is_one_word(clause: Clause) -> bool:
+    """Whether a clause is a single word, which in another tense says how somebody is: "then, embarrassed, he sits"."""
+    return not clause.subject and len(clause.lemmas) == 1 and clause.joint in ("", ",", "then")
 
 
 def _refuse_foreign(text: str) -> None:

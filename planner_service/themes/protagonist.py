@@ -146,7 +146,7 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     if not nouns and pronoun:
         nouns = _stand_for(clauses, pronoun, first)
     acting = [one for one in clauses if not ((one.denied and not one.unable) or one.aside)]
-    busy = {one.doer for one in acting}
+    busy = {one.doer for one in acting if not (_is_state(one) and _is_plural(one.doer))}
     fitting = [one for one in nouns if pronouns_of(one.subject) in ("", pronoun or pronouns_of(one.subject))]
     nouns = fitting or nouns
     if pronoun in {doer.lower() for doer in busy}:  # who is called so is busy
@@ -280,6 +280,8 @@ def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
     if subject.lower() == "one" and _is_plural(hero):  # of several people the one is played who does something
         return True
     low, main = subject.split()[-1].lower(), hero.split()[-1].lower() if hero else ""
+    if main == "i" and low in _SUBJECTS - {"who"}:
+        return False
     if low in _FIRST_PERSON:
         return main in _FIRST_PERSON or not main
     if low in _SUBJECTS:

@@ -18,6 +18,7 @@ from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import Token, is_plural, plain, tokens_of, verb_place
 from planner_service.themes.verb_group import is_past, verb_group
+from scene_graphs.furniture import is_known
 
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
 _PLAIN: Final = re.compile(r"[A-Za-z ,'’-]+[.!?]?\s*")
@@ -37,6 +38,8 @@ _TIMES: Final = _MANNER | frozenset(
 """Words that tell when, and nothing more."""
 _SENSES: Final = frozenset(("hear", "see", "watch", "listen", "feel", "notice", "let", "overhear"))
 """Verbs beside which stands what somebody else does: "hears the door slam"."""
+_STAYS: Final = frozenset(("sit", "lie", "stand", "lean", "rest", "kneel", "stay", "wait", "be", "walk", "go", "run"))
+"""Verbs after which a second place says more of the first."""
 _ARTICLES: Final = frozenset(("the", "a", "an"))
 _OBJECTS: Final = frozenset(("him", "her", "them", "it", "me", "us"))
 _OWNERS: Final = frozenset(("his", "her", "their", "its", "my", "our"))
@@ -212,12 +215,16 @@ def _is_outcome(current: Sequence[Token], rest: Sequence[Token]) -> bool:
 
 def _opens_main(current: Sequence[Token], rest: Sequence[Token]) -> bool:
     """Whether a noun and its verb follow what is a whole clause already: "before he drinks it | the baby wakes"."""
-    if rest[0].low not in _ARTICLES | _OWNERS or not current or current[-1].low in grammar().prepositions:
+    if not current or current[-1].low in grammar().prepositions | grammar().marks:
+        return False
+    named = rest[0].text[:1].isupper() and not is_noun(rest[0].low)
+    if not named and rest[0].low not in _ARTICLES | _OWNERS:
         return False
     verb, place = verb_place(current), verb_place(rest[1:5])
-    if verb is None or verb == len(current) - 1 or not place or not _tells(rest):
+    if verb is None or verb == len(current) - 1 or place is None or (place if named else not place or not _tells(rest)):
         return False
-    return grammar().marks.isdisjoint(token.low for token in rest[1 : place + 1])
+    between = rest[1 : place + 1]
+    return not any(token.low in grammar().marks or token.text[:1].isupper() for token in between)
 
 
 def _is_led(joint: str, current: Sequence[Token]) -> bool:
@@ -292,7 +299,8 @@ def _whole(pieces: list[_Piece]) -> list[_Piece]:
         if verb_place(piece.tokens) is not None and not (whole and _is_noun_list(whole[-1], piece)):
             whole.append(piece)
         elif whole and not (led or _opens(piece, pieces[place + 1 :]) or _leads(piece, pieces[place + 1 :])):
-            whole[-1] = replace(whole[-1], tokens=whole[-1].tokens + piece.tokens)
+            mark = _comma(whole[-1]) if piece.tokens[0].low in grammar().prepositions else ()
+            whole[-1] = replace(whole[-1], tokens=(*whole[-1].tokens, *mark, *piece.tokens))
         else:
             waiting = piece
     return [*whole, waiting] if waiting is not None else whole
@@ -381,8 +389,8 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     if place is None:
         return [Clause(piece.text, "", "", _lemmas(tokens), joint, quotes=_quotes(tokens, quotes), sentence=sentence)]
     place -= 2 * ([token.low for token in tokens[max(place - 2, 0) : place]] == ["no", "longer"])
-    subject = _subject(tokens[:place])
-    if subject.startswith("«") or (not place and _is_inverted(tokens)):
+    subject = _subject([token for token in tokens[:place] if not token.text.startswith("«")])
+    if (not subject and tokens[0].text.startswith("«")) or (not place and _is_inverted(tokens)):
         subject = _inverted(tokens[place + 1 :])
         tokens = [*tokens[: place + 1], *tokens[place + 1 + len(subject.split()) :]]
     denials = grammar().denials - grammar().subjects
@@ -400,6 +408,14 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
         unable=group.unable, perfect=group.perfect, past=is_past(words, group), aside=supposed,
         quotes=_quotes(tokens, quotes), sentence=sentence,
     )  # fmt: skip
+    words, places = _listed_places(words, group.place)
+    if places:
+        lemmas = _lemmas(words[group.place :])
+        first = replace(first, text=_text(piece.source, words), lemmas=lemmas)
+        told = [token.low for token in words[group.place :]]
+        stop = next((at for at, low in enumerate(told) if at and low in grammar().prepositions), len(told))
+        again = [replace(first, text=_text(piece.source, some), subject="", joint=",", quotes=(),
+                         lemmas=(*lemmas[:stop], *_lemmas(some))) for some in places]  # fmt: skip
     parted = not group.denied or group.unable
     parts = _parted(first, words, group.place, piece.source) if parted else [first]
     asides = [replace(one, sentence=sentence) for some in told_of for one in _aside(some, words, piece.source)]
@@ -408,7 +424,7 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
         Clause(_text(piece.source, some), "", "", _lemmas(some), ",", sentence=sentence)
         for some in _besides(tokens[:place], subject, before)
     ]
-    return [*besides, _placed(parts[0], before, piece.source), *parts[1:], *asides]
+    return [*besides, _placed(parts[0], before, piece.source), *parts[1:], *(again if places else ()), *asides]
 
 
 def _besides(tokens: Sequence[Token], subject: str, before: Sequence[Token]) -> list[list[Token]]:
@@ -417,7 +433,7 @@ def _besides(tokens: Sequence[Token], subject: str, before: Sequence[Token]) -> 
     starts = (at for at in range(len(tokens) - len(own), -1, -1) if [one.text for one in tokens[at : at + len(own)]] == own)
     at = next(starts, 0) if own else 0
     taken = {*before, *tokens[at : at + len(own)]}
-    stretches = groupby(tokens, lambda token: token.text != "," and token not in taken)
+    stretches = groupby(tokens, lambda token: token.text[0] not in ",«" and token not in taken)
     return [words for is_told, some in stretches if is_told and _tells_something(words := list(some))]
 
 
@@ -447,6 +463,36 @@ def _without_asides(words: list[Token], main: int) -> tuple[list[Token], list[li
             cut = place - 2 * (words[place - 1].low in _MANNER and words[place - 2].low in grammar().marks)
             return words[:cut], [words[place:]]
     return words, []
+
+
+def _listed_places(words: list[Token], main: int) -> tuple[list[Token], list[list[Token]]]:
+    """The words of a clause up to its first place, and further places where the same is done: "looks under the bed, |
+    behind the sofa | and in the oven"; but "sits on the sofa, next to the lamp" is one place."""
+    known, cuts = grammar(), list[int]()
+    links = {",", "and", "or", "then"}
+    for at in range(main + 2, len(words) - 1):
+        opens = words[at - 1].low in links and words[at].low in known.prepositions
+        first = any(_names_place(words[start:at]) for start in range(main + 1, at) if words[start].low in known.prepositions)
+        end = next((place for place in range(at + 1, len(words)) if words[place].low in links), len(words))
+        stays = words[at - 1].low != "then" and lemma_of(words[main].low) in _STAYS
+        if opens and first and not stays and _names_place(words[at:end]):
+            cuts.append(at)
+    if not cuts:
+        return words, []
+    stretches = [words[start:end] for start, end in zip([0, *cuts], [*cuts, len(words)], strict=True)]
+    bare = [_unlinked(some, links) for some in stretches]
+    return bare[0], bare[1:]
+
+
+def _names_place(words: Sequence[Token]) -> bool:
+    """Whether a stretch that a preposition opens ends with furniture: "behind the old sofa"."""
+    return 1 < len(words) <= 5 and any(is_known(token.low) for token in words[1:])
+
+
+def _unlinked(words: list[Token], links: set[str]) -> list[Token]:
+    while words and words[-1].low in links:
+        words = words[:-1]
+    return words
 
 
 def _sensed(words: Sequence[Token], main: int) -> int:

@@ -150,8 +150,8 @@ def _aspect(words: Sequence[Token], at: int) -> int:
         low, before = words[place].low, words[place - 1].low
         if low == "to":
             after = words[place + 1].low if place + 1 < len(words) else ""
-            able = place == at + 1 and base not in ("go", "come", "spend", "keep", "finish", "end", "resume")
-            return place + 1 if able and _is_deed(after) else 0
+            able = place == at + 1 and base not in ("go", "come", "get", "spend", "keep", "finish", "end", "resume")
+            return place + 1 if able and verb_of(after) == after else 0
         if low.endswith("ing") and verb_of(low) and base not in ("need", "have", "decide", "help", "use"):
             near = place == at + 1 or (base == "end" and before == "up")
             if near or (base == "spend" and before not in grammar().marks):

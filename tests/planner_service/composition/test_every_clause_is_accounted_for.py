@@ -74,3 +74,29 @@ def planned(theme: str) -> LongScript | None:
 def words_of(*texts: str) -> set[str]:
     """Words that tell something."""
     return set(re.findall(r"[a-z]+", " ".join(texts).lower())) - SMALL
+
+
+@tries(100)
+@given(themes())
+def test_every_word_of_a_theme_is_of_a_beat_that_is_acted_or_named(theme: Told) -> None:
+    script = planned(theme.text)
+    assume(script is not None)
+    assert script is not None
+    outcomes = planned_beats(script).outcomes
+    said = words_of(*(f"{one.beat.who} {one.beat.text}" for one in outcomes))
+    assert not words_of(*theme.stretches) - said, (theme.text, [one.beat.text for one in outcomes])
+
+
+@tries(100)
+@given(themes())
+def test_what_no_body_can_show_is_named_and_no_event_of_the_story(theme: Told) -> None:
+    script = planned(theme.text)
+    assume(script is not None)
+    assert script is not None
+    outcomes = planned_beats(script).outcomes
+    named = words_of(*(one.beat.text for one in outcomes if not one.acted))
+    named |= words_of(*(part for one in outcomes if one.acted for part in one.beat.unshown))
+    told = words_of(narrate(script, Character()).events)
+    for stretch in theme.strange:
+        assert words_of(stretch) <= named, (theme.text, stretch, [one.beat.text for one in outcomes])
+        assert not words_of(stretch.split()[-1]) & told, (theme.text, stretch)
