@@ -250,11 +250,18 @@ def _by_things(clause: Clause, about: str) -> DeedRow | None:
         return None
     if not clause.verb or clause.verb in _STATES:
         return None
-    if any(affords(piece, "touch") for piece in _named(clause, "" if "them" in clause.lemmas else about)) or _kept(
-        clause, about
+    if any(affords(piece, "touch") for piece in _named(clause, "" if "them" in clause.lemmas else about)) or (
+        _kept(clause, about) and _is_done_to_things(clause)
     ):
         return DeedRow((clause.verb,), Skill.TOUCH, things=True)
     return DeedRow((clause.verb,), Skill.LOCO) if _WAYS.search(clause.text) else None
+
+
+def _is_done_to_things(clause: Clause) -> bool:
+    """Whether the first noun after a verb, or what "it" means, is a thing: not in "calls her cousin, a bag in hand"."""
+    known = things()
+    first = next((word for word in clause.lemmas[1:] if word in known or word in _IT or is_noun(word)), "")
+    return first in known or first in _IT or bool(_AT.search(clause.text))
 
 
 def _kept(clause: Clause, about: str) -> tuple[str, ...]:

@@ -298,12 +298,27 @@ def _whole(pieces: list[_Piece]) -> list[_Piece]:
             waiting = None
         if verb_place(piece.tokens) is not None and not (whole and _is_noun_list(whole[-1], piece)):
             whole.append(piece)
+        elif whole and not led and _is_loose(whole[-1], piece, pieces[place + 1 :]):
+            whole.append(piece)
         elif whole and not (led or _opens(piece, pieces[place + 1 :]) or _leads(piece, pieces[place + 1 :])):
             mark = _comma(whole[-1]) if piece.tokens[0].low in grammar().prepositions else ()
             whole[-1] = replace(whole[-1], tokens=(*whole[-1].tokens, *mark, *piece.tokens))
         else:
             waiting = piece
     return [*whole, waiting] if waiting is not None else whole
+
+
+def _is_loose(last: _Piece, piece: _Piece, after: Sequence[_Piece]) -> bool:
+    """Whether words without a verb are told beside a clause and are no part of it: "sinks into the armchair, | a glass
+    in his hand", but "eats a plum, a pear and cheese"."""
+    known, first = grammar(), piece.tokens[0].low
+    if piece.joint != "," or first in known.prepositions | known.adverbs | known.joints or len(piece.tokens) < 2:
+        return False
+    run = next((at for at, one in enumerate(after) if verb_place(one.tokens) is not None), len(after))
+    listed = any(one.joint in ("and", "or", "plus") for one in after[:run])
+    verb = verb_place(last.tokens)
+    own = next((token.low for token in reversed(last.tokens[(verb or 0) + 1 :]) if token.low in known.marks), "")
+    return not listed and verb is not None and first != own and not _opens(piece, after) and not _leads(piece, after)
 
 
 def _comma(piece: _Piece) -> tuple[Token, ...]:

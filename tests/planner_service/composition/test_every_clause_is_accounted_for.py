@@ -45,7 +45,9 @@ class Told:
 def themes(draw: st.DrawFn) -> Told:
     """One to four clauses that joints join, with what is told besides before, after and between them."""
     lead = draw(st.sampled_from(("", *LEADS)))
-    clauses = draw(st.lists(st.sampled_from(KNOWN + UNKNOWN + DENIED + OTHERS), min_size=1, max_size=4, unique=True))
+    first = draw(st.sampled_from(KNOWN + UNKNOWN + DENIED))
+    more = draw(st.lists(st.sampled_from(KNOWN + UNKNOWN + DENIED + OTHERS), max_size=3, unique=True))
+    clauses = [first, *(one for one in more if one != first)]
     besides = draw(st.sampled_from(("", *BESIDES)))
     text, own = f"{lead}, she" if lead else "She", True
     for place, clause in enumerate(clauses):
