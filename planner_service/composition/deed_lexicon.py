@@ -41,6 +41,10 @@ _EXPRESSED: Final = frozenset(EXPRESSIONS)
 _REFERS: Final = frozenset(("it", "them"))
 _MAX_FRAGMENT: Final = 4
 """Words of a sentence without a verb that may stand for a deed."""
+_NOT_NOW: Final = frozenset(("before", "after", "until", "since", "during", "without", "no", "not", "never", "nothing"))
+"""Words before what is not done, or not yet."""
+_LIGHT_VERBS: Final = ("do", "have", "take", "play")
+"""Verbs that a noun alone stands for: "dinner", "a nap", "yoga"."""
 _SMALL: Final = frozenset("with the on of in at to a and while body for both left right hand hands height".split())
 """Words of captions that say nothing of what is done."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
@@ -163,18 +167,23 @@ def _is_of_body(clause: Clause, row: DeedRow) -> bool:
     body = theme_words()["body"]
     races = row.skill is Skill.LOCO and not row.mood and bool(body & set(_lemmas(clause.subject)[-1:]))
     noun = next((lemma for lemma in clause.lemmas[1:] if lemma in body or (is_noun(lemma) and lemma != "one")), "")
-    return races or (row.skill is Skill.TOUCH and not row.captions and noun in body and noun not in things())
+    return races or (row.skill is Skill.TOUCH and (row.things or not row.captions) and noun in body and noun not in things())
 
 
 def _deed_of_fragment(clause: Clause) -> Deed | None:
     """The deed of words without a verb that stand for one: "Sleep.", "Then bed."; None of any others."""
     words = [token.low for token in tokens_of(clause.text) if token.text[:1].isalpha()]
     told = [word for word in words if word not in grammar().adverbs | grammar().joints]
-    if clause.place or clause.joint not in ("", "then") or not 0 < len(told) <= _MAX_FRAGMENT or told[0] in theme_words()["body"]:
+    alone = clause.joint in ("", "then", ",") and 0 < len(told) <= _MAX_FRAGMENT and words[0] not in _NOT_NOW
+    if not alone or told[0] in theme_words()["body"]:
         return None
     if verb_of(told[0]) == told[0]:
         verb = replace(clause, verb=told[0], lemmas=tuple(map(lemma_of, told)))
         return deed_of(verb) if said_row(verb) else None
+    for light in _LIGHT_VERBS:  # "Tuesday: yoga" is done, "dinner" is had
+        verb = replace(clause, verb=light, lemmas=(light, *map(lemma_of, told)))
+        if (found := _said(verb)) and found[0] > 1:
+            return deed_of(verb)
     rests = [word for word in told if word not in grammar().prepositions | grammar().marks]
     piece = next(iter(pieces_in(" ".join(rests))), "")
     for skill in (Skill.LIEDOWN, Skill.SITDOWN):
@@ -222,13 +231,20 @@ def _meant(clause: Clause, about: str) -> Clause:
 
 def said_row(clause: Clause) -> DeedRow | None:
     """The row whose saying tells most of the clause's words, from its verb on; else from a later -ing on."""
+    found = _said(clause)
+    return found[1] if found else None
+
+
+def _said(clause: Clause) -> tuple[int, DeedRow] | None:
+    """The same, with how many words its saying has."""
     ways, starts = deed_table().ways, list(_starts(clause))
     for anchored in (True, False):  # patterns that begin with a gap fit any verb, where no other does
         for lemmas in starts:
             fitting = [(pattern, row) for pattern, row in ways.get("".join(lemmas[:1]) if anchored else "", ())
                        if _fits(pattern, lemmas)]  # fmt: skip
             if fitting:
-                return max(fitting, key=lambda one: sum(map(bool, one[0])))[1]
+                pattern, row = max(fitting, key=lambda one: sum(map(bool, one[0])))
+                return sum(map(bool, pattern)), row
     return None
 
 

@@ -56,7 +56,7 @@ class Told:
     text: str
     spans: tuple[Span, ...]
     thoughts: tuple[Span, ...] = ()
-    """What is told and no keyframe shows: remembered, wished for, or left undone."""
+    """What is told and no keyframe shows: remembered, wished for, left undone, or that others are not to be seen."""
 
     @property
     def events(self) -> str:
@@ -74,9 +74,11 @@ def narrate(script: LongScript, character: Character, seed: int = 0, places: Pla
     phrases = _Teller(script, hero, voice, variety, places or {}).phrases()
     writer = _Writer(voice, variety, _introduction(script.theme, voice))
     writer.write(_sentences(phrases, variety))
-    text = " ".join(filter(None, (writer.text, _others(script, hero, voice, variety))))
+    others = _others(script, hero, voice, variety)
+    text = " ".join(filter(None, (writer.text, others)))
+    thoughts = (*writer.thoughts, *([Span(len(text) - len(others), len(text), ())] if others else []))
     title = title_of(script.theme, script.beats[-1].emotion if script.beats else "neutral")
-    return Told(title, text, tuple(writer.spans), tuple(writer.thoughts))
+    return Told(title, text, tuple(writer.spans), thoughts)
 
 
 class _Teller:

@@ -16,7 +16,7 @@ from typing import Any, Final
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_third_person, lemma_of, verb_of
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
-from planner_service.themes.verb_finder import Token, is_plural, plain, tokens_of, verb_place
+from planner_service.themes.verb_finder import Token, is_adverb, is_plural, plain, tokens_of, verb_place
 from planner_service.themes.verb_group import is_past, verb_group
 from scene_graphs.furniture import is_known
 
@@ -252,6 +252,8 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
         return bool(rest)
     if low in ("so", "yet", "or"):
         return bool(rest) and (rest[0].low in grammar().subjects or (low != "yet" and verb_place(rest[:2]) is not None))
+    if low in ("once", "since", "after", "before", "until") and _is_noun_before_subject(rest):
+        return False  # "since the accident he …"
     if low in ("once", "since", "where"):
         opens = bool(rest) and (rest[0].low in grammar().marks or rest[0].text[:1].isupper())
         is_subject = bool(rest) and rest[0].low in grammar().subjects
@@ -261,6 +263,12 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
             _starts_gerund(rest) or rest[0].low in grammar().subjects or (low != "instead" and _clause_follows(rest))
         )
     return True
+
+
+def _is_noun_before_subject(rest: Sequence[Token]) -> bool:
+    """Whether a noun, and no clause, stands between a joint and who does what follows: "since the accident | he …"."""
+    place = next((at for at, token in enumerate(rest[:5]) if token.low in _HEROES), 0)
+    return place > 1 and not (rest[0].low in grammar().subjects) and verb_place(rest[:place]) is None
 
 
 def _may_end(joint: str, cut: Sequence[_Piece], current: Sequence[Token]) -> bool:
@@ -287,6 +295,8 @@ def _clause_follows(rest: Sequence[Token]) -> bool:
 
 def _whole(pieces: list[_Piece]) -> list[_Piece]:
     """Pieces without a verb put to the one before ("bread and butter"), or to the one after ("one evening, …")."""
+    if all(verb_place(piece.tokens) is None for piece in pieces) and all(piece.joint in ("", ",") for piece in pieces):
+        return pieces  # "stretch, shower, news"
     whole: list[_Piece] = []
     waiting: _Piece | None = None
     for place, piece in enumerate(pieces):
@@ -435,6 +445,9 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     parts = _parted(first, words, group.place, piece.source) if parted else [first]
     asides = [replace(one, sentence=sentence) for some in told_of for one in _aside(some, words, piece.source)]
     before = () if first.quotes else _before(tokens[:place], subject)
+    how = [token for token in tokens[:place] if token.low.endswith("ly") and is_adverb(token.low) and subject]
+    how = [token for token in how if token.low not in grammar().adverbs and not first.quotes]
+    before = (*before, *(token for token in how if token not in before))
     besides = [
         Clause(_text(piece.source, some), "", "", _lemmas(some), ",", sentence=sentence)
         for some in _besides(tokens[:place], subject, before)
@@ -590,7 +603,7 @@ def _placed(clause: Clause, before: Sequence[Token], source: str) -> Clause:
     """The clause with what stands before its subject at its end."""
     if not before or clause.quotes:
         return clause
-    text = _text(source, before)
+    text = " ".join(_text(source, list(some)) for _, some in groupby(before, lambda token: token.low.endswith("ly")))
     return replace(clause, text=f"{clause.text} {text[0].lower()}{text[1:]}", lemmas=(*clause.lemmas, *_lemmas(before)))
 
 
@@ -654,6 +667,8 @@ def _subject(tokens: Sequence[Token]) -> str:
         words.pop()  # "Daniel, unshaven, …"
     if words and words[0].lower() == "to":
         return ""
+    if words and (_describes(words) or all(word.lower() in _TIMES | grammar().marks | {"one"} for word in words)):
+        return ""
     while words and (words[0].lower() in grammar().adverbs or words[0].lower() in grammar().joints):
         words.pop(0)
     if words and words[0].lower() in grammar().prepositions:  # "in the kitchen Anna …"
@@ -675,6 +690,15 @@ def _may_act(words: Sequence[Token]) -> bool:
         first.low not in known.prepositions
         and (first.low in known.marks or (first.text[:1].isupper() and not is_adjective(first.low)))
     )
+
+
+def _describes(words: Sequence[str]) -> bool:
+    """Whether words say how somebody is and name nobody: "Angry at himself for"."""
+    low = words[0].lower()
+    small = grammar().prepositions | grammar().adverbs | {"himself", "herself", "themselves", "myself"}
+    others = [word for word in words[1:] if word.lower() not in small]
+    names = any(is_noun(word.lower()) or word[:1].isupper() or word.lower() in grammar().subjects for word in others)
+    return is_adjective(low) and not is_noun(low) and not names
 
 
 def _only_describes(word: str) -> bool:

@@ -28,6 +28,7 @@ _SLANG: Final = {
 }  # fmt: skip
 _LONG: Final = (
     ("by the time", "when"), ("rather than", "instead of"), ("(?<!the )till", "until"), ("which is to say", "and"),
+    ("as soon as", "when"), ("at (?:long )?last|in the end", "finally"),
 )  # fmt: skip
 """Joints of several words, and those that say the same."""
 _SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|had|have|should)nt\b")
@@ -160,7 +161,9 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
         return False  # "under the sofa cushions"
     if word == base:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
-        return (past(base) == base and named) or (is_plural(before) and (not is_noun(word) or _has_object(after)))
+        ends = after is None or after.low in grammar().prepositions | {",", "and"}
+        acts = not is_noun(word) or _has_object(after) or (ends and tokens[0].low in grammar().marks and at <= 2)
+        return (past(base) == base and named) or (is_plural(before) and acts)
     if is_noun(word) and word.endswith("s"):
         follower = after.low if after is not None else ""
         return _goes_on(follower) or is_adjective(follower) or is_noun(follower)
@@ -180,5 +183,5 @@ def _has_object(after: Token | None) -> bool:
 def _goes_on(after: str) -> bool:
     """Whether a verb may go on with a word, or end there."""
     known = grammar()
-    goes = known.marks | known.prepositions | known.adverbs | known.subjects | _OBJECTS | _PARTICLES
+    goes = known.marks | known.prepositions | known.adverbs | known.subjects | known.numbers | _OBJECTS | _PARTICLES
     return not after or after in goes or after.endswith("ly")

@@ -73,6 +73,9 @@ def _step(words: Sequence[Token], group: VerbGroup) -> int:
     if low in grammar().auxiliaries and (low in grammar().modals or _verb_follows(words, at) or _hinders(words, at)):
         group.perfect |= low == "had"
         return 1
+    if low == "used" and ahead == "to":  # "used to play", and does so no more
+        group.perfect = True
+        return 2
     if low == "had" and ahead == "been":
         group.perfect = True
         return 1
