@@ -180,7 +180,8 @@ def _deed_of_fragment(clause: Clause) -> Deed | None:
     if verb_of(told[0]) == told[0]:
         verb = replace(clause, verb=told[0], lemmas=tuple(map(lemma_of, told)))
         return deed_of(verb) if said_row(verb) else None
-    for light in _LIGHT_VERBS:  # "Tuesday: yoga" is done, "dinner" is had
+    listed = clause.sentence > 0 and words[0] not in grammar().marks
+    for light in _LIGHT_VERBS if listed else ():  # "Tuesday: yoga" is done, "a banana" only spoken of
         verb = replace(clause, verb=light, lemmas=(light, *map(lemma_of, told)))
         if (found := _said(verb)) and found[0] > 1:
             return deed_of(verb)

@@ -39,6 +39,9 @@ _FEW, _STRAY = 3, 0.34
 """Clauses of a text from which its tense is known, and the share of them that may stray from it."""
 _RECEIVERS: Final = frozenset(("phone", "telephone", "receiver"))
 """What is said into these is seen."""
+_BY_THEN: Final = re.compile(r"\bby (?:noon|midnight|dawn|dusk|evening|night|now|then|\d+|one|two|three|four|five|six|"
+                                r"seven|eight|nine|ten|eleven|twelve)\b", re.IGNORECASE)  # fmt: skip
+"""By this what had been done belongs to the story: "by noon she had unpacked"."""
 _OF_ONESELF: Final = re.compile(r"\bI(?:'m)?\b")
 """By this word one tells how one feels."""
 _QUOTED: Final = re.compile(r"«\d+»")
@@ -186,7 +189,7 @@ def _kind(clause: Clause, who: str) -> BeatKind:
         return "other"
     if clause.denied and not (clause.unable and clause.verb in words["unable_verbs"]):
         return "undone"
-    before = clause.perfect and clause.joint not in _MEANWHILE
+    before = clause.perfect and clause.joint not in _MEANWHILE and not _BY_THEN.search(clause.text)
     if before or (clause.verb in words["memory_verbs"] and not clause.unable) or clause.joint == "since":
         return "memory"
     return "feeling" if is_feeling(clause) else "deed"

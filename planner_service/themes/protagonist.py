@@ -73,7 +73,7 @@ def cast_by(theme: str, character: Character) -> Character:
 def _name_of_hero(theme: str) -> str:
     """The name in whom a theme is about, where it stands beside no verb: "thinks Paloma", "Elspeth, tired, …"."""
     hero = hero_of(clauses_of_text(theme))
-    return next((token.text for token in tokens_of(hero) if is_name(token.text)), "")
+    return next((token.text for token in tokens_of(hero) if is_name(token.text) and "." not in token.text), "")
 
 
 def name_in(theme: str) -> str:
@@ -160,8 +160,9 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     articles = ("a ", "an ", "one ", "my ", "our ", *(() if people else ("the ",)))
     called = [one for one in mains[:1] if _may_be_called(one) and not people]
     opening = [one for one in mains[:1] if one.lower().startswith(articles)]
+    busiest = [clause.subject for clause in people]
     living = [subject for subject in (*opening, *called) if _may_live(head_of(subject))]
-    return next(iter([*living, *(clause.subject for clause in people)]), "")
+    return next(iter([*living, *(one.subject for one in people if one.subject.lower() == pronoun), *busiest]), "")
 
 
 def _told_most(clauses: Sequence[Clause]) -> str:

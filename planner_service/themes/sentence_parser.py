@@ -130,12 +130,16 @@ def _main(parts: Sequence[Clause]) -> Clause:
 def _sharing(before: Clause, parts: list[Clause]) -> list[Clause]:
     """A clause that shares the denial of the one before, whose verb is in its base form too: "does not eat | or drink",
     "wants to sit | and rest"."""
-    first = _main(parts)
+    unshared, first = parts, _main(parts)
+    word = first.text.split(" ", 1)[0].lower()
+    if not first.verb and verb_of(word) == word:  # "does not smoke, | drink or dance"
+        parts = [replace(part, verb=word) if part is first else part for part in parts]
+        first = next(part for part in parts if part.text == first.text)
     shares = before.denied and first.verb and not first.subject and first.joint in ("or", "nor", "and", ",")
     bare = first.text.split(" ", 1)[0].lower() == first.verb and re.search(rf"\b{re.escape(before.verb)}\b", before.text)
     plain_present = first.joint != "or" and before.doer.lower() in ("i", "you", "we", "they")
     if not shares or not bare or plain_present:
-        return parts
+        return unshared
     return [replace(part, denied=True, unable=before.unable) if part is first else part for part in parts]
 
 
@@ -405,6 +409,7 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     joint = piece.joint
     while (
         tokens
+        and not (tokens[0].low == "too" and is_adjective(tokens[1].low if len(tokens) > 1 else ""))
         and tokens[0].low in grammar().adverbs | {"and", "but", "or"}
         and tokens[0].low not in grammar().denials
         and len(tokens) > 1
@@ -427,7 +432,8 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     supposed = joint in _SUPPOSING or piece.tokens[0].low in ("if", "though")
     words, told_of = _without_asides(words, group.place)
     lemmas = _lemmas(words[group.place :])
-    hindered = joint in ("before", "until") and words[0].low in ("can", "could")  # "before he could drink it"
+    too = place > 2 and tokens[place - 1].low == "to" and any(token.low == "too" for token in tokens[:place])
+    hindered = too or joint in ("before", "until") and words[0].low in ("can", "could")  # "too proud to ask", "before he could drink it"
     first = Clause(
         _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, joint, denied=group.denied or hindered,
         unable=group.unable, perfect=group.perfect, past=is_past(words, group), aside=supposed,
@@ -462,7 +468,16 @@ def _besides(tokens: Sequence[Token], subject: str, before: Sequence[Token]) -> 
     at = next(starts, 0) if own else 0
     taken = {*before, *tokens[at : at + len(own)]}
     stretches = groupby(tokens, lambda token: token.text[0] not in ",«" and token not in taken)
-    return [words for is_told, some in stretches if is_told and _tells_something(words := list(some))]
+    told = [words for is_told, some in stretches if is_told and _tells_something(words := list(some))]
+    first = tokens[at] if own else None
+    return [words for words in told if not _only_marks(words, first)]
+
+
+def _only_marks(words: Sequence[Token], subject: Token | None) -> bool:
+    """Whether words only stand before a subject as part of it: "old" before "Mr. Finch"."""
+    known = grammar()
+    small = all(token.low in known.marks | known.numbers or is_adjective(token.low) for token in words)
+    return subject is not None and small and words[-1].end + 1 == subject.start
 
 
 def _tells_something(words: Sequence[Token]) -> bool:

@@ -28,7 +28,7 @@ _SLANG: Final = {
 }  # fmt: skip
 _LONG: Final = (
     ("by the time", "when"), ("rather than", "instead of"), ("(?<!the )till", "until"), ("which is to say", "and"),
-    ("as soon as", "when"), ("at (?:long )?last|in the end", "finally"),
+    ("as soon as", "when"), ("(?:every|each) time(?= (?:i|he|she|they|we|the|his|her|my)\\b)", "whenever"), ("at (?:long )?last|in the end", "finally"),
 )  # fmt: skip
 """Joints of several words, and those that say the same."""
 _SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|had|have|should)nt\b")
@@ -69,9 +69,17 @@ def plain(text: str) -> str:
         text = re.sub(rf"(?i)(?<=\w){short}\b", whole, text)
     for long, short in _LONG:
         text = re.sub(rf"(?i)\b{long}\b", short, text)
+    text = re.sub(r"(?i)\b(I|he|she|they|we)'d((?: (?:never|always|often|rather|not))* (\w+))", _would, text)
     return re.sub(
         r"\b(I|[Hh]e|[Ss]he|[Tt]hey|[Ww]e)'d\b", r"\1 had", re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s\b", r"\1 is", text)
     )
+
+
+def _would(found: re.Match[str]) -> str:
+    """What "'d" stands for by the form of the verb after it: "she'd go" would, "she'd gone" had."""
+    base = verb_of(found[3])
+    would = base == found[3].lower() != participle(base) or found[3].lower() == "like"
+    return f"{found[1]} {'would' if would else 'had'}{found[2]}"
 
 
 def verb_place(tokens: Sequence[Token]) -> int | None:
@@ -138,7 +146,8 @@ def _opens(word: str, base: str, after: str) -> bool:
     if is_adjective(word) and not (sure or after in grammar().marks | grammar().prepositions | _PARTICLES):
         return False
     if is_third_person(word) or word != base:
-        return not (is_noun(word) and verb_of(after) and not (is_noun(after) or after.endswith("ing")))
+        names = is_noun(word) and bool(verb_of(after)) and not (is_noun(after) or after.endswith("ing"))
+        return not names or is_adjective(after)
     return not is_noun(word) or (_goes_on(after) and bool(after))
 
 

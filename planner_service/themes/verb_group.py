@@ -86,6 +86,7 @@ def _denying_step(words: Sequence[Token], group: VerbGroup, low: str, base: str,
     """Verbs that deny the deed after them, or only wish for it."""
     at = group.place
     near = [token.low for token in words[at : at + 3]]
+    base = base or ("like" if low == "like" else "")
     if low == "going" and ahead == "to" and len(near) > 2 and _is_deed(near[2]):
         step = 2
     elif low == "able" and ahead == "to":
