@@ -41,11 +41,15 @@ _EXPRESSED: Final = frozenset(EXPRESSIONS)
 _REFERS: Final = frozenset(("it", "them"))
 _MAX_FRAGMENT: Final = 4
 """Words of a sentence without a verb that may stand for a deed."""
-_NOT_NOW: Final = frozenset(("before", "after", "until", "since", "during", "without", "no", "not", "never", "nothing"))
+_NOT_NOW: Final = frozenset(
+    ("before", "after", "until", "since", "during", "without", "no", "not", "never", "nothing")
+)
 """Words before what is not done, or not yet."""
 _LIGHT_VERBS: Final = ("do", "have", "take", "play")
 """Verbs that a noun alone stands for: "dinner", "a nap", "yoga"."""
-_SMALL: Final = frozenset("with the on of in at to a and while body for both left right hand hands height".split())
+_SMALL: Final = frozenset(
+    ("with", "the", "on", "of", "in", "at", "to", "a", "and", "while", "body", "for", "both", "left", "right", "hand", "height")
+)
 """Words of captions that say nothing of what is done."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
 Pattern = tuple[frozenset[str], ...]
@@ -179,17 +183,18 @@ def _deed_of_fragment(clause: Clause) -> Deed | None:
         return None
     if verb_of(told[0]) == told[0]:
         verb = replace(clause, verb=told[0], lemmas=tuple(map(lemma_of, told)))
-        return deed_of(verb) if said_row(verb) else None
-    listed = clause.sentence > 0 and words[0] not in grammar().marks
-    for light in _LIGHT_VERBS if listed else ():  # "Tuesday: yoga" is done, "a banana" only spoken of
-        verb = replace(clause, verb=light, lemmas=(light, *map(lemma_of, told)))
-        if (found := _said(verb)) and found[0] > 1:
+        if said_row(verb):
             return deed_of(verb)
     rests = [word for word in told if word not in grammar().prepositions | grammar().marks]
     piece = next(iter(pieces_in(" ".join(rests))), "")
     for skill in (Skill.LIEDOWN, Skill.SITDOWN):
         if len(rests) == 1 and piece and affords(piece, NEEDS[skill]):
             return Deed(DeedRow((rests[0],), skill), skill, (piece,), True)
+    listed = clause.sentence > 0 and words[0] not in grammar().marks
+    for light in _LIGHT_VERBS if listed else ():  # "Tuesday: yoga" is done, "a banana" only spoken of
+        verb = replace(clause, verb=light, lemmas=(light, *map(lemma_of, told)))
+        if (found := _said(verb)) and found[0] > 1:
+            return deed_of(verb)
     return None
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import cache, lru_cache
 from itertools import groupby
 from typing import Any, Final
 
@@ -84,6 +84,7 @@ class Clause:
     """Where in its sentence it is written."""
 
 
+@lru_cache(maxsize=256)
 def clauses_of_text(text: str) -> tuple[Clause, ...]:
     """What a text tells, in the order of time."""
     quotes: list[str] = []
