@@ -33,22 +33,43 @@ _WAYS: Final = re.compile(
     re.IGNORECASE,
 )
 """A way through a home, whatever the verb that goes it."""
-_FLOOR: Final = re.compile(r"(?<!feet )(?<!foot )\bon(?:to)? the (?:\w+ )?(?:floor|ground|rug|carpet)\b")
+_FLOOR: Final = re.compile(r"(?<!feet )(?<!foot )\b(?:on|onto|to) the (?:\w+ )?(?:floor|ground|rug|carpet)\b")
 _UNDER: Final = re.compile(r"\b(?:under|beneath|underneath|behind|beside|next to)\b")
 _AT: Final = re.compile(r"\b(?:at|by|near|beside|before|behind|in front of|next to)\b")
-_STATES: Final = frozenset(("be", "have", "become", "need", "like", "love", "hate", "know", "miss", "own", "do"))
+_INTO: Final = re.compile(
+    r"^\w+ (?:(?:him|her|my|them)sel\w+ |down |back |up )*(into|onto|out of|from|off) "
+    r"(?:the|his|her|their|my|an?) ((?:\w+ ?)+)"
+)
+"""A way into furniture or out of it, of the body itself and of no thing."""
+_STATES: Final = frozenset(("be", "have", "become", "need", "like", "love", "hate", "know", "miss", "own", "do", "let"))
 _EXPRESSED: Final = frozenset(EXPRESSIONS)
 _REFERS: Final = frozenset(("it", "them"))
 _MAX_FRAGMENT: Final = 4
 """Words of a sentence without a verb that may stand for a deed."""
-_NOT_NOW: Final = frozenset(
-    ("before", "after", "until", "since", "during", "without", "no", "not", "never", "nothing")
-)
+_NOT_NOW: Final = frozenset(("before", "after", "until", "since", "during", "without", "no", "not", "never", "nothing"))
 """Words before what is not done, or not yet."""
 _LIGHT_VERBS: Final = ("do", "have", "take", "play")
 """Verbs that a noun alone stands for: "dinner", "a nap", "yoga"."""
 _SMALL: Final = frozenset(
-    ("with", "the", "on", "of", "in", "at", "to", "a", "and", "while", "body", "for", "both", "left", "right", "hand", "height")
+    (
+        "with",
+        "the",
+        "on",
+        "of",
+        "in",
+        "at",
+        "to",
+        "a",
+        "and",
+        "while",
+        "body",
+        "for",
+        "both",
+        "left",
+        "right",
+        "hand",
+        "height",
+    )
 )
 """Words of captions that say nothing of what is done."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
@@ -166,12 +187,19 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     return Deed(found, skill, tuple(dict.fromkeys(order)), False)
 
 
+def _may_be_noun(lemma: str) -> bool:
+    """Whether a word is a noun, and no mark or numeral that a dictionary has as one."""
+    return is_noun(lemma) and lemma not in grammar().marks | grammar().numbers | {"one"}
+
+
 def _is_of_body(clause: Clause, row: DeedRow) -> bool:
     """Whether only a part of the body does it, or has it done to it: "his heart raced", "opens one eye"."""
     body = theme_words()["body"]
     races = row.skill is Skill.LOCO and not row.mood and bool(body & set(_lemmas(clause.subject)[-1:]))
-    noun = next((lemma for lemma in clause.lemmas[1:] if lemma in body or (is_noun(lemma) and lemma != "one")), "")
-    return races or (row.skill is Skill.TOUCH and (row.things or not row.captions) and noun in body and noun not in things())
+    noun = next((lemma for lemma in clause.lemmas[1:] if lemma in body or _may_be_noun(lemma)), "")
+    return races or (
+        row.skill is Skill.TOUCH and (row.things or not row.captions) and noun in body and noun not in things()
+    )
 
 
 def _deed_of_fragment(clause: Clause) -> Deed | None:
@@ -222,6 +250,8 @@ def _named(clause: Clause, about: str) -> list[str]:
 def row_of(clause: Clause, about: str) -> DeedRow | None:
     """The row that a clause's words say, with what "it" means in place of it where that says more; else by its
     things."""
+    if clause.verb and re.search(r"^\w+ \w+sel(?:f|ves)\b", clause.text) and (row := _moved(clause)):
+        return row
     meant = _meant(clause, about)
     return (said_row(meant) if meant != clause else None) or said_row(clause) or _by_things(clause, about)
 
@@ -270,6 +300,8 @@ def _by_things(clause: Clause, about: str) -> DeedRow | None:
         return DeedRow((clause.verb,), Skill.LOCO)
     if clause.verb in _EXPRESSED:
         return None
+    if clause.verb and (row := _moved(clause)):
+        return row
     if not clause.verb or clause.verb in _STATES:
         return None
     if any(affords(piece, "touch") for piece in _named(clause, "" if "them" in clause.lemmas else about)) or (
@@ -279,10 +311,23 @@ def _by_things(clause: Clause, about: str) -> DeedRow | None:
     return DeedRow((clause.verb,), Skill.LOCO) if _WAYS.search(clause.text) else None
 
 
+def _moved(clause: Clause) -> DeedRow | None:
+    """Whoever moves into a seat sits, onto a bed lies, and out of either rises, by whatever verb: "falls into the
+    armchair", "heaves himself out of the chair"."""
+    found = _INTO.search(clause.text)
+    piece = next(iter(pieces_in(found[2])), "") if found else ""
+    if found is None or not affords(piece, "sit"):
+        return None
+    lies = affords(piece, "lie")
+    if found[1] in ("out of", "from", "off"):
+        return DeedRow((clause.verb,), Skill.GETUP if lies else Skill.STANDUP)
+    return DeedRow((clause.verb,), Skill.LIEDOWN if lies else Skill.SITDOWN)
+
+
 def _is_done_to_things(clause: Clause) -> bool:
     """Whether the first noun after a verb, or what "it" means, is a thing: not in "calls her cousin, a bag in hand"."""
     known = things()
-    first = next((word for word in clause.lemmas[1:] if word in known or word in _IT or is_noun(word)), "")
+    first = next((word for word in clause.lemmas[1:] if word in known or word in _IT or _may_be_noun(word)), "")
     return first in known or first in _IT or bool(_AT.search(clause.text))
 
 

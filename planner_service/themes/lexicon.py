@@ -26,6 +26,8 @@ class EnglishGrammar:
     marks: Words
     """What stands before a noun."""
     numbers: Words
+    times: Words
+    """Words that tell when, and nothing more."""
     prepositions: Words
     adverbs: Words
     joints: Words

@@ -31,11 +31,7 @@ _SUPPOSING: Final = frozenset(("if", "unless"))
 _RELATIVES: Final = frozenset(("that", "which", "who"))
 _MANNER: Final = frozenset(("way", "time", "moment", "minute", "day", "night", "morning", "year"))
 """Nouns that say no more than how or when what is told of them was: "the way he was taught"."""
-_TIMES: Final = _MANNER | frozenset(
-    "today tonight tomorrow yesterday evening afternoon hour week weekend month second later ago midnight noon dawn dusk monday tuesday wednesday thursday "
-    "friday saturday sunday soon long last past half quarter late early".split()
-)
-"""Words that tell when, and nothing more."""
+
 _SENSES: Final = frozenset(("hear", "see", "watch", "listen", "feel", "notice", "let", "overhear"))
 """Verbs beside which stands what somebody else does: "hears the door slam"."""
 _STAYS: Final = frozenset(("sit", "lie", "stand", "lean", "rest", "kneel", "stay", "wait", "be", "walk", "go", "run"))
@@ -137,7 +133,9 @@ def _sharing(before: Clause, parts: list[Clause]) -> list[Clause]:
         parts = [replace(part, verb=word) if part is first else part for part in parts]
         first = next(part for part in parts if part.text == first.text)
     shares = before.denied and first.verb and not first.subject and first.joint in ("or", "nor", "and", ",")
-    bare = first.text.split(" ", 1)[0].lower() == first.verb and re.search(rf"\b{re.escape(before.verb)}\b", before.text)
+    bare = first.text.split(" ", 1)[0].lower() == first.verb and re.search(
+        rf"\b{re.escape(before.verb)}\b", before.text
+    )
     plain_present = first.joint != "or" and before.doer.lower() in ("i", "you", "we", "they")
     if not shares or not bare or plain_present:
         return unshared
@@ -311,11 +309,12 @@ def _whole(pieces: list[_Piece]) -> list[_Piece]:
             mark = _comma(waiting) if piece.joint == "," else ()
             piece = replace(piece, joint=joint, tokens=(*waiting.tokens, *mark, *piece.tokens))
             waiting = None
-        if verb_place(piece.tokens) is not None and not (whole and _is_noun_list(whole[-1], piece)):
+        beside = bool(whole) and len(piece.tokens) == 1 and _goes_beside(piece)  # "answers, pacing"
+        if (beside or verb_place(piece.tokens) is not None) and not (whole and _is_noun_list(whole[-1], piece)):
             whole.append(piece)
         elif whole and not led and _is_loose(whole[-1], piece, pieces[place + 1 :]):
             whole.append(piece)
-        elif whole and not (led or _opens(piece, pieces[place + 1 :]) or _leads(piece, pieces[place + 1 :])):
+        elif whole and not (led or _opens(piece, pieces[place + 1 :]) or _leads(whole[-1], piece, pieces[place + 1 :])):
             mark = _comma(whole[-1]) if piece.tokens[0].low in grammar().prepositions else ()
             whole[-1] = replace(whole[-1], tokens=(*whole[-1].tokens, *mark, *piece.tokens))
         else:
@@ -333,7 +332,9 @@ def _is_loose(last: _Piece, piece: _Piece, after: Sequence[_Piece]) -> bool:
     listed = any(one.joint in ("and", "or", "plus") for one in after[:run])
     verb = verb_place(last.tokens)
     own = next((token.low for token in reversed(last.tokens[(verb or 0) + 1 :]) if token.low in known.marks), "")
-    return not listed and verb is not None and first != own and not _opens(piece, after) and not _leads(piece, after)
+    return (
+        not listed and verb is not None and first != own and not _opens(piece, after) and not _leads(last, piece, after)
+    )
 
 
 def _comma(piece: _Piece) -> tuple[Token, ...]:
@@ -350,11 +351,14 @@ def _opens(piece: _Piece, after: Sequence[_Piece]) -> bool:
     return after[0].joint == "," and (first.low in grammar().subjects or first.text[:1].isupper())
 
 
-def _leads(piece: _Piece, after: Sequence[_Piece]) -> bool:
+def _leads(last: _Piece, piece: _Piece, after: Sequence[_Piece]) -> bool:
     """Whether a name is who does what follows what is told of them: "and Elspeth, still in her gown, beats them"."""
     named = len(piece.tokens) <= 2 and piece.tokens[0].text[:1].isupper() and not is_noun(piece.tokens[0].low)
     acting = next((one for one in after[:2] if verb_place(one.tokens) == 0), None)
-    return named and piece.joint in ("and", "but", "so", "while") and acting is not None
+    led = (
+        piece.joint == "," and last.joint in grammar().earlier | _LATER_JOINTS
+    )  # "while it boils, Tom, in his apron, …"
+    return named and (led or piece.joint in ("and", "but", "so", "while")) and acting is not None
 
 
 def _is_noun_list(last: _Piece, piece: _Piece) -> bool:
@@ -434,7 +438,9 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
     words, told_of = _without_asides(words, group.place)
     lemmas = _lemmas(words[group.place :])
     too = place > 2 and tokens[place - 1].low == "to" and any(token.low == "too" for token in tokens[:place])
-    hindered = too or joint in ("before", "until") and words[0].low in ("can", "could")  # "too proud to ask", "before he could drink it"
+    hindered = (
+        too or joint in ("before", "until") and words[0].low in ("can", "could")
+    )  # "too proud to ask", "before he could drink it"
     first = Clause(
         _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, joint, denied=group.denied or hindered,
         unable=group.unable, perfect=group.perfect, past=is_past(words, group), aside=supposed,
@@ -465,7 +471,9 @@ def _clause(piece: _Piece, quotes: Sequence[str], sentence: int) -> list[Clause]
 def _besides(tokens: Sequence[Token], subject: str, before: Sequence[Token]) -> list[list[Token]]:
     """What is told before a verb of who does it, and of nothing else: "Barefoot, | her hair wet, | Anna walks in"."""
     own = subject.split()
-    starts = (at for at in range(len(tokens) - len(own), -1, -1) if [one.text for one in tokens[at : at + len(own)]] == own)
+    starts = (
+        at for at in range(len(tokens) - len(own), -1, -1) if [one.text for one in tokens[at : at + len(own)]] == own
+    )
     at = next(starts, 0) if own else 0
     taken = {*before, *tokens[at : at + len(own)]}
     stretches = groupby(tokens, lambda token: token.text[0] not in ",«" and token not in taken)
@@ -486,7 +494,7 @@ def _tells_something(words: Sequence[Token]) -> bool:
     known = grammar()
     small = known.adverbs | known.prepositions | known.marks | known.joints | known.auxiliaries | known.numbers
     said = (token.low for token in words if token.text[:1].isalpha() and token.low not in small | known.subjects)
-    return any(lemma_of(low) not in _TIMES for low in said)
+    return any(lemma_of(low) not in _MANNER | grammar().times for low in said)
 
 
 def _without_asides(words: list[Token], main: int) -> tuple[list[Token], list[list[Token]]]:
@@ -516,7 +524,9 @@ def _listed_places(words: list[Token], main: int) -> tuple[list[Token], list[lis
     links = {",", "and", "or", "then"}
     for at in range(main + 2, len(words) - 1):
         opens = words[at - 1].low in links and words[at].low in known.prepositions
-        first = any(_names_place(words[start:at]) for start in range(main + 1, at) if words[start].low in known.prepositions)
+        first = any(
+            _names_place(words[start:at]) for start in range(main + 1, at) if words[start].low in known.prepositions
+        )
         end = next((place for place in range(at + 1, len(words)) if words[place].low in links), len(words))
         stays = words[at - 1].low != "then" and lemma_of(words[main].low) in _STAYS
         if opens and first and not stays and _names_place(words[at:end]):
@@ -550,8 +560,15 @@ def _sensed(words: Sequence[Token], main: int) -> int:
         doing = verb_of(low) == low and not is_adjective(low) or (low.endswith("ing") and bool(verb_of(low)))
         marked = any(token.low in grammar().marks for token in words[main + 1 : place - 1]) and is_noun(before)
         after = words[place + 1].low if place + 1 < len(words) else ""
-        goes_on = not after or after in grammar().prepositions | grammar().marks | grammar().adverbs or after.endswith("ly")
-        if doing and goes_on and before not in grammar().prepositions | grammar().marks and (marked or before in _OBJECTS):
+        goes_on = (
+            not after or after in grammar().prepositions | grammar().marks | grammar().adverbs or after.endswith("ly")
+        )
+        if (
+            doing
+            and goes_on
+            and before not in grammar().prepositions | grammar().marks
+            and (marked or before in _OBJECTS)
+        ):
             return place
     return 0
 
@@ -673,6 +690,9 @@ def _subject(tokens: Sequence[Token]) -> str:
     parts = [list(part) for is_mark, part in groupby(tokens, lambda token: token.text == ",") if not is_mark]
     if len(parts) > 1:  # "the baker, up since two, …", "one evening, Anna, tired, …"
         last = next((at for at in reversed(range(len(parts))) if _may_act(parts[at])), 0)
+        named = next((at for at, part in enumerate(parts) if len(part) == 1 and _is_called([part[0].text])), last)
+        if named < last and parts[last][0].low in _ARTICLES:  # "Mira, the tidy one, …"
+            parts, last = [parts[named]], 0
         tokens = [token for part in parts[last:] for token in part]
     words = [token.text for token in tokens if token.text != ","]
     while words and (words[-1].lower() in grammar().adverbs or words[-1].lower().endswith("ly")):
@@ -683,7 +703,10 @@ def _subject(tokens: Sequence[Token]) -> str:
         words.pop()  # "Daniel, unshaven, …"
     if words and words[0].lower() == "to":
         return ""
-    if words and (_describes(words) or all(word.lower() in _TIMES | grammar().marks | {"one"} for word in words)):
+    if words and (
+        _describes(words)
+        or all(word.lower() in _MANNER | grammar().times | grammar().marks | {"one"} for word in words)
+    ):
         return ""
     while words and (words[0].lower() in grammar().adverbs or words[0].lower() in grammar().joints):
         words.pop(0)

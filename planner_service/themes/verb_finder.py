@@ -193,4 +193,4 @@ def _goes_on(after: str) -> bool:
     """Whether a verb may go on with a word, or end there."""
     known = grammar()
     goes = known.marks | known.prepositions | known.adverbs | known.subjects | known.numbers | _OBJECTS | _PARTICLES
-    return not after or after in goes or after.endswith("ly")
+    return not after or after in goes or after.endswith(("ly", "'s"))

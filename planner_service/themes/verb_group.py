@@ -11,6 +11,9 @@ from planner_service.themes.verb_finder import Token, verb_place
 
 _EXPECTED: Final = frozenset(("supposed", "meant", "expected", "due", "scheduled"))
 """What is only wished for by others: "is supposed to revise"."""
+_LETTING: Final = frozenset(("let", "make", "force", "allow", "bring"))
+_ONESELF: Final = frozenset(("himself", "herself", "themselves", "themself", "myself", "yourself"))
+"""Who lets or makes themselves do a thing does it."""
 _MAX_WORDS: Final = 6
 """Words within which the deed of an aspect stands: "spends the whole long evening reading"."""
 
@@ -73,6 +76,8 @@ def _step(words: Sequence[Token], group: VerbGroup) -> int:
     if low in grammar().auxiliaries and (low in grammar().modals or _verb_follows(words, at) or _hinders(words, at)):
         group.perfect |= low == "had"
         return 1
+    if base in _LETTING and ahead in _ONESELF:  # "lets himself sit", "forces herself to eat"
+        return 3 if [token.low for token in words[at + 2 : at + 3]] == ["to"] else 2
     if low == "used" and ahead == "to":  # "used to play", and does so no more
         group.perfect = True
         return 2

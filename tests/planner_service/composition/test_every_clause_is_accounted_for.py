@@ -28,7 +28,9 @@ BESIDES = ("quilted slippers", "a bag of plums", "barefoot as ever", "under prot
 LEADS = ("Barefoot", "Sour as vinegar", "Her umbrella dripping", "Up since two")
 OTHERS = ("the kettle whistles", "her cousin yodels", "the neighbours quarrel")
 JOINTS = (", ", " and ", ", then ", " but ", " before she ", " while ", "; ", ". She ")
-SMALL = frozenset("a the she her and then but before while does not never to of as ever since under like on refuses".split())
+SMALL = frozenset(
+    "a the she her and then but before while does not never to of as ever since under like on refuses".split()
+)
 
 
 @dataclass(frozen=True)
