@@ -28,7 +28,9 @@ _SLANG: Final = {
 }  # fmt: skip
 _LONG: Final = (
     ("by the time", "when"), ("rather than", "instead of"), ("(?<!the )till", "until"), ("which is to say", "and"),
-    ("as soon as", "when"), ("(?:every|each) time(?= (?:i|he|she|they|we|the|his|her|my)\\b)", "whenever"), ("at (?:long )?last|in the end", "finally"),
+    ("as soon as", "when"),
+    ("(?:every|each) time(?= (?:i|he|she|they|we|the|his|her|my)\\b)", "whenever"),
+    ("at (?:long )?last|in the end", "finally"),
 )  # fmt: skip
 """Joints of several words, and those that say the same."""
 _SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|had|have|should)nt\b")

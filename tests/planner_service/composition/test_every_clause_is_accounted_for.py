@@ -1,4 +1,4 @@
-"""Whatever a theme says ends in one place: acted by keyframes, or named as not acted; and nothing else is told as done."""
+"""Whatever a theme says is acted by keyframes or named as not acted, and what is not acted is not told as done."""
 
 from __future__ import annotations
 
@@ -28,9 +28,7 @@ BESIDES = ("quilted slippers", "a bag of plums", "barefoot as ever", "under prot
 LEADS = ("Barefoot", "Sour as vinegar", "Her umbrella dripping", "Up since two")
 OTHERS = ("the kettle whistles", "her cousin yodels", "the neighbours quarrel")
 JOINTS = (", ", " and ", ", then ", " but ", " before she ", " while ", "; ", ". She ")
-SMALL = frozenset(
-    "a the she her and then but before while does not never to of as ever since under like on refuses".split()
-)
+SMALL = "a the she her and then but before while does not never to of as ever since under like on refuses"
 
 
 @dataclass(frozen=True)
@@ -77,7 +75,7 @@ def planned(theme: str) -> LongScript | None:
 
 def words_of(*texts: str) -> set[str]:
     """Words that tell something."""
-    return set(re.findall(r"[a-z]+", " ".join(texts).lower())) - SMALL
+    return set(re.findall(r"[a-z]+", " ".join(texts).lower())) - {*SMALL.split()}
 
 
 @tries(100)

@@ -1,0 +1,144 @@
+"""What a clause tells beside its deed: of a noun, of who does it, what others are heard doing, and where else."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import groupby
+from typing import Final
+
+from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_third_person, lemma_of, verb_of
+from planner_service.themes.theme_words import theme_words
+from planner_service.themes.verb_finder import Token, verb_place
+from scene_graphs.furniture import is_known
+
+THAT: Final = frozenset(("that", "how", "what", "why", "if", "whether", "which", "who"))
+"""What joins a clause that is an object: "finds that he won"."""
+RELATIVES: Final = frozenset(("that", "which", "who"))
+MANNER: Final = frozenset(("way", "time", "moment", "minute", "day", "night", "morning", "year"))
+"""Nouns that say no more than how or when what is told of them was: "the way he was taught"."""
+_SENSES: Final = frozenset(("hear", "see", "watch", "listen", "feel", "notice", "let", "overhear"))
+"""Verbs beside which stands what somebody else does: "hears the door slam"."""
+_STAYS: Final = frozenset(("sit", "lie", "stand", "lean", "rest", "kneel", "stay", "wait", "be", "walk", "go", "run"))
+"""Verbs after which a second place says more of the first."""
+ARTICLES: Final = frozenset(("the", "a", "an"))
+_OBJECTS: Final = frozenset(("him", "her", "them", "it", "me", "us"))
+OWNERS: Final = frozenset(("his", "her", "their", "its", "my", "our"))
+
+
+def besides_of(tokens: Sequence[Token], subject: str, before: Sequence[Token]) -> list[list[Token]]:
+    """What is told before a verb of who does it, and of nothing else: "Barefoot, | her hair wet, | Anna walks in"."""
+    own = subject.split()
+    starts = (
+        at for at in range(len(tokens) - len(own), -1, -1) if [one.text for one in tokens[at : at + len(own)]] == own
+    )
+    at = next(starts, 0) if own else 0
+    taken = {*before, *tokens[at : at + len(own)]}
+    stretches = groupby(tokens, lambda token: token.text[0] not in ",«" and token not in taken)
+    told = [words for is_told, some in stretches if is_told and _tells_something(words := list(some))]
+    first = tokens[at] if own else None
+    return [words for words in told if not _only_marks(words, first)]
+
+
+def _only_marks(words: Sequence[Token], subject: Token | None) -> bool:
+    """Whether words only stand before a subject as part of it: "old" before "Mr. Finch"."""
+    known = grammar()
+    small = all(token.low in known.marks | known.numbers or is_adjective(token.low) for token in words)
+    return subject is not None and small and words[-1].end + 1 == subject.start
+
+
+def _tells_something(words: Sequence[Token]) -> bool:
+    """Whether words say more than when, and how often: "her hair wet", not "one evening" and "now"."""
+    known = grammar()
+    small = known.adverbs | known.prepositions | known.marks | known.joints | known.auxiliaries | known.numbers
+    said = (token.low for token in words if token.text[:1].isalpha() and token.low not in small | known.subjects)
+    return any(lemma_of(low) not in MANNER | grammar().times for low in said)
+
+
+def without_asides(words: list[Token], main: int) -> tuple[list[Token], list[list[Token]]]:
+    """The words of a clause, and those after a noun that tell of it with a verb of their own: "the flour | the cat has
+    spilled", "a call | that never comes"; but "is told on the phone that he has won", which is what is said."""
+    if place := _sensed(words, main):
+        return words[:place], [words[place:]]
+    says = any(lemma_of(word.low) in theme_words()["speech_verbs"] for word in words[main : main + 2])
+    for place in range(main + 2, len(words) - 1):
+        low, after = words[place].low, words[place + 1 :]
+        if says and low == "that":
+            break
+        if low in RELATIVES:
+            tells = verb_place(after[:3]) == 0 or tells(after)
+        else:
+            tells = low in grammar().subjects | ARTICLES | OWNERS and tells(words[place:])
+        if tells and ends_noun(words[place - 2].low, words[place - 1].low):
+            cut = place - 2 * (words[place - 1].low in MANNER and words[place - 2].low in grammar().marks)
+            return words[:cut], [words[place:]]
+    return words, []
+
+
+def listed_places(words: list[Token], main: int) -> tuple[list[Token], list[list[Token]]]:
+    """The words of a clause up to its first place, and further places where the same is done: "looks under the bed, |
+    behind the sofa | and in the oven"; but "sits on the sofa, next to the lamp" is one place."""
+    known, cuts = grammar(), list[int]()
+    links = {",", "and", "or", "then"}
+    for at in range(main + 2, len(words) - 1):
+        opens = words[at - 1].low in links and words[at].low in known.prepositions
+        first = any(
+            _names_place(words[start:at]) for start in range(main + 1, at) if words[start].low in known.prepositions
+        )
+        end = next((place for place in range(at + 1, len(words)) if words[place].low in links), len(words))
+        stays = words[at - 1].low != "then" and lemma_of(words[main].low) in _STAYS
+        if opens and first and not stays and _names_place(words[at:end]):
+            cuts.append(at)
+    if not cuts:
+        return words, []
+    stretches = [words[start:end] for start, end in zip([0, *cuts], [*cuts, len(words)], strict=True)]
+    bare = [_unlinked(some, links) for some in stretches]
+    return bare[0], bare[1:]
+
+
+def _names_place(words: Sequence[Token]) -> bool:
+    """Whether a stretch that a preposition opens ends with furniture: "behind the old sofa"."""
+    return 1 < len(words) <= 5 and any(is_known(token.low) for token in words[1:])
+
+
+def _unlinked(words: list[Token], links: set[str]) -> list[Token]:
+    while words and words[-1].low in links:
+        words = words[:-1]
+    return words
+
+
+def _sensed(words: Sequence[Token], main: int) -> int:
+    """Where the verb stands of what somebody else is heard or seen doing: "hears the door | slam"; 0 for none."""
+    if not words or lemma_of(words[main].low) not in _SENSES:
+        return 0
+    small = grammar().prepositions | grammar().marks
+    for place in range(main + 2, len(words)):
+        low, before = words[place].low, words[place - 1].low
+        if low in grammar().subjects | THAT | {"and", "or", ",", "to"}:
+            return 0
+        doing = (verb_of(low) == low and not is_adjective(low)) or (low.endswith("ing") and bool(verb_of(low)))
+        marked = any(token.low in grammar().marks for token in words[main + 1 : place - 1]) and is_noun(before)
+        after = words[place + 1].low if place + 1 < len(words) else ""
+        goes_on = not after or after in small | grammar().adverbs or after.endswith("ly")
+        if doing and goes_on and before not in small and (marked or before in _OBJECTS):
+            return place
+    return 0
+
+
+def ends_noun(before: str, word: str) -> bool:
+    """Whether a word is a noun, told by the word before it where it may be an adjective too: "the light"."""
+    known = grammar()
+    if word == "one" or word in known.marks | known.prepositions | known.subjects or verb_of(before) == "let":
+        return False
+    return is_noun(word) and (not is_adjective(word) or before in known.marks)
+
+
+def tells(words: Sequence[Token]) -> bool:
+    """Whether words begin with a subject and its finite verb."""
+    place = verb_place(words[:5])
+    if not place or (words[0].low in ARTICLES | OWNERS and place < 2):
+        return False
+    if any(token.low in grammar().prepositions | grammar().subjects for token in words[1:place]):
+        return False
+    word = words[place].low
+    finite = word != verb_of(word) and not word.endswith("ing")
+    return finite or word in grammar().auxiliaries or is_third_person(word)

@@ -1,0 +1,262 @@
+"""Sentences cut at commas and joining words into pieces with one verb each, and put in the order of time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+from planner_service.themes.asides import ARTICLES, OWNERS, THAT, ends_noun, tells
+from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_third_person, lemma_of, verb_of
+from planner_service.themes.theme_words import theme_words
+from planner_service.themes.things import things
+from planner_service.themes.verb_finder import Token, is_plural, plain, tokens_of, verb_place
+
+HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
+_LATER_JOINTS: Final = frozenset(("before", "until", "while"))
+_NO_JOINTS: Final = {"once": ("at", "for", "more", "all"), "while": ("a", "long", "little", "short")}
+"""What joining words stand after where they join nothing: "at once", "for a while"."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A stretch of a sentence, the joint before it, and where its verb stands."""
+
+    joint: str
+    tokens: tuple[Token, ...]
+    source: str = field(repr=False)
+
+    @property
+    def text(self) -> str:
+        return self.source[self.tokens[0].start : self.tokens[-1].end] if self.tokens else ""
+
+
+def pieces_of(sentence: str) -> list[Piece]:
+    """The sentence cut at commas and joining words, wherever a verb follows."""
+    source = plain(sentence)
+    tokens = tokens_of(source)
+    cut: list[Piece] = []
+    joint, current = "", list[Token]()
+    for place, token in enumerate(tokens):
+        is_joint = token.low in grammar().joints and _joins(tokens, place)
+        if token.text == "," or (is_joint and (not current or _may_end(token.low, cut, current))):
+            if current:
+                cut.append(Piece(joint, tuple(current), source))
+                joint, current = "", []
+            joint = token.low if joint in ("", ",", "and", "but") and token.text != "," else joint or ","
+            if token.low in grammar().with_gerund:
+                current.append(token)
+        else:
+            starts = token.low in HEROES or _opens_main(current, tokens[place:])
+            led = starts and is_led(joint, current) and current[-1:] and current[-1].low not in THAT
+            so = led or _is_outcome(current, tokens[place:])
+            if so and verb_place(current) is not None:
+                cut.append(Piece(joint, tuple(current), source))
+                joint, current = "," if led else "so", []
+                if token.low == "that":
+                    continue
+            current.append(token)
+    if current:
+        cut.append(Piece(joint, tuple(current), source))
+    return _whole(cut)
+
+
+def _is_outcome(current: Sequence[Token], rest: Sequence[Token]) -> bool:
+    """Whether words tell what came of it: "laughs so hard | that she falls", "is so tired | he sits down"."""
+    so = next((place for place, token in enumerate(current) if token.low == "so"), None)
+    if so is None or not so + 1 < len(current) <= so + 4:
+        return False
+    after = rest[1:] if rest[0].low == "that" else rest
+    acts = len(after) > 1 and after[0].low in HEROES and after[1].low not in grammar().modals
+    return acts and verb_place(after[:5]) is not None
+
+
+def _opens_main(current: Sequence[Token], rest: Sequence[Token]) -> bool:
+    """Whether a noun and its verb follow what is a whole clause already: "before he drinks it | the baby wakes"."""
+    if not current or current[-1].low in grammar().prepositions | grammar().marks:
+        return False
+    named = rest[0].text[:1].isupper() and not is_noun(rest[0].low)
+    if not named and rest[0].low not in ARTICLES | OWNERS:
+        return False
+    verb, place = verb_place(current), verb_place(rest[1:5])
+    if verb is None or verb == len(current) - 1 or place is None or (place if named else not place or not tells(rest)):
+        return False
+    between = rest[1 : place + 1]
+    return not any(token.low in grammar().marks or token.text[:1].isupper() for token in between)
+
+
+def is_led(joint: str, current: Sequence[Token]) -> bool:
+    """Whether words lead to a clause that has its own subject, with no comma between: "without a word he goes"."""
+    opens = bool(current) and (current[0].low in grammar().with_gerund or current[0].low == "to")
+    return opens or joint in grammar().earlier | _LATER_JOINTS
+
+
+def _joins(tokens: Sequence[Token], place: int) -> bool:
+    """Whether a joining word joins clauses here: "as soon as", "so tired" and "before dinner" do not."""
+    low = tokens[place].low
+    rest = tokens[place + 1 :]
+    if place and tokens[place - 1].low in _NO_JOINTS.get(low, ()):
+        return False
+    ahead = rest[0].low if rest else ""
+    if low in ("though", "if") and place and tokens[place - 1].low == "as":
+        return False
+    if low == "as" and ahead in ("though", "if"):
+        return True
+    if low == "so" and ahead not in grammar().subjects and (is_adjective(ahead) or ahead.endswith("ly")):
+        return False  # "so fast that he forgets"
+    if low == "as":
+        return bool(rest) and rest[0].low in grammar().subjects | grammar().marks and verb_place(rest[:6]) is not None
+    if low == "then":
+        return bool(rest)
+    if low in ("so", "yet", "or"):
+        return bool(rest) and (rest[0].low in grammar().subjects or (low != "yet" and verb_place(rest[:2]) is not None))
+    if low in ("once", "since", "after", "before", "until") and _is_noun_before_subject(rest):
+        return False  # "since the accident he …"
+    if low in ("once", "since", "where"):
+        opens = bool(rest) and (rest[0].low in grammar().marks or rest[0].text[:1].isupper())
+        is_subject = bool(rest) and rest[0].low in grammar().subjects
+        return is_subject or (opens and verb_place(rest[:5]) not in (None, 0))
+    if low in ("after", "before", "until", "without", "instead"):
+        return bool(rest) and (
+            _starts_gerund(rest) or rest[0].low in grammar().subjects or (low != "instead" and _clause_follows(rest))
+        )
+    return True
+
+
+def _is_noun_before_subject(rest: Sequence[Token]) -> bool:
+    """Whether a noun, and no clause, stands between a joint and who does what follows: "since the accident | he …"."""
+    place = next((at for at, token in enumerate(rest[:5]) if token.low in HEROES), 0)
+    return place > 1 and rest[0].low not in grammar().subjects and verb_place(rest[:place]) is None
+
+
+def _may_end(joint: str, cut: Sequence[Piece], current: Sequence[Token]) -> bool:
+    """Whether what stands before a joint can be a clause, or the end of one that lists things: not "a nurse" of
+    "a nurse after a night shift", but "a pear" of "eats a plum and a pear after dinner is cooked"."""
+    if joint not in grammar().earlier | {"before", "until", "without"}:
+        return True
+    return any(verb_place(told) is not None for told in (current, *(piece.tokens for piece in reversed(cut))))
+
+
+def _starts_gerund(rest: Sequence[Token]) -> bool:
+    at = 1 if rest[0].low in ("of", "even", "ever", "finally") and len(rest) > 1 else 0
+    word = rest[at].low
+    return word.endswith("ing") and bool(verb_of(word))
+
+
+def _clause_follows(rest: Sequence[Token]) -> bool:
+    """Whether a subject and its verb follow before the next comma: "after the phone rings", not "after dinner"."""
+    end = next((i for i, token in enumerate(rest) if token.text == "," or token.low in ("and", "but")), len(rest))
+    head = list(rest[: min(end, 6)])
+    place = verb_place(head)
+    return place is not None and place > 0
+
+
+def _whole(pieces: list[Piece]) -> list[Piece]:
+    """Pieces without a verb put to the one before ("bread and butter"), or to the one after ("one evening, …")."""
+    if all(verb_place(piece.tokens) is None for piece in pieces) and all(piece.joint in ("", ",") for piece in pieces):
+        return pieces  # "stretch, shower, news"
+    whole: list[Piece] = []
+    waiting: Piece | None = None
+    for place, piece in enumerate(pieces):
+        led = waiting is not None
+        if waiting is not None:
+            joint = waiting.joint if waiting.joint not in (",", "") else piece.joint if piece.joint != "," else ""
+            mark = _comma(waiting) if piece.joint == "," else ()
+            piece = replace(piece, joint=joint, tokens=(*waiting.tokens, *mark, *piece.tokens))
+            waiting = None
+        beside = bool(whole) and len(piece.tokens) == 1 and _goes_beside(piece)  # "answers, pacing"
+        acts = (beside or verb_place(piece.tokens) is not None) and not (whole and _is_noun_list(whole[-1], piece))
+        if acts or (whole and not led and _is_loose(whole[-1], piece, pieces[place + 1 :])):
+            whole.append(piece)
+        elif whole and not (led or _opens(piece, pieces[place + 1 :]) or _leads(whole[-1], piece, pieces[place + 1 :])):
+            mark = _comma(whole[-1]) if piece.tokens[0].low in grammar().prepositions else ()
+            whole[-1] = replace(whole[-1], tokens=(*whole[-1].tokens, *mark, *piece.tokens))
+        else:
+            waiting = piece
+    return [*whole, waiting] if waiting is not None else whole
+
+
+def _is_loose(last: Piece, piece: Piece, after: Sequence[Piece]) -> bool:
+    """Whether words without a verb are told beside a clause and are no part of it: "sinks into the armchair, | a glass
+    in his hand", but "eats a plum, a pear and cheese"."""
+    known, first = grammar(), piece.tokens[0].low
+    if piece.joint != "," or first in known.prepositions | known.adverbs | known.joints or len(piece.tokens) < 2:
+        return False
+    run = next((at for at, one in enumerate(after) if verb_place(one.tokens) is not None), len(after))
+    listed = any(one.joint in ("and", "or", "plus") for one in after[:run])
+    verb = verb_place(last.tokens)
+    own = next((token.low for token in reversed(last.tokens[(verb or 0) + 1 :]) if token.low in known.marks), "")
+    return (
+        not listed and verb is not None and first != own and not _opens(piece, after) and not _leads(last, piece, after)
+    )
+
+
+def _comma(piece: Piece) -> tuple[Token, ...]:
+    """The comma behind a piece: "The baker, up since two, wipes the glass" has no "two wipes"."""
+    end = piece.tokens[-1].end
+    return (Token(",", end, end + 1),)
+
+
+def _opens(piece: Piece, after: Sequence[Piece]) -> bool:
+    """Whether a place or time belongs to the clause after it: "…, and in the kitchen, she cooks"."""
+    if piece.joint == "," or piece.tokens[0].low not in grammar().prepositions or not after:
+        return False
+    first = after[0].tokens[0]
+    return after[0].joint == "," and (first.low in grammar().subjects or first.text[:1].isupper())
+
+
+def _leads(last: Piece, piece: Piece, after: Sequence[Piece]) -> bool:
+    """Whether a name is who does what follows what is told of them: "and Elspeth, still in her gown, beats them"."""
+    named = len(piece.tokens) <= 2 and piece.tokens[0].text[:1].isupper() and not is_noun(piece.tokens[0].low)
+    acting = next((one for one in after[:2] if verb_place(one.tokens) == 0), None)
+    led = (
+        piece.joint == "," and last.joint in grammar().earlier | _LATER_JOINTS
+    )  # "while it boils, Tom, in his apron, …"
+    return named and (led or piece.joint in ("and", "but", "so", "while")) and acting is not None
+
+
+def _is_noun_list(last: Piece, piece: Piece) -> bool:
+    """Whether a single word goes on with the nouns before it: "cakes and drinks", but not "eats and drinks"."""
+    words = piece.tokens
+    if [word.low for word in words if word.low != "up"] == ["standing"]:
+        return True  # "eats from the pot, standing up"
+    verb = verb_place(words) or 0
+    if piece.joint in ("and", "or", ",") and verb > 2 and words[verb - 1].low in grammar().subjects and last.tokens:
+        return words[0].low in ARTICLES | OWNERS and ends_noun(words[verb - 3].low, words[verb - 2].low)
+    if len(words) > 1 or not is_noun(words[0].low):
+        return False
+    end, word = last.tokens[-1].low, words[0].low
+    if {end, word} <= theme_words()["body"]:
+        return True  # "on his hands and knees"
+    if is_third_person(word):
+        listed = is_plural(end) and len(last.tokens) > 2 and last.tokens[-2].low not in grammar().marks
+        return listed and (piece.joint != "," or word in things() or lemma_of(word) in things())
+    return is_noun(end) and word == verb_of(word)
+
+
+def in_time(pieces: Sequence[Piece]) -> list[int]:
+    """Places of pieces in the order they happen: "B after A" is A, B; "before B, A" is A, B."""
+    ordered: list[int] = []
+    later = len(pieces) > 1 and pieces[0].joint == "before"
+    first_is_later = len(pieces) > 1 and pieces[0].joint in ("until", "instead", "without")
+    for place, piece in enumerate(pieces):
+        if ordered and piece.joint in grammar().earlier:
+            main = pieces[ordered[-1]]
+            verb = verb_place(main.tokens)
+            is_state = verb is not None and main.tokens[verb].low in grammar().be
+            if piece.joint == "as" or (is_state and piece.joint != "after"):
+                ordered.append(place)
+            else:
+                ordered.insert(len(ordered) - 1, place)
+        elif place - 1 in ordered[:-1] and _goes_beside(piece):  # "switches it on after she has sat there, | listening"
+            ordered.insert(ordered.index(place - 1) + 1, place)
+        else:
+            ordered.append(place)
+    if later:
+        return [*ordered[1:], ordered[0]]
+    return [*ordered[1:2], ordered[0], *ordered[2:]] if first_is_later else ordered
+
+
+def _goes_beside(piece: Piece) -> bool:
+    """Whether a gerund tells what else was done in the clause just before it."""
+    return piece.joint == "," and piece.tokens[0].low.endswith("ing") and bool(verb_of(piece.tokens[0].low))
