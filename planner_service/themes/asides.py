@@ -65,10 +65,10 @@ def without_asides(words: list[Token], main: int) -> tuple[list[Token], list[lis
         if says and low == "that":
             break
         if low in RELATIVES:
-            tells = verb_place(after[:3]) == 0 or tells(after)
+            is_told = verb_place(after[:3]) == 0 or tells(after)
         else:
-            tells = low in grammar().subjects | ARTICLES | OWNERS and tells(words[place:])
-        if tells and ends_noun(words[place - 2].low, words[place - 1].low):
+            is_told = low in grammar().subjects | ARTICLES | OWNERS and tells(words[place:])
+        if is_told and ends_noun(words[place - 2].low, words[place - 1].low):
             cut = place - 2 * (words[place - 1].low in MANNER and words[place - 2].low in grammar().marks)
             return words[:cut], [words[place:]]
     return words, []
