@@ -28,14 +28,16 @@ OWNERS: Final = frozenset(("his", "her", "their", "its", "my", "our"))
 def besides_of(tokens: Sequence[Token], subject: str, before: Sequence[Token]) -> list[list[Token]]:
     """What is told before a verb of who does it, and of nothing else: "Barefoot, | her hair wet, | Anna walks in"."""
     own = subject.split()
-    starts = (
-        at for at in range(len(tokens) - len(own), -1, -1) if [one.text for one in tokens[at : at + len(own)]] == own
-    )
-    at = next(starts, 0) if own else 0
-    taken = {*before, *tokens[at : at + len(own)]}
+    texts = [token.text for token in tokens]
+    starts = (at for at in range(len(tokens) - len(own), -1, -1) if texts[at : at + len(own)] == own)
+    at = next(starts, len(tokens)) if own else len(tokens)  # who says it may stand behind the verb
+    opening = next((token for token in tokens if token.text in own[:1]), None)
+    comma = next((place for place, token in enumerate(tokens) if token.text == ","), len(tokens))
+    parted = tokens[tokens.index(opening) : comma] if opening else ()  # "the baker, | up since two, wipes"
+    taken = {*before, *(tokens[at : at + len(own)] or parted)}
     stretches = groupby(tokens, lambda token: token.text[0] not in ",«" and token not in taken)
     told = [words for is_told, some in stretches if is_told and _tells_something(words := list(some))]
-    first = tokens[at] if own else None
+    first = next(iter(tokens[at:]), None)
     return [words for words in told if not _only_marks(words, first)]
 
 

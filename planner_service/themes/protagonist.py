@@ -261,7 +261,7 @@ def is_person(subject: str) -> bool:
         return True
     if len(head) > 4 and head.endswith(("er", "or")):  # a "baker" is one who bakes
         stem = head.lower()[:-2]
-        return is_third_person(f"{stem}s") or is_third_person(f"{stem}es")
+        return any(kinds_of(verb) and is_third_person(verb) for verb in (f"{stem}s", f"{stem}es"))
     return len(head) > 5 and head.lower().endswith(("ist", "ian", "man", "woman", "person", "ress"))
 
 

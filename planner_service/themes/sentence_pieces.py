@@ -207,7 +207,7 @@ def _opens(piece: Piece, after: Sequence[Piece]) -> bool:
 
 def _leads(last: Piece, piece: Piece, after: Sequence[Piece]) -> bool:
     """Whether a name is who does what follows what is told of them: "and Elspeth, still in her gown, beats them"."""
-    named = len(piece.tokens) <= 2 and piece.tokens[0].text[:1].isupper() and not is_noun(piece.tokens[0].low)
+    named = len(piece.tokens) <= 2 and piece.tokens[0].text[:1].isupper()
     acting = next((one for one in after[:2] if verb_place(one.tokens) == 0), None)
     led = (
         piece.joint == "," and last.joint in grammar().earlier | _LATER_JOINTS
