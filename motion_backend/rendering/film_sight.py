@@ -16,6 +16,7 @@ from motion_backend.motion import Motion
 from motion_backend.rendering.rasterizer import Camera
 from motion_backend.rendering.renderer import Solid, nearness_of
 from motion_backend.rotations import Array
+from motion_backend.skeleton import INDEX
 
 HEIGHT: Final = 120
 """Pixels of the picture that is looked at."""
@@ -25,6 +26,8 @@ SLACK: Final = 0.06
 """Metres that a body may be behind what hides it: it sinks into cushions, and pixels are large."""
 SHOWN: Final = 0.4
 """The share of its near side from which a body counts as shown: who sits behind a table is."""
+FACED: Final = 0.5
+"""The same of its head."""
 ENOUGH: Final = 0.96
 """The share of looks in which it is."""
 
@@ -39,6 +42,8 @@ class Appearances:
     """(T, V, 3)."""
     areas: Array
     """How much skin is around each vertex. (V,)."""
+    head: NDArray[np.bool_]
+    """Which vertices are the head's. (V,)."""
     aspect: float
     """How many times pictures are as wide as high."""
 
@@ -51,7 +56,7 @@ class Appearances:
         whole = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
         areas = np.zeros(len(mesh.vertices))
         np.add.at(areas, mesh.faces, whole[:, None])
-        return Appearances(vertices, normals, areas, aspect)
+        return Appearances(vertices, normals, areas, mesh.joints[:, 0] == INDEX["head"], aspect)
 
     @cached_property
     def size(self) -> tuple[int, int]:
@@ -59,10 +64,10 @@ class Appearances:
         return round(HEIGHT * self.aspect), HEIGHT
 
     def shares(self, scene: Sequence[Solid], camera: Camera) -> Array:
-        """How much of each body's near side is in the picture with nothing of a scene before it. (T,)."""
+        """How much of each body's near side, and of its head's, is in the picture with nothing before it. (T, 2)."""
         width, height = self.size
         near = nearness_of(scene, camera, self.size) if scene else np.full((height, width), -np.inf)
-        shares = np.zeros(len(self.vertices))
+        shares = np.zeros((len(self.vertices), 2))
         for frame, (points, normals) in enumerate(zip(self.vertices, self.normals, strict=True)):
             turned = np.einsum("vk,vk->v", normals, np.asarray(camera.eye, dtype=np.float32) - points) > 0
             viewed = camera.view(points[turned].astype(np.float64))
@@ -71,12 +76,13 @@ class Appearances:
             inside = (x >= 0) & (x < width) & (y >= 0) & (y < height)
             column, row = (np.clip(value, 0, most - 1).astype(int) for value, most in ((x, width), (y, height)))
             seen = inside & (near[row, column] <= nearness)
-            shares[frame] = self.areas[turned] @ seen / self.areas[turned].sum()
+            for part, weights in enumerate((self.areas[turned], self.areas[turned] * self.head[turned])):
+                shares[frame, part] = weights @ seen / max(weights.sum(), 1e-9)
         return shares
 
     def shown(self, scene: Sequence[Solid], camera: Camera) -> float:
-        """The share of frames in which enough of the body is seen."""
-        return float(np.mean(self.shares(scene, camera) >= SHOWN))
+        """The share of frames in which enough of the body and its head is seen."""
+        return float(np.mean((self.shares(scene, camera) >= (SHOWN, FACED)).all(axis=1)))
 
     @staticmethod
     def enough(shown: float) -> bool:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import importlib.util
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,14 +17,14 @@ from planner_service.jobs import film_stages
 from planner_service.jobs.film_stages import Filmer
 from planner_service.jobs.story_stages import Maker
 from planner_service.output import film as films
+from planner_service.output.film import Filmed
 from planner_service.pipeline import Pipeline
 from planner_service.store.story_store import Stories, StoryGone
 from planner_service.store.tables import workflow_status
 
 pytestmark = pytest.mark.anyio
-SMALL = (64, 36)
+SMALL, FRAMES = (64, 36), 8
 MOTION = {
-    "home": None,
     "layout_id": "living-room-0016",
     "keyframes": [{"skill": "sitdown", "caption": "sit down", "furniture": "sofa"}],
 }
@@ -37,7 +38,13 @@ def anyio_backend() -> str:
 @pytest.fixture
 def app(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[FastAPI]:
     real = films.write_film
-    monkeypatch.setattr(film_stages, "write_film", lambda filmed, path, show: real(filmed, path, SMALL, show))
+
+    def few(filmed: Filmed, path: Path, show: Callable[[float], None]) -> Path:
+        """The first frames of it, small."""
+        short = replace(filmed, motion=filmed.motion.part(0, FRAMES), segments=((0, FRAMES),))
+        return real(short, path, SMALL, show)
+
+    monkeypatch.setattr(film_stages, "write_film", few)
     with app_on(tmp_path) as app:
         yield app
 
@@ -51,8 +58,7 @@ def ended(app: FastAPI, story_id: str, status: str) -> None:
 
 async def made(app: FastAPI, client: Any) -> dict[str, Any]:
     """A motion that was acted out."""
-    body = {name: value for name, value in MOTION.items() if value is not None}
-    story = (await client.post("/v1/motions", json=body)).json()
+    story = (await client.post("/v1/motions", json=MOTION)).json()
     desk = Maker(Stories(app.state.parts.engine), Pipeline(app.state.parts.shelves), "one")
     desk.plan(story["id"])
     desk.furnish(story["id"])
