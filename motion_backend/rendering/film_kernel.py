@@ -32,7 +32,7 @@ TO_BLUE, TO_RED = 224 / 255 / 1.8556, 224 / 255 / 1.5748
 
 @compiled
 def tile_bounds(places: Real) -> Real:
-    """Between which x and y of a lamp's map each tile's surfaces lie: low x, high x, low y, high y. (rows, columns, 4)."""
+    """Between which x and y of a lamp's map each tile lies: low x, high x, low y, high y. (rows, columns, 4)."""
     height, width = places.shape[0], places.shape[1]
     bounds = np.empty(((height + TILE - 1) // TILE, (width + TILE - 1) // TILE, 4), dtype=np.float32)
     bounds[..., 0] = bounds[..., 2] = np.inf

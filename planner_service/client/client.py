@@ -129,7 +129,7 @@ class Client(Methods):
         return finished(self.story(story_id))
 
     def wait_film(self, story_id: str, timeout: float | None = None) -> bytes:
-        """The story's film.mp4, made if it is not there yet. StoryFailed, StoryCancelled, WaitTimeout; ApiError 409, 501."""
+        """The story's film.mp4, made if need be. StoryFailed, StoryCancelled, WaitTimeout; ApiError 409, 501."""
         looking = Looking(self.make_film(story_id), timeout)
         while looking.goes_on():
             time.sleep(looking.pause)
@@ -202,7 +202,7 @@ class AsyncClient(Methods):
         return finished(await self.story(story_id))
 
     async def wait_film(self, story_id: str, timeout: float | None = None) -> bytes:
-        """The story's film.mp4, made if it is not there yet. StoryFailed, StoryCancelled, WaitTimeout; ApiError 409, 501."""
+        """The story's film.mp4, made if need be. StoryFailed, StoryCancelled, WaitTimeout; ApiError 409, 501."""
         looking = Looking(await self.make_film(story_id), timeout)
         while looking.goes_on():
             await anyio.sleep(looking.pause)

@@ -176,6 +176,8 @@ class Looking:
 
     def goes_on(self) -> bool:
         """Whether it is still being made. StoryFailed, StoryCancelled, WaitTimeout."""
+        if self.film.state == "absent":
+            raise StoryCancelled(self.film)
         if self.film.ended:
             finished(self.film)
             return False

@@ -150,7 +150,7 @@ def make_film(story_id: str) -> Call[Film]:
 
 
 def film_state(story_id: str) -> Call[Film]:
-    """How far that is. ApiError 404 where nobody has asked for it."""
+    """How far that is; its state is absent where nobody has asked for it."""
     return Call("GET", _at("stories", story_id, "film"), _film)
 
 

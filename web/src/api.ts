@@ -254,7 +254,8 @@ export const eventsUrl = (id: string): string => `${story(id)}/events`;
 
 /** A story's film.mp4, as far as it is made. */
 export interface FilmJob {
-  readonly state: State;
+  /** "absent" where nobody has asked for it. */
+  readonly state: State | "absent";
   readonly progress: number;
   readonly bytes: number | null;
   readonly error: Failure | null;
@@ -265,15 +266,7 @@ export const mp4Url = (id: string): string => `${story(id)}/film.mp4`;
 /** Have a story filmed; one that is there or under way stays. */
 export const makeFilm = (id: string): Promise<FilmJob> => json(`${story(id)}/film`, { method: "POST" });
 
-/** Null where nobody has asked for it. */
-export async function getFilm(id: string): Promise<FilmJob | null> {
-  try {
-    return await json<FilmJob>(`${story(id)}/film`);
-  } catch (error) {
-    if (error instanceof ApiError && error.status === 404) return null;
-    throw error;
-  }
-}
+export const getFilm = (id: string): Promise<FilmJob> => json(`${story(id)}/film`);
 
 export async function stopFilm(id: string): Promise<void> {
   await call(`${story(id)}/film`, { method: "DELETE" });

@@ -40,8 +40,8 @@ class FilmLinks(BaseModel):
 class FilmShown(BaseModel):
     """A story's film, as far as it is made."""
 
-    id: str
-    state: State
+    id: str | None
+    state: State | Literal["absent"] = Field(description="absent: nobody has asked for it.")
     progress: float = Field(ge=0, le=1, description="The share of its frames that are drawn.")
     frames: int | None = Field(description="30 a second; null until it is made.")
     bytes: int | None
@@ -69,7 +69,7 @@ def begin(story: RecordDep, request: Request, response: Response, parts: PartsDe
 @film_router.get("/{story_id}/film", response_model=FilmShown)
 def look(story: RecordDep, parts: PartsDep, stories: StoriesDep) -> Json:
     """How far the film is."""
-    return film_shown(story.id, _film(parts, stories, story.id))
+    return film_shown(story.id, _found(parts, stories, story.id))
 
 
 @film_router.delete("/{story_id}/film", status_code=204)
@@ -93,24 +93,29 @@ def film_file(story: RecordDep, request: Request, parts: PartsDep, stories: Stor
     return unchanging(request, film.artifacts[0].etag, lambda: stories.data(film.id, 0), MP4, named)
 
 
-def film_shown(story_id: str, film: Record) -> Json:
-    """A film as clients see it."""
+def film_shown(story_id: str, film: Record | None) -> Json:
+    """A film as clients see it; None where nobody has asked for one."""
     here = f"/v1/stories/{story_id}"
-    made = film.artifacts[0].summary if film.artifacts else {}
+    made = film.artifacts[0].summary if film and film.artifacts else {}
     return {
-        "id": film.id,
-        "state": state_of(film.status),
-        "progress": film.progress,
+        "id": film.id if film else None,
+        "state": state_of(film.status) if film else "absent",
+        "progress": film.progress if film else 0.0,
         "frames": made.get("frames"),
         "bytes": made.get("bytes"),
-        "error": failure_of(film),
+        "error": failure_of(film) if film else None,
         "links": {"self": f"{here}/film", "story": here, "mp4": f"{here}/film.mp4"},
     }
 
 
-def _film(parts: Parts, stories: Stories, story_id: str) -> Record:
+def _found(parts: Parts, stories: Stories, story_id: str) -> Record | None:
     with parts.engine.connect() as connection:
         film_id = film_of(connection, story_id)
-    if film_id is None:
+    return None if film_id is None else stories.get(film_id)
+
+
+def _film(parts: Parts, stories: Stories, story_id: str) -> Record:
+    found = _found(parts, stories, story_id)
+    if found is None:
         raise NotFound(f"nobody has asked for this film; POST /v1/stories/{story_id}/film begins it")
-    return stories.get(film_id)
+    return found

@@ -78,7 +78,7 @@ async def test_a_film_is_made_once_kept_and_gone_with_its_story(app: FastAPI) ->
         story = await made(app, client)
         here = story["links"]["self"]
         assert "POST" in check_problem(await client.get(f"{here}/film.mp4"), 404)["detail"]
-        check_problem(await client.get(f"{here}/film"), 404)
+        assert (await client.get(f"{here}/film")).json()["state"] == "absent"
         asked = await client.post(f"{here}/film")
         assert (asked.status_code, asked.headers["location"]) == (202, f"{here}/film")
         film = asked.json()
@@ -115,7 +115,8 @@ async def test_a_film_that_nobody_wants_any_more_is_left(app: FastAPI, monkeypat
         assert (await client.delete(film["links"]["self"])).status_code == 204
         with pytest.raises(StoryGone):
             filmer(app).film(film["id"])
-        check_problem(await client.get(film["links"]["self"]), 404)
+        assert (await client.get(film["links"]["self"])).json()["state"] == "absent"
+        check_problem(await client.delete(film["links"]["self"]), 404)
         again = (await client.post(f"{story['links']['self']}/film")).json()
         assert again["id"] != film["id"]
         ended(app, again["id"], "ERROR")
