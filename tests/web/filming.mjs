@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import { scene } from "./browser.mjs";
 
 await scene(async (page, story, folder) => {
-  await page.goto(`/#/story/${story}`);
+  await page.goto(`/#/stories/${story}`);
   const item = page.locator(".filming");
   await item.getByRole("button", { name: /^Make .*\.mp4$/ }).click();
   await item.getByRole("button", { name: "Stop" }).click();
