@@ -1,4 +1,4 @@
-"""The two tables of a run, for a terminal or as the Markdown of the README."""
+"""The two tables of a run, for a terminal or as the Markdown of docs/benchmarks.md."""
 
 from __future__ import annotations
 

@@ -19,6 +19,20 @@ def compiled(function: _F) -> _F:
         return cast(_F, numba.njit(nogil=True)(function))
 
 
+def filling(function: _F) -> _F:
+    """The same for what only fills arrays that it is given: that nothing is made saves counting who holds what, which
+    takes longer than the work of a pixel."""
+    try:
+        return cast(_F, numba.njit(cache=True, nogil=True, _nrt=False)(function))
+    except RuntimeError:
+        return cast(_F, numba.njit(nogil=True, _nrt=False)(function))
+
+
+def inlined(function: _F) -> _F:
+    """Compile into whoever calls it, which only fills arrays."""
+    return cast(_F, numba.njit(nogil=True, _nrt=False, inline="always")(function))
+
+
 def compiled_ufunc(signature: str) -> Callable[[Callable[..., None]], Callable[..., Any]]:
     """A function of one item as a ufunc over arrays of doubles, with numpy's rules for what does not fit in shape.
 

@@ -12,6 +12,7 @@ from PIL import Image
 from motion_backend.motion import Skill
 from motion_backend.rendering.contact_sheet import sheet
 from motion_backend.rendering.film_frames import film_frames
+from motion_backend.rendering.film_picture import to_rgb
 from motion_backend.rendering.film_shots import film_shots
 from planner_service.cli.layouts import graph_of_words
 from planner_service.evaluation.trials import Trial, perform
@@ -86,8 +87,8 @@ def draw_loop(story: Story, path: Path) -> None:
         for frame in range(middle - round(seconds * motion.fps / 2), middle + round(seconds * motion.fps / 2), EVERY)
     }
     pictures = [
-        Image.fromarray(picture)
-        for frame, picture in enumerate(film_frames(home, motion, shots, LOOP))
+        Image.fromarray(to_rgb(picture))
+        for frame, picture in enumerate(film_frames(motion, shots, LOOP))
         if frame in wanted
     ]
     pause = round(1000 * EVERY / motion.fps)

@@ -62,13 +62,12 @@ def skin(
     local_rotations: NDArray[np.floating],
 ) -> tuple[Floats, Floats]:
     """World vertices (T, V, 3) and normals (T, V, 3) of a mesh in T poses."""
+    from motion_backend.body.skinning_kernel import skin_poses
+
     positions, world = skeleton.forward_kinematics(np.asarray(root_positions), np.asarray(local_rotations))
     turn = rotations.quat_to_matrix(world)  # (T, J, 3, 3)
     shift = positions - np.einsum("tjab,jb->tja", turn, skeleton.rest_positions)
-    frames = np.concatenate([turn, shift[..., None]], axis=-1).reshape(len(positions), -1, 12)
-    dense = np.zeros((len(mesh.vertices), len(skeleton.names)))
-    np.add.at(dense, (np.arange(len(dense))[:, None], mesh.joints), mesh.weights)
-    blended = (dense @ frames).reshape(len(positions), -1, 3, 4)  # (T, V, 3, 4)
-    vertices = np.einsum("tvab,vb->tva", blended[..., :3], mesh.vertices) + blended[..., 3]
-    normals = rotations.normalize(np.einsum("tvab,vb->tva", blended[..., :3], mesh.normals))
-    return vertices.astype(np.float32), normals.astype(np.float32)
+    frames = np.concatenate([turn, shift[..., None]], axis=-1).astype(np.float64)  # (T, J, 3, 4)
+    points, turned = (np.empty((len(frames), *mesh.vertices.shape), dtype=np.float32) for _ in range(2))
+    skin_poses(mesh.vertices, mesh.normals, mesh.joints, mesh.weights, frames, points, turned)
+    return points, turned

@@ -33,6 +33,10 @@ STRIDE = 0.62
 SEEN = [INDEX[n] for n in ("pelvis", "head", "spine3", "left_knee", "right_knee", "left_foot", "right_foot")]
 HANDS = [INDEX["left_wrist"], INDEX["right_wrist"]]
 """Joints that a picture should show."""
+HIDDEN, BLOCKED, AT_WINDOW, INDOORS = 2.5, 3.0, 2.0, 0.3
+"""What counts how much: a body that is hidden, an eye within furniture, a curtain, an eye in the body's room."""
+CLOSE = 0.4
+"""Metres in front of an eye that are free of furniture."""
 _SHOULDERS = [INDEX["left_shoulder"], INDEX["right_shoulder"]]
 
 
@@ -95,19 +99,41 @@ def choose_camera(home: Home | None, motion: Motion, joints: NDArray[np.floating
     cameras = [orbit((x, y, z), distance, float(yaw), PITCH, FOV) for yaw in YAWS]
     wanted = liking(motion, shot)
     if home is not None:
-        near = [o for o in home.objects if np.hypot(o.position[0] - x, o.position[2] - z) < distance + 1.0]
-        room = home.room_at((x, z))
-        sides = [side for wall in home.walls if (side := Side.of(wall, home)) is not None]
-        for index, camera in enumerate(cameras):
-            wanted[index] += 2.0 * visible_share(near, camera.eye, poses[0, SEEN + HANDS])
-            wanted[index] += 0.3 * (room is not None and home.room_at((camera.eye[0], camera.eye[2])) == room)
-            wanted[index] -= 2.0 * at_a_window(sides, np.asarray(camera.eye))
+        sight = Sight.at(home, (x, z), distance + 1.0)
+        wanted += [sight.score(camera, poses[:1]) for camera in cameras]
     return cameras[int(np.argmax(np.round(wanted, 4)))]
 
 
-def at_a_window(sides: Sequence[Side], eye: Array) -> bool:
-    """Whether a camera is so near to a wall, on its room's side, that curtains may hang before it."""
-    return any(side.faces(eye[[0, 2]]) and side.distance(eye[[0, 2]]) < CURTAIN for side in sides)
+@dataclass(frozen=True)
+class Sight:
+    """What around a place of a home hides a body there from cameras, or is in their own way."""
+
+    home: Home
+    room: int | None
+    """That of the place."""
+    near: Boxes
+    """Furniture."""
+    sides: tuple[Side, ...]
+    """Walls."""
+
+    @staticmethod
+    def at(home: Home, place: tuple[float, float], reach: float) -> Sight:
+        """Around a place [x, z], with the furniture within reach (metres)."""
+        near = tuple(o for o in home.objects if np.hypot(o.position[0] - place[0], o.position[2] - place[1]) < reach)
+        sides = tuple(side for wall in home.walls if (side := Side.of(wall, home)) is not None)
+        return Sight(home, home.room_at(place), Boxes.of(near), sides)
+
+    def score(self, camera: Camera, poses: Array) -> float:
+        """How well a camera shows poses (P, 22, 3), whichever side of them it sees."""
+        eye = np.asarray(camera.eye)
+        blocked = bool(self.near.hide(eye, eye[None] + CLOSE * camera.axes[2:]).any())
+        indoors = self.room is not None and self.home.room_at((camera.eye[0], camera.eye[2])) == self.room
+        seen = 1.0 - float(self.near.hide(eye, poses[:, SEEN + HANDS].reshape(-1, 3)).mean())
+        return HIDDEN * seen + INDOORS * indoors - BLOCKED * blocked - AT_WINDOW * self._at_a_window(eye)
+
+    def _at_a_window(self, eye: Array) -> bool:
+        """Whether it is so near to a wall, on its room's side, that curtains may hang before it."""
+        return any(side.faces(eye[[0, 2]]) and side.distance(eye[[0, 2]]) < CURTAIN for side in self.sides)
 
 
 def liking(motion: Motion, shot: Shot) -> Array:
@@ -124,16 +150,38 @@ def liking(motion: Motion, shot: Shot) -> Array:
 
 def visible_share(objects: Sequence[Placed], eye: tuple[float, float, float], points: Array) -> float:
     """The share of points (N, 3) that no part of the objects hides from the eye."""
-    hidden = np.zeros(len(points), dtype=bool)
-    for placed in objects:
-        boxes = parts_of(placed)
-        low = np.array([part.low for part in boxes])[:, None]
-        high = np.array([part.high for part in boxes])[:, None]
-        origin, ends = placed.to_local(eye), placed.to_local(points)
-        ray = ends - origin
+    return float(1.0 - Boxes.of(objects).hide(np.asarray(eye), points).mean())
+
+
+@dataclass(frozen=True)
+class Boxes:
+    """The parts of furniture as boxes, each in the frame of its piece."""
+
+    low: Array
+    high: Array
+    """(B, 1, 3) each."""
+    origin: Array
+    """Where the pieces stand. (B, 3)."""
+    turn: Array
+    """Their frames: a vector v of the home is turn @ v. (B, 3, 3)."""
+
+    @staticmethod
+    def of(objects: Sequence[Placed]) -> Boxes:
+        """All parts of some pieces."""
+        parts = [(placed, part) for placed in objects for part in parts_of(placed)]
+        cos, sin = (np.array([wave(placed.yaw) for placed, _ in parts]) for wave in (np.cos, np.sin))
+        turn = np.zeros((len(parts), 3, 3))
+        turn[:, 0, 0], turn[:, 0, 2], turn[:, 2, 0], turn[:, 2, 2], turn[:, 1, 1] = cos, -sin, sin, cos, 1.0
+        low = np.array([part.low for _, part in parts]).reshape(-1, 1, 3)
+        high = np.array([part.high for _, part in parts]).reshape(-1, 1, 3)
+        return Boxes(low, high, np.array([placed.position for placed, _ in parts]).reshape(-1, 3), turn)
+
+    def hide(self, eye: Array, points: Array) -> NDArray[np.bool_]:
+        """Which points (N, 3) lie behind any of them, seen from an eye. (N,)."""
+        start = np.einsum("bij,bj->bi", self.turn, eye - self.origin)[:, None]
+        ray = np.einsum("bij,nj->bni", self.turn, points - eye)
         ray = np.where(np.abs(ray) < 1e-9, 1e-9, ray)
-        first, last = (low - origin) / ray, (high - origin) / ray  # (parts, points, 3)
+        first, last = (self.low - start) / ray, (self.high - start) / ray  # (boxes, points, 3)
         enter, leave = np.minimum(first, last).max(axis=-1), np.maximum(first, last).min(axis=-1)
         # A hand on a table is not hidden by it: what ends within the last hundredths does not count.
-        hidden |= ((enter < leave) & (leave > 0) & (enter < 0.97)).any(axis=0)
-    return float(1.0 - hidden.mean())
+        return np.asarray(((enter < leave) & (leave > 0) & (enter < 0.97)).any(axis=0))

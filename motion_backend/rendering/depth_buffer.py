@@ -1,4 +1,4 @@
-"""Which triangle is nearest in every pixel of a picture, and how much light reaches a point; compiled.
+"""Which triangle is nearest in every pixel of a picture; compiled.
 
 Imported late: see `renderer`. Nothing is checked: whoever calls has checked it.
 """
@@ -6,13 +6,14 @@ Imported late: see `renderer`. Nothing is checked: whoever calls has checked it.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion_backend.rendering.rasterizer import Ints, Real
 from motion_backend.rotations import Array
-from scene_graphs.jit import compiled
+from scene_graphs.jit import filling
 
 
-@compiled
+@filling
 def draw(screen: Real, quarters: Ints, first: int, nearest: Ints, best: Array) -> None:
     """Draw triangles (F, 3, 3), as `Camera.project` gives them, into `nearest` and `best`, both (height, width).
 
@@ -49,22 +50,30 @@ def draw(screen: Real, quarters: Ints, first: int, nearest: Ints, best: Array) -
                 near += by_x
 
 
-@compiled
-def light_shares(places: Real, turns: Real, taps: Real, depth: Array, bias: float) -> Real:
-    """The share of taps around places in a shadow map that nothing nearer to the light shades. (N,).
-
-    `places` (N, 3) are x, y and nearness in the map `depth` (height, width); `taps` (K, 2) are in pixels, and turned by
-    each place's own angle.
-    """
-    height, width = depth.shape
-    shares = np.zeros(len(places), dtype=np.float32)
-    for point in range(len(places)):
-        x, y, near = places[point]
-        cos, sin = np.cos(turns[point]), np.sin(turns[point])
-        lit = 0
-        for u, v in taps:
-            column = min(max(int(x + (u * cos - v * sin)), 0), width - 1)
-            row = min(max(int(y + (u * sin + v * cos)), 0), height - 1)
-            lit += depth[row, column] < near + bias
-        shares[point] = lit / len(taps)
-    return shares
+@filling
+def draw_body(points: Array, faces: NDArray[np.integer], nearest: Ints, best: Array) -> None:
+    """The same for a closed body: faces (F, 3) of points (V, 3), those that show their outside; numbers from 0."""
+    height, width = best.shape
+    for face in range(len(faces)):
+        a, b, c = faces[face, 0], faces[face, 1], faces[face, 2]
+        x0, y0, x1, y1, x2, y2 = points[a, 0], points[a, 1], points[b, 0], points[b, 1], points[c, 0], points[c, 1]
+        area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0)
+        if area > -1e-9:
+            continue
+        left, right = max(int(np.ceil(min(x0, x1, x2) - 0.5)), 0), min(int(np.ceil(max(x0, x1, x2) - 0.5)), width)
+        top, bottom = max(int(np.ceil(min(y0, y1, y2) - 0.5)), 0), min(int(np.ceil(max(y0, y1, y2) - 0.5)), height)
+        if left >= right or top >= bottom:
+            continue
+        n0, n1, n2 = points[a, 2], points[b, 2], points[c, 2]
+        for row in range(top, bottom):
+            y = row + 0.5
+            for column in range(left, right):
+                x = column + 0.5
+                # Twice the areas of the three parts that a point cuts the triangle into: all negative inside.
+                p, q = (x1 - x) * (y2 - y) - (y1 - y) * (x2 - x), (x2 - x) * (y0 - y) - (y2 - y) * (x0 - x)
+                r = area - p - q
+                if p <= 0 and q <= 0 and r <= 0:
+                    near = (p * n0 + q * n1 + r * n2) / area
+                    if near >= best[row, column]:
+                        best[row, column] = near
+                        nearest[row, column] = face

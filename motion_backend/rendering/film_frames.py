@@ -5,16 +5,13 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from motion_backend.motion import Motion
 from motion_backend.rendering.film_backdrop import Backdrop
+from motion_backend.rendering.film_picture import Planes
 from motion_backend.rendering.film_shots import FilmShot
-from motion_backend.rendering.motion_figures import around, body_solids, home_props
-from motion_backend.rendering.renderer import Image
-
-if TYPE_CHECKING:
-    from scene_graphs.home import Home
+from motion_backend.rendering.motion_figures import body_solids
 
 WORKERS: Final = 2
 """Pictures drawn at once; compiled code lets go of the interpreter."""
@@ -25,32 +22,24 @@ AHEAD: Final = 4
 
 
 def film_frames(
-    home: Home,
     motion: Motion,
     shots: Sequence[FilmShot],
     size: tuple[int, int],
-    dressed: Callable[[int, Image], Image] = lambda _, picture: picture,
-) -> Iterator[Image]:
-    """Every frame of a motion as a picture (height, width, 3) of that size (width, height).
+    dressed: Callable[[int, Planes], Planes] = lambda _, picture: picture,
+) -> Iterator[Planes]:
+    """Every frame of a motion as a picture of that size (width, height), both even; see `film_picture`.
 
     `dressed` gets a frame's number and its picture, and gives the picture that is shown.
     """
-    props = home_props(home)
-    joints = motion.joint_positions()
 
-    def backdrop(shot: FilmShot) -> Backdrop:
-        points = joints[shot.start : shot.stop : BATCH].reshape(-1, 3)
-        x, _, z = joints[(shot.start + shot.stop) // 2, 0].tolist()
-        return Backdrop.of(around(props, shot.camera, points, home.room_at((x, z)), 7.0), shot.camera, size)
-
-    def batch(scene: Future[Backdrop], frames: range) -> list[Image]:
+    def batch(scene: Future[Backdrop], frames: range) -> list[Planes]:
         bodies = body_solids(motion, frames)
         return [dressed(i, scene.result().with_body(body)) for i, body in zip(frames, bodies, strict=True)]
 
     with ThreadPoolExecutor(WORKERS) as pool:
-        waiting: deque[Future[list[Image]]] = deque()
+        waiting: deque[Future[list[Planes]]] = deque()
         for shot in shots:
-            scene = pool.submit(backdrop, shot)
+            scene = pool.submit(Backdrop.of, shot.scene, shot.camera, size)
             for start in range(shot.start, shot.stop, BATCH):
                 waiting.append(pool.submit(batch, scene, range(start, min(start + BATCH, shot.stop))))
                 while len(waiting) > AHEAD:

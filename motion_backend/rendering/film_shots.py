@@ -1,4 +1,8 @@
-"""A motion as a film's shots: where to cut, and a camera that stands still and sees what is done until the next cut."""
+"""A motion as a film's shots: where to cut, and a camera that stands still and sees what is done until the next cut.
+
+Views are scored by what can be told quickly, then looked through in that order: the first is taken in which nothing
+hides the body for more than a moment.
+"""
 
 from __future__ import annotations
 
@@ -11,40 +15,42 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend.motion import Motion, PhaseKind
-from motion_backend.rendering.camera import FOV, HANDS, SEEN, Shot, at_a_window, liking, visible_share
+from motion_backend.rendering.camera import FOV, YAWS, Shot, Sight, liking
+from motion_backend.rendering.film_sight import Appearances
+from motion_backend.rendering.motion_figures import Prop, around, home_props
 from motion_backend.rendering.rasterizer import Camera, orbit
+from motion_backend.rendering.renderer import Solid
 from motion_backend.rotations import wrap
-from motion_backend.walls import Side
 
 if TYPE_CHECKING:
     from scene_graphs.home import Home
-    from scene_graphs.layout import Placed
 
 SHORTEST, LONGEST = 1.6, 7.0
 """Seconds a shot lasts."""
 FARTHEST: Final = 3.2
 """Metres the body goes in one shot: who goes farther is followed by another camera."""
-YAWS: Final = np.linspace(-np.pi, np.pi, 16, endpoint=False)
 PITCHES: Final = (0.16, 0.34)
 """From above, in radians: near the eyes of who stands, and over low furniture."""
 NEAREST: Final = 2.3
 """Metres from the middle of what is seen."""
-BACK: Final = 1.06
-"""How much farther away the next camera is tried where a body does not fit."""
 FRAME: Final = 0.84
 """The share of a picture that all of a body keeps within."""
 SAMPLES: Final = 5
 """Frames of a shot that are looked at."""
-CLOSE: Final = 0.4
-"""Metres in front of an eye that are free of furniture."""
 ALIKE: Final = 0.5
 """Radians; two cameras that differ by less look like a mistake and not like a cut."""
 MARGIN: Final = 0.12
 """Metres around joints that skin and hair reach."""
 FAR: Final = 0.08
 """What a metre of distance counts: faces are seen from near."""
-BLOCKED, HIDDEN, AT_WINDOW, REPEATED, INDOORS = 3.0, 2.5, 2.0, 0.6, 0.3
-"""What counts how much: an eye within furniture, a body that is hidden, a curtain, a jump cut, an eye in the room."""
+REPEATED: Final = 0.6
+"""What a jump cut counts."""
+STEP: Final = 15
+"""Frames between two places of a body that walls may not hide."""
+TRIES: Final = 12
+"""Views of a shot that are looked through."""
+REACH: Final = 7.0
+"""Metres around what is seen that are drawn."""
 
 
 @dataclass(frozen=True)
@@ -54,15 +60,16 @@ class FilmShot:
     start: int
     stop: int
     camera: Camera
+    scene: Sequence[Solid]
+    """What it sees of the home."""
 
 
 def film_shots(home: Home, motion: Motion, starts: Sequence[int], aspect: float) -> list[FilmShot]:
     """The shots of a whole motion whose actions begin at these frames; pictures are `aspect` times as wide as high."""
-    joints = motion.joint_positions().astype(np.float64)
+    director = _Director(home, motion, motion.joint_positions().astype(np.float64), tuple(home_props(home)), aspect)
     shots: list[FilmShot] = []
     for start, stop in _windows(motion, starts):
-        before = shots[-1].camera if shots else None
-        shots.append(FilmShot(start, stop, _camera(home, motion, joints, (start, stop), aspect, before)))
+        shots.append(director.shot(start, stop, shots[-1].camera if shots else None))
     return shots
 
 
@@ -86,59 +93,65 @@ def _pieces(motion: Motion, start: int, stop: int) -> int:
     return max(1, min(int(np.ceil(wanted)), int((stop - start) / motion.fps / SHORTEST)))
 
 
-def _camera(
-    home: Home,
-    motion: Motion,
-    joints: NDArray[np.float64],
-    window: tuple[int, int],
-    aspect: float,
-    before: Camera | None,
-) -> Camera:
-    """The camera that sees most of a body, its face and hands, from the room it is in, and unlike the one before."""
-    frames = np.unique(np.linspace(window[0], window[1] - 1, SAMPLES).round().astype(int))
-    points = joints[frames].reshape(-1, 3)
-    low, high = points.min(axis=0), points.max(axis=0)
-    x, y, z = ((low + high) / 2).tolist()
-    near = [o for o in home.objects if np.hypot(o.position[0] - x, o.position[2] - z) < 6.0]
-    room = home.room_at((x, z))
-    sides = [side for wall in home.walls if (side := Side.of(wall, home)) is not None]
-    shown = liking(motion, Shot(int(frames[len(frames) // 2])))
-    best, most = None, -np.inf
-    for pitch in PITCHES:
-        for index, yaw in enumerate(YAWS.tolist()):
-            camera = _fitted((x, y, z), yaw, pitch, points, aspect)
-            eye = np.asarray(camera.eye)
-            seen = np.mean([visible_share(near, camera.eye, joints[frame, SEEN + HANDS]) for frame in frames])
-            score = float(shown[index]) + HIDDEN * float(seen)
-            score += INDOORS * (room is not None and home.room_at((camera.eye[0], camera.eye[2])) == room)
-            score -= AT_WINDOW * at_a_window(sides, eye) + BLOCKED * _blocked(near, camera)
-            score -= FAR * float(np.linalg.norm(eye - np.array([x, y, z])))
-            score -= REPEATED * (before is not None and _alike(camera, before))
-            if score > most + 1e-6:
-                best, most = camera, score
-    assert best is not None
-    return best
+@dataclass(frozen=True)
+class _Director:
+    """What shots are chosen from."""
+
+    home: Home
+    motion: Motion
+    joints: NDArray[np.float64]
+    """Of the whole motion, in the world. (T, 22, 3)."""
+    props: tuple[Prop, ...]
+    aspect: float
+
+    def shot(self, start: int, stop: int, before: Camera | None) -> FilmShot:
+        """The best view, unlike the one before, in which the body is hidden for no more than a moment, else least."""
+        bodies = Appearances.of(self.motion, start, stop, self.aspect)
+        best, most = None, -np.inf
+        for camera in self._views(start, stop, before)[:TRIES]:
+            found = FilmShot(start, stop, camera, self._scene(camera, start, stop))
+            shown = bodies.shown(found.scene, camera)
+            if shown > most:
+                best, most = found, shown
+            if bodies.enough(shown):
+                break
+        assert best is not None
+        return best
+
+    def _views(self, start: int, stop: int, before: Camera | None) -> list[Camera]:
+        """Cameras that have all of the body in the picture, best first: near, of its face, hands and feet."""
+        frames = np.unique(np.linspace(start, stop - 1, SAMPLES).round().astype(int))
+        poses = self.joints[frames]
+        points = poses.reshape(-1, 3)
+        x, y, z = ((points.min(axis=0) + points.max(axis=0)) / 2).tolist()
+        sight = Sight.at(self.home, (x, z), REACH)
+        liked = liking(self.motion, Shot(int(frames[len(frames) // 2])))
+        scored = []
+        for pitch in PITCHES:
+            for index, yaw in enumerate(YAWS.tolist()):
+                camera = _fitted((x, y, z), yaw, pitch, points, self.aspect)
+                score = float(liked[index]) + sight.score(camera, poses)
+                score -= FAR * float(np.linalg.norm(np.subtract(camera.eye, (x, y, z))))
+                score -= REPEATED * (before is not None and _alike(camera, before))
+                scored.append((round(score, 6), camera))
+        return [camera for _, camera in sorted(scored, key=lambda one: -one[0])]
+
+    def _scene(self, camera: Camera, start: int, stop: int) -> Sequence[Solid]:
+        """What is drawn of the home, open in front like a doll's house."""
+        x, _, z = self.joints[(start + stop) // 2, 0].tolist()
+        points = self.joints[start:stop:STEP].reshape(-1, 3)
+        return around(self.props, camera, points, self.home.room_at((x, z)), REACH)
 
 
 def _fitted(
     target: tuple[float, float, float], yaw: float, pitch: float, points: NDArray[np.float64], aspect: float
 ) -> Camera:
     """As near as all points, with the skin around them, stay well within the picture."""
-    distance = NEAREST
-    while True:
-        camera = orbit(target, distance, yaw, pitch, FOV)
-        viewed = camera.view(points)
-        depth = viewed[:, 2]
-        high = depth * np.tan(FOV / 2) * FRAME - MARGIN
-        wide = depth * np.tan(FOV / 2) * FRAME * aspect - MARGIN
-        if depth.min() > MARGIN and (np.abs(viewed[:, 1]) <= high).all() and (np.abs(viewed[:, 0]) <= wide).all():
-            return camera
-        distance *= BACK
-
-
-def _blocked(objects: Sequence[Placed], camera: Camera) -> bool:
-    """Whether an eye is within a piece of furniture, or so near to it that it fills the picture."""
-    return visible_share(objects, camera.eye, np.asarray(camera.eye)[None] + CLOSE * camera.axes[2:]) < 1
+    across, up, ahead = np.moveaxis((points - target) @ orbit(target, 1.0, yaw, pitch).axes.T, -1, 0)
+    wide = np.tan(FOV / 2) * FRAME
+    # A point is within the picture where its distance to the axis, with skin, is at most `wide` times its depth.
+    asked = [(np.abs(up) + MARGIN) / wide - ahead, (np.abs(across) + MARGIN) / (wide * aspect) - ahead, MARGIN - ahead]
+    return orbit(target, max(NEAREST, float(np.max(asked))), yaw, pitch, FOV)
 
 
 def _alike(one: Camera, other: Camera) -> bool:

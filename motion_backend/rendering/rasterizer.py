@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,22 @@ Point3 = tuple[float, float, float]
 
 NEAR = 0.05
 """Metres in front of the eye from which things are seen."""
+
+
+class Lens(NamedTuple):
+    """A camera as compiled code reads it: what is seen at (x, y, depth) lies at eye + (right, up, depth) @ axes."""
+
+    eye: Array
+    """(3,)."""
+    axes: Array
+    """Rows right, up and forward. (3, 3)."""
+    middle: Array
+    """Pixels to the middle of the picture, across and down. (2,)."""
+    scale: float
+    """Metres a pixel is wide: at a depth of one metre, or anywhere in a parallel view."""
+    parallel: bool
+    target: Array
+    """(3,)."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +87,13 @@ class Camera:
             scale = 2.0 * np.tan(0.5 * self.fov) / height * depth
         viewed = np.stack([(x - 0.5 * width) * scale, (0.5 * height - y) * scale, depth], axis=-1, dtype=x.dtype)
         return np.asarray(viewed @ self.axes.astype(x.dtype) + np.asarray(self.eye, dtype=x.dtype))
+
+    def lens(self, size: tuple[int, int]) -> Lens:
+        """The same for pictures (width, height) of that size."""
+        parallel = self.span is not None
+        across = self.span if self.span is not None else 2.0 * float(np.tan(0.5 * self.fov))
+        middle = np.array([0.5 * size[0], 0.5 * size[1]])
+        return Lens(np.array(self.eye), self.axes, middle, across / size[1], parallel, np.array(self.target))
 
 
 def orbit(target: Point3, distance: float, yaw: float, pitch: float, fov: float = 0.6) -> Camera:

@@ -1,4 +1,4 @@
-"""A small software renderer: shaded solids, shadows and a floor grid to pictures, in numpy alone.
+"""A small software renderer: shaded solids, shadows and a floor grid to pictures, shaded by compiled code.
 
 Frame: Y up, metres. Colours are sRGB, 0 to 1; light is summed in linear space. The nearest fragment of every pixel is
 shaded; pixels are looked at in four places, so that edges and see-through solids are smooth.
@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend.rendering.rasterizer import Camera, Ints, Real, clip, empty_buffers
-from motion_backend.rendering.shadow_map import SKY, SUN, ShadowMap
+from motion_backend.rendering.shadow_map import SHADOW_BIAS, SKY, SUN, ShadowMap
 from motion_backend.rotations import Array
 
 Image = NDArray[np.uint8]
@@ -60,90 +60,109 @@ def render(
 
     Without shadows it takes less than half the time.
     """
-    seen = Samples.of(solids, camera, size, ground)
-    unshaded = np.ones(len(seen.points), dtype=np.float32)
-    return seen.picture(shade(seen, *(light(seen) if shadows else (unshaded, unshaded))))
+    return to_srgb_bytes(Still.of(solids, camera, size, ground, shadows).lit.color)
+
+
+class Surfaces(NamedTuple):
+    """All triangles of a scene."""
+
+    corners: Array
+    """(F, 3, 3) metres."""
+    normals: Real
+    """(F, 3, 3) float32, one a corner; not read where it is flat."""
+    flat: Real
+    """(F, 3) float32, unit."""
+    is_smooth: NDArray[np.bool_]
+    """(F,)."""
+    color: Real
+    """(F, 3) float32, linear."""
+
+
+class Palette(NamedTuple):
+    """How bright lights are, and what is drawn beside surfaces."""
+
+    sun: float
+    sky: float
+    bounce: float
+    camera: float
+    open_sky: float
+    """The share of the sky's light that nothing takes away."""
+    offset: float
+    """Metres off a surface at which light is looked up."""
+    bias: float
+    """Metres towards the light at which it is looked up."""
+    grid: float
+    """Metres between the floor's lines."""
+    haze_start: float
+    haze_depth: float
+    """Metres around the target that are clear, and over which all fades behind them."""
+    horizon: Real
+    """Linear. (3,)."""
+
+
+class Lit(NamedTuple):
+    """A still picture in linear light. All (height, width, 3) float32."""
+
+    color: Real
+    by_sun: Real
+    """What of it comes from the sun."""
+    by_sky: Real
+    """What of it comes from that part of the sky that can be shaded."""
+    in_sun: Real
+    """Where in the sun's map what is seen lies; minus infinity where nothing is."""
+    in_sky: Real
 
 
 @dataclass(frozen=True)
-class Samples:
-    """What a camera sees, point by point: a pixel that one triangle fills in its middle, all others at four samples."""
+class Still:
+    """What a camera sees of things that stand still, lit."""
 
-    scene: _Scene
     camera: Camera
-    size: tuple[int, int]
-    points: Real
-    """(N, 3) float32 on surfaces: those of `whole`, then those of `torn`."""
-    triangle: Ints
-    """Which one each lies on. (N,)."""
-    quarter: Ints
-    """Which of a picture's four samples each is taken as. (N,)."""
-    whole: Ints
-    torn: Ints
-    """Pixels."""
-    place: tuple[Ints, Ints]
-    """Where in `torn`, and in its four samples, each point of the second kind belongs."""
     nearness: Array
     """Of what is nearest, over twice the size; minus infinity for nothing. (2 height, 2 width)."""
+    lit: Lit
+    maps: tuple[ShadowMap, ShadowMap]
+    """What the sun and the sky reach."""
 
     @staticmethod
-    def of(solids: Sequence[Solid], camera: Camera, size: tuple[int, int], ground: float | None = 0.0) -> Samples:
-        """What is nearest; `ground` is the height of an endless floor, None for none."""
+    def of(
+        solids: Sequence[Solid],
+        camera: Camera,
+        size: tuple[int, int],
+        ground: float | None = 0.0,
+        shadows: bool = True,
+    ) -> Still:
+        """The picture (width, height); see `render`."""
+        from motion_backend.rendering.surface_light import shade_picture
+
         if ground is not None:
             solids = [*solids, _floor(camera, ground)]
-        scene = _Scene.of(solids)
-        large = (2 * size[0], 2 * size[1])
-        visible = _visible(scene, camera, large)
-        triangle, nearness = (_quarters(a, size) for a in visible)
-        whole = np.flatnonzero((triangle[:, 0] >= 0) & (triangle == triangle[:, :1]).all(axis=1))
-        torn = np.setdiff1d(np.flatnonzero(triangle.max(axis=1) >= 0), whole, assume_unique=True)
-        row, sample = np.nonzero(triangle[torn] >= 0)
-        pixel = np.concatenate([whole, torn[row]])
-        x = 2 * (pixel % size[0]) + np.concatenate([np.full(len(whole), 1.0), sample % 2 + 0.5])
-        y = 2 * (pixel // size[0]) + np.concatenate([np.full(len(whole), 1.0), sample // 2 + 0.5])
-        near = np.concatenate([nearness[whole].mean(axis=1), nearness[torn][row, sample]])
-        points = camera.unproject(x.astype(np.float32), y.astype(np.float32), near.astype(np.float32), large)
-        drawn = np.concatenate([triangle[whole, 0], triangle[torn][row, sample]])
-        quarter = np.concatenate([whole % 2 + 2 * (whole // size[0] % 2), sample])
-        depth = visible[1].reshape(large[::-1])
-        return Samples(scene, camera, size, points, drawn, quarter, whole, torn, (row, sample), depth)
-
-    def spread(self, values: Real, empty: Real) -> Real:
-        """Values of points (N, K) as values of pixels (height, width, K); `empty` (K,) where there is nothing."""
-        pixels = np.tile(np.asarray(empty, dtype=np.float32), (self.size[0] * self.size[1], 1))
-        pixels[self.whole] = values[: len(self.whole)]
-        mixed = np.tile(np.asarray(empty, dtype=np.float32), (len(self.torn), 4, 1))
-        mixed[self.place] = values[len(self.whole) :]
-        pixels[self.torn] = mixed.mean(axis=1)
-        return pixels.reshape(self.size[1], self.size[0], -1)
-
-    def picture(self, colors: Real) -> Image:
-        """Linear colours of points (N, 3) as a picture."""
-        return to_srgb_bytes(self.spread(colors, to_linear(HORIZON)))
+        scene, large = _Scene.of(solids), (2 * size[0], 2 * size[1])
+        nearest, nearness = scene.visible(camera, large)
+        maps = [
+            ShadowMap.of(lamp, scene.casting, camera) if shadows else ShadowMap.empty(lamp, camera)
+            for lamp in (SUN, SKY)
+        ]
+        lit = Lit(*(np.empty((size[1], size[0], 3), dtype=np.float32) for _ in Lit._fields))
+        lens, (sun, sky) = camera.lens(large), (found.shading for found in maps)
+        shade_picture(nearest, nearness, scene.surfaces, lens, sun, sky, PALETTE, lit, np.empty(15), np.empty(15))
+        return Still(camera, nearness, lit, (maps[0], maps[1]))
 
 
-def _quarters(samples: NDArray[Any], size: tuple[int, int]) -> NDArray[Any]:
-    """A double-size picture's values as four a pixel. (H * W, 4)."""
-    width, height = size
-    return samples.reshape(height, 2, width, 2).transpose(0, 2, 1, 3).reshape(-1, 4)
+def nearness_of(solids: Sequence[Solid], camera: Camera, size: tuple[int, int]) -> Array:
+    """How near what is nearest is in every pixel, minus infinity for nothing. (height, width)."""
+    return _Scene.of(solids).visible(camera, size)[1]
 
 
 @dataclass(frozen=True)
 class _Scene:
     """All triangles of all solids in a row."""
 
-    corners: Array
-    """(F, 3, 3)."""
-    normals: Array
-    """(F, 3, 3) float32, one a corner; zero where flat."""
-    flat: Array
-    """(F, 3) float32."""
-    is_smooth: NDArray[np.bool_]
-    """(F,)."""
-    color: Array
-    """(F, 3) float32, linear."""
+    surfaces: Surfaces
     opacity: Array
+    """(F,)."""
     casts: NDArray[np.bool_]
+    """(F,)."""
 
     @classmethod
     def of(cls, solids: Sequence[Solid]) -> _Scene:
@@ -156,15 +175,34 @@ class _Scene:
             normals.append(np.zeros_like(shape) if solid.normals is None else np.asarray(solid.normals)[solid.faces])
             color = np.asarray(solid.color, dtype=np.float64)[..., :3]
             colors.append(np.broadcast_to(to_linear(color), (len(shape), 3)))
-        return cls(
+        surfaces = Surfaces(
             np.concatenate(corners),
             np.concatenate(normals).astype(np.float32),
             np.concatenate(flats).astype(np.float32),
             np.repeat([s.normals is not None for s in solids], counts),
             np.concatenate(colors).astype(np.float32),
-            np.repeat([s.opacity for s in solids], counts),
-            np.repeat([s.casts for s in solids], counts),
         )
+        return cls(
+            surfaces, np.repeat([s.opacity for s in solids], counts), np.repeat([s.casts for s in solids], counts)
+        )
+
+    @property
+    def casting(self) -> Array:
+        """The triangles that cast a shadow. (F', 3, 3)."""
+        return self.surfaces.corners[(self.opacity >= 1) & self.casts]
+
+    def visible(self, camera: Camera, size: tuple[int, int]) -> tuple[Ints, Array]:
+        """For every pixel the nearest triangle (-1 for none) and its nearness. (height, width) each."""
+        from motion_backend.rendering.depth_buffer import draw
+
+        viewed, source = clip(camera.view(self.surfaces.corners), camera)
+        screen = camera.project(viewed, size)
+        # A smooth solid is closed: its far side is hidden by its near side, or by none when it is see-through.
+        shown = np.flatnonzero(~self.surfaces.is_smooth[source] | turned_to_us(screen))
+        nearest, best = empty_buffers(size)
+        draw(screen[shown], np.round(4 * self.opacity[source[shown]]).astype(np.int64), 0, nearest, best)
+        # Triangles that the eye's plane cuts are several pieces; none stays none.
+        return np.append(source[shown], -1)[nearest], best
 
 
 def _floor(camera: Camera, height: float) -> Solid:
@@ -174,89 +212,10 @@ def _floor(camera: Camera, height: float) -> Solid:
     return Solid(corners - [0, 0.004, 0], np.array([[0, 1, 2], [0, 2, 3]]), (0.80, 0.80, 0.79))
 
 
-def _visible(scene: _Scene, camera: Camera, size: tuple[int, int]) -> tuple[Ints, Array]:
-    """For every pixel the nearest triangle (-1 for none) and its nearness."""
-    from motion_backend.rendering.depth_buffer import draw
-
-    viewed, source = clip(camera.view(scene.corners), camera)
-    screen = camera.project(viewed, size)
-    # A smooth solid is closed: its far side is hidden by its near side, or by none when it is see-through.
-    shown = np.flatnonzero(~scene.is_smooth[source] | turned_to_us(screen))
-    nearest, best = empty_buffers(size)
-    draw(screen[shown], np.round(4 * scene.opacity[source[shown]]).astype(np.int64), 0, nearest, best)
-    # Triangles that the eye's plane cuts are several pieces; none stays none.
-    return np.append(source[shown], -1)[nearest].reshape(-1), best.reshape(-1)
-
-
 def turned_to_us(screen: Real) -> NDArray[np.bool_]:
     """Which triangles on a picture (F, 3, 3) show their outside. (F,)."""
     x, y = screen[..., 0], screen[..., 1]
     return np.asarray((x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) < (y[:, 1] - y[:, 0]) * (x[:, 2] - x[:, 0]))
-
-
-def shade(seen: Samples, sun: Real, sky: Real) -> Real:
-    """Linear colours of what is seen, of whose two lights these shares (N,) reach each point. (N, 3)."""
-    scene, camera, triangle, points = seen.scene, seen.camera, seen.triangle, seen.points
-    normal, distance, facing = _surface(seen)
-    direct = np.maximum(normal @ SUN.direction.astype(np.float32), 0.0) * sun
-    up = 0.5 + 0.5 * normal[:, 1]
-    bright = SUN_LIGHT * direct + sky * (SKY_LIGHT * up + BOUNCE_LIGHT * (1 - up)) + CAMERA_LIGHT * facing
-    ground = np.flatnonzero((np.abs(points[:, 1]) < 0.006) & (normal[:, 1] > 0.99))
-    bright[ground] *= _grid(points[ground], distance[ground])
-    color = scene.color[triangle] * bright[:, None]
-    away = np.hypot(points[:, 0] - camera.target[0], points[:, 2] - camera.target[2])
-    far = np.flatnonzero(away > HAZE_START)
-    haze = np.minimum((away[far, None] - HAZE_START) / HAZE_DEPTH, 1.0)
-    color[far] += (to_linear(HORIZON) - color[far]) * haze
-    return np.asarray(color)
-
-
-def _surface(seen: Samples) -> tuple[Real, Real, Real]:
-    """Normals towards the eye (N, 3), how far from it (N,) and the cosine of the angle to it (N,)."""
-    normal = seen.scene.flat[seen.triangle]
-    smooth = np.flatnonzero(seen.scene.is_smooth[seen.triangle])
-    normal[smooth] = _interpolated(seen.scene, seen.triangle[smooth], seen.points[smooth])
-    if seen.camera.span is None:
-        ray = np.asarray(seen.camera.eye, dtype=np.float32) - seen.points
-        distance = np.sqrt(_dot(ray, ray))
-        facing = _dot(normal, ray) / distance
-    else:
-        distance = np.zeros(len(seen.points), dtype=np.float32)
-        facing = normal @ -seen.camera.axes[2].astype(np.float32)
-    normal[facing < 0] *= -1
-    return normal, distance, np.abs(facing)
-
-
-def _interpolated(scene: _Scene, triangle: Ints, points: Real) -> Real:
-    """Unit normals at points of triangles, from the corners' normals. (N, 3) float32."""
-    corners, normals = scene.corners[triangle], scene.normals[triangle]
-    side, other, offset = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], points - corners[:, 0]
-    a, b, c = _dot(side, side), _dot(side, other), _dot(other, other)
-    d, e = _dot(offset, side), _dot(offset, other)
-    area = np.maximum(a * c - b * b, 1e-18)
-    u, v = ((c * d - b * e) / area)[:, None], ((a * e - b * d) / area)[:, None]
-    normal = (1 - u - v) * normals[:, 0] + u * normals[:, 1] + v * normals[:, 2]
-    return np.asarray(normal / np.sqrt(np.maximum(_dot(normal, normal), 1e-18))[:, None], dtype=np.float32)
-
-
-def _dot(a: Real, b: Real) -> Real:
-    return np.asarray(np.einsum("nk,nk->n", a, b))
-
-
-def light(seen: Samples) -> tuple[Real, Real]:
-    """Shares of the sun and of the sky that reach points. (N,) each."""
-    normal = _surface(seen)[0]
-    points = seen.points + SHADOW_OFFSET * normal
-    casting = seen.scene.corners[(seen.scene.opacity >= 1) & seen.scene.casts]
-    sun, sky = (ShadowMap.of(lamp, casting, seen.camera).shares(points, seen.quarter) for lamp in (SUN, SKY))
-    return sun, OPEN_SKY + (1 - OPEN_SKY) * sky
-
-
-def _grid(points: Real, distance: Real) -> Real:
-    """How dark the floor's lines make it at points that far from the eye. (N,)."""
-    x, z = (np.abs((points[:, k] / GRID + 0.5) % 1.0 - 0.5) * GRID for k in (0, 2))
-    width = 0.004 + 0.0012 * distance
-    return np.asarray(1.0 - 0.22 * np.clip(1.5 - np.minimum(x, z) / width, 0, 1))
 
 
 def to_linear(color: Array) -> Array:
@@ -264,8 +223,18 @@ def to_linear(color: Array) -> Array:
     return np.asarray(np.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4))
 
 
-def to_srgb_bytes(light: Real) -> Image:
+def to_srgb(light: Real) -> Real:
     """Of linear light, 0 to 1."""
     light = np.clip(light, 0.0, 1.0)
-    color = np.where(light <= 0.0031308, light * 12.92, 1.055 * light ** (1 / 2.4) - 0.055)
-    return np.asarray(np.round(color * 255), dtype=np.uint8)
+    return np.asarray(np.where(light <= 0.0031308, light * 12.92, 1.055 * light ** (1 / 2.4) - 0.055))
+
+
+def to_srgb_bytes(light: Real) -> Image:
+    """Of linear light, 0 to 1."""
+    return np.asarray(np.round(to_srgb(light) * 255), dtype=np.uint8)
+
+
+PALETTE: Final = Palette(
+    SUN_LIGHT, SKY_LIGHT, BOUNCE_LIGHT, CAMERA_LIGHT, OPEN_SKY,
+    SHADOW_OFFSET, SHADOW_BIAS, GRID, HAZE_START, HAZE_DEPTH, to_linear(HORIZON).astype(np.float32),
+)  # fmt: skip

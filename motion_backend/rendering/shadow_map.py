@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
-from motion_backend.rendering.rasterizer import Camera, Ints, Real, empty_buffers
+from motion_backend.rendering.rasterizer import Camera, Real, empty_buffers
 from motion_backend.rotations import Array
 
 SHADOW_REACH = 3.2
@@ -42,6 +44,22 @@ SKY = Lamp(
 )
 
 
+class Shading(NamedTuple):
+    """A lamp and its map as compiled code reads them."""
+
+    matrix: Array
+    """A point p in the map is matrix @ (p, 1): x, y and nearness. (3, 4)."""
+    depth: Array
+    """The nearness of what the lamp meets first. (pixels, pixels)."""
+    most: Array
+    least: Array
+    """The greatest and the least of it around each pixel, as far as its taps reach. (pixels, pixels) each."""
+    taps: Real
+    """Where the map is read around a place, in pixels. (K, 2) float32."""
+    direction: Array
+    """Unit vector towards the lamp. (3,)."""
+
+
 @dataclass(frozen=True)
 class ShadowMap:
     """What the light of a lamp meets first, around a camera's target."""
@@ -66,19 +84,42 @@ class ShadowMap:
         depth[[0, -1]] = depth[:, [0, -1]] = -np.inf
         return ShadowMap(lamp, view, depth)
 
-    def places(self, points: Real) -> Real:
-        """Where points (N, 3) are in the map: x, y and nearness. (N, 3)."""
-        return self.view.project(self.view.view(points), self.depth.shape)
+    @staticmethod
+    def empty(lamp: Lamp, camera: Camera) -> ShadowMap:
+        """Of nothing: all is lit."""
+        return ShadowMap(lamp, Camera(camera.eye, camera.target, span=1.0), np.full((1, 1), -np.inf))
 
-    @property
+    @cached_property
+    def matrix(self) -> Array:
+        """A point p in the map is matrix @ (p, 1): x, y and nearness. (3, 4)."""
+        assert self.view.span is not None
+        pixels = self.depth.shape[0]
+        scale = pixels / self.view.span
+        rows = self.view.axes * np.array([[scale], [-scale], [-1.0]])
+        return np.column_stack([rows, np.array([pixels / 2, pixels / 2, 0.0]) - rows @ np.array(self.view.eye)])
+
+    def places(self, points: Real) -> Array:
+        """Where points (N, 3) are in the map: x, y and nearness. (N, 3)."""
+        return np.asarray(points @ self.matrix[:, :3].T + self.matrix[:, 3])
+
+    @cached_property
     def taps(self) -> Real:
         """Where it is read around a place, in pixels. (K, 2)."""
         assert self.view.span is not None
         return (self.lamp.taps * (self.lamp.blur * self.lamp.pixels / self.view.span)).astype(np.float32)
 
-    def shares(self, points: Real, quarter: Ints) -> Real:
-        """The share of its light that reaches points (N, 3), which are one of a picture's four samples each. (N,)."""
-        from motion_backend.rendering.depth_buffer import light_shares
+    @property
+    def margin(self) -> int:
+        """Pixels around a place that its taps reach."""
+        return int(np.ceil(np.hypot(*self.taps.T).max())) + 1
 
-        turns = quarter.astype(np.float32) * np.float32(np.pi / 8)
-        return light_shares(self.places(points), turns, self.taps, self.depth, SHADOW_BIAS)
+    @cached_property
+    def shading(self) -> Shading:
+        """The same for compiled code."""
+        return self.shading_of(self.depth, self.matrix)
+
+    def shading_of(self, depth: Array, matrix: Array) -> Shading:
+        """The same for another map of the lamp: a part of it, with more in it."""
+        from motion_backend.rendering.surface_light import extremes
+
+        return Shading(matrix, depth, *extremes(depth, self.margin), self.taps, self.lamp.direction)

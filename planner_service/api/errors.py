@@ -12,6 +12,7 @@ Problem                     500  the root; any of these may be raised anywhere b
 ├── WrongMedia              415  not application/json
 ├── Unprocessable           422  read, but it does not make sense; names the field
 ├── TooMany                 429  later, please; with Retry-After
+├── NotProvided             501  what it needs is not installed here; names the remedy
 ├── ModelFailed             502  the language model did not give a usable answer
 ├── Unavailable             503  the database is busy or away; with Retry-After
 └── StorageFull             507  no room left for what was asked for
@@ -195,6 +196,12 @@ class TooMany(Problem):
 
     def __init__(self, detail: str, retry_after: int) -> None:
         super().__init__(detail, headers={"Retry-After": str(retry_after)})
+
+
+class NotProvided(Problem):
+    """What it needs is not installed here."""
+
+    status = 501
 
 
 class ModelFailed(Problem):

@@ -14,12 +14,13 @@ from planner_service.api.errors import TooMany, Unprocessable
 from planner_service.components import Parts
 from planner_service.extraction.extraction_result import Extraction
 from planner_service.jobs.extraction_stages import STAGES, Gathered, keep_all, made_at_once
-from planner_service.jobs.queue import EXTRACT, EXTRACTIONS
+from planner_service.jobs.queue import EXTRACT, EXTRACTIONS, FILMS, SHOOT
 from planner_service.jobs.uploads import Coming
 from planner_service.pipeline import StoryRequest
 from planner_service.store.extraction_store import ExtractionRequest, add_extraction, put_made
+from planner_service.store.film_store import add_film, film_of, hold_story
 from planner_service.store.story_store import Record, Stories, now
-from planner_service.store.tables import WAITING, idempotency_keys, stories, workflow_status
+from planner_service.store.tables import WAITING, idempotency_keys, state_of, stories, workflow_status
 
 Kind = Literal["story", "motion", "extraction"]
 """One key means another thing for each."""
@@ -73,6 +74,19 @@ def accept_extraction(parts: Parts, caller: str, wanted: ExtractionRequest, comi
         raise
 
 
+def accept_film(parts: Parts, caller: str, story_id: str) -> Record:
+    """Store and queue a film of a story, unless one is there or under way. StoryGone, TooMany at the limit."""
+    table = Stories(parts.engine)
+    with parts.engine.execution_options(writes=True).begin() as connection:
+        hold_story(connection, story_id)
+        known = film_of(connection, story_id)
+        if known is None or state_of(_status(connection, known)) in ("failed", "cancelled"):
+            _check_room(parts, connection, caller)
+            known = add_film(connection, caller, story_id)
+            parts.jobs.enqueue(connection, known, SHOOT, FILMS)
+    return table.get(known)
+
+
 def keep_extraction(parts: Parts, caller: str, wanted: ExtractionRequest, made: Extraction, key: str | None) -> Record:
     """Store what was extracted at once, its scripts in the library if that was asked for. ShelfError, LibraryError."""
     kept: list[Record] = []
@@ -123,10 +137,8 @@ def _accepted(
         known = _known(connection, caller, key, body_hash) if key else None
         if known is not None:
             return known
-        most = parts.settings.most_stories
-        if queue is not None and _waiting(connection, caller) >= most:
-            detail = f"{most} of your stories are waiting or being made; wait until one has ended, or cancel one"
-            raise TooMany(detail, FULL_QUEUE)
+        if queue is not None:
+            _check_room(parts, connection, caller)
         story_id = make(connection)
         if key:
             row = {"caller": caller, "key": key, "story_id": story_id, "body_hash": body_hash, "created": now()}
@@ -148,6 +160,20 @@ def _known(connection: Connection, caller: str, key: str, body_hash: str) -> str
     if row is not None and row.body_hash != body_hash:
         raise Unprocessable("header:Idempotency-Key", "this key came with another body before; use a new one")
     return None if row is None else str(row.story_id)
+
+
+def _check_room(parts: Parts, connection: Connection, caller: str) -> None:
+    """TooMany where a caller has as many stories under way as one may have."""
+    most = parts.settings.most_stories
+    if _waiting(connection, caller) >= most:
+        detail = f"{most} of your stories are waiting or being made; wait until one has ended, or cancel one"
+        raise TooMany(detail, FULL_QUEUE)
+
+
+def _status(connection: Connection, story_id: str) -> str | None:
+    """The job engine's word for what became of a story."""
+    mine = workflow_status.c.workflow_uuid == story_id
+    return connection.execute(select(workflow_status.c.status).where(mine)).scalar()
 
 
 def _waiting(connection: Connection, caller: str) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from planner_service.client.client import AsyncClient, Client
 from planner_service.client.errors import ApiError, ClientError, StoryCancelled, StoryFailed, Unreachable, WaitTimeout
-from planner_service.client.responses import Extraction, Page, Story, StoryEvent
+from planner_service.client.responses import Extraction, Film, Page, Story, StoryEvent
 
 __all__ = [
     "ApiError",
@@ -12,6 +12,7 @@ __all__ = [
     "Client",
     "ClientError",
     "Extraction",
+    "Film",
     "Page",
     "Story",
     "StoryCancelled",

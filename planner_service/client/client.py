@@ -11,7 +11,7 @@ import anyio
 import httpx
 
 from planner_service.client import requests
-from planner_service.client.event_stream_client import Following, finished
+from planner_service.client.event_stream_client import Following, Looking, finished
 from planner_service.client.requests import Call
 from planner_service.client.responses import Extraction, Story, StoryEvent
 from planner_service.client.retry import Sending, http_options
@@ -62,6 +62,10 @@ class Methods:
     motion = Method(requests.motion)
     motion_file = Method(requests.motion_file)
     film = Method(requests.film)
+    make_film = Method(requests.make_film)
+    film_state = Method(requests.film_state)
+    film_mp4 = Method(requests.film_mp4)
+    delete_film = Method(requests.delete_film)
     scene = Method(requests.scene)
     home = Method(requests.home)
     short_scripts = Method(requests.short_scripts)
@@ -123,6 +127,14 @@ class Client(Methods):
         for _ in self._follow(Following(story_id, timeout=timeout)):
             pass
         return finished(self.story(story_id))
+
+    def wait_film(self, story_id: str, timeout: float | None = None) -> bytes:
+        """The story's film.mp4, made if need be. StoryFailed, StoryCancelled, WaitTimeout; ApiError 409, 501."""
+        looking = Looking(self.make_film(story_id), timeout)
+        while looking.goes_on():
+            time.sleep(looking.pause)
+            looking.film = self.film_state(story_id)
+        return self.film_mp4(story_id)
 
     def extraction_events(self, extraction_id: str, after: int = 0) -> Iterator[StoryEvent]:
         """The same of an extraction."""
@@ -188,6 +200,14 @@ class AsyncClient(Methods):
         async for _ in self._follow(Following(story_id, timeout=timeout)):
             pass
         return finished(await self.story(story_id))
+
+    async def wait_film(self, story_id: str, timeout: float | None = None) -> bytes:
+        """The story's film.mp4, made if need be. StoryFailed, StoryCancelled, WaitTimeout; ApiError 409, 501."""
+        looking = Looking(await self.make_film(story_id), timeout)
+        while looking.goes_on():
+            await anyio.sleep(looking.pause)
+            looking.film = await self.film_state(story_id)
+        return await self.film_mp4(story_id)
 
     def extraction_events(self, extraction_id: str, after: int = 0) -> AsyncIterator[StoryEvent]:
         """The same of an extraction."""

@@ -13,7 +13,7 @@ from urllib.parse import quote
 import httpx
 
 from planner_service.client.errors import StoryCancelled, StoryFailed, WaitTimeout, error_of, not_ours, unreachable
-from planner_service.client.responses import Job, StoryEvent
+from planner_service.client.responses import Film, Job, StoryEvent
 
 J = TypeVar("J", bound=Job)
 SILENCE: Final = 45.0
@@ -161,6 +161,29 @@ class Following:
         self.pause = min(PAUSE * 2**self._breaks, MAX_PAUSE_SECONDS, self._left())
         self._breaks += 1
         return self._breaks > BREAKS
+
+
+@dataclass
+class Looking:
+    """One who waits for a film, of which there are no events, by looking again."""
+
+    film: Film
+    """As it was last."""
+    timeout: float | None = None
+    """Seconds they have."""
+    pause: float = PAUSE
+    _started: float = field(default_factory=time.monotonic)
+
+    def goes_on(self) -> bool:
+        """Whether it is still being made. StoryFailed, StoryCancelled, WaitTimeout."""
+        if self.film.state == "absent":
+            raise StoryCancelled(self.film)
+        if self.film.ended:
+            finished(self.film)
+            return False
+        if self.timeout is not None and time.monotonic() - self._started > self.timeout:
+            raise WaitTimeout(f"the film was not made within {self.timeout:g} s")
+        return True
 
 
 def finished(story: J) -> J:

@@ -12,7 +12,7 @@ from urllib.parse import quote
 
 import httpx
 
-from planner_service.client.responses import Extraction, Json, Page, Story, page_of
+from planner_service.client.responses import Extraction, Film, Json, Page, Story, page_of
 
 if TYPE_CHECKING:
     from motion_backend.motion import Motion
@@ -141,6 +141,27 @@ def motion_file(story_id: str, format: Format, first: int = 0, last: int | None 
 def film(story_id: str) -> Call[bytes]:
     """The home and the animated character in one GLB."""
     return Call("GET", _at("stories", story_id, "film.glb"), _bytes)
+
+
+def make_film(story_id: str) -> Call[Film]:
+    """Have a story filmed as MP4; `wait_film` waits for it. ApiError 409 before it has succeeded,
+    501 where the service cannot film."""
+    return Call("POST", _at("stories", story_id, "film"), _film)
+
+
+def film_state(story_id: str) -> Call[Film]:
+    """How far that is; its state is absent where nobody has asked for it."""
+    return Call("GET", _at("stories", story_id, "film"), _film)
+
+
+def film_mp4(story_id: str) -> Call[bytes]:
+    """The story filmed: H.264, 1280 x 720. ApiError 404 until it is there."""
+    return Call("GET", _at("stories", story_id, "film.mp4"), _bytes)
+
+
+def delete_film(story_id: str) -> Call[None]:
+    """Stop and delete a story's film; the story stays."""
+    return Call("DELETE", _at("stories", story_id, "film"), _nothing)
 
 
 def scene(story_id: str) -> Call[bytes]:
@@ -314,6 +335,10 @@ def _given(**query: object) -> dict[str, object]:
 
 def _story(answer: httpx.Response) -> Story:
     return Story(answer.json())
+
+
+def _film(answer: httpx.Response) -> Film:
+    return Film(answer.json())
 
 
 def _extraction(answer: httpx.Response) -> Extraction:

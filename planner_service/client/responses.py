@@ -106,6 +106,11 @@ class Extraction(Job):
 
 
 @dataclass(frozen=True)
+class Film(Job):
+    """A story's film.mp4, as far as it is made."""
+
+
+@dataclass(frozen=True)
 class StoryEvent:
     """stage, progress, segment or scenes, and at the end done, failed or cancelled; `id` is where to go on from."""
 

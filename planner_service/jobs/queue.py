@@ -15,6 +15,10 @@ WORKFLOW: Final = "act-out"
 EXTRACTIONS: Final = "extractions"
 """A queue of their own: a film of two hours holds up no story."""
 EXTRACT: Final = "extract"
+FILMS: Final = "films"
+SHOOT: Final = "shoot"
+QUEUES: Final = {WORKFLOW: QUEUE, EXTRACT: EXTRACTIONS, SHOOT: FILMS}
+"""Where each kind of work waits."""
 APPLICATION: Final = "sims-stories"
 VERSION: Final = "1"
 """Raised only when the order of a story's steps changes: stories that an older version began would be left alone."""
@@ -55,7 +59,7 @@ class Jobs:
         mine = workflow_status.c.workflow_uuid == story_id
         with self.engine.connect() as connection:
             workflow = connection.execute(select(workflow_status.c.name).where(mine)).scalar()
-        self._client.resume_workflow(story_id, queue_name=EXTRACTIONS if workflow == EXTRACT else QUEUE)
+        self._client.resume_workflow(story_id, queue_name=QUEUES.get(workflow or "", QUEUE))
 
     def forget(self, story_id: str) -> None:
         """Remove what the job engine knows of a story."""

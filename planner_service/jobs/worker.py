@@ -1,4 +1,4 @@
-"""One worker process: takes stories and extractions from their queues, one of each at a time, and makes them.
+"""One worker process: takes stories, extractions and films from their queues, one of each at a time, and makes them.
 
 While a story waits for its language model, up to three others go on.
 """
@@ -17,7 +17,8 @@ from sqlalchemy.exc import InterfaceError, OperationalError
 
 from planner_service.extraction.speech_to_text import load_transcriber
 from planner_service.jobs.extraction_stages import Reader
-from planner_service.jobs.queue import APPLICATION, EXTRACTIONS, QUEUE, VERSION
+from planner_service.jobs.film_stages import Filmer
+from planner_service.jobs.queue import APPLICATION, EXTRACTIONS, FILMS, QUEUE, VERSION
 from planner_service.jobs.story_stages import AT_ONCE, Maker
 from planner_service.jobs.uploads import Uploads
 from planner_service.jobs.worker_lock import hold_name
@@ -63,7 +64,8 @@ def run_worker(settings: Settings, supervised: bool = False) -> None:
     store, strict = Stories(engine), settings.llm_on_failure == "error"
     uploads, transcriber = Uploads(settings.uploads_dir), load_transcriber(settings)
     reader = Reader(store, shelves, uploads, settings.worker_id, pipeline.model, transcriber, strict)
-    register(Maker(store, pipeline, settings.worker_id), reader)
+    filmer = Filmer(store, pipeline, settings.worker_id)
+    register(Maker(store, pipeline, settings.worker_id), reader, filmer)
     DBOS(
         config={
             "name": APPLICATION,
@@ -79,7 +81,7 @@ def run_worker(settings: Settings, supervised: bool = False) -> None:
     DBOS.launch()
     # Without a model nobody waits, and the stories would only hold each other up.
     stories = AT_ONCE if pipeline.model is not None else 1
-    for queue, poll, at_once in ((QUEUE, POLL, stories), (EXTRACTIONS, RARELY, 1)):
+    for queue, poll, at_once in ((QUEUE, POLL, stories), (EXTRACTIONS, RARELY, 1), (FILMS, RARELY, 1)):
         DBOS.register_queue(queue, worker_concurrency=at_once, polling_interval_sec=poll)
     log.info("worker ready", worker=settings.worker_id, pid=os.getpid())
     while not stop.wait(KEEP):

@@ -17,7 +17,8 @@ from dbos import DBOS
 from sqlalchemy.exc import InterfaceError, OperationalError
 
 from planner_service.jobs.extraction_stages import Reader
-from planner_service.jobs.queue import EXTRACT, WORKFLOW
+from planner_service.jobs.film_stages import Filmer
+from planner_service.jobs.queue import EXTRACT, SHOOT, WORKFLOW
 from planner_service.jobs.story_stages import Maker
 from planner_service.store.story_store import Stories, StoryGone
 from planner_service.user_errors import explain
@@ -33,8 +34,8 @@ R = TypeVar("R")
 log = structlog.get_logger("sims.worker")
 
 
-def register(maker: Maker, reader: Reader) -> None:
-    """Tell the job engine how stories and extractions are made; call before DBOS.launch()."""
+def register(maker: Maker, reader: Reader, filmer: Filmer) -> None:
+    """Tell the job engine how stories, extractions and films are made; call before DBOS.launch()."""
 
     @DBOS.workflow(name=WORKFLOW, max_recovery_attempts=MAX_ATTEMPTS)
     def act_out(story_id: str) -> None:
@@ -46,7 +47,12 @@ def register(maker: Maker, reader: Reader) -> None:
         with structlog.contextvars.bound_contextvars(story_id=extraction_id):
             read(reader, extraction_id)
 
-    del act_out, extract
+    @DBOS.workflow(name=SHOOT, max_recovery_attempts=MAX_ATTEMPTS)
+    def shoot(film_id: str) -> None:
+        with structlog.contextvars.bound_contextvars(story_id=film_id):
+            film(filmer, film_id)
+
+    del act_out, extract, shoot
 
 
 def make(maker: Maker, story_id: str) -> None:
@@ -73,6 +79,12 @@ def read(reader: Reader, extraction_id: str) -> None:
             step("gather", reader.gather, extraction_id)
     finally:
         reader.close(extraction_id)
+
+
+def film(filmer: Filmer, film_id: str) -> None:
+    """The one step of a film."""
+    with told(filmer.store, film_id, "This story cannot be filmed"):
+        step("film", filmer.film, film_id)
 
 
 @contextmanager

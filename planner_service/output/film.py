@@ -16,13 +16,16 @@ from numpy.typing import NDArray
 
 from motion_backend.formats.mp4 import write_mp4
 from motion_backend.rendering.film_frames import film_frames
+from motion_backend.rendering.film_picture import lay_words
 from motion_backend.rendering.film_shots import film_shots
 from scene_graphs.errors import UserError
 
 if TYPE_CHECKING:
-    from motion_backend.rendering.renderer import Image
+    from motion_backend.motion import Motion
+    from motion_backend.rendering.film_picture import Planes
     from planner_service.narration.narrator import Told
     from planner_service.pipeline import Story
+    from scene_graphs.home import Home
 
 SIZE: Final = (1280, 720)
 """Pixels across and down."""
@@ -32,6 +35,8 @@ MAX_LETTERS: Final = 66
 MAX_LINES: Final = 2
 TEXT_HEIGHT, TITLE_HEIGHT = 0.042, 0.085
 """Of the picture's height."""
+WORDS_END, TITLE_END = 0.94, 0.58
+"""Where in the picture's height they end."""
 SHADE: Final = 0.62
 """How much of a picture's light stays under its words."""
 SENTENCE: Final = re.compile(r"[^.!?…]+[.!?…]*[\"”’']*\s*")
@@ -58,27 +63,43 @@ class Subtitle:
     text: str
 
 
+@dataclass(frozen=True)
+class Filmed:
+    """What is filmed of a story."""
+
+    home: Home
+    motion: Motion
+    told: Told
+    segments: tuple[tuple[int, int], ...]
+    """First frame and stop frame of every keyframe."""
+
+    @staticmethod
+    def of(story: Story) -> Filmed:
+        """One that was just made."""
+        return Filmed(story.planned.home, story.motion, story.planned.told, story.segments)
+
+
 def write_film(
-    story: Story, path: Path, size: tuple[int, int] = SIZE, show: Callable[[float], None] = lambda _: None
+    filmed: Filmed, path: Path, size: tuple[int, int] = SIZE, show: Callable[[float], None] = lambda _: None
 ) -> Path:
-    """Film a story; `show` is told which share is done. FilmUnavailableError."""
+    """Film a story; `show` is told which share is done, and what it raises ends the film. FilmUnavailableError."""
     check_film()
-    motion, told = story.motion, story.planned.told
-    shots = film_shots(story.planned.home, motion, [start for start, _ in story.segments], size[0] / size[1])
-    words = [(line, _lettered(line.text, size, TEXT_HEIGHT)) for line in subtitles(told, story.segments)]
+    motion, told = filmed.motion, filmed.told
+    shots = film_shots(filmed.home, motion, [start for start, _ in filmed.segments], size[0] / size[1])
+    words = [(line, _lettered(line.text, size, TEXT_HEIGHT)) for line in subtitles(told, filmed.segments)]
     title = _lettered(told.title, size, TITLE_HEIGHT)
     titled = round(TITLE_SECONDS * motion.fps)
 
-    def dressed(frame: int, picture: Image) -> Image:
+    def dressed(frame: int, picture: Planes) -> Planes:
         for line, letters in words:
             if line.start <= frame < line.stop and frame >= titled:
-                _lay(picture, letters, 0.94)
-        if frame < titled:
-            _lay(picture, title, 0.58)
+                lay_words(picture, letters, WORDS_END, SHADE)
+        if frame < titled and told.title:
+            lay_words(picture, title, TITLE_END, SHADE)
         return picture
 
-    def counted() -> Iterator[Image]:
-        for number, picture in enumerate(film_frames(story.planned.home, motion, shots, size, dressed)):
+    def counted() -> Iterator[Planes]:
+        for number, picture in enumerate(film_frames(motion, shots, size, dressed)):
             show(number / len(motion))
             yield picture
 
@@ -100,7 +121,9 @@ def subtitles(told: Told, segments: Sequence[tuple[int, int]]) -> list[Subtitle]
             waiting = ""
     if waiting and begun:
         begun[-1] = (begun[-1][0], begun[-1][1] + waiting)
-    stops = [*(start for start, _ in begun[1:]), segments[-1][1] if segments else 0]
+    if not begun:
+        return []
+    stops = [*(start for start, _ in begun[1:]), segments[-1][1]]
     return [
         piece
         for (start, text), stop in zip(begun, stops, strict=True)
@@ -132,13 +155,3 @@ def _lettered(text: str, size: tuple[int, int], share: float) -> NDArray[np.floa
     low, high = (max(box[0] - 2 * pad, 0), max(box[1] - pad, 0)), (box[2] + 2 * pad, box[3] + pad)
     cover = np.asarray(page.crop((*low, *high)), dtype=np.float32)
     return cover / np.float32(255)
-
-
-def _lay(picture: Image, letters: NDArray[np.float32], bottom: float) -> None:
-    """Words on a darker band, in the middle of a picture, ending at that share of its height."""
-    height, width = letters.shape
-    top = round(bottom * picture.shape[0]) - height
-    left = (picture.shape[1] - width) // 2
-    part = picture[top : top + height, left : left + width]
-    cover = letters[: part.shape[0], : part.shape[1], None]
-    part[:] = (SHADE * part * (1 - cover) + 255 * cover).astype(np.uint8)

@@ -16,7 +16,7 @@ from motion_backend.formats.motion_json import phase_to_dict
 from motion_backend.formats.npz import write_npz
 from motion_backend.metrics.figure_limits import held_against
 from planner_service.grounding.keyframes_to_actions import action_to_dict
-from planner_service.output.film import write_film
+from planner_service.output.film import Filmed, write_film
 from planner_service.output.storyboard import storyboard
 from planner_service.pipeline import Planned, Story
 from planner_service.scripts.acted_beats import ActedBeats, acted_beats, shot_of
@@ -50,7 +50,7 @@ def write_story(
         "storyboard.png": lambda path: _write_storyboard(story, path),
     }
     if film:
-        writers[FILM] = lambda path: write_film(story, path, show=show)
+        writers[FILM] = lambda path: write_film(Filmed.of(story), path, show=show)
     return write_files(folder, writers)
 
 

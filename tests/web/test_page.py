@@ -294,3 +294,18 @@ def _looked_at(told: dict[str, Any], room_id: str, client: httpx.Client) -> None
     links = room["links"]
     drawings = [links["drawing"], links["drawing"].replace(".svg", ".png")]
     assert [f"/{address}" for address in told["files"]] == [*drawings, links["scene"], links["self"]]
+
+
+def test_a_story_is_filmed_at_a_click_and_shows_the_body_moving(
+    visit: Visit, watched: dict[str, Any], client: httpx.Client, tmp_path: Path
+) -> None:
+    av = pytest.importorskip("av")
+    done = visit("filming", watched["story"], str(tmp_path))
+    assert done["name"].endswith(".mp4")
+    assert done["seen"] == sorted(done["seen"]), "it never goes back"
+    frames = client.get(f"/v1/stories/{watched['story']}").json()["motion"]["frames"]
+    with av.open(str(tmp_path / "film.mp4")) as film:
+        pictures = [one.to_ndarray(format="gray")[::8, ::8].astype(int) for one in film.decode(video=0)]
+    assert len(pictures) == frames
+    still = [np.abs(one - other).max() < 8 for one, other in zip(pictures[::30], pictures[15::30], strict=False)]
+    assert np.mean(still) < 0.5, "most of the time something moves"

@@ -252,6 +252,26 @@ export const filmUrl = (id: string): string => `${story(id)}/film.glb`;
 export const storyUrl = (id: string): string => story(id);
 export const eventsUrl = (id: string): string => `${story(id)}/events`;
 
+/** A story's film.mp4, as far as it is made. */
+export interface FilmJob {
+  /** "absent" where nobody has asked for it. */
+  readonly state: State | "absent";
+  readonly progress: number;
+  readonly bytes: number | null;
+  readonly error: Failure | null;
+}
+
+export const mp4Url = (id: string): string => `${story(id)}/film.mp4`;
+
+/** Have a story filmed; one that is there or under way stays. */
+export const makeFilm = (id: string): Promise<FilmJob> => json(`${story(id)}/film`, { method: "POST" });
+
+export const getFilm = (id: string): Promise<FilmJob> => json(`${story(id)}/film`);
+
+export async function stopFilm(id: string): Promise<void> {
+  await call(`${story(id)}/film`, { method: "DELETE" });
+}
+
 /** The bytes of a GLB file. */
 export async function getGlb(url: string): Promise<ArrayBuffer> {
   return (await call(url)).arrayBuffer();

@@ -10,13 +10,13 @@ const DEEP = 0.08;
 
 /** Who planned it: rules are not called a language model. */
 export function plannerWords(planner: string | null): string {
-  if (planner === null) return "The keyframes were given; nothing was planned.";
+  if (planner === null || planner === "given") return "The keyframes were given; nothing was planned.";
   if (planner === "rules") return "Planned by rules, no language model.";
   return `Planned by a language model, ${planner.replace(/^llm:/, "")}.`;
 }
 
 export function encoderWords(encoder: string | null): string {
-  if (encoder === null) return "No short scripts were looked up.";
+  if (!encoder) return "No short scripts were looked up.";
   if (encoder === "hashing") return "Scripts found by their words (hashing), the stand-in where no sentence encoder is.";
   return `Scripts found by meaning with the sentence encoder ${encoder}, the only learned part.`;
 }

@@ -24,7 +24,8 @@ from planner_service.api.web_page import unchanging
 from planner_service.components import Parts
 from planner_service.jobs.story_stages import HOME
 from planner_service.pipeline import StoryRequest, given_script
-from planner_service.store.story_store import EXTRACTION, Record, Stories, StoryGone
+from planner_service.store.film_store import film_of
+from planner_service.store.story_store import STORIES, Record, Stories, StoryGone
 from planner_service.store.tables import state_of
 from planner_service.themes.beats import clean
 from scene_graphs.home import Home, home_from_dict
@@ -58,7 +59,7 @@ def record_of(story_id: StoryId, stories: StoriesDep) -> Record:
         record = stories.get(story_id)
     except StoryGone as error:
         raise NotFound(absent) from error
-    if record.kind == EXTRACTION:
+    if record.kind not in STORIES:
         raise NotFound(absent)
     return record
 
@@ -154,6 +155,15 @@ def cancel(record: RecordDep, parts: PartsDep, stories: StoriesDep) -> Json:
 @stories_router.delete("/{story_id}", status_code=204)
 def forget(record: RecordDep, parts: PartsDep, stories: StoriesDep) -> None:
     """Delete a story and all that was made of it; one in the making is stopped."""
+    with parts.engine.connect() as connection:
+        film_id = film_of(connection, record.id)
+    if film_id is not None:
+        drop(stories.get(film_id), parts, stories)
+    drop(record, parts, stories)
+
+
+def drop(record: Record, parts: Parts, stories: Stories) -> None:
+    """Delete a story or film with what the job engine knows of it; one in the making is stopped. StoryGone."""
     running = state_of(record.status) in ("queued", "running")
     if running:
         parts.jobs.cancel(record.id)
@@ -253,8 +263,13 @@ def _home_row(stories: Stories, record: Record) -> Json:
 
 def _named(record: Record, suffix: str) -> dict[str, str]:
     """A file name for those who save the answer."""
+    return {"Content-Disposition": f'inline; filename="{file_name(record)}{suffix}"'}
+
+
+def file_name(record: Record) -> str:
+    """What a story's files are called, without an ending."""
     words = "".join(letter if letter.isascii() and letter.isalnum() else " " for letter in record.title or record.kind)
-    return {"Content-Disposition": f'inline; filename="{"-".join(words.lower().split()) or "story"}{suffix}"'}
+    return "-".join(words.lower().split()) or "story"
 
 
 motions_router = APIRouter(prefix="/v1/motions", tags=["motions"])

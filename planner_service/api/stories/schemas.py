@@ -265,6 +265,7 @@ class Links(BaseModel):
     cancel: str
     motion: str
     film: str
+    mp4: str = Field(description="The story filmed, for any player; POST to `self`/film makes it.")
     scene: str
     home: str
 

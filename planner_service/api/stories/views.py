@@ -123,7 +123,7 @@ def failure_of(record: Record) -> Json | None:
 def _links(story_id: str) -> dict[str, str]:
     here = f"/v1/stories/{story_id}"
     parts = {name: f"{here}/{name}" for name in ("events", "cancel", "motion", "home")}
-    return {"self": here, **parts, "film": f"{here}/film.glb", "scene": f"{here}/scene.glb"}
+    return {"self": here, **parts, "film": f"{here}/film.glb", "mp4": f"{here}/film.mp4", "scene": f"{here}/scene.glb"}
 
 
 def events_of(record: Record) -> Iterator[StoryEvent]:
