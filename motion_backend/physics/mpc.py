@@ -96,6 +96,8 @@ class Roll(NamedTuple):
     """One more than there are frames."""
     offsets: Array
     """Controls less the plan's. (H, 30)."""
+    answers: Sequence[Array] = ()
+    """How they answer to states and last offsets that are others, (30, 102) each; none where nothing was improved."""
 
 
 class Gains(NamedTuple):
@@ -127,9 +129,10 @@ class Controller:
         for _ in range(effort.rounds):
             gains = self._gains(best, at, last)
             found = self._searched(now, at, best, gains)
-            if found.cost >= best.cost:
+            better = found.cost < best.cost
+            best = (found if better else best)._replace(answers=gains.answer)
+            if not better:
                 break
-            best = found
         return best
 
     def _searched(self, now: Moment, at: int, about: Roll, gains: Gains) -> Roll:

@@ -68,7 +68,7 @@ class Tracker:
             at = len(done.moments) - 1
             self._window(done, EFFORTS[falls], data, reader, frames - at)
             at = len(done.moments) - 1
-            if self._fallen(done.moments[-1], at):
+            if fallen(done.moments[-1], self.reference.qpos[at]):
                 falls, beyond = self._recovered(done, falls), max(beyond, at)
             elif falls and at > beyond + RECOVERED * FPS:
                 falls = beyond = 0
@@ -89,14 +89,6 @@ class Tracker:
         done.pressures += pressures
         done.ahead = found.offsets[played:]
 
-    def _fallen(self, now: Moment, at: int) -> bool:
-        if not now.finite:
-            return True
-        planned = self.reference.qpos[at]
-        away = float(np.linalg.norm(now.state.qpos[:3] - planned[:3]))
-        turned = rotations.quat_to_rotvec(rotations.compose(rotations.inverse(_xyzw(planned)), _xyzw(now.state.qpos)))
-        return away > FALLEN or float(np.linalg.norm(turned)) > TIPPED
-
     def _recovered(self, done: Tracked, falls: int) -> int:
         """Go back before a fall, farther each time; else set the body onto the plan. How often it has fallen now."""
         at = len(done.moments) - 1
@@ -113,6 +105,15 @@ class Tracker:
             if not moment.finite:
                 done.moments[frame] = moment_of(self.reference, frame)
         return 0
+
+
+def fallen(now: Moment, planned: Array) -> bool:
+    """Whether a body's pelvis is too far from where a plan (45,) has it, or its numbers are none."""
+    if not now.finite:
+        return True
+    away = float(np.linalg.norm(now.state.qpos[:3] - planned[:3]))
+    turned = rotations.quat_to_rotvec(rotations.compose(rotations.inverse(_xyzw(planned)), _xyzw(now.state.qpos)))
+    return away > FALLEN or float(np.linalg.norm(turned)) > TIPPED
 
 
 def _xyzw(qpos: Array) -> Array:
