@@ -16,6 +16,7 @@ from motion_backend.physics.mjcf_scene import Models, models_of, near_way
 from motion_backend.physics.mpc import Moment, stacked
 from motion_backend.physics.physics_options import Mode
 from motion_backend.physics.physics_record import forces_of
+from motion_backend.physics.plan_tempo import from_floor
 from motion_backend.physics.reference import Plan, Reference
 from motion_backend.physics.tracker import Tracked
 from motion_backend.rotations import Array
@@ -40,7 +41,8 @@ class Task:
     @cached_property
     def reference(self) -> Reference:
         """From the frame before the part to the end of what is looked ahead at."""
-        past = Plan(self.past.root_positions, self.past.local_rotations, np.array(self.past.contacts))
+        before = np.zeros(len(self.past), dtype=bool)
+        past = Plan(self.past.root_positions, self.past.local_rotations, np.array(self.past.contacts), before)
         return Reference.of(past.followed_by(self.plan), self.skeleton).part(slice(len(past) - 1, None))
 
     @cached_property
@@ -93,4 +95,4 @@ class Task:
 def plan_of(motion: Motion) -> Plan:
     """A motion's arrays, to be followed."""
     arrays = (motion.root_positions, motion.local_rotations, motion.contacts)
-    return Plan(*(array.astype(np.float64) for array in arrays))
+    return Plan(*(array.astype(np.float64) for array in arrays), from_floor(motion))

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from simulated import empty_room, plan_of, stood, tracked, tracker_of, walk, walked
+from simulated import empty_room, stood, tracked, tracker_of, walk, walked
 
 from motion_backend.body.zero_moment import GRAVITY
 from motion_backend.physics.contact_forces import Pressure
@@ -15,6 +15,7 @@ from motion_backend.physics.mjcf_character import NU, mass_of
 from motion_backend.physics.mpc import SLIDING, Controller, Moment, moment_of
 from motion_backend.physics.physics_options import PhysicsOptions, give_physics
 from motion_backend.physics.reference import Plan
+from motion_backend.physics.task import plan_of
 from motion_backend.physics.tracker import Tracked, Tracker
 
 
