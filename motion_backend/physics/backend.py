@@ -18,7 +18,6 @@ from motion_backend.physics.linear_model import State
 from motion_backend.physics.mjcf_character import NU
 from motion_backend.physics.mpc import Moment
 from motion_backend.physics.physics_options import Mode, PhysicsOptions, physics_options
-from motion_backend.physics.plan_tempo import feasible
 from motion_backend.physics.reference import Plan
 from motion_backend.physics.task import Task, plan_of
 from motion_backend.physics.tracker import Tracked, Tracker
@@ -68,7 +67,7 @@ class PhysicsBackend:
         """Do one part, all of it, in one unbroken simulation that goes on from the part before."""
         own = state.backend == self.name
         planned = BodyState.from_dict(state.memory["plan"]) if own else state
-        motion, after = self._planned(home, part, upcoming, planned)
+        motion, after = self._planner.advance(home, part, upcoming, planned)
         if not motion.completed:
             return motion, state
         if not len(motion):
@@ -86,15 +85,10 @@ class PhysicsBackend:
         made = task.motion(done, motion, mode, why)
         return made, state.after(part, made, self.name, _memory(done, after))
 
-    def _planned(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
-        """What the kinematic body does, at a tempo that can be followed."""
-        motion, after = self._planner.advance(home, part, upcoming, state)
-        return feasible(motion), after
-
     def _next(self, home: Home, upcoming: Sequence[Part], after: BodyState, plan: Plan) -> Plan:
         """What comes after a plan, as far as a horizon looks: the beginning of the next part, else its last frame."""
         for index, part in enumerate(upcoming):
-            motion, _ = self._planned(home, part, upcoming[index + 1 :], after)
+            motion, _ = self._planner.advance(home, part, upcoming[index + 1 :], after)
             if len(motion):
                 found = plan_of(motion).part(slice(LOOKED_AHEAD))
                 return found.followed_by(found.last(LOOKED_AHEAD - len(found)))

@@ -38,6 +38,19 @@ HELD_FRAMES: Final = 10
 CONTROL_FLOOR, HEIGHT_FLOOR, GOAL_FLOOR, TEXT_FLOOR = 0.05, 0.05, 0.05, 0.03
 """What can be seen of controls (radians), of heights and goals (metres), and of an embedding's numbers."""
 _SHARED: Final = {"trunk": ("spine1", "spine2", "spine3"), "neck": ("neck", "head")}
+_TURNING: Final = [
+    (INDEX[own], joint.qvel, len(shared))
+    for joint in SIMULATED
+    if not joint.axis
+    for shared in [_SHARED.get(joint.name, (joint.name,))]
+    for own in shared
+]
+_BALLS, _AMONG = (np.array([row[index] for row in _TURNING]) for index in (0, 2))
+"""Joints of ours that turn with a ball joint, and among how many its turn is shared."""
+_BALL_SPEEDS: Final = np.array([[first, first + 1, first + 2] for _, first, _ in _TURNING])
+_HINGED: Final = np.array([INDEX[joint.name.replace("toe", "foot")] for joint in SIMULATED if joint.axis])
+_AXES: Final = np.array(["xyz".index(joint.axis) for joint in SIMULATED if joint.axis])
+_HINGE_SPEEDS: Final = np.array([joint.qvel for joint in SIMULATED if joint.axis])
 
 
 def policy_of(part: Part) -> PolicyName | None:
@@ -61,17 +74,9 @@ def bodies_of(qpos: Array, qvel: Array, wrists: Array, task: Task) -> BodyMoment
     positions, world = task.skeleton.forward_kinematics(roots, local)
     spins = np.zeros((len(qpos), local.shape[1], 3))
     spins[:, 0] = rotations.rotate(local[:, 0], qvel[:, 3:6])
-    for joint in SIMULATED:
-        side, _, kind = joint.name.rpartition("_")
-        if joint.axis:
-            own = f"{side}_foot" if kind == "toe" else joint.name
-            spins[:, INDEX[own], "xyz".index(joint.axis)] = qvel[:, joint.qvel]
-            continue
-        shared = _SHARED.get(kind, (joint.name,))
-        for own in shared:
-            # MuJoCo tells how fast a joint turns in the child's frame.
-            turned = rotations.rotate(local[:, INDEX[own]], qvel[:, joint.qvel : joint.qvel + 3])
-            spins[:, INDEX[own]] = turned / len(shared)
+    spins[:, _HINGED, _AXES] = qvel[:, _HINGE_SPEEDS]
+    # MuJoCo tells how fast a joint turns in the child's frame.
+    spins[:, _BALLS] = rotations.rotate(local[:, _BALLS], qvel[:, _BALL_SPEEDS]) / _AMONG[:, None]
     placed, turned = np.asarray(positions, dtype=np.float64), np.asarray(world, dtype=np.float64)
     return BodyMoment(placed, turned, local, qvel[:, :3], spins, task.skeleton.scale)
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion_backend.backend_protocol import History
-from motion_backend.motion import FPS, Motion, Note, Simulated
+from motion_backend.motion import FPS, Motion, Note, PhaseKind, Simulated
 from motion_backend.physics.generalized_coordinates import fold, speeds, unfold
 from motion_backend.physics.linear_model import State
 from motion_backend.physics.mjcf_character import NV
@@ -16,7 +18,6 @@ from motion_backend.physics.mjcf_scene import Models, models_of, near_way
 from motion_backend.physics.mpc import Moment, stacked
 from motion_backend.physics.physics_options import Mode
 from motion_backend.physics.physics_record import forces_of
-from motion_backend.physics.plan_tempo import from_floor
 from motion_backend.physics.reference import Plan, Reference
 from motion_backend.physics.tracker import Tracked
 from motion_backend.rotations import Array
@@ -26,6 +27,8 @@ from scene_graphs.home import Home
 
 WINDOW, BESIDE = 60, (15, 30)
 """Frames that are simulated among the same boxes, and those before and after whose surroundings count too."""
+LOW: Final = 0.35
+"""A pelvis below this share of its standing height at the beginning gets up from the floor, and not from a bed."""
 
 
 @dataclass(frozen=True)
@@ -90,6 +93,16 @@ class Task:
             notes=planned.notes + tuple(Note(keyframe, words) for words in told),
             simulated=(record,),
         )
+
+
+def from_floor(motion: Motion) -> NDArray[np.bool_]:
+    """In which frames a motion gets up from the floor, until it kneels. (T,)."""
+    found = np.zeros(len(motion), dtype=bool)
+    low = LOW * motion.skeleton.standing_height
+    for phase in motion.phases:
+        if phase.kind is PhaseKind.GETUP and motion.root_positions[phase.start, 1] < low:
+            found[phase.start : phase.stop] = True
+    return found
 
 
 def plan_of(motion: Motion) -> Plan:
