@@ -10,7 +10,7 @@ import numpy as np
 
 from benchmarks.figure import Figure
 from motion_backend.motion import FPS, Skill
-from motion_backend.physics.behaviour_cloning import Rows, new_policy
+from motion_backend.physics.cloned_policy import Rows, new_policy
 from motion_backend.physics.distillation import Episode
 from motion_backend.physics.mjcf_character import NU
 from motion_backend.physics.physics_options import PhysicsOptions, give_physics, physics_options

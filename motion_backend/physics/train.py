@@ -18,7 +18,7 @@ from safetensors import safe_open
 from safetensors.torch import save_file
 
 from motion_backend.datasets.normalization import Normalization
-from motion_backend.physics.behaviour_cloning import CloningConfig, Rows, clone, new_policy
+from motion_backend.physics.cloned_policy import CloningConfig, Rows, clone, new_policy
 from motion_backend.physics.discriminator import DiscriminatorConfig, DiscriminatorTrainer
 from motion_backend.physics.distillation import PERTURBED, Episode, Lesson, samples, teach
 from motion_backend.physics.environment import SkillEnvironment, StyledEnvironment

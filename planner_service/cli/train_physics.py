@@ -53,7 +53,7 @@ def physics(
     seed: Annotated[int, typer.Option(min=0, help="The same seed learns the same.")] = 0,
 ) -> None:
     """Teach one of the five policies and say how often it does its skill in rooms that it has not learned in."""
-    from motion_backend.physics.behaviour_cloning import CloningConfig
+    from motion_backend.physics.cloned_policy import CloningConfig
     from motion_backend.physics.policies import POLICY_OF, PolicyName
     from motion_backend.physics.train import DistilConfig, DistilRun, RewardConfig, RewardRun
     from planner_service.evaluation.skill_episodes import JUDGED_IN, LEARNED_IN

@@ -14,7 +14,7 @@ from policy_episodes import PART, episode, planned
 from simulated import standing_still
 
 from motion_backend.motion import Skill
-from motion_backend.physics.behaviour_cloning import CloningConfig, Rows, clone, new_policy
+from motion_backend.physics.cloned_policy import CloningConfig, Rows, clone, new_policy
 from motion_backend.physics.distillation import Episode, Lesson, samples, teach
 from motion_backend.physics.environment import SkillEnvironment
 from motion_backend.physics.mjcf_character import NU
