@@ -26,8 +26,8 @@ TURNED: Final = 1e-3
 """A collar turned by less (radians) counts as at rest."""
 ARM_OVER: Final = 0.05
 """Elbows and wrists are so high over the floor, at 1.70 m (metres)."""
-LIFTS: Final = (0.0, 0.25, 0.5, 1.0, 2.0, 4.0)
-"""How much upwards an elbow is led against where it was planned to go, from the least on."""
+LIFTS: Final = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
+"""How far an elbow is turned upwards, from the least on."""
 ARM_EASES: Final = 5
 """Frames before and after in which that comes and goes."""
 UP: Final = np.array([0.0, 1.0, 0.0])
@@ -190,14 +190,14 @@ def _arms_over_floor(roots: Array, local: Array, skeleton: Skeleton) -> Array:
         at, middle, hand = (positions[:, joint].astype(np.float64) for joint in (shoulder, elbow, wrist))
         bones, raised = _bones(skeleton, side, _ARM), _eased(np.maximum(least - hand[:, 1], 0.0))
         target = hand + raised[:, None] * UP
-        aside = rotations.normalize(middle - at - _along(middle - at, target - at))
-        over = rotations.normalize(UP - _along(np.broadcast_to(UP, at.shape), target - at))
-        lifts = np.stack([at + bones[0] * two_bone(at, target, aside + lift * over, bones).upper for lift in LIFTS])
-        free = lifts[..., 1] >= least
-        needed = np.where(free.any(axis=0), np.array(LIFTS)[free.argmax(axis=0)], LIFTS[-1])
+        pole, turn = middle - at, _turn_up(middle - at, target - at)
+        poles = [rotations.rotate(rotations.rotvec_to_quat(lift * turn), pole) for lift in LIFTS]
+        heights = np.stack([at[:, 1] + bones[0] * two_bone(at, target, one, bones).upper[:, 1] for one in poles])
+        needed = np.array(LIFTS)[np.where((heights >= least).any(axis=0), (heights >= least).argmax(axis=0), -1)]
         lifted = _eased(needed)
         frames = np.flatnonzero(lifted + raised)
-        limb = two_bone(at[frames], target[frames], (aside + lifted[:, None] * over)[frames], bones)
+        pole = rotations.rotate(rotations.rotvec_to_quat(lifted[:, None] * turn), pole)
+        limb = two_bone(at[frames], target[frames], pole[frames], bones)
         upper, lower = arm_rotations(limb, int(sign))
         found[frames, shoulder] = rotations.compose(rotations.inverse(world[frames, INDEX["spine3"]]), upper)
         found[frames, elbow] = rotations.compose(rotations.inverse(upper), lower)
@@ -205,10 +205,13 @@ def _arms_over_floor(roots: Array, local: Array, skeleton: Skeleton) -> Array:
     return found
 
 
-def _along(vectors: Array, way: Array) -> Array:
-    """The part of vectors (T, 3) along a way (T, 3)."""
-    unit = rotations.normalize(way)
-    return np.asarray(rotations.dot(vectors, unit) * unit)
+def _turn_up(pole: Array, reach: Array) -> Array:
+    """What turns elbows about the line from shoulder to wrist (T, 3) until they point up: rotation vectors without a
+    jump, of poles (T, 3). (T, 3)."""
+    axis = rotations.normalize(reach)
+    across = rotations.cross(axis, np.broadcast_to(UP, axis.shape))
+    sine, cosine = -rotations.dot(pole, across)[:, 0], pole[:, 1] - (rotations.dot(pole, axis) * axis)[:, 1]
+    return np.asarray(np.unwrap(np.arctan2(sine, cosine))[:, None] * axis)
 
 
 def _eased(needed: Array) -> Array:

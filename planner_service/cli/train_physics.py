@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from enum import StrEnum
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 from rich.console import Console
 
-from motion_backend.motion import Skill
 from planner_service.output.story_export import check_writable
-
-if TYPE_CHECKING:
-    from motion_backend.physics.distillation import Episode
 
 SUFFIX = ".safetensors"
 
@@ -54,30 +49,22 @@ def physics(
 ) -> None:
     """Teach one of the five policies and say how often it does its skill in rooms that it has not learned in."""
     from motion_backend.physics.cloned_policy import CloningConfig
-    from motion_backend.physics.policies import POLICY_OF, PolicyName
+    from motion_backend.physics.policies import PolicyName
     from motion_backend.physics.train import DistilConfig, DistilRun, RewardConfig, RewardRun
-    from planner_service.evaluation.skill_episodes import JUDGED_IN, LEARNED_IN
-    from planner_service.evaluation.skill_episodes import episodes as drawn
+    from planner_service.evaluation.skill_episodes import JUDGED_IN, LEARNED_IN, episodes_of
 
     console = Console(markup=False, highlight=False)
     check_writable(out, (f"{skill.value}{SUFFIX}",))
     name = PolicyName[skill.name]
-    wanted = next(one for one, policy in POLICY_OF.items() if policy is name)
-    source = _episodes(wanted, LEARNED_IN + seed)
+    source = (one.episode for one in episodes_of(name, LEARNED_IN + seed))
     if method is Method.DISTIL:
         told = DistilConfig(rounds, episodes, cloning=CloningConfig(steps=steps, seed=seed), seed=seed)
         policy = DistilRun(name, source, out, told).run(console.print)
     else:
         config = RewardConfig(rounds, episodes, steps, seed, method is Method.AMP)
         policy = RewardRun(name, list(islice(source, 2 * episodes)), out, config).run(console.print)
-    done = [one.judged(policy) for one in islice(drawn(wanted, JUDGED_IN, unseen=True), judged)]
+    done = [one.judged(policy) for one in islice(episodes_of(name, JUDGED_IN, unseen=True), judged)]
     figures = policy.figures | {"reached": sum(done) / max(len(done), 1), "trials": len(done)}
     replace(policy, figures=figures).save(out / f"{skill.value}{SUFFIX}")
     console.print(f"{sum(done)} of {len(done)} trials done in rooms that it has not learned in", soft_wrap=True)
     console.print(f"weights in {out}: SIMS_PHYSICS_MODE=policy SIMS_PHYSICS_POLICIES={out}", soft_wrap=True)
-
-
-def _episodes(skill: Skill, seed: int) -> Iterator[Episode]:
-    from planner_service.evaluation.skill_episodes import episodes as drawn
-
-    return (one.episode for one in drawn(skill, seed))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import cycle
 from typing import Final
 
 import numpy as np
@@ -18,7 +19,7 @@ from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import Motion, Skill, join
 from motion_backend.physics.backend import LOOKED_AHEAD
 from motion_backend.physics.distillation import Episode
-from motion_backend.physics.policies import POLICY_OF, WITH_TEXT
+from motion_backend.physics.policies import POLICY_OF, WITH_TEXT, PolicyName
 from motion_backend.physics.policy_player import Acts, PolicyPlayer
 from motion_backend.physics.policy_view import View
 from motion_backend.physics.task import Task, plan_of
@@ -75,6 +76,13 @@ def episodes(skill: Skill, seed: int, unseen: bool = False) -> Iterator[SkillEpi
         trial = Trial(skill, str(rng.choice(known)), str(rng.choice(rooms)), int(rng.integers(1 << 31)))
         if (found := episode_of(trial)) is not None:
             yield found
+
+
+def episodes_of(name: PolicyName, seed: int, unseen: bool = False) -> Iterator[SkillEpisode]:
+    """Those of a policy's skills by turns: getting up is from seats and from lying (SIMS 4.2)."""
+    drawn = [episodes(skill, seed, unseen) for skill, policy in POLICY_OF.items() if policy is name]
+    for one in cycle(drawn):
+        yield next(one)
 
 
 def episode_of(trial: Trial) -> SkillEpisode | None:
