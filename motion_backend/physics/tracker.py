@@ -20,6 +20,8 @@ from motion_backend.rotations import Array
 
 EFFORTS: Final = (Effort(), Effort(24, 2), Effort(28, 2, 2), Effort(30, 2, 2))
 """The usual one, and what is tried after the first, the second and the third fall at a place."""
+FROM_FLOOR: Final = 2
+"""Which of them is begun with where the body gets up from the floor: with less it fell there every time."""
 BACK: Final = (1.3, 2.0, 3.0)
 """Seconds that are gone back before each of those."""
 RECOVERED: Final = 1.0
@@ -66,7 +68,8 @@ class Tracker:
         while len(done.moments) <= frames:
             self.between()
             at = len(done.moments) - 1
-            self._window(done, EFFORTS[falls], data, reader, frames - at)
+            least = FROM_FLOOR if self.reference.raised[at] else 0
+            self._window(done, EFFORTS[max(falls, least)], data, reader, frames - at)
             at = len(done.moments) - 1
             if fallen(done.moments[-1], self.reference.qpos[at]):
                 falls, beyond = self._recovered(done, falls), max(beyond, at)
