@@ -17,6 +17,7 @@ from benchmarks.moving import skill_figures
 from benchmarks.reading import reading_figures
 from benchmarks.retrieval import retrieval_figures
 from benchmarks.service import service_figures
+from benchmarks.simulated import physics_figures
 from benchmarks.stories import file_figures, make_stories, quality_figures, speed_figures
 from benchmarks.tables import figure_rows, markdown, plain, story_rows
 from benchmarks.weaving import weaving_figures
@@ -35,6 +36,7 @@ def main() -> int:
         made = make_stories(pipeline)
         figures += speed_figures(made)
         figures += skill_figures(made)
+        figures += physics_figures()
         figures += clip_figures(Path(folder))
         figures += weaving_figures()
         figures += retrieval_figures()

@@ -112,7 +112,7 @@ class Simulated:
 
     keyframe: int
     mode: str
-    """What moved the joints: "mpc", model-predictive control."""
+    """What moved the joints: "mpc", model-predictive control, or "policy", a network."""
     seconds: float
     root_force_newtons: float = 0.0
     """What pushed the pelvis besides its joints and what it touched."""
@@ -123,6 +123,8 @@ class Simulated:
     rewound_seconds: float = 0.0
     """What was thrown away in that."""
     forces: tuple[Force, ...] = ()
+    why: str = ""
+    """Why no policy moved them, where one was asked for."""
 
 
 @dataclass(frozen=True)

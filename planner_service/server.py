@@ -95,7 +95,8 @@ def environment(settings: Settings, worker_id: str) -> dict[str, str]:
     """The environment of a worker: these very settings, and one thread a worker."""
     from planner_service.store.database import database_url
 
-    model = {f"SIMS_{name.upper()}": str(value) for name, value in settings if name.startswith("llm_")}
+    model = {f"SIMS_{name.upper()}": str(value) for name, value in settings if name.startswith(("llm_", "physics_"))}
+    model["SIMS_PHYSICS_POLICIES"] = str(settings.physics_policies.absolute()) if settings.physics_policies else ""
     if settings.llm_story_dollars is None:
         del model["SIMS_LLM_STORY_DOLLARS"]
     given = {

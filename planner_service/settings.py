@@ -34,6 +34,14 @@ class Settings(BaseSettings):
     """What moves the body where a request names nothing else."""
     clips: Path | None = None
     """A collection of clips (`sims clips build`), whose walks the backend `matching` is made of."""
+    physics_seconds: float = Field(3600.0, gt=0, allow_inf_nan=False)
+    """How long a story may be simulated by the backend `physics`; what comes after is kinematic."""
+    physics_threads: int = Field(0, ge=0, le=1024)
+    """On how many threads it linearises; 0: as many as there are processors."""
+    physics_mode: Literal["mpc", "policy"] = "mpc"
+    """Who controls a simulated body: model-predictive control, or policies where one has passed its bar."""
+    physics_policies: Path | None = None
+    """A folder of weights (`sims train physics`); left out: those that are shipped."""
     layouts: Path | None = None
     """An extra layout file, read beside the built-in library."""
     llm_model: str = ""
@@ -133,10 +141,13 @@ class Settings(BaseSettings):
 
 
 def give_backends(settings: Settings) -> None:
-    """Tell the backends of this process the files that they work by."""
+    """Tell the backends of this process the files that they work by, and how long they may."""
     from motion_backend.backends import MATCHING, give_file
+    from motion_backend.physics.physics_options import Mode, PhysicsOptions, give_physics
 
     give_file(MATCHING, settings.clips)
+    seconds, threads = settings.physics_seconds, settings.physics_threads
+    give_physics(PhysicsOptions(seconds, threads, Mode(settings.physics_mode), settings.physics_policies))
 
 
 def read_settings(**options: object) -> Settings:

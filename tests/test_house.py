@@ -22,7 +22,7 @@ PACKAGES = {
 }
 HOMES = {
     "torch": {f"motion_backend/{room}" for room in ("language", "embedding", "physics", "diffusion")},
-    "safetensors": {f"motion_backend/{room}" for room in ("language", "embedding", "diffusion")},
+    "safetensors": {f"motion_backend/{room}" for room in ("language", "embedding", "physics", "diffusion")},
     "mujoco": {"motion_backend/physics"},
     "networkx": {"scene_graphs"},
     "numba": {"scene_graphs"},

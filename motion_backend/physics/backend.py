@@ -3,39 +3,34 @@
 from __future__ import annotations
 
 import json
-import os
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Any, Final
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from motion_backend.backend_protocol import BodyState, History, Part
-from motion_backend.motion import FPS, Character, Motion, Note, Simulated
+from motion_backend.backend_protocol import BodyState, Part
+from motion_backend.motion import FPS, Character, Motion
 from motion_backend.physics.engine import engine
-from motion_backend.physics.generalized_coordinates import fold, speeds, unfold
 from motion_backend.physics.linear_model import State
-from motion_backend.physics.mjcf_character import NU, NV
-from motion_backend.physics.mjcf_scene import Models, models_of, near_way
-from motion_backend.physics.mpc import Moment, stacked
-from motion_backend.physics.physics_record import MODE, forces_of
-from motion_backend.physics.reference import Plan, Reference
+from motion_backend.physics.mjcf_character import NU
+from motion_backend.physics.mpc import Moment
+from motion_backend.physics.physics_options import Mode, PhysicsOptions, physics_options
+from motion_backend.physics.reference import Plan
+from motion_backend.physics.task import Task, plan_of
 from motion_backend.physics.tracker import Tracked, Tracker
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.rotations import Array
-from motion_backend.scene import scene_of
-from motion_backend.skeleton import REFERENCE_HEIGHT, Skeleton, build_skeleton
+from motion_backend.skeleton import build_skeleton
 from scene_graphs.home import Home
+
+if TYPE_CHECKING:
+    from motion_backend.physics.policy_mode import PolicyMode
 
 LOOKED_AHEAD: Final = 45
 """Frames of what comes next that a plan goes on with: more than the longest horizon."""
-WINDOW, BESIDE = 60, (15, 30)
-"""Frames that are simulated among the same boxes, and those before and after whose surroundings count too."""
-BUDGET: Final = 3600.0
-"""Seconds that a story may take in all, where `SIMS_PHYSICS_SECONDS` says nothing else."""
 STORIES: Final = 64
 """Of so many stories it is known what they have taken."""
 TALLEST: Final = 2.0
@@ -52,10 +47,12 @@ class PhysicsBackend:
     name = "physics"
 
     def __init__(self, budget: float | None = None, between: Callable[[], None] = lambda: None) -> None:
-        """A story's budget in seconds; `between` is called between any two windows and may raise, to cancel."""
+        """A story's budget in seconds, else this process's; `between` is called between any two windows and may raise,
+        to cancel."""
         engine()
-        self.budget = float(os.environ.get("SIMS_PHYSICS_SECONDS", BUDGET)) if budget is None else budget
+        self.budget = physics_options().seconds if budget is None else budget
         self.between = between
+        self._policies = _policies(physics_options())
         self._planner = ProceduralBackend()
         self._taken: OrderedDict[tuple[int, int], float] = OrderedDict()
 
@@ -76,17 +73,16 @@ class PhysicsBackend:
         if not len(motion):
             memory = state.memory | {"plan": _plain(after)} if own else after.memory
             return motion, state.after(part, motion, state.backend, memory)
-        plan = _plan_of(motion).followed_by(self._next(home, upcoming, after, _plan_of(motion)))
+        plan = plan_of(motion).followed_by(self._next(home, upcoming, after, plan_of(motion)))
         if why := _impossible(plan, state):
             return _refused(motion, why), state
         task = Task(home, build_skeleton(state.height), planned.history, plan)
         try:
-            done = self._tracked(task, state, len(motion))
+            done, mode, why = self._done(task, part, motion, state)
         except OutOfTimeError:
-            return _refused(
-                motion, f"kinematic from here on, because {self.budget:.0f} s of simulating are over"
-            ), state
-        made = task.motion(done, motion)
+            over = f"kinematic from here on, because {self.budget:.0f} s of simulating are over"
+            return _refused(motion, over), state
+        made = task.motion(done, motion, mode, why)
         return made, state.after(part, made, self.name, _memory(done, after))
 
     def _next(self, home: Home, upcoming: Sequence[Part], after: BodyState, plan: Plan) -> Plan:
@@ -94,11 +90,12 @@ class PhysicsBackend:
         for index, part in enumerate(upcoming):
             motion, _ = self._planner.advance(home, part, upcoming[index + 1 :], after)
             if len(motion):
-                found = _plan_of(motion).part(slice(LOOKED_AHEAD))
+                found = plan_of(motion).part(slice(LOOKED_AHEAD))
                 return found.followed_by(found.last(LOOKED_AHEAD - len(found)))
         return plan.last(LOOKED_AHEAD)
 
-    def _tracked(self, task: Task, state: BodyState, frames: int) -> Tracked:
+    def _done(self, task: Task, part: Part, planned: Motion, state: BodyState) -> tuple[Tracked, Mode, str]:
+        """A part in the simulation, who did it, and why no policy did."""
         story, started = (id(task.home), state.seed), time.monotonic()
         end = started + self.budget - self._taken.get(story, 0.0)
 
@@ -107,83 +104,28 @@ class PhysicsBackend:
             if time.monotonic() >= end:
                 raise OutOfTimeError
 
-        tracker = Tracker(task.models_at, task.reference, task.skeleton.scale, tick)
         start, ahead = (
             _left_by(state) if state.backend == self.name else (task.taken_up(state.history), np.zeros((0, NU)))
         )
         try:
-            return tracker.track(start, ahead, frames)
+            why = ""
+            if self._policies is not None:
+                done, why = self._policies.play(task, part, planned, start, tick)
+                if done is not None:
+                    return done, Mode.POLICY, ""
+            tracker = Tracker(task.models_at, task.reference, task.skeleton.scale, tick)
+            return tracker.track(start, ahead, len(planned)), Mode.MPC, why
         finally:
             self._taken[story] = self._taken.get(story, 0.0) + time.monotonic() - started
 
 
-@dataclass(frozen=True)
-class Task:
-    """A part that is to be followed, in its home."""
+def _policies(told: PhysicsOptions) -> PolicyMode | None:
+    """Who plays policies; None where nobody asked for them, and torch is not loaded."""
+    if told.mode is not Mode.POLICY:
+        return None
+    from motion_backend.physics.policy_mode import PolicyMode
 
-    home: Home
-    skeleton: Skeleton
-    past: History
-    """The plan's last frames before it: the reference begins with the last of them."""
-    plan: Plan
-
-    @cached_property
-    def reference(self) -> Reference:
-        """From the frame before the part to the end of what is looked ahead at."""
-        past = Plan(self.past.root_positions, self.past.local_rotations, np.array(self.past.contacts))
-        return Reference.of(past.followed_by(self.plan), self.skeleton).part(slice(len(past) - 1, None))
-
-    @cached_property
-    def _joints(self) -> Array:
-        joints: Array = self.skeleton.forward_kinematics(self.plan.roots, self.plan.local)[0].astype(np.float64)
-        return joints
-
-    @cached_property
-    def _windows(self) -> dict[int, Models]:
-        return {}
-
-    def models_at(self, frame: int) -> Models:
-        """The body among the boxes near its way around a frame."""
-        window = frame // WINDOW
-        if window not in self._windows:
-            before, after = BESIDE
-            frames = slice(max(window * WINDOW - before, 0), (window + 1) * WINDOW + after)
-            boxes = near_way(self._joints[frames], scene_of(self.home).obstacles)
-            self._windows[window] = models_of(self.skeleton.scale * REFERENCE_HEIGHT, boxes)
-        return self._windows[window]
-
-    def taken_up(self, history: History) -> Moment:
-        """The body where another backend left it, with the speeds it had."""
-        qpos = fold(history.root_positions, history.local_rotations)
-        return Moment(State(qpos[-1], speeds(qpos)[-1]), np.zeros(NV), self.reference.controls[0].copy())
-
-    def motion(self, done: Tracked, planned: Motion) -> Motion:
-        """The simulated frames of a part, with the contacts that were felt."""
-        qpos, _ = stacked(done.moments[1:])
-        roots, local = unfold(qpos, self.reference.wrists[1 : len(done.moments)])
-        keyframe = int(planned.actions[0])
-        record = Simulated(
-            keyframe, MODE, round(len(qpos) / FPS, 3),
-            max((float(pressure.root[0]) for pressure in done.pressures[1:]), default=0.0),
-            resets=len(done.resets), rewinds=len(done.rewinds),
-            rewound_seconds=round(done.rewound / FPS, 2), forces=forces_of(done.pressures[1:]),
-        )  # fmt: skip
-        resets = tuple(
-            Note(keyframe, f"fell, and was set back onto the plan {at / FPS:.1f} s into it") for at in done.resets
-        )
-        return replace(
-            planned,
-            root_positions=roots.astype(np.float32),
-            local_rotations=local.astype(np.float32),
-            contacts=np.array([pressure.planted for pressure in done.pressures[1:]], dtype=np.float32),
-            notes=planned.notes + resets,
-            simulated=(record,),
-        )
-
-
-def _plan_of(motion: Motion) -> Plan:
-    arrays = (motion.root_positions, motion.local_rotations, motion.contacts)
-    return Plan(*(array.astype(np.float64) for array in arrays))
+    return PolicyMode(told.policies)
 
 
 def _impossible(plan: Plan, state: BodyState) -> str:

@@ -74,7 +74,7 @@ class ContactReader:
 
     def read(self, model: Any, data: Any, pressure: Pressure, share: float) -> None:
         """Add what presses now to a frame's pressure, as a share of it."""
-        force = np.zeros(6)
+        force, feet = np.zeros(6), dict[int, Array]()
         for index in range(data.ncon):
             geoms = data.contact.geom[index].tolist()
             own = max(self.own[geom] for geom in geoms)
@@ -83,8 +83,10 @@ class ContactReader:
             pressing[own] += share * force[0]
             if TOUCHED[own].endswith("_foot"):
                 side = int(TOUCHED[own].startswith("right"))
-                away = np.linalg.norm(self.foot_points(data, side) - data.contact.pos[index], axis=1)
-                pressure.soles[side, away.argmin()] += share * force[0]
+                if side not in feet:
+                    feet[side] = self.foot_points(data, side)
+                away = feet[side] - data.contact.pos[index]
+                pressure.soles[side, (away * away).sum(axis=1).argmin()] += share * force[0]
 
     @cached_property
     def sole(self) -> Array:
@@ -110,5 +112,5 @@ def _index(name: str) -> int:
 
 def root_force(data: Any) -> float:
     """What pushes the pelvis in a step besides weight and contacts: applied to it, or by servos, springs or damping."""
-    own = (data.qfrc_applied[:ROOT], data.qfrc_actuator[:ROOT], data.qfrc_passive[:ROOT], data.xfrc_applied)
-    return max(float(np.abs(forces).max()) for forces in own)
+    own = (data.qfrc_applied[:ROOT], data.qfrc_actuator[:ROOT], data.qfrc_passive[:ROOT], data.xfrc_applied.ravel())
+    return float(np.abs(np.concatenate(own)).max())

@@ -26,6 +26,10 @@ _SPINE: Final = ("spine1", "spine2", "spine3")
 _HEAD: Final = ("neck", "head")
 _BALLS: Final = [joint for joint in SIMULATED if not joint.axis]
 _HINGES: Final = [joint for joint in SIMULATED if joint.axis]
+_TURNS: Final = np.array([range(first, first + 4) for first in (3, *(joint.qpos for joint in _BALLS))])
+"""Where in qpos the quaternions of the pelvis, of trunk and neck, and of the other ball joints are. (9, 4)."""
+_TURNED: Final = [0, *(INDEX[{"trunk": "spine1"}.get(joint.name, joint.name)] for joint in _BALLS)]
+"""Whose turns they are, or the first of those who share one."""
 
 
 def fold(roots: NDArray[np.floating], local: NDArray[np.floating]) -> Array:
@@ -57,18 +61,15 @@ def unfold(qpos: Array, wrists: Array) -> tuple[Array, Array]:
     """Positions (T, 45) to pelvis (T, 3) and local rotations (T, 22, 4); wrists (T, 2, 4) are the plan's, since they
     are rigid in the simulated body. A trunk's turn is shared evenly by three joints, a neck's by two."""
     local = np.tile(rotations.IDENTITY, (len(qpos), len(JOINTS), 1))
-    local[:, 0] = _xyzw(qpos[:, 3:7])
-    for joint in SIMULATED:
-        side, _, kind = joint.name.rpartition("_")
-        if joint.axis:
-            own = f"{side}_foot" if kind == "toe" else joint.name
-            local[:, INDEX[own]] = rotations.axis_to_quat(joint.axis, qpos[:, joint.qpos])
-            continue
-        turn = _xyzw(qpos[:, joint.qpos : joint.qpos + 4])
-        shared = {"trunk": _SPINE, "neck": _HEAD}.get(kind, (joint.name,))
-        part = rotations.rotvec_to_quat(rotations.quat_to_rotvec(turn) / len(shared)) if len(shared) > 1 else turn
-        for own in shared:
-            local[:, INDEX[own]] = part
+    turns = _xyzw(qpos[:, _TURNS])
+    local[:, _TURNED] = turns
+    for shared, turn in ((_SPINE, turns[:, 1]), (_HEAD, turns[:, 2])):
+        part = rotations.rotvec_to_quat(rotations.quat_to_rotvec(turn) / len(shared))
+        local[:, [INDEX[own] for own in shared]] = part[:, None]
+    for axis in "xy":
+        hinges = [joint for joint in _HINGES if joint.axis == axis]
+        own = [INDEX[joint.name.replace("toe", "foot")] for joint in hinges]
+        local[:, own] = rotations.axis_to_quat(axis, qpos[:, [joint.qpos for joint in hinges]])
     for place, (side, _) in enumerate(SIDES):
         local[:, INDEX[f"{side}_wrist"]] = wrists[:, place]
     return qpos[:, :3].copy(), local

@@ -6,7 +6,6 @@ own data, without a warm start: results do not depend on how many threads there 
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
@@ -18,6 +17,7 @@ import numpy as np
 from motion_backend.motion import FPS
 from motion_backend.physics.engine import engine
 from motion_backend.physics.mjcf_character import NU, NV
+from motion_backend.physics.physics_options import physics_options
 from motion_backend.rotations import Array
 
 NX: Final = 2 * NV
@@ -57,12 +57,6 @@ class Linear(NamedTuple):
 _own = local()
 
 
-def threads() -> int:
-    """How many threads linearise; `SIMS_PHYSICS_THREADS`, else as many as there are processors for us."""
-    asked = os.environ.get("SIMS_PHYSICS_THREADS", "")
-    return int(asked) if asked.isdecimal() and int(asked) > 0 else len(os.sched_getaffinity(0))
-
-
 @cache
 def _pool(size: int) -> ThreadPoolExecutor:
     return ThreadPoolExecutor(size, "linearise")
@@ -70,9 +64,10 @@ def _pool(size: int) -> ThreadPoolExecutor:
 
 def linearise(model: Any, frames: Sequence[Frame]) -> list[Linear]:
     """The linear models of some frames, in their order; `model` is a mujoco.MjModel."""
-    if threads() == 1 or len(frames) == 1:
+    threads = physics_options().linearising
+    if threads == 1 or len(frames) == 1:
         return [_linearise(model, frame) for frame in frames]
-    return list(_pool(threads()).map(lambda frame: _linearise(model, frame), frames))
+    return list(_pool(threads).map(lambda frame: _linearise(model, frame), frames))
 
 
 def _linearise(model: Any, frame: Frame) -> Linear:

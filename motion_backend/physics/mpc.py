@@ -71,6 +71,9 @@ def _prices() -> Array:
 
 
 PRICES: Final = _prices()
+PRICES_RAISED: Final = PRICES * np.repeat([10.0, 1.0, 5.0, 1.0], [6, NV - 6, 6, NV - 6])
+"""The same where the body gets up from the floor: joints that are as planned are worth nothing there if the pelvis
+stays down, since hands and knees that are not where they should be carry nothing."""
 
 
 class Moment(NamedTuple):
@@ -96,6 +99,8 @@ class Roll(NamedTuple):
     """One more than there are frames."""
     offsets: Array
     """Controls less the plan's. (H, 30)."""
+    answers: Sequence[Array] = ()
+    """How they answer to states and last offsets that are others, (30, 102) each; none where nothing was improved."""
 
 
 class Gains(NamedTuple):
@@ -127,9 +132,10 @@ class Controller:
         for _ in range(effort.rounds):
             gains = self._gains(best, at, last)
             found = self._searched(now, at, best, gains)
-            if found.cost >= best.cost:
+            better = found.cost < best.cost
+            best = (found if better else best)._replace(answers=gains.answer)
+            if not better:
                 break
-            best = found
         return best
 
     def _searched(self, now: Moment, at: int, about: Roll, gains: Gains) -> Roll:
@@ -167,7 +173,7 @@ class Controller:
             states.append(State(data.qpos.copy(), data.qvel.copy()))
             off = self.difference(data, self._planned(at + index + 1))
             weight = AT_THE_END if index + 1 == len(offsets) else 1.0
-            cost += weight * float(PRICES @ (off * off)) + OFFSET * float(offset @ offset)
+            cost += weight * float(self._prices(at + index + 1) @ (off * off)) + OFFSET * float(offset @ offset)
             cost += CHANGE * float((offset - before) @ (offset - before)) + self._sliding(at + index + 1)
             played[index] = before = offset
             if not np.isfinite(cost):
@@ -201,6 +207,9 @@ class Controller:
                 self.contacts.read(model, data, pressure, 1 / steps)
                 pressure.root[0] = max(pressure.root[0], root_force(data))
         return pressure or Pressure()
+
+    def _prices(self, at: int) -> Array:
+        return PRICES_RAISED if self.reference.raised[at] else PRICES
 
     def _planned(self, at: int) -> State:
         return State(self.reference.qpos[at], self.reference.qvel[at])
@@ -247,8 +256,8 @@ class Controller:
 
     def _stage(self, state: State, at: int, weight: float) -> tuple[Array, Array]:
         """Half the cost of a state near a simulated one: its Hessian (72, 72) and gradient (72,)."""
-        hessian = np.diag(weight * PRICES)
-        gradient = weight * PRICES * self.difference(state, self._planned(at))
+        prices = weight * self._prices(at)
+        hessian, gradient = np.diag(prices), prices * self.difference(state, self._planned(at))
         self.data.qpos[:] = state.qpos
         if (rows := self._planted_rows(at)) is not None:
             hessian[NV:, NV:] += SLIDING * rows.T @ rows

@@ -12,7 +12,6 @@ from motion_backend.motion import FPS, Force, Motion, Simulated
 from motion_backend.physics.contact_forces import TOUCHED, Pressure
 from motion_backend.rotations import Array
 
-MODE: Final = "mpc"
 PRESSES: Final = 5.0
 """Newtons from which a body counts as pressing on something."""
 LEAST: Final = 0.1
@@ -46,15 +45,22 @@ def physics_of(motion: Motion) -> dict[str, Any] | None:
         return None
     keyframes = sorted({row.keyframe for row in rows})
     return {
-        "mode": rows[0].mode,
+        "mode": "+".join(sorted({row.mode for row in rows})),
         "root_force_newtons": max(row.root_force_newtons for row in rows),
         **_sums(rows),
         "keyframes": [
-            {"keyframe": keyframe} | _sums(own) | {"forces": [asdict(force) for force in _merged(own)]}
+            {"keyframe": keyframe} | _sums(own) | _modes(own) | {"forces": [asdict(force) for force in _merged(own)]}
             for keyframe in keyframes
             for own in [[row for row in rows if row.keyframe == keyframe]]
         ],
     }
+
+
+def _modes(rows: Sequence[Simulated]) -> dict[str, Any]:
+    """Seconds by who moved the joints, and why no policy did where one was asked for."""
+    seconds = {mode: sum(row.seconds for row in rows if row.mode == mode) for mode in {row.mode for row in rows}}
+    told = {mode: round(seconds[mode], 2) for mode in sorted(seconds)}
+    return {"modes": told, "no_policy": sorted({row.why for row in rows if row.why})}
 
 
 def _sums(rows: Sequence[Simulated]) -> dict[str, float]:

@@ -16,6 +16,7 @@ import torch
 from torch import Tensor, nn
 
 from motion_backend.motion import Skill
+from motion_backend.physics.mjcf_character import NU
 from motion_backend.physics.observations import GOAL_SIZE, HEIGHTMAP, STATE_SIZE
 
 EMBEDDING_SIZE: Final = 64
@@ -56,7 +57,8 @@ class PolicyConfig:
     """Numbers of a control."""
     heights: int = HEIGHTMAP.size**2
     goal: int = GOAL_SIZE
-    state: int = STATE_SIZE
+    state: int = STATE_SIZE + NU
+    """s, and the controls that the body holds: the teacher prices their change, so that its answer hangs on them."""
     text: int = EMBEDDING_SIZE
     """0 for a policy without text."""
     seen: int = 64

@@ -24,6 +24,13 @@ LONGEST_SWING: Final = 1.2
 """Seconds: a foot that is off the floor for longer is not in a step."""
 TURNED: Final = 1e-3
 """A collar turned by less (radians) counts as at rest."""
+ARM_OVER: Final = 0.05
+"""Elbows and wrists are so high over the floor, at 1.70 m (metres)."""
+LIFTS: Final = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
+"""How far an elbow is turned upwards, from the least on."""
+ARM_EASES: Final = 5
+"""Frames before and after in which that comes and goes."""
+UP: Final = np.array([0.0, 1.0, 0.0])
 FASTEST: Final = 8.0
 """Metres a second: a pelvis that is planned faster jumps."""
 
@@ -38,25 +45,27 @@ class Plan:
     """(T, 22, 4) xyzw."""
     contacts: Array
     """(T, 4)."""
+    raised: NDArray[np.bool_]
+    """(T,) whether the body gets up from the floor, on hands and knees."""
 
     def __len__(self) -> int:
         return len(self.roots)
 
+    @property
+    def _rows(self) -> tuple[Array | NDArray[np.bool_], ...]:
+        return self.roots, self.local, self.contacts, self.raised
+
     def part(self, frames: slice) -> Plan:
         """Some of the frames."""
-        return Plan(self.roots[frames], self.local[frames], self.contacts[frames])
+        return Plan(*(rows[frames] for rows in self._rows))
 
     def last(self, frames: int) -> Plan:
         """Its last frame, so often."""
-        return Plan(*(np.repeat(rows[-1:], max(frames, 0), axis=0) for rows in (self.roots, self.local, self.contacts)))
+        return Plan(*(np.repeat(rows[-1:], max(frames, 0), axis=0) for rows in self._rows))
 
     def followed_by(self, later: Plan) -> Plan:
         """One after the other."""
-        return Plan(
-            np.concatenate([self.roots, later.roots]),
-            np.concatenate([self.local, later.local]),
-            np.concatenate([self.contacts, later.contacts]),
-        )
+        return Plan(*(np.concatenate(both) for both in zip(self._rows, later._rows, strict=True)))
 
     def jump(self) -> int | None:
         """The first frame that a body cannot come to from the one before, or that has no finite numbers."""
@@ -80,6 +89,8 @@ class Reference:
     """(T, 4): left heel, left ball, right heel, right ball are to stay where they are."""
     wrists: Array
     """(T, 2, 4) local rotations, xyzw."""
+    raised: NDArray[np.bool_]
+    """(T,) as of the plan."""
 
     def __len__(self) -> int:
         return len(self.qpos)
@@ -87,16 +98,17 @@ class Reference:
     def part(self, frames: slice) -> Reference:
         """Some of the frames."""
         moving = (self.qpos[frames], self.qvel[frames], self.controls[frames])
-        return Reference(*moving, self.planted[frames], self.wrists[frames])
+        return Reference(*moving, self.planted[frames], self.wrists[frames], self.raised[frames])
 
     @staticmethod
     def of(plan: Plan, skeleton: Skeleton) -> Reference:
         """With feet that swing a little higher, and arms that reach as far without their collars."""
         local = _without_collars(plan.roots, _feet_lifted(plan, skeleton), skeleton)
+        local = _arms_over_floor(plan.roots, local, skeleton)
         qpos = fold(plan.roots, local)
         qvel = speeds(qpos)
         wrists = local[:, [INDEX[f"{side}_wrist"] for side, _ in SIDES]]
-        return Reference(qpos, qvel, controls(qpos, qvel), plan.contacts > 0.5, wrists)
+        return Reference(qpos, qvel, controls(qpos, qvel), plan.contacts > 0.5, wrists, plan.raised)
 
 
 def _feet_lifted(plan: Plan, skeleton: Skeleton) -> Array:
@@ -164,3 +176,47 @@ def _without_collars(roots: Array, local: Array, skeleton: Skeleton) -> Array:
         found[frames, elbow] = rotations.compose(rotations.inverse(upper), lower)
         found[frames, wrist] = rotations.compose(rotations.inverse(lower), world[frames, wrist])
     return found
+
+
+def _arms_over_floor(roots: Array, local: Array, skeleton: Skeleton) -> Array:
+    """Local rotations whose elbows and wrists are over the floor: a kinematic arm may swing through it, and a simulated
+    one that followed would lie under its body and hold it down."""
+    positions, world = skeleton.forward_kinematics(roots, local)
+    found, least = np.array(local), ARM_OVER * skeleton.scale
+    for side, sign in SIDES:
+        shoulder, elbow, wrist = (INDEX[f"{side}_{joint}"] for joint in ("shoulder", "elbow", "wrist"))
+        if positions[:, [elbow, wrist], 1].min() >= least:
+            continue
+        at, middle, hand = (positions[:, joint].astype(np.float64) for joint in (shoulder, elbow, wrist))
+        bones, raised = _bones(skeleton, side, _ARM), _eased(np.maximum(least - hand[:, 1], 0.0))
+        target = hand + raised[:, None] * UP
+        pole, turn = middle - at, _turn_up(middle - at, target - at)
+        poles = [rotations.rotate(rotations.rotvec_to_quat(lift * turn), pole) for lift in LIFTS]
+        heights = np.stack([at[:, 1] + bones[0] * two_bone(at, target, one, bones).upper[:, 1] for one in poles])
+        needed = np.array(LIFTS)[np.where((heights >= least).any(axis=0), (heights >= least).argmax(axis=0), -1)]
+        lifted = _eased(needed)
+        frames = np.flatnonzero(lifted + raised)
+        pole = rotations.rotate(rotations.rotvec_to_quat(lifted[:, None] * turn), pole)
+        limb = two_bone(at[frames], target[frames], pole[frames], bones)
+        upper, lower = arm_rotations(limb, int(sign))
+        found[frames, shoulder] = rotations.compose(rotations.inverse(world[frames, INDEX["spine3"]]), upper)
+        found[frames, elbow] = rotations.compose(rotations.inverse(upper), lower)
+        found[frames, wrist] = rotations.compose(rotations.inverse(lower), world[frames, wrist])
+    return found
+
+
+def _turn_up(pole: Array, reach: Array) -> Array:
+    """What turns elbows about the line from shoulder to wrist (T, 3) until they point up: rotation vectors without a
+    jump, of poles (T, 3). (T, 3)."""
+    axis = rotations.normalize(reach)
+    across = rotations.cross(axis, np.broadcast_to(UP, axis.shape))
+    sine, cosine = -rotations.dot(pole, across)[:, 0], pole[:, 1] - (rotations.dot(pole, axis) * axis)[:, 1]
+    return np.asarray(np.unwrap(np.arctan2(sine, cosine))[:, None] * axis)
+
+
+def _eased(needed: Array) -> Array:
+    """As much as is needed in every frame (T,), or more: it comes and goes smoothly."""
+    padded = np.pad(needed, 2 * ARM_EASES)
+    most = np.lib.stride_tricks.sliding_window_view(padded, 2 * ARM_EASES + 1).max(axis=1)
+    bell = np.hanning(2 * ARM_EASES + 3)[1:-1]
+    return np.asarray(np.convolve(most, bell / bell.sum(), "valid"))

@@ -20,6 +20,8 @@ from motion_backend.rotations import Array
 
 EFFORTS: Final = (Effort(), Effort(24, 2), Effort(28, 2, 2), Effort(30, 2, 2))
 """The usual one, and what is tried after the first, the second and the third fall at a place."""
+FROM_FLOOR: Final = 2
+"""Which of them is begun with where the body gets up from the floor: with less it fell there every time."""
 BACK: Final = (1.3, 2.0, 3.0)
 """Seconds that are gone back before each of those."""
 RECOVERED: Final = 1.0
@@ -66,9 +68,10 @@ class Tracker:
         while len(done.moments) <= frames:
             self.between()
             at = len(done.moments) - 1
-            self._window(done, EFFORTS[falls], data, reader, frames - at)
+            least = FROM_FLOOR if self.reference.raised[at] else 0
+            self._window(done, EFFORTS[max(falls, least)], data, reader, frames - at)
             at = len(done.moments) - 1
-            if self._fallen(done.moments[-1], at):
+            if fallen(done.moments[-1], self.reference.qpos[at]):
                 falls, beyond = self._recovered(done, falls), max(beyond, at)
             elif falls and at > beyond + RECOVERED * FPS:
                 falls = beyond = 0
@@ -89,14 +92,6 @@ class Tracker:
         done.pressures += pressures
         done.ahead = found.offsets[played:]
 
-    def _fallen(self, now: Moment, at: int) -> bool:
-        if not now.finite:
-            return True
-        planned = self.reference.qpos[at]
-        away = float(np.linalg.norm(now.state.qpos[:3] - planned[:3]))
-        turned = rotations.quat_to_rotvec(rotations.compose(rotations.inverse(_xyzw(planned)), _xyzw(now.state.qpos)))
-        return away > FALLEN or float(np.linalg.norm(turned)) > TIPPED
-
     def _recovered(self, done: Tracked, falls: int) -> int:
         """Go back before a fall, farther each time; else set the body onto the plan. How often it has fallen now."""
         at = len(done.moments) - 1
@@ -113,6 +108,15 @@ class Tracker:
             if not moment.finite:
                 done.moments[frame] = moment_of(self.reference, frame)
         return 0
+
+
+def fallen(now: Moment, planned: Array) -> bool:
+    """Whether a body's pelvis is too far from where a plan (45,) has it, or its numbers are none."""
+    if not now.finite:
+        return True
+    away = float(np.linalg.norm(now.state.qpos[:3] - planned[:3]))
+    turned = rotations.quat_to_rotvec(rotations.compose(rotations.inverse(_xyzw(planned)), _xyzw(now.state.qpos)))
+    return away > FALLEN or float(np.linalg.norm(turned)) > TIPPED
 
 
 def _xyzw(qpos: Array) -> Array:

@@ -22,6 +22,7 @@ from planner_service.cli import (
     tasks,
     train,
     train_embedding,
+    train_physics,
 )
 from planner_service.user_errors import explain
 from scene_graphs.errors import UserError
@@ -42,6 +43,7 @@ app.add_typer(service.app, name="models")
 app.add_typer(evaluate.app, name="evaluate")
 app.add_typer(clips.app, name="clips")
 train.app.command("embedding")(train_embedding.embedding)
+train.app.command("physics")(train_physics.physics)
 app.add_typer(train.app, name="train")
 
 

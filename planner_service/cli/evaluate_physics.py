@@ -14,6 +14,7 @@ from rich.table import Table
 from motion_backend.motion import Skill
 from planner_service.cli.console import plain_table
 from planner_service.cli.evaluate_stories import read_stories
+from planner_service.settings import give_backends, read_settings
 
 if TYPE_CHECKING:
     from planner_service.evaluation.physics_evaluation import PhysicsTrial
@@ -47,6 +48,7 @@ def physics(
     """
     from planner_service.evaluation.physics_evaluation import draw_trials, keep_row, kept_rows, run_story, run_trial
 
+    give_backends(read_settings())
     rows = kept_rows(results)
     known = {(row.get("skill"), row.get("caption"), row.get("room"), row.get("theme"), row["seed"]) for row in rows}
     for skill in skills or list(Skill):

@@ -15,6 +15,7 @@ from motion_backend.physics.mjcf_character import NU
 from motion_backend.physics.mjcf_scene import Models, models_of
 from motion_backend.physics.mpc import moment_of
 from motion_backend.physics.reference import Plan, Reference
+from motion_backend.physics.task import plan_of
 from motion_backend.physics.tracker import Tracked, Tracker
 from motion_backend.skeleton import build_skeleton
 
@@ -28,11 +29,6 @@ def walk() -> Motion:
     """A planned walk across the room."""
     start = replace(WALK, goal=(3.0, 1.0), facing=0.06)
     return DIRECTOR.act(HOME, WALK, after(HOME, start))[0]
-
-
-def plan_of(motion: Motion) -> Plan:
-    arrays = (motion.root_positions, motion.local_rotations, motion.contacts)
-    return Plan(*(array.astype(np.float64) for array in arrays))
 
 
 @cache
@@ -55,7 +51,9 @@ def tracked(plan: Plan, frames: int, height: float = 1.70) -> Tracked:
 def stood(height: float = 1.70, seconds: int = 3) -> tuple[Plan, Tracked]:
     """A body that is to stand still."""
     state = after(HOME, height=height)
-    plan = Plan(state.history.root_positions[-1:], state.history.local_rotations[-1:], np.ones((1, 4)))
+    plan = Plan(
+        state.history.root_positions[-1:], state.history.local_rotations[-1:], np.ones((1, 4)), np.zeros(1, dtype=bool)
+    )
     plan = plan.last(30 * seconds + 31)
     return plan, tracked(plan, 30 * seconds, height)
 

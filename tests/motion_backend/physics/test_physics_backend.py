@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from motion_backend.metrics.contact_error import outcome
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import Motion, Skill, join
 from motion_backend.physics.backend import PhysicsBackend
+from motion_backend.physics.physics_options import Mode, PhysicsOptions, give_physics
 from motion_backend.physics.physics_record import physics_of
 from motion_backend.procedural.backend import ProceduralBackend
 from scene_graphs.home import Home
@@ -56,6 +58,29 @@ def test_a_part_goes_on_where_the_simulation_was_left_also_after_json() -> None:
     assert report["root_force_newtons"] == 0
     assert {force["body"] for force in report["keyframes"][0]["forces"]} == {"left_foot", "right_foot"}
     assert dict_to_motion(motion_to_dict(on)).simulated == on.simulated
+
+
+def test_in_mode_policy_it_says_who_moved_the_body_and_why(tmp_path: Path) -> None:
+    give_physics(PhysicsOptions(mode=Mode.POLICY, policies=tmp_path))
+    try:
+        backend = brief()
+    finally:
+        give_physics(PhysicsOptions())
+    motion, _ = stood(backend, after(HOME))
+    report = physics_of(motion)
+    assert report is not None
+    assert report["mode"] == "mpc"
+    (row,) = report["keyframes"]
+    assert row["no_policy"] == ["there is no policy for it"]
+    assert row["modes"] == {"mpc": pytest.approx(8 / 30, abs=0.01)}
+
+
+def test_the_budget_of_a_story_is_that_of_the_process() -> None:
+    give_physics(PhysicsOptions(seconds=12.0))
+    try:
+        assert PhysicsBackend().budget == 12.0
+    finally:
+        give_physics(PhysicsOptions())
 
 
 def test_a_body_that_another_backend_left_is_taken_up() -> None:

@@ -7,7 +7,7 @@ import torch
 from motion_backend.motion import Skill
 from motion_backend.physics.policies import POLICY_OF, WITH_TEXT, PolicyName, five_policies
 
-SIZES = (217, 625, 60, 64)
+SIZES = (217 + 30, 625, 60, 64)
 ACTIONS = 30
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from acted import lain, sat, touched
-from simulated import NOTHING, empty_room, plan_of, walk
+from simulated import NOTHING, empty_room, walk
 
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.body.segment_masses import centres_of_mass
@@ -18,6 +18,7 @@ from motion_backend.physics.generalized_coordinates import fold, unfold
 from motion_backend.physics.mjcf_character import NQ, NU, NV, SIMULATED, mass_of
 from motion_backend.physics.mjcf_scene import SLOTS, models_of, near_way
 from motion_backend.physics.reference import Reference
+from motion_backend.physics.task import plan_of
 from motion_backend.skeleton import INDEX
 
 FEET = [INDEX[f"{side}_{joint}"] for side in ("left", "right") for joint in ("ankle", "foot")]
@@ -120,3 +121,22 @@ def test_whatever_pushes_the_pelvis_besides_weight_and_contacts_is_seen() -> Non
         mujoco.mj_step(model, data)
         assert root_force(data) == 5
         forces[1] = 0.0
+
+
+def test_arms_that_swing_through_the_floor_are_led_over_it_and_others_left_alone() -> None:
+    motion = walk()
+    plan, skeleton = plan_of(motion), motion.skeleton
+    arms = [INDEX[f"{side}_{joint}"] for side in ("left", "right") for joint in ("elbow", "wrist")]
+    # As if the floor were as high as the hands.
+    lowest = skeleton.forward_kinematics(plan.roots, plan.local)[0][:, arms, 1].min()
+    low = replace(plan, roots=plan.roots - np.array([0.0, lowest, 0.0]))
+    before = skeleton.forward_kinematics(low.roots, low.local)[0][:, arms, 1]
+    reference = Reference.of(low, skeleton)
+    roots, local = unfold(reference.qpos, reference.wrists)
+    after = skeleton.forward_kinematics(roots, local)[0][:, arms, 1]
+    assert before.min() < 0.03
+    assert after.min() > 0.04
+    turned = np.abs(np.diff(reference.qpos[:, 7:], axis=0)).max(axis=0)
+    assert turned.max() < 0.3, "an arm jumps"
+    high = Reference.of(plan, skeleton)
+    np.testing.assert_allclose(high.qpos[:, :3], plan.roots)

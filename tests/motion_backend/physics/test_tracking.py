@@ -6,15 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from simulated import empty_room, plan_of, stood, tracked, tracker_of, walk, walked
+from simulated import empty_room, stood, tracked, tracker_of, walk, walked
 
 from motion_backend.body.zero_moment import GRAVITY
-from motion_backend.physics import linear_model
 from motion_backend.physics.contact_forces import Pressure
 from motion_backend.physics.engine import engine
 from motion_backend.physics.mjcf_character import NU, mass_of
 from motion_backend.physics.mpc import SLIDING, Controller, Moment, moment_of
+from motion_backend.physics.physics_options import PhysicsOptions, give_physics
 from motion_backend.physics.reference import Plan
+from motion_backend.physics.task import plan_of
 from motion_backend.physics.tracker import Tracked, Tracker
 
 
@@ -56,12 +57,15 @@ def test_the_recorded_controls_alone_make_the_same_states() -> None:
         np.testing.assert_array_equal(data.qvel, after.state.qvel)
 
 
-def test_results_do_not_depend_on_the_number_of_threads(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_results_do_not_depend_on_the_number_of_threads() -> None:
     plan = plan_of(walk())
     found = []
-    for threads in (1, 3):
-        monkeypatch.setattr(linear_model, "threads", lambda count=threads: count)
-        found.append(tracked(plan, 4).moments[-1].state.qpos)
+    try:
+        for threads in (1, 3):
+            give_physics(PhysicsOptions(threads=threads))
+            found.append(tracked(plan, 4).moments[-1].state.qpos)
+    finally:
+        give_physics(PhysicsOptions())
     np.testing.assert_array_equal(found[0], found[1])
 
 

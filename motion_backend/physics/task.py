@@ -1,0 +1,111 @@
+"""A part of an action that a simulated body is to do: its plan, its home, and what is told of it afterwards."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion_backend.backend_protocol import History
+from motion_backend.motion import FPS, Motion, Note, PhaseKind, Simulated
+from motion_backend.physics.generalized_coordinates import fold, speeds, unfold
+from motion_backend.physics.linear_model import State
+from motion_backend.physics.mjcf_character import NV
+from motion_backend.physics.mjcf_scene import Models, models_of, near_way
+from motion_backend.physics.mpc import Moment, stacked
+from motion_backend.physics.physics_options import Mode
+from motion_backend.physics.physics_record import forces_of
+from motion_backend.physics.reference import Plan, Reference
+from motion_backend.physics.tracker import Tracked
+from motion_backend.rotations import Array
+from motion_backend.scene import scene_of
+from motion_backend.skeleton import REFERENCE_HEIGHT, Skeleton
+from scene_graphs.home import Home
+
+WINDOW, BESIDE = 60, (15, 30)
+"""Frames that are simulated among the same boxes, and those before and after whose surroundings count too."""
+LOW: Final = 0.35
+"""A pelvis below this share of its standing height at the beginning gets up from the floor, and not from a bed."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """A part that is to be followed, in its home."""
+
+    home: Home
+    skeleton: Skeleton
+    past: History
+    """The plan's last frames before it: the reference begins with the last of them."""
+    plan: Plan
+
+    @cached_property
+    def reference(self) -> Reference:
+        """From the frame before the part to the end of what is looked ahead at."""
+        before = np.zeros(len(self.past), dtype=bool)
+        past = Plan(self.past.root_positions, self.past.local_rotations, np.array(self.past.contacts), before)
+        return Reference.of(past.followed_by(self.plan), self.skeleton).part(slice(len(past) - 1, None))
+
+    @cached_property
+    def _joints(self) -> Array:
+        joints: Array = self.skeleton.forward_kinematics(self.plan.roots, self.plan.local)[0].astype(np.float64)
+        return joints
+
+    @cached_property
+    def _windows(self) -> dict[int, Models]:
+        return {}
+
+    def models_at(self, frame: int) -> Models:
+        """The body among the boxes near its way around a frame."""
+        window = frame // WINDOW
+        if window not in self._windows:
+            before, after = BESIDE
+            frames = slice(max(window * WINDOW - before, 0), (window + 1) * WINDOW + after)
+            boxes = near_way(self._joints[frames], scene_of(self.home).obstacles)
+            self._windows[window] = models_of(self.skeleton.scale * REFERENCE_HEIGHT, boxes)
+        return self._windows[window]
+
+    def taken_up(self, history: History) -> Moment:
+        """The body where another backend left it, with the speeds it had."""
+        qpos = fold(history.root_positions, history.local_rotations)
+        return Moment(State(qpos[-1], speeds(qpos)[-1]), np.zeros(NV), self.reference.controls[0].copy())
+
+    def motion(self, done: Tracked, planned: Motion, mode: Mode = Mode.MPC, why: str = "") -> Motion:
+        """The simulated frames of a part, with the contacts that were felt."""
+        qpos, _ = stacked(done.moments[1:])
+        roots, local = unfold(qpos, self.reference.wrists[1 : len(done.moments)])
+        keyframe = int(planned.actions[0])
+        record = Simulated(
+            keyframe, mode.value, round(len(qpos) / FPS, 3),
+            max((float(pressure.root[0]) for pressure in done.pressures[1:]), default=0.0),
+            resets=len(done.resets), rewinds=len(done.rewinds),
+            rewound_seconds=round(done.rewound / FPS, 2), forces=forces_of(done.pressures[1:]),
+            why=why,
+        )  # fmt: skip
+        told = (f"fell, and was set back onto the plan {at / FPS:.1f} s into it" for at in done.resets)
+        return replace(
+            planned,
+            root_positions=roots.astype(np.float32),
+            local_rotations=local.astype(np.float32),
+            contacts=np.array([pressure.planted for pressure in done.pressures[1:]], dtype=np.float32),
+            notes=planned.notes + tuple(Note(keyframe, words) for words in told),
+            simulated=(record,),
+        )
+
+
+def from_floor(motion: Motion) -> NDArray[np.bool_]:
+    """In which frames a motion gets up from the floor, until it kneels. (T,)."""
+    found = np.zeros(len(motion), dtype=bool)
+    low = LOW * motion.skeleton.standing_height
+    for phase in motion.phases:
+        if phase.kind is PhaseKind.GETUP and motion.root_positions[phase.start, 1] < low:
+            found[phase.start : phase.stop] = True
+    return found
+
+
+def plan_of(motion: Motion) -> Plan:
+    """A motion's arrays, to be followed."""
+    arrays = (motion.root_positions, motion.local_rotations, motion.contacts)
+    return Plan(*(array.astype(np.float64) for array in arrays), from_floor(motion))
