@@ -58,7 +58,7 @@ def lie(body: Body, part: Part) -> None:
     """From standing: onto the edge of the bed, or onto the knees on the floor; down, and into the pose."""
     action = part.action
     keys = paced(lie_keys(), body.rng)
-    style = own_way(lie_style(action.emotion, action.caption), keys.own, body.rng)
+    style = own_way(lie_style(action.emotion, action.caption), keys.own, body.seed, body.rng)
     spot = spot_of(action)
     made = _made(body, spot)
     body.note(*lacking(style, made, body.skeleton, keys.pose))

@@ -228,14 +228,16 @@ def walk_on(
     steps = plan_steps(start, route, phase, style, skeleton, rng, stride)
     spread = arm_spread(len(phase), style, stride)
     pose = _carry(start, route, steps, style, skeleton, rng, spread, stride is not None)
-    pose = settle_from(start, pose, fps) if stride is None else _taken_up(start, pose, fps)
+    pose = settle_from(start, pose, fps) if stride is None else _taken_up(start, pose, stride, fps)
     if cut_m is None:
         return pose, None
     last = route.reaches(cut_m)
-    return pose.at(slice(0, last + 1 - (stride is not None))), _stride_at(last, path, route, steps, spread)
+    made = last + 1 - (stride is not None)
+    onward = pose.arms[made] - pose.arms[made - 1] if 0 < made < len(pose) else None
+    return pose.at(slice(0, made)), replace(_stride_at(last, path, route, steps, spread), arms_onward=onward)
 
 
-def _taken_up(start: Pose, pose: Pose, fps: int) -> Pose:
+def _taken_up(start: Pose, pose: Pose, stride: Stride, fps: int) -> Pose:
     """A walk whose first frame is the pose it starts from, and is over already."""
     settled, row = settle_from(start, pose, fps), carriage().way
     apart = start.arms - pose.arms[0]
@@ -243,6 +245,12 @@ def _taken_up(start: Pose, pose: Pose, fps: int) -> Pose:
         # Arms go on swinging: what little they are off fades out.
         fade = 1 - smooth(np.arange(len(pose)) / (row.same_arms_s * fps))
         settled = replace(settled, arms=pose.arms + fade[:, None, None] * apart, elbows=pose.elbows)
+    if stride.arms_onward is not None and len(pose) > 1:
+        # They go on as fast as they went, too.
+        frames = np.arange(len(pose))
+        swung = frames * (1 - smooth(frames / (row.same_arms_s * fps)))
+        faster = stride.arms_onward - (settled.arms[1] - start.arms)
+        settled = replace(settled, arms=settled.arms + swung[:, None, None] * faster)
     return settled.at(slice(1, len(settled)))
 
 
@@ -262,6 +270,7 @@ def _stride_at(frame: int, path: Array, route: Route, steps: Steps, spread: Arra
         begun=max((step.number for step in begun if not step.hop), default=-1) - earlier,
         first=steps.first,
         speed=float(route.speed[frame]),
+        step_m=float(route.speed[frame] / (FPS * (steps.phase[frame] - steps.phase[frame - 1]))),
         place=route.position[frame],
         heading=float(rotations.wrap(route.heading[frame])),
         moving=float(steps.moving[frame]),
@@ -270,6 +279,7 @@ def _stride_at(frame: int, path: Array, route: Route, steps: Steps, spread: Arra
         steps=tuple(step.later(-earlier) for step in under_way),
         tiptoe=steps.tiptoe[frame],
         spread=spread[frame],
+        arms_onward=None,
         rest=np.concatenate([route.position[frame : frame + 1], points[ahead:]]),
     )
 
