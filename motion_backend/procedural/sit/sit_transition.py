@@ -284,7 +284,7 @@ def stand_up(
     end = standing((float(place[0]), float(place[1])), seat.yaw, bearing, skeleton)
     depth = _depth(end, seat, skeleton.scale)
     lean = keys.rise.lean_rad + keys.rise.lean_per_depth_rad * depth
-    ready, *rows = keys.pose
+    ready, rows = keys.pose[0], keys.low_pose if low else keys.pose[1:]
     fold = keys.rise.low_fold_share if low else 0.0
     over = _over_the_feet(start, end, seat, keys.rise.gathered_share * lean, fold, ready)
     over = at_rest(over, push, skeleton)
@@ -294,18 +294,12 @@ def stand_up(
     gather = _round_the_thighs(_taken(gather, start, push), over.reaching, low)
     over = gather.at(len(gather) - 1)
     seconds = keys.rise.time_s * pace * (ANY_DEPTH + EACH_DEPTH * depth)
-    times = [*(row.time_share * seconds for row in keys.pose), seconds]
+    times = [*(row.time_share * seconds for row in (ready, *rows)), seconds]
     leant = replace(
         over,
         pelvis=seat.pelvis + ready.pelvis_ahead_m * skeleton.scale * _ahead_of(seat),
         **_lean(seat, lean, fold, ready),
     )
-    if low:
-        # The floor is farther from the shoulders with every centimetre that one rises: hands leave it sooner.
-        held, folds = keys.rise.low_held_ratio, 1 - 0.5 * fold
-        rows = [
-            replace(row, held_share=held * row.held_share, hip_pitch_share=folds * row.hip_pitch_share) for row in rows
-        ]
     risen = [_risen(row, over, end, seat, lean) for row in rows]
     up = interpolate([0.0, *times], [over, leant, *risen, replace(end, reach=over.reach, palms=over.palms)], FPS)
     up = follow(replace(up, knees=knees_over_feet(up)), over, push, skeleton)
