@@ -215,6 +215,7 @@ class Rise:
     lean_per_depth_rad: float
     gathered_share: float
     low_fold_share: float
+    low_lean_ratio: float
 
 
 @table

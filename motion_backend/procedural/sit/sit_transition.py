@@ -300,7 +300,8 @@ def stand_up(
         pelvis=seat.pelvis + ready.pelvis_ahead_m * skeleton.scale * _ahead_of(seat),
         **_lean(seat, lean, fold, ready),
     )
-    risen = [_risen(row, over, end, seat, lean) for row in rows]
+    over_feet = lean * (keys.rise.low_lean_ratio if low else 1.0)
+    risen = [_risen(row, over, end, seat, over_feet) for row in rows]
     up = interpolate([0.0, *times], [over, leant, *risen, replace(end, reach=over.reach, palms=over.palms)], FPS)
     up = follow(replace(up, knees=knees_over_feet(up)), over, push, skeleton)
     return hands_round_body(concatenate([gather, up]), skeleton)
