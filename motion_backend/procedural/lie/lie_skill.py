@@ -36,8 +36,8 @@ MAX_PILLOW = 0.20
 HIGH, HIGH_STEP = 0.60, 0.01
 """How high over a mattress it is looked what lies on it, and how finely (metres)."""
 BESIDE, ARM_HEIGHTS = np.arange(0.20, 0.90, 0.03), (0.02, -0.05)
-"""Where it is looked for room beside the body (metres at 1.70 m), and how high over the pelvis: arms, and hands that lie
-on the mattress beside something that is hardly higher (metres)."""
+"""Where it is looked for room beside the body (metres at 1.70 m), and how high over the pelvis: for arms, and for hands
+on the mattress beside something hardly higher (metres)."""
 ARM = (0.10, 0.30, 0.48, 0.68)
 """How far towards the head from the pelvis arms are that lie beside the body or above it (metres at 1.70 m)."""
 NEARLY = 0.03

@@ -26,7 +26,6 @@ from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
 from scene_graphs.data_tables import read_table, table
 
-
 NEAR = 0.2
 """Who has gone so far along a way is no farther than this from there (metres)."""
 REJOINS = 0.8
