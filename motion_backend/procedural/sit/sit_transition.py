@@ -63,8 +63,9 @@ SEAT_DROP, MIN_DEPTH, MAX_DEPTH = 0.4, 0.6, 2.0
 """How far a pelvis comes down to an ordinary seat (metres at 1.70 m), and the bounds of other depths against that."""
 ANY_DEPTH, EACH_DEPTH = 0.7, 0.3
 """Shares of the time down and up that every seat takes, and that grows with its depth."""
-KNEES_UP = 0.25
-"""How far bent knees point up, against ahead."""
+KNEES_UP, LEVEL_KNEES_UP, STEEP = 0.25, 1.5, 0.6
+"""How far bent knees point up, against ahead, and how much farther in level legs; legs are, little by little, that rise
+to the pelvis by less than this (sine)."""
 
 
 def sit_down(
@@ -230,9 +231,13 @@ def _settling(landed: Pose, seat: Seat, style: Seated, pace: float, rows: tuple[
 
 
 def knees_over_feet(pose: Pose) -> Array:
-    """Knees point where their feet point, a little up, so that deep bends stay in plane. (T, 2, 3)."""
+    """Knees point where their feet point, a little up, so that deep bends stay in plane; and up where legs are level,
+    of which feet that look inwards would make knees that cross. (T, 2, 3)."""
     forward = rotations.rotate(rotations.yaw_to_quat(yaw_of(pose.feet)), np.array([0.0, 0.0, 1.0]))
-    return np.asarray(forward + KNEES_UP * UP)
+    leg = pose.pelvis[:, None] - pose.ankles
+    steep = leg[..., 1:2] / np.linalg.norm(leg, axis=-1, keepdims=True)
+    level = np.clip((STEEP - steep) / STEEP, 0.0, 1.0)
+    return np.asarray(forward + (KNEES_UP + LEVEL_KNEES_UP * level) * UP)
 
 
 def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move) -> Pose:

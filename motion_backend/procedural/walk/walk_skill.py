@@ -180,10 +180,10 @@ def _stride(body: Body, path: Array, facing: float | None, style: Walk, onward: 
     end = facing if way is None else None
     walkable = body.scene.walkable
 
-    def room(places: Array) -> Array:
+    def spare(places: Array) -> Array:
         return np.asarray(walkable.field.at(places) - walkable.radius)
 
-    frames, body.stride = walk_on(body.pose, points, end, style, body.skeleton, body.rng, stride, cut, room)
+    frames, body.stride = walk_on(body.pose, points, end, style, body.skeleton, body.rng, stride, cut, spare)
     if style.bearing.arms[0] in NARROW_ARMS:
         room = body.scene.walkable.field.at(frames.pelvis[:, [0, 2]])
         frames = arms_in(frames, room / body.skeleton.scale, *NARROW_ARMS[style.bearing.arms[0]])
