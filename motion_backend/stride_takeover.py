@@ -66,6 +66,7 @@ def stride_of(history: History, skeleton: Skeleton, style: Walk, rest: Array) ->
         begun=BEATS,
         first=1 if behind == 0 else -1,
         speed=float(np.linalg.norm(velocity)),
+        step_m=gap,
         place=place,
         heading=heading,
         moving=1.0,
@@ -74,6 +75,7 @@ def stride_of(history: History, skeleton: Skeleton, style: Walk, rest: Array) ->
         steps=(landing, lifting),
         tiptoe=np.zeros(2),
         spread=np.zeros(2),
+        arms_onward=None,
         rest=np.concatenate([place[None], rest]),
     )
 

@@ -44,24 +44,30 @@ def trunk_and_legs(pose: Pose, skeleton: Skeleton) -> Array:
 
 
 def hips_within(pose: Pose, skeleton: Skeleton) -> Pose:
-    """Frames in which no hip bends beyond its range: the pelvis tips back and the spine bends in its place.
+    """Frames in which no hip bends or stretches beyond its range: the pelvis tips and the spine bends in its place.
 
     Hips lie on the axis that the pelvis tips about, so that legs and feet stay where they are.
     """
-    from scipy.ndimage import gaussian_filter1d, maximum_filter1d
-
-    most = np.zeros(len(pose))
+    beyond = []
     for index, (name, _) in enumerate(SIDES):
         thigh, _ = leg_rotations(_leg(pose, skeleton, index, name))
-        bent = overbent(f"{name}_hip", rotations.compose(rotations.inverse(pose.hips), thigh))
-        most = np.maximum(most, -bent)
-    if not most.any():
+        beyond.append(overbent(f"{name}_hip", rotations.compose(rotations.inverse(pose.hips), thigh)))
+    stretched, bent = np.maximum(np.max(beyond, axis=0), 0.0), np.maximum(-np.min(beyond, axis=0), 0.0)
+    if not stretched.any() and not bent.any():
         return pose
-    back = gaussian_filter1d(maximum_filter1d(most, 2 * EASED + 1, mode="nearest"), EASED / 2, mode="nearest")
     tipped = np.zeros((len(pose), 3))
-    tipped[:, 0] = back
-    hips = rotations.compose(pose.hips, rotations.rotvec_to_quat(-tipped))
-    return replace(pose, hips=hips, spine=pose.spine + tipped)
+    tipped[:, 0] = _early(stretched) - _early(bent)
+    hips = rotations.compose(pose.hips, rotations.rotvec_to_quat(tipped))
+    return replace(pose, hips=hips, spine=pose.spine - tipped)
+
+
+def _early(angle: Array) -> Array:
+    """Angles (T,) that are there some frames before they have to be, and come and go smoothly."""
+    from scipy.ndimage import gaussian_filter1d, maximum_filter1d
+
+    return np.asarray(
+        gaussian_filter1d(maximum_filter1d(angle, 2 * EASED + 1, mode="nearest"), EASED / 2, mode="nearest")
+    )
 
 
 def chest_frame(pose: Pose, skeleton: Skeleton) -> tuple[Array, Array]:

@@ -1,8 +1,11 @@
-"""Nobody lies as somebody else does, nor twice alike: what is drawn for one time of lying down (data/transitions)."""
+"""Nobody lies as somebody else does, nor twice alike: what is drawn for one time of lying down.
+
+A part of it is a character's own, and lasts the whole story (data/transitions/lie_own.toml).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any, Final, cast
 
@@ -13,6 +16,8 @@ from scene_graphs.data_tables import table
 
 DRAWN: Final = 2.0
 """Nothing is drawn beyond so many standard deviations."""
+CHARACTER: Final = 0x11E
+"""Sets what is drawn for a character apart from what else is drawn from its seed."""
 SIZES: Final = (("askew", ()), ("curve", ()), ("head_turn", ()), ("head_tilt", ()), ("ankle_aside", (2,)),
                 ("ankle_along", (2,)), ("foot_out", (2,)), ("knee_out", (2,)), ("side_hip", ()), ("side_knee", ()),
                 ("hand_along", (2,)), ("hand_across", (2,)))  # fmt: skip
@@ -51,6 +56,8 @@ class LieOwn:
     """How people lie otherwise than one another."""
 
     spread: LyingSpread
+    usual_arms_share: float
+    """How often a character's arms lie where they usually do."""
     back_arms: tuple[RestingArms, ...]
     side_arms: tuple[RestingArms, ...]
 
@@ -87,10 +94,21 @@ NOBODY: Final = OwnWay()
 """Who lies as the tables say."""
 
 
-def drawn_way(own: LieOwn, rng: np.random.Generator) -> OwnWay:
-    """What one time of lying has of its own."""
+def drawn_way(own: LieOwn, seed: int, rng: np.random.Generator) -> OwnWay:
+    """What one time of lying has of its own, of the character of that seed."""
     spread = {name.rpartition("_")[0]: value for name, value in vars(own.spread).items()}
-    return OwnWay(**{name: spread[name] * np.clip(rng.normal(size=size), -DRAWN, DRAWN) for name, size in SIZES})
+    always, drawn = np.random.default_rng([seed, CHARACTER]), {}
+    for name, size in SIZES:
+        one = (always.normal(size=size) + rng.normal(size=size)) / np.sqrt(2)
+        drawn[name] = spread[name] * np.clip(one, -DRAWN, DRAWN)
+    return OwnWay(**drawn)
+
+
+def drawn_arms(rows: Sequence[RestingArms], usual: float, seed: int, rng: np.random.Generator) -> RestingArms:
+    """Where both arms lie this time: in so large a share of times where those of the character of that seed do."""
+    always = int(np.random.default_rng([seed, CHARACTER, len(rows)]).integers(len(rows)))
+    other = int(rng.integers(len(rows)))
+    return rows[always if rng.random() < usual else other]
 
 
 def timed(rows: Any, factor: Callable[[], float]) -> Any:

@@ -44,6 +44,8 @@ ON_ARM, ON_HANDS = 0.05, 0.05
 """How high a head lies on an arm rather than on a pillow, or on hands upon it (metres at 1.70 m)."""
 NARROW: Final = 0.25
 """With so much room from the middle to either side one lies straight along (metres)."""
+OVER_TRUNK: Final = 0.15
+"""A wrist nearer than this to the middle of the body is over the trunk (metres at 1.70 m)."""
 STRETCHED: Final = 0.91
 """From the pelvis to the soles of stretched legs (metres at 1.70 m)."""
 KNEES_UP: Final = 0.5
@@ -203,8 +205,8 @@ def _askew(hips: Array, bed: Bed, own: OwnWay) -> Array:
 def _moved(rest: RestingHand, own: OwnWay, index: int) -> RestingHand:
     """The hand where it lies this time, over the same surface."""
     out, up, ahead = rest.wrist_m
-    # Under a head and on a face there is no more room.
-    size = 0.5 if rest.with_head else 1.0
+    # Under a head and on a face there is no more room, and a trunk falls off to its sides.
+    size = 0.5 if rest.with_head or (out < OVER_TRUNK and ahead > 0) else 1.0
     across, along = size * float(own.hand_across[index]), size * float(own.hand_along[index])
     return replace(rest, wrist_m=(out + across, up + along, ahead))
 

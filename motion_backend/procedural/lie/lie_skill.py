@@ -35,8 +35,9 @@ MAX_PILLOW = 0.20
 """What is higher under a head is not lain on (metres)."""
 HIGH, HIGH_STEP = 0.60, 0.01
 """How high over a mattress it is looked what lies on it, and how finely (metres)."""
-BESIDE, ARM_HEIGHT = np.arange(0.20, 0.90, 0.03), 0.02
-"""Where it is looked for room beside the body (metres at 1.70 m), and how high over the pelvis (metres)."""
+BESIDE, ARM_HEIGHTS = np.arange(0.20, 0.90, 0.03), (0.02, -0.05)
+"""Where it is looked for room beside the body (metres at 1.70 m), and how high over the pelvis: for arms, and for hands
+on the mattress beside something hardly higher (metres)."""
 ARM = (0.10, 0.30, 0.48, 0.68)
 """How far towards the head from the pelvis arms are that lie beside the body or above it (metres at 1.70 m)."""
 NEARLY = 0.03
@@ -58,7 +59,7 @@ def lie(body: Body, part: Part) -> None:
     """From standing: onto the edge of the bed, or onto the knees on the floor; down, and into the pose."""
     action = part.action
     keys = paced(lie_keys(), body.rng)
-    style = own_way(lie_style(action.emotion, action.caption), keys.own, body.rng)
+    style = own_way(lie_style(action.emotion, action.caption), keys.own, body.seed, body.rng)
     spot = spot_of(action)
     made = _made(body, spot)
     body.note(*lacking(style, made, body.skeleton, keys.pose))
@@ -129,7 +130,8 @@ def _made(body: Body, spot: Spot) -> Bed:
 def _room_beside(solid: Obstacles, bed: Bed, aside: Array, up: Array, scale: float) -> float:
     """Distance from the body's middle to what would be in the way of its arm on one side (metres)."""
     for distance in BESIDE * scale:
-        points = [bed.pelvis + along * scale * up + distance * aside + ARM_HEIGHT * UP for along in ARM]
+        places = [bed.pelvis + along * scale * up + distance * aside for along in ARM]
+        points = [place + height * UP for place in places for height in ARM_HEIGHTS]
         if solid.depth(np.stack(points)).max() > -NEARLY:
             return float(distance)
     return np.inf

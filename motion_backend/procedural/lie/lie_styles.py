@@ -8,7 +8,7 @@ import numpy as np
 
 from motion_backend.motion import Emotion
 from motion_backend.procedural.emotion_style import AT_EASE, Bearing, bearing_of
-from motion_backend.procedural.lie.lie_own import NOBODY, LieOwn, OwnWay, drawn_way
+from motion_backend.procedural.lie.lie_own import NOBODY, LieOwn, OwnWay, drawn_arms, drawn_way
 from motion_backend.procedural.style_sheet import Radians, read_style_sheet
 
 
@@ -44,13 +44,12 @@ def wanted_edge(caption: str) -> str | None:
     return style.legs.removesuffix("_down") if style.legs.endswith("_down") else None
 
 
-def own_way(style: Lying, own: LieOwn, rng: np.random.Generator) -> Lying:
-    """The way of lying as it is this time."""
-    drawn = drawn_way(own, rng)
-    arms = own.back_arms if style.side == "back" else own.side_arms
-    chosen = arms[int(rng.integers(len(arms)))]
-    style = replace(style, own=drawn)
+def own_way(style: Lying, own: LieOwn, seed: int, rng: np.random.Generator) -> Lying:
+    """The way of lying as it is this time, of the character of that seed."""
+    rows = own.back_arms if style.side == "back" else own.side_arms
+    arms = drawn_arms(rows, own.usual_arms_share, seed, rng)
+    style = replace(style, own=drawn_way(own, seed, rng))
     if style.arms != Lying().arms or style.propped:
         return style
-    pair = (chosen.left, chosen.right)
+    pair = (arms.left, arms.right)
     return replace(style, arms=pair if style.side != "right" else pair[::-1])

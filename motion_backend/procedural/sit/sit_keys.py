@@ -215,7 +215,7 @@ class Rise:
     lean_per_depth_rad: float
     gathered_share: float
     low_fold_share: float
-    low_held_ratio: float
+    low_lean_ratio: float
 
 
 @table
@@ -225,6 +225,8 @@ class StandUp:
     gather: Move
     rise: Rise
     pose: tuple[Ready, Risen, Risen, Risen]
+    low_pose: tuple[Risen, Risen, Risen]
+    """In place of the last three, from the floor."""
 
 
 @table

@@ -63,8 +63,9 @@ SEAT_DROP, MIN_DEPTH, MAX_DEPTH = 0.4, 0.6, 2.0
 """How far a pelvis comes down to an ordinary seat (metres at 1.70 m), and the bounds of other depths against that."""
 ANY_DEPTH, EACH_DEPTH = 0.7, 0.3
 """Shares of the time down and up that every seat takes, and that grows with its depth."""
-KNEES_UP = 0.25
-"""How far bent knees point up, against ahead."""
+KNEES_UP, LEVEL_KNEES_UP, STEEP = 0.25, 1.5, 0.6
+"""How far bent knees point up, against ahead, and how much farther in level legs; legs are, little by little, that rise
+to the pelvis by less than this (sine)."""
 
 
 def sit_down(
@@ -230,9 +231,13 @@ def _settling(landed: Pose, seat: Seat, style: Seated, pace: float, rows: tuple[
 
 
 def knees_over_feet(pose: Pose) -> Array:
-    """Knees point where their feet point, a little up, so that deep bends stay in plane. (T, 2, 3)."""
+    """Knees point where their feet point, a little up, so that deep bends stay in plane; and up where legs are level,
+    of which feet that look inwards would make knees that cross. (T, 2, 3)."""
     forward = rotations.rotate(rotations.yaw_to_quat(yaw_of(pose.feet)), np.array([0.0, 0.0, 1.0]))
-    return np.asarray(forward + KNEES_UP * UP)
+    leg = pose.pelvis[:, None] - pose.ankles
+    steep = leg[..., 1:2] / np.linalg.norm(leg, axis=-1, keepdims=True)
+    level = np.clip((STEEP - steep) / STEEP, 0.0, 1.0)
+    return np.asarray(forward + (KNEES_UP + LEVEL_KNEES_UP * level) * UP)
 
 
 def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move) -> Pose:
@@ -284,7 +289,7 @@ def stand_up(
     end = standing((float(place[0]), float(place[1])), seat.yaw, bearing, skeleton)
     depth = _depth(end, seat, skeleton.scale)
     lean = keys.rise.lean_rad + keys.rise.lean_per_depth_rad * depth
-    ready, *rows = keys.pose
+    ready, rows = keys.pose[0], keys.low_pose if low else keys.pose[1:]
     fold = keys.rise.low_fold_share if low else 0.0
     over = _over_the_feet(start, end, seat, keys.rise.gathered_share * lean, fold, ready)
     over = at_rest(over, push, skeleton)
@@ -294,19 +299,14 @@ def stand_up(
     gather = _round_the_thighs(_taken(gather, start, push), over.reaching, low)
     over = gather.at(len(gather) - 1)
     seconds = keys.rise.time_s * pace * (ANY_DEPTH + EACH_DEPTH * depth)
-    times = [*(row.time_share * seconds for row in keys.pose), seconds]
+    times = [*(row.time_share * seconds for row in (ready, *rows)), seconds]
     leant = replace(
         over,
         pelvis=seat.pelvis + ready.pelvis_ahead_m * skeleton.scale * _ahead_of(seat),
         **_lean(seat, lean, fold, ready),
     )
-    if low:
-        # The floor is farther from the shoulders with every centimetre that one rises: hands leave it sooner.
-        held, folds = keys.rise.low_held_ratio, 1 - 0.5 * fold
-        rows = [
-            replace(row, held_share=held * row.held_share, hip_pitch_share=folds * row.hip_pitch_share) for row in rows
-        ]
-    risen = [_risen(row, over, end, seat, lean) for row in rows]
+    over_feet = lean * (keys.rise.low_lean_ratio if low else 1.0)
+    risen = [_risen(row, over, end, seat, over_feet) for row in rows]
     up = interpolate([0.0, *times], [over, leant, *risen, replace(end, reach=over.reach, palms=over.palms)], FPS)
     up = follow(replace(up, knees=knees_over_feet(up)), over, push, skeleton)
     return hands_round_body(concatenate([gather, up]), skeleton)

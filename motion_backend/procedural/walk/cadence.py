@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from motion_backend.procedural.pose import smooth
 from motion_backend.procedural.walk.footsteps import LEAD, SIDEWAYS, drift, footstep_table
 from motion_backend.procedural.walk.root_path import Route
 from motion_backend.procedural.walk.stride import BEATS, Stride
@@ -44,6 +45,8 @@ class Cadence:
     """and less so up to here."""
     start_step_m: float
     start_max_hz: float
+    taken_up_steps: float
+    """Who goes on from another walk comes to the steps of this one over so many."""
     standing_steps: float
     """What is left for standing still after the last step."""
     end_hz: float
@@ -84,6 +87,7 @@ def plan_phase(
         # A third of a step goes by before the first foot lifts: the weight shifts and the heel rises.
         phase, begun = np.cumsum(rate) / fps - LEAD, -1
     else:
+        rate = _taken_up(rate, np.maximum(turned, row.min_hz), route.speed, stride, fps)
         phase, begun = stride.phase + (np.cumsum(rate) - rate[0]) / fps, stride.begun
     # Both feet step at least once, and a last step in flight comes down before the end.
     total = max(np.ceil(phase[-1] + 0.5), begun + 1.0 + BEATS) + max(0.0, -style.double / 2) + row.standing_steps
@@ -95,3 +99,12 @@ def plan_phase(
         np.concatenate([route.speed, np.zeros(extra)]),
     )
     return longer, np.concatenate([phase, tail])
+
+
+def _taken_up(rate: Array, slowest: Array, speed: Array, stride: Stride, fps: int) -> Array:
+    """Steps a second (T,) of a walk that goes on from another: their length changes little by little, since feet that
+    are on their way come down where the steps before had them to. No rate comes below `slowest` (T,)."""
+    row = cadence()
+    speed, share = np.maximum(speed, row.speed_min_mps), smooth(np.cumsum(rate) / fps / row.taken_up_steps)
+    length = (1 - share) * stride.step_m + share * speed / rate
+    return np.maximum(speed / length, np.minimum(slowest, rate))

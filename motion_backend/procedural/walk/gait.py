@@ -7,6 +7,7 @@ the pelvis is, is in pelvis_height.py, arms are in arm_swing.py.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -18,12 +19,19 @@ from motion_backend.procedural.walk.arm_swing import arm_spread, swing_arms
 from motion_backend.procedural.walk.cadence import plan_phase
 from motion_backend.procedural.walk.footsteps import Steps, drift, plan_steps, yaw_of
 from motion_backend.procedural.walk.pelvis_height import landing, lifted
-from motion_backend.procedural.walk.root_path import Route, evenly, plan_route, resample
+from motion_backend.procedural.walk.root_path import SPACING, Route, evenly, plan_route, resample
 from motion_backend.procedural.walk.stride import BEATS, Stride
 from motion_backend.procedural.walk.walk_styles import Walk
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
 from scene_graphs.data_tables import read_table, table
+
+NEAR = 0.2
+"""Who has gone so far along a way is no farther than this from there (metres)."""
+REJOINS = 0.8
+"""Who is beside a way has come back to it after so much of it (metres)."""
+Room = Callable[[Array], Array]
+"""How much room there is beside what a body needs at places [x, z]: (N, 2) to (N,) metres."""
 
 
 @table
@@ -39,6 +47,8 @@ class GaitWay:
     stagger_aside_m: float
     """Of a drunk body of unit size."""
     stagger_aside_hz: float
+    stagger_room_m: float
+    """Who has less than this beside the way staggers the less."""
     stagger_turn_deg: float
     stagger_turn_hz: float
     stagger_ease_frames: float
@@ -203,11 +213,13 @@ def walk_on(
     rng: np.random.Generator,
     stride: Stride | None = None,
     cut_m: float | None = None,
+    room: Room = lambda places: np.full(len(places), np.inf),
 ) -> tuple[Pose, Stride | None]:
     """Walk as `walk` does, from a body in the `stride` that the last walk left it in, where there is one.
 
     With `cut_m` the path goes on after the walk is over, so many metres along it: the body does not stop there, and its
-    stride is returned (`way_junction.through_way` joins two ways and says where). Without, it ends standing.
+    stride is returned (`way_junction.through_way` joins two ways and says where). Without, it ends standing. Nobody
+    staggers beyond the `room` that there is.
     """
     fps, row = FPS, carriage().way
     luck = float(np.clip(rng.standard_normal(), -row.pace_spread_max_sigmas, row.pace_spread_max_sigmas))
@@ -223,31 +235,40 @@ def walk_on(
     if style.spin:
         route = _with_spin(route, style.spin, fps)
     if style.wobble:
-        route = _staggering(route, style.wobble, rng, fps)
+        route = _staggering(route, style.wobble, rng, fps, room)
     route, phase = plan_phase(route, style, skeleton, fps, rng, stride)
     steps = plan_steps(start, route, phase, style, skeleton, rng, stride)
     spread = arm_spread(len(phase), style, stride)
     pose = _carry(start, route, steps, style, skeleton, rng, spread, stride is not None)
-    pose = settle_from(start, pose, fps) if stride is None else _taken_up(start, pose, fps)
+    pose = settle_from(start, pose, fps) if stride is None else _taken_up(start, pose, stride, fps)
     if cut_m is None:
         return pose, None
     last = route.reaches(cut_m)
-    return pose.at(slice(0, last + 1 - (stride is not None))), _stride_at(last, path, route, steps, spread)
+    made = last + 1 - (stride is not None)
+    onward = pose.arms[made] - pose.arms[made - 1] if 0 < made < len(pose) else None
+    return pose.at(slice(0, made)), replace(_stride_at(last, path, cut_m, route, steps, spread), arms_onward=onward)
 
 
-def _taken_up(start: Pose, pose: Pose, fps: int) -> Pose:
+def _taken_up(start: Pose, pose: Pose, stride: Stride, fps: int) -> Pose:
     """A walk whose first frame is the pose it starts from, and is over already."""
     settled, row = settle_from(start, pose, fps), carriage().way
     apart = start.arms - pose.arms[0]
     if float(np.linalg.norm(apart, axis=-1).max()) < row.same_arms:
         # Arms go on swinging: what little they are off fades out.
         fade = 1 - smooth(np.arange(len(pose)) / (row.same_arms_s * fps))
-        settled = replace(settled, arms=pose.arms + fade[:, None, None] * apart, elbows=pose.elbows)
+        poles = fade[:, None, None] * (start.elbows - pose.elbows[0])
+        settled = replace(settled, arms=pose.arms + fade[:, None, None] * apart, elbows=pose.elbows + poles)
+    if stride.arms_onward is not None and len(pose) > 1:
+        # They go on as fast as they went, too.
+        frames = np.arange(len(pose))
+        swung = frames * (1 - smooth(frames / (row.same_arms_s * fps)))
+        faster = stride.arms_onward - (settled.arms[1] - start.arms)
+        settled = replace(settled, arms=settled.arms + swung[:, None, None] * faster)
     return settled.at(slice(1, len(settled)))
 
 
-def _stride_at(frame: int, path: Array, route: Route, steps: Steps, spread: Array) -> Stride:
-    """What a walk that goes on leaves the next one at a frame."""
+def _stride_at(frame: int, path: Array, gone_m: float, route: Route, steps: Steps, spread: Array) -> Stride:
+    """What a walk that goes on leaves the next one at a frame, at which so much of the path is behind it."""
     phase = float(steps.phase[frame])
     begun = [step for step in steps.made if step.begun(phase)]
     under_way = [step for step in begun if not step.over(phase)]
@@ -256,12 +277,19 @@ def _stride_at(frame: int, path: Array, route: Route, steps: Steps, spread: Arra
         ankles[step.index], yaw[step.index] = step.swing.start, step.swing.start_yaw
     earlier = BEATS * int(np.floor(phase / BEATS))
     points = resample(path)
-    ahead = int(np.argmin(np.linalg.norm(points - route.position[frame], axis=1))) + 1
+    # A way that turns back comes by the same place again.
+    first = max(int((gone_m - NEAR) / SPACING), 0)
+    about = points[first : first + 2 * int(NEAR / SPACING)]
+    here = first + int(np.argmin(np.linalg.norm(about - route.position[frame], axis=1)))
+    # Who staggers is beside the way, and comes back to it little by little.
+    beside = 1 - smooth(SPACING * np.arange(len(points) - here) / REJOINS)
+    rest = points[here:] + beside[:, None] * (route.position[frame] - points[here])
     return Stride(
         phase=phase - earlier,
         begun=max((step.number for step in begun if not step.hop), default=-1) - earlier,
         first=steps.first,
         speed=float(route.speed[frame]),
+        step_m=float(route.speed[frame] / (FPS * (steps.phase[frame] - steps.phase[frame - 1]))),
         place=route.position[frame],
         heading=float(rotations.wrap(route.heading[frame])),
         moving=float(steps.moving[frame]),
@@ -270,7 +298,8 @@ def _stride_at(frame: int, path: Array, route: Route, steps: Steps, spread: Arra
         steps=tuple(step.later(-earlier) for step in under_way),
         tiptoe=steps.tiptoe[frame],
         spread=spread[frame],
-        rest=np.concatenate([route.position[frame : frame + 1], points[ahead:]]),
+        arms_onward=None,
+        rest=rest,
     )
 
 
@@ -287,10 +316,16 @@ def _with_spin(route: Route, turns: float, fps: int) -> Route:
     )
 
 
-def _staggering(route: Route, size: float, rng: np.random.Generator, fps: int) -> Route:
+def _staggering(route: Route, size: float, rng: np.random.Generator, fps: int, room: Room) -> Route:
+    from scipy.ndimage import gaussian_filter1d, minimum_filter1d
+
     row, frames = carriage().way, len(route.heading)
     at = np.arange(frames)
     ease = smooth(at / row.stagger_ease_frames) * smooth((frames - 1 - at) / row.stagger_ease_frames)
+    # Before it is narrow one pulls oneself together.
+    eases = int(row.stagger_ease_frames)
+    free = minimum_filter1d(np.clip(room(route.position), 0.0, row.stagger_room_m), 2 * eases, mode="nearest")
+    ease = ease * gaussian_filter1d(free / row.stagger_room_m, eases / 2, mode="nearest")
     aside = row.stagger_aside_m * size * ease * drift(frames, row.stagger_aside_hz, fps, rng)
     left = np.stack([np.cos(route.heading), -np.sin(route.heading)], axis=1)
     turned = np.radians(row.stagger_turn_deg) * size * ease * drift(frames, row.stagger_turn_hz, fps, rng)

@@ -57,6 +57,8 @@ class Stride:
     """+1 when even steps are those of the left foot, -1 of the right."""
     speed: float
     """Of the root along its way (metres a second)."""
+    step_m: float
+    """How far the root goes with a step."""
     place: Array
     """(2,) root [x, z]: without sway and surge, which the pelvis has besides."""
     heading: float
@@ -73,6 +75,9 @@ class Stride:
     """(2,) how far both heels are raised (radians)."""
     spread: Array
     """(2,) share of the arm pose that each arm is in."""
+    arms_onward: Array | None
+    """(2, 3) how far its wrists would go in the next frame, in the chest's frame (arm lengths); None where that is not
+    known."""
     rest: Array
     """(N, 2) [x, z] the way it was going to go on by: its first point is `place`, its last the next walk's goal."""
 
@@ -88,7 +93,8 @@ class Stride:
     @staticmethod
     def from_lists(memory: dict[str, Any]) -> Stride:
         """Back from `to_lists`."""
-        arrays = {name: np.asarray(memory[name]) for name in ("place", "ankles", "yaw", "tiptoe", "spread", "rest")}
+        names = ("place", "ankles", "yaw", "tiptoe", "spread", "arms_onward", "rest")
+        arrays = {name: np.asarray(memory[name]) for name in names if memory[name] is not None}
         return Stride(**{**memory, **arrays, "steps": tuple(_step(one) for one in memory["steps"])})
 
 

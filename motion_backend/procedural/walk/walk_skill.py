@@ -22,7 +22,7 @@ from motion_backend.procedural.touch.gestures import gesture
 from motion_backend.procedural.touch.hand_captions import arms_on_the_way
 from motion_backend.procedural.walk.gait import walk_on
 from motion_backend.procedural.walk.gait_character import gait_character
-from motion_backend.procedural.walk.root_path import resample
+from motion_backend.procedural.walk.root_path import SPACING, resample
 from motion_backend.procedural.walk.walk_styles import Walk, walk_style
 from motion_backend.procedural.walk.way_junction import ThroughWay, through_way, way_from, way_to
 from motion_backend.rotations import Array
@@ -102,6 +102,8 @@ TURNING_PLACES = (0.32, 0.26, 0.20, 0.14)
 """How far ahead of a seat it is turned round before backing up to it, the roomiest (metres),"""
 ROOMIER = 0.04
 """where that has so much more room than the seat (metres)."""
+TURNS_OFF = 0.5
+"""So far before a seat (metres) who is walking to it leaves the way for the turning place."""
 
 
 def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Point | None = None) -> None:
@@ -139,17 +141,19 @@ def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Po
         for way in before:
             _stride(body, way, None, style)
     if turning is not None and facing is not None:
-        _stride(body, body.scene.walkable.path(body.place, turning), facing, style)
+        _stride(body, _way_to(body, turning, TURNS_OFF), facing, style)
         body.enter(PhaseKind.BACK_UP)
         path = np.array([body.place, goal])
     _stride(body, path, facing, style, onward if not near and turning is None else None)
 
 
-def _way_to(body: Body, goal: Point) -> Array:
-    """The path (N, 2) to a place: who is walking goes on the way that the last walk was to go on by."""
+def _way_to(body: Body, goal: Point, off_m: float = 0.0) -> Array:
+    """The path (N, 2) to a place: who is walking goes on the way that the last walk was to go on by, to its end or so
+    far before it."""
     if body.stride is None:
         return body.scene.walkable.path(body.place, goal)
     rest = body.stride.rest
+    rest = rest[: max(len(rest) - int(off_m / SPACING), len(rest) // 2, 2)]
     end = float(rest[-1, 0]), float(rest[-1, 1])
     if np.hypot(goal[0] - end[0], goal[1] - end[1]) < AT_THE_SPOT:
         return rest
@@ -174,7 +178,12 @@ def _stride(body: Body, path: Array, facing: float | None, style: Walk, onward: 
         path = way_to(path, facing, lambda points: _is_free(points, body.scene.walkable))
     points, cut = (path, None) if way is None else (way.points, way.cut_m)
     end = facing if way is None else None
-    frames, body.stride = walk_on(body.pose, points, end, style, body.skeleton, body.rng, stride, cut)
+    walkable = body.scene.walkable
+
+    def spare(places: Array) -> Array:
+        return np.asarray(walkable.field.at(places) - walkable.radius)
+
+    frames, body.stride = walk_on(body.pose, points, end, style, body.skeleton, body.rng, stride, cut, spare)
     if style.bearing.arms[0] in NARROW_ARMS:
         room = body.scene.walkable.field.at(frames.pelvis[:, [0, 2]])
         frames = arms_in(frames, room / body.skeleton.scale, *NARROW_ARMS[style.bearing.arms[0]])

@@ -178,8 +178,8 @@ def test_a_joint_is_brought_within_its_range_but_one_that_bears_may_bend_deeper(
     assert beyond_limits(beyond)[0, INDEX[joint]] == pytest.approx(deeper, abs=1e-6)
 
 
-@given(st.floats(0.0, 0.9), st.floats(0.0, 1.2))
-def test_a_body_folded_too_far_tips_its_pelvis_back_and_leaves_legs_and_trunk_where_they_are(
+@given(st.floats(0.0, 0.9), st.floats(-0.9, 1.2))
+def test_a_body_folded_or_stretched_too_far_tips_its_pelvis_and_leaves_legs_and_trunk_where_they_are(
     drop: float, lean: float
 ) -> None:
     skeleton = build_skeleton()

@@ -10,6 +10,8 @@ from acted import Body, got_up, lain
 from motion_backend.body.self_collision import self_penetration
 from motion_backend.metrics.joint_speed import MOST, fastest_joint
 from motion_backend.motion import FPS, PhaseKind
+from motion_backend.procedural.lie.lie_keys import lie_keys
+from motion_backend.procedural.lie.lie_own import drawn_way
 from motion_backend.skeleton import HAND_REST, LYING_REST
 
 BACK = ("hands on belly", "lying down, legs straight", "lying on the back, arms spread wide", "lying still")
@@ -170,6 +172,19 @@ def test_nobody_lies_twice_alike() -> None:
     for caption in (BACK[0], "side-lie on right"):
         one, other = (lain("bed", caption, seed=seed) for seed in (3, 4))
         assert np.linalg.norm(one.kinematics.positions[-1] - other.kinematics.positions[-1], axis=1).max() > 0.03
+
+
+def test_how_one_lies_is_partly_a_characters_own() -> None:
+    own = lie_keys().own
+    spread = {name.rpartition("_")[0]: deviation for name, deviation in vars(own.spread).items()}
+
+    def drawn(seed: int, time: int) -> np.ndarray:
+        way = drawn_way(own, seed, np.random.default_rng(1000 + time))
+        return np.concatenate([np.atleast_1d(value) / spread[name] for name, value in vars(way).items()])
+
+    ways = np.array([[drawn(seed, 2 * seed + time) for time in (0, 1)] for seed in range(40)])
+    assert 0.3 < np.mean(ways[:, 0] * ways[:, 1]) < 0.7
+    assert abs(np.mean(ways[:-1, 0] * ways[1:, 1])) < 0.15
 
 
 def test_a_head_that_an_arm_supports_is_off_the_mattress_on_that_hand() -> None:

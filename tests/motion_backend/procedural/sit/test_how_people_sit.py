@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 from acted import HOMES, Body, risen_from, sat
 
+from motion_backend.body.joint_limits import limits_share
 from motion_backend.body.self_collision import self_penetration
+from motion_backend.metrics.balance_figures import outside_soles, rising_frames
 from motion_backend.motion import FPS, PhaseKind
 from motion_backend.skeleton import SEATED_REST
 
@@ -158,6 +160,13 @@ def test_a_body_goes_down_once_and_comes_up_once() -> None:
         drop = np.abs(np.diff(height)).max() * FPS
         found.append(((*name, "speed"), 0.25 < drop < 1.6, drop))
     assert failures(found) == []
+
+
+def test_who_rises_from_the_floor_is_over_the_feet_first() -> None:
+    body = risen_from("floor", "stand up")
+    outside = outside_soles(body.kinematics)[rising_frames(body.kinematics)]
+    assert outside.mean() < 0.03
+    assert limits_share(body.motion.local_rotations) == 0.0
 
 
 @pytest.mark.parametrize("seed", [3, 4])

@@ -35,6 +35,8 @@ PAIRS = {
     "into a run": (20.0, (STEADY, "neutral"), (RUN, "happy")),
     "out of a run": (20.0, (RUN, "happy"), (STEADY, "neutral")),
     "drunk": (40.0, ("drunkenly walking", "drunk"), ("drunkenly walking", "drunk")),
+    "sideways": (0.0, (STEADY, "happy"), ("sidestepping", "neutral")),
+    "into large steps": (20.0, ("walk on tiptoes", "tired"), ("walk with large steps", "neutral")),
     "on tiptoes": (40.0, ("walk on tiptoes", "neutral"), (STEADY, "neutral")),
 }
 
@@ -89,6 +91,29 @@ def test_no_joint_jumps_at_the_seam(name: str) -> None:
     places, seam = moved(concatenate([one, other])).joint_positions().astype(np.float64), len(one)
     pushed = np.linalg.norm(np.diff(places, n=2, axis=0), axis=-1).max(axis=1) * FPS**2
     assert pushed[seam - 3 : seam + 2].max() < max(60.0, 1.2 * np.quantile(pushed[20:-20], 0.99))
+
+
+@for_each("name", PAIRS)
+def test_arms_go_on_as_fast_as_they_swing(name: str) -> None:
+    one, other, _ = two_walks(name)
+    steps = np.diff(np.concatenate([one.arms[-2:], other.arms[:1]]), axis=0)
+    assert np.linalg.norm(steps[1] - steps[0], axis=-1).max() < 0.03
+
+
+@for_each("name", PAIRS)
+def test_the_way_that_is_left_leads_on_from_where_the_body_is(name: str) -> None:
+    one, _, stride = two_walks(name)
+    onward, gone = stride.rest[6] - stride.rest[0], one.pelvis[-1, [0, 2]] - one.pelvis[-6, [0, 2]]
+    assert onward @ gone > 0.5 * np.linalg.norm(onward) * np.linalg.norm(gone)
+    assert np.linalg.norm(np.diff(stride.rest, axis=0), axis=1).max() < 0.05
+
+
+def test_no_step_is_longer_than_legs_where_the_next_walk_has_longer_ones() -> None:
+    one, other, _ = two_walks("into large steps")
+    whole = concatenate([one, other])
+    stands = whole.planted.min(axis=1) > 0
+    assert np.linalg.norm(whole.ankles[stands, 0] - whole.ankles[stands, 1], axis=1).max() < 0.92
+    assert whole.pelvis[:, 1].min() > 0.72
 
 
 @for_each("name", PAIRS)
