@@ -34,13 +34,13 @@ from scene_graphs.home import Home
 
 SMOOTH: Final = 6.0
 """Width of the bell (frames) that takes a body's sway out of its way."""
-AHEAD: Final = np.radians(35.0)
+AHEAD: Final = np.radians(45.0)
 """Who moves farther from where he faces does not walk ahead."""
-STARTED, STOPPING = 0.55, 0.85
+STARTED, STOPPING = 0.4, 0.7
 """Of the fastest pace of a walk: from the first on it has been started, below the second it is being stopped."""
-SHORTEST: Final = 30
+SHORTEST: Final = 24
 """Frames that are worth a generator's."""
-BEND: Final = 1.2
+BEND: Final = 2.0
 """Radians a metre that a way bends at most where it is walked by recorded frames, which are straight for the most."""
 SLOWEST: Final = 0.1
 """Metres in two thirds of a second, under which a bend is not told."""

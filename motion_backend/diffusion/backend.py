@@ -67,4 +67,4 @@ def acting(folder: Path = WEIGHTS) -> PlanFollower:
     weights, schedule = load_denoiser(folder / "act")
     ends = load_scheduler(folder / "scheduler")
     sampler = Sampler(cast(Denoiser, weights.network), weights.scale, schedule)
-    return PlanFollower(sampler, cast(CompletionScheduler, ends.network), ends.scale)
+    return PlanFollower(sampler, walking(folder), cast(CompletionScheduler, ends.network), ends.scale)

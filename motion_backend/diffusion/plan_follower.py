@@ -52,7 +52,9 @@ LATER: Final = 2
 WORSE: Final = 1.5
 """Times the plan's that a made body may be deep in furniture."""
 LOST: Final = 0.12
-"""Metres from where a walk is to end at which it has lost its way."""
+"""Metres from its goal at which a pelvis is not brought there any more."""
+HOVERS, SOME = 0.04, 3
+"""Metres over the floor at which a body floats whose plan stands, and frames in which that is overlooked."""
 SLIDES: Final = 8.0
 """Centimetres a second that the best supported point of soles may slide over a passage: people's do 3 to 5."""
 
@@ -89,7 +91,10 @@ class RefusedError(Exception):
 class PlanFollower:
     """Follows plans by a model of all skills."""
 
-    sampler: Sampler
+    acting: Sampler
+    """Of the weights that sit, lie, rise and reach."""
+    walking: Sampler
+    """Of those that walk: what they learned of our own body's walks, starts, stops and turns among them."""
     scheduler: CompletionScheduler
     seen_as: Scale
     """What the scheduler sees of features."""
@@ -113,7 +118,7 @@ class PlanFollower:
             except RefusedError as error:
                 motion = by_rules(passage.plan, f"{self.name}: {error}")
                 if missed:
-                    motion = joined(History.of(past.root, past.local, np.zeros((len(past), 4))), motion)
+                    motion = joined(_known(past), motion)
             past = past.then(_frames(motion))[-KEPT:]
             made.append(motion)
         last = passages[-1].since + len(made[-1])
@@ -174,8 +179,9 @@ class _Body:
     def _window(self, passage: PlannedPassage, done: int, past: Frames, seed: list[int]) -> tuple[Frames, bool]:
         """The next 42 frames, and whether what is done is over with them."""
         known = known_poses(past)
-        body = Rollout(self.follower.sampler, self.skeleton, known)
-        seen = self.follower.sampler.denoiser.conditions.scene is not None
+        sampler = self.follower.walking if passage.is_periodic else self.follower.acting
+        body = Rollout(sampler, self.skeleton, known)
+        seen = sampler.denoiser.conditions.scene is not None
         wish = passage.wish(done, body.frame, seen)
         after = body.go_on(wish, [*seed, done], self._guide(passage, done, body))
         keys = Frames(after.poses.roots[0, HISTORY - 1 :], after.poses.local[0, HISTORY - 1 :])
@@ -215,7 +221,7 @@ class _Body:
         if not passage.is_seat:
             away[1] = 0.0
         far = float(np.linalg.norm(away))
-        _refuse_beyond(far, THRESHOLDS[Skill.SITDOWN] if passage.is_seat else LOST, passage)
+        _refuse_beyond(far, LOST, passage)
         return pelvis_brought(made, away, OVER if passage.is_seat else LOOK), far
 
 
@@ -253,7 +259,7 @@ def _settled(past: Frames, frames: Frames, passage: PlannedPassage, phase: Phase
     whole, skeleton = past.then(frames), passage.plan.skeleton
     root, local, contacts = held(whole.root, whole.local, skeleton, len(past))
     new = slice(len(past), None)
-    return Motion(
+    motion = Motion(
         root_positions=root[new].astype(np.float32),
         local_rotations=local[new].astype(np.float32),
         contacts=contacts[new].astype(np.float32),
@@ -261,6 +267,12 @@ def _settled(past: Frames, frames: Frames, passage: PlannedPassage, phase: Phase
         actions=np.full(len(frames), passage.part.action.keyframe, dtype=np.int32),
         phases=(phase,),
     )
+    return joined(_known(past), motion)
+
+
+def _known(past: Frames) -> History:
+    """Frames of a body as its history."""
+    return History.of(past.root, past.local, np.zeros((len(past), 4)))
 
 
 def _frames(motion: Motion) -> Frames:
@@ -274,6 +286,10 @@ def _check(made: Motion, passage: PlannedPassage) -> None:
     frames, most = int((own > CLEARLY_IN).sum()), WORSE * float((planned > CLEARLY_IN).sum())
     if frames > most:
         raise RefusedError(f"the {passage.phase} was up to {own.max():.2f} m deep in furniture")
-    slide = support_slip(Kinematics.of(made))
-    if slide > SLIDES and slide > WORSE * support_slip(Kinematics.of(passage.plan)):
+    body, plan = Kinematics.of(made), Kinematics.of(passage.plan)
+    lifted, most = (int((one.soles[..., 1].min(axis=(1, 2)) > HOVERS).sum()) for one in (body, plan))
+    if lifted > WORSE * most + SOME:
+        raise RefusedError(f"it floated in {lifted} frames of the {passage.phase}")
+    slide = support_slip(body)
+    if slide > SLIDES and slide > WORSE * support_slip(plan):
         raise RefusedError(f"feet slid at {slide:.0f} cm/s in the {passage.phase}")
