@@ -106,8 +106,12 @@ class WalkDriver:
             if not walk.ruled.completed or stretch is None:
                 why = why or (TOO_SHORT if not made else STARTS_AND_STOPS)
                 break
-            led = self._acted(walk, walk.ruled.part(0, stretch[0]), STARTS_AND_STOPS) if stretch[0] else None
+            start = walk.ruled.part(0, stretch[0])
+            led = self._acted(walk, start, STARTS_AND_STOPS) if stretch[0] else None
             history, motion, beyond = self._stretch(walk, stretch, led)
+            if len(motion) < LEAST and led is not None:
+                led = by_rules(start, STARTS_AND_STOPS)
+                history, motion, beyond = self._stretch(walk, stretch, led)
             if len(motion) < LEAST:
                 why = f"{self.generator.name} finds no room"
                 break

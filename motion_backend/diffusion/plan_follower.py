@@ -45,7 +45,7 @@ from motion_backend.walk_generator import LOOK, Frames
 from scene_graphs.home import Home
 
 TRIES: Final = 3
-"""How often a passage is made, from other noise each time, the last time with the plan's arms."""
+"""How often a passage is made, from other noise each time; what hands have a part in, at last with the plan's arms."""
 LAID_OVER: Final = "the arms are the rules', laid over it"
 LATER: Final = 2
 """Windows after the plan's end in which what is done may still come to its end."""
@@ -130,7 +130,7 @@ class PlanFollower:
         for number in range(TRIES):
             try:
                 frames, away = _Body(self, passage.plan.skeleton, past).through(passage, [*seed, number])
-                laid = arms or (LAID_OVER if number == TRIES - 1 else "")
+                laid = arms or (LAID_OVER if number == TRIES - 1 and not passage.is_periodic else "")
                 if laid:
                     frames = _overlaid(frames, passage.plan)
                 motion = _settled(past, frames, passage, Phase(passage.phase, 0, len(frames), self.name, laid))
