@@ -50,8 +50,8 @@ LATER: Final = 12
 """Frames of its way beyond the stretch that a generator is to walk, in which its last step may end."""
 OFF: Final = 0.2
 """Metres beside its way at which a generator's body has lost it."""
-PASSES: Final = 0.2
-"""Metres from a place within which it is passed by."""
+PASSES, BY = 0.2, 10
+"""Metres from a place within which it is passed by, and frames in which that was just now."""
 DEEPER: Final = 0.02
 """Metres by which a generator's body may be deeper in furniture than the procedural one."""
 CARRIAGE_S: Final = 0.5
@@ -143,8 +143,11 @@ class WalkDriver:
             memory = {**walk.after.memory, BORROWED: True}
             return motion, replace(walk.after, history=walk.state.history.followed_by(motion), memory=memory)
         places = motion.joint_positions().astype(np.float64)
-        motion = motion.part(0, _steps_end(places, walk.way[len(walk.ruled) - 1]) + 1)
-        beyond = walk.way[_nearest(walk.way, places[len(motion) - 1, 0][[0, 2]]) + 1 :]
+        last = _landing_by(places, np.array(walk.part.goal))
+        if last is None:
+            return by_rules(walk.ruled, f"{self.generator.name} comes by in no step"), walk.after
+        motion = motion.part(0, last + 1)
+        beyond = walk.way[_nearest(walk.way, places[last, 0][[0, 2]]) + 1 :]
         return motion, _in_stride(replace(walk.after, history=walk.state.history.followed_by(motion)), walk, beyond)
 
     def _stretch(self, walk: _Walk, stretch: tuple[int, int], led: Motion | None) -> tuple[History, Motion, Array]:
@@ -354,6 +357,13 @@ def _steps_end(positions: Array, end: Array) -> int:
     if not len(landing):
         return len(positions) - 1
     return int(landing[_nearest(positions[landing, 0][:, [0, 2]], end)])
+
+
+def _landing_by(positions: Array, goal: Array) -> int | None:
+    """The last frame of (T, 22, 3) in which a heel comes down as the body has just come by a place (2,)."""
+    near = np.linalg.norm(positions[:, 0][:, [0, 2]] - goal, axis=1) < PASSES
+    landing = [int(at) for at in strides_landing(positions) if near[max(at - BY, 0) : at + 1].any()]
+    return landing[-1] if landing else None
 
 
 def _in_stride(state: BodyState, walk: _Walk, beyond: Array) -> BodyState:
