@@ -165,7 +165,7 @@ class WalkDriver:
         made, way = past, Way(places[: stop - start + LATER] / scale)
         for found in windows(self.generator.begin(past, rng), past, way):
             made = made.then(found)
-        made = _carried(made, walk.part.action, len(past))
+        made = in_mood(made, walk.part.action, len(past))
         root, local, contacts = held(made.root * scale, made.local, skeleton, len(past))
         motion = Motion(
             root_positions=root[len(past) :].astype(np.float32),
@@ -336,7 +336,7 @@ def _nearest(places: Array, place: Array) -> int:
     return int(np.argmin(np.sum((places - place) ** 2, axis=1)))
 
 
-def _carried(made: Frames, action: Action, fixed: int) -> Frames:
+def in_mood(made: Frames, action: Action, fixed: int) -> Frames:
     """Trunk and head bent as a mood bends them, besides what the generator does."""
     plain, moody = walk_style(action.emotion, "walk").bearing, Bearing()
     lean, nod = np.radians(plain.lean - moody.lean), np.radians(plain.head - moody.head)

@@ -26,21 +26,18 @@ from motion_backend.diffusion.goal_cleanup import (
 )
 from motion_backend.diffusion.learned_walker import known_poses, spline
 from motion_backend.diffusion.motion_features import HISTORY, STRIDE, WINDOW, to_features
+from motion_backend.diffusion.passage_checks import LOST, RefusedError, check, refuse_beyond
 from motion_backend.diffusion.planned_passages import PlannedPassage, passages_of
 from motion_backend.diffusion.rollout import Rollout, conditions
 from motion_backend.diffusion.sampler import Guide, Sampler, Scale, towards
 from motion_backend.diffusion.windows import THERE
 from motion_backend.metrics.contact_error import THRESHOLDS
-from motion_backend.metrics.foot_skate import support_slip
-from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.metrics.penetration import CLEARLY_IN, penetration
 from motion_backend.mocap.foot_hold import held
 from motion_backend.motion import FPS, Motion, Phase, Skill, join
 from motion_backend.rotations import Array
-from motion_backend.scene import scene_of
 from motion_backend.skeleton import INDEX, Skeleton
 from motion_backend.stride_takeover import joined
-from motion_backend.walk_driver import by_rules
+from motion_backend.walk_driver import by_rules, in_mood
 from motion_backend.walk_generator import LOOK, Frames
 from scene_graphs.home import Home
 
@@ -49,16 +46,6 @@ TRIES: Final = 3
 LAID_OVER: Final = "the arms are the rules', laid over it"
 LATER: Final = 2
 """Windows after the plan's end in which what is done may still come to its end."""
-WORSE: Final = 1.5
-"""Times the plan's that a made body may be deep in furniture."""
-LOST: Final = 0.12
-"""Metres from its goal at which a pelvis is not brought there any more."""
-HOVERS, SOME = 0.04, 3
-"""Metres over the floor at which a body floats whose plan stands, and frames in which that is overlooked."""
-SLIDES: Final = 8.0
-"""Centimetres a second that the best supported point of soles may slide over a passage: people's do 3 to 5."""
-
-
 KEPT: Final = 10
 """Frames before a passage that it goes on from."""
 
@@ -81,10 +68,6 @@ class Followed:
     """Of the passages that are the model's."""
     since: int
     """Frames of its last passage, for what goes on with that."""
-
-
-class RefusedError(Exception):
-    """What was made cannot stand; says why."""
 
 
 @dataclass(frozen=True)
@@ -130,11 +113,14 @@ class PlanFollower:
         for number in range(TRIES):
             try:
                 frames, away = _Body(self, passage.plan.skeleton, past).through(passage, [*seed, number])
+                if passage.is_periodic and number:
+                    # What words alone did not make of it, the mood's carriage may.
+                    frames = in_mood(frames, passage.part.action, 0)
                 laid = arms or (LAID_OVER if number == TRIES - 1 and not passage.is_periodic else "")
                 if laid:
                     frames = _overlaid(frames, passage.plan)
                 motion = _settled(past, frames, passage, Phase(passage.phase, 0, len(frames), self.name, laid))
-                _check(motion, passage)
+                check(motion, passage)
                 return motion, away
             except RefusedError as error:
                 why = error
@@ -205,29 +191,28 @@ class _Body:
     def _brought(self, passage: PlannedPassage, made: Frames) -> tuple[Frames, float]:
         """Frames with pelvis or hand at the goal at last, and how far it was. RefusedError where it was too far."""
         if passage.hand is not None:
-            goal, left = passage.hand
-            side, due = "left" if left else "right", min(passage.due, len(made) - 1)
-            positions = self.skeleton.forward_kinematics(made.root, made.local)[0]
-            wrist = positions[:, INDEX[f"{side}_wrist"]].astype(np.float64)
-            away = goal - wrist[due]
-            _refuse_beyond(float(np.linalg.norm(away)), THRESHOLDS[Skill.TOUCH], passage)
-            stays = round(passage.part.hold * FPS)
-            shares = held_shares(len(made), due, stays)
-            # While the hand stays it moves as the plan's does on its thing.
-            wanted = passage.plan.joint_positions()[: len(made), INDEX[f"{side}_wrist"]].astype(np.float64)
-            shift = shares[:, None] * (wanted - wrist)
-            return wrist_brought(made, self.skeleton, side, shift), float(np.linalg.norm(away))
+            return self._hand_brought(passage, made, *passage.hand)
         away = passage.plan.root_positions[-1].astype(np.float64) - made.root[-1]
         if not passage.is_seat:
             away[1] = 0.0
         far = float(np.linalg.norm(away))
-        _refuse_beyond(far, LOST, passage)
+        refuse_beyond(far, LOST, passage)
         return pelvis_brought(made, away, OVER if passage.is_seat else LOOK), far
 
-
-def _refuse_beyond(metres: float, most: float, passage: PlannedPassage) -> None:
-    if metres > most:
-        raise RefusedError(f"the {passage.phase} ended {metres:.2f} m from its goal")
+    def _hand_brought(self, passage: PlannedPassage, made: Frames, goal: Array, left: bool) -> tuple[Frames, float]:
+        """The same of a hand: it is at its goal when the plan's is, and while it stays it moves as that does."""
+        side, due = "left" if left else "right", min(passage.due, len(made) - 1)
+        wrist, planned = (
+            places[: len(made), INDEX[f"{side}_wrist"]].astype(np.float64)
+            for places in (
+                self.skeleton.forward_kinematics(made.root, made.local)[0],
+                passage.plan.joint_positions(),
+            )
+        )
+        away = float(np.linalg.norm(goal - wrist[due]))
+        refuse_beyond(away, THRESHOLDS[Skill.TOUCH], passage)
+        shares = held_shares(len(made), due, round(passage.part.hold * FPS))
+        return wrist_brought(made, self.skeleton, side, shares[:, None] * (planned - wrist)), away
 
 
 def _key_speed(past: Frames) -> tuple[Array, Array]:
@@ -277,19 +262,3 @@ def _known(past: Frames) -> History:
 
 def _frames(motion: Motion) -> Frames:
     return Frames(motion.root_positions.astype(np.float64), motion.local_rotations.astype(np.float64))
-
-
-def _check(made: Motion, passage: PlannedPassage) -> None:
-    """RefusedError for a body that is clearly in furniture more often than the plan's by `WORSE`."""
-    obstacles, action = scene_of(passage.home).obstacles, passage.part.action
-    own, planned = (penetration(Kinematics.of(motion), obstacles, action) for motion in (made, passage.plan))
-    frames, most = int((own > CLEARLY_IN).sum()), WORSE * float((planned > CLEARLY_IN).sum())
-    if frames > most:
-        raise RefusedError(f"the {passage.phase} was up to {own.max():.2f} m deep in furniture")
-    body, plan = Kinematics.of(made), Kinematics.of(passage.plan)
-    lifted, most = (int((one.soles[..., 1].min(axis=(1, 2)) > HOVERS).sum()) for one in (body, plan))
-    if lifted > WORSE * most + SOME:
-        raise RefusedError(f"it floated in {lifted} frames of the {passage.phase}")
-    slide = support_slip(body)
-    if slide > SLIDES and slide > WORSE * support_slip(plan):
-        raise RefusedError(f"feet slid at {slide:.0f} cm/s in the {passage.phase}")
