@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Final
+from typing import Final, Protocol
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from motion_backend.backend_protocol import BodyState, History, Part
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.penetration import penetration
 from motion_backend.mocap.foot_hold import held
-from motion_backend.motion import FPS, Action, Character, Motion, Phase, PhaseKind, Skill, join
+from motion_backend.motion import FPS, Action, Character, Emotion, Motion, Phase, PhaseKind, Skill, join
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.takeover import pose_of
@@ -34,13 +34,13 @@ from scene_graphs.home import Home
 
 SMOOTH: Final = 6.0
 """Width of the bell (frames) that takes a body's sway out of its way."""
-AHEAD: Final = np.radians(35.0)
+AHEAD: Final = np.radians(45.0)
 """Who moves farther from where he faces does not walk ahead."""
-STARTED, STOPPING = 0.55, 0.85
+STARTED, STOPPING = 0.4, 0.7
 """Of the fastest pace of a walk: from the first on it has been started, below the second it is being stopped."""
-SHORTEST: Final = 30
+SHORTEST: Final = 24
 """Frames that are worth a generator's."""
-BEND: Final = 1.2
+BEND: Final = 2.0
 """Radians a metre that a way bends at most where it is walked by recorded frames, which are straight for the most."""
 SLOWEST: Final = 0.1
 """Metres in two thirds of a second, under which a bend is not told."""
@@ -50,8 +50,8 @@ LATER: Final = 12
 """Frames of its way beyond the stretch that a generator is to walk, in which its last step may end."""
 OFF: Final = 0.2
 """Metres beside its way at which a generator's body has lost it."""
-PASSES: Final = 0.2
-"""Metres from a place within which it is passed by."""
+PASSES, BY = 0.2, 10
+"""Metres from a place within which it is passed by, and frames in which that was just now."""
 DEEPER: Final = 0.02
 """Metres by which a generator's body may be deeper in furniture than the procedural one."""
 CARRIAGE_S: Final = 0.5
@@ -65,6 +65,8 @@ OWN: Final = frozenset({"speed", "bearing", "character", "release", "stride", "r
 """What a caption may say of a walk that is still a plain one."""
 BORROWED: Final = "borrowed"
 """What a state remembers whose stride was another body's than the one that remembers it."""
+HURRY: Final = (0.7, 1.4)
+"""How much slower and faster than the procedural body a generator may go that has a pace of its own."""
 MOST, AGAIN = 5, 15
 """Stretches of one part, and the frames of the procedural body between two of them at least."""
 LEAST: Final = 12
@@ -73,19 +75,25 @@ TOO_SHORT: Final = "the way is too short, or too winding, to get into a stride"
 STARTS_AND_STOPS: Final = "starts, stops and turns on the spot are the rules'"
 
 
+class Follower(Protocol):
+    """Something that does what the procedural body would do, in frames of its own."""
+
+    def act(self, home: Home, part: Part, plan: Motion, state: BodyState) -> Motion:
+        """A plan done by somebody else; where he cannot, the plan itself. Its phases say who made it, and why."""
+        ...
+
+
 @dataclass(frozen=True)
 class WalkDriver:
     """Walks parts by a generator's frames."""
 
     generator: WalkGenerator
-
-    @property
-    def _rules(self) -> ProceduralBackend:
-        return ProceduralBackend()
+    follower: Follower | None = None
+    """Who does what the generator does not; None: the procedural body."""
 
     def begin(self, home: Home, character: Character, seed: int) -> BodyState:
         """Standing in the home, as the procedural body does."""
-        return self._rules.begin(home, character, seed)
+        return ProceduralBackend().begin(home, character, seed)
 
     def advance(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
         """Do a walk. What the generator has no part in is the procedural body's, with the reason."""
@@ -93,57 +101,71 @@ class WalkDriver:
         style, why = style_of(part.action), unlike_people(part.action)
         least = 0
         for _ in range(MOST):
-            walk = _Walk(home, part, tuple(upcoming), state, style, *self._ruled(home, part, upcoming, state))
+            walk = _Walk(home, part, tuple(upcoming), state, style, *ruled(home, part, upcoming, state))
             stretch = None if why else plain_stretch(walk.ruled, self.generator.slowest, least)
             if not walk.ruled.completed or stretch is None:
                 why = why or (TOO_SHORT if not made else STARTS_AND_STOPS)
                 break
-            history, motion, beyond = self._stretch(walk, stretch)
+            start = walk.ruled.part(0, stretch[0])
+            led = self._acted(walk, start, STARTS_AND_STOPS) if stretch[0] else None
+            history, motion, beyond = self._stretch(walk, stretch, led)
+            if len(motion) < LEAST and led is not None:
+                led = by_rules(start, STARTS_AND_STOPS)
+                history, motion, beyond = self._stretch(walk, stretch, led)
             if len(motion) < LEAST:
                 why = f"{self.generator.name} finds no room"
                 break
-            if stretch[0]:
-                made.append(self._by_rules(walk.ruled.part(0, stretch[0]), STARTS_AND_STOPS))
-            made.append(motion)
+            made += [led, motion] if led is not None else [motion]
             state = replace(state, history=history.followed_by(motion))
             if walk.is_over(motion):
                 return join(made), replace(_in_stride(state, walk, beyond), index=index + 1)
             state, least, why = _in_stride(state, walk, walk.to_goal(beyond)), AGAIN, ""
         else:
-            walk = _Walk(home, part, tuple(upcoming), state, style, *self._ruled(home, part, upcoming, state))
+            walk = _Walk(home, part, tuple(upcoming), state, style, *ruled(home, part, upcoming, state))
             why = STARTS_AND_STOPS
         if not len(walk.ruled) and not made:
             return walk.ruled, walk.after
-        made.append(self._by_rules(walk.ruled, walk.ruled.reason or why))
-        return join(made), replace(walk.after, index=index + 1)
+        rest, after = self._rest(walk, walk.ruled.reason or why)
+        return join([*made, rest]), replace(after, index=index + 1)
 
-    def _ruled(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
-        """The part as the procedural body does it from here on."""
-        ruled, after = self._rules.advance(home, part, upcoming, state)
-        if state.memory.get(BORROWED) and len(ruled):
-            ruled = joined(state.history, ruled)
-            after = replace(after, history=state.history.followed_by(ruled))
-        return ruled, after
+    def _acted(self, walk: _Walk, plan: Motion, why: str) -> Motion:
+        """A stretch of the procedural body's walk by the follower, or by itself."""
+        if self.follower is None or not len(plan):
+            return by_rules(plan, why)
+        return self.follower.act(walk.home, walk.part, plan, walk.state)
 
-    def _by_rules(self, motion: Motion, why: str) -> Motion:
-        """A motion of the procedural body, labelled so."""
-        phases = tuple(replace(phase, backend=self._rules.name, fallback=why) for phase in motion.phases)
-        return replace(motion, phases=phases)
+    def _rest(self, walk: _Walk, why: str) -> tuple[Motion, BodyState]:
+        """What is left of a walk once no stretch of it is the generator's any more, and the state after it."""
+        motion = self._acted(walk, walk.ruled, why)
+        if not walk.ruled.completed or all(phase.backend == ProceduralBackend.name for phase in motion.phases):
+            return by_rules(walk.ruled, walk.ruled.reason or _told(motion) or why), walk.after
+        if walk.stride is None:
+            memory = {**walk.after.memory, BORROWED: True}
+            return motion, replace(walk.after, history=walk.state.history.followed_by(motion), memory=memory)
+        places = motion.joint_positions().astype(np.float64)
+        last = _landing_by(places, np.array(walk.part.goal))
+        if last is None:
+            return by_rules(walk.ruled, f"{self.generator.name} comes by in no step"), walk.after
+        motion = motion.part(0, last + 1)
+        beyond = walk.way[_nearest(walk.way, places[last, 0][[0, 2]]) + 1 :]
+        return motion, _in_stride(replace(walk.after, history=walk.state.history.followed_by(motion)), walk, beyond)
 
-    def _stretch(self, walk: _Walk, stretch: tuple[int, int]) -> tuple[History, Motion, Array]:
+    def _stretch(self, walk: _Walk, stretch: tuple[int, int], led: Motion | None) -> tuple[History, Motion, Array]:
         """What came before, the generator's frames, feet held and ending as a heel comes down, and the way (N, 2) left.
 
-        They end before the body would be in furniture, or beside its way.
+        `led` is what leads up to them. They end before the body would be in furniture, or beside its way.
         """
         skeleton, (start, stop), before = walk.ruled.skeleton, stretch, walk.state.history
-        history = before.followed_by(walk.ruled.part(0, start)) if start else before
-        scale, places = skeleton.scale, walk.way[start:]
+        history = before.followed_by(led) if led is not None else before
+        scale, step = skeleton.scale, walk.hurry(stretch, self.generator.pace)
+        places = _hastened(walk.way[start:], step)
+        stop = start + max(int((stop - start) / step), 1)
         past = Frames(history.root_positions / scale, history.local_rotations)
         rng = np.random.default_rng([walk.state.seed, walk.state.index, len(history), start])
         made, way = past, Way(places[: stop - start + LATER] / scale)
         for found in windows(self.generator.begin(past, rng), past, way):
             made = made.then(found)
-        made = _carried(made, walk.part.action, len(past))
+        made = in_mood(made, walk.part.action, len(past))
         root, local, contacts = held(made.root * scale, made.local, skeleton, len(past))
         motion = Motion(
             root_positions=root[len(past) :].astype(np.float32),
@@ -204,6 +226,15 @@ class _Walk:
         goal = np.asarray(self.part.goal, dtype=np.float64)
         return float(np.linalg.norm(motion.root_positions[:, [0, 2]] - goal, axis=1).min())
 
+    def hurry(self, stretch: tuple[int, int], pace: float | None) -> float:
+        """How much faster somebody goes a stretch who usually walks at `pace`, in the mood that the walk is in."""
+        if pace is None:
+            return 1.0
+        way = self.way[slice(*stretch)] / self.ruled.skeleton.scale
+        planned = FPS * float(np.median(np.linalg.norm(np.diff(way, axis=0), axis=1)))
+        mood = self.style.speed / walk_style(Emotion.NEUTRAL, "walk").speed
+        return float(np.clip(mood * pace / max(planned, SLOWEST), *HURRY))
+
     def free(self, body: Kinematics) -> int:
         """How many of a body's frames come before it is deeper in furniture than it may be, or has lost its way."""
         obstacles = scene_of(self.home).obstacles
@@ -212,6 +243,21 @@ class _Walk:
         off = np.sqrt(((places[:, None] - self.way[None]) ** 2).sum(axis=2)).min(axis=1)
         lost = (penetration(body, obstacles, None) > most) | (off > OFF)
         return int(np.argmax(lost)) if lost.any() else len(lost)
+
+
+def ruled(home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
+    """A part as the procedural body does it from here on, whoever moved the body before."""
+    motion, after = ProceduralBackend().advance(home, part, upcoming, state)
+    if state.memory.get(BORROWED) and len(motion):
+        motion = joined(state.history, motion)
+        after = replace(after, history=state.history.followed_by(motion))
+    return motion, after
+
+
+def by_rules(motion: Motion, why: str) -> Motion:
+    """A motion of the procedural body, labelled so."""
+    phases = tuple(replace(phase, backend=ProceduralBackend.name, fallback=why) for phase in motion.phases)
+    return replace(motion, phases=phases)
 
 
 def style_of(action: Action) -> Walk:
@@ -273,11 +319,24 @@ def _smooth(values: Array) -> Array:
     return np.asarray(gaussian_filter1d(values, SMOOTH, axis=0, mode="nearest"))
 
 
+def _hastened(places: Array, step: float) -> Array:
+    """A way of one place a frame gone at `step` times its speed. (N, 2) to (M, 2)."""
+    if step == 1:
+        return places
+    at = np.arange(0.0, len(places) - 1, step)
+    return np.stack([np.interp(at, np.arange(len(places)), places[:, axis]) for axis in (0, 1)], axis=1)
+
+
+def _told(motion: Motion) -> str:
+    """Why somebody else than the one asked for made a motion."""
+    return next((phase.fallback for phase in motion.phases if phase.fallback), "")
+
+
 def _nearest(places: Array, place: Array) -> int:
     return int(np.argmin(np.sum((places - place) ** 2, axis=1)))
 
 
-def _carried(made: Frames, action: Action, fixed: int) -> Frames:
+def in_mood(made: Frames, action: Action, fixed: int) -> Frames:
     """Trunk and head bent as a mood bends them, besides what the generator does."""
     plain, moody = walk_style(action.emotion, "walk").bearing, Bearing()
     lean, nod = np.radians(plain.lean - moody.lean), np.radians(plain.head - moody.head)
@@ -298,6 +357,13 @@ def _steps_end(positions: Array, end: Array) -> int:
     if not len(landing):
         return len(positions) - 1
     return int(landing[_nearest(positions[landing, 0][:, [0, 2]], end)])
+
+
+def _landing_by(positions: Array, goal: Array) -> int | None:
+    """The last frame of (T, 22, 3) in which a heel comes down as the body has just come by a place (2,)."""
+    near = np.linalg.norm(positions[:, 0][:, [0, 2]] - goal, axis=1) < PASSES
+    landing = [int(at) for at in strides_landing(positions) if near[max(at - BY, 0) : at + 1].any()]
+    return landing[-1] if landing else None
 
 
 def _in_stride(state: BodyState, walk: _Walk, beyond: Array) -> BodyState:

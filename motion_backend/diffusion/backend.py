@@ -7,11 +7,16 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Final, cast
 
+import numpy as np
+
 from motion_backend.backend_protocol import BodyState, Part, PartKind
 from motion_backend.backends import DIFFUSION
-from motion_backend.diffusion.checkpoint import load_denoiser
+from motion_backend.diffusion.checkpoint import load_denoiser, load_scheduler
+from motion_backend.diffusion.completion_scheduler import CompletionScheduler
 from motion_backend.diffusion.denoiser import Denoiser
+from motion_backend.diffusion.learned_parts import LearnedParts
 from motion_backend.diffusion.learned_walker import LearnedGait
+from motion_backend.diffusion.plan_follower import PlanFollower
 from motion_backend.diffusion.sampler import Sampler
 from motion_backend.motion import Character, Motion
 from motion_backend.walk_driver import WalkDriver
@@ -22,26 +27,27 @@ WEIGHTS: Final = Path(__file__).resolve().parents[1] / "data" / "weights" / "dif
 
 
 class DiffusionBackend:
-    """Walks as the model learned it from people; all else is left to the backend behind it."""
+    """Walks in full stride as a model learned it from people; all else as another learned it from our own body."""
 
     name = DIFFUSION
-    parts = frozenset({PartKind.WALK})
 
     def __init__(self, folder: Path | None = None) -> None:
         """CheckpointError where weights are missing or broken."""
         self._sampler = walking() if folder is None else walking(folder)
+        self._parts = LearnedParts(acting() if folder is None else acting(folder))
 
     def begin(self, home: Home, character: Character, seed: int) -> BodyState:
         """Standing in the first room, on a free place that the seed chooses."""
         return self._driver(seed).begin(home, character, seed)
 
     def advance(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
-        """Walk to where a part asks for."""
-        return self._driver(state.seed).advance(home, part, upcoming, state)
+        """Do a part; what cannot be done so is the procedural body's, and its phases say why."""
+        actor = self._driver(state.seed) if part.kind is PartKind.WALK else self._parts
+        return actor.advance(home, part, upcoming, state)
 
     def _driver(self, seed: int) -> WalkDriver:
         """One body has one person's walk all through a story."""
-        return WalkDriver(LearnedGait(self._sampler, self._sampler.gait_of(seed)))
+        return WalkDriver(LearnedGait(self._sampler, self._sampler.gait_of(seed)), self._parts)
 
 
 @lru_cache(maxsize=2)
@@ -50,4 +56,15 @@ def walking(folder: Path = WEIGHTS) -> Sampler:
     weights, schedule = load_denoiser(folder / "walk")
     strides = None if weights.strides is None else weights.strides.double().numpy()
     gaits = int(weights.config.get("gaits", 0))
-    return Sampler(cast(Denoiser, weights.network), weights.scale, schedule, gaits=gaits, strides=strides)
+    paces = np.array(weights.config["paces"]) if "paces" in weights.config else None
+    network = cast(Denoiser, weights.network)
+    return Sampler(network, weights.scale, schedule, gaits=gaits, strides=strides, paces=paces)
+
+
+@lru_cache(maxsize=2)
+def acting(folder: Path = WEIGHTS) -> PlanFollower:
+    """The model of all skills and its scheduler, of the weights that act. CheckpointError."""
+    weights, schedule = load_denoiser(folder / "act")
+    ends = load_scheduler(folder / "scheduler")
+    sampler = Sampler(cast(Denoiser, weights.network), weights.scale, schedule)
+    return PlanFollower(sampler, walking(folder), cast(CompletionScheduler, ends.network), ends.scale)

@@ -34,6 +34,11 @@ class LearnedGait:
     name: str = "diffusion"
     slowest: float = 0.5
 
+    @property
+    def pace(self) -> float | None:
+        """What he walked at whose walk it is; None for nobody's."""
+        return self.sampler.pace_of(self.gait)
+
     def begin(self, past: Frames, rng: np.random.Generator) -> Walker:
         """Go on from a body's last frames; the noise of each window comes from `rng`."""
         return LearnedWalker(self.sampler, self.gait, past, int(rng.integers(SEEDS)))
@@ -57,7 +62,7 @@ class LearnedWalker:
 
         A model that is shown another body's stride walks on in it, whosever walk it is told to have.
         """
-        known = _known(self.past)
+        known = known_poses(self.past)
         if not self.made:
             known = self._in_stride(known)
             self._velocity = _key_speed(known)
@@ -112,7 +117,7 @@ def spline(keys: Frames, velocity: tuple[Array, Array]) -> tuple[Frames, tuple[A
     return Frames(root, rotations.normalize(local)), (end[0], end[1])
 
 
-def _known(past: Frames) -> Poses:
+def known_poses(past: Frames) -> Poses:
     """The last two frames at 10 a second (1, 2, …); a body of which less is known has stood still."""
     frames = [max(len(past) - 1 - STRIDE * back, 0) for back in range(HISTORY - 1, -1, -1)]
     root, local = past.root[frames], past.local[frames]

@@ -63,10 +63,16 @@ class Sampler:
     """Of how many people's walks are told apart."""
     strides: Array | None = None
     """(gaits, N, 2, 202) histories of each, of the model's own walking."""
+    paces: Array | None = None
+    """(gaits,) metres a second at which each was recorded."""
 
     def gait_of(self, seed: int) -> int:
         """Whose walk a body of that seed has; 0 where none are told apart."""
         return 1 + seed % self.gaits if self.gaits else 0
+
+    def pace_of(self, gait: int) -> float | None:
+        """Metres a second at which he walked whose gait it is; None where that is not known."""
+        return None if self.paces is None or not gait else float(self.paces[gait - 1])
 
     def stride_like(self, history: Array, gait: int) -> Array:
         """The history of somebody's walk whose legs are most like those of another (2, 202); that one where none is."""

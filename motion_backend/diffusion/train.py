@@ -47,6 +47,12 @@ SHARES: Final[Shares] = {
     (MadeOf.PROCEDURAL, PartKind.RISE): 0.13, (MadeOf.PROCEDURAL, PartKind.REACH): 0.13,
 }  # fmt: skip
 """Of windows where all skills are learned; those of which there is no motion fall to the others."""
+ACTED_SHARES: Final[Shares] = {
+    (MadeOf.PROCEDURAL, PartKind.WALK): 0.32, (MadeOf.PROCEDURAL, PartKind.TURN): 0.08,
+    (MadeOf.PROCEDURAL, PartKind.SIT): 0.19, (MadeOf.PROCEDURAL, PartKind.LIE): 0.12,
+    (MadeOf.PROCEDURAL, PartKind.RISE): 0.13, (MadeOf.PROCEDURAL, PartKind.REACH): 0.16,
+}  # fmt: skip
+"""Of windows where all that our own body acts is learned, starts, stops and odd walks too."""
 FLOORS: Final = ((ROOT, 0.1), (TURNS, 0.04), (PLACES, 0.02), (CONTACTS, 0.3))
 """Deviations that no feature goes below: what hardly varies is not blown up."""
 SAMPLED: Final = 2048

@@ -18,7 +18,7 @@ from torch import Tensor
 
 from motion_backend.backend_protocol import PartKind
 from motion_backend.diffusion.conditions import GAITS, MAX_SECONDS, TIME_UNIT, Conditions, MadeOf
-from motion_backend.diffusion.dataset import PERIODIC, Stretch
+from motion_backend.diffusion.dataset import PERIODIC, Passage, Stretch
 from motion_backend.diffusion.motion_features import HISTORY, STRIDE, WINDOW, quat_to_six, twist
 from motion_backend.diffusion.scene_encoder import voxel_image
 from motion_backend.mocap.augmentation import SWAPPED, mirror_words
@@ -39,6 +39,8 @@ HELD: Final = 45
 """Frames by which windows of our own body run past a passage's end: its last frame is held; so one learns to stay."""
 SEATS: Final = (PartKind.SIT, PartKind.LIE, PartKind.RISE)
 """Passages whose goal has a height and a facing."""
+THERE: Final = 0.03
+"""Metres from where it ends up within which a pelvis has sat down, lain down or risen."""
 _OFFSET: Final = HISTORY - 1
 Encode = Callable[[Sequence[str]], NDArray[np.float32]]
 """Sentences to features (N, 384)."""
@@ -78,7 +80,7 @@ class Batch:
     periodic: Tensor
     """(B,) whether it is locomotion."""
     over: Tensor
-    """(B,) whether the passage ends within the window."""
+    """(B,) whether what is done is done by the end of the window: what is held after that is more of the same."""
 
 
 class WindowBank:
@@ -112,7 +114,7 @@ class WindowBank:
         begins = self._begins
         self._first = torch.tensor([begins[i] + p.start for i, p in rows])
         self._last = torch.tensor([begins[i] + p.stop - 1 for i, p in rows])
-        self._reached = torch.tensor([begins[i] + (p.stop - 1 if p.reached is None else p.reached) for i, p in rows])
+        self._reached = torch.tensor([begins[i] + arrival(self.stretches[i], p) for i, p in rows])
         made = [self.stretches[i].made_of for i, _ in rows]
         self._made_of = torch.tensor([int(one) for one in made])
         self.gaits = gaits(self.stretches)
@@ -202,8 +204,7 @@ class WindowBank:
         place = turned(self._roots[ends] - origin, yaw)
         facing = torch.where(self._is_lying[row], self._lying[ends], self._yaws[ends]) - yaw
         seat, reaches = self._is_seat[row].float(), self._has_hand[row].float()
-        due = torch.where(self._has_hand[row], self._reached[row], self._last[row])
-        left = ((due - (start + STRIDE * _OFFSET)).float() / FPS).clamp(0, MAX_SECONDS) / TIME_UNIT
+        left = ((self._reached[row] - (start + STRIDE * _OFFSET)).float() / FPS).clamp(0, MAX_SECONDS) / TIME_UNIT
         timed = (~self._is_periodic[row]).float()
         placed = 1 - reaches
         columns = (
@@ -234,6 +235,24 @@ class WindowBank:
         if room not in self._scenes:
             self._scenes[room] = Scene(home_from_layouts([built_in_index().layout(room)], 0))
         return self._scenes[room]
+
+
+def arrival(stretch: Stretch, passage: Passage) -> int:
+    """The frame of a stretch in which a passage has come to what it is for: who sits has sat down, and may stay long.
+
+    That of the hand where it is told; else from when on the pelvis stays where it is in the end.
+    """
+    if passage.reached is not None:
+        return passage.reached
+    if passage.kind not in SEATS or stretch.made_of is not MadeOf.PROCEDURAL:
+        return passage.stop - 1
+    return passage.start + settled(stretch.roots[passage.start : passage.stop])
+
+
+def settled(roots: Array) -> int:
+    """The frame from which on pelvises (T, 3) stay where they are in the end."""
+    away = np.flatnonzero(np.linalg.norm(roots - roots[-1], axis=1) > THERE)
+    return int(away[-1]) + 1 if len(away) else 0
 
 
 def walker(stretch: Stretch) -> str:

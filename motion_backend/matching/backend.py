@@ -25,6 +25,7 @@ class Matching:
 
     name = MATCHING
     slowest = 0.5
+    pace = None
 
     def __init__(self, database: WalkDatabase) -> None:
         self.database = database

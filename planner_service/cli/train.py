@@ -29,8 +29,8 @@ class Learned(StrEnum):
     """What of the data is learned."""
 
     WALK = "walk"
-    CONTACTS = "contacts"
-    """Sitting, lying, rising and reaching."""
+    ACTED = "acted"
+    """What our own body acts: sitting, lying, rising, reaching, and walks that nobody was recorded in."""
     ALL = "all"
 
 
@@ -82,14 +82,12 @@ def diffusion(
     from motion_backend.diffusion.checkpoint import load_denoiser
     from motion_backend.diffusion.denoiser import PRESETS
     from motion_backend.diffusion.losses import CONTACT_LOSSES, WALK_LOSSES
-    from motion_backend.diffusion.train import SHARES, WALK_SHARES, TrainConfig, denoiser_learner
+    from motion_backend.diffusion.train import ACTED_SHARES, SHARES, WALK_SHARES, TrainConfig, denoiser_learner
     from motion_backend.mocap.dataset_file import read_dataset
 
     if preset not in PRESETS:
         raise RequestError(f"{preset!r:.40} is none of {', '.join(PRESETS)}", at="--preset")
-    shares = WALK_SHARES if learn is Learned.WALK else SHARES
-    if learn is Learned.CONTACTS:
-        shares = {key: share for key, share in SHARES.items() if key not in WALK_SHARES}
+    shares = {Learned.WALK: WALK_SHARES, Learned.ACTED: ACTED_SHARES, Learned.ALL: SHARES}[learn]
     sizes = PRESETS[preset]
     stretches = [one for one in _training(datasets) if learn is not Learned.WALK or one.plain]
     bank = _bank(stretches, scenes=sizes.scene is not None)

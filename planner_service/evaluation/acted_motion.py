@@ -20,8 +20,8 @@ from scene_graphs.layout_library import built_in_index
 from scene_graphs.navigation.path_planner import NoPath
 
 SHARES: Final = {
-    Skill.LOCO: 0.10, Skill.SITDOWN: 0.24, Skill.STANDUP: 0.15, Skill.LIEDOWN: 0.14, Skill.GETUP: 0.12,
-    Skill.TOUCH: 0.25,
+    Skill.LOCO: 0.34, Skill.SITDOWN: 0.18, Skill.STANDUP: 0.11, Skill.LIEDOWN: 0.11, Skill.GETUP: 0.09,
+    Skill.TOUCH: 0.17,
 }  # fmt: skip
 """How often each skill is drawn."""
 CAPTIONS_A_ROOM: Final = 6

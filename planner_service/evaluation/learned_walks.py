@@ -75,6 +75,8 @@ def judged(sampler: Sampler, dataset: Dataset, people: int = 48, seed: int = 0) 
     unseen = recorded_walks(replace(dataset, entries=tuple(e for e in dataset.entries if e.split == "test")))
     everybody = recorded_walks(dataset)
     speeds = np.random.default_rng(seed).choice(everybody.of("speed"), people)
+    if sampler.paces is not None:  # as the backend has them walk, where nothing hurries them
+        speeds = np.array([sampler.pace_of(sampler.gait_of(number)) for number in range(people)])
     made = walked(sampler, speeds, dataset.skeleton, seed)
     if len(made.walks.seconds) < 8:
         return {"goal_error": made.goal_error, "windows": len(made.walks.seconds)}

@@ -99,8 +99,8 @@ def test_the_backend_walks_the_ways_of_a_home_and_says_what_it_made() -> None:
     motion = across_the_room("diffusion")
     assert motion.completed
     made = shares(motion)
-    assert set(made) == {"diffusion", "procedural"}
-    assert made["diffusion"] > 0.3
+    assert set(made) <= {"diffusion", "procedural"}
+    assert made["diffusion"] > 0.5
     assert all(phase.fallback for phase in motion.phases if phase.backend == "procedural")
 
 

@@ -1,0 +1,67 @@
+"""When a passage that was made can stand: it ends at its goal, and the plan's is the measure of all else."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from motion_backend.backend_protocol import PartKind
+from motion_backend.diffusion.planned_passages import PlannedPassage
+from motion_backend.metrics.caption_predicates import judge_caption
+from motion_backend.metrics.foot_skate import support_slip
+from motion_backend.metrics.joint_trajectories import Kinematics
+from motion_backend.metrics.penetration import CLEARLY_IN, penetration
+from motion_backend.motion import Emotion, Motion, Skill
+from motion_backend.scene import scene_of
+from motion_backend.walk_driver import unlike_people
+
+WORSE: Final = 1.5
+"""Times the plan's that a made body may be deep in furniture."""
+LOST: Final = 0.15
+"""Metres from its goal at which a pelvis is not brought there any more."""
+HOVERS, SOME = 0.04, 3
+"""Metres over the floor at which a body floats whose plan stands, and frames in which that is overlooked."""
+SLIDES: Final = 8.0
+"""Centimetres a second that the best supported point of soles may slide over a passage: people's do 3 to 5."""
+
+
+class RefusedError(Exception):
+    """What was made cannot stand; says why."""
+
+
+def refuse_beyond(metres: float, most: float, passage: PlannedPassage) -> None:
+    """RefusedError for what ended farther from its goal."""
+    if metres > most:
+        raise RefusedError(f"the {passage.phase} ended {metres:.2f} m from its goal")
+
+
+def check(made: Motion, passage: PlannedPassage) -> None:
+    """RefusedError for a body that goes through furniture, floats or slides, or that its caption does not describe.
+
+    The plan's is the measure: it may do that `WORSE` times as much.
+    """
+    _check_furniture(made, passage)
+    _check_feet(made, passage)
+    action = passage.part.action
+    walks = passage.is_periodic and action.skill is Skill.LOCO and passage.part.kind is PartKind.WALK
+    if walks and (unlike_people(action) or action.emotion is not Emotion.NEUTRAL):
+        own, planned = (judge_caption(motion, action) for motion in (made, passage.plan))
+        if own is not None and planned is not None and len(own.missed) > len(planned.missed):
+            raise RefusedError(f"it did not look like {action.caption!r:.40}")
+
+
+def _check_furniture(made: Motion, passage: PlannedPassage) -> None:
+    obstacles, action = scene_of(passage.home).obstacles, passage.part.action
+    own, planned = (penetration(Kinematics.of(motion), obstacles, action) for motion in (made, passage.plan))
+    frames, most = int((own > CLEARLY_IN).sum()), WORSE * float((planned > CLEARLY_IN).sum())
+    if frames > most:
+        raise RefusedError(f"the {passage.phase} was up to {own.max():.2f} m deep in furniture")
+
+
+def _check_feet(made: Motion, passage: PlannedPassage) -> None:
+    body, plan = Kinematics.of(made), Kinematics.of(passage.plan)
+    lifted, most = (int((one.soles[..., 1].min(axis=(1, 2)) > HOVERS).sum()) for one in (body, plan))
+    if lifted > WORSE * most + SOME:
+        raise RefusedError(f"it floated in {lifted} frames of the {passage.phase}")
+    slide = support_slip(body)
+    if slide > SLIDES and slide > WORSE * support_slip(plan):
+        raise RefusedError(f"feet slid at {slide:.0f} cm/s in the {passage.phase}")

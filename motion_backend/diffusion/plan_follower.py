@@ -1,0 +1,264 @@
+"""Parts of every kind by the model of all skills: window after window towards the goals of a plan (LINGO A.4, A.5).
+
+The procedural body does a part first: that is the plan. Of it the model is told where pelvis and hand are to be and
+when, and what is done in words; the frames are its own. A scheduler ends what ends. What misses its goal, or is deeper
+in furniture than may be, is made again from other noise, and else is left to the plan, with the reason.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+import torch
+
+from motion_backend import rotations
+from motion_backend.backend_protocol import BodyState, History, Part, PartKind
+from motion_backend.diffusion.completion_scheduler import DONE, CompletionScheduler
+from motion_backend.diffusion.goal_cleanup import (
+    OVER,
+    eased,
+    held_shares,
+    pelvis_brought,
+    with_arms_of,
+    wrist_brought,
+)
+from motion_backend.diffusion.learned_walker import known_poses, spline
+from motion_backend.diffusion.motion_features import HISTORY, STRIDE, WINDOW, to_features
+from motion_backend.diffusion.passage_checks import LOST, RefusedError, check, refuse_beyond
+from motion_backend.diffusion.planned_passages import PlannedPassage, passages_of
+from motion_backend.diffusion.rollout import Rollout, conditions
+from motion_backend.diffusion.sampler import Guide, Sampler, Scale, towards
+from motion_backend.diffusion.windows import THERE
+from motion_backend.metrics.contact_error import THRESHOLDS
+from motion_backend.mocap.foot_hold import held
+from motion_backend.motion import FPS, Motion, Phase, Skill, join
+from motion_backend.rotations import Array
+from motion_backend.skeleton import INDEX, Skeleton
+from motion_backend.stride_takeover import joined
+from motion_backend.walk_driver import by_rules, in_mood
+from motion_backend.walk_generator import LOOK, Frames
+from scene_graphs.home import Home
+
+TRIES: Final = 3
+"""How often a passage is made, from other noise each time; what hands have a part in, at last with the plan's arms."""
+LAID_OVER: Final = "the arms are the rules', laid over it"
+LATER: Final = 2
+"""Windows after the plan's end in which what is done may still come to its end."""
+KEPT: Final = 10
+"""Frames before a passage that it goes on from."""
+
+
+@dataclass(frozen=True)
+class Missed:
+    """How far from its goal a made passage ended before it was brought there."""
+
+    kind: PartKind
+    metres: float
+
+
+@dataclass(frozen=True)
+class Followed:
+    """A part as the model made it, and the procedural body what it could not."""
+
+    motion: Motion
+    """Its phases say who made them, and why."""
+    missed: tuple[Missed, ...]
+    """Of the passages that are the model's."""
+    since: int
+    """Frames of its last passage, for what goes on with that."""
+
+
+@dataclass(frozen=True)
+class PlanFollower:
+    """Follows plans by a model of all skills."""
+
+    acting: Sampler
+    """Of the weights that sit, lie, rise and reach."""
+    walking: Sampler
+    """Of those that walk: what they learned of our own body's walks, starts, stops and turns among them."""
+    scheduler: CompletionScheduler
+    seen_as: Scale
+    """What the scheduler sees of features."""
+    name: str = "diffusion"
+
+    def follow(
+        self, home: Home, part: Part, plan: Motion, state: BodyState, since: int = 0, arms: str = ""
+    ) -> Followed:
+        """A part from where its state left the body, passage by passage.
+
+        With `arms`, those of the plan are laid over what is made, and its phases say so in these words.
+        """
+        past = Frames(state.history.root_positions, state.history.local_rotations)
+        passages = passages_of(home, part, plan, since)
+        made: list[Motion] = []
+        missed: list[Missed] = []
+        for index, passage in enumerate(passages):
+            try:
+                motion, away = self._tried(passage, past, [state.seed, state.index, index], arms)
+                missed.append(Missed(passage.kind, away))
+            except RefusedError as error:
+                motion = by_rules(passage.plan, f"{self.name}: {error}")
+                if missed:
+                    motion = joined(_known(past), motion)
+            past = past.then(_frames(motion))[-KEPT:]
+            made.append(motion)
+        last = passages[-1].since + len(made[-1])
+        return Followed(replace(join(made), notes=plan.notes), tuple(missed), last)
+
+    def _tried(self, passage: PlannedPassage, past: Frames, seed: list[int], arms: str) -> tuple[Motion, float]:
+        """A passage, and how far it was from its goal. RefusedError where none of the tries can stand."""
+        why = RefusedError("")
+        for number in range(TRIES):
+            try:
+                frames, away = _Body(self, passage.plan.skeleton, past).through(passage, [*seed, number])
+                if passage.is_periodic and number:
+                    # What words alone did not make of it, the mood's carriage may.
+                    frames = in_mood(frames, passage.part.action, 0)
+                laid = arms or (LAID_OVER if number == TRIES - 1 and not passage.is_periodic else "")
+                if laid:
+                    frames = _overlaid(frames, passage.plan)
+                motion = _settled(past, frames, passage, Phase(passage.phase, 0, len(frames), self.name, laid))
+                check(motion, passage)
+                return motion, away
+            except RefusedError as error:
+                why = error
+        raise why
+
+
+@dataclass
+class _Body:
+    """A body that goes on window after window."""
+
+    follower: PlanFollower
+    skeleton: Skeleton
+    past: Frames
+    """At 30 a second, in the world."""
+
+    def through(self, passage: PlannedPassage, seed: list[int]) -> tuple[Frames, float]:
+        """The frames of a passage, and how far from its goal they ended before they were brought there."""
+        made = self._ending(passage, seed) if passage.is_seat and not passage.since else self._lasting(passage, seed)
+        return self._brought(passage, made)
+
+    def _lasting(self, passage: PlannedPassage, seed: list[int]) -> Frames:
+        """A passage that lasts as long as its plan: the first window is cut, so that the last one ends with it."""
+        frames = len(passage.plan)
+        first = frames % LOOK or LOOK
+        made, past = None, self.past
+        while made is None or len(made) < frames:
+            window, _ = self._window(passage, 0 if made is None else len(made), past, seed)
+            window = window[: first if made is None else LOOK]
+            made, past = window if made is None else made.then(window), past.then(window)
+        return made
+
+    def _ending(self, passage: PlannedPassage, seed: list[int]) -> Frames:
+        """A passage that is over when the scheduler says so. RefusedError where it never does."""
+        made, past = None, self.past
+        while made is None or len(made) < len(passage.plan) + LATER * LOOK:
+            window, over = self._window(passage, 0 if made is None else len(made), past, seed)
+            made, past = window if made is None else made.then(window), past.then(window)
+            if over and np.linalg.norm(made.root[-1] - passage.plan.root_positions[-1]) < THRESHOLDS[Skill.SITDOWN]:
+                return made[: max(min(len(made), len(passage.plan)), _arrived(made, passage))]
+        raise RefusedError(f"the {passage.phase} was not over after {len(made) / FPS:.1f} s")
+
+    def _window(self, passage: PlannedPassage, done: int, past: Frames, seed: list[int]) -> tuple[Frames, bool]:
+        """The next 42 frames, and whether what is done is over with them."""
+        known = known_poses(past)
+        sampler = self.follower.walking if passage.is_periodic else self.follower.acting
+        body = Rollout(sampler, self.skeleton, known)
+        seen = sampler.denoiser.conditions.scene is not None
+        wish = passage.wish(done, body.frame, seen)
+        after = body.go_on(wish, [*seed, done], self._guide(passage, done, body))
+        keys = Frames(after.poses.roots[0, HISTORY - 1 :], after.poses.local[0, HISTORY - 1 :])
+        found, _ = spline(keys, _key_speed(past))
+        if not passage.is_seat:
+            return found, False
+        told = conditions(wish, body.frame)
+        features = to_features(after.poses.frames(slice(-WINDOW, None)), body.frame, self.skeleton)
+        with torch.inference_mode():
+            window = self.follower.seen_as.encode(torch.from_numpy(features.astype(np.float32)))
+            completion = float(self.follower.scheduler(window, told.text, told.frame)[0])
+        return found, completion > DONE
+
+    def _guide(self, passage: PlannedPassage, done: int, body: Rollout) -> Guide | None:
+        """In the last windows of what has a seat the pelvis is pulled to it."""
+        if not passage.is_seat or passage.due > done + LOOK:
+            return None
+        place = body.frame.inward(passage.plan.root_positions[-1].astype(np.float64)[None])
+        return towards(torch.from_numpy(place.astype(np.float32)), (0, 1, 2))
+
+    def _brought(self, passage: PlannedPassage, made: Frames) -> tuple[Frames, float]:
+        """Frames with pelvis or hand at the goal at last, and how far it was. RefusedError where it was too far."""
+        if passage.hand is not None:
+            return self._hand_brought(passage, made, *passage.hand)
+        away = passage.plan.root_positions[-1].astype(np.float64) - made.root[-1]
+        if not passage.is_seat:
+            away[1] = 0.0
+        far = float(np.linalg.norm(away))
+        refuse_beyond(far, LOST, passage)
+        return pelvis_brought(made, away, OVER if passage.is_seat else LOOK), far
+
+    def _hand_brought(self, passage: PlannedPassage, made: Frames, goal: Array, left: bool) -> tuple[Frames, float]:
+        """The same of a hand: it is at its goal when the plan's is, and while it stays it moves as that does."""
+        side, due = "left" if left else "right", min(passage.due, len(made) - 1)
+        wrist, planned = (
+            places[: len(made), INDEX[f"{side}_wrist"]].astype(np.float64)
+            for places in (
+                self.skeleton.forward_kinematics(made.root, made.local)[0],
+                passage.plan.joint_positions(),
+            )
+        )
+        away = float(np.linalg.norm(goal - wrist[due]))
+        refuse_beyond(away, THRESHOLDS[Skill.TOUCH], passage)
+        shares = held_shares(len(made), due, round(passage.part.hold * FPS))
+        return wrist_brought(made, self.skeleton, side, shares[:, None] * (planned - wrist)), away
+
+
+def _key_speed(past: Frames) -> tuple[Array, Array]:
+    """At the end of the frames of a body, of its pelvis and of its rotations' components, a frame at 10 a second."""
+    if len(past) < 3:
+        return np.zeros_like(past.root[-1]), np.zeros_like(past.local[-1])
+    turns = rotations.continuous(past.local[: -len(past) - 1 : -1][:3])[::-1]
+    # The slope at the end of the parabola through the last three.
+    root, turn = (STRIDE * (3 * last[-1] - 4 * last[-2] + last[-3]) / 2 for last in (past.root[-3:], turns))
+    return root, turn
+
+
+def _arrived(made: Frames, passage: PlannedPassage) -> int:
+    """Frames until the pelvis is as near to where it is to be as it comes, and stays so near."""
+    away = np.linalg.norm(made.root - passage.plan.root_positions[-1], axis=1)
+    later = np.flatnonzero(away > away.min() + THERE)
+    return int(later[-1]) + 1 if len(later) else len(made)
+
+
+def _overlaid(frames: Frames, plan: Motion) -> Frames:
+    """Frames with the arms of a plan, which are come to over a while."""
+    at = np.minimum(np.arange(len(frames)), len(plan) - 1)
+    share = eased((np.arange(len(frames)) + 1) / OVER)
+    return with_arms_of(frames, plan.local_rotations[at].astype(np.float64), share)
+
+
+def _settled(past: Frames, frames: Frames, passage: PlannedPassage, phase: Phase) -> Motion:
+    """Frames as motion, with standing feet held where they stand."""
+    whole, skeleton = past.then(frames), passage.plan.skeleton
+    root, local, contacts = held(whole.root, whole.local, skeleton, len(past))
+    new = slice(len(past), None)
+    motion = Motion(
+        root_positions=root[new].astype(np.float32),
+        local_rotations=local[new].astype(np.float32),
+        contacts=contacts[new].astype(np.float32),
+        skeleton=skeleton,
+        actions=np.full(len(frames), passage.part.action.keyframe, dtype=np.int32),
+        phases=(phase,),
+    )
+    return joined(_known(past), motion)
+
+
+def _known(past: Frames) -> History:
+    """Frames of a body as its history."""
+    return History.of(past.root, past.local, np.zeros((len(past), 4)))
+
+
+def _frames(motion: Motion) -> Frames:
+    return Frames(motion.root_positions.astype(np.float64), motion.local_rotations.astype(np.float64))

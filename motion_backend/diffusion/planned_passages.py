@@ -1,0 +1,130 @@
+"""A plan of the procedural body as the model is told it: passages, and what is wished for in each window of them.
+
+The plan says where the pelvis or the hand is to be, and when; how the body gets there is the model's. Told is what was
+told in training (windows.py): in locomotion where the window ends, else where the passage ends and the seconds to go.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from motion_backend.backend_protocol import Part, PartKind
+from motion_backend.diffusion.conditions import MadeOf
+from motion_backend.diffusion.dataset import NEAR, PERIODIC, PHASES, WALKING
+from motion_backend.diffusion.motion_features import HeadingFrame, twist
+from motion_backend.diffusion.rollout import HandGoal, PelvisGoal, Wish
+from motion_backend.diffusion.scene_encoder import voxel_image
+from motion_backend.diffusion.windows import SEATS, settled
+from motion_backend.motion import FPS, Motion, PhaseKind, Skill
+from motion_backend.rotations import Array
+from motion_backend.scene import scene_of
+from motion_backend.skeleton import INDEX
+from motion_backend.walk_generator import LOOK
+from scene_graphs.geometry.occupancy_grid import occupancy_pair
+from scene_graphs.home import Home
+
+SURE: Final = 2
+"""Frames from the last known one to the middle of the first new one at 10 a second, which frame numbers are of."""
+
+
+@dataclass(frozen=True)
+class PlannedPassage:
+    """One passage of a plan."""
+
+    home: Home
+    part: Part
+    phase: PhaseKind
+    plan: Motion
+    """Its frames, as the procedural body would do it."""
+    since: int = 0
+    """Frames in which it has gone on already, in the part before: who sits there has sat down before that."""
+
+    @property
+    def kind(self) -> PartKind:
+        """What the model knows it as."""
+        return PHASES[self.phase]
+
+    @property
+    def is_periodic(self) -> bool:
+        """Whether it is locomotion, which is told no time."""
+        return self.kind in PERIODIC
+
+    @property
+    def is_seat(self) -> bool:
+        """Whether its goal has a height and a facing, and it is over when the scheduler says so."""
+        return self.kind in SEATS
+
+    @property
+    def caption(self) -> str:
+        """What it is called."""
+        action = self.part.action
+        return WALKING if self.is_periodic and action.skill is not Skill.LOCO else action.caption
+
+    @property
+    def hand(self) -> tuple[Array, bool] | None:
+        """Where which hand is to be (3,), and whether it is the left one; None where no hand has a goal."""
+        goal = next((goal for goal in self.part.contacts if goal.joint.endswith("_wrist")), None)
+        if self.kind is not PartKind.REACH or goal is None:
+            return None
+        return np.array(goal.position), goal.joint.startswith("left")
+
+    @property
+    def due(self) -> int:
+        """The frame of the plan in which the hand is at its goal, or the pelvis where it stays."""
+        told = self.hand
+        if told is None:
+            return settled(self.plan.root_positions.astype(np.float64)) if self.is_seat else len(self.plan) - 1
+        wrists = self.plan.joint_positions()[:, INDEX["left_wrist" if told[1] else "right_wrist"]]
+        away = np.linalg.norm(wrists - told[0], axis=1)
+        return int(np.argmax(away < away.min() + NEAR))
+
+    def wish(self, done: int, frame: HeadingFrame, seen: bool) -> Wish:
+        """What is told of the window that begins after `done` frames of it; `seen` with what stands around."""
+        at = min(done + LOOK, len(self.plan)) - 1 if self.is_periodic else len(self.plan) - 1
+        place = self.plan.root_positions[at].astype(np.float64)
+        voxels = self._voxels(frame, place) if seen else None
+        number, left = (0, None) if self.is_periodic else (self.since + done + SURE, self._left(done))
+        hand = self.hand
+        if hand is not None:
+            assert left is not None
+            reaching = HandGoal(hand[0][None], hand[1], left)
+            return Wish(self.caption, None, reaching, number, MadeOf.PROCEDURAL, voxels=voxels)
+        goal = PelvisGoal(place[None], np.array([self.facing(at)]), self.is_seat, left)
+        return Wish(self.caption, goal, None, number, MadeOf.PROCEDURAL, voxels=voxels)
+
+    def facing(self, at: int) -> float:
+        """The yaw at a frame of the plan; of who lies down, from the pelvis to the head."""
+        if self.kind is not PartKind.LIE:
+            return float(twist(self.plan.local_rotations[at, 0].astype(np.float64)))
+        places = self.plan.part(at, at + 1).joint_positions()[0].astype(np.float64)
+        along = places[INDEX["head"]] - places[0]
+        return float(np.arctan2(along[0], along[2]))
+
+    def _left(self, done: int) -> float:
+        """Seconds to go after so many frames."""
+        return max(self.due - done + 1, 0) / FPS if not self.since else 0.0
+
+    def _voxels(self, frame: HeadingFrame, place: Array) -> Array:
+        """What stands around the body and its goal. (1, 64, 32, 32)."""
+        here, yaw = frame.origin[0], float(np.asarray(frame.yaw)[0])
+        pair = occupancy_pair(
+            scene_of(self.home).heights,
+            (float(here[0]), float(here[2])),
+            yaw,
+            (float(place[0]), float(place[2])),
+            walking=self.is_periodic,
+        )
+        return np.asarray(voxel_image(pair)[None])
+
+
+def passages_of(home: Home, part: Part, plan: Motion, since: int = 0) -> list[PlannedPassage]:
+    """The passages of a part's plan, in order; the first has gone on for `since` frames."""
+    found: list[PlannedPassage] = []
+    for phase in plan.phases:
+        if phase.stop > phase.start:
+            frames = plan.part(phase.start, phase.stop)
+            found.append(PlannedPassage(home, part, phase.kind, frames, 0 if found else since))
+    return found
