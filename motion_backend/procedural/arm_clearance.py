@@ -29,19 +29,19 @@ from motion_backend.procedural.touch.hand_captions import steadies, with_both_ha
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
 
-ROUNDS: Final = 5
+ROUNDS: Final = 6
 """So often it is looked again what a moved arm is in."""
 NOWHERE: Final = 1e-9
 """A way out shorter than this has no direction (metres)."""
-SEEN: Final = 0.002
-"""An arm this deep in something goes out of it (metres)."""
-LEAD: Final = 20
+SEEN, OUT = 0.003, 0.005
+"""An arm this deep in something goes out of it, and one that is no deeper than this after that is out (metres)."""
+LEAD: Final = 14
 """Frames before and after it in which an arm does."""
-STIFF: Final = np.array([0.02, 0.02, 0.02, 0.0003])
+STIFF: Final = np.array([0.05, 0.05, 0.05, 0.0003])
 """What it costs a wrist to go a metre elsewhere (m²), and an elbow to swing by a radian, against a metre of depth."""
-SPREAD: Final = 5.0
+SPREAD: Final = 4.0
 """Frames over which a detour grows."""
-FIRM, YIELDS = 1e4, 30.0
+FIRM, YIELDS = 4e3, 12.0
 """How much stiffer an arm is where its detour begins and ends and a wrist whose hand touches something, and one whose
 hand merely rests on something."""
 HANDLES: Final = ("reach", "arms", "elbows", "pressing")
@@ -156,36 +156,33 @@ class _Arms(NamedTuple):
     def contacts(self, arms: tuple[Arm, Arm], hands: tuple[Array, Array], index: int) -> Contacts:
         """What one of the arms is in."""
         arm, hand, other = arms[index], hands[index], 1 - index
-        own, things = in_bars(arm, hand, self.bars[index]), in_things(arm, hand, *self.things, self.laid[:, index])
-        across = in_bars(arm, hand, other_arm(arms[other], hands[other]))
-        # Of two arms in each other either goes half the way; a hand that rests may be laid on the other.
-        free = 1 - self.laid[across.frames, index] * (across.of[:, 1] == 1)
-        across = across._replace(out=0.5 * free[:, None] * across.out)
-        frames, of, out = (np.concatenate(parts) for parts in zip(own, across, things, strict=True))
+        bars = in_bars(arm, hand, self.bars[index].beside(other_arm(arms[other], hands[other])))
+        things = in_things(arm, hand, *self.things, self.laid[:, index])
+        frames, of, out = (np.concatenate(parts) for parts in zip(bars, things, strict=True))
         return Contacts(frames, of, out)
 
 
 def _out(pose: Pose, around: Around, skeleton: Skeleton) -> Pose:
     """A segment of T frames with both arms out of what they are in."""
     whole = _Arms.of(pose, around, skeleton)
-    seen = np.zeros(len(pose), dtype=bool)
+    seen, hands = np.zeros(len(pose), dtype=bool), _hands(whole.wanted)
     for index, arm in enumerate(whole.wanted):
-        deep = whole.contacts(whole.wanted, _hands(whole.wanted), index).depth(len(pose))
+        deep = whole.contacts(whole.wanted, hands, index).depth(len(pose))
         seen |= (deep > SEEN) | (_strain(arm, arm.limb) > STRAINED)
     if not seen.any():
         return pose
     at, near = whole.about(seen)
-    detours, arms = np.zeros((2, len(at), 4)), near.wanted
+    free, detours, moved = bool(at[-1] == len(pose) - 1), np.zeros((2, len(at), 4)), near.pose
     for _ in range(ROUNDS):
+        arms = _both(moved, near)
         hands = _hands(arms)
-        for index, arm in enumerate(arms):
-            rows = _rows(arm, near.contacts(arms, hands, index))
-            if len(rows.frames):
-                firm = FIRM * near.edges[:, None] + near.firm * near.laid[:, index, None] * WRIST
-                detours[index] += _solved(rows, firm, detours[index], bool(at[-1] == len(pose) - 1))
+        rows = [_rows(arm, near.contacts(arms, hands, index)) for index, arm in enumerate(arms)]
+        if max(float(one.wanted.max(initial=0.0)) for one in rows) < OUT:
+            break
+        for index, one in enumerate(rows):
+            firm = FIRM * near.edges[:, None] + near.firm * near.laid[:, index, None] * WRIST
+            detours[index] += _solved(one, firm, detours[index], free)
         moved = near.moved(detours)
-        left, right = (Arm.of(moved, skeleton, index, near.chest) for index in (0, 1))
-        arms = left, right
     handles = {}
     for name in HANDLES:
         handles[name] = getattr(pose, name).copy()
@@ -196,6 +193,11 @@ def _out(pose: Pose, around: Around, skeleton: Skeleton) -> Pose:
 def _laid(pose: Pose) -> Array:
     """How much each hand lies on something. (T, 2)."""
     return pose.reaching * np.clip((pose.pressing - LAID_FROM) / (1 - LAID_FROM), 0.0, 1.0)
+
+
+def _both(pose: Pose, arms: _Arms) -> tuple[Arm, Arm]:
+    """The arms as a pose has them."""
+    return Arm.of(pose, arms.skeleton, 0, arms.chest), Arm.of(pose, arms.skeleton, 1, arms.chest)
 
 
 def _hands(arms: tuple[Arm, Arm]) -> tuple[Array, Array]:

@@ -54,10 +54,16 @@ class Bars(NamedTuple):
     """(B,) metres."""
     round: Array
     """The way in which an arm goes round them that is in their middle. (T, B, 3)."""
+    share: Array
+    """Of the way out, that the arm itself goes. (B,)."""
 
     def at(self, frames: NDArray[np.intp]) -> Bars:
         """The same in some frames."""
-        return Bars(self.start[frames], self.end[frames], self.radii, self.round[frames])
+        return self._replace(start=self.start[frames], end=self.end[frames], round=self.round[frames])
+
+    def beside(self, other: Bars) -> Bars:
+        """These and others, in the same frames."""
+        return Bars(*(np.concatenate(pair, axis=min(pair[0].ndim - 1, 1)) for pair in zip(self, other, strict=True)))
 
 
 class Contacts(NamedTuple):
@@ -85,16 +91,17 @@ def own_bars(pose: Pose, skeleton: Skeleton) -> tuple[Bars, Bars]:
     turns = world[:, [INDEX[capsules.BODIES[one].joint] for one in OWN]]
     ahead = np.array([AHEAD[capsules.BODIES[one].name.split("_")[-1]] for one in OWN])
     ways = [np.stack([np.full(len(OWN), side), np.zeros(len(OWN)), ahead], axis=1) for side in (1.0, -1.0)]
-    left, right = (Bars(start, end, radii, rotations.rotate(turns, way)) for way in ways)
+    left, right = (Bars(start, end, radii, rotations.rotate(turns, way), np.ones(len(OWN))) for way in ways)
     return left, right
 
 
 def other_arm(arm: Arm, hand: Array) -> Bars:
-    """The bars that an arm of T frames is for the other one, which goes over a left arm and under a right one."""
+    """The bars that an arm of T frames is for the other one, which goes over a left arm and under a right one; either
+    goes half the way."""
     start, end = bones(arm, hand)
     radii = np.array([bone.radius for bone in _BONES]) * _scale(arm)
     over = rotations.rotate(arm.chest, np.array([0.0, 0.0, float(arm.side)]))
-    return Bars(start, end, radii, np.broadcast_to(over[:, None], start.shape))
+    return Bars(start, end, radii, np.broadcast_to(over[:, None], start.shape), np.full(len(radii), 0.5))
 
 
 def bones(arm: Arm, hand: Array) -> tuple[Array, Array]:
@@ -123,7 +130,8 @@ def in_bars(arm: Arm, hand: Array, bars: Bars) -> Contacts:
     axis, aside = rotations.normalize(line[1][met] - line[0][met]), bars.round[frame, bar]
     aside = rotations.normalize(aside - rotations.dot(aside, axis) * axis)
     low, high = (ends[bone] for ends in _ends(arm))
-    return Contacts(frame, low + share * (high - low), _out_of_bar(away, aside, clear[bone, bar][:, None]))
+    out = bars.share[bar][:, None] * _out_of_bar(away, aside, clear[bone, bar][:, None])
+    return Contacts(frame, low + share * (high - low), out)
 
 
 def _out_of_bar(away: Array, aside: Array, clear: Array) -> Array:
