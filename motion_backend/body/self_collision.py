@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 
 from motion_backend.body import capsules
-from motion_backend.rotations import Array
+from motion_backend.rotations import Array, dot
 from motion_backend.skeleton import Skeleton
 
 _ARM, _LEG = ("upper_arm", "lower_arm", "hand"), ("thigh", "shin", "foot")
@@ -34,8 +34,8 @@ def overlaps(skeleton: Skeleton, positions: Array, world: Array) -> Array:
     start, end, radii = capsules.placed(skeleton, positions, world)
     names = [body.name for body in capsules.BODIES]
     one, other = np.array([[names.index(name) for name in pair] for pair in pairs()]).T
-    gap = _between(start[:, one], end[:, one], start[:, other], end[:, other])
-    return np.asarray(np.maximum(radii[one] + radii[other] - gap, 0.0))
+    _, apart = closest(start[:, one], end[:, one], start[:, other], end[:, other])
+    return np.asarray(np.maximum(radii[one] + radii[other] - np.linalg.norm(apart, axis=-1), 0.0))
 
 
 def self_penetration(skeleton: Skeleton, positions: Array, world: Array) -> Array:
@@ -48,14 +48,14 @@ def deepest_pair(skeleton: Skeleton, positions: Array, world: Array) -> tuple[st
     return pairs()[int(overlaps(skeleton, positions, world).max(axis=0).argmax())]
 
 
-def _between(a: Array, b: Array, c: Array, d: Array) -> Array:
-    """Shortest distance between the segments ab and cd (Ericson, Real-Time Collision Detection, 5.1.9). (..., 3)."""
+def closest(a: Array, b: Array, c: Array, d: Array) -> tuple[Array, Array]:
+    """Where on the segment ab it is nearest to cd, as a share (..., 1), and the way there from cd (..., 3) (Ericson,
+    Real-Time Collision Detection, 5.1.9)."""
     first, second, between = b - a, d - c, a - c
-    ff, ss, fs = (np.sum(u * v, axis=-1) for u, v in ((first, first), (second, second), (first, second)))
-    fb, sb = np.sum(first * between, axis=-1), np.sum(second * between, axis=-1)
+    ff, ss, fs = (dot(u, v) for u, v in ((first, first), (second, second), (first, second)))
+    fb, sb = dot(first, between), dot(second, between)
     on_first = np.clip((fs * sb - fb * ss) / np.maximum(ff * ss - fs**2, 1e-12), 0.0, 1.0)
     on_second = (fs * on_first + sb) / ss
     held = np.clip(on_second, 0.0, 1.0)
     on_first = np.where(held == on_second, on_first, np.clip((fs * held - fb) / ff, 0.0, 1.0))
-    apart = between + on_first[..., None] * first - held[..., None] * second
-    return np.asarray(np.linalg.norm(apart, axis=-1))
+    return on_first, np.asarray(between + on_first * first - held * second)

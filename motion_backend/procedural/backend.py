@@ -14,9 +14,9 @@ import numpy as np
 
 from motion_backend.backend_protocol import POSTURE_AFTER, BodyState, History, Part, PartKind
 from motion_backend.motion import FPS, Character, Motion, Note, Phase, PhaseKind
+from motion_backend.procedural.arm_clearance import Around, arms_clear
 from motion_backend.procedural.balance_pass import balanced
 from motion_backend.procedural.body_state import Body
-from motion_backend.procedural.collision_avoidance.arm_clearance import Around, arms_clear
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.gaze import gazing
 from motion_backend.procedural.held_poses import idle, standing

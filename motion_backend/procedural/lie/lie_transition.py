@@ -11,7 +11,6 @@ from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import FOOT_SPLAY, SHIN_REACH, UP, Seat, bend, both_sides, upright
-from motion_backend.procedural.lie.lie_arms import elbows_over
 from motion_backend.procedural.lie.lie_keys import LieKeys, LiePose, OverEdge, PushingHands, Rolled, SittingUp
 from motion_backend.procedural.lie.lie_pose import Bed, lying
 from motion_backend.procedural.lie.lie_styles import Lying
@@ -134,7 +133,7 @@ def lie_down(landed: Pose, seat: Seat, bed: Bed, style: Lying, skeleton: Skeleto
     waits += [settle.lifted_wait_s] * len(lifted)
     waits.append(settle.end_after_lifted_wait_s if lifted else settle.end_wait_s)
     poses = [*poses, *(replace(pose, reach=rolled.reach) for pose in lifted), replace(end, reach=rolled.reach)]
-    return elbows_over(_through(poses, waits, style.bearing), bed.surface, skeleton)
+    return _through(poses, waits, style.bearing)
 
 
 def rise_to_edge(start: Pose, seat: Seat, bed: Bed, bearing: Bearing, skeleton: Skeleton, keys: LieKeys) -> Pose:
@@ -153,8 +152,7 @@ def rise_to_edge(start: Pose, seat: Seat, bed: Bed, bearing: Bearing, skeleton: 
         waits.append(leave.bent_wait_s)
     poses = [replace(pose, reach=hands[0]) for pose in poses]
     waits += [keys.up.side.wait_s, *(row.wait_s for row in rows), keys.up.end.wait_s]
-    whole = _through([*poses, rolled, *over, _bound_for(over[-1], sat)], waits, bearing)
-    return elbows_over(whole, bed.surface, skeleton)
+    return _through([*poses, rolled, *over, _bound_for(over[-1], sat)], waits, bearing)
 
 
 def _through(poses: list[Pose], waits: list[float], bearing: Bearing) -> Pose:

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from motion_backend import rotations
-from motion_backend.procedural.collision_avoidance.body_collision import arms_inside
 from motion_backend.procedural.emotion_style import arm_arrays
 from motion_backend.procedural.held_poses import Seat, bend, upright
 from motion_backend.procedural.pose import Pose
@@ -51,8 +50,6 @@ class Place:
     around: Handholds
     room: tuple[Room, Room]
     """Of the left and the right foot."""
-    elbows: tuple[float, float] = (np.inf, np.inf)
-    """How far to the left and to the right of the middle there is room for elbows (metres)."""
 
 
 def holds_of(style: Seated, place: Place, skeleton: Skeleton, keys: SitPose) -> Holds:
@@ -179,9 +176,7 @@ def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton, keys: S
     back = np.array([_recline(style, place, keys.trunk)])
     leaned = _leaning(pose, seat, back, keys.trunk).at(0)
     leaned = replace(leaned, spine=leaned.spine + bend(0.0, style.own.side, style.own.turn))
-    rested = at_rest(leaned, holds, skeleton)
-    inside = arms_inside(rested.repeat(1), seat, place.elbows, skeleton, np.ones(1))
-    return lay_hands(inside, holds, skeleton).at(0), holds
+    return at_rest(leaned, holds, skeleton), holds
 
 
 SURFACES = ("armrest", "beside", "behind", "propped", "edge", "table", "keyboard", "paper", "pen", "desk")

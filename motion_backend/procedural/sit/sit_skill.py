@@ -24,7 +24,7 @@ from motion_backend.procedural.sit.sit_styles import Seated, sit_style
 from motion_backend.procedural.sit.sit_transition import sit_down, stand_up
 from motion_backend.procedural.touch.gestures import gesture
 from motion_backend.procedural.touch.hand_rests import BACK, HOLDS, Hold, Holds, follow, on_thing
-from motion_backend.procedural.touch.handholds import TABLE_REACH, Pair, elbow_room, handholds, table_before
+from motion_backend.procedural.touch.handholds import TABLE_REACH, Pair, handholds, table_before
 from motion_backend.procedural.walk.walk_skill import go
 from motion_backend.rotations import Array
 from scene_graphs.affordances.affordances import Spot
@@ -64,8 +64,7 @@ def sit(body: Body, part: Part) -> None:
     go(body, *before_seat(body, action), action)
     body.enter(PhaseKind.SITDOWN)
     around = handholds(seat, body.scene.obstacles, body.skeleton.scale)
-    elbows = elbow_room(seat, body.scene.obstacles.solid(), body.skeleton.scale)
-    place = Place(seat, around, leg_room(body.scene.obstacles, seat, body.skeleton.scale), elbows)
+    place = Place(seat, around, leg_room(body.scene.obstacles, seat, body.skeleton.scale))
     under = around.behind if seat.is_low(body.skeleton.scale) else around.beside
     felt = _grips(around.armrests, under, seat, style.manner.hands)
     down, body.holds = sit_down(body.pose, place, style, felt, body.skeleton, keys)

@@ -10,7 +10,6 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.motion import FPS
-from motion_backend.procedural.collision_avoidance.body_collision import arms_inside, hands_round_body
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays
 from motion_backend.procedural.held_poses import UP, Seat, bend, both_sides, part_way, standing, upright
 from motion_backend.procedural.pose import Pose, concatenate, interpolate, smooth
@@ -41,8 +40,6 @@ AROUND, ROUND, OVER_KNEES = 0.4, 0.16, 0.5
 """How far hands come out on their way down to the seat, up from it, and over knees that are up (arm lengths)."""
 ROUND_THIGHS, OVER_THIGHS = (1.0, 0.0, -0.5), (1.0, 1.0, 0.0)
 """Which way the left one does: out and back on the way down, out and up between seat and lap."""
-BEGINS = 7
-"""Frames in which arms come in where there is little room beside a seat."""
 LEAVES, ARRIVES = 0.3, 0.35
 """Shares of their way in which hands let go of what they held, and from which on they take hold of the next thing."""
 OVER, RISES = 0.14, 0.6
@@ -91,10 +88,7 @@ def sit_down(
     moved = follow(_place_feet(moved, landed, settled, take), settled, holds, skeleton)
     moved = _taken(moved, landed, holds)
     moved = _round_the_thighs(moved, touched.reaching, low)
-    share = smooth(np.arange(len(moved)) / BEGINS)
-    moved = arms_inside(moved, place.seat, place.elbows, skeleton, share)
-    whole = concatenate([part for part in (ready, down, settle, moved) if part is not None])
-    return hands_round_body(whole, skeleton), holds
+    return concatenate([part for part in (ready, down, settle, moved) if part is not None]), holds
 
 
 def _hands_take(start: Pose, end: Pose, move: Move, skeleton: Skeleton) -> float:
@@ -309,7 +303,7 @@ def stand_up(
     risen = [_risen(row, over, end, seat, over_feet) for row in rows]
     up = interpolate([0.0, *times], [over, leant, *risen, replace(end, reach=over.reach, palms=over.palms)], FPS)
     up = follow(replace(up, knees=knees_over_feet(up)), over, push, skeleton)
-    return hands_round_body(concatenate([gather, up]), skeleton)
+    return concatenate([gather, up])
 
 
 def _over_the_feet(start: Pose, end: Pose, seat: Seat, lean: float, fold: float, row: Ready) -> Pose:

@@ -14,9 +14,9 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.body.joint_limits import out_of_cone
-from motion_backend.inverse_kinematics import Limb, arm_rotations
+from motion_backend.inverse_kinematics import arm_rotations
+from motion_backend.procedural.arm_collision import in_bars, own_bars
 from motion_backend.procedural.arm_solver import Arm
-from motion_backend.procedural.collision_avoidance.elbow_collision import arm_points, in_trunk
 from motion_backend.procedural.held_poses import shoulders
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.pose_solver import chest_frame
@@ -49,10 +49,9 @@ def placed(bent: Pose, laid: Laid, elbows: Array, seen: Depth, skeleton: Skeleto
     found, poles = replace(laid, elbows=elbows.copy()), elbows.copy()
     for place, (index, wrist, palm) in enumerate(laid.hands):
         tried = _tries(bent, (index, wrist, palm), laid, elbows[index], skeleton, row)
-        chest = chest_frame(tried, skeleton)
-        arm = Arm.of(tried, skeleton, index, chest)
-        points = arm_points(arm, Limb(*(bone[:, None] for bone in arm.limb)), skeleton.scale)
-        own = row.deep_per_m * in_trunk(points, chest, skeleton.scale)[:, 0]
+        arm = Arm.of(tried, skeleton, index, chest_frame(tried, skeleton))
+        body = own_bars(bent.repeat(1), skeleton)[index].at(np.zeros(len(tried), dtype=np.intp))
+        own = row.deep_per_m * in_bars(arm, arm.hand(arm.limb), body).depth(len(tried))
         cost = own + _cost(arm, tried, laid.normal, wrist, seen, skeleton.scale, row) + _unusual(laid, row)
         best = int(np.argmin(cost))
         poles[index] = tried.elbows[best, index]

@@ -15,8 +15,6 @@ Pair = tuple[Array | None, Array | None]
 """Where the left and the right palm lie, (3,) in the world each; None where nothing is there."""
 TABLE_REACH = 0.74
 """How far ahead of the pelvis the near edge of a table may be for a leaning sitter (metres at 1.70 m)."""
-ELBOWS = [(up, ahead) for up in (0.30, 0.45, 0.60, 0.75) for ahead in (-0.08, 0.05, 0.18)]
-"""Heights above the pelvis, and distances ahead of it, at which elbows are that are not on anything (metres)."""
 INSET = 0.01
 """A hand lies at least so far within the edge of a surface (metres)."""
 ARMREST, TABLE = (0.08, 0.36), (0.14, 0.58)
@@ -42,8 +40,6 @@ ARMREST_ASIDE: Grid = (0.22, 0.44, 0.02)
 """How far to the side armrests are (at 1.70 m)."""
 ARMREST_STEPS = 5
 """How many such steps an armrest is wide at the most, from its inner edge."""
-ELBOW_ASIDE: Grid = (0.26, 0.62, 0.02)
-"""How far to the side it is looked for what elbows would be in (at 1.70 m)."""
 TABLE_FROM, TABLE_STEP = 0.20, 0.02
 """How far ahead of the pelvis tables are looked for from, and in which steps (metres)."""
 FOREARMS = (0.17, 0.0, -0.17)
@@ -98,17 +94,6 @@ def handholds(seat: Seat, obstacles: Obstacles, scale: float) -> Handholds:
         table=table[0] if table else None,
         table_top=table[1] if table else 0.0,
     )
-
-
-def elbow_room(seat: Seat, near: Obstacles, scale: float) -> tuple[float, float]:
-    """How far to either side of the middle something begins that is as high as elbows; infinite beyond their reach."""
-    aside = np.arange(*ELBOW_ASIDE) * scale
-    found = []
-    for side in (1, -1):
-        places = [(side * a, seat.pelvis[1] + up * scale, ahead) for a in aside for up, ahead in ELBOWS]
-        depth = near.depth(seat.to_world(places)).reshape(len(aside), -1).max(axis=1)
-        found.append(float(aside[np.argmax(depth > 0)]) if (depth > 0).any() else np.inf)
-    return found[0], found[1]
 
 
 def _pair(seat: Seat, near: Obstacles, places: list[list[tuple[float, float]]], level: tuple[float, float]) -> Pair:

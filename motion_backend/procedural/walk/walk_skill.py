@@ -14,12 +14,12 @@ from motion_backend import rotations
 from motion_backend.backend_protocol import Part
 from motion_backend.motion import FPS, Action, PhaseKind, Skill
 from motion_backend.procedural.body_state import Body, Point
-from motion_backend.procedural.collision_avoidance.hand_collision import arms_in
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays, bearing_of
 from motion_backend.procedural.held_poses import SPINE_LEAN, bend, idle
 from motion_backend.procedural.pose import interpolate, settle_from
 from motion_backend.procedural.touch.gestures import gesture
 from motion_backend.procedural.touch.hand_captions import arms_on_the_way
+from motion_backend.procedural.walk.arm_swing import arms_in
 from motion_backend.procedural.walk.gait import walk_on
 from motion_backend.procedural.walk.gait_character import gait_character
 from motion_backend.procedural.walk.root_path import SPACING, resample

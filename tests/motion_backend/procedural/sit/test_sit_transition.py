@@ -20,10 +20,8 @@ from motion_backend.body.scene_collision import Obstacles
 from motion_backend.body.self_collision import self_penetration
 from motion_backend.metrics import story_metrics
 from motion_backend.motion import Action, Emotion, Motion, Skill
-from motion_backend.procedural.collision_avoidance.body_collision import hands_round_body
 from motion_backend.procedural.emotion_style import Bearing, arm_poses
 from motion_backend.procedural.held_poses import Seat, standing
-from motion_backend.procedural.pose import Pose, interpolate
 from motion_backend.procedural.pose_solver import hips_within, solve
 from motion_backend.procedural.sit.sit_keys import sit_keys
 from motion_backend.procedural.sit.sit_legs import WAYS, Room, seated_legs
@@ -188,20 +186,6 @@ def test_who_rises_passes_hands_round_the_thighs_and_stays_within_limits(caption
     positions, world = motion.skeleton.forward_kinematics(motion.root_positions, motion.local_rotations)
     assert self_penetration(motion.skeleton, positions.astype(np.float64), world).max() < 0.05
     assert beyond_limits(motion.local_rotations).max() < CLEARLY
-
-
-def deepest(pose: Pose) -> float:
-    positions, world = SKELETON.forward_kinematics(*solve(pose, SKELETON))
-    return float(self_penetration(SKELETON, positions.astype(np.float64), world).max())
-
-
-def test_a_hand_on_its_way_through_a_thigh_goes_round_it() -> None:
-    still = standing((0.0, 0.0), 0.0, Bearing(), SKELETON)
-    inside = replace(still, reach=still.pelvis - [[0.088, 0.25, 0.0], [-0.088, 0.25, 0.0]], reaching=np.ones(2))
-    through = interpolate([0.0, 0.8, 1.6], [still, inside, still], 30)
-    round_it = hands_round_body(through, SKELETON)
-    assert deepest(round_it) < 0.06 < 0.10 < deepest(through)
-    np.testing.assert_array_equal(round_it.reach[[0, -1]], through.reach[[0, -1]])
 
 
 def test_legs_and_elbows_stay_inside_what_stands_beside_a_seat() -> None:

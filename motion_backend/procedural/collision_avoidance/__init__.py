@@ -1,1 +1,0 @@
-"""Hands, elbows and arms kept out of furniture and off the body."""
