@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion_backend.datasets.normalization import Floats
 from motion_backend.physics.engine import engine
@@ -56,7 +57,7 @@ class Lesson:
     """(N, 30) the control to go to."""
     answer: Array
     """(N, 30, 102) how that answers to other states and held controls."""
-    frames: Array
+    frames: NDArray[np.int_]
     """(N,) of the plan."""
     fell: bool
     """Whether it fell before the end."""

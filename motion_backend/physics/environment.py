@@ -78,8 +78,8 @@ class SkillEnvironment:
             if terminated or truncated:
                 self.failed[self.bodies[index].episode] += terminated
                 self.bodies[index] = self._begun()
-        rewards, observed, terminated, truncated = (np.array(column) for column in zip(*rows, strict=True))
-        return Outcome(rewards.astype(np.float32), observed.astype(np.float32), terminated, truncated)
+        rewards, observed, *over = (np.array(column) for column in zip(*rows, strict=True))
+        return Outcome(rewards.astype(np.float32), observed.astype(np.float32), over[0], over[1])
 
     def _begun(self) -> _Body:
         index = int(self.rng.choice(len(self.episodes), p=self.failed / self.failed.sum()))
@@ -137,7 +137,7 @@ class StyledEnvironment:
         self.seen.append(steps)
         with torch.no_grad():
             style = style_reward(self.trainer.discriminator(steps.joined)).numpy()
-        rewards = total_reward(style, done.rewards).astype(np.float32)
+        rewards = total_reward(style, done.rewards.astype(np.float64)).astype(np.float32)
         return Outcome(rewards, done.observed, done.terminated, done.truncated)
 
     def learn(self, rng: np.random.Generator) -> dict[str, float]:

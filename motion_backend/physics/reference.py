@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,7 +52,7 @@ class Plan:
         return len(self.roots)
 
     @property
-    def _rows(self) -> tuple[Array | NDArray[np.bool_], ...]:
+    def _rows(self) -> tuple[Any, ...]:
         return self.roots, self.local, self.contacts, self.raised
 
     def part(self, frames: slice) -> Plan:

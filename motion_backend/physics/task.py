@@ -107,5 +107,5 @@ def from_floor(motion: Motion) -> NDArray[np.bool_]:
 
 def plan_of(motion: Motion) -> Plan:
     """A motion's arrays, to be followed."""
-    arrays = (motion.root_positions, motion.local_rotations, motion.contacts)
-    return Plan(*(array.astype(np.float64) for array in arrays), from_floor(motion))
+    roots, local = motion.root_positions.astype(np.float64), motion.local_rotations.astype(np.float64)
+    return Plan(roots, local, motion.contacts.astype(np.float64), from_floor(motion))

@@ -75,7 +75,7 @@ class TrainedPolicy:
             if told["version"] != VERSION:
                 raise ValueError(f"it is of version {told['version']}")
             name, sizes = PolicyName(told["name"]), json.loads(told["sizes"])
-            config = PolicyConfig(**{key: tuple(one) if isinstance(one, list) else one for key, one in sizes.items()})
+            config = PolicyConfig(**sizes | {"hidden": tuple(sizes["hidden"])})
             if config != PolicyConfig.of(name, config.actions):
                 raise ValueError("it is of another body, or sees something else")
             seen_mean, seen_spread, done_mean, done_spread = (tensors.pop(key).numpy() for key in _SCALES)

@@ -64,7 +64,7 @@ def physics(
         config = RewardConfig(rounds, episodes, steps, seed, method is Method.AMP)
         policy = RewardRun(name, list(islice(source, 2 * episodes)), out, config).run(console.print)
     done = [one.judged(policy) for one in islice(episodes_of(name, JUDGED_IN, unseen=True), judged)]
-    figures = policy.figures | {"reached": sum(done) / max(len(done), 1), "trials": len(done)}
+    figures = {**policy.figures, "reached": sum(done) / max(len(done), 1), "trials": len(done)}
     replace(policy, figures=figures).save(out / f"{skill.value}{SUFFIX}")
     console.print(f"{sum(done)} of {len(done)} trials done in rooms that it has not learned in", soft_wrap=True)
     console.print(f"weights in {out}: SIMS_PHYSICS_MODE=policy SIMS_PHYSICS_POLICIES={out}", soft_wrap=True)

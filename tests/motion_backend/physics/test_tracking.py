@@ -16,7 +16,7 @@ from motion_backend.physics.mpc import SLIDING, Controller, Moment, moment_of
 from motion_backend.physics.physics_options import PhysicsOptions, give_physics
 from motion_backend.physics.reference import Plan
 from motion_backend.physics.task import plan_of
-from motion_backend.physics.tracker import Tracked, Tracker
+from motion_backend.physics.tracker import EFFORTS, FROM_FLOOR, Tracked, Tracker
 
 
 def away(plan: Plan, done: Tracked) -> np.ndarray:
@@ -138,3 +138,24 @@ def test_the_price_of_sliding_is_that_of_its_jacobian() -> None:
         rows = controller._planted_rows(at)
         wanted = 0.0 if rows is None else SLIDING * float(((rows @ data.qvel) ** 2).sum())
         assert controller._sliding(at) == pytest.approx(wanted)
+
+
+def test_getting_up_from_the_floor_is_looked_farther_ahead_and_the_pelvis_comes_first(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    plan = plan_of(walk())
+    raised = np.arange(len(plan)) >= 4
+    tracker, efforts = tracker_of(replace(plan, raised=raised)), []
+
+    def goes(_self: Tracker, done: Tracked, effort: object, *_rest: object) -> None:
+        efforts.append(effort)
+        done.moments.append(moment_of(tracker.reference, len(done.moments)))
+        done.pressures.append(Pressure())
+
+    monkeypatch.setattr(Tracker, "_window", goes)
+    tracker.track(moment_of(tracker.reference, 0), np.zeros((0, NU)), 8)
+    assert efforts == [EFFORTS[0]] * 4 + [EFFORTS[FROM_FLOOR]] * 4
+    data, reader = tracker._scratch()
+    prices = [Controller(empty_room(), data, tracker.reference, reader)._prices(at) for at in (0, 4)]
+    assert (prices[1][:6] > prices[0][:6]).all()
+    np.testing.assert_array_equal(prices[1][6:36], prices[0][6:36])
