@@ -197,9 +197,7 @@ def _is_of_body(clause: Clause, row: DeedRow) -> bool:
     body = theme_words()["body"]
     races = row.skill is Skill.LOCO and not row.mood and bool(body & set(_lemmas(clause.subject)[-1:]))
     noun = next((lemma for lemma in clause.lemmas[1:] if lemma in body or _may_be_noun(lemma)), "")
-    return races or (
-        row.skill is Skill.TOUCH and (row.things or not row.captions) and noun in body and noun not in things()
-    )
+    return races or (row.skill is Skill.TOUCH and row.things and noun in body and noun not in things())
 
 
 def _deed_of_fragment(clause: Clause) -> Deed | None:

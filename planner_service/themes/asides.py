@@ -53,7 +53,8 @@ def _tells_something(words: Sequence[Token]) -> bool:
     known = grammar()
     small = known.adverbs | known.prepositions | known.marks | known.joints | known.auxiliaries | known.numbers
     said = (token.low for token in words if token.text[:1].isalpha() and token.low not in small | known.subjects)
-    return any(lemma_of(low) not in MANNER | known.times | {"one"} for low in said)
+    times = MANNER | known.times | {"one"}
+    return any(low not in times and lemma_of(low) not in times for low in said)
 
 
 def without_asides(words: list[Token], main: int) -> tuple[list[Token], list[list[Token]]]:
