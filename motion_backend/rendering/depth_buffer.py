@@ -51,7 +51,7 @@ def draw(screen: Real, quarters: Ints, first: int, nearest: Ints, best: Array) -
 
 
 @filling
-def draw_body(points: Array, faces: NDArray[np.integer], nearest: Ints, best: Array) -> None:
+def draw_body(points: Real, faces: NDArray[np.integer], nearest: Ints, best: Array) -> None:
     """The same for a closed body: faces (F, 3) of points (V, 3), those that show their outside; numbers from 0."""
     height, width = best.shape
     for face in range(len(faces)):

@@ -42,7 +42,7 @@ class Drawn(NamedTuple):
     """Its faces where they are nearest, else -1; four samples a pixel. (2 h, 2 w)."""
     corner: Ints
     """The pixel in their upper left, x and y."""
-    screen: Array
+    screen: Real
     """Where its vertices are, in samples from that corner, and how near. (V, 3)."""
     faces: NDArray[np.integer]
     """(F, 3)."""
@@ -93,6 +93,7 @@ class Backdrop:
         from motion_backend.rendering.depth_buffer import draw_body
         from motion_backend.rendering.film_kernel import body_light
 
+        assert body.normals is not None
         camera, (width, height) = self.still.camera, self.size
         faces = body.faces
         colors = to_linear(np.broadcast_to(np.asarray(body.color)[..., :3], (len(faces), 3))).astype(np.float32)

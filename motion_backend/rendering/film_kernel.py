@@ -109,7 +109,7 @@ def _meets(bounds: Real, row: int, column: int, cutting: Cutting) -> bool:
     height, width = cutting.depth.shape
     left, top = cutting.corner[0], cutting.corner[1]
     across = bounds[row, column, 1] >= left and bounds[row, column, 0] < left + width
-    return across and bounds[row, column, 3] >= top and bounds[row, column, 2] < top + height
+    return bool(across and bounds[row, column, 3] >= top and bounds[row, column, 2] < top + height)
 
 
 @filling
@@ -182,7 +182,7 @@ def _blend(part: Real, drawn: Drawn, top: int, left: int, bottom: int, right: in
 
 
 @inlined
-def _light_at(face: int, x: float, y: float, screen: Array, faces: NDArray[np.integer], light: Real) -> float:
+def _light_at(face: int, x: float, y: float, screen: Real, faces: NDArray[np.integer], light: Real) -> float:
     """The light on a face at a sample, from that on its corners."""
     one, two, three = faces[face, 0], faces[face, 1], faces[face, 2]
     ax, ay = screen[one, 0], screen[one, 1]
@@ -191,7 +191,7 @@ def _light_at(face: int, x: float, y: float, screen: Array, faces: NDArray[np.in
     area = bx * cy - by * cx
     b = ((x - ax) * cy - (y - ay) * cx) / area
     c = (bx * (y - ay) - by * (x - ax)) / area
-    return (1 - b - c) * light[one] + b * light[two] + c * light[three]
+    return float((1 - b - c) * light[one] + b * light[two] + c * light[three])
 
 
 @filling

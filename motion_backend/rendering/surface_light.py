@@ -157,7 +157,7 @@ def share_of(x: float, y: float, z: float, turn: int, lamp: Shading, bias: float
 @inlined
 def _place(x: float, y: float, z: float, matrix: Array, row: int) -> float:
     """One of a point's three numbers in a lamp's map."""
-    return matrix[row, 0] * x + matrix[row, 1] * y + matrix[row, 2] * z + matrix[row, 3]
+    return float(matrix[row, 0] * x + matrix[row, 1] * y + matrix[row, 2] * z + matrix[row, 3])
 
 
 @inlined

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -21,14 +20,11 @@ from motion_backend.rendering.film_shots import LONGEST, SHORTEST, FilmShot, fil
 from motion_backend.rendering.film_sight import Appearances
 from motion_backend.rendering.motion_figures import body_solids, home_props
 from motion_backend.rendering.rasterizer import orbit
-from motion_backend.rendering.renderer import render
+from motion_backend.rendering.renderer import Solid, render
 from planner_service.narration.narrator import Span, Told
 from planner_service.output.film import subtitles
-from scene_graphs.home import home_from_layouts
-from scene_graphs.layout import Layout, Placed
 
 SIZE = (96, 54)
-ROOM = Layout("room", "bedroom", ((0, 0), (0, 4), (4, 4), (4, 0)))
 
 
 @cache
@@ -119,18 +115,26 @@ def test_words_are_white_on_a_darker_band_and_elsewhere_nothing_changes():
     assert (split(planes)[0][:38] == split(before)[0][:38]).all()
 
 
-def test_a_lamp_between_a_camera_and_a_body_is_seen_to_hide_it():
+def test_what_stands_between_a_camera_and_a_body_is_seen_to_hide_it_or_its_head():
     motion = walked("walk").motion.part(40, 41)
     x, _, z = motion.joint_positions()[0, 0].tolist()
     bodies = Appearances.of(motion, 0, 1, 16 / 9)
     camera = orbit((x, 0.9, z), 3.0, 0.7, 0.2)
-    eye = np.array(camera.eye)
-    between = 0.25 * eye + 0.75 * np.array([x, 0.0, z])
-    screen = Placed("lamp", "wardrobe", (float(between[0]), 0.0, float(between[2])), (1.6, 2.2, 0.3), 0.7)
-    hiding = [prop.solid for prop in home_props(home_from_layouts([replace(ROOM, objects=(screen,))], 0))][-1:]
+    middle, (right, up, _) = 0.25 * np.array(camera.eye) + 0.75 * np.array([x, 0.9, z]), camera.axes
+
+    def board(half: float, height: float) -> Solid:
+        """Upright across the view, that wide and with its middle so far above that of the body."""
+        corners = [
+            middle + half * a * right + (height + half * b) * up for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+        ]
+        return Solid(np.array(corners), np.array([[0, 1, 2], [0, 2, 3]]))
+
     assert bodies.shown([], camera) == 1.0
     assert bodies.shares([], camera).min() > 0.95
-    assert bodies.shares(hiding, camera)[0, 0] < 0.3
+    assert bodies.shown([board(0.9, 0.0)], camera) == 0.0
+    whole, head = bodies.shares([board(0.2, 0.5)], camera)[0]
+    assert whole > 0.5
+    assert head < 0.3
 
 
 def test_a_film_has_all_frames_and_the_same_bytes_again(tmp_path: Path):
