@@ -117,8 +117,11 @@ class WalkGenerator(Protocol):
     name: str
     slowest: float
     """Metres a second below which it does not walk: starts and stops are then the procedural body's."""
-    pace: float | None
-    """Metres a second at which it walks where nothing hurries it; None: at any."""
+
+    @property
+    def pace(self) -> float | None:
+        """Metres a second at which it walks where nothing hurries it; None: at any."""
+        ...
 
     def begin(self, past: Frames, rng: np.random.Generator) -> Walker:
         """Go on from the last frames of a body, whoever made them; what is random comes from `rng`."""

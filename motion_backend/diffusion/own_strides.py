@@ -102,7 +102,8 @@ def _with_walkers(network: Denoiser, crowd: Sequence[Walker]) -> Denoiser:
     table = made.conditions.gait.weight.data
     for one in crowd:
         table[one.gait] = torch.lerp(table[one.main], table[one.other], one.share)
-    return made.eval().requires_grad_(False)
+    made.eval().requires_grad_(False)
+    return made
 
 
 def _walked(sampler: Sampler, begun: Batch, seed: list[int]) -> Poses:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion_backend.backend_protocol import Part, PartKind
 from motion_backend.diffusion.conditions import MadeOf
@@ -107,7 +108,7 @@ class PlannedPassage:
         """Seconds to go after so many frames."""
         return max(self.due - done + 1, 0) / FPS if not self.since else 0.0
 
-    def _voxels(self, frame: HeadingFrame, place: Array) -> Array:
+    def _voxels(self, frame: HeadingFrame, place: Array) -> NDArray[np.float32]:
         """What stands around the body and its goal. (1, 64, 32, 32)."""
         here, yaw = frame.origin[0], float(np.asarray(frame.yaw)[0])
         pair = occupancy_pair(

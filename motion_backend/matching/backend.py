@@ -25,7 +25,7 @@ class Matching:
 
     name = MATCHING
     slowest = 0.5
-    pace = None
+    pace: float | None = None
 
     def __init__(self, database: WalkDatabase) -> None:
         self.database = database
