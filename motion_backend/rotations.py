@@ -2,32 +2,28 @@
 
 from __future__ import annotations
 
-from typing import TypeVar
+from functools import cache
+from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-X = TypeVar("X", float, Array)
-"""A component of one rotation or vector, or of many."""
 IDENTITY: Array = np.array([0.0, 0.0, 0.0, 1.0])
 _CONJUGATE: Array = np.array([-1.0, -1.0, -1.0, 1.0])
 
 
+@cache
+def _compiled() -> ModuleType:
+    """Imported when something is first turned: numba takes half a second, and many commands turn nothing."""
+    from motion_backend import rotation_kernels
+
+    return rotation_kernels
+
+
 def compose(a: Array, b: Array) -> Array:
-    """The rotation that applies b, then a. (..., 4)."""
-    if _lone(a, b):
-        return _alone(_composed(*a.ravel().tolist(), *b.ravel().tolist()), a, b)
-    return _joined(*_composed(*_components(a), *_components(b)))
-
-
-def _composed(ax: X, ay: X, az: X, aw: X, bx: X, by: X, bz: X, bw: X) -> tuple[X, X, X, X]:
-    return (
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-        aw * bw - ax * bx - ay * by - az * bz,
-    )
+    """The rotation that applies b, then a, broadcasting. (..., 4)."""
+    return np.asarray(_compiled().composed(a, b))
 
 
 def inverse(q: Array) -> Array:
@@ -37,50 +33,27 @@ def inverse(q: Array) -> Array:
 
 def rotate(q: Array, v: Array) -> Array:
     """Vectors v turned by q, broadcasting. (..., 3)."""
-    if _lone(q, v):
-        return _alone(_rotated(*q.ravel().tolist(), *v.ravel().tolist()), q, v)
-    return _joined(*_rotated(*_components(q), *_components(v)))
-
-
-def _rotated(x: X, y: X, z: X, w: X, vx: X, vy: X, vz: X) -> tuple[X, X, X]:
-    tx, ty, tz = 2.0 * (y * vz - z * vy), 2.0 * (z * vx - x * vz), 2.0 * (x * vy - y * vx)
-    return (
-        vx + w * tx + (y * tz - z * ty),
-        vy + w * ty + (z * tx - x * tz),
-        vz + w * tz + (x * ty - y * tx),
-    )
+    return np.asarray(_compiled().rotated(q, v))
 
 
 def cross(a: Array, b: Array) -> Array:
-    """The cross product, broadcasting, to the bit that of numpy, whose own takes four times as long. (..., 3)."""
-    if _lone(a, b):
-        return _alone(_crossed(*a.ravel().tolist(), *b.ravel().tolist()), a, b)
-    return _joined(*_crossed(*_components(a), *_components(b)))
-
-
-def _crossed(ax: X, ay: X, az: X, bx: X, by: X, bz: X) -> tuple[X, X, X]:
-    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+    """The cross product, broadcasting. (..., 3)."""
+    return np.asarray(_compiled().crossed(a, b))
 
 
 def dot(a: Array, b: Array) -> Array:
     """The products of vectors, broadcasting, the last axis kept. (..., 3) to (..., 1)."""
-    ax, ay, az = _components(a)
-    bx, by, bz = _components(b)
-    return np.asarray(ax * bx + ay * by + az * bz)[..., None]
+    return np.asarray(_compiled().dotted(a, b))[..., None]
 
 
 def length(v: Array) -> Array:
-    """The lengths of vectors, the last axis kept; np.linalg.norm takes twice as long. (..., N) to (..., 1)."""
-    first, *rest = _components(v)
-    square = first * first
-    for component in rest:
-        square = square + component * component
-    return np.asarray(np.sqrt(square))[..., None]
+    """The lengths of vectors, the last axis kept. (..., N) to (..., 1)."""
+    return np.asarray(_compiled().lengths(v))[..., None]
 
 
 def normalize(v: Array) -> Array:
     """Vectors of unit length along the last axis; a zero vector stays zero."""
-    return np.asarray(v / np.maximum(length(v), 1e-12))
+    return np.asarray(_compiled().normalized(v))
 
 
 def rotvec_to_quat(v: Array) -> Array:
@@ -136,12 +109,12 @@ def quat_to_matrix(q: Array) -> Array:
     """Quaternions to rotation matrices. (..., 4) to (..., 3, 3)."""
     q = np.asarray(q, dtype=np.float64)
     x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
-    entries = _joined(
+    entries = [
         1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w),
         2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
         2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y),
-    )  # fmt: skip
-    return entries.reshape((*q.shape[:-1], 3, 3))
+    ]  # fmt: skip
+    return np.stack(entries, axis=-1).reshape((*q.shape[:-1], 3, 3))
 
 
 def basis_to_quat(x: Array, y: Array, z: Array) -> Array:
@@ -149,21 +122,7 @@ def basis_to_quat(x: Array, y: Array, z: Array) -> Array:
 
     Of the four ways to write it the one that divides by most (Shepperd 1978).
     """
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = _components(x), _components(y), _components(z)
-    trace = xx + yy + zz
-    most = np.argmax(_joined(xx, yy, zz, trace), axis=-1)
-    ways = np.empty((*most.shape, 4, 4))
-    for way, component in enumerate((xx, yy, zz)):
-        ways[..., way, way] = 1 - trace + 2 * component
-    ways[..., 0, 1] = ways[..., 1, 0] = xy + yx
-    ways[..., 1, 2] = ways[..., 2, 1] = yz + zy
-    ways[..., 2, 0] = ways[..., 0, 2] = zx + xz
-    ways[..., 3, 0] = ways[..., 0, 3] = yz - zy
-    ways[..., 3, 1] = ways[..., 1, 3] = zx - xz
-    ways[..., 3, 2] = ways[..., 2, 3] = xy - yx
-    ways[..., 3, 3] = 1 + trace
-    found = np.take_along_axis(ways, most[..., None, None], axis=-2)[..., 0, :]
-    return np.asarray(found / length(found))
+    return np.asarray(_compiled().of_basis(x, y, z, IDENTITY))
 
 
 def slerp(a: Array, b: Array, t: Array | float) -> Array:
@@ -185,26 +144,3 @@ def continuous(q: Array) -> Array:
 def wrap(angle: Array | float) -> Array:
     """Angles brought into (-pi, pi]."""
     return np.asarray(np.pi - np.mod(np.pi - np.asarray(angle, dtype=np.float64), 2 * np.pi))
-
-
-def _joined(*components: Array) -> Array:
-    """Components of one shape side by side along a new last axis; np.stack takes longer for the few of a vector."""
-    first = components[0]
-    found = np.empty((*first.shape, len(components)), first.dtype)
-    for place, component in enumerate(components):
-        found[..., place] = component
-    return found
-
-
-def _components(v: Array) -> list[Array]:
-    return [v[..., place] for place in range(v.shape[-1])]
-
-
-def _lone(a: Array, b: Array) -> bool:
-    """Whether two arrays hold one rotation or vector each: plain numbers then take a fifth of the time."""
-    return a.size == a.shape[-1] and b.size == b.shape[-1] and a.dtype.char == "d" == b.dtype.char
-
-
-def _alone(values: tuple[float, ...], a: Array, b: Array) -> Array:
-    """The one result of two arrays of one rotation or vector each, in the shape that they broadcast to."""
-    return np.array(values).reshape((*max(a.shape[:-1], b.shape[:-1], key=len), len(values)))

@@ -17,3 +17,20 @@ def compiled(function: _F) -> _F:
         return cast(_F, numba.njit(cache=True, nogil=True)(function))
     except RuntimeError:  # There is no folder to keep it in.
         return cast(_F, numba.njit(nogil=True)(function))
+
+
+def compiled_ufunc(signature: str) -> Callable[[Callable[..., None]], Callable[..., Any]]:
+    """A function of one item as a ufunc over arrays of doubles, with numpy's rules for what does not fit in shape.
+
+    The last of its arguments is what it fills; `signature` as of `numba.guvectorize`, "(n),(n)->(n)".
+    """
+    types = ", ".join("float64[:]" for _ in range(signature.count("(")))
+
+    def of(function: Callable[..., None]) -> Callable[..., Any]:
+        make = cast(Any, numba).guvectorize
+        try:
+            return cast(Callable[..., Any], make([f"void({types})"], signature, cache=True)(function))
+        except RuntimeError:  # There is no folder to keep it in.
+            return cast(Callable[..., Any], make([f"void({types})"], signature)(function))
+
+    return of

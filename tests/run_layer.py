@@ -107,7 +107,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("layers", choices=LAYERS)
     asked, more = parser.parse_known_args()
-    environment = (RELEASE if asked.layers == "test-all" else {}) | dict(os.environ)
+    # Processes that share the cores would each start a thread a core.
+    one_thread = {"OMP_NUM_THREADS": "1"}
+    environment = one_thread | (RELEASE if asked.layers == "test-all" else {}) | dict(os.environ)
     code, lines = 0, list[str]()
     compile_search()
     for layer in LAYERS[asked.layers]:

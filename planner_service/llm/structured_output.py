@@ -111,13 +111,18 @@ def problems_of(error: ValidationError) -> list[str]:
 
 
 def _objects(text: str) -> Iterator[object]:
-    """Every outermost JSON object in the text, in order."""
+    """Every outermost JSON object in the text, in order, up to one that the end of the text breaks off."""
+    text = text.rstrip()
     decoder = json.JSONDecoder()
     start = text.find("{")
     while start >= 0:
         try:
             value, end = decoder.raw_decode(text, start)
-        except (ValueError, RecursionError):
+        except RecursionError:
+            return
+        except json.JSONDecodeError as error:
+            if error.pos >= len(text):
+                return  # else every object inside of it would be looked for, each to the end
             end = start + 1
         else:
             yield value
