@@ -50,7 +50,7 @@ LETS_GO: Final = (0.02, 0.08)
 """A hand that is so far off what it was to lie on is free to turn, wholly so from so much more (metres)."""
 WRIST: Final = np.array([1.0, 1.0, 1.0, 0.0])
 """What of a detour is the wrist's."""
-STRAINED, STRAIN = float(np.radians(3)), 1.0
+STRAINED, STRAIN = float(np.radians(2)), 3.0
 """A shoulder so far beyond its range (radians) is brought back, and what a radian counts (metres)."""
 STEP: Final = 1e-4
 """How far a wrist (metres) and an elbow (radians) are moved to see what goes with them."""
@@ -173,10 +173,15 @@ def _out(pose: Pose, around: Around, skeleton: Skeleton) -> Pose:
         return pose
     at, near = whole.about(seen)
     free, detours, moved = bool(at[-1] == len(pose) - 1), np.zeros((2, len(at), 4)), near.pose
-    for _ in range(ROUNDS):
+    least, best = np.inf, near.pose
+    # The last round only looks what came of the one before; the best of all is taken.
+    for _ in range(ROUNDS + 1):
         arms = _both(moved, near)
         hands = _hands(arms)
         rows = [_rows(arm, near.contacts(arms, hands, index)) for index, arm in enumerate(arms)]
+        missing = sum(float(one.wanted.sum()) for one in rows)
+        if missing < least:
+            least, best = missing, moved
         if max(float(one.wanted.max(initial=0.0)) for one in rows) < OUT:
             break
         for index, one in enumerate(rows):
@@ -186,7 +191,7 @@ def _out(pose: Pose, around: Around, skeleton: Skeleton) -> Pose:
     handles = {}
     for name in HANDLES:
         handles[name] = getattr(pose, name).copy()
-        handles[name][at] = getattr(moved, name)
+        handles[name][at] = getattr(best, name)
     return replace(pose, **handles)
 
 

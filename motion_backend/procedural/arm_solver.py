@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.inverse_kinematics import Limb, arm_rotations, two_bone
@@ -92,7 +93,7 @@ class Arm(NamedTuple):
         """World rotation. (T, 4)."""
         return rotations.compose(self.chest, self.collar)
 
-    def part(self, frames: slice) -> Arm:
+    def part(self, frames: NDArray[np.intp]) -> Arm:
         """The same arm over some of its frames."""
         parts = (each[frames] for each in self[3:])
         return Arm(self.which, Limb(*(bone[frames] for bone in self.limb)), self.lengths, *parts)

@@ -67,8 +67,8 @@ class Pose:
     def __len__(self) -> int:
         return int(self.pelvis.shape[0])
 
-    def at(self, index: int | slice) -> Pose:
-        """One frame, or a stretch of frames."""
+    def at(self, index: int | slice | NDArray[np.intp]) -> Pose:
+        """One frame, a stretch of frames, or some frames."""
         return Pose(**{f.name: getattr(self, f.name)[index] for f in fields(self)})
 
     def repeat(self, frames: int) -> Pose:
