@@ -5,51 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion_backend.rendering.film_picture import Planes, split
-from motion_backend.rendering.rasterizer import Camera, Ints, Real, empty_buffers
+from motion_backend.rendering.light_values import Cutting, Drawn, Shading
+from motion_backend.rendering.rasterizer import Camera, Real, empty_buffers
 from motion_backend.rendering.renderer import PALETTE, Solid, Still, to_linear, to_srgb
-from motion_backend.rendering.shadow_map import Shading, ShadowMap
-from motion_backend.rotations import Array
+from motion_backend.rendering.shadow_map import ShadowMap
 
 SHADES = 8192
 """Steps of linear light that become bytes; finer than a byte's at its darkest."""
 NEAR = 0.1
 """Metres before the eye where a body is too near to be drawn."""
-
-
-class Cutting(NamedTuple):
-    """The part of a lamp's map that a body alone covers."""
-
-    corner: Ints
-    """Its upper left pixel, x and y."""
-    depth: Array
-    """(h, w)."""
-    most: Array
-    """The greatest depth around each pixel, as far as its taps reach. (h, w)."""
-    taps: Real
-    """Where it is read around a place. (K, 2) float32."""
-
-
-class Drawn(NamedTuple):
-    """A body in the picture."""
-
-    nearest: Ints
-    """Its faces where they are nearest, else -1; four samples a pixel. (2 h, 2 w)."""
-    corner: Ints
-    """The pixel in their upper left, x and y."""
-    screen: Real
-    """Where its vertices are, in samples from that corner, and how near. (V, 3)."""
-    faces: NDArray[np.integer]
-    """(F, 3)."""
-    light: Real
-    """On its vertices. (V,) float32."""
-    colors: Real
-    """Of its faces, linear. (F, 3) float32."""
 
 
 @dataclass(frozen=True)

@@ -6,21 +6,18 @@ and only those that a body or its shadow can reach are drawn.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend.rendering.film_picture import BLACK, GREY, WHITE, Planes
+from motion_backend.rendering.light_values import Cutting, Drawn, Lit, Palette, Shading
 from motion_backend.rendering.rasterizer import Real
-from motion_backend.rendering.shadow_map import SHADOW_BIAS, Shading
+from motion_backend.rendering.shadow_map import SHADOW_BIAS
 from motion_backend.rendering.surface_light import share_of
 from motion_backend.rotations import Array
 from scene_graphs.jit import compiled, filling, inlined
-
-if TYPE_CHECKING:
-    from motion_backend.rendering.film_backdrop import Cutting, Drawn
-    from motion_backend.rendering.renderer import Lit, Palette
 
 TILE: Final = 16
 """Pixels across and down; even, as colours are halved."""

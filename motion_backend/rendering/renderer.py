@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from motion_backend.rendering.light_values import Lit, Palette, Surfaces
 from motion_backend.rendering.rasterizer import Camera, Ints, Real, clip, empty_buffers
 from motion_backend.rendering.shadow_map import SHADOW_BIAS, SKY, SUN, ShadowMap
 from motion_backend.rotations import Array
@@ -61,56 +62,6 @@ def render(
     Without shadows it takes less than half the time.
     """
     return to_srgb_bytes(Still.of(solids, camera, size, ground, shadows).lit.color)
-
-
-class Surfaces(NamedTuple):
-    """All triangles of a scene."""
-
-    corners: Array
-    """(F, 3, 3) metres."""
-    normals: Real
-    """(F, 3, 3) float32, one a corner; not read where it is flat."""
-    flat: Real
-    """(F, 3) float32, unit."""
-    is_smooth: NDArray[np.bool_]
-    """(F,)."""
-    color: Real
-    """(F, 3) float32, linear."""
-
-
-class Palette(NamedTuple):
-    """How bright lights are, and what is drawn beside surfaces."""
-
-    sun: float
-    sky: float
-    bounce: float
-    camera: float
-    open_sky: float
-    """The share of the sky's light that nothing takes away."""
-    offset: float
-    """Metres off a surface at which light is looked up."""
-    bias: float
-    """Metres towards the light at which it is looked up."""
-    grid: float
-    """Metres between the floor's lines."""
-    haze_start: float
-    haze_depth: float
-    """Metres around the target that are clear, and over which all fades behind them."""
-    horizon: Real
-    """Linear. (3,)."""
-
-
-class Lit(NamedTuple):
-    """A still picture in linear light. All (height, width, 3) float32."""
-
-    color: Real
-    by_sun: Real
-    """What of it comes from the sun."""
-    by_sky: Real
-    """What of it comes from that part of the sky that can be shaded."""
-    in_sun: Real
-    """Where in the sun's map what is seen lies; minus infinity where nothing is."""
-    in_sky: Real
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
+from motion_backend.rendering.light_values import Shading
 from motion_backend.rendering.rasterizer import Camera, Real, empty_buffers
 from motion_backend.rotations import Array
 
@@ -42,22 +42,6 @@ SKY = Lamp(
     0.10,
     np.array([[0.2, 0.1], [0.9, 0.3], [0.1, 0.95], [-0.75, 0.55], [-0.7, -0.6], [0.35, -0.85]]),
 )
-
-
-class Shading(NamedTuple):
-    """A lamp and its map as compiled code reads them."""
-
-    matrix: Array
-    """A point p in the map is matrix @ (p, 1): x, y and nearness. (3, 4)."""
-    depth: Array
-    """The nearness of what the lamp meets first. (pixels, pixels)."""
-    most: Array
-    least: Array
-    """The greatest and the least of it around each pixel, as far as its taps reach. (pixels, pixels) each."""
-    taps: Real
-    """Where the map is read around a place, in pixels. (K, 2) float32."""
-    direction: Array
-    """Unit vector towards the lamp. (3,)."""
 
 
 @dataclass(frozen=True)

@@ -5,17 +5,14 @@ Imported late: see `renderer`. Nothing is checked: whoever calls has checked it.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from motion_backend.rendering.light_values import Lit, Palette, Shading, Surfaces
 from motion_backend.rendering.rasterizer import Ints, Lens, Real
-from motion_backend.rendering.shadow_map import Shading
 from motion_backend.rotations import Array
 from scene_graphs.jit import compiled, filling, inlined
-
-if TYPE_CHECKING:
-    from motion_backend.rendering.renderer import Lit, Palette, Surfaces
 
 TURNS: Final = np.arange(4) * np.pi / 8
 COS, SIN = np.cos(TURNS), np.sin(TURNS)
