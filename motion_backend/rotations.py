@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from types import ModuleType
 
@@ -21,9 +22,26 @@ def _compiled() -> ModuleType:
     return rotation_kernels
 
 
+def _filled(kernel: Callable[..., None], size: int, *arrays: Array) -> Array:
+    """What a kernel makes of arrays that are broadcast but for their last axis. (..., size)."""
+    lead = arrays[0].shape[:-1]
+    if len(arrays) == 2 and (other := arrays[1].shape[:-1]) != lead:
+        both = np.broadcast_shapes(lead, other)
+        # One row for all needs no copies of it.
+        arrays = tuple(
+            array if array.size == array.shape[-1] else np.broadcast_to(array, (*both, array.shape[-1]))
+            for array in arrays
+        )
+        lead = both
+    rows = [np.ascontiguousarray(array, dtype=np.float64).reshape(-1, array.shape[-1]) for array in arrays]
+    found = np.empty((*lead, size))
+    kernel(*rows, found.reshape(-1, size))
+    return found
+
+
 def compose(a: Array, b: Array) -> Array:
     """The rotation that applies b, then a, broadcasting. (..., 4)."""
-    return np.asarray(_compiled().composed(a, b))
+    return _filled(_compiled().compose, 4, a, b)
 
 
 def inverse(q: Array) -> Array:
@@ -33,27 +51,27 @@ def inverse(q: Array) -> Array:
 
 def rotate(q: Array, v: Array) -> Array:
     """Vectors v turned by q, broadcasting. (..., 3)."""
-    return np.asarray(_compiled().rotated(q, v))
+    return _filled(_compiled().rotate, 3, q, v)
 
 
 def cross(a: Array, b: Array) -> Array:
     """The cross product, broadcasting. (..., 3)."""
-    return np.asarray(_compiled().crossed(a, b))
+    return _filled(_compiled().cross, 3, a, b)
 
 
 def dot(a: Array, b: Array) -> Array:
     """The products of vectors, broadcasting, the last axis kept. (..., 3) to (..., 1)."""
-    return np.asarray(_compiled().dotted(a, b))[..., None]
+    return _filled(_compiled().dot, 1, a, b)
 
 
 def length(v: Array) -> Array:
     """The lengths of vectors, the last axis kept. (..., N) to (..., 1)."""
-    return np.asarray(_compiled().lengths(v))[..., None]
+    return _filled(_compiled().length, 1, v)
 
 
 def normalize(v: Array) -> Array:
     """Vectors of unit length along the last axis; a zero vector stays zero."""
-    return np.asarray(_compiled().normalized(v))
+    return _filled(_compiled().normalize, np.shape(v)[-1], v)
 
 
 def rotvec_to_quat(v: Array) -> Array:
@@ -118,11 +136,8 @@ def quat_to_matrix(q: Array) -> Array:
 
 
 def basis_to_quat(x: Array, y: Array, z: Array) -> Array:
-    """The rotation that takes the axes to three orthonormal vectors (its columns). (..., 3) each to (..., 4).
-
-    Of the four ways to write it the one that divides by most (Shepperd 1978).
-    """
-    return np.asarray(_compiled().of_basis(x, y, z, IDENTITY))
+    """The rotation that takes the axes to three orthonormal vectors (its columns). (..., 3) each to (..., 4)."""
+    return _filled(_compiled().basis_to_quat, 4, *np.broadcast_arrays(x, y, z))
 
 
 def slerp(a: Array, b: Array, t: Array | float) -> Array:

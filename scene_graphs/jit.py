@@ -31,20 +31,3 @@ def filling(function: _F) -> _F:
 def inlined(function: _F) -> _F:
     """Compile into whoever calls it, which only fills arrays."""
     return cast(_F, numba.njit(nogil=True, _nrt=False, inline="always")(function))
-
-
-def compiled_ufunc(signature: str) -> Callable[[Callable[..., None]], Callable[..., Any]]:
-    """A function of one item as a ufunc over arrays of doubles, with numpy's rules for what does not fit in shape.
-
-    The last of its arguments is what it fills; `signature` as of `numba.guvectorize`, "(n),(n)->(n)".
-    """
-    types = ", ".join("float64[:]" for _ in range(signature.count("(")))
-
-    def of(function: Callable[..., None]) -> Callable[..., Any]:
-        make = cast(Any, numba).guvectorize
-        try:
-            return cast(Callable[..., Any], make([f"void({types})"], signature, cache=True)(function))
-        except RuntimeError:  # There is no folder to keep it in.
-            return cast(Callable[..., Any], make([f"void({types})"], signature)(function))
-
-    return of
