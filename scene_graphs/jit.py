@@ -23,11 +23,11 @@ def filling(function: _F) -> _F:
     """The same for what only fills arrays that it is given: that nothing is made saves counting who holds what, which
     takes longer than the work of a pixel."""
     try:
-        return cast(_F, numba.njit(cache=True, nogil=True, _nrt=False)(function))
+        return cast(_F, cast(Any, numba).njit(cache=True, nogil=True, _nrt=False)(function))
     except RuntimeError:
-        return cast(_F, numba.njit(nogil=True, _nrt=False)(function))
+        return cast(_F, cast(Any, numba).njit(nogil=True, _nrt=False)(function))
 
 
 def inlined(function: _F) -> _F:
     """Compile into whoever calls it, which only fills arrays."""
-    return cast(_F, numba.njit(nogil=True, _nrt=False, inline="always")(function))
+    return cast(_F, cast(Any, numba).njit(nogil=True, _nrt=False, inline="always")(function))

@@ -24,7 +24,9 @@ def planned(frames: int) -> tuple[Task, Motion]:
     """The first steps of a walk across the small home."""
     motion = walk()
     before, own, rest = motion.part(0, 12), motion.part(12, 12 + frames), motion.part(12 + frames, 72 + frames)
-    past = History.of(before.root_positions, before.local_rotations, before.contacts)
+    past = History.of(
+        *(np.asarray(part, np.float64) for part in (before.root_positions, before.local_rotations, before.contacts))
+    )
     return Task(HOME, build_skeleton(1.70), past, plan_of(own).followed_by(plan_of(rest))), own
 
 

@@ -98,7 +98,8 @@ def test_a_policy_learns_a_walk_by_heart_and_is_the_same_on_disk(lesson: Lesson,
     assert np.mean(losses[-10:]) < 0.4 * losses[0]
     policy.save(tmp_path / "walk.safetensors")
     again = TrainedPolicy.load(tmp_path / "walk.safetensors")
-    np.testing.assert_allclose(again.controls(rows.seen[:4]), policy.controls(rows.seen[:4]), atol=0.02)
+    seen = rows.seen[:4].astype(np.float64)
+    np.testing.assert_allclose(again.controls(seen), policy.controls(seen), atol=0.02)
 
 
 def test_a_loss_that_is_no_number_ends_it_and_keeps_the_batch(lesson: Lesson, tmp_path: Path) -> None:
