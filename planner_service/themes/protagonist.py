@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from functools import cache, lru_cache
 from typing import Final
@@ -167,14 +167,23 @@ def hero_of(clauses: Sequence[Clause]) -> str:
 
 def _told_most(clauses: Sequence[Clause]) -> str:
     """The pronoun that does most of what is done, the first of two that do as much; "" where there is none."""
+    return next((pronoun for pronoun, _ in _deeds_by(clauses, ("he", "she")).most_common(1)), "")
+
+
+def _deeds_by(clauses: Sequence[Clause], pronouns: Collection[str]) -> Counter[str]:
     doers = (one.doer.lower() for one in clauses if not one.aside)
-    counted = Counter(doer for doer in doers if doer in ("he", "she"))
-    return next((pronoun for pronoun, _ in counted.most_common(1)), "")
+    return Counter(doer for doer in doers if doer in pronouns)
 
 
 def called(clauses: Sequence[Clause], hero: str) -> str:
-    """The pronoun by which clauses call whom they are about: as the name tells, else the one that does most."""
-    return pronouns_of(hero) or (_told_most(clauses) if hero.lower() not in _FIRST_PERSON else "")
+    """The pronoun by which clauses call whom they are about: as the name tells, else the one that does most.
+
+    Who tells of somebody else is not the one that is played: "I want a film of a man. He comes in, he sits down".
+    """
+    most = _told_most(clauses)
+    if hero.lower() in _FIRST_PERSON and _deeds_by(clauses, ("he", "she"))[most] <= _deeds_by(clauses, ("i",))["i"]:
+        return ""
+    return pronouns_of(hero) or most
 
 
 def _is_relative(subject: str, pronoun: str) -> bool:
@@ -282,7 +291,7 @@ def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
         return True
     low, main = subject.split()[-1].lower(), hero.split()[-1].lower() if hero else ""
     if main == "i" and low in _SUBJECTS - {"who"}:
-        return False
+        return low == pronoun
     if low in _FIRST_PERSON:
         return main in _FIRST_PERSON or not main
     if low in _SUBJECTS:
