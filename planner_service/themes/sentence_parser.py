@@ -185,7 +185,8 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
     asides = [replace(one, sentence=sentence) for some in told_of for one in _aside(some, words, piece.source)]
     before = () if first.quotes else (*_before(tokens[:place], subject), *_manner(tokens[:place], subject))
     besides = [
-        Clause(_text(piece.source, some), "", "", _lemmas(some), ",", sentence=sentence)
+        # It tells how somebody is or where, and is nothing that anybody does.
+        Clause(_text(piece.source, some), "", "", _lemmas(some), ",", aside=True, sentence=sentence)
         for some in besides_of(tokens[:place], subject, before)
     ]
     return [*besides, _placed(parts[0], before, piece.source), *parts[1:], *again, *asides]
