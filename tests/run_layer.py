@@ -69,16 +69,27 @@ exact_distance(graph, graph, index.costs)
 """
 
 
+FILM_KERNEL = ROOT / "motion_backend" / "rendering" / "film_kernel.py"
+FIRST_FILM = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/motion_backend/rendering/test_film.py"]
+
+
 def compile_search() -> None:
-    """The search for rooms is compiled where nobody has searched yet: a part of set-up, and all processes wait for one.
+    """The search for rooms and the film are compiled where nobody has done so yet: a part of set-up, and all processes
+    wait for one.
 
     What was compiled is kept beside the module; processes that begin at once would each compile it.
     """
-    kept = KERNEL.parent / "__pycache__"
-    if any(file.stat().st_mtime > KERNEL.stat().st_mtime for file in kept.glob(f"{KERNEL.stem}.*.nbi")):
-        return
-    print("· compiling the search for rooms, once", flush=True)
-    subprocess.run([sys.executable, "-c", FIRST_SEARCH], cwd=ROOT, check=True)
+    if not _is_compiled(KERNEL):
+        print("· compiling the search for rooms, once", flush=True)
+        subprocess.run([sys.executable, "-c", FIRST_SEARCH], cwd=ROOT, check=True)
+    if not _is_compiled(FILM_KERNEL):
+        print("· compiling what draws films, once", flush=True)
+        subprocess.run([sys.executable, *FIRST_FILM], cwd=ROOT, check=False, stdout=subprocess.DEVNULL)
+
+
+def _is_compiled(module: Path) -> bool:
+    kept = module.parent / "__pycache__"
+    return any(file.stat().st_mtime > module.stat().st_mtime for file in kept.glob(f"{module.stem}.*.nbi"))
 
 
 def computed() -> float:
