@@ -22,8 +22,13 @@ def _compiled() -> ModuleType:
     return rotation_kernels
 
 
-def _filled(kernel: Callable[..., None], size: int, *arrays: Array) -> Array:
-    """What a kernel makes of arrays that are broadcast but for their last axis. (..., size)."""
+def _filled(kernel: Callable[..., None], columns: tuple[int, ...], size: int, *arrays: Array) -> Array:
+    """What a kernel makes of arrays that are broadcast but for their last axes, of so many `columns`. (..., size).
+
+    Raises ValueError for others: a kernel does not look where an array ends.
+    """
+    if tuple(array.shape[-1] for array in arrays) != columns:
+        raise ValueError(f"the last axes are {[array.shape for array in arrays]}, not {columns}")
     lead = arrays[0].shape[:-1]
     if len(arrays) == 2 and (other := arrays[1].shape[:-1]) != lead:
         both = np.broadcast_shapes(lead, other)
@@ -41,7 +46,7 @@ def _filled(kernel: Callable[..., None], size: int, *arrays: Array) -> Array:
 
 def compose(a: Array, b: Array) -> Array:
     """The rotation that applies b, then a, broadcasting. (..., 4)."""
-    return _filled(_compiled().compose, 4, a, b)
+    return _filled(_compiled().compose, (4, 4), 4, a, b)
 
 
 def inverse(q: Array) -> Array:
@@ -51,27 +56,27 @@ def inverse(q: Array) -> Array:
 
 def rotate(q: Array, v: Array) -> Array:
     """Vectors v turned by q, broadcasting. (..., 3)."""
-    return _filled(_compiled().rotate, 3, q, v)
+    return _filled(_compiled().rotate, (4, 3), 3, q, v)
 
 
 def cross(a: Array, b: Array) -> Array:
     """The cross product, broadcasting. (..., 3)."""
-    return _filled(_compiled().cross, 3, a, b)
+    return _filled(_compiled().cross, (3, 3), 3, a, b)
 
 
 def dot(a: Array, b: Array) -> Array:
     """The products of vectors, broadcasting, the last axis kept. (..., 3) to (..., 1)."""
-    return _filled(_compiled().dot, 1, a, b)
+    return _filled(_compiled().dot, (3, 3), 1, a, b)
 
 
 def length(v: Array) -> Array:
     """The lengths of vectors, the last axis kept. (..., N) to (..., 1)."""
-    return _filled(_compiled().length, 1, v)
+    return _filled(_compiled().length, v.shape[-1:], 1, v)
 
 
 def normalize(v: Array) -> Array:
     """Vectors of unit length along the last axis; a zero vector stays zero."""
-    return _filled(_compiled().normalize, np.shape(v)[-1], v)
+    return _filled(_compiled().normalize, v.shape[-1:], v.shape[-1], v)
 
 
 def rotvec_to_quat(v: Array) -> Array:
@@ -137,7 +142,7 @@ def quat_to_matrix(q: Array) -> Array:
 
 def basis_to_quat(x: Array, y: Array, z: Array) -> Array:
     """The rotation that takes the axes to three orthonormal vectors (its columns). (..., 3) each to (..., 4)."""
-    return _filled(_compiled().basis_to_quat, 4, *np.broadcast_arrays(x, y, z))
+    return _filled(_compiled().basis_to_quat, (3, 3, 3), 4, *np.broadcast_arrays(x, y, z))
 
 
 def slerp(a: Array, b: Array, t: Array | float) -> Array:

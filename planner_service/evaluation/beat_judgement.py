@@ -90,7 +90,7 @@ class Judgement:
         return tuple(index for index, text in texts.items() if any(same_words(text, other) for other in said))
 
     def told(self, story: str) -> tuple[int, ...]:
-        """Those of the missing that a sentence of the story's events tells nevertheless: `Told.events`."""
+        """Those of the missing that a sentence tells nevertheless, of a whole story or of its events: `Told.events`."""
         sentences = [_stems(sentence) for sentence in _SENTENCE.split(story)]
         words = {index: _stems(self.label.beats[index].text) for index in self.missing}
         return tuple(

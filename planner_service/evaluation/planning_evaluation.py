@@ -194,9 +194,16 @@ def beat_figures(themes: Sequence[Judgement]) -> list[Figure]:
         share("beats: the rest, named as not acted", [_named_rest(one) for one in played]),
         share("beats: all not acted, named as such", [(len(one.named), len(one.missing)) for one in played], NAMED),
     ]
-    stories = [narrate(one.script, Character()).events if one.script else "" for one in played]
-    told = [(len(one.told(text)), len(one.missing)) for one, text in zip(played, stories, strict=True)]
-    as_done = [(len(one.told_as_done(text)), len(one.missing)) for one, text in zip(played, stories, strict=True)]
+    stories = [narrate(one.script, Character()) if one.script else None for one in played]
+    # What is a thought the narrator says itself: the first of the two does not believe it.
+    told = [
+        (len(one.told(story.text if story else "")), len(one.missing))
+        for one, story in zip(played, stories, strict=True)
+    ]
+    as_done = [
+        (len(one.told_as_done(story.events if story else "")), len(one.missing))
+        for one, story in zip(played, stories, strict=True)
+    ]
     unasked = share("screen time: unasked", [(one.unasked_seconds, one.seconds) for one in played])
     deeds = share("keyframes a beat", [(one.deeds, len(one.actable)) for one in played])
     forbidden = figure("keyframes: forbidden", labels, [len(one.forbidden) for one in played], sum, 0.0, "held_out")

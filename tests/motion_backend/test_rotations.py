@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
@@ -102,3 +103,16 @@ def test_continuous_quaternions_never_jump_hemisphere() -> None:
     fixed = rotations.continuous(flipped)
     assert (np.sum(fixed[1:] * fixed[:-1], axis=-1) > 0).all()
     assert all(same(a, b) for a, b in zip(fixed, turn, strict=True))
+
+
+def test_arrays_of_other_widths_are_refused_and_not_read_beyond_their_ends() -> None:
+    turns, points = np.ones((5, 4)), np.ones((5, 3))
+    for wrong in (
+        lambda: rotations.compose(turns, points),
+        lambda: rotations.rotate(points, points),
+        lambda: rotations.cross(points[:, :2], points),
+        lambda: rotations.dot(turns, turns),
+        lambda: rotations.basis_to_quat(points, points, points[:, :2]),
+    ):
+        with pytest.raises(ValueError, match=r"the last axes are|broadcast"):
+            wrong()
