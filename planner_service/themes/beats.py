@@ -185,7 +185,7 @@ def _kind(clause: Clause, who: str) -> BeatKind:
     quotes = any(len(quote.split()) > 1 or quote[-1] in ".,!?" for quote in clause.quotes)
     if says or (quotes and _RECEIVERS.isdisjoint(clause.lemmas)):
         return "speech" if not who else "other"
-    if who or clause.aside:
+    if who or (clause.aside and (clause.verb or not is_feeling(clause))):
         return "other"
     if clause.denied and not (clause.unable and clause.verb in words["unable_verbs"]):
         return "undone"

@@ -199,3 +199,13 @@ def test_verbs_are_known(text: str) -> None:
 @for_each("text", ["a walk", "the drink and his dreams", "butter", "insomnia"])
 def test_nouns_are_no_verbs(text: str) -> None:
     assert not has_verb(text)
+
+
+def test_a_mood_before_a_verb_is_felt_and_any_other_words_there_are_nobodys_deed() -> None:
+    kinds = [
+        (read.beat.text, read.beat.kind) for read in beats_of("He comes home, angrily slams the cabinet and sits.")
+    ]
+    assert ("angrily", "feeling") in kinds
+    assert ("other", "Her hair wet") in [
+        (read.beat.kind, read.beat.text) for read in beats_of("Her hair wet, Anna walks in.")
+    ]
