@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, get_args
+from typing import Any, Final, get_args
 
 from motion_backend.backends import DEFAULT_BACKEND, require_backend
+from motion_backend.body.cast import Look, Role
 from motion_backend.director import Director, shares
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.story_figures import story_figures
-from motion_backend.motion import Action, Character, Motion, join
+from motion_backend.motion import Action, Character, Motion, Skill, join
 from motion_backend.physics.physics_record import physics_of
 from motion_backend.scene import scene_of
+from motion_backend.skeleton import MAX_HEIGHT, MIN_HEIGHT
 from planner_service.composition.compose import compose, script_of
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, METHODS, Request
 from planner_service.grounding.furnish import Furnished, furnish
@@ -37,10 +40,10 @@ Progress = Callable[[str, float], None]
 """Called with a stage's name and the share of it that is done, 0 to 1."""
 STAGES = ("plan", "furnish", "narrate", "act", "move", "judge")
 PRONOUNS = get_args(Pronouns)
+_ASLEEP: Final = re.compile(r"\b(?:asleep|sleeps?|sleeping|naps?|napping|dozes?|dozing|slumbers?)\b", re.IGNORECASE)
+"""Words of what is acted, seated or lying, with closed eyes."""
 MAX_SEED = 2**53 - 1
 """The largest whole number that every JSON reader keeps exactly."""
-MIN_HEIGHT, MAX_HEIGHT = 1.2, 2.2
-"""Metres."""
 
 
 class RequestError(UserError):
@@ -184,6 +187,11 @@ class Story:
     figures: tuple[story_metrics.KeyframeFigures, ...]
     report: dict[str, Any] = field(default_factory=dict)
 
+    @property
+    def role(self) -> Role:
+        """Who is seen, and what the face shows."""
+        return role_of(self.planned.character, self.actions, self.planned.script)
+
 
 @dataclass
 class Pipeline:
@@ -267,6 +275,24 @@ def actor(request: StoryRequest, script: LongScript) -> Character:
         return request.character
     person = script.person
     return replace(read, name=person.name or read.name, pronouns=person.pronouns or read.pronouns)
+
+
+def role_of(character: Character, actions: Sequence[Action], script: LongScript) -> Role:
+    """Who is seen acting the actions of a script: the look, and what the face shows in each keyframe."""
+    emotions = {action.keyframe: action.emotion for action in actions}
+    asleep = frozenset(
+        action.keyframe
+        for action in actions
+        if action.skill in (Skill.LIEDOWN, Skill.SITDOWN) and _ASLEEP.search(_told_of(action, script))
+    )
+    return Role(Look.of(character), emotions, asleep)
+
+
+def _told_of(action: Action, script: LongScript) -> str:
+    """All words of an action: its keyframe's, and those of the beats it shows."""
+    keyframe = script.keyframes[action.keyframe]
+    beats = (*([] if keyframe.beat is None else [keyframe.beat]), *keyframe.also)
+    return " ".join([keyframe.caption, action.interaction or "", *(script.beats[beat].text for beat in beats)])
 
 
 def given_script(request: StoryRequest) -> LongScript:

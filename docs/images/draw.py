@@ -72,7 +72,7 @@ def demo() -> StoryRequest:
 def draw_board(story: Story, path: Path) -> np.ndarray:
     """The whole storyboard as pixels. (H, W, 3)."""
     planned, targets = story.planned, [action.object_id for action in story.actions]
-    storyboard(planned.home, story.motion, planned.script.keyframes, path, planned.told.title, targets)
+    storyboard(planned.home, story.motion, planned.script.keyframes, path, planned.told.title, targets, story.role)
     return np.asarray(Image.open(path).convert("RGB"))
 
 
@@ -88,7 +88,7 @@ def draw_loop(story: Story, path: Path) -> None:
     }
     pictures = [
         Image.fromarray(to_rgb(picture))
-        for frame, picture in enumerate(film_frames(motion, shots, LOOP))
+        for frame, picture in enumerate(film_frames(motion, shots, LOOP, role=story.role))
         if frame in wanted
     ]
     pause = round(1000 * EVERY / motion.fps)

@@ -7,11 +7,12 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Final
 
+from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Motion
 from motion_backend.rendering.film_backdrop import Backdrop
 from motion_backend.rendering.film_picture import Planes
 from motion_backend.rendering.film_shots import FilmShot
-from motion_backend.rendering.motion_figures import body_solids
+from motion_backend.rendering.motion_figures import Acting
 
 WORKERS: Final = 2
 """Pictures drawn at once; compiled code lets go of the interpreter."""
@@ -26,14 +27,16 @@ def film_frames(
     shots: Sequence[FilmShot],
     size: tuple[int, int],
     dressed: Callable[[int, Planes], Planes] = lambda _, picture: picture,
+    role: Role = PLAIN,
 ) -> Iterator[Planes]:
     """Every frame of a motion as a picture of that size (width, height), both even; see `film_picture`.
 
     `dressed` gets a frame's number and its picture, and gives the picture that is shown.
     """
+    acting = Acting.of(motion, role)
 
     def batch(scene: Future[Backdrop], frames: range) -> list[Planes]:
-        bodies = body_solids(motion, frames)
+        bodies = acting.solids(frames)
         return [dressed(i, scene.result().with_body(body)) for i, body in zip(frames, bodies, strict=True)]
 
     with ThreadPoolExecutor(WORKERS) as pool:

@@ -46,7 +46,7 @@ def write_story(
         "report.json": lambda path: _write_json(path, report_to_dict(story)),
         "motion.npz": lambda path: write_npz(story.motion, path),
         "motion.bvh": lambda path: write_bvh(story.motion, path),
-        "film.glb": lambda path: path.write_bytes(film_glb(story.planned.home, story.motion)),
+        "film.glb": lambda path: path.write_bytes(film_glb(story.planned.home, story.motion, story.role)),
         "storyboard.png": lambda path: _write_storyboard(story, path),
     }
     if film:
@@ -88,7 +88,9 @@ def _write_storyboard(story: Story, path: Path) -> Path:
     planned, known = story.planned, {placed.id for placed in story.planned.home.objects}
     # What is done on the floor has no piece of furniture to outline.
     targets = [action.object_id if action.object_id in known else None for action in story.actions]
-    return storyboard(planned.home, story.motion, planned.script.keyframes, path, planned.told.title, targets)
+    return storyboard(
+        planned.home, story.motion, planned.script.keyframes, path, planned.told.title, targets, story.role
+    )
 
 
 class _Tried(Exception):  # noqa: N818

@@ -11,8 +11,9 @@ from pydantic_core import CoreSchema, PydanticKnownError
 
 from motion_backend.backends import UnknownBackendError, offered_backends, require_backend
 from motion_backend.motion import Emotion, Skill
+from motion_backend.skeleton import MAX_HEIGHT, MIN_HEIGHT
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, Method
-from planner_service.pipeline import MAX_HEIGHT, MAX_SEED, MIN_HEIGHT
+from planner_service.pipeline import MAX_SEED
 from planner_service.scripts.script import MAX_NAME_LENGTH, Beat, Keyframe
 from planner_service.themes.beats import MAX_THEME_LENGTH
 from scene_graphs.home import MAX_ROOMS
