@@ -16,6 +16,7 @@ from motion_backend.motion import Action, Character, Motion, Skill, join
 from motion_backend.physics.physics_record import physics_of
 from motion_backend.scene import scene_of
 from motion_backend.skeleton import MAX_HEIGHT, MIN_HEIGHT
+from planner_service.cast_choice import cast_for, check_character, named_as
 from planner_service.composition.compose import compose, script_of
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, METHODS, Request
 from planner_service.grounding.furnish import Furnished, furnish
@@ -71,7 +72,8 @@ class StoryRequest:
     backend: str = DEFAULT_BACKEND
     seed: int = 0
     character: Character = field(default_factory=Character)
-    """Who acts; with the name and pronouns of the theme's person where both are left at their defaults."""
+    """Who acts; with the name and pronouns of the theme's person where both are left at their defaults. How they look
+    is filled up by `actor`."""
 
     def __post_init__(self) -> None:
         for room in self.rooms:
@@ -102,7 +104,12 @@ class StoryRequest:
         if not 0 <= self.seed <= MAX_SEED:
             raise RequestError(f"must be a whole number from 0 to {MAX_SEED}, got {self.seed}", at="seed")
         _check_character(self.character)
-        object.__setattr__(self, "character", cast_by(self.theme, self.character))
+        object.__setattr__(self, "character", named_as(self.theme, self.character))
+
+    @property
+    def acted_by(self) -> Character:
+        """The character with all that can be seen of it, as far as rules read it."""
+        return cast_for(self.theme, self.character, self.seed)
 
 
 def _check_character(character: Character) -> None:
@@ -114,6 +121,7 @@ def _check_character(character: Character) -> None:
     _one_of("pronouns", character.pronouns.strip().lower().split("/")[0], PRONOUNS, character.pronouns)
     if not MIN_HEIGHT <= character.height <= MAX_HEIGHT:
         raise RequestError(f"must be {MIN_HEIGHT} to {MAX_HEIGHT} metres, got {character.height:g}", at="height")
+    check_character(character)
 
 
 def _one_of(field: str, value: str, known: Sequence[str], shown: str | None = None) -> None:
@@ -269,12 +277,14 @@ class Pipeline:
 
 
 def actor(request: StoryRequest, script: LongScript) -> Character:
-    """Who acts a script: whom the user described, else whom the model read in the theme, else whom the rules did."""
-    read = cast_by(request.theme, Character(height=request.character.height))
-    if script.person is None or request.character != read:
-        return request.character
-    person = script.person
-    return replace(read, name=person.name or read.name, pronouns=person.pronouns or read.pronouns)
+    """Who acts a script, with all that can be seen of them: whom the user described, else whom the model read in the
+    theme, else whom the rules did.
+    """
+    asked, read, person = request.character, cast_by(request.theme, Character()), script.person
+    if person is None or asked.member or (asked.name, asked.pronouns) != (read.name, read.pronouns):
+        return request.acted_by
+    called = replace(asked, name=person.name or read.name, pronouns=person.pronouns or read.pronouns)
+    return cast_for(request.theme, called, request.seed, person.age)
 
 
 def role_of(character: Character, actions: Sequence[Action], script: LongScript) -> Role:

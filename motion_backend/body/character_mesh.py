@@ -31,8 +31,8 @@ from motion_backend.body.skin_weights import (
     weigh_trousers,
 )
 from motion_backend.body.skinning import Material, SkinnedMesh
-from motion_backend.skeleton import Skeleton
 from motion_backend.body.wardrobe import LONG_SLEEVE, SHORT_SLEEVE, WIDE, Fit
+from motion_backend.skeleton import Skeleton
 
 MAX_LOOKS: Final = 16
 """Meshes that are kept."""
@@ -40,11 +40,11 @@ SOLES: Final = (0.86, 0.83, 0.77)
 DARK: Final = (0.13, 0.12, 0.13)
 COAT: Final = 0.012
 """Metres that what is worn over a top is wider."""
-HEM, LONG_HEM = 0.0, -0.10
+HEM, LONG_HEM = 0.0, -0.15
 """Where tops and tunics end."""
 
 _TORSO: Final[Box] = ((-0.46, -0.03, -0.22), (0.46, 0.6, 0.22))
-_LONG_TORSO: Final[Box] = ((-0.78, -0.14, -0.22), (0.78, 0.6, 0.22))
+_LONG_TORSO: Final[Box] = ((-0.78, -0.19, -0.22), (0.78, 0.6, 0.22))
 _CHEST: Final[Box] = ((-0.16, -0.04, 0.0), (0.16, 0.60, 0.2))
 _NECK: Final[Box] = ((-0.12, 0.44, -0.18), (0.12, 0.62, 0.12))
 _LEGS: Final[Box] = ((-0.27, -0.87, -0.22), (0.27, 0.16, 0.22))

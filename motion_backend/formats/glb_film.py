@@ -187,17 +187,12 @@ def _expressions() -> dict[str, list[float]]:
 
 
 def _targets(document: Document, morphs: Morphs, used: NDArray[np.integer]) -> list[dict[str, int]]:
-    """What moves some vertices of a face, by unit; all units that do not share one accessor of zeros."""
-    still: dict[int, int] = {}
-    targets = []
-    for offsets in morphs.offsets[:, used]:
-        moved = bool(np.any(offsets))
-        if moved or len(used) not in still:
-            accessor = document.accessor(offsets, ARRAY_BUFFER, bounds=True)
-        if not moved:
-            accessor = still.setdefault(len(used), accessor)
-        targets.append({"POSITION": accessor})
-    return targets
+    """What moves some vertices of a face, by unit; those that do not share zeros, which take no room."""
+    zeros = document.zeros(len(used))
+    return [
+        {"POSITION": document.accessor(offsets, ARRAY_BUFFER, bounds=True) if np.any(offsets) else zeros}
+        for offsets in morphs.offsets[:, used]
+    ]
 
 
 def _shares(weights: NDArray[np.floating]) -> NDArray[np.uint8]:

@@ -219,7 +219,8 @@ class Maker:
 
     def _script(self, story: OpenStory) -> tuple[bytes, Json]:
         script = story.pipeline.script(story.request)
-        return _to_bytes(script.model_dump(mode="json")), summary_of_script(script)
+        shown = summary_of_script(script) | {"character": vars(actor(story.request, script))}
+        return _to_bytes(script.model_dump(mode="json")), shown
 
     def _home(self, story: OpenStory) -> tuple[bytes, Json]:
         stage = story.pipeline.furnish(story.request, story.script())
@@ -236,7 +237,9 @@ class Maker:
         stage = story.stage
         actions = story.pipeline.act(story.request, stage)
         rows = [serialization.action_to_dict(action) for action in actions]
-        return _to_bytes({"actions": rows}), {"count": len(actions), "objects": [a.object_id for a in actions]}
+        summary = {"count": len(actions), "objects": [a.object_id for a in actions]}
+        asleep = role_of(story.request.acted_by, actions, stage.script).asleep
+        return _to_bytes({"actions": rows}), summary | {"asleep": sorted(asleep)}
 
     def _report(self, story: OpenStory) -> tuple[bytes, Json]:
         row = {"report": report_to_dict(story.acted)}

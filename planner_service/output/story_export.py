@@ -15,6 +15,7 @@ from motion_backend.formats.glb_film import film_glb
 from motion_backend.formats.motion_json import phase_to_dict
 from motion_backend.formats.npz import write_npz
 from motion_backend.metrics.figure_limits import held_against
+from planner_service.cast_choice import told_look
 from planner_service.grounding.keyframes_to_actions import action_to_dict
 from planner_service.output.film import Filmed, write_film
 from planner_service.output.storyboard import storyboard
@@ -142,6 +143,8 @@ def story_to_markdown(story: Story) -> str:
             f"Theme: {script.theme}",
             "",
             _makers(planned),
+            "",
+            f"Played by {', '.join(told_look(planned.character))}.",
             "",
             *[f"- {chosen.script.id} ({chosen.score:.2f}): {chosen.script.summary}" for chosen in script.short_scripts],
             *beats,
