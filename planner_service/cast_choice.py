@@ -209,9 +209,11 @@ def _years(about: str) -> int | None:
     """How old somebody is said to be."""
     number = rf"(\d{{1,3}}|{'|'.join(_words().numbers)})"
     forms = (
-        rf"\b{number}[\s-]years?[\s-]old\b", rf"\b(?:boy|girl|child|kid|man|woman)\s+of\s+{number}\b", rf"\baged\s+{number}\b",
-        rf"^{number}$", rf";\s*{number}(?:;|$)",
-    )  # fmt: skip
+        rf"\b{number}[\s-]years?[\s-]old\b",
+        rf"\b(?:boy|girl|child|kid|man|woman)\s+of\s+{number}\b",
+        rf"\baged\s+{number}\b",
+        rf"(?:^|;\s*){number}(?:;|$)",
+    )
     for form in forms:
         if match := re.search(form, about, re.IGNORECASE):
             word = match[1].lower()

@@ -29,6 +29,7 @@ from motion_backend.body.skin_weights import (
     weigh_skirt,
     weigh_spine,
     weigh_trousers,
+    weigh_tunic,
 )
 from motion_backend.body.skinning import Material, SkinnedMesh
 from motion_backend.body.wardrobe import LONG_SLEEVE, SHORT_SLEEVE, WIDE, Fit
@@ -40,8 +41,8 @@ SOLES: Final = (0.86, 0.83, 0.77)
 DARK: Final = (0.13, 0.12, 0.13)
 COAT: Final = 0.012
 """Metres that what is worn over a top is wider."""
-HEM, LONG_HEM = 0.0, -0.15
-"""Where tops and tunics end."""
+TUNIC_HEM: Final = -0.13
+"""Where it ends."""
 
 _TORSO: Final[Box] = ((-0.46, -0.03, -0.22), (0.46, 0.6, 0.22))
 _LONG_TORSO: Final[Box] = ((-0.78, -0.19, -0.22), (0.78, 0.6, 0.22))
@@ -101,17 +102,19 @@ def _pieces(look: Look) -> Iterator[Piece]:
 def _tops(worn: Outfit, skin: Material, bust: float) -> Iterator[Piece]:
     wide = WIDE if worn.loose else 0.0
     long_sleeved = worn.top == "shirt"
-    hem = LONG_HEM if worn.top == "tunic" else HEM
-    base = wardrobe.top(Fit(LONG_SLEEVE if long_sleeved else SHORT_SLEEVE, hem, bust, wide))
+    base = wardrobe.top(Fit(LONG_SLEEVE if long_sleeved else SHORT_SLEEVE, bust, wide))
+    if worn.top == "tunic":
+        base = wardrobe.tunic(base, mannequin_clothes.trousers(), TUNIC_HEM)
     box = _LONG_TORSO if long_sleeved or worn.top == "tunic" else _TORSO
-    yield Piece(_cloth("top", worn.top_srgb), base, box, (0.022, 0.026, 0.024), weigh_shirt)
+    weigh = weigh_tunic if worn.top == "tunic" else weigh_shirt
+    yield Piece(_cloth("top", worn.top_srgb), base, box, (0.022, 0.026, 0.024), weigh)
     if not (long_sleeved or worn.over):
         yield Piece(skin, mannequin_clothes.arm(), _ARM, (0.022, 0.014, 0.014), weigh_arm, True)
     if worn.over:
         long = worn.over == "coat"
-        cut = wardrobe.top(Fit(LONG_SLEEVE, LONG_HEM if long else HEM, bust, COAT))
+        cut = wardrobe.top(Fit(LONG_SLEEVE, bust, COAT))
         closed = union(0.03, cut, wardrobe.coat_skirt()) if long else cut
-        opened = wardrobe.open_front(closed, 0.30, -0.4, 0.030 if long else 0.018)
+        opened = wardrobe.open_front(closed, 0.30, 0.030 if long else 0.018)
         lengthened: Box = ((-0.78, -0.29, -0.22), (0.78, 0.6, 0.22)) if long else _LONG_TORSO
         weigh = weigh_coat if long else weigh_shirt
         yield Piece(_cloth("over", worn.over_srgb), opened, lengthened, (0.019, 0.022, 0.021), weigh)

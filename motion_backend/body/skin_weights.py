@@ -105,7 +105,16 @@ def weigh_skirt(p: Array) -> Weights:
 
 def weigh_coat(p: Array) -> Weights:
     """A shirt above the hips, a skirt below them."""
-    upper, lower = weigh_shirt(p), weigh_skirt(p)
+    return _above(weigh_shirt(p), weigh_skirt(p), p)
+
+
+def weigh_tunic(p: Array) -> Weights:
+    """A shirt above the hips, and below them as the trousers that it lies on."""
+    return _above(weigh_shirt(p), weigh_trousers(p), p)
+
+
+def _above(upper: Weights, lower: Weights, p: Array) -> Weights:
+    """One garment's weights above the hips, another's below."""
     share = _rise(-p[:, 1], 0.0, 0.08)
     return {
         name: upper.get(name, np.zeros(len(p))) * (1 - share) + lower.get(name, np.zeros(len(p))) * share

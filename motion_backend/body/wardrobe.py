@@ -35,8 +35,6 @@ _SLEEVE = (
     (0.715, 0.485, 0.001, 0.032, 0.037),
 )
 _TORSO = (
-    (-0.15, 0, -0.004, 0.200, 0.128),
-    (-0.05, 0, -0.003, 0.188, 0.124),
     (0.000, 0, 0.000, 0.170, 0.114),
     (0.06, 0, 0.001, 0.156, 0.107),
     (0.14, 0, 0.003, 0.132, 0.096),
@@ -72,8 +70,6 @@ class Fit:
     """How a top is cut."""
 
     sleeve: float = SHORT_SLEEVE
-    hem: float = 0.0
-    """Where it ends below."""
     bust: float = 0.0
     """Metres that the breast stands out; 0 for none."""
     wide: float = 0.0
@@ -82,8 +78,7 @@ class Fit:
 
 def top(fit: Fit) -> Field:
     """Chest and waist, shoulders, sleeves."""
-    stations = [row for row in _TORSO if row[0] >= fit.hem]
-    torso = tube(1, stations, power=2.4, rounding=0.04)
+    torso = tube(1, _TORSO, power=2.4, rounding=0.04)
     slope = capsule((0.035, 0.508, -0.014), (0.150, 0.468, -0.004), (0.045, 0.044))
     sleeve = tube(0, [row for row in _SLEEVE if row[0] <= fit.sleeve], rounding=0.035 if fit.sleeve < 0.5 else 0.012)
     whole = union(0.05, torso, mirrored(slope), mirrored(sleeve))
@@ -93,7 +88,14 @@ def top(fit: Fit) -> Field:
     return swollen(whole, fit.wide)
 
 
-def open_front(field: Field, neck: float, hem: float, width: float) -> Field:
+def tunic(upper: Field, trousers: Field, hem: float) -> Field:
+    """A top that goes on over the hips of trousers, down to a hem."""
+    hips = intersection(0.008, swollen(trousers, 0.009), half_space((0, hem, 0), (0, -1, 0)))
+    between = ellipsoid((0, hem + 0.055, 0), (0.12, 0.055, 0.085))
+    return union(0.03, upper, hips, between)
+
+
+def open_front(field: Field, neck: float, width: float) -> Field:
     """A garment cut open along the front from a neckline's bottom to the hem, and in a V above it."""
     deep = 0.30
     slot = intersection(

@@ -139,7 +139,7 @@ def test_still_meshes_of_one_look_are_merged_and_walls_kept_apart():
 
 
 def test_a_minute_of_body_is_small():
-    assert len(body_glb(tumbling(60 * 30))) < 700_000
+    assert len(body_glb(tumbling(60 * 30))) < 800_000
 
 
 @pytest.mark.service
