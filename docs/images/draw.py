@@ -16,6 +16,7 @@ from motion_backend.rendering.film_picture import to_rgb
 from motion_backend.rendering.film_shots import film_shots
 from planner_service.cli.layouts import graph_of_words
 from planner_service.evaluation.trials import Trial, perform
+from planner_service.output.cast_sheet import cast_sheet
 from planner_service.output.room_pictures import Shown, picture
 from planner_service.output.storyboard import COLUMNS, GAP, HEAD, PLAN, SIDE, TEXT, storyboard
 from planner_service.pipeline import Pipeline, Story, StoryRequest
@@ -58,6 +59,7 @@ def main() -> None:
         draw_found(index, Path(folder, "match.png"))
         save(cut(board, SHOWN), HERE / "storyboard.png")
         save(draw_acted(), HERE / "sheet.png")
+        save(cast_sheet(), HERE / "cast.png")
         for name in ("plan.png", "match.png"):
             # Lines of few pixels keep their colours, which mean something.
             save(np.asarray(Image.open(Path(folder, name)).convert("RGB")), HERE / name, Image.Quantize.MAXCOVERAGE)
