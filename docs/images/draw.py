@@ -59,7 +59,8 @@ def main() -> None:
         draw_found(index, Path(folder, "match.png"))
         save(cut(board, SHOWN), HERE / "storyboard.png")
         save(draw_acted(), HERE / "sheet.png")
-        save(cast_sheet(), HERE / "cast.png")
+        # Skin and cloth have more colours than a palette.
+        Image.fromarray(cast_sheet()).save(HERE / "cast.png", optimize=True)
         for name in ("plan.png", "match.png"):
             # Lines of few pixels keep their colours, which mean something.
             save(np.asarray(Image.open(Path(folder, name)).convert("RGB")), HERE / name, Image.Quantize.MAXCOVERAGE)
