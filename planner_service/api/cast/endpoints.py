@@ -14,7 +14,5 @@ cast_router = APIRouter(prefix="/v1/cast", tags=["cast"])
 async def show_cast() -> CastShown:
     """Who can play, and what each word of a character's look may be."""
     known = cast()
-    members = [
-        MemberShown(**{name: getattr(one, name) for name in MemberShown.model_fields}) for one in known.member
-    ]
+    members = [MemberShown(**{name: getattr(one, name) for name in MemberShown.model_fields}) for one in known.member]
     return CastShown(members=members, words={name: list(known.known(name)) for name in GIVEN})
