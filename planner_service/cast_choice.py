@@ -80,7 +80,8 @@ class _CastWords:
 
 @cache
 def _words() -> _CastWords:
-    return read_table("planner_service", "cast_words.toml", _CastWords)
+    known: _CastWords = read_table("planner_service", "cast_words.toml", _CastWords)
+    return known
 
 
 def check_character(character: Character) -> None:

@@ -6,7 +6,7 @@ A look changes the surface alone. The skeleton stays that of the height, so that
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cache
 from typing import Final, Literal, get_args
 
@@ -147,7 +147,8 @@ class Cast:
 @cache
 def cast() -> Cast:
     """The cast that is shipped."""
-    return read_table("motion_backend", "cast.toml", Cast)
+    known: Cast = read_table("motion_backend", "cast.toml", Cast)
+    return known
 
 
 @dataclass(frozen=True)
@@ -170,13 +171,20 @@ class Look:
         """A member of the cast, but for what is said of the character itself; the first member where none is named."""
         known = cast()
         member = known.named(character.member) if character.member else known.member[0]
-        own = {one.name: getattr(character, one.name, "") or getattr(member, one.name) for one in fields(Look)}
-        if (own["age"] == "child") != (member.age == "child"):
-            own["figure"] = (
-                "small" if own["age"] == "child" else ("curved" if character.pronouns == "she" else "straight")
-            )
-            own["beard"] = False
-        return Look(**own)
+        age = character.age or member.age
+        alike = (age == "child") == (member.age == "child")
+        other = "small" if age == "child" else "curved" if character.pronouns == "she" else "straight"
+        return Look(
+            age=age,
+            build=character.build or member.build,
+            figure=member.figure if alike else other,
+            skin=character.skin or member.skin,
+            hair=character.hair or member.hair,
+            hair_color=character.hair_color or member.hair_color,
+            beard=member.beard and age != "child",
+            glasses=member.glasses,
+            outfit=character.outfit or member.outfit,
+        )
 
     @property
     def proportions(self) -> Proportions:

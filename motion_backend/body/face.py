@@ -103,7 +103,7 @@ def face_of(look: Look) -> Face:
     head = head_shapes.head_of(look)
     ground = union(0.0, head, head_shapes.beard(head)) if look.beard else head
     features = list(_features(look))
-    drawn = [one.points + move for one in features for move in (0.0, *one.moves.values())]
+    drawn = [points for one in features for points in (one.points, *(one.points + m for m in one.moves.values()))]
     heights = np.repeat(
         [LIFTS[one.name] for one in features], [len(one.points) * (1 + len(one.moves)) for one in features]
     )

@@ -55,7 +55,8 @@ class _Faces:
 
 @cache
 def _faces() -> _Faces:
-    return read_table("motion_backend", "faces.toml", _Faces)
+    known: _Faces = read_table("motion_backend", "faces.toml", _Faces)
+    return known
 
 
 def expression(emotion: Emotion) -> Array:
