@@ -127,7 +127,7 @@ def _to_motion(body: Body, part: Part) -> Motion:
         notes=tuple(Note(part.action.keyframe, words) for words in body.otherwise),
     )
     kept = frames_kept_back(part, body.upcoming, whole) if body.stride is None else 0
-    body.tail = _freed(pose.at(slice(len(pose) - kept, None)), body.skeleton) if kept else None
+    body.tail = _freed(pose.at(slice(len(pose) - kept - 1, None)), body.skeleton) if kept else None
     return whole.part(0, len(pose) - kept)
 
 
