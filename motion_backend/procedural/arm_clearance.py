@@ -56,8 +56,8 @@ STEP: Final = 1e-4
 """How far a wrist (metres) and an elbow (radians) are moved to see what goes with them."""
 FLOOR: Final = "floor"
 """The id of what is sat or lain on where that is no object."""
-SINKS: Final = 0.03
-"""How deep arms sink into what is sat or lain on (metres)."""
+SINKS, SINKS_IN_FLOOR = 0.03, 0.01
+"""How deep arms sink into what is sat or lain on, and into a floor (metres)."""
 FASTEST: Final = 12.0
 """Of a shoulder, an elbow and a wrist (radians a second): people walk, sit and reach with half of it."""
 TRIES: Final = ((8, 2.5), (12, 4.0), (18, 6.0), (26, 9.0))
@@ -90,7 +90,7 @@ class Around(NamedTuple):
         """What arms keep out of, and the height of the floor: who sits or lies sinks in a little."""
         if self.posture is Posture.STANDING:
             return self.solid, 0.0
-        return self.solid.sunk_into(self.under, SINKS), -SINKS if self.under == FLOOR else 0.0
+        return self.solid.sunk_into(self.under, SINKS), -SINKS_IN_FLOOR if self.under == FLOOR else 0.0
 
 
 def arms_clear(pose: Pose, start: Pose, around: Around, skeleton: Skeleton) -> Pose:

@@ -183,7 +183,8 @@ def _ahead(row: SeatedLeg, seat: Seat, skeleton: Skeleton, room: float) -> float
         case "slouched":
             return min(ahead, room)
         case "ahead":
-            return float(np.clip(ahead, shin, max(room, shin)))
+            clears = _stretch(seat.edge, _drop(seat, scale), scale)
+            return float(np.clip(ahead, shin, max(min(room, clears), shin)))
         case "held":
             return max(seat.edge + PAST_EDGE, ahead)
         case _:
