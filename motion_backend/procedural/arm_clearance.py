@@ -330,9 +330,13 @@ def _slowed(pose: Pose, start: Pose, skeleton: Skeleton) -> Pose:
 
 
 def _near(fast: NDArray[np.intp], frames: int, reach: int) -> Array:
-    """How much frames are about those that are too fast: 1 there, 0 from `reach` frames on. (frames,)."""
-    away = np.abs(np.arange(frames)[:, None] - fast).min(axis=1)
-    return smooth(2 * (1 - away / reach))
+    """How much frames are about those that are too fast: 1 there, 0 from `reach` frames on and in the first. (frames,).
+
+    An arm that was smoothed from the first frame on would set out faster than it came.
+    """
+    at = np.arange(frames)
+    away = np.abs(at[:, None] - fast).min(axis=1)
+    return smooth(2 * (1 - away / reach)) * smooth(at / fast.min())
 
 
 def _posed(pose: Pose, begun: Pose, about: Array, turning: _Turning, width: float, skeleton: Skeleton) -> Pose:
