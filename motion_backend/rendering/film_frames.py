@@ -9,11 +9,12 @@ from typing import Final
 
 import numpy as np
 
+from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Character, Motion
 from motion_backend.rendering.film_backdrop import Backdrop
 from motion_backend.rendering.film_picture import Planes
 from motion_backend.rendering.film_shots import FilmShot, film_shots
-from motion_backend.rendering.motion_figures import body_solids
+from motion_backend.rendering.motion_figures import Acting
 from motion_backend.rotations import IDENTITY
 from motion_backend.skeleton import build_skeleton
 
@@ -32,14 +33,16 @@ def film_frames(
     shots: Sequence[FilmShot],
     size: tuple[int, int],
     dressed: Callable[[int, Planes], Planes] = lambda _, picture: picture,
+    role: Role = PLAIN,
 ) -> Iterator[Planes]:
     """Every frame of a motion as a picture of that size (width, height), both even; see `film_picture`.
 
     `dressed` gets a frame's number and its picture, and gives the picture that is shown.
     """
+    acting = Acting.of(motion, role)
 
     def batch(scene: Future[Backdrop], frames: range) -> list[Planes]:
-        bodies = body_solids(motion, frames)
+        bodies = acting.solids(frames)
         return [dressed(i, scene.result().with_body(body)) for i, body in zip(frames, bodies, strict=True)]
 
     with ThreadPoolExecutor(WORKERS) as pool:
