@@ -13,11 +13,13 @@ from typing import Final
 import numpy as np
 
 from motion_backend.motion import Skill
+from planner_service.composition.caption_senses import is_shown
 from planner_service.composition.deed_lexicon import Deed, deed_of, unshown
 from planner_service.composition.keyframe_writer import UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
 from planner_service.composition.request import RULES, Record, Request
 from planner_service.llm.protocol import LanguageModel, ModelError
+from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe, Retrieved, ShortScript
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import repair
@@ -115,9 +117,23 @@ def _with_reasons(
         known = index in shown or (index in writer.moody and one.beat.emotion in moods)
         why = "" if known else writer.why.get(index, UNSHOWN)
         kind = "feeling" if index in writer.moody else one.beat.kind
-        besides = unshown(one.clause) if known and kind == "deed" else ()
+        besides = _besides(index, one, writer, keyframes) if known else ()
         beats.append(one.beat.model_copy(update={"why": why, "kind": kind, "unshown": besides}))
     return tuple(beats)
+
+
+def _besides(
+    index: int, read: ReadBeat, writer: KeyframeWriter, keyframes: Sequence[PlannedKeyframe]
+) -> tuple[str, ...]:
+    """What an acted beat tells and no keyframe shows: all of it, where its keyframes only stand for it."""
+    if index in writer.moody:
+        return () if read.sure else (read.text,)
+    deed = writer.deeds.get(index)
+    own = [one for one in keyframes if index in (one.beat, *one.also)]
+    own = [one for one in own if not connects(one)] or own
+    if deed is not None and not is_shown(read.clause, deed, own):
+        return (read.text,)
+    return unshown(read.clause) if read.beat.kind == "deed" else ()
 
 
 @dataclass

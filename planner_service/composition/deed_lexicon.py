@@ -145,6 +145,11 @@ class Deed:
     named: bool
     """Whether the beat itself names the furniture."""
 
+    @property
+    def foreseen(self) -> bool:
+        """Whether the table has it: anything else was guessed by its things or its way."""
+        return self.row in deed_table().deed or bool(self.row.skill in NEEDS and self.skill is not Skill.TOUCH)
+
 
 def deed_of(clause: Clause, about: str = "") -> Deed | None:
     """The deed of a clause; None where nothing in its words is anything that a body does at home.
@@ -192,11 +197,17 @@ def _may_be_noun(lemma: str) -> bool:
     return is_noun(lemma) and lemma not in grammar().marks | grammar().numbers | {"one"}
 
 
+def object_of(clause: Clause) -> str:
+    """The first noun after a clause's verb, or ""."""
+    body = theme_words()["body"]
+    return next((lemma for lemma in clause.lemmas[1:] if lemma in body or _may_be_noun(lemma)), "")
+
+
 def _is_of_body(clause: Clause, row: DeedRow) -> bool:
     """Whether only a part of the body does it, or has it done to it: "his heart raced", "opens one eye"."""
     body = theme_words()["body"]
     races = row.skill is Skill.LOCO and not row.mood and bool(body & set(_lemmas(clause.subject)[-1:]))
-    noun = next((lemma for lemma in clause.lemmas[1:] if lemma in body or _may_be_noun(lemma)), "")
+    noun = object_of(clause)
     return races or (row.skill is Skill.TOUCH and row.things and noun in body and noun not in things())
 
 
@@ -271,7 +282,7 @@ def said_row(clause: Clause) -> DeedRow | None:
 
 def _said(clause: Clause) -> tuple[int, DeedRow] | None:
     """The same, with how many words its saying has."""
-    ways, starts = deed_table().ways, list(_starts(clause))
+    ways, starts = deed_table().ways, list(readings(clause))
     for anchored in (True, False):  # patterns that begin with a gap fit any verb, where no other does
         for lemmas in starts:
             fitting = [(pattern, row) for pattern, row in ways.get("".join(lemmas[:1]) if anchored else "", ())
@@ -282,7 +293,8 @@ def _said(clause: Clause) -> tuple[int, DeedRow] | None:
     return None
 
 
-def _starts(clause: Clause) -> Iterator[tuple[str, ...]]:
+def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
+    """A clause's words from its verb on, then from every later -ing on."""
     if clause.verb in theme_words()["speech_verbs"] and len(clause.lemmas) > 1:  # "says into the phone"
         yield ("talk", *clause.lemmas[1:])
     yield ("cannot", *clause.lemmas) if clause.unable else clause.lemmas

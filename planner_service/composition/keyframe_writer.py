@@ -78,6 +78,8 @@ class KeyframeWriter:
     keyframes: list[PlannedKeyframe] = field(default_factory=list)
     why: dict[int, str] = field(default_factory=dict)
     """Beats that are not acted, with the reason."""
+    deeds: dict[int, Deed] = field(default_factory=dict)
+    """What is done for beats that are acted as deeds."""
     moody: set[int] = field(default_factory=set)
     """Beats that a mood alone shows, in whatever is done in it."""
     parts: list[tuple[int, Part]] = field(default_factory=list)
@@ -100,6 +102,7 @@ class KeyframeWriter:
         elif deed is not None and deed.row.why:
             self.why[index] = deed.row.why
         elif deed is not None:
+            self.deeds[index] = deed
             if not (_wakes(read, deed) and self._stays(index, beats)):
                 self._do(index, read, deed)
         elif beat.kind == "feeling" or (read.felt is not None and read.sure):

@@ -93,6 +93,17 @@ def thought(beat: Beat, hero: str, voice: Voice) -> str | None:
     return " ".join([voice["they"], had, *words[:at], *done, *rest])
 
 
+def purpose(beat: Beat, hero: str, voice: Voice) -> str:
+    """A deed as what something else is done for: "to bake a cake"; empty where its grammar is not sure."""
+    told = event(beat, hero, voice)
+    words = told.text.split() if told else []
+    at = next((at for at, word in enumerate(words) if not _is_adverb(word)), 0)
+    base = next((base for base in sorted(told.verbs) if past(base) == words[at]), "") if told else ""
+    if not base or base in ("be", "can", "may", "will") or "and" in words or words[at + 1 : at + 2] == ["not"]:
+        return ""
+    return " ".join(["to", *words[:at], base, *words[at + 1 :]])
+
+
 def left_undone(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
     """What is not done, or only wished for, as a predicate; None where its words do not say so themselves."""
     told = event(beat, hero, voice)

@@ -128,11 +128,13 @@ class Phrase:
     """Whether it says that something is not done."""
     is_thought: bool = False
     """Whether it is only remembered, wished for or left undone."""
+    purpose: str = ""
+    """What it is done for and does not show: "to bake a cake"."""
 
     @property
     def whole(self) -> str:
-        """With its manner."""
-        return self.text + self.manner
+        """With its manner and its purpose."""
+        return self.text + self.manner + f" {self.purpose}" * bool(self.purpose)
 
     @property
     def rises(self) -> bool:

@@ -13,7 +13,7 @@ from itertools import groupby, pairwise
 from typing import Final
 
 from motion_backend.motion import Character, Skill
-from planner_service.narration.beat_clause import WAS, Predicate, event, left_undone, of_voice, thought
+from planner_service.narration.beat_clause import WAS, Predicate, event, left_undone, of_voice, purpose, thought
 from planner_service.narration.keyframe_phrases import RESTS, Phrase, Places, Variety, Wording
 from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.story_words import story_words, title_of
@@ -120,7 +120,7 @@ class _Teller:
             told = left_undone(beat, self.hero, self.voice)
         else:
             shown = beat.model_copy(update={"text": core_of(beat.text, beat.unshown)})
-            told = None if beat.why or beat.kind == "other" else event(shown, self.hero, self.voice)
+            told = None if beat.why or beat.stood_for or beat.kind == "other" else event(shown, self.hero, self.voice)
         if told is None:
             return []
         thought = beat.kind == "undone"
@@ -140,10 +140,25 @@ class _Teller:
             if beat.kind not in ("deed", "feeling", "speech") or beat.why or beat.who:
                 return [*self._unshown(number), *_begun(phrases)]
             self.told.add(number)
+            if beat.stood_for:
+                return _begun(self._standing_in(purpose(beat, self.hero, self.voice), phrases))
             beat = beat.model_copy(update={"text": core_of(beat.text, beat.unshown)})
             if told := event(beat, self.hero, self.voice):
                 return _begun(self._with_event(told, phrases))
         return _begun(phrases)
+
+    @staticmethod
+    def _standing_in(purpose: str, phrases: list[Phrase]) -> list[Phrase]:
+        """What the body does in place of a deed, and that it is for it; a way there needs no hand laid on anything.
+
+        What is danced or walked in place of a deed is for nothing: of that the deed is left out.
+        """
+        *before, last = phrases
+        purpose = "" if last.skill is Skill.LOCO else purpose
+        if purpose and last.skill is Skill.TOUCH and before and before[-1].leads:
+            last = replace(before[-1], keyframes=(*before.pop().keyframes, *last.keyframes), leads=False)
+        manner = "" if purpose else last.manner
+        return [*before, replace(last, purpose=purpose, manner=manner, ends=bool(purpose) or last.ends)]
 
     def _with_event(self, told: Predicate, phrases: list[Phrase]) -> list[Phrase]:
         """What happens and how the body does it; once, where a phrase says the same or was written for it."""
@@ -298,8 +313,9 @@ class _Writer:
                 self._say(f", {link} " if crowded else f" {link} ") if at == len(phrases) - 1 else self._say(", ")
             told = len(self.text)
             self._say(phrase.whole.replace(WAS, was), phrase.keyframes)
-            if phrase.is_thought:
-                self.thoughts.append(Span(told, len(self.text), ()))
+            if phrase.is_thought or phrase.purpose:
+                only = len(self.text) - len(phrase.purpose) if phrase.purpose else told
+                self.thoughts.append(Span(only, len(self.text), ()))
         self.text = f"{self.text[:start]}{self.text[start:][:1].upper()}{self.text[start + 1 :]}."
 
     def _say(self, words: str, keyframes: tuple[int, ...] = ()) -> None:
