@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import cache
+from typing import Final
 
 from motion_backend.motion import Skill
 from planner_service.composition.deed_lexicon import Deed, object_of, readings, says
@@ -11,6 +12,8 @@ from planner_service.scripts.script import Keyframe
 from planner_service.themes.protagonist import is_person
 from planner_service.themes.sentence_parser import Clause
 from scene_graphs.data_tables import read_table, table
+
+_POSTURES: Final = (Skill.SITDOWN, Skill.LIEDOWN, Skill.STANDUP, Skill.GETUP)
 
 
 @table
@@ -42,7 +45,7 @@ def senses(skill: Skill, caption: str) -> tuple[str, ...]:
 
 
 def shows(skill: Skill, caption: str, clause: Clause) -> bool:
-    """Whether a caption shows what a clause tells of."""
+    """Whether a caption shows what a clause tells of; hands do nothing of it to people."""
     if skill is Skill.TOUCH and is_person(object_of(clause)):
         return False
     ways = senses(skill, caption)
@@ -50,7 +53,7 @@ def shows(skill: Skill, caption: str, clause: Clause) -> bool:
 
 
 def is_shown(clause: Clause, deed: Deed, keyframes: Iterable[Keyframe]) -> bool:
-    """Whether some keyframe shows a clause's deed; a posture or way that its saying is, shows itself."""
-    if deed.foreseen and not deed.row.captions and deed.skill is not Skill.TOUCH:
+    """Whether some keyframe shows a clause's deed; a posture that its saying is, shows itself."""
+    if deed.foreseen and not deed.row.captions and deed.skill in _POSTURES:
         return True
     return any(shows(one.skill, one.caption, clause) for one in keyframes)

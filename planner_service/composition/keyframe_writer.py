@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 
 from motion_backend.motion import Emotion, Skill
+from planner_service.composition.caption_senses import shows
 from planner_service.composition.deed_lexicon import (
     Deed,
     DeedRow,
@@ -32,6 +33,7 @@ from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScrip
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import ReadBeat
 from planner_service.themes.protagonist import names_somebody
+from planner_service.themes.sentence_parser import Clause
 from scene_graphs import furniture
 
 NOT_ACTED: Final = {
@@ -88,6 +90,8 @@ class KeyframeWriter:
     _avoided: set[Skill] = field(default_factory=set)
     _about: str = ""
     """The words that named furniture last."""
+    _clause: Clause | None = None
+    """Of which deed it is written."""
     _plain: bool = False
     """Whether the posture shows nothing yet but that one rests."""
 
@@ -149,6 +153,7 @@ class KeyframeWriter:
 
     def _do(self, index: int, read: ReadBeat, deed: Deed) -> None:
         mood = read.beat.emotion
+        self._clause = read.clause
         if deed.row.rests and _ON_FEET.search(read.text) and (stands := standing_at(read.clause)):
             deed = Deed(_TAKEN, Skill.TOUCH, stands, True)
         elif deed.row.rests and (deed.skill in self._avoided or _ON_FEET.search(read.text)):
@@ -174,9 +179,12 @@ class KeyframeWriter:
                 self._rest(index, read, deed, mood, deed.skill, shown)
 
     def _goes_on(self, read: ReadBeat, deed: Deed) -> bool:
-        """Whether it is done where one rests, and shows no more: "sits in the dark, listening"."""
+        """Whether it is done where one rests, and shows no more: "sits in the dark, listening"; nobody gets up for what
+        would only stand for it."""
         beside = read.clause.joint in ("ing", ",") and read.clause.text.split()[0].endswith("ing")
-        return beside and self._resting is not None and deed.row.captions == _STANDING.captions and not deed.named
+        stands_in = bool(deed.row.captions) and not any(shows(Skill.LOCO, one, read.clause) for one in deed.row.captions)
+        rests = self._resting is not None and not deed.named and not deed.row.seated
+        return rests and (stands_in or (beside and deed.row.captions == _STANDING.captions))
 
     def _stays(self, index: int, beats: Sequence[ReadBeat]) -> bool:
         """Whether who wakes at a beat goes on lying, or gets up only at the next deed: then it is shown lying."""
@@ -395,7 +403,8 @@ class KeyframeWriter:
 
     def _one_of(self, captions: Sequence[str], mood: Emotion, index: int, skill: Skill) -> str:
         """One caption by the seed, of those that the library uses in the mood if there are some."""
-        options = fitting(captions, skill, mood)
+        told = [one for one in captions if self._clause is not None and shows(skill, one, self._clause)]
+        options = fitting(told or captions, skill, mood)
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
 
 

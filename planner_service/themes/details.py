@@ -42,6 +42,9 @@ def core_of(text: str, details: Sequence[str]) -> str:
 def _starts(tokens: Sequence[Token], at: int) -> bool:
     """Whether a detail begins there: at a leading word, or at a deed beside."""
     low, before = tokens[at].low, tokens[at - 1]
+    after = tokens[at + 1].low if at + 1 < len(tokens) else ""
+    if low == "to" and verb_of(after) == after and not is_noun(after):
+        return True  # "opens the door | to greet her guests"
     beside = low.endswith("ing") and bool(verb_of(low)) and not is_noun(low) and is_noun(before.low)
     return low in _LEADS or (beside and not is_adjective(before.low) and before.low not in grammar().prepositions)
 

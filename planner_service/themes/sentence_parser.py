@@ -187,9 +187,17 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
     besides = [
         # It tells how somebody is or where, and is nothing that anybody does.
         Clause(_text(piece.source, some), "", "", _lemmas(some), ",", aside=True, sentence=sentence)
-        for some in besides_of(tokens[:place], subject, before)
+        for some in (*besides_of(tokens[:place], subject, before), *_of_subject(tokens[:place], subject))
     ]
     return [*besides, _placed(parts[0], before, piece.source), *parts[1:], *again, *asides]
+
+
+def _of_subject(lead: Sequence[Token], subject: str) -> list[list[Token]]:
+    """What a subject tells of who it is after its noun: "somebody | with a bad back", "a nurse | after a night shift"."""
+    own = [token for token in lead if token.text in subject.split()][-len(subject.split()) :]
+    leads = grammar().prepositions - {"of", "like"}
+    start = next((at for at, token in enumerate(own) if at and token.low in leads), len(own))
+    return [own[start:]] if len(own) - start > 1 else []
 
 
 def _without_opening(tokens: Sequence[Token]) -> list[Token]:
