@@ -182,7 +182,9 @@ class KeyframeWriter:
         """Whether it is done where one rests, and shows no more: "sits in the dark, listening"; nobody gets up for what
         would only stand for it."""
         beside = read.clause.joint in ("ing", ",") and read.clause.text.split()[0].endswith("ing")
-        stands_in = bool(deed.row.captions) and not any(shows(Skill.LOCO, one, read.clause) for one in deed.row.captions)
+        stands_in = bool(deed.row.captions) and not any(
+            shows(Skill.LOCO, one, read.clause) for one in deed.row.captions
+        )
         rests = self._resting is not None and not deed.named and not deed.row.seated
         return rests and (stands_in or (beside and deed.row.captions == _STANDING.captions))
 

@@ -193,7 +193,7 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
 
 
 def _of_subject(lead: Sequence[Token], subject: str) -> list[list[Token]]:
-    """What a subject tells of who it is after its noun: "somebody | with a bad back", "a nurse | after a night shift"."""
+    """What a subject tells of who it is after its noun: "somebody | with a bad back"."""
     own = [token for token in lead if token.text in subject.split()][-len(subject.split()) :]
     leads = grammar().prepositions - {"of", "like"}
     start = next((at for at, token in enumerate(own) if at and token.low in leads), len(own))
