@@ -1,4 +1,4 @@
-"""Whether a keyframe shows a deed, or only stands for it: by what its caption really is, from data/caption_senses.toml."""
+"""Whether a keyframe shows a deed or only stands for it: by what its caption is, from data/caption_senses.toml."""
 
 from __future__ import annotations
 

@@ -36,16 +36,7 @@ def besides_of(tokens: Sequence[Token], subject: str, before: Sequence[Token]) -
     parted = tokens[tokens.index(opening) : comma] if opening else ()  # "the baker, | up since two, wipes"
     taken = {*before, *(tokens[at : at + len(own)] or parted)}
     stretches = groupby(tokens, lambda token: token.text[0] not in ",«" and token not in taken)
-    told = [words for is_told, some in stretches if is_told and _tells_something(words := list(some))]
-    first = next(iter(tokens[at:]), None)
-    return [words for words in told if not _only_marks(words, first)]
-
-
-def _only_marks(words: Sequence[Token], subject: Token | None) -> bool:
-    """Whether words only stand before a subject as part of it: "old" before "Mr. Finch"."""
-    known = grammar()
-    small = all(token.low in known.marks | known.numbers or is_adjective(token.low) for token in words)
-    return subject is not None and small and words[-1].end + 1 == subject.start
+    return [words for is_told, some in stretches if is_told and _tells_something(words := list(some))]
 
 
 def _tells_something(words: Sequence[Token]) -> bool:

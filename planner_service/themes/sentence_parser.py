@@ -24,8 +24,7 @@ from planner_service.themes.asides import (
 )
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, verb_of
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
-from planner_service.themes.theme_words import theme_words
-from planner_service.themes.verb_finder import Token, is_adverb, verb_place
+from planner_service.themes.verb_finder import Token, verb_place
 from planner_service.themes.verb_group import is_past, verb_group
 
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
@@ -92,7 +91,7 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
         for piece in (pieces := pieces_of(sentence)):
             parts = _clause(piece, quotes, number)
             parts = _sharing(_main(told[-1]), parts) if told else parts
-            own = _main(parts).subject or (_next_subject(pieces, piece) if not told else "")
+            own = _main(parts).subject
             own = doer if own.lower() in RELATIVES and doer else own
             told.append(
                 [replace(part, doer=part.subject if part.aside else own or doer, place=len(told)) for part in parts]
@@ -101,14 +100,6 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
                 doer = own or doer
         found += [part for place in in_time(pieces) for part in told[place]]
     return tuple(found)
-
-
-def _next_subject(pieces: Sequence[Piece], piece: Piece) -> str:
-    """Who does what opens a sentence without a subject: "before going to bed, she brushes her teeth"."""
-    if piece.joint not in grammar().earlier | grammar().with_gerund | {"before", "until", "while", "when"}:
-        return ""
-    mains = (_main(_clause(other, (), 0)) for other in pieces)
-    return next((main.subject for main in mains if main.subject), "")
 
 
 def _main(parts: Sequence[Clause]) -> Clause:
@@ -164,7 +155,7 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
         return [Clause(piece.text, "", "", _lemmas(tokens), piece.joint, quotes=told, sentence=sentence)]
     place -= 2 * ([token.low for token in tokens[max(place - 2, 0) : place]] == ["no", "longer"])
     subject = _subject([token for token in tokens[:place] if not token.text.startswith("«")])
-    if (not subject and tokens[0].text.startswith("«")) or (not place and _is_inverted(tokens)):
+    if not subject and tokens[0].text.startswith("«"):
         subject = _inverted(tokens[place + 1 :])
         tokens = [*tokens[: place + 1], *tokens[place + 1 + len(subject.split()) :]]
     words = _denials(tokens[:place], subject) + tokens[place:]
@@ -183,7 +174,7 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
     first, words, again = _again(first, words, group.place, piece.source)
     parts = [first] if group.denied and not group.unable else _parted(first, words, group.place, piece.source)
     asides = [replace(one, sentence=sentence) for some in told_of for one in _aside(some, words, piece.source)]
-    before = () if first.quotes else (*_before(tokens[:place], subject), *_manner(tokens[:place], subject))
+    before = () if first.quotes else _before(tokens[:place], subject)
     besides = [
         # It tells how somebody is or where, and is nothing that anybody does.
         Clause(_text(piece.source, some), "", "", _lemmas(some), ",", aside=True, sentence=sentence)
@@ -194,6 +185,8 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
 
 def _of_subject(lead: Sequence[Token], subject: str) -> list[list[Token]]:
     """What a subject tells of who it is after its noun: "somebody | with a bad back"."""
+    if any(token.text == "," for token in lead):
+        return []  # it is told besides
     own = [token for token in lead if token.text in subject.split()][-len(subject.split()) :]
     leads = grammar().prepositions - {"of", "like"}
     start = next((at for at, token in enumerate(own) if at and token.low in leads), len(own))
@@ -238,31 +231,13 @@ def _again(clause: Clause, words: list[Token], main: int, source: str) -> tuple[
     ]  # fmt: skip
 
 
-def _manner(lead: Sequence[Token], subject: str) -> list[Token]:
-    """Adverbs between a subject and its verb that tell how: "quietly"."""
-    told = (token for token in lead if token.low.endswith("ly") and token.low not in grammar().adverbs)
-    return [token for token in told if subject and is_adverb(token.low)]
-
-
 def _aside(words: list[Token], main: Sequence[Token], source: str) -> list[Clause]:
     """What is told of a noun of the main clause: it happened before or elsewhere, and somebody may have done it."""
     head = words[1:] if words[0].low in RELATIVES else words
     place = verb_place(head) or 0
-    subject = _subject(head[:place]) or (words[0].text if place else _last_noun(main))
+    subject = _subject(head[:place]) or (words[0].text if place else main[-1].text)
     lemmas = _lemmas(head[place:])
     return [Clause(_text(source, words), subject, lemmas[0] if lemmas else "", lemmas, "that", aside=True)]
-
-
-def _last_noun(words: Sequence[Token]) -> str:
-    """The noun at the end of words, with its mark: "the door"."""
-    start = next((at for at in range(len(words) - 1, 0, -1) if words[at].low in grammar().marks), len(words) - 1)
-    return " ".join(token.text for token in words[start:])
-
-
-def _is_inverted(words: Sequence[Token]) -> bool:
-    """Whether a clause only says who thinks or says what stands beside it: "…, thinks Paloma"."""
-    verbs = theme_words()["speech_verbs"] | theme_words()["thought_verbs"]
-    return lemma_of(words[0].low) in verbs and 2 <= len(words) <= 3 and _inverted(words[1:]) != ""
 
 
 def _inverted(after: Sequence[Token]) -> str:
@@ -350,8 +325,6 @@ def _subject(tokens: Sequence[Token]) -> str:
         words.pop()
     if words and words[-1].lower() in grammar().subjects:
         return words[-1]
-    while len(words) > 1 and words[-2].lower() not in grammar().marks and _only_describes(words[-1]):
-        words.pop()  # "Daniel, unshaven, …"
     if words and words[0].lower() == "to":
         return ""
     if words and (
@@ -388,10 +361,6 @@ def _describes(words: Sequence[str]) -> bool:
     others = [word for word in words[1:] if word.lower() not in small]
     names = any(is_noun(word.lower()) or word[:1].isupper() or word.lower() in grammar().subjects for word in others)
     return is_adjective(low) and not is_noun(low) and not names
-
-
-def _only_describes(word: str) -> bool:
-    return word[:1].islower() and is_adjective(word) and not is_noun(word)
 
 
 def _starts_subject(words: Sequence[str], place: int) -> bool:

@@ -117,9 +117,6 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
     while at >= 0 and is_adverb(tokens[at].low):
         at -= 1
     if at < 0 or tokens[at].text == ",":
-        later = {token.low for token in tokens[place + 1 :]}
-        if word == base and is_noun(word) and not later.isdisjoint(_NOMINATIVES):
-            return False  # "inch by inch he …"
         if at >= 0 and word == base != past(base):
             return False  # nobody is told to do things
         return _opens(word, base, tokens[place + 1].low if place + 1 < len(tokens) else "")
@@ -130,8 +127,6 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
         return True
     if before == "to":
         return word == base and base not in grammar().not_verbs_after_to
-    if before in grammar().numbers and at and tokens[at - 1].low == "of":
-        return is_third_person(word)  # "a boy of six hides"
     if before in grammar().marks | grammar().numbers:
         return False
     if word.endswith("ing"):
@@ -156,39 +151,17 @@ def _opens(word: str, base: str, after: str) -> bool:
 def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
     """Whether a word acts as the verb of the noun that stands before it, at `at`."""
     word, before = tokens[place].low, tokens[at].low
-    after = tokens[place + 1] if place + 1 < len(tokens) else None
-    beside = tokens[place].start == tokens[at].end + 1
-    if beside and is_adjective(before) and not is_noun(before) and is_noun(word):
+    after = tokens[place + 1].low if place + 1 < len(tokens) else ""
+    if is_adjective(before) and not is_noun(before) and is_noun(word):
         return False
     if is_adjective(word) and before in grammar().be | _SEEMS:
         return False
-    if base in ("name", "call") and word != base and after is not None and after.text[:1].isupper():
-        return False  # "a teacher named Edith"
-    opens_noun = tokens[0].low in grammar().marks | grammar().numbers
-    if before.endswith("ing") and not is_noun(before) and opens_noun and at <= 1:
-        return False  # "some jumping jacks"
-    opened = tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word)
-    if opened and not _has_own_mark(tokens, at):
+    if tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word):
         return False  # "under the sofa cushions"
     if word == base:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
-        ends = after is None or after.low in grammar().prepositions | {",", "and"}
-        acts = not is_noun(word) or _has_object(after) or (ends and tokens[0].low in grammar().marks and at <= 2)
-        return (past(base) == base and named) or (is_plural(before) and acts)
-    if is_noun(word) and word.endswith("s"):
-        follower = after.low if after is not None else ""
-        return _goes_on(follower) or is_adjective(follower) or is_noun(follower)
-    return True
-
-
-def _has_own_mark(tokens: Sequence[Token], at: int) -> bool:
-    """Whether the noun there begins anew with its own mark: "by lamplight | an archivist", not "under the sofa"."""
-    mark = next((place for place in range(at, 0, -1) if tokens[place].low in grammar().marks), 0)
-    return mark > 1 and tokens[mark - 1].low not in grammar().prepositions | grammar().marks
-
-
-def _has_object(after: Token | None) -> bool:
-    return after is not None and after.low in grammar().marks
+        return (past(base) == base and named) or (is_plural(before) and (not is_noun(word) or after in grammar().marks))
+    return not (is_noun(word) and word.endswith("s")) or _goes_on(after) or is_adjective(after) or is_noun(after)
 
 
 def _goes_on(after: str) -> bool:
