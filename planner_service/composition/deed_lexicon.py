@@ -43,35 +43,12 @@ _INTO: Final = re.compile(
 """A way into furniture or out of it, of the body itself and of no thing."""
 _STATES: Final = frozenset(("be", "have", "become", "need", "like", "love", "hate", "know", "miss", "own", "do", "let"))
 _EXPRESSED: Final = frozenset(EXPRESSIONS)
-_REFERS: Final = frozenset(("it", "them"))
 _MAX_FRAGMENT: Final = 4
 """Words of a sentence without a verb that may stand for a deed."""
 _NOT_NOW: Final = frozenset(("before", "after", "until", "since", "during", "without", "no", "not", "never", "nothing"))
 """Words before what is not done, or not yet."""
 _LIGHT_VERBS: Final = ("do", "have", "take", "play")
 """Verbs that a noun alone stands for: "dinner", "a nap", "yoga"."""
-_SMALL: Final = frozenset(
-    (
-        "with",
-        "the",
-        "on",
-        "of",
-        "in",
-        "at",
-        "to",
-        "a",
-        "and",
-        "while",
-        "body",
-        "for",
-        "both",
-        "left",
-        "right",
-        "hand",
-        "height",
-    )
-)
-"""Words of captions that say nothing of what is done."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
 Pattern = tuple[frozenset[str], ...]
 """Base forms of each word; an empty set is a gap."""
@@ -164,7 +141,8 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     named = _named(clause, about)
     skill = found.skill
     need = NEEDS.get(skill)
-    if skill is Skill.SITDOWN and not found.rests and any(_is_bed(piece) for piece in named) and clause.verb != "sit":
+    in_bed = any(furniture.group_of(piece) == "bed" for piece in named)
+    if skill is Skill.SITDOWN and not found.rests and in_bed and clause.verb != "sit":
         skill, need = Skill.LIEDOWN, "lie"
     seated = any(affords(piece, "sit") or piece in deed_table().seats_at for piece in named) and not any(
         affords(piece, "lie") for piece in named
@@ -238,17 +216,8 @@ def _deed_of_fragment(clause: Clause) -> Deed | None:
 def unshown(clause: Clause) -> tuple[str, ...]:
     """What a clause tells besides its deed, and neither furniture nor the deed's own saying has: "for her ladyship"."""
     row = said_row(clause)
-    known = _words_of(row.says) if row is not None else frozenset[str]()
-    return tuple(
-        text for text in details_of(clause) if not pieces_in(text) and known.isdisjoint(word for word in _lemmas(text))
-    )
-
-
-@cache
-def _words_of(sayings: tuple[str, ...]) -> frozenset[str]:
-    """Base forms of the longer words of a row's sayings."""
-    words = re.findall(r"[a-z]{4,}", " ".join(sayings))
-    return frozenset(form for word in words for form in _forms(word))
+    known = frozenset(re.findall(r"[a-z]{4,}", " ".join(row.says))) if row else frozenset[str]()
+    return tuple(text for text in details_of(clause) if not pieces_in(text) and known.isdisjoint(_lemmas(text)))
 
 
 def _named(clause: Clause, about: str) -> list[str]:
@@ -257,21 +226,10 @@ def _named(clause: Clause, about: str) -> list[str]:
 
 
 def row_of(clause: Clause, about: str) -> DeedRow | None:
-    """The row that a clause's words say, with what "it" means in place of it where that says more; else by its
-    things."""
+    """The row that a clause's words say, else by its things."""
     if clause.verb and re.search(r"^\w+ \w+sel(?:f|ves)\b", clause.text) and (row := _moved(clause)):
         return row
-    meant = _meant(clause, about)
-    return (said_row(meant) if meant != clause else None) or said_row(clause) or _by_things(clause, about)
-
-
-def _meant(clause: Clause, about: str) -> Clause:
-    """A clause with the thing that was named last in place of "it" and "them"."""
-    known = things()
-    noun = next((word for word in reversed(_lemmas(about)) if word in known), "") if about else ""
-    if not noun or _REFERS.isdisjoint(clause.lemmas[1:]):
-        return clause
-    return replace(clause, lemmas=(clause.verb, *(noun if one in _REFERS else one for one in clause.lemmas[1:])))
+    return said_row(clause) or _by_things(clause, about)
 
 
 def said_row(clause: Clause) -> DeedRow | None:
@@ -382,20 +340,6 @@ def _fits(pattern: Pattern, lemmas: Sequence[str]) -> bool:
     return bool(lemmas) and lemmas[0] in first and _fits(rest, lemmas[1:])
 
 
-def described(clause: Clause, skill: Skill) -> tuple[str, ...]:
-    """The caption of a skill that a clause has all words of, two at least: "runs about, her arms wide open"."""
-    words = {*clause.lemmas, *_lemmas(clause.text)}
-    fitting = [(len(tells), caption) for caption, tells in _captions_told(skill) if tells <= words]
-    return (max(fitting)[1],) if fitting else ()
-
-
-@cache
-def _captions_told(skill: Skill) -> tuple[tuple[str, frozenset[str]], ...]:
-    """Captions with the base forms of those of their words that tell something, where these are two or more."""
-    told = ((caption, frozenset(_lemmas(caption)) - _SMALL) for caption in captions()[skill.value])
-    return tuple((caption, words) for caption, words in told if len(words) > 1)
-
-
 def says(ways: Iterable[str], lemmas: Sequence[str]) -> bool:
     """Whether words say what one of some patterns says."""
     return any(_fits(_pattern(way), lemmas) for way in ways)
@@ -434,10 +378,6 @@ def _names(words: Sequence[str], size: int) -> bool:
     if len(words) < size or not furniture.is_known(whole):
         return False
     return size == 1 or furniture.canonical(whole) != furniture.canonical(" ".join(words[1:]))
-
-
-def _is_bed(piece: str) -> bool:
-    return furniture.group_of(piece) == "bed"
 
 
 def room_of(clause: Clause) -> str | None:

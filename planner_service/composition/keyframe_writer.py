@@ -21,13 +21,12 @@ from planner_service.composition.deed_lexicon import (
     DeedRow,
     deed_of,
     deed_table,
-    described,
     names_things,
     room_of,
     standing_at,
     where,
 )
-from planner_service.composition.mood_captions import captions_of, fitting, manner_of, walk_of
+from planner_service.composition.mood_captions import captions_of, fitting, walk_of
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
 from planner_service.scripts.script_words import NEEDS, affords
@@ -107,8 +106,7 @@ class KeyframeWriter:
             self.why[index] = deed.row.why
         elif deed is not None:
             self.deeds[index] = deed
-            if not (_wakes(read, deed) and self._stays(index, beats)):
-                self._do(index, read, deed)
+            self._do(index, read, deed)
         elif beat.kind == "feeling" or (read.felt is not None and read.sure):
             self._feel(index, beats)
         else:
@@ -188,23 +186,6 @@ class KeyframeWriter:
         rests = self._resting is not None and not deed.named and not deed.row.seated
         return rests and (stands_in or (beside and deed.row.captions == _STANDING.captions))
 
-    def _stays(self, index: int, beats: Sequence[ReadBeat]) -> bool:
-        """Whether who wakes at a beat goes on lying, or gets up only at the next deed: then it is shown lying."""
-        deeds = (deed_of(later.clause) for later in beats[index + 1 :] if later.beat.kind == "deed")
-        following = next((deed for deed in deeds if deed is not None and not deed.row.why), None)
-        if following is None or following.skill not in (Skill.LIEDOWN, Skill.GETUP):
-            return False
-        if self._lies():
-            self._show(index)
-        elif self._resting is None and not self.keyframes and self._has("bed"):
-            mood = beats[index].beat.emotion
-            caption = self._one_of(captions_of(Skill.LIEDOWN, mood), mood, index, Skill.LIEDOWN)
-            self._put(index, Skill.LIEDOWN, mood, caption, "bed", None)
-            self._resting, self._plain = self.keyframes[-1], True
-        else:
-            return False
-        return True
-
     def _lies(self) -> bool:
         return self._resting is not None and self._resting.skill is Skill.LIEDOWN
 
@@ -214,7 +195,6 @@ class KeyframeWriter:
         """Sit or lie: where one rests already if that does, with the caption of what is done there."""
         resting = self._resting
         here = resting is not None and self._same_place(resting, deed, skill)
-        captions = described(read.clause, skill) or captions
         shown = captions or captions_of(skill, mood)
         if resting is not None and here and resting.skill is skill:
             generic = deed.row.rests or deed.row.captions
@@ -242,8 +222,7 @@ class KeyframeWriter:
     def _rise(self, index: int, deed: Deed, mood: Emotion) -> None:
         """Get up; who does so first of all was lying or sitting before."""
         if self._resting is None:
-            last = self.keyframes[-1] if self.keyframes else None
-            if last is not None and (last.skill in (Skill.STANDUP, Skill.GETUP) or self._has_risen()):
+            if self.keyframes and self.keyframes[-1].skill in (Skill.STANDUP, Skill.GETUP):
                 self._show(index)
                 return
             skill, usually = (Skill.LIEDOWN, "bed") if deed.skill is Skill.GETUP else (Skill.SITDOWN, "chair")
@@ -262,14 +241,8 @@ class KeyframeWriter:
         self._put(index, skill, mood, usual(skill, mood, pace), resting.furniture, resting.room)
         self._resting = None
 
-    def _has_risen(self) -> bool:
-        """Whether a seat was left for what was touched last: "pushes the plate away and gets up"."""
-        last = [keyframe.skill for keyframe in self.keyframes[-2:]]
-        return len(last) == 2 and last[0] in (Skill.SITDOWN, Skill.LIEDOWN) and last[1] is Skill.TOUCH
-
     def _walk(self, index: int, read: ReadBeat, deed: Deed, mood: Emotion) -> None:
-        captions = described(read.clause, Skill.LOCO) or deed.row.captions or manner_of(read)
-        captions = captions or captions_of(Skill.LOCO, mood)
+        captions = deed.row.captions or captions_of(Skill.LOCO, mood)
         caption = self._one_of(captions, mood, index, Skill.LOCO)
         last = self.keyframes[-1] if self.keyframes else None
         piece = next((one for one in deed.pieces if self._has(one)), "floor")
@@ -408,8 +381,3 @@ class KeyframeWriter:
         told = [one for one in captions if self._clause is not None and shows(skill, one, self._clause)]
         options = fitting(told or captions, skill, mood)
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
-
-
-def _wakes(read: ReadBeat, deed: Deed) -> bool:
-    """Whether somebody wakes, who may lie a while longer."""
-    return deed.skill is Skill.GETUP and read.clause.verb in ("wake", "awake", "awaken", "stir", "rouse")

@@ -127,7 +127,7 @@ def _whole(pieces: list[Piece]) -> list[Piece]:
             piece = replace(piece, joint=joint, tokens=(*waiting.tokens, *mark, *piece.tokens))
             waiting = None
         beside = bool(whole) and len(piece.tokens) == 1 and _goes_beside(piece)  # "answers, pacing"
-        acts = (beside or verb_place(piece.tokens) is not None)
+        acts = beside or verb_place(piece.tokens) is not None
         if acts or (whole and not led and _is_loose(whole[-1], piece, pieces[place + 1 :])):
             whole.append(piece)
         elif whole and not (led or _leads(whole[-1], piece, pieces[place + 1 :])):
@@ -148,9 +148,7 @@ def _is_loose(last: Piece, piece: Piece, after: Sequence[Piece]) -> bool:
     listed = any(one.joint in ("and", "or", "plus") for one in after[:run])
     verb = verb_place(last.tokens)
     own = next((token.low for token in reversed(last.tokens[(verb or 0) + 1 :]) if token.low in known.marks), "")
-    return (
-        not listed and verb is not None and first != own and not _leads(last, piece, after)
-    )
+    return not listed and verb is not None and first != own and not _leads(last, piece, after)
 
 
 def _comma(piece: Piece) -> tuple[Token, ...]:
