@@ -49,9 +49,9 @@ EXPRESSIONS: Final = {
     verb: mood
     for mood, verbs in {
         Emotion.HAPPY: "laugh smile grin giggle chuckle beam sing hum whistle rejoice whoop",
-        Emotion.ANGRY: "yell scream curse growl scowl snarl shout rant grumble",
+        Emotion.ANGRY: "yell scream curse growl scowl snarl shout rant grumble hate detest resent despise",
         Emotion.SAD: "sigh frown sniffle",
-        Emotion.STRESSED: "tremble shake sweat panic flinch shudder gasp",
+        Emotion.STRESSED: "tremble shake sweat panic flinch shudder gasp dread fear worry",
         Emotion.TIRED: "yawn",
         Emotion.DRUNK: "hiccup",
     }.items()
