@@ -272,9 +272,8 @@ def _by_things(clause: Clause, about: str) -> DeedRow | None:
         return row
     if not clause.verb or clause.verb in _STATES:
         return None
-    if any(affords(piece, "touch") for piece in _named(clause, "" if "them" in clause.lemmas else about)) or (
-        _kept(clause, about) and _is_done_to_things(clause)
-    ):
+    named = _named(clause, "" if "them" in clause.lemmas else about)
+    if any(affords(piece, "touch") for piece in named) or _kept(clause, about):
         return DeedRow((clause.verb,), Skill.TOUCH, things=True)
     return DeedRow((clause.verb,), Skill.LOCO) if _WAYS.search(clause.text) else None
 
@@ -290,13 +289,6 @@ def _moved(clause: Clause) -> DeedRow | None:
     if found[1] in ("out of", "from", "off"):
         return DeedRow((clause.verb,), Skill.GETUP if lies else Skill.STANDUP)
     return DeedRow((clause.verb,), Skill.LIEDOWN if lies else Skill.SITDOWN)
-
-
-def _is_done_to_things(clause: Clause) -> bool:
-    """Whether the first noun after a verb, or what "it" means, is a thing: not in "calls her cousin, a bag in hand"."""
-    known = things()
-    first = next((word for word in clause.lemmas[1:] if word in known or word in _IT or _may_be_noun(word)), "")
-    return first in known or first in _IT or bool(_AT.search(clause.text))
 
 
 def _kept(clause: Clause, about: str) -> tuple[str, ...]:

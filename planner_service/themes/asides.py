@@ -9,7 +9,6 @@ from typing import Final
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_third_person, lemma_of, verb_of
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import Token, verb_place
-from scene_graphs.furniture import is_known
 
 THAT: Final = frozenset(("that", "how", "what", "why", "if", "whether", "which", "who"))
 """What joins a clause that is an object: "finds that he won"."""
@@ -66,38 +65,6 @@ def without_asides(words: list[Token], main: int) -> tuple[list[Token], list[lis
             cut = place - 2 * (words[place - 1].low in MANNER and words[place - 2].low in grammar().marks)
             return words[:cut], [words[place:]]
     return words, []
-
-
-def listed_places(words: list[Token], main: int) -> tuple[list[Token], list[list[Token]]]:
-    """The words of a clause up to its first place, and further places where the same is done: "looks under the bed, |
-    behind the sofa | and in the oven"; but "sits on the sofa, next to the lamp" is one place."""
-    known, cuts = grammar(), list[int]()
-    links = {",", "and", "or", "then"}
-    for at in range(main + 2, len(words) - 1):
-        opens = words[at - 1].low in links and words[at].low in known.prepositions
-        first = any(
-            _names_place(words[start:at]) for start in range(main + 1, at) if words[start].low in known.prepositions
-        )
-        end = next((place for place in range(at + 1, len(words)) if words[place].low in links), len(words))
-        stays = words[at - 1].low != "then" and lemma_of(words[main].low) in _STAYS
-        if opens and first and not stays and _names_place(words[at:end]):
-            cuts.append(at)
-    if not cuts:
-        return words, []
-    stretches = [words[start:end] for start, end in zip([0, *cuts], [*cuts, len(words)], strict=True)]
-    bare = [_unlinked(some, links) for some in stretches]
-    return bare[0], bare[1:]
-
-
-def _names_place(words: Sequence[Token]) -> bool:
-    """Whether a stretch that a preposition opens ends with furniture: "behind the old sofa"."""
-    return 1 < len(words) <= 5 and any(is_known(token.low) for token in words[1:])
-
-
-def _unlinked(words: list[Token], links: set[str]) -> list[Token]:
-    while words and words[-1].low in links:
-        words = words[:-1]
-    return words
 
 
 def _sensed(words: Sequence[Token], main: int) -> int:

@@ -19,13 +19,12 @@ from planner_service.themes.asides import (
     OWNERS,
     RELATIVES,
     besides_of,
-    listed_places,
     without_asides,
 )
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, verb_of
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
 from planner_service.themes.verb_finder import Token, verb_place
-from planner_service.themes.verb_group import is_past, verb_group
+from planner_service.themes.verb_group import verb_group
 
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
 _PLAIN: Final = re.compile(r"[A-Za-z ,'’-]+[.!?]?\s*")
@@ -59,8 +58,6 @@ class Clause:
     """Whether it is not done since it cannot be: "cannot sleep"."""
     perfect: bool = False
     """Whether it had been done before."""
-    past: bool | None = None
-    """Whether it is told in the simple past, and not in the present; None where its verb does not tell."""
     aside: bool = False
     """Whether it is only spoken of: of a noun ("the letter she had hidden"), or supposed ("if he calls")."""
     quotes: tuple[str, ...] = ()
@@ -167,11 +164,10 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
     lemmas = _lemmas(words[group.place :])
     first = Clause(
         _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, piece.joint,
-        denied=group.denied or hindered, unable=group.unable, perfect=group.perfect, past=is_past(words, group),
+        denied=group.denied or hindered, unable=group.unable, perfect=group.perfect,
         aside=piece.joint in _SUPPOSING or piece.tokens[0].low in ("if", "though"),
         quotes=_quotes(tokens, quotes), sentence=sentence,
     )  # fmt: skip
-    first, words, again = _again(first, words, group.place, piece.source)
     parts = [first] if group.denied and not group.unable else _parted(first, words, group.place, piece.source)
     asides = [replace(one, sentence=sentence) for some in told_of for one in _aside(some, words, piece.source)]
     before = () if first.quotes else _before(tokens[:place], subject)
@@ -180,7 +176,7 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
         Clause(_text(piece.source, some), "", "", _lemmas(some), ",", aside=True, sentence=sentence)
         for some in (*besides_of(tokens[:place], subject, before), *_of_subject(tokens[:place], subject))
     ]
-    return [*besides, _placed(parts[0], before, piece.source), *parts[1:], *again, *asides]
+    return [*besides, _placed(parts[0], before, piece.source), *parts[1:], *asides]
 
 
 def _of_subject(lead: Sequence[Token], subject: str) -> list[list[Token]]:
@@ -214,21 +210,6 @@ def _is_hindered(joint: str, lead: Sequence[Token], verb: Token) -> bool:
     """Whether something keeps one from a deed: "too proud | to ask", "before he could drink it"."""
     too = len(lead) > 2 and lead[-1].low == "to" and any(token.low == "too" for token in lead)
     return too or (joint in ("before", "until") and verb.low in ("can", "could"))
-
-
-def _again(clause: Clause, words: list[Token], main: int, source: str) -> tuple[Clause, list[Token], list[Clause]]:
-    """A clause up to its first place, its words, and the same deed at each further place that it lists."""
-    words, places = listed_places(words, main)
-    if not places:
-        return clause, words, []
-    lemmas = _lemmas(words[main:])
-    first = replace(clause, text=_text(source, words), lemmas=lemmas)
-    told = [token.low for token in words[main:]]
-    stop = next((at for at, low in enumerate(told) if at and low in grammar().prepositions), len(told))
-    again = replace(first, subject="", joint=",", quotes=())
-    return first, words, [
-        replace(again, text=_text(source, some), lemmas=(*lemmas[:stop], *_lemmas(some))) for some in places
-    ]  # fmt: skip
 
 
 def _aside(words: list[Token], main: Sequence[Token], source: str) -> list[Clause]:

@@ -128,7 +128,7 @@ def _whole(pieces: list[Piece]) -> list[Piece]:
             waiting = None
         beside = bool(whole) and len(piece.tokens) == 1 and _goes_beside(piece)  # "answers, pacing"
         acts = beside or verb_place(piece.tokens) is not None
-        if acts or (whole and not led and _is_loose(whole[-1], piece, pieces[place + 1 :])):
+        if acts:
             whole.append(piece)
         elif whole and not (led or _leads(whole[-1], piece, pieces[place + 1 :])):
             mark = _comma(whole[-1]) if piece.tokens[0].low in grammar().prepositions else ()
@@ -136,19 +136,6 @@ def _whole(pieces: list[Piece]) -> list[Piece]:
         else:
             waiting = piece
     return [*whole, waiting] if waiting is not None else whole
-
-
-def _is_loose(last: Piece, piece: Piece, after: Sequence[Piece]) -> bool:
-    """Whether words without a verb are told beside a clause and are no part of it: "sinks into the armchair, | a glass
-    in his hand", but "eats a plum, a pear and cheese"."""
-    known, first = grammar(), piece.tokens[0].low
-    if piece.joint != "," or first in known.prepositions | known.adverbs | known.joints or len(piece.tokens) < 2:
-        return False
-    run = next((at for at, one in enumerate(after) if verb_place(one.tokens) is not None), len(after))
-    listed = any(one.joint in ("and", "or", "plus") for one in after[:run])
-    verb = verb_place(last.tokens)
-    own = next((token.low for token in reversed(last.tokens[(verb or 0) + 1 :]) if token.low in known.marks), "")
-    return not listed and verb is not None and first != own and not _leads(last, piece, after)
 
 
 def _comma(piece: Piece) -> tuple[Token, ...]:
@@ -181,8 +168,6 @@ def in_time(pieces: Sequence[Piece]) -> list[int]:
                 ordered.append(place)
             else:
                 ordered.insert(len(ordered) - 1, place)
-        elif place - 1 in ordered[:-1] and _goes_beside(piece):  # "switches it on after she has sat there, | listening"
-            ordered.insert(ordered.index(place - 1) + 1, place)
         else:
             ordered.append(place)
     if later:
