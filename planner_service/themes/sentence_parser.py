@@ -156,8 +156,6 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
         subject = _inverted(tokens[place + 1 :])
         tokens = [*tokens[: place + 1], *tokens[place + 1 + len(subject.split()) :]]
     words = _denials(tokens[:place], subject) + tokens[place:]
-    if words[0].low in grammar().adverbs - grammar().denials and len(words) > 1:
-        words = words[1:]
     group = verb_group(words)
     hindered = _is_hindered(piece.joint, tokens[:place], words[0])
     words, told_of = without_asides(words, group.place)
@@ -253,7 +251,7 @@ def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> l
         return [clause]
     for place in range(main + 1, len(words)):
         gerund = _is_beside(words[place].low, words[place - 1].low)
-        purpose = words[place - 1].low == "to" and _is_purpose(clause, words, place)
+        purpose = words[place - 1].low == "to" and _is_purpose(words, place)
         if gerund or purpose:
             stop = place - 1 if purpose else place
             if stop <= main:
@@ -275,53 +273,36 @@ def _is_beside(word: str, before: str) -> bool:
     return before not in (grammar().marks - {"to"}) | (grammar().prepositions - _PARTICLES)
 
 
-def _is_purpose(clause: Clause, words: Sequence[Token], place: int) -> bool:
+def _is_purpose(words: Sequence[Token], place: int) -> bool:
     """Whether a word after "to" is a second deed ("to drink a glass") and not where one goes ("from room to room")."""
-    low = words[place].low
+    low, after = words[place].low, words[place + 1].low if place + 1 < len(words) else ""
     if verb_of(low) != low or low in grammar().not_verbs_after_to:
         return False
-    if not is_noun(low):
-        return True
-    if place + 1 == len(words):
-        return clause.verb in ("sit", "lie", "stop", "stay", "settle", "kneel")
-    after = words[place + 1].low
-    return (
-        after in grammar().marks | grammar().prepositions - {"and"}
-        or after in ("him", "them", "me", "himself", "herself")
-        or is_noun(after)
-    )
+    return not is_noun(low) or is_noun(after) or after in grammar().marks | grammar().prepositions
 
 
 def _subject(tokens: Sequence[Token]) -> str:
     """Who does it, of the words before the verb: those after the last comma-like stretch of time or place."""
     parts = [list(part) for is_mark, part in groupby(tokens, lambda token: token.text == ",") if not is_mark]
-    if len(parts) > 1:  # "the baker, up since two, …", "one evening, Anna, tired, …"
-        last = next((at for at in reversed(range(len(parts))) if _may_act(parts[at])), 0)
-        named = next((at for at, part in enumerate(parts) if len(part) == 1 and _is_called([part[0].text])), last)
-        if named < last and parts[last][0].low in ARTICLES:  # "Mira, the tidy one, …"
-            parts, last = [parts[named]], 0
-        tokens = [token for part in parts[last:] for token in part]
-    words = [token.text for token in tokens if token.text != ","]
+    last = next((at for at in reversed(range(len(parts))) if _may_act(parts[at])), 0)  # "the baker, up since two, …"
+    named = next((at for at, part in enumerate(parts) if len(part) == 1 and _is_called([part[0].text])), last)
+    if named < last and parts[last][0].low in ARTICLES:  # "Mira, the tidy one, …"
+        return parts[named][0].text
+    words = [token.text for part in parts[last:] for token in part]
     while words and (words[-1].lower() in grammar().adverbs or words[-1].lower().endswith("ly")):
         words.pop()
     if words and words[-1].lower() in grammar().subjects:
         return words[-1]
-    if words and words[0].lower() == "to":
-        return ""
-    if words and (
-        _describes(words) or all(word.lower() in MANNER | grammar().times | grammar().marks | {"one"} for word in words)
-    ):
+    if words and (words[0].lower() == "to" or _describes(words)):
         return ""
     while words and (words[0].lower() in grammar().adverbs or words[0].lower() in grammar().joints):
         words.pop(0)
     if words and words[0].lower() in grammar().prepositions:  # "in the kitchen Anna …"
         starts = [place for place in range(2, len(words)) if _starts_subject(words, place)]
         return " ".join(words[starts[-1] :]) if starts else next((one for one in words[1:] if one[:1].isupper()), "")
-    timed = bool(words) and (words[0][:1].islower() or words[0] in ("One", "Every", "Each", "That", "This"))
     starts = [place for place in range(1, len(words)) if _starts_subject(words, place)]
-    starts = [place for place in starts if (timed and words[place].islower()) or _is_called(words[place:])]
-    words = words[starts[-1] :] if starts else words  # "after dinner Jonas …", "that night the man …"
-    return " ".join(words)
+    starts = [place for place in starts if words[place].islower() or _is_called(words[place:])]
+    return " ".join(words[starts[-1] :] if starts else words)  # "that night | the man …"
 
 
 def _may_act(words: Sequence[Token]) -> bool:
@@ -336,12 +317,13 @@ def _may_act(words: Sequence[Token]) -> bool:
 
 
 def _describes(words: Sequence[str]) -> bool:
-    """Whether words say how somebody is and name nobody: "Angry at himself for"."""
-    low = words[0].lower()
-    small = grammar().prepositions | grammar().adverbs | {"himself", "herself", "themselves", "myself"}
-    others = [word for word in words[1:] if word.lower() not in small]
-    names = any(is_noun(word.lower()) or word[:1].isupper() or word.lower() in grammar().subjects for word in others)
-    return is_adjective(low) and not is_noun(low) and not names
+    """Whether words say how somebody is, or when, and name nobody: "Angry at himself for", "one evening"."""
+    low = [word.lower() for word in words]
+    times = MANNER | grammar().times | grammar().marks | {"one"}
+    names = any(is_noun(word) or word in grammar().subjects for word in low[1:]) or any(
+        one[:1].isupper() for one in words[1:]
+    )
+    return all(word in times for word in low) or (is_adjective(low[0]) and not is_noun(low[0]) and not names)
 
 
 def _starts_subject(words: Sequence[str], place: int) -> bool:
