@@ -81,7 +81,21 @@ def verb_of(word: str) -> str:
     low = word.lower()
     if low in grammar().never_verbs:
         return ""
-    return _IRREGULAR.get(low) or next(iter(kinds_of(low).get("VERB", ())), "") or _more_forms().get(low, "")
+    known = _IRREGULAR.get(low) or next(iter(kinds_of(low).get("VERB", ())), "") or _more_forms().get(low, "")
+    return known or (_guessed_verb(word) if word == low else "")
+
+
+_INFLECTED: Final = re.compile(r"[a-z]{3,}(?:[^s]s|ed|ing)")
+
+
+@cache
+def _guessed_verb(word: str) -> str:
+    """The base form of a word that no dictionary has, if it may be an inflected verb: facetimes → facetime."""
+    from lemminflect import getAllLemmasOOV
+
+    if not _INFLECTED.fullmatch(word) or kinds_of(word):
+        return ""
+    return next(iter(getAllLemmasOOV(word, upos="VERB").get("VERB", ())), "")
 
 
 _DOUBLED: Final = re.compile(r"[^aeiou][aeiou][bdgmnpt]$")

@@ -45,6 +45,7 @@ def small(*scripts: ShortScript) -> ScriptLibrary:
 def test_the_forms_of_a_word_are_one_word() -> None:
     assert stems("She drinks") == stems("she drank")
     assert stems("Running children") == stems("runs, child")
+    assert stems("recieves zxqv") == ["recieve", "zxqv"]
 
 
 def test_the_text_with_the_rarest_shared_word_is_first_and_an_unshared_one_gets_nothing() -> None:
