@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from motion_backend.motion import Skill
+from motion_backend.motion import Emotion, Skill
 from planner_service.composition.caption_senses import is_shown
 from planner_service.composition.deed_lexicon import Deed, deed_of, unshown
 from planner_service.composition.keyframe_writer import UNSHOWN, KeyframeWriter, Part
@@ -24,12 +24,14 @@ from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe, Re
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import repair
 from planner_service.scripts.script_search import rank
-from planner_service.themes.beats import LANGUAGE, ReadBeat, ThemeError, beats_of, clean, read_beat
+from planner_service.themes.beats import EXPRESSIONS, LANGUAGE, ReadBeat, ThemeError, beats_of, clean, read_beat
 from scene_graphs import furniture
 from scene_graphs.furniture import canonical_room
 
 _OFFERED: Final = 6
 """Short scripts that are looked at for a beat."""
+_EXPRESSED: Final = (Emotion.HAPPY, Emotion.ANGRY, Emotion.SAD)
+"""Moods whose laughing, shouting and sighing a body's bearing shows; it does not sweat or yawn."""
 _MIN_SCORE: Final = 0.3
 """How well a short script must answer a beat for a part of it to be taken."""
 
@@ -127,13 +129,14 @@ def _besides(
 ) -> tuple[str, ...]:
     """What an acted beat tells and no keyframe shows: all of it, where its keyframes only stand for it."""
     if index in writer.moody:
-        return () if read.sure else (read.text,)
+        seen = read.clause.verb not in EXPRESSIONS or read.beat.emotion in _EXPRESSED
+        return () if read.sure and seen else (read.text,)
     deed = writer.deeds.get(index)
     own = [one for one in keyframes if index in (one.beat, *one.also)]
     own = [one for one in own if not connects(one)] or own
     if deed is not None and not is_shown(read.clause, deed, own):
         return (read.text,)
-    return unshown(read.clause) if read.beat.kind == "deed" else ()
+    return unshown(read.clause, {one.piece[0] for one in own}) if read.beat.kind == "deed" else ()
 
 
 @dataclass

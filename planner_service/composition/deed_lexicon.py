@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from typing import Final
@@ -213,11 +213,15 @@ def _deed_of_fragment(clause: Clause) -> Deed | None:
     return None
 
 
-def unshown(clause: Clause) -> tuple[str, ...]:
-    """What a clause tells besides its deed, and neither furniture nor the deed's own saying has: "for her ladyship"."""
+def unshown(clause: Clause, used: Collection[str]) -> tuple[str, ...]:
+    """What a clause tells besides its deed, and neither the furniture that is used nor the deed's own saying has: "for
+    her ladyship"."""
     row = said_row(clause)
     known = frozenset(re.findall(r"[a-z]{4,}", " ".join(row.says))) if row else frozenset[str]()
-    return tuple(text for text in details_of(clause) if not pieces_in(text) and known.isdisjoint(_lemmas(text)))
+    return tuple(
+        text for text in details_of(clause)
+        if known.isdisjoint(_lemmas(text)) and not (pieces_in(text) and set(used).issuperset(pieces_in(text)))
+    )  # fmt: skip
 
 
 def _named(clause: Clause, about: str) -> list[str]:
