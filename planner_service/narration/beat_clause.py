@@ -66,7 +66,7 @@ def purpose(beat: Beat, hero: str, voice: Voice) -> str:
     words = told.text.split() if told else []
     at = next((at for at, word in enumerate(words) if not _is_adverb(word)), 0)
     base = next((base for base in sorted(told.verbs) if past(base) == words[at]), "") if told else ""
-    if not base or base in ("be", "can", "may", "will") or "and" in words or words[at + 1 : at + 2] == ["not"]:
+    if not base or base in ("be", "can", "have", "may", "will") or "and" in words or words[at + 1 : at + 2] == ["not"]:
         return ""
     return " ".join(["to", *words[:at], base, *words[at + 1 :]])
 

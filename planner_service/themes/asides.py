@@ -8,11 +8,12 @@ from typing import Final
 
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_third_person, lemma_of, verb_of
 from planner_service.themes.theme_words import theme_words
-from planner_service.themes.verb_finder import Token, verb_place
+from planner_service.themes.verb_finder import Token, next_verb, verb_place
 
 THAT: Final = frozenset(("that", "how", "what", "why", "if", "whether", "which", "who"))
 """What joins a clause that is an object: "finds that he won"."""
 RELATIVES: Final = frozenset(("that", "which", "who"))
+_TELLING: Final = RELATIVES | {"whom", "whose"}
 MANNER: Final = frozenset(("way", "time", "moment", "minute", "day", "night", "morning", "year"))
 """Nouns that say no more than how or when what is told of them was: "the way he was taught"."""
 _SENSES: Final = frozenset(("hear", "see", "watch", "listen", "feel", "notice", "let", "overhear"))
@@ -65,6 +66,17 @@ def without_asides(words: list[Token], main: int) -> tuple[list[Token], list[lis
             cut = place - 2 * (words[place - 1].low in MANNER and words[place - 2].low in grammar().marks)
             return words[:cut], [words[place:]]
     return words, []
+
+
+def without_relative(tokens: list[Token]) -> tuple[list[Token], list[Token]]:
+    """The words of a clause, and those that tell of its subject with a verb of their own: "a man | who lives alone |
+    reads"."""
+    start = next((at for at, token in enumerate(tokens) if at and token.low in _TELLING), 0)
+    if not start or verb_place(tokens[:start]) is not None:
+        return tokens, []
+    verb = verb_place(tokens[start + 1 :])
+    end = None if verb is None else next_verb(tokens, start + 1 + verb)
+    return (tokens, []) if end is None else ([*tokens[:start], *tokens[end:]], tokens[start:end])
 
 
 def _sensed(words: Sequence[Token], main: int) -> int:

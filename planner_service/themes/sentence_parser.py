@@ -20,6 +20,7 @@ from planner_service.themes.asides import (
     RELATIVES,
     besides_of,
     without_asides,
+    without_relative,
 )
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, verb_of
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
@@ -145,7 +146,7 @@ def _segmenter() -> Any:
 
 def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
     """The clauses of a piece: what is told before its subject, its own, second deeds without a joint, and asides."""
-    tokens = _without_opening(piece.tokens)
+    tokens, relative = without_relative(_without_opening(piece.tokens))
     place = verb_place(tokens)
     if place is None:
         told = _quotes(tokens, quotes)
@@ -168,6 +169,8 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
     )  # fmt: skip
     parts = [first] if group.denied and not group.unable else _parted(first, words, group.place, piece.source)
     asides = [replace(one, sentence=sentence) for some in told_of for one in _aside(some, words, piece.source)]
+    if relative:
+        asides += [replace(one, sentence=sentence) for one in _aside(relative, tokens[:place], piece.source)]
     before = () if first.quotes else _before(tokens[:place], subject)
     besides = [
         # It tells how somebody is or where, and is nothing that anybody does.

@@ -36,6 +36,7 @@ _LONG: Final = (
 _SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|had|have|should)nt\b")
 
 
+_SEVERAL: Final = frozenset(("couple", "family", "pair", "people", "police", "team"))
 _SEEMS: Final = frozenset(("feels", "felt", "seems", "looks", "gets", "becomes"))
 """Verbs after which an adjective stands, besides the forms of be."""
 _PARTICLES: Final = frozenset(("up", "down", "out", "off", "away", "back"))
@@ -92,15 +93,33 @@ def verb_place(tokens: Sequence[Token]) -> int | None:
     return None
 
 
+def next_verb(tokens: Sequence[Token], before: int) -> int | None:
+    """Where the next finite verb stands after one that stands at `before`, and after what that helps."""
+    known = grammar()
+    objects: list[int] = []
+    no_verb_after = known.auxiliaries | known.denials | known.marks | known.prepositions | known.numbers
+    for place in range(before + 1, len(tokens)):
+        low, last = tokens[place].low, tokens[place - 1].low
+        base = verb_of(low)
+        finite = low in known.auxiliaries or (
+            bool(base) and (is_third_person(low) or (low == past(base) and _acts(tokens, place)))
+        )
+        if finite and not (last in no_verb_after or (is_adverb(last) and place == before + 2)):
+            if place > before + 1 or not is_noun(low):
+                return place
+            objects.append(place)  # "who loves books | reads", but "whose dog died | cries"
+    return next(iter(objects), None)
+
+
 def has_verb(text: str) -> bool:
     """Whether some word of the text acts as a verb."""
     return verb_place(tokens_of(plain(text))) is not None
 
 
 def is_plural(word: str) -> bool:
-    """Whether a word may be the plural of a noun."""
+    """Whether a word may be the plural of a noun, or mean several people."""
     nouns = kinds_of(word).get("NOUN", ())
-    return bool(nouns) and word not in nouns
+    return (bool(nouns) and word not in nouns) or word in _SEVERAL
 
 
 def is_adverb(word: str) -> bool:

@@ -91,6 +91,9 @@ def test_no_word_of_any_text_is_read_twice(text: str) -> None:
         # what is told beside
         ("Barefoot, her hair wet, Anna walks in.", ["Barefoot", "her hair wet", "walks in"]),
         ("One evening Mr. Finch reads.", ["reads"]),
+        ("A man who has lost his job sits down.", ["sits down", "who has lost his job"]),
+        ("The one who stayed in with a cold watches a film.", ["watches a film", "who stayed in with a cold"]),
+        ("Someone with a bad back lies down.", ["with a bad back", "lies down"]),
         ("He sits on the sofa, next to the lamp.", ["sits on the sofa, next to the lamp"]),
         ("While it boils, Tom, in his apron, dances.", ["it boils", "in his apron", "dances"]),
         ("“Come here!” her brother says.", ["says"]),
