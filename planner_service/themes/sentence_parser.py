@@ -59,6 +59,8 @@ class Clause:
     """Whether it is not done since it cannot be: "cannot sleep"."""
     perfect: bool = False
     """Whether it had been done before."""
+    absolute: bool = False
+    """Whether its verb has no tense, though it says who does it: "coffee going cold beside him"."""
     aside: bool = False
     """Whether it is only spoken of: of a noun ("the letter she had hidden"), or supposed ("if he calls")."""
     quotes: tuple[str, ...] = ()
@@ -94,7 +96,10 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
             told.append(
                 [replace(part, doer=part.subject if part.aside else own or doer, place=len(told)) for part in parts]
             )
-            if not doer or not is_led(piece.joint, ()):  # who does what "because guests are coming" is not the guests
+            beside = (
+                is_led(piece.joint, ()) or _main(parts).absolute
+            )  # "because guests are coming", "the coffee going cold"
+            if not doer or not beside:
                 doer = own or doer
         found += [part for place in in_time(pieces) for part in told[place]]
     return tuple(found)
@@ -164,6 +169,7 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
     first = Clause(
         _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, piece.joint,
         denied=group.denied or hindered, unable=group.unable, perfect=group.perfect,
+        absolute=bool(subject) and words[0].low.endswith("ing"),
         aside=piece.joint in _SUPPOSING or piece.tokens[0].low in ("if", "though"),
         quotes=_quotes(tokens, quotes), sentence=sentence,
     )  # fmt: skip
