@@ -37,12 +37,6 @@ _AS: Final = re.compile(
 )
 
 
-_OPENS: Final = re.compile(
-    r"^\W*(?:an?|the|my|our)\s+(?:[\w-]+\s+){0,3}?(?:boy|girl|child|kid|man|woman)\s+of\s+[\w-]+", re.IGNORECASE
-)
-"""Who opens a theme with their years, which may hide the verb behind them: "a girl of six plays"."""
-
-
 class CharacterError(UserError):
     """A character that nobody can be; the text names the field and what would be right."""
 
@@ -186,8 +180,7 @@ def _outfit(theme: str, read: Mapping[str, str], age: str, pronouns: str, member
 def description_of(theme: str, character: Character) -> str:
     """The words of a theme that describe whom it is about."""
     hero = hero_of(clauses_of_text(theme))
-    opening = _OPENS.search(theme)
-    found = [hero or (opening[0] if opening else "")]
+    found = [hero]
     subjects = {
         character.name,
         "he" if character.pronouns == "he" else "she" if character.pronouns == "she" else "they",
