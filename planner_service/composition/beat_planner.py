@@ -12,22 +12,26 @@ from typing import Final
 
 import numpy as np
 
-from motion_backend.motion import Skill
+from motion_backend.motion import Emotion, Skill
+from planner_service.composition.caption_senses import is_shown
 from planner_service.composition.deed_lexicon import Deed, deed_of, unshown
 from planner_service.composition.keyframe_writer import UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
 from planner_service.composition.request import RULES, Record, Request
 from planner_service.llm.protocol import LanguageModel, ModelError
+from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe, Retrieved, ShortScript
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import repair
 from planner_service.scripts.script_search import rank
-from planner_service.themes.beats import LANGUAGE, ReadBeat, ThemeError, beats_of, clean, read_beat
+from planner_service.themes.beats import EXPRESSIONS, LANGUAGE, ReadBeat, ThemeError, beats_of, clean, read_beat
 from scene_graphs import furniture
 from scene_graphs.furniture import canonical_room
 
 _OFFERED: Final = 6
 """Short scripts that are looked at for a beat."""
+_EXPRESSED: Final = (Emotion.HAPPY, Emotion.ANGRY, Emotion.SAD)
+"""Moods whose laughing, shouting and sighing a body's bearing shows; it does not sweat or yawn."""
 _MIN_SCORE: Final = 0.3
 """How well a short script must answer a beat for a part of it to be taken."""
 
@@ -115,9 +119,24 @@ def _with_reasons(
         known = index in shown or (index in writer.moody and one.beat.emotion in moods)
         why = "" if known else writer.why.get(index, UNSHOWN)
         kind = "feeling" if index in writer.moody else one.beat.kind
-        besides = unshown(one.clause) if known and kind == "deed" else ()
+        besides = _besides(index, one, writer, keyframes) if known else ()
         beats.append(one.beat.model_copy(update={"why": why, "kind": kind, "unshown": besides}))
     return tuple(beats)
+
+
+def _besides(
+    index: int, read: ReadBeat, writer: KeyframeWriter, keyframes: Sequence[PlannedKeyframe]
+) -> tuple[str, ...]:
+    """What an acted beat tells and no keyframe shows: all of it, where its keyframes only stand for it."""
+    if index in writer.moody:
+        seen = read.clause.verb not in EXPRESSIONS or read.beat.emotion in _EXPRESSED
+        return () if read.sure and seen else (read.text,)
+    deed = writer.deeds.get(index)
+    own = [one for one in keyframes if index in (one.beat, *one.also)]
+    own = [one for one in own if not connects(one)] or own
+    if deed is not None and not is_shown(read.clause, deed, own):
+        return (read.text,)
+    return unshown(read.clause, {one.piece[0] for one in own}) if read.beat.kind == "deed" else ()
 
 
 @dataclass

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from typing import Final
@@ -43,35 +43,12 @@ _INTO: Final = re.compile(
 """A way into furniture or out of it, of the body itself and of no thing."""
 _STATES: Final = frozenset(("be", "have", "become", "need", "like", "love", "hate", "know", "miss", "own", "do", "let"))
 _EXPRESSED: Final = frozenset(EXPRESSIONS)
-_REFERS: Final = frozenset(("it", "them"))
 _MAX_FRAGMENT: Final = 4
 """Words of a sentence without a verb that may stand for a deed."""
 _NOT_NOW: Final = frozenset(("before", "after", "until", "since", "during", "without", "no", "not", "never", "nothing"))
 """Words before what is not done, or not yet."""
 _LIGHT_VERBS: Final = ("do", "have", "take", "play")
 """Verbs that a noun alone stands for: "dinner", "a nap", "yoga"."""
-_SMALL: Final = frozenset(
-    (
-        "with",
-        "the",
-        "on",
-        "of",
-        "in",
-        "at",
-        "to",
-        "a",
-        "and",
-        "while",
-        "body",
-        "for",
-        "both",
-        "left",
-        "right",
-        "hand",
-        "height",
-    )
-)
-"""Words of captions that say nothing of what is done."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
 Pattern = tuple[frozenset[str], ...]
 """Base forms of each word; an empty set is a gap."""
@@ -145,6 +122,11 @@ class Deed:
     named: bool
     """Whether the beat itself names the furniture."""
 
+    @property
+    def foreseen(self) -> bool:
+        """Whether the table has it: anything else was guessed by its things or its way."""
+        return self.row in deed_table().deed or bool(self.row.skill in NEEDS and self.skill is not Skill.TOUCH)
+
 
 def deed_of(clause: Clause, about: str = "") -> Deed | None:
     """The deed of a clause; None where nothing in its words is anything that a body does at home.
@@ -159,7 +141,8 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     named = _named(clause, about)
     skill = found.skill
     need = NEEDS.get(skill)
-    if skill is Skill.SITDOWN and not found.rests and any(_is_bed(piece) for piece in named) and clause.verb != "sit":
+    in_bed = any(furniture.group_of(piece) == "bed" for piece in named)
+    if skill is Skill.SITDOWN and not found.rests and in_bed and clause.verb != "sit":
         skill, need = Skill.LIEDOWN, "lie"
     seated = any(affords(piece, "sit") or piece in deed_table().seats_at for piece in named) and not any(
         affords(piece, "lie") for piece in named
@@ -192,11 +175,17 @@ def _may_be_noun(lemma: str) -> bool:
     return is_noun(lemma) and lemma not in grammar().marks | grammar().numbers | {"one"}
 
 
+def object_of(clause: Clause) -> str:
+    """The first noun after a clause's verb, or ""."""
+    body = theme_words()["body"]
+    return next((lemma for lemma in clause.lemmas[1:] if lemma in body or _may_be_noun(lemma)), "")
+
+
 def _is_of_body(clause: Clause, row: DeedRow) -> bool:
     """Whether only a part of the body does it, or has it done to it: "his heart raced", "opens one eye"."""
     body = theme_words()["body"]
     races = row.skill is Skill.LOCO and not row.mood and bool(body & set(_lemmas(clause.subject)[-1:]))
-    noun = next((lemma for lemma in clause.lemmas[1:] if lemma in body or _may_be_noun(lemma)), "")
+    noun = object_of(clause)
     return races or (row.skill is Skill.TOUCH and row.things and noun in body and noun not in things())
 
 
@@ -224,20 +213,15 @@ def _deed_of_fragment(clause: Clause) -> Deed | None:
     return None
 
 
-def unshown(clause: Clause) -> tuple[str, ...]:
-    """What a clause tells besides its deed, and neither furniture nor the deed's own saying has: "for her ladyship"."""
+def unshown(clause: Clause, used: Collection[str]) -> tuple[str, ...]:
+    """What a clause tells besides its deed, and neither the furniture that is used nor the deed's own saying has: "for
+    her ladyship"."""
     row = said_row(clause)
-    known = _words_of(row.says) if row is not None else frozenset[str]()
+    known = frozenset(re.findall(r"[a-z]{4,}", " ".join(row.says))) if row else frozenset[str]()
     return tuple(
-        text for text in details_of(clause) if not pieces_in(text) and known.isdisjoint(word for word in _lemmas(text))
-    )
-
-
-@cache
-def _words_of(sayings: tuple[str, ...]) -> frozenset[str]:
-    """Base forms of the longer words of a row's sayings."""
-    words = re.findall(r"[a-z]{4,}", " ".join(sayings))
-    return frozenset(form for word in words for form in _forms(word))
+        text for text in details_of(clause)
+        if known.isdisjoint(_lemmas(text)) and not (pieces_in(text) and set(used).issuperset(pieces_in(text)))
+    )  # fmt: skip
 
 
 def _named(clause: Clause, about: str) -> list[str]:
@@ -246,21 +230,10 @@ def _named(clause: Clause, about: str) -> list[str]:
 
 
 def row_of(clause: Clause, about: str) -> DeedRow | None:
-    """The row that a clause's words say, with what "it" means in place of it where that says more; else by its
-    things."""
+    """The row that a clause's words say, else by its things."""
     if clause.verb and re.search(r"^\w+ \w+sel(?:f|ves)\b", clause.text) and (row := _moved(clause)):
         return row
-    meant = _meant(clause, about)
-    return (said_row(meant) if meant != clause else None) or said_row(clause) or _by_things(clause, about)
-
-
-def _meant(clause: Clause, about: str) -> Clause:
-    """A clause with the thing that was named last in place of "it" and "them"."""
-    known = things()
-    noun = next((word for word in reversed(_lemmas(about)) if word in known), "") if about else ""
-    if not noun or _REFERS.isdisjoint(clause.lemmas[1:]):
-        return clause
-    return replace(clause, lemmas=(clause.verb, *(noun if one in _REFERS else one for one in clause.lemmas[1:])))
+    return said_row(clause) or _by_things(clause, about)
 
 
 def said_row(clause: Clause) -> DeedRow | None:
@@ -271,7 +244,7 @@ def said_row(clause: Clause) -> DeedRow | None:
 
 def _said(clause: Clause) -> tuple[int, DeedRow] | None:
     """The same, with how many words its saying has."""
-    ways, starts = deed_table().ways, list(_starts(clause))
+    ways, starts = deed_table().ways, list(readings(clause))
     for anchored in (True, False):  # patterns that begin with a gap fit any verb, where no other does
         for lemmas in starts:
             fitting = [(pattern, row) for pattern, row in ways.get("".join(lemmas[:1]) if anchored else "", ())
@@ -282,7 +255,8 @@ def _said(clause: Clause) -> tuple[int, DeedRow] | None:
     return None
 
 
-def _starts(clause: Clause) -> Iterator[tuple[str, ...]]:
+def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
+    """A clause's words from its verb on, then from every later -ing on."""
     if clause.verb in theme_words()["speech_verbs"] and len(clause.lemmas) > 1:  # "says into the phone"
         yield ("talk", *clause.lemmas[1:])
     yield ("cannot", *clause.lemmas) if clause.unable else clause.lemmas
@@ -302,9 +276,8 @@ def _by_things(clause: Clause, about: str) -> DeedRow | None:
         return row
     if not clause.verb or clause.verb in _STATES:
         return None
-    if any(affords(piece, "touch") for piece in _named(clause, "" if "them" in clause.lemmas else about)) or (
-        _kept(clause, about) and _is_done_to_things(clause)
-    ):
+    named = _named(clause, "" if "them" in clause.lemmas else about)
+    if any(affords(piece, "touch") for piece in named) or _kept(clause, about):
         return DeedRow((clause.verb,), Skill.TOUCH, things=True)
     return DeedRow((clause.verb,), Skill.LOCO) if _WAYS.search(clause.text) else None
 
@@ -320,13 +293,6 @@ def _moved(clause: Clause) -> DeedRow | None:
     if found[1] in ("out of", "from", "off"):
         return DeedRow((clause.verb,), Skill.GETUP if lies else Skill.STANDUP)
     return DeedRow((clause.verb,), Skill.LIEDOWN if lies else Skill.SITDOWN)
-
-
-def _is_done_to_things(clause: Clause) -> bool:
-    """Whether the first noun after a verb, or what "it" means, is a thing: not in "calls her cousin, a bag in hand"."""
-    known = things()
-    first = next((word for word in clause.lemmas[1:] if word in known or word in _IT or _may_be_noun(word)), "")
-    return first in known or first in _IT or bool(_AT.search(clause.text))
 
 
 def _kept(clause: Clause, about: str) -> tuple[str, ...]:
@@ -370,20 +336,6 @@ def _fits(pattern: Pattern, lemmas: Sequence[str]) -> bool:
     return bool(lemmas) and lemmas[0] in first and _fits(rest, lemmas[1:])
 
 
-def described(clause: Clause, skill: Skill) -> tuple[str, ...]:
-    """The caption of a skill that a clause has all words of, two at least: "runs about, her arms wide open"."""
-    words = {*clause.lemmas, *_lemmas(clause.text)}
-    fitting = [(len(tells), caption) for caption, tells in _captions_told(skill) if tells <= words]
-    return (max(fitting)[1],) if fitting else ()
-
-
-@cache
-def _captions_told(skill: Skill) -> tuple[tuple[str, frozenset[str]], ...]:
-    """Captions with the base forms of those of their words that tell something, where these are two or more."""
-    told = ((caption, frozenset(_lemmas(caption)) - _SMALL) for caption in captions()[skill.value])
-    return tuple((caption, words) for caption, words in told if len(words) > 1)
-
-
 def says(ways: Iterable[str], lemmas: Sequence[str]) -> bool:
     """Whether words say what one of some patterns says."""
     return any(_fits(_pattern(way), lemmas) for way in ways)
@@ -422,10 +374,6 @@ def _names(words: Sequence[str], size: int) -> bool:
     if len(words) < size or not furniture.is_known(whole):
         return False
     return size == 1 or furniture.canonical(whole) != furniture.canonical(" ".join(words[1:]))
-
-
-def _is_bed(piece: str) -> bool:
-    return furniture.group_of(piece) == "bed"
 
 
 def room_of(clause: Clause) -> str | None:

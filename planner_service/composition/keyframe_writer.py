@@ -15,23 +15,24 @@ from typing import Final
 import numpy as np
 
 from motion_backend.motion import Emotion, Skill
+from planner_service.composition.caption_senses import shows
 from planner_service.composition.deed_lexicon import (
     Deed,
     DeedRow,
     deed_of,
     deed_table,
-    described,
     names_things,
     room_of,
     standing_at,
     where,
 )
-from planner_service.composition.mood_captions import captions_of, fitting, manner_of, walk_of
+from planner_service.composition.mood_captions import captions_of, fitting, walk_of
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import ReadBeat
 from planner_service.themes.protagonist import names_somebody
+from planner_service.themes.sentence_parser import Clause
 from scene_graphs import furniture
 
 NOT_ACTED: Final = {
@@ -78,6 +79,8 @@ class KeyframeWriter:
     keyframes: list[PlannedKeyframe] = field(default_factory=list)
     why: dict[int, str] = field(default_factory=dict)
     """Beats that are not acted, with the reason."""
+    deeds: dict[int, Deed] = field(default_factory=dict)
+    """What is done for beats that are acted as deeds."""
     moody: set[int] = field(default_factory=set)
     """Beats that a mood alone shows, in whatever is done in it."""
     parts: list[tuple[int, Part]] = field(default_factory=list)
@@ -86,6 +89,8 @@ class KeyframeWriter:
     _avoided: set[Skill] = field(default_factory=set)
     _about: str = ""
     """The words that named furniture last."""
+    _clause: Clause | None = None
+    """Of which deed it is written."""
     _plain: bool = False
     """Whether the posture shows nothing yet but that one rests."""
 
@@ -100,8 +105,8 @@ class KeyframeWriter:
         elif deed is not None and deed.row.why:
             self.why[index] = deed.row.why
         elif deed is not None:
-            if not (_wakes(read, deed) and self._stays(index, beats)):
-                self._do(index, read, deed)
+            self.deeds[index] = deed
+            self._do(index, read, deed)
         elif beat.kind == "feeling" or (read.felt is not None and read.sure):
             self._feel(index, beats)
         else:
@@ -146,6 +151,7 @@ class KeyframeWriter:
 
     def _do(self, index: int, read: ReadBeat, deed: Deed) -> None:
         mood = read.beat.emotion
+        self._clause = read.clause
         if deed.row.rests and _ON_FEET.search(read.text) and (stands := standing_at(read.clause)):
             deed = Deed(_TAKEN, Skill.TOUCH, stands, True)
         elif deed.row.rests and (deed.skill in self._avoided or _ON_FEET.search(read.text)):
@@ -171,26 +177,14 @@ class KeyframeWriter:
                 self._rest(index, read, deed, mood, deed.skill, shown)
 
     def _goes_on(self, read: ReadBeat, deed: Deed) -> bool:
-        """Whether it is done where one rests, and shows no more: "sits in the dark, listening"."""
+        """Whether it is done where one rests, and shows no more: "sits in the dark, listening"; nobody gets up for what
+        would only stand for it."""
         beside = read.clause.joint in ("ing", ",") and read.clause.text.split()[0].endswith("ing")
-        return beside and self._resting is not None and deed.row.captions == _STANDING.captions and not deed.named
-
-    def _stays(self, index: int, beats: Sequence[ReadBeat]) -> bool:
-        """Whether who wakes at a beat goes on lying, or gets up only at the next deed: then it is shown lying."""
-        deeds = (deed_of(later.clause) for later in beats[index + 1 :] if later.beat.kind == "deed")
-        following = next((deed for deed in deeds if deed is not None and not deed.row.why), None)
-        if following is None or following.skill not in (Skill.LIEDOWN, Skill.GETUP):
-            return False
-        if self._lies():
-            self._show(index)
-        elif self._resting is None and not self.keyframes and self._has("bed"):
-            mood = beats[index].beat.emotion
-            caption = self._one_of(captions_of(Skill.LIEDOWN, mood), mood, index, Skill.LIEDOWN)
-            self._put(index, Skill.LIEDOWN, mood, caption, "bed", None)
-            self._resting, self._plain = self.keyframes[-1], True
-        else:
-            return False
-        return True
+        stands_in = bool(deed.row.captions) and not any(
+            shows(Skill.LOCO, one, read.clause) for one in deed.row.captions
+        )
+        rests = self._resting is not None and not deed.named and not deed.row.seated
+        return rests and (stands_in or (beside and deed.row.captions == _STANDING.captions))
 
     def _lies(self) -> bool:
         return self._resting is not None and self._resting.skill is Skill.LIEDOWN
@@ -201,7 +195,6 @@ class KeyframeWriter:
         """Sit or lie: where one rests already if that does, with the caption of what is done there."""
         resting = self._resting
         here = resting is not None and self._same_place(resting, deed, skill)
-        captions = described(read.clause, skill) or captions
         shown = captions or captions_of(skill, mood)
         if resting is not None and here and resting.skill is skill:
             generic = deed.row.rests or deed.row.captions
@@ -229,8 +222,7 @@ class KeyframeWriter:
     def _rise(self, index: int, deed: Deed, mood: Emotion) -> None:
         """Get up; who does so first of all was lying or sitting before."""
         if self._resting is None:
-            last = self.keyframes[-1] if self.keyframes else None
-            if last is not None and (last.skill in (Skill.STANDUP, Skill.GETUP) or self._has_risen()):
+            if self.keyframes and self.keyframes[-1].skill in (Skill.STANDUP, Skill.GETUP):
                 self._show(index)
                 return
             skill, usually = (Skill.LIEDOWN, "bed") if deed.skill is Skill.GETUP else (Skill.SITDOWN, "chair")
@@ -249,14 +241,8 @@ class KeyframeWriter:
         self._put(index, skill, mood, usual(skill, mood, pace), resting.furniture, resting.room)
         self._resting = None
 
-    def _has_risen(self) -> bool:
-        """Whether a seat was left for what was touched last: "pushes the plate away and gets up"."""
-        last = [keyframe.skill for keyframe in self.keyframes[-2:]]
-        return len(last) == 2 and last[0] in (Skill.SITDOWN, Skill.LIEDOWN) and last[1] is Skill.TOUCH
-
     def _walk(self, index: int, read: ReadBeat, deed: Deed, mood: Emotion) -> None:
-        captions = described(read.clause, Skill.LOCO) or deed.row.captions or manner_of(read)
-        captions = captions or captions_of(Skill.LOCO, mood)
+        captions = deed.row.captions or captions_of(Skill.LOCO, mood)
         caption = self._one_of(captions, mood, index, Skill.LOCO)
         last = self.keyframes[-1] if self.keyframes else None
         piece = next((one for one in deed.pieces if self._has(one)), "floor")
@@ -392,10 +378,6 @@ class KeyframeWriter:
 
     def _one_of(self, captions: Sequence[str], mood: Emotion, index: int, skill: Skill) -> str:
         """One caption by the seed, of those that the library uses in the mood if there are some."""
-        options = fitting(captions, skill, mood)
+        told = [one for one in captions if self._clause is not None and shows(skill, one, self._clause)]
+        options = fitting(told or captions, skill, mood)
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
-
-
-def _wakes(read: ReadBeat, deed: Deed) -> bool:
-    """Whether somebody wakes, who may lie a while longer."""
-    return deed.skill is Skill.GETUP and read.clause.verb in ("wake", "awake", "awaken", "stir", "rouse")

@@ -1,4 +1,4 @@
-"""The captions that show a mood: of a skill, of a walk alone, and of a manner of walking."""
+"""The captions that show a mood: of a skill, and of a walk alone."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from motion_backend.motion import Emotion, Skill
 from planner_service.composition.deed_lexicon import deed_table
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_fallbacks import WALKS, usual
-from planner_service.themes.beats import ReadBeat
 
 _MOODY: Final = {
     Emotion.HAPPY: "walk excitedly with arms opened",
@@ -25,17 +24,6 @@ _MIN_SHARE: Final = 0.3
 """Share of a caption's uses in the library that must be of a mood for it to be one of the mood's."""
 _FITTING_SHARE: Final = 0.15
 """Share from which a caption that shows a deed fits the mood it is done in."""
-_MANNERS: Final = {
-    "tiptoe quietly silently softly": "walk on tiptoes",
-    "quickly fast hastily hurriedly": "walking quickly",
-    "slowly thoughtfully": "walking slowly, hands behind back",
-    "carefully cautiously": "walking carefully, arms out for balance",
-    "wearily heavily": "walk wearily, dragging the feet",
-    "angrily furiously": "angrily walking",
-    "proudly": "uplifted head walking",
-    "cheerfully happily merrily": "excited walk",
-}
-"""How a walk is gone that words describe."""
 
 
 def captions_of(skill: Skill, mood: Emotion) -> tuple[str, ...]:
@@ -52,12 +40,6 @@ def fitting(captions: Sequence[str], skill: Skill, mood: Emotion) -> list[str]:
 def walk_of(mood: Emotion) -> str:
     """How a mood alone is shown on one's feet."""
     return _MOODY.get(mood, WALKS[mood])
-
-
-def manner_of(read: ReadBeat) -> tuple[str, ...]:
-    """The caption of the manner of walking that a beat's words describe, if they do."""
-    words = set(read.clause.lemmas)
-    return next(((caption,) for names, caption in _MANNERS.items() if words & set(names.split())), ())
 
 
 @cache

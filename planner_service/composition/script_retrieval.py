@@ -11,12 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from motion_backend.motion import Emotion
 from planner_service.composition import llm_planner
 from planner_service.composition.keyframe_writer import NOT_ACTED
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, RULES, Record, Request
 from planner_service.llm.protocol import LanguageModel, ModelError
-from planner_service.scripts.emotion_classifier import clear_moods
 from planner_service.scripts.script import EMOTIONS, Beat, LongScript, PlannedKeyframe, Retrieved
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import repair
@@ -96,14 +94,8 @@ def _events(theme: str, by_rules: Sequence[Beat], model: LanguageModel | None, r
 
 def _read(theme: str, beats: Sequence[Beat], library: ScriptLibrary, request: Request) -> Reading:
     """Every event held against every script."""
-    queries = [beat.text for beat in beats]
-    vectors = library.encoder.encode(queries)
-    scores = rank(queries, library, vectors)
-    judged = clear_moods(library.moods(vectors))
-    events = tuple(
-        beat.model_copy(update={"emotion": mood}) if mood and beat.emotion is Emotion.NEUTRAL else beat
-        for beat, mood in zip(beats, judged, strict=True)
-    )
+    events = tuple(beats)
+    scores = rank([event.text for event in events], library)
     felt = np.array([[EMOTIONS.index(event.emotion)] for event in events]) == library.emotions
     named = np.array([_in_rooms(rooms_in(event.text) or rooms_in(theme), library) for event in events])
     about = scores >= ABOUT.get(library.encoder.name, ABOUT[""])

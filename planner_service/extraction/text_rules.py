@@ -14,7 +14,6 @@ from planner_service.composition.keyframe_writer import KeyframeWriter
 from planner_service.extraction.llm_text import fitting
 from planner_service.extraction.script_writer import Draft, Maker
 from planner_service.extraction.text_scenes import Line, TextScene
-from planner_service.scripts.emotion_classifier import clear_moods
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import EMOTIONS, Keyframe, PlannedKeyframe
 from planner_service.scripts.script_repair import repair
@@ -49,7 +48,7 @@ def read_scene(scene: TextScene, maker: Maker, room: str = "") -> SceneRead:
     beats, hero = read_beats(clauses), hero_of(clauses)
     room = _room_of(scene, beats, room)
     writer = KeyframeWriter()
-    placed = _placed(beats, room, _mood_of(scene, beats, maker))
+    placed = _placed(beats, room, _mood_of(scene, beats))
     for index in range(len(beats)):
         writer.write(index, placed)
     unused = tuple(
@@ -142,15 +141,12 @@ def _room_of(scene: TextScene, beats: Sequence[ReadBeat], before: str) -> str:
     return next(iter([*named, *(room for room, _ in votes.most_common(1))]), before or "living_room")
 
 
-def _mood_of(scene: TextScene, beats: Sequence[ReadBeat], maker: Maker) -> Emotion:
-    """The mood of a scene in which nobody is told to feel any: what is said shows it, or what the whole means."""
+def _mood_of(scene: TextScene, beats: Sequence[ReadBeat]) -> Emotion:
+    """The mood of a scene in which nobody is told to feel any: what is said shows it."""
     if any(read.felt for read in beats):
         return Emotion.NEUTRAL
     said = Counter(one.emotion for one in feelings(scene.spoken) if one.sure and one.emotion != "neutral")
-    if said:
-        return said.most_common(1)[0][0]
-    whole = maker.encoder.encode([f"{scene.told} {scene.spoken}"[:300]])[0]
-    return clear_moods(maker.library.moods(whole[None]))[0] or Emotion.NEUTRAL
+    return said.most_common(1)[0][0] if said else Emotion.NEUTRAL
 
 
 def _cut(writer: KeyframeWriter) -> list[list[PlannedKeyframe]]:

@@ -11,7 +11,7 @@ from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.story_words import story_words
 from planner_service.narration.tense import bases, form_of, in_past, says_how
 from planner_service.scripts.script import Beat
-from planner_service.themes.lexicon import is_adjective, is_noun, participle, past
+from planner_service.themes.lexicon import is_adjective, is_noun, past
 
 WAS: Final = "\ue000"
 """Stands for was or were until the subject is known; no theme has it."""
@@ -35,13 +35,6 @@ class Predicate:
     text: str
     verbs: frozenset[str]
     """Base forms that its verb may have."""
-    adjective: str = ""
-    """ "exhausted", where that is all it says of somebody."""
-
-    @property
-    def negated(self) -> bool:
-        """Whether it says that something is not done."""
-        return bool(_of("negated") & {*re.findall(r"\w+", self.text.lower())})
 
     @property
     def is_state(self) -> bool:
@@ -62,41 +55,20 @@ def event(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
     text = of_voice(" ".join([*words[:at], verb, *_shifted(rest, ing)]), hero, voice).rstrip(" .,;:!?")
     for day, instead in story_words().days.items():
         text = re.sub(rf"\b{day}\b", instead, text)
-    state = text.removeprefix(f"{WAS} ")
-    plain = state != text and len(state.split()) <= 2 and says_how(state.split()[-1])
     goes_on = verb != WAS and _helpers().get(_bare(words[at])) == WAS  # "is sitting" was told as "sat"
-    head = _bare(rest[0] if verb == "did not" else words[at + goes_on])
     text = re.sub(_SAID, lambda _: next(quotes), text)
-    return Predicate(text, frozenset(bases(head)), state if plain else "")
+    return Predicate(text, frozenset(bases(_bare(words[at + goes_on]))))
 
 
-def thought(beat: Beat, hero: str, voice: Voice) -> str | None:
-    """A memory: what its person thinks of, "remembered her mother", or a clause "she had lost the key"."""
+def purpose(beat: Beat, hero: str, voice: Voice) -> str:
+    """A deed as what something else is done for: "to bake a cake"; empty where its grammar is not sure."""
     told = event(beat, hero, voice)
-    if told is None:
-        return None
-    if told.verbs & _of("minds"):
-        return told.text
-    words = told.text.split()
+    words = told.text.split() if told else []
     at = next((at for at, word in enumerate(words) if not _is_adverb(word)), 0)
-    verb, rest = words[at], words[at + 1 :]
-    base = "be" if verb == WAS else next((base for base in sorted(told.verbs) if past(base) == verb), "")
-    if verb == "did" and rest[:1] == ["not"] and len(rest) > 1:
-        rest, done = rest[2:], ["not", participle(rest[1])]
-    elif not base or base in ("can", "may", "will"):
-        return None
-    elif verb == "used" or (verb == "had" and form_of(_bare(next((one for one in rest if not _is_adverb(one)), "")))):
-        done = []
-    else:
-        done = [participle(base)]
-    had = verb if verb == "used" else "had"
-    return " ".join([voice["they"], had, *words[:at], *done, *rest])
-
-
-def left_undone(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
-    """What is not done, or only wished for, as a predicate; None where its words do not say so themselves."""
-    told = event(beat, hero, voice)
-    return told if told and (told.negated or told.verbs & _of("wishes")) else None
+    base = next((base for base in sorted(told.verbs) if past(base) == words[at]), "") if told else ""
+    if not base or base in ("be", "can", "have", "may", "will") or "and" in words or words[at + 1 : at + 2] == ["not"]:
+        return ""
+    return " ".join(["to", *words[:at], base, *words[at + 1 :]])
 
 
 def _own_clause(text: str) -> list[str]:
@@ -122,10 +94,6 @@ def _head(words: Sequence[str], feeling: bool) -> tuple[str, Sequence[str], bool
     rest = words[1:]
     if feeling and first == "not" and says_how(after):
         return WAS, words, False
-    if first in ("not", "without") or (first, after) == ("instead", "of"):
-        rest = words[2:] if first == "instead" else rest
-        base = bases(_bare(rest[0])) if rest and form_of(_bare(rest[0])) == "ing" else ()
-        return ("did not", [base[0], *rest[1:]], False) if base else None
     if first == "to" and rest:
         return _head(rest, feeling)
     if first in _helpers():
@@ -142,7 +110,7 @@ def _head(words: Sequence[str], feeling: bool) -> tuple[str, Sequence[str], bool
 def _is_bare_noun(words: Sequence[str]) -> bool:
     """Whether what "he" or "she" might do is no form of theirs: "love, money, weather"."""
     first = _bare(words[0])
-    known = first in _helpers() or first in ("to", "not", "without", "instead", "no")
+    known = first in _helpers() or first in ("to", "not")
     return not known and is_noun(first) and form_of(first) is None and past(first) != first and not is_adjective(first)
 
 

@@ -105,8 +105,6 @@ class Phrase:
     """The same before another deed, "crossing to the sofa"; empty where that would not do."""
     manner: str = ""
     """How the body rests, or what it does there: ", chin in hand", ", then wrote"."""
-    adjective: str = ""
-    """ "exhausted", where it says nothing else."""
     skill: Skill | None = None
     """None for what the theme says."""
     mood: str = "neutral"
@@ -122,17 +120,13 @@ class Phrase:
     """Whether the body rests there already."""
     begins: bool = False
     """Whether a sentence should begin with it."""
-    ends: bool = False
-    """Whether it should end with it."""
-    negated: bool = False
-    """Whether it says that something is not done."""
-    is_thought: bool = False
-    """Whether it is only remembered, wished for or left undone."""
+    purpose: str = ""
+    """What it is done for and does not show: "to bake a cake"."""
 
     @property
     def whole(self) -> str:
-        """With its manner."""
-        return self.text + self.manner
+        """With its manner and its purpose."""
+        return self.text + self.manner + f" {self.purpose}" * bool(self.purpose)
 
     @property
     def rises(self) -> bool:
@@ -223,7 +217,6 @@ class Wording:
             leads=leads,
             stays=stays,
             begins=keyframe.skill in RISES,
-            ends="," in base + manner,
         )
 
     def _manner(self, ways: Sequence[str]) -> str:

@@ -74,7 +74,7 @@ def narrate_with_model(
 
 
 def _how_told(beat: Beat) -> str:
-    return "acted" if beat.asked and not beat.why and not beat.who else "not acted"
+    return "acted" if beat.asked and not (beat.why or beat.who or beat.stood_for) else "not acted"
 
 
 def _whole(beat: Beat) -> str:

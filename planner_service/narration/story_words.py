@@ -23,32 +23,16 @@ class Said:
 class StoryWords:
     """data/story_words.toml."""
 
-    joints: tuple[str, ...]
-    """Before a sentence: that time has passed."""
-    moods: dict[str, tuple[str, ...]]
-    """Before a sentence: in which mood the body is."""
     others: tuple[str, ...]
     """A sentence about those whose deeds nobody shows, {others}."""
-    thoughts: tuple[str, ...]
-    """How what happened before is told, {clause} "they had lost the key"."""
-    people: str
-    """Nouns for people, apart by spaces; so the next."""
-    plain_people: str
-    """Those that say nothing but that."""
-    minds: str
-    """Verbs for what nobody can see: thinking and remembering."""
     states: str
-    """Verbs for how somebody is."""
-    wishes: str
-    """Verbs by which a thing is not done."""
+    """Verbs for how somebody is, apart by spaces; so the next."""
     alone: str
     """Verbs that can stand alone after "and"."""
     cut: str
     """Words that begin a clause of its own, which is not told."""
     adverbs: str
     """Words before a verb that belong to it."""
-    negated: str
-    """Words that say no."""
     subjects: str
     after_verbs: str
     """Words that follow a verb rather than a noun."""
@@ -66,7 +50,6 @@ class StoryWords:
 
     def __post_init__(self) -> None:
         require_blanks("others", self.others, ("others",))
-        require_blanks("thoughts", self.thoughts, ("clause",))
         require_blanks("mood_titles", self.mood_titles, ("time",))
         require_blanks("helpers", self.helpers, ("was",))
         require_known("deeds", self.deeds, tuple(Skill))

@@ -94,13 +94,15 @@ class ActedBeats:
         if not self.outcomes:
             return []
         share = f"{self.spare_share:.0%} of the screen time serves none of them"
+        acted = [one.beat for one in self.outcomes if one.acted]
         return [
             f"{self.acted} of {self.asked} beats of your theme are acted; {share}",
             *(f"not acted: {one.beat.text} ({one.why})" for one in self.missing),
+            *(f"not acted as such, something stands for it: {beat.text}" for beat in acted if beat.stood_for),
             *(
-                f"not shown of “{one.beat.text}”: {'; '.join(one.beat.unshown)}"
-                for one in self.outcomes
-                if one.acted and one.beat.unshown
+                f"not shown of “{beat.text}”: {'; '.join(beat.unshown)}"
+                for beat in acted
+                if beat.unshown and not beat.stood_for
             ),
             *(f"left undone, as asked: {one.beat.text}" for one in self.undone),
         ]

@@ -172,7 +172,13 @@ class Beat(BaseModel):
     why: Line = ""
     """Why no keyframe shows it; empty where one does."""
     unshown: tuple[Line, ...] = ()
-    """What its words tell besides, which no keyframe shows: "for her ladyship"."""
+    """What its words tell besides, which no keyframe shows: "for her ladyship"; all of them where something only stands
+    for it: a hand on the stove for "bakes a cake"."""
+
+    @property
+    def stood_for(self) -> bool:
+        """Whether its keyframes show something else in its place."""
+        return self.text in self.unshown
 
     @property
     def asked(self) -> bool:

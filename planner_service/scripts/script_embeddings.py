@@ -17,7 +17,6 @@ import numpy as np
 from motion_backend.language.sentence_encoder import SentenceEncoder, Vectors, load_encoder
 from planner_service.scripts.built_in_scripts import built_in, texts_of
 from planner_service.scripts.captions import captions, synonyms
-from planner_service.scripts.emotion_classifier import moments
 
 _DATA: Final = files("planner_service") / "data"
 _FILE: Final = "sentences.npz"
@@ -70,12 +69,11 @@ def shipped(encoder: str) -> Mapping[bytes, Vectors]:
 
 
 def ours() -> list[str]:
-    """Every text that is shipped, in order: what scripts are found by, captions, their other words, and moments."""
+    """Every text that is shipped, in order: what scripts are found by, captions and their other words."""
     words = [other for of_skill in synonyms().values() for others in of_skill.values() for other in others]
     known = [caption for of_skill in captions().values() for caption in of_skill]
     found_by = [text for script in built_in() for text in texts_of(script)]
-    taught = [moment for those in moments().values() for moment in those]
-    return list(dict.fromkeys([*found_by, *known, *words, *taught]))
+    return list(dict.fromkeys([*found_by, *known, *words]))
 
 
 def learn() -> None:

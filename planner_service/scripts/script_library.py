@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from motion_backend.language.sentence_encoder import CachedEncoder, SentenceEncoder, Vectors
 from planner_service.scripts.built_in_scripts import texts_of
-from planner_service.scripts.emotion_classifier import MoodReader, lessons
 from planner_service.scripts.keyword_index import KeywordIndex
 from planner_service.scripts.script import EMOTIONS, ShortScript
 from planner_service.scripts.script_embeddings import load_by_heart
@@ -175,15 +174,6 @@ class ScriptLibrary:
         near = (vectors @ rows.T)[:, places]  # (N, texts)
         best: Scores = np.maximum.reduceat(near, owners, axis=1).astype(np.float64)
         return best.round(4)
-
-    def moods(self, vectors: Vectors) -> Scores:
-        """How much each vector of `encoder` feels like each of `EMOTIONS`. (N, 9)."""
-        return self._mood_reader.read(vectors)
-
-    @cached_property
-    def _mood_reader(self) -> MoodReader:
-        texts, emotions = lessons(self.scripts)
-        return MoodReader(self.features.of(texts), emotions)
 
     def summaries(self, indices: Sequence[int]) -> NDArray[np.float32]:
         """Vectors of these scripts' summaries. (N, D)."""

@@ -8,12 +8,12 @@ from typing import Final
 
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_third_person, lemma_of, verb_of
 from planner_service.themes.theme_words import theme_words
-from planner_service.themes.verb_finder import Token, verb_place
-from scene_graphs.furniture import is_known
+from planner_service.themes.verb_finder import Token, next_verb, verb_place
 
 THAT: Final = frozenset(("that", "how", "what", "why", "if", "whether", "which", "who"))
 """What joins a clause that is an object: "finds that he won"."""
 RELATIVES: Final = frozenset(("that", "which", "who"))
+_TELLING: Final = RELATIVES | {"whom", "whose"}
 MANNER: Final = frozenset(("way", "time", "moment", "minute", "day", "night", "morning", "year"))
 """Nouns that say no more than how or when what is told of them was: "the way he was taught"."""
 _SENSES: Final = frozenset(("hear", "see", "watch", "listen", "feel", "notice", "let", "overhear"))
@@ -36,16 +36,7 @@ def besides_of(tokens: Sequence[Token], subject: str, before: Sequence[Token]) -
     parted = tokens[tokens.index(opening) : comma] if opening else ()  # "the baker, | up since two, wipes"
     taken = {*before, *(tokens[at : at + len(own)] or parted)}
     stretches = groupby(tokens, lambda token: token.text[0] not in ",«" and token not in taken)
-    told = [words for is_told, some in stretches if is_told and _tells_something(words := list(some))]
-    first = next(iter(tokens[at:]), None)
-    return [words for words in told if not _only_marks(words, first)]
-
-
-def _only_marks(words: Sequence[Token], subject: Token | None) -> bool:
-    """Whether words only stand before a subject as part of it: "old" before "Mr. Finch"."""
-    known = grammar()
-    small = all(token.low in known.marks | known.numbers or is_adjective(token.low) for token in words)
-    return subject is not None and small and words[-1].end + 1 == subject.start
+    return [words for is_told, some in stretches if is_told and _tells_something(words := list(some))]
 
 
 def _tells_something(words: Sequence[Token]) -> bool:
@@ -77,36 +68,15 @@ def without_asides(words: list[Token], main: int) -> tuple[list[Token], list[lis
     return words, []
 
 
-def listed_places(words: list[Token], main: int) -> tuple[list[Token], list[list[Token]]]:
-    """The words of a clause up to its first place, and further places where the same is done: "looks under the bed, |
-    behind the sofa | and in the oven"; but "sits on the sofa, next to the lamp" is one place."""
-    known, cuts = grammar(), list[int]()
-    links = {",", "and", "or", "then"}
-    for at in range(main + 2, len(words) - 1):
-        opens = words[at - 1].low in links and words[at].low in known.prepositions
-        first = any(
-            _names_place(words[start:at]) for start in range(main + 1, at) if words[start].low in known.prepositions
-        )
-        end = next((place for place in range(at + 1, len(words)) if words[place].low in links), len(words))
-        stays = words[at - 1].low != "then" and lemma_of(words[main].low) in _STAYS
-        if opens and first and not stays and _names_place(words[at:end]):
-            cuts.append(at)
-    if not cuts:
-        return words, []
-    stretches = [words[start:end] for start, end in zip([0, *cuts], [*cuts, len(words)], strict=True)]
-    bare = [_unlinked(some, links) for some in stretches]
-    return bare[0], bare[1:]
-
-
-def _names_place(words: Sequence[Token]) -> bool:
-    """Whether a stretch that a preposition opens ends with furniture: "behind the old sofa"."""
-    return 1 < len(words) <= 5 and any(is_known(token.low) for token in words[1:])
-
-
-def _unlinked(words: list[Token], links: set[str]) -> list[Token]:
-    while words and words[-1].low in links:
-        words = words[:-1]
-    return words
+def without_relative(tokens: list[Token]) -> tuple[list[Token], list[Token]]:
+    """The words of a clause, and those that tell of its subject with a verb of their own: "a man | who lives alone |
+    reads"."""
+    start = next((at for at, token in enumerate(tokens) if at and token.low in _TELLING), 0)
+    if not start or verb_place(tokens[:start]) is not None:
+        return tokens, []
+    verb = verb_place(tokens[start + 1 :])
+    end = None if verb is None else next_verb(tokens, start + 1 + verb)
+    return (tokens, []) if end is None else ([*tokens[:start], *tokens[end:]], tokens[start:end])
 
 
 def _sensed(words: Sequence[Token], main: int) -> int:

@@ -35,8 +35,6 @@ _LOUDER: Final = {"stressed": ("drunk", "angry", "sad", "hurried"), "relaxed": (
 """Moods that a mere hint of another one does not end within a sentence: who is angry paces with anger."""
 _MEANWHILE: Final = frozenset(("after", "once", "when", "until", "as"))
 """Joints after which what had been done belongs to the story: "once he had paid, he sat down"."""
-_FEW, _STRAY = 3, 0.34
-"""Clauses of a text from which its tense is known, and the share of them that may stray from it."""
 _RECEIVERS: Final = frozenset(("phone", "telephone", "receiver"))
 """What is said into these is seen."""
 _BY_THEN: Final = re.compile(r"\bby (?:noon|midnight|dawn|dusk|evening|night|now|then|\d+|one|two|three|four|five|six|"
@@ -49,9 +47,9 @@ EXPRESSIONS: Final = {
     verb: mood
     for mood, verbs in {
         Emotion.HAPPY: "laugh smile grin giggle chuckle beam sing hum whistle rejoice whoop",
-        Emotion.ANGRY: "yell scream curse growl scowl snarl shout rant grumble",
+        Emotion.ANGRY: "yell scream curse growl scowl snarl shout rant grumble hate detest resent despise",
         Emotion.SAD: "sigh frown sniffle",
-        Emotion.STRESSED: "tremble shake sweat panic flinch shudder gasp",
+        Emotion.STRESSED: "tremble shake sweat panic flinch shudder gasp dread fear worry",
         Emotion.TIRED: "yawn",
         Emotion.DRUNK: "hiccup",
     }.items()
@@ -120,27 +118,11 @@ def read_beats(clauses: Sequence[Clause]) -> tuple[ReadBeat, ...]:
     """What clauses say happens to whom they are about."""
     hero = hero_of(clauses)
     pronoun = called(clauses, hero)
-    told = (clause for clause in _in_tense(clauses) if clause.verb or clause.text.lower() != hero.lower())
+    told = (clause for clause in clauses if clause.verb or clause.text.lower() != hero.lower())
     return tuple(_moods([_read(clause, hero, pronoun) for clause in told]))
 
 
-def _in_tense(clauses: Sequence[Clause]) -> list[Clause]:
-    """Clauses told in the other tense than nearly all of a text marked as what had happened before: "her aunt taught
-    her; now she bakes"."""
-    told = [clause.past for clause in clauses if clause.past is not None and not clause.aside]
-    share = sum(told) / max(len(told), 1)
-    if len(told) < _FEW or share > _STRAY:
-        return list(clauses)
-    before = ((clause, clause.past and _is_one_word(clause)) for clause in clauses)
-    return [
-        replace(clause, verb="") if is_state else replace(clause, perfect=clause.perfect or bool(clause.past))
-        for clause, is_state in before
-    ]
-
-
 def _read(clause: Clause, hero: str, pronoun: str) -> ReadBeat:
-    if head_of(clause.doer).lower() in ("tear", "tears"):  # they run where somebody weeps
-        clause = replace(clause, verb="weep", lemmas=("weep", *clause.lemmas[1:]))
     who = "" if clause.aside or is_hero(clause.doer, hero, pronoun) else clause.doer
     led = bool(who) and bool(clause.subject) and not clause.text.lower().startswith(who.lower())
     text = f"{who} {clause.text}" if led else clause.text
@@ -207,11 +189,6 @@ def is_feeling(clause: Clause) -> bool:
         f"{clause.subject} " if head_of(clause.subject).lower() in words["body"] else ""
     )  # "her heart is in her mouth"
     return clause.verb in words["state_verbs"] and bool(feelings(own + clause.text)) and len(rest) <= 4
-
-
-def _is_one_word(clause: Clause) -> bool:
-    """Whether a clause is a single word, which in another tense says how somebody is: "then, embarrassed, he sits"."""
-    return not clause.subject and len(clause.lemmas) == 1 and clause.joint in ("", ",", "then")
 
 
 def _refuse_foreign(text: str) -> None:

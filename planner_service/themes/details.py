@@ -14,6 +14,8 @@ _LEADS: Final = frozenset(("with", "without", "for", "like", "as", "despite", "a
 """Words before which a deed has been told, and after which stands how, for whom or when."""
 _REASONS: Final = frozenset(("after", "since", "before", "until", "for"))
 """Those of them that tell why or when."""
+_LINKS: Final = frozenset((",", "and", "or", "then"))
+"""Words after which another place is told, where the same is done."""
 _MARKS: Final = frozenset((",", ";"))
 _FEWEST: Final = 2
 """Words that a deed is told in at least."""
@@ -42,8 +44,13 @@ def core_of(text: str, details: Sequence[str]) -> str:
 def _starts(tokens: Sequence[Token], at: int) -> bool:
     """Whether a detail begins there: at a leading word, or at a deed beside."""
     low, before = tokens[at].low, tokens[at - 1]
+    after = tokens[at + 1].low if at + 1 < len(tokens) else ""
+    if low == "to" and verb_of(after) == after and not is_noun(after):
+        return True  # "opens the door | to greet her guests"
     beside = low.endswith("ing") and bool(verb_of(low)) and not is_noun(low) and is_noun(before.low)
-    return low in _LEADS or (beside and not is_adjective(before.low) and before.low not in grammar().prepositions)
+    linked = before.low in _LINKS and low in grammar().prepositions
+    beside = beside and not is_adjective(before.low) and before.low not in grammar().prepositions
+    return linked or low in _LEADS or beside
 
 
 def _words(text: str, tokens: Sequence[Token]) -> str:

@@ -10,6 +10,7 @@ from functools import cache, lru_cache
 from typing import Final
 
 from motion_backend.motion import Character
+from planner_service.themes.asides import OWNERS
 from planner_service.themes.lexicon import grammar, is_third_person, is_verb, kinds_of, lemma_of
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.theme_words import theme_words
@@ -66,6 +67,7 @@ def cast_by(theme: str, character: Character) -> Character:
         return character
     name = name_in(theme) or _name_of_hero(theme)
     told = called(clauses_of_text(theme), name) if name else ""
+    told = told or ("" if name else pronouns_of(f"the {head_of(hero_of(clauses_of_text(theme)))}"))
     pronouns = _PRONOUNS_OF.get(name.lower()) or told or _pronouns_in(theme, bool(name)) or default.pronouns
     return replace(character, name=name or default.name, pronouns=pronouns)
 
@@ -134,35 +136,15 @@ def hero_of(clauses: Sequence[Clause]) -> str:
         return "you"
     people = [clause for clause in told if is_person(clause.subject)]
     pronoun = _told_most(clauses)
+    deeds = Counter(one.doer for one in clauses if not (one.aside or (one.denied and not one.unable)))
     first = min(((one.sentence, one.place) for one in people if _is_pronoun(one.subject)), default=(len(clauses), 0))
-    opens = bool(mains) and _is_pronoun(mains[0])  # then who has no name is somebody else: "he … the baby wakes"
-    nouns = [
-        one
-        for one in people
-        if not _is_pronoun(one.subject)
-        and (not opens or (one.sentence, one.place) < first or is_name(one.subject.split()[0]))
-        and ((one.sentence, one.place) < first or not (one.joint in _ASIDE or _is_relative(one.subject, pronoun)))
-    ]
-    if not nouns and pronoun:
-        nouns = _stand_for(clauses, pronoun, first)
-    acting = [one for one in clauses if not ((one.denied and not one.unable) or one.aside)]
-    busy = {one.doer for one in acting if not (_is_state(one) and _is_plural(one.doer))}
-    fitting = [one for one in nouns if pronouns_of(one.subject) in ("", pronoun or pronouns_of(one.subject))]
-    nouns = fitting or nouns
-    if pronoun in {doer.lower() for doer in busy}:  # who is called so is busy
-        busy |= {one.subject for one in fitting[:1]}
-    deeds = Counter(one.doer for one in acting if not _is_state(one))
+    nouns = [one for one in people if not _is_pronoun(one.subject)
+             and ((one.sentence, one.place) < first or is_name(one.subject.split()[0]))]  # fmt: skip
+    nouns = [one for one in nouns if pronouns_of(one.subject) in ("", pronoun or pronouns_of(one.subject))] or nouns
     if nouns:
-        own = [one for one in nouns if one is told[0] or not _is_possessed(one.subject)] or nouns
-        heroes = [own, nouns] if busy.isdisjoint({one.subject for one in own}) else [own]
-        doing = [one for some in heroes for one in some if one.subject in busy]
-        return max(doing or own, key=lambda one: _heroic(one, pronoun) + min(deeds[one.subject], 4) / 8).subject
-    articles = ("a ", "an ", "one ", "my ", "our ", *(() if people else ("the ",)))
-    called = [one for one in mains[:1] if _may_be_called(one) and not people]
-    opening = [one for one in mains[:1] if one.lower().startswith(articles)]
-    busiest = [clause.subject for clause in people]
-    living = [subject for subject in (*opening, *called) if _may_live(head_of(subject))]
-    return next(iter([*living, *(one.subject for one in people if one.subject.lower() == pronoun), *busiest]), "")
+        return max(nouns, key=lambda one: _heroic(one, pronoun) + min(deeds[one.subject], 4) / 8).subject
+    living = [one for one in mains[:1] if _may_live(one)]
+    return next(iter([*living, *(one.subject for one in people)]), "")
 
 
 def _told_most(clauses: Sequence[Clause]) -> str:
@@ -186,62 +168,19 @@ def called(clauses: Sequence[Clause], hero: str) -> str:
     return pronouns_of(hero) or most
 
 
-def _is_relative(subject: str, pronoun: str) -> bool:
-    """Whether this is somebody of the person that a pronoun names, and not that person: of "her brother" to "she"."""
-    return bool(pronoun) and _is_possessed(subject) and pronouns_of(subject) not in ("", pronoun)
-
-
-def _stand_for(clauses: Sequence[Clause], pronoun: str, first: tuple[int, int]) -> list[Clause]:
-    """Subjects that a pronoun may stand for though nobody knows them for people: "the bosun cannot sleep, so he …",
-    "he … so the tenor writes"; `first` is the place of the first pronoun."""
-    deeds = Counter(one.doer for one in clauses)
-    found = []
-    for one in clauses:
-        near = one.sentence in (first[0], first[0] - 1) and (one.sentence, one.place) < first
-        alive = one.subject.lower().startswith(("the ", "a ", "an ")) and not _is_plural(one.subject)
-        opens = (one.sentence, one.place) == (0, 0)
-        acts = one.joint in _MAIN_JOINTS and (opens or not _is_state(one)) and (near or deeds[one.subject] > 1)
-        if (
-            acts
-            and alive
-            and not one.aside
-            and pronouns_of(one.subject) in ("", pronoun)
-            and _may_live(head_of(one.subject))
-        ):
-            found.append(one)
-    return found
-
-
-def _is_state(clause: Clause) -> bool:
-    """Whether it says how somebody is, or what they wish, and not what they do."""
-    return clause.verb in theme_words()["state_verbs"] | grammar().wishes | {"have", "need", "like", "love", "hate"}
-
-
 def _heroic(clause: Clause, pronoun: str) -> float:
     """How well a subject may be whom a theme is about, whose pronoun is "he", "she" or unknown."""
-    own = pronouns_of(clause.subject)
-    fits = 0 if not (pronoun and own) else 4 if own == pronoun else -8
+    own, first = pronouns_of(clause.subject), clause.subject.split()[0].lower()
+    fits = 4 * bool(pronoun and own == pronoun)
     several = _is_plural(clause.subject)
-    return fits - 2 * _is_possessed(clause.subject) - (1 + bool(pronoun)) * several / 2 - (clause.joint in _ASIDE)
+    return fits - 2 * (first in OWNERS) - (1 + bool(pronoun)) * several / 2 - (clause.joint in _ASIDE)
 
 
-def _is_possessed(subject: str) -> bool:
-    return subject.split()[0].lower() in ("his", "her", "their", "my", "its")
-
-
-def _may_live(head: str) -> bool:
-    return not is_known(head) and _lifeless().isdisjoint((head.lower(), lemma_of(head)))
-
-
-@cache
-def _lifeless() -> frozenset[str]:
-    """Nouns for what does things and is nobody: animals, the weather, and whatever is kept somewhere."""
-    return theme_words()["no_heroes"] | theme_words()["body"] | frozenset(things())
-
-
-def _may_be_called(subject: str) -> bool:
-    """Whether a word with a capital may be a name though it is a word too: "Rose", "Wen"; not "Nobody"."""
-    return subject[:1].isupper() and " " not in subject and subject.lower() not in _not_names()
+def _may_live(subject: str) -> bool:
+    """Whether a subject that is no known person may be one: no thing, animal or weather."""
+    head = head_of(subject)
+    lifeless = theme_words()["no_heroes"] | theme_words()["body"] | frozenset(things()) | grammar().subjects
+    return not is_known(head) and lifeless.isdisjoint((head.lower(), lemma_of(head)))
 
 
 def _is_pronoun(subject: str) -> bool:

@@ -19,14 +19,13 @@ from planner_service.themes.asides import (
     OWNERS,
     RELATIVES,
     besides_of,
-    listed_places,
     without_asides,
+    without_relative,
 )
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, verb_of
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
-from planner_service.themes.theme_words import theme_words
-from planner_service.themes.verb_finder import Token, is_adverb, verb_place
-from planner_service.themes.verb_group import is_past, verb_group
+from planner_service.themes.verb_finder import Token, verb_place
+from planner_service.themes.verb_group import verb_group
 
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
 _PLAIN: Final = re.compile(r"[A-Za-z ,'’-]+[.!?]?\s*")
@@ -60,8 +59,8 @@ class Clause:
     """Whether it is not done since it cannot be: "cannot sleep"."""
     perfect: bool = False
     """Whether it had been done before."""
-    past: bool | None = None
-    """Whether it is told in the simple past, and not in the present; None where its verb does not tell."""
+    absolute: bool = False
+    """Whether its verb has no tense, though it says who does it: "coffee going cold beside him"."""
     aside: bool = False
     """Whether it is only spoken of: of a noun ("the letter she had hidden"), or supposed ("if he calls")."""
     quotes: tuple[str, ...] = ()
@@ -92,23 +91,18 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
         for piece in (pieces := pieces_of(sentence)):
             parts = _clause(piece, quotes, number)
             parts = _sharing(_main(told[-1]), parts) if told else parts
-            own = _main(parts).subject or (_next_subject(pieces, piece) if not told else "")
+            own = _main(parts).subject
             own = doer if own.lower() in RELATIVES and doer else own
             told.append(
                 [replace(part, doer=part.subject if part.aside else own or doer, place=len(told)) for part in parts]
             )
-            if not doer or not is_led(piece.joint, ()):  # who does what "because guests are coming" is not the guests
+            beside = (
+                is_led(piece.joint, ()) or _main(parts).absolute
+            )  # "because guests are coming", "the coffee going cold"
+            if not doer or not beside:
                 doer = own or doer
         found += [part for place in in_time(pieces) for part in told[place]]
     return tuple(found)
-
-
-def _next_subject(pieces: Sequence[Piece], piece: Piece) -> str:
-    """Who does what opens a sentence without a subject: "before going to bed, she brushes her teeth"."""
-    if piece.joint not in grammar().earlier | grammar().with_gerund | {"before", "until", "while", "when"}:
-        return ""
-    mains = (_main(_clause(other, (), 0)) for other in pieces)
-    return next((main.subject for main in mains if main.subject), "")
 
 
 def _main(parts: Sequence[Clause]) -> Clause:
@@ -157,39 +151,49 @@ def _segmenter() -> Any:
 
 def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
     """The clauses of a piece: what is told before its subject, its own, second deeds without a joint, and asides."""
-    tokens = _without_opening(piece.tokens)
+    tokens, relative = without_relative(_without_opening(piece.tokens))
     place = verb_place(tokens)
     if place is None:
         told = _quotes(tokens, quotes)
         return [Clause(piece.text, "", "", _lemmas(tokens), piece.joint, quotes=told, sentence=sentence)]
     place -= 2 * ([token.low for token in tokens[max(place - 2, 0) : place]] == ["no", "longer"])
     subject = _subject([token for token in tokens[:place] if not token.text.startswith("«")])
-    if (not subject and tokens[0].text.startswith("«")) or (not place and _is_inverted(tokens)):
+    if not subject and tokens[0].text.startswith("«"):
         subject = _inverted(tokens[place + 1 :])
         tokens = [*tokens[: place + 1], *tokens[place + 1 + len(subject.split()) :]]
     words = _denials(tokens[:place], subject) + tokens[place:]
-    if words[0].low in grammar().adverbs - grammar().denials and len(words) > 1:
-        words = words[1:]
     group = verb_group(words)
     hindered = _is_hindered(piece.joint, tokens[:place], words[0])
     words, told_of = without_asides(words, group.place)
     lemmas = _lemmas(words[group.place :])
     first = Clause(
         _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, piece.joint,
-        denied=group.denied or hindered, unable=group.unable, perfect=group.perfect, past=is_past(words, group),
+        denied=group.denied or hindered, unable=group.unable, perfect=group.perfect,
+        absolute=bool(subject) and words[0].low.endswith("ing"),
         aside=piece.joint in _SUPPOSING or piece.tokens[0].low in ("if", "though"),
         quotes=_quotes(tokens, quotes), sentence=sentence,
     )  # fmt: skip
-    first, words, again = _again(first, words, group.place, piece.source)
     parts = [first] if group.denied and not group.unable else _parted(first, words, group.place, piece.source)
     asides = [replace(one, sentence=sentence) for some in told_of for one in _aside(some, words, piece.source)]
-    before = () if first.quotes else (*_before(tokens[:place], subject), *_manner(tokens[:place], subject))
+    if relative:
+        asides += [replace(one, sentence=sentence) for one in _aside(relative, tokens[:place], piece.source)]
+    before = () if first.quotes else _before(tokens[:place], subject)
     besides = [
         # It tells how somebody is or where, and is nothing that anybody does.
         Clause(_text(piece.source, some), "", "", _lemmas(some), ",", aside=True, sentence=sentence)
-        for some in besides_of(tokens[:place], subject, before)
+        for some in (*besides_of(tokens[:place], subject, before), *_of_subject(tokens[:place], subject))
     ]
-    return [*besides, _placed(parts[0], before, piece.source), *parts[1:], *again, *asides]
+    return [*besides, _placed(parts[0], before, piece.source), *parts[1:], *asides]
+
+
+def _of_subject(lead: Sequence[Token], subject: str) -> list[list[Token]]:
+    """What a subject tells of who it is after its noun: "somebody | with a bad back"."""
+    if any(token.text == "," for token in lead):
+        return []  # it is told besides
+    own = [token for token in lead if token.text in subject.split()][-len(subject.split()) :]
+    leads = grammar().prepositions - {"of", "like"}
+    start = next((at for at, token in enumerate(own) if at and token.low in leads), len(own))
+    return [own[start:]] if len(own) - start > 1 else []
 
 
 def _without_opening(tokens: Sequence[Token]) -> list[Token]:
@@ -215,46 +219,13 @@ def _is_hindered(joint: str, lead: Sequence[Token], verb: Token) -> bool:
     return too or (joint in ("before", "until") and verb.low in ("can", "could"))
 
 
-def _again(clause: Clause, words: list[Token], main: int, source: str) -> tuple[Clause, list[Token], list[Clause]]:
-    """A clause up to its first place, its words, and the same deed at each further place that it lists."""
-    words, places = listed_places(words, main)
-    if not places:
-        return clause, words, []
-    lemmas = _lemmas(words[main:])
-    first = replace(clause, text=_text(source, words), lemmas=lemmas)
-    told = [token.low for token in words[main:]]
-    stop = next((at for at, low in enumerate(told) if at and low in grammar().prepositions), len(told))
-    again = replace(first, subject="", joint=",", quotes=())
-    return first, words, [
-        replace(again, text=_text(source, some), lemmas=(*lemmas[:stop], *_lemmas(some))) for some in places
-    ]  # fmt: skip
-
-
-def _manner(lead: Sequence[Token], subject: str) -> list[Token]:
-    """Adverbs between a subject and its verb that tell how: "quietly"."""
-    told = (token for token in lead if token.low.endswith("ly") and token.low not in grammar().adverbs)
-    return [token for token in told if subject and is_adverb(token.low)]
-
-
 def _aside(words: list[Token], main: Sequence[Token], source: str) -> list[Clause]:
     """What is told of a noun of the main clause: it happened before or elsewhere, and somebody may have done it."""
     head = words[1:] if words[0].low in RELATIVES else words
     place = verb_place(head) or 0
-    subject = _subject(head[:place]) or (words[0].text if place else _last_noun(main))
+    subject = _subject(head[:place]) or (words[0].text if place else main[-1].text)
     lemmas = _lemmas(head[place:])
     return [Clause(_text(source, words), subject, lemmas[0] if lemmas else "", lemmas, "that", aside=True)]
-
-
-def _last_noun(words: Sequence[Token]) -> str:
-    """The noun at the end of words, with its mark: "the door"."""
-    start = next((at for at in range(len(words) - 1, 0, -1) if words[at].low in grammar().marks), len(words) - 1)
-    return " ".join(token.text for token in words[start:])
-
-
-def _is_inverted(words: Sequence[Token]) -> bool:
-    """Whether a clause only says who thinks or says what stands beside it: "…, thinks Paloma"."""
-    verbs = theme_words()["speech_verbs"] | theme_words()["thought_verbs"]
-    return lemma_of(words[0].low) in verbs and 2 <= len(words) <= 3 and _inverted(words[1:]) != ""
 
 
 def _inverted(after: Sequence[Token]) -> str:
@@ -289,7 +260,7 @@ def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> l
         return [clause]
     for place in range(main + 1, len(words)):
         gerund = _is_beside(words[place].low, words[place - 1].low)
-        purpose = words[place - 1].low == "to" and _is_purpose(clause, words, place)
+        purpose = words[place - 1].low == "to" and _is_purpose(words, place)
         if gerund or purpose:
             stop = place - 1 if purpose else place
             if stop <= main:
@@ -311,55 +282,36 @@ def _is_beside(word: str, before: str) -> bool:
     return before not in (grammar().marks - {"to"}) | (grammar().prepositions - _PARTICLES)
 
 
-def _is_purpose(clause: Clause, words: Sequence[Token], place: int) -> bool:
+def _is_purpose(words: Sequence[Token], place: int) -> bool:
     """Whether a word after "to" is a second deed ("to drink a glass") and not where one goes ("from room to room")."""
-    low = words[place].low
+    low, after = words[place].low, words[place + 1].low if place + 1 < len(words) else ""
     if verb_of(low) != low or low in grammar().not_verbs_after_to:
         return False
-    if not is_noun(low):
-        return True
-    if place + 1 == len(words):
-        return clause.verb in ("sit", "lie", "stop", "stay", "settle", "kneel")
-    after = words[place + 1].low
-    return (
-        after in grammar().marks | grammar().prepositions - {"and"}
-        or after in ("him", "them", "me", "himself", "herself")
-        or is_noun(after)
-    )
+    return not is_noun(low) or is_noun(after) or after in grammar().marks | grammar().prepositions
 
 
 def _subject(tokens: Sequence[Token]) -> str:
     """Who does it, of the words before the verb: those after the last comma-like stretch of time or place."""
     parts = [list(part) for is_mark, part in groupby(tokens, lambda token: token.text == ",") if not is_mark]
-    if len(parts) > 1:  # "the baker, up since two, …", "one evening, Anna, tired, …"
-        last = next((at for at in reversed(range(len(parts))) if _may_act(parts[at])), 0)
-        named = next((at for at, part in enumerate(parts) if len(part) == 1 and _is_called([part[0].text])), last)
-        if named < last and parts[last][0].low in ARTICLES:  # "Mira, the tidy one, …"
-            parts, last = [parts[named]], 0
-        tokens = [token for part in parts[last:] for token in part]
-    words = [token.text for token in tokens if token.text != ","]
+    last = next((at for at in reversed(range(len(parts))) if _may_act(parts[at])), 0)  # "the baker, up since two, …"
+    named = next((at for at, part in enumerate(parts) if len(part) == 1 and _is_called([part[0].text])), last)
+    if named < last and parts[last][0].low in ARTICLES:  # "Mira, the tidy one, …"
+        return parts[named][0].text
+    words = [token.text for part in parts[last:] for token in part]
     while words and (words[-1].lower() in grammar().adverbs or words[-1].lower().endswith("ly")):
         words.pop()
     if words and words[-1].lower() in grammar().subjects:
         return words[-1]
-    while len(words) > 1 and words[-2].lower() not in grammar().marks and _only_describes(words[-1]):
-        words.pop()  # "Daniel, unshaven, …"
-    if words and words[0].lower() == "to":
-        return ""
-    if words and (
-        _describes(words) or all(word.lower() in MANNER | grammar().times | grammar().marks | {"one"} for word in words)
-    ):
+    if words and (words[0].lower() == "to" or _describes(words)):
         return ""
     while words and (words[0].lower() in grammar().adverbs or words[0].lower() in grammar().joints):
         words.pop(0)
     if words and words[0].lower() in grammar().prepositions:  # "in the kitchen Anna …"
         starts = [place for place in range(2, len(words)) if _starts_subject(words, place)]
         return " ".join(words[starts[-1] :]) if starts else next((one for one in words[1:] if one[:1].isupper()), "")
-    timed = bool(words) and (words[0][:1].islower() or words[0] in ("One", "Every", "Each", "That", "This"))
     starts = [place for place in range(1, len(words)) if _starts_subject(words, place)]
-    starts = [place for place in starts if (timed and words[place].islower()) or _is_called(words[place:])]
-    words = words[starts[-1] :] if starts else words  # "after dinner Jonas …", "that night the man …"
-    return " ".join(words)
+    starts = [place for place in starts if words[place].islower() or _is_called(words[place:])]
+    return " ".join(words[starts[-1] :] if starts else words)  # "that night | the man …"
 
 
 def _may_act(words: Sequence[Token]) -> bool:
@@ -374,16 +326,13 @@ def _may_act(words: Sequence[Token]) -> bool:
 
 
 def _describes(words: Sequence[str]) -> bool:
-    """Whether words say how somebody is and name nobody: "Angry at himself for"."""
-    low = words[0].lower()
-    small = grammar().prepositions | grammar().adverbs | {"himself", "herself", "themselves", "myself"}
-    others = [word for word in words[1:] if word.lower() not in small]
-    names = any(is_noun(word.lower()) or word[:1].isupper() or word.lower() in grammar().subjects for word in others)
-    return is_adjective(low) and not is_noun(low) and not names
-
-
-def _only_describes(word: str) -> bool:
-    return word[:1].islower() and is_adjective(word) and not is_noun(word)
+    """Whether words say how somebody is, or when, and name nobody: "Angry at himself for", "one evening"."""
+    low = [word.lower() for word in words]
+    times = MANNER | grammar().times | grammar().marks | {"one"}
+    names = any(is_noun(word) or word in grammar().subjects for word in low[1:]) or any(
+        one[:1].isupper() for one in words[1:]
+    )
+    return all(word in times for word in low) or (is_adjective(low[0]) and not is_noun(low[0]) and not names)
 
 
 def _starts_subject(words: Sequence[str], place: int) -> bool:

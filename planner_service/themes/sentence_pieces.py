@@ -6,11 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
 
-from planner_service.themes.asides import ARTICLES, OWNERS, THAT, ends_noun, tells
-from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_third_person, lemma_of, verb_of
-from planner_service.themes.theme_words import theme_words
-from planner_service.themes.things import things
-from planner_service.themes.verb_finder import Token, is_plural, plain, tokens_of, verb_place
+from planner_service.themes.asides import THAT
+from planner_service.themes.lexicon import grammar, is_adjective, verb_of
+from planner_service.themes.verb_finder import Token, plain, tokens_of, verb_place
 
 HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
 _LATER_JOINTS: Final = frozenset(("before", "until", "while"))
@@ -47,42 +45,14 @@ def pieces_of(sentence: str) -> list[Piece]:
             if token.low in grammar().with_gerund:
                 current.append(token)
         else:
-            starts = token.low in HEROES or _opens_main(current, tokens[place:])
-            led = starts and is_led(joint, current) and current[-1:] and current[-1].low not in THAT
-            so = led or _is_outcome(current, tokens[place:])
-            if so and verb_place(current) is not None:
+            led = token.low in HEROES and is_led(joint, current) and current[-1:] and current[-1].low not in THAT
+            if led and verb_place(current) is not None:
                 cut.append(Piece(joint, tuple(current), source))
-                joint, current = "," if led else "so", []
-                if token.low == "that":
-                    continue
+                joint, current = ",", []
             current.append(token)
     if current:
         cut.append(Piece(joint, tuple(current), source))
     return _whole(cut)
-
-
-def _is_outcome(current: Sequence[Token], rest: Sequence[Token]) -> bool:
-    """Whether words tell what came of it: "laughs so hard | that she falls", "is so tired | he sits down"."""
-    so = next((place for place, token in enumerate(current) if token.low == "so"), None)
-    if so is None or not so + 1 < len(current) <= so + 4:
-        return False
-    after = rest[1:] if rest[0].low == "that" else rest
-    acts = len(after) > 1 and after[0].low in HEROES and after[1].low not in grammar().modals
-    return acts and verb_place(after[:5]) is not None
-
-
-def _opens_main(current: Sequence[Token], rest: Sequence[Token]) -> bool:
-    """Whether a noun and its verb follow what is a whole clause already: "before he drinks it | the baby wakes"."""
-    if not current or current[-1].low in grammar().prepositions | grammar().marks:
-        return False
-    named = rest[0].text[:1].isupper() and not is_noun(rest[0].low)
-    if not named and rest[0].low not in ARTICLES | OWNERS:
-        return False
-    verb, place = verb_place(current), verb_place(rest[1:5])
-    if verb is None or verb == len(current) - 1 or place is None or (place if named else not place or not tells(rest)):
-        return False
-    between = rest[1 : place + 1]
-    return not any(token.low in grammar().marks or token.text[:1].isupper() for token in between)
 
 
 def is_led(joint: str, current: Sequence[Token]) -> bool:
@@ -110,8 +80,6 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
         return bool(rest)
     if low in ("so", "yet", "or"):
         return bool(rest) and (rest[0].low in grammar().subjects or (low != "yet" and verb_place(rest[:2]) is not None))
-    if low in ("once", "since", "after", "before", "until") and _is_noun_before_subject(rest):
-        return False  # "since the accident he …"
     if low in ("once", "since", "where"):
         opens = bool(rest) and (rest[0].low in grammar().marks or rest[0].text[:1].isupper())
         is_subject = bool(rest) and rest[0].low in grammar().subjects
@@ -121,12 +89,6 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
             _starts_gerund(rest) or rest[0].low in grammar().subjects or (low != "instead" and _clause_follows(rest))
         )
     return True
-
-
-def _is_noun_before_subject(rest: Sequence[Token]) -> bool:
-    """Whether a noun, and no clause, stands between a joint and who does what follows: "since the accident | he …"."""
-    place = next((at for at, token in enumerate(rest[:5]) if token.low in HEROES), 0)
-    return place > 1 and rest[0].low not in grammar().subjects and verb_place(rest[:place]) is None
 
 
 def _may_end(joint: str, cut: Sequence[Piece], current: Sequence[Token]) -> bool:
@@ -165,10 +127,10 @@ def _whole(pieces: list[Piece]) -> list[Piece]:
             piece = replace(piece, joint=joint, tokens=(*waiting.tokens, *mark, *piece.tokens))
             waiting = None
         beside = bool(whole) and len(piece.tokens) == 1 and _goes_beside(piece)  # "answers, pacing"
-        acts = (beside or verb_place(piece.tokens) is not None) and not (whole and _is_noun_list(whole[-1], piece))
-        if acts or (whole and not led and _is_loose(whole[-1], piece, pieces[place + 1 :])):
+        acts = beside or verb_place(piece.tokens) is not None
+        if acts:
             whole.append(piece)
-        elif whole and not (led or _opens(piece, pieces[place + 1 :]) or _leads(whole[-1], piece, pieces[place + 1 :])):
+        elif whole and not (led or _leads(whole[-1], piece, pieces[place + 1 :])):
             mark = _comma(whole[-1]) if piece.tokens[0].low in grammar().prepositions else ()
             whole[-1] = replace(whole[-1], tokens=(*whole[-1].tokens, *mark, *piece.tokens))
         else:
@@ -176,33 +138,10 @@ def _whole(pieces: list[Piece]) -> list[Piece]:
     return [*whole, waiting] if waiting is not None else whole
 
 
-def _is_loose(last: Piece, piece: Piece, after: Sequence[Piece]) -> bool:
-    """Whether words without a verb are told beside a clause and are no part of it: "sinks into the armchair, | a glass
-    in his hand", but "eats a plum, a pear and cheese"."""
-    known, first = grammar(), piece.tokens[0].low
-    if piece.joint != "," or first in known.prepositions | known.adverbs | known.joints or len(piece.tokens) < 2:
-        return False
-    run = next((at for at, one in enumerate(after) if verb_place(one.tokens) is not None), len(after))
-    listed = any(one.joint in ("and", "or", "plus") for one in after[:run])
-    verb = verb_place(last.tokens)
-    own = next((token.low for token in reversed(last.tokens[(verb or 0) + 1 :]) if token.low in known.marks), "")
-    return (
-        not listed and verb is not None and first != own and not _opens(piece, after) and not _leads(last, piece, after)
-    )
-
-
 def _comma(piece: Piece) -> tuple[Token, ...]:
     """The comma behind a piece: "The baker, up since two, wipes the glass" has no "two wipes"."""
     end = piece.tokens[-1].end
     return (Token(",", end, end + 1),)
-
-
-def _opens(piece: Piece, after: Sequence[Piece]) -> bool:
-    """Whether a place or time belongs to the clause after it: "…, and in the kitchen, she cooks"."""
-    if piece.joint == "," or piece.tokens[0].low not in grammar().prepositions or not after:
-        return False
-    first = after[0].tokens[0]
-    return after[0].joint == "," and (first.low in grammar().subjects or first.text[:1].isupper())
 
 
 def _leads(last: Piece, piece: Piece, after: Sequence[Piece]) -> bool:
@@ -213,25 +152,6 @@ def _leads(last: Piece, piece: Piece, after: Sequence[Piece]) -> bool:
         piece.joint == "," and last.joint in grammar().earlier | _LATER_JOINTS
     )  # "while it boils, Tom, in his apron, …"
     return named and (led or piece.joint in ("and", "but", "so", "while")) and acting is not None
-
-
-def _is_noun_list(last: Piece, piece: Piece) -> bool:
-    """Whether a single word goes on with the nouns before it: "cakes and drinks", but not "eats and drinks"."""
-    words = piece.tokens
-    if [word.low for word in words if word.low != "up"] == ["standing"]:
-        return True  # "eats from the pot, standing up"
-    verb = verb_place(words) or 0
-    if piece.joint in ("and", "or", ",") and verb > 2 and words[verb - 1].low in grammar().subjects and last.tokens:
-        return words[0].low in ARTICLES | OWNERS and ends_noun(words[verb - 3].low, words[verb - 2].low)
-    if len(words) > 1 or not is_noun(words[0].low):
-        return False
-    end, word = last.tokens[-1].low, words[0].low
-    if {end, word} <= theme_words()["body"]:
-        return True  # "on his hands and knees"
-    if is_third_person(word):
-        listed = is_plural(end) and len(last.tokens) > 2 and last.tokens[-2].low not in grammar().marks
-        return listed and (piece.joint != "," or word in things() or lemma_of(word) in things())
-    return is_noun(end) and word == verb_of(word)
 
 
 def in_time(pieces: Sequence[Piece]) -> list[int]:
@@ -248,8 +168,6 @@ def in_time(pieces: Sequence[Piece]) -> list[int]:
                 ordered.append(place)
             else:
                 ordered.insert(len(ordered) - 1, place)
-        elif place - 1 in ordered[:-1] and _goes_beside(piece):  # "switches it on after she has sat there, | listening"
-            ordered.insert(ordered.index(place - 1) + 1, place)
         else:
             ordered.append(place)
     if later:

@@ -36,6 +36,7 @@ _LONG: Final = (
 _SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|had|have|should)nt\b")
 
 
+_SEVERAL: Final = frozenset(("couple", "family", "pair", "people", "police", "team"))
 _SEEMS: Final = frozenset(("feels", "felt", "seems", "looks", "gets", "becomes"))
 """Verbs after which an adjective stands, besides the forms of be."""
 _PARTICLES: Final = frozenset(("up", "down", "out", "off", "away", "back"))
@@ -92,15 +93,33 @@ def verb_place(tokens: Sequence[Token]) -> int | None:
     return None
 
 
+def next_verb(tokens: Sequence[Token], before: int) -> int | None:
+    """Where the next finite verb stands after one that stands at `before`, and after what that helps."""
+    known = grammar()
+    objects: list[int] = []
+    no_verb_after = known.auxiliaries | known.denials | known.marks | known.prepositions | known.numbers
+    for place in range(before + 1, len(tokens)):
+        low, last = tokens[place].low, tokens[place - 1].low
+        base = verb_of(low)
+        finite = low in known.auxiliaries or (
+            bool(base) and (is_third_person(low) or (low == past(base) and _acts(tokens, place)))
+        )
+        if finite and not (last in no_verb_after or (is_adverb(last) and place == before + 2)):
+            if place > before + 1 or not is_noun(low):
+                return place
+            objects.append(place)  # "who loves books | reads", but "whose dog died | cries"
+    return next(iter(objects), None)
+
+
 def has_verb(text: str) -> bool:
     """Whether some word of the text acts as a verb."""
     return verb_place(tokens_of(plain(text))) is not None
 
 
 def is_plural(word: str) -> bool:
-    """Whether a word may be the plural of a noun."""
+    """Whether a word may be the plural of a noun, or mean several people."""
     nouns = kinds_of(word).get("NOUN", ())
-    return bool(nouns) and word not in nouns
+    return (bool(nouns) and word not in nouns) or word in _SEVERAL
 
 
 def is_adverb(word: str) -> bool:
@@ -117,9 +136,6 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
     while at >= 0 and is_adverb(tokens[at].low):
         at -= 1
     if at < 0 or tokens[at].text == ",":
-        later = {token.low for token in tokens[place + 1 :]}
-        if word == base and is_noun(word) and not later.isdisjoint(_NOMINATIVES):
-            return False  # "inch by inch he …"
         if at >= 0 and word == base != past(base):
             return False  # nobody is told to do things
         return _opens(word, base, tokens[place + 1].low if place + 1 < len(tokens) else "")
@@ -130,8 +146,6 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
         return True
     if before == "to":
         return word == base and base not in grammar().not_verbs_after_to
-    if before in grammar().numbers and at and tokens[at - 1].low == "of":
-        return is_third_person(word)  # "a boy of six hides"
     if before in grammar().marks | grammar().numbers:
         return False
     if word.endswith("ing"):
@@ -156,39 +170,19 @@ def _opens(word: str, base: str, after: str) -> bool:
 def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
     """Whether a word acts as the verb of the noun that stands before it, at `at`."""
     word, before = tokens[place].low, tokens[at].low
-    after = tokens[place + 1] if place + 1 < len(tokens) else None
-    beside = tokens[place].start == tokens[at].end + 1
-    if beside and is_adjective(before) and not is_noun(before) and is_noun(word):
+    after = tokens[place + 1].low if place + 1 < len(tokens) else ""
+    if is_adjective(before) and not is_noun(before) and is_noun(word):
         return False
     if is_adjective(word) and before in grammar().be | _SEEMS:
         return False
-    if base in ("name", "call") and word != base and after is not None and after.text[:1].isupper():
-        return False  # "a teacher named Edith"
-    opens_noun = tokens[0].low in grammar().marks | grammar().numbers
-    if before.endswith("ing") and not is_noun(before) and opens_noun and at <= 1:
-        return False  # "some jumping jacks"
-    opened = tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word)
-    if opened and not _has_own_mark(tokens, at):
+    if tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word):
         return False  # "under the sofa cushions"
     if word == base:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
-        ends = after is None or after.low in grammar().prepositions | {",", "and"}
-        acts = not is_noun(word) or _has_object(after) or (ends and tokens[0].low in grammar().marks and at <= 2)
+        ends = not after or after in grammar().prepositions | {",", "and"}
+        acts = not is_noun(word) or after in grammar().marks or (ends and tokens[0].low in grammar().marks and at <= 2)
         return (past(base) == base and named) or (is_plural(before) and acts)
-    if is_noun(word) and word.endswith("s"):
-        follower = after.low if after is not None else ""
-        return _goes_on(follower) or is_adjective(follower) or is_noun(follower)
-    return True
-
-
-def _has_own_mark(tokens: Sequence[Token], at: int) -> bool:
-    """Whether the noun there begins anew with its own mark: "by lamplight | an archivist", not "under the sofa"."""
-    mark = next((place for place in range(at, 0, -1) if tokens[place].low in grammar().marks), 0)
-    return mark > 1 and tokens[mark - 1].low not in grammar().prepositions | grammar().marks
-
-
-def _has_object(after: Token | None) -> bool:
-    return after is not None and after.low in grammar().marks
+    return not (is_noun(word) and word.endswith("s")) or _goes_on(after) or is_adjective(after) or is_noun(after)
 
 
 def _goes_on(after: str) -> bool:

@@ -6,11 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from planner_service.themes.lexicon import grammar, past, verb_of
+from planner_service.themes.lexicon import grammar, verb_of
 from planner_service.themes.verb_finder import Token, verb_place
 
-_EXPECTED: Final = frozenset(("supposed", "meant", "expected", "due", "scheduled"))
-"""What is only wished for by others: "is supposed to revise"."""
 _LETTING: Final = frozenset(("let", "make", "force", "allow", "bring"))
 _ONESELF: Final = frozenset(("himself", "herself", "themselves", "themself", "myself", "yourself"))
 """Who lets or makes themselves do a thing does it."""
@@ -41,17 +39,6 @@ def verb_group(words: Sequence[Token]) -> VerbGroup:
     return group
 
 
-def is_past(words: Sequence[Token], group: VerbGroup) -> bool | None:
-    """Whether the first of a clause's verbs is in the simple past; None where its form does not tell, or helps."""
-    if not words or group.denied:
-        return None
-    low = words[min(group.place, len(words) - 1)].low
-    first, base = next((token.low for token in words if verb_of(token.low)), ""), verb_of(low)
-    if first != low or not base or low in grammar().auxiliaries or base == past(base):
-        return None
-    return low == past(base) if low != base and not low.endswith("ing") else None
-
-
 def _step(words: Sequence[Token], group: VerbGroup) -> int:
     """How many words to go on by, noting what they say; 0 where the deed itself stands."""
     at = group.place
@@ -70,9 +57,6 @@ def _step(words: Sequence[Token], group: VerbGroup) -> int:
     if low in grammar().do and [token.low for token in words[at + 1 :]] == ["not"]:  # "her husband does not"
         group.denied = True
         return 0
-    if low in grammar().be and ahead in _EXPECTED and [token.low for token in words[at + 2 : at + 3]] == ["to"]:
-        group.denied = True
-        return 3
     if low in grammar().auxiliaries and (low in grammar().modals or _verb_follows(words, at) or _hinders(words, at)):
         group.perfect |= low == "had"
         return 1

@@ -63,7 +63,6 @@ def test_what_is_wrong_with_a_pattern_is_said_by_its_place() -> None:
         (lambda: replace(deed_table(), deed=(DeedRow(("nap",), Skill.LIEDOWN, captions=("fly",)),)), "deed 'nap': fly"),
         (lambda: replace(templates(), further=("to {nowhere}",)), "further: there is no blank {nowhere}"),
         (lambda: replace(templates(), touches_at={"bed": {"knee": ()}}), "touches_at.bed: knee is none"),
-        (lambda: replace(story_words(), thoughts=("Oh {dear}",)), "thoughts: there is no blank {dear}"),
     ],
 )
 def test_a_table_that_does_not_hold_together_is_refused_by_its_place(change: Callable[[], object], fault: str) -> None:

@@ -1,0 +1,59 @@
+"""Whether a keyframe shows a deed or only stands for it: by what its caption is, from data/caption_senses.toml."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cache
+from typing import Final
+
+from motion_backend.motion import Skill
+from planner_service.composition.deed_lexicon import Deed, object_of, readings, says
+from planner_service.scripts.script import Keyframe
+from planner_service.themes.protagonist import is_person
+from planner_service.themes.sentence_parser import Clause
+from scene_graphs.data_tables import read_table, table
+
+_POSTURES: Final = (Skill.SITDOWN, Skill.LIEDOWN, Skill.STANDUP, Skill.GETUP)
+
+
+@table
+class Sense:
+    """Deeds that captions of a skill show."""
+
+    skill: Skill
+    says: tuple[str, ...]
+    captions: tuple[str, ...] = ()
+    """Parts of captions; none: any of the skill."""
+
+
+@table
+class SenseTable:
+    """data/caption_senses.toml."""
+
+    sense: tuple[Sense, ...]
+
+
+@cache
+def senses(skill: Skill, caption: str) -> tuple[str, ...]:
+    """The ways to say what a caption shows."""
+    known: SenseTable = read_table("planner_service", "caption_senses.toml", SenseTable)
+    fitting = (
+        one for one in known.sense
+        if one.skill is skill and (not one.captions or any(part in caption.lower() for part in one.captions))
+    )  # fmt: skip
+    return tuple(way for one in fitting for way in one.says)
+
+
+def shows(skill: Skill, caption: str, clause: Clause) -> bool:
+    """Whether a caption shows what a clause tells of; hands do nothing of it to people."""
+    if skill is Skill.TOUCH and is_person(object_of(clause)):
+        return False
+    ways = senses(skill, caption)
+    return any(says(ways, lemmas) for lemmas in readings(clause))
+
+
+def is_shown(clause: Clause, deed: Deed, keyframes: Iterable[Keyframe]) -> bool:
+    """Whether some keyframe shows a clause's deed; a posture that its saying is, shows itself."""
+    if deed.foreseen and not deed.row.captions and deed.skill in _POSTURES:
+        return True
+    return any(shows(one.skill, one.caption, clause) for one in keyframes)
