@@ -152,8 +152,8 @@ class PartFinder:
         deeds = {
             index: deed
             for index, one in enumerate(read)
-            if one.beat.kind == "deed" and (deed := deed_of(one.clause)) is not None and deed.skill is not Skill.LOCO
-        }
+            if one.beat.kind == "deed" and (deed := deed_of(one.clause)) is not None and self._may_do(deed, one)
+        }  # sentences are encoded only of what some script may do
         if not deeds:
             return {}
         scores = rank([read[index].text for index in deeds], self.library)
@@ -167,6 +167,13 @@ class PartFinder:
                     self._used.add(script.id)
                     break
         return found
+
+    def _may_do(self, deed: Deed, read: ReadBeat) -> bool:
+        """Whether some script in a beat's mood has a caption of its deed; a walk alone is no part of one."""
+        if deed.skill is Skill.LOCO or not (deed.pieces or deed.row.captions):
+            return False
+        shown = _captions_of(deed)
+        return not shown or any((read.beat.emotion, deed.skill, one) in self.library.captions for one in shown)
 
     def _plays(self, script: ShortScript, read: ReadBeat) -> bool:
         """Whether a script plays in the beat's mood, and where it may."""
@@ -191,7 +198,11 @@ def agrees(skill: Skill, caption: str, piece: str, deed: Deed) -> bool:
         return False
     kinds = furniture.categories_of(piece)
     there = any(not kinds.isdisjoint(furniture.categories_of(one)) for one in deed.pieces[:3] if one != "floor")
-    shown = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
+    shown = _captions_of(deed)
     if skill is Skill.TOUCH and not shown and not caption.startswith("touch medium"):
         return False
     return (caption in shown if shown else True) and (there or not deed.pieces)
+
+
+def _captions_of(deed: Deed) -> tuple[str, ...]:
+    return deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
