@@ -42,7 +42,8 @@ def serve_beats(
     """The long script of a theme, beat by beat. ThemeError when nothing of it can be acted."""
     planned = _by_model(theme, library, request, model, record)
     read = _read_anew(planned) if planned else beats_of(theme)
-    writer = KeyframeWriter(request.seed, request.furniture, PartFinder(library, request.rooms).all_of(read).get)
+    parts = {} if request.method == "direct" else PartFinder(library, request.rooms).all_of(read)
+    writer = KeyframeWriter(request.seed, request.furniture, parts.get)
     if planned is None or any(one.keyframes is None for one in planned.beats):
         record.planners.append(RULES)
     writer.avoid(read)
@@ -67,9 +68,9 @@ def serve_beats(
         keyframes=acted,
         repairs=(*record.notes, *repairs),
         person=planned.person if planned else None,
-        method="auto",
+        method=request.method,
         planner=record.planner,
-        encoder=library.encoder.name,
+        encoder="" if request.method == "direct" else library.encoder.name,
         seed=request.seed,
     )
 
