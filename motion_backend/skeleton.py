@@ -21,6 +21,8 @@ JOINTS = (
 PARENTS = (-1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9, 12, 13, 14, 16, 17, 18, 19)
 INDEX = {name: index for index, name in enumerate(JOINTS)}
 REFERENCE_HEIGHT = 1.70
+MIN_HEIGHT, MAX_HEIGHT = 1.1, 2.2
+"""Metres; a child of five or six, and whom doors still let through."""
 
 
 def other_side(name: str) -> str:
@@ -114,8 +116,8 @@ class Skeleton:
 
 def build_skeleton(height: float = REFERENCE_HEIGHT) -> Skeleton:
     """The skeleton of a body of that height (metres), every bone scaled alike."""
-    if not 1.2 <= height <= 2.2:
-        raise ValueError(f"character.height must lie between 1.2 and 2.2 metres, got {height}")
+    if not MIN_HEIGHT <= height <= MAX_HEIGHT:
+        raise ValueError(f"character.height must lie between {MIN_HEIGHT} and {MAX_HEIGHT} metres, got {height}")
     offsets = np.zeros((len(JOINTS), 3))
     for name, offset in _OFFSETS.items():
         offsets[INDEX[name]] = offset

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, get_args
+from typing import Any, Final, get_args
 
 from motion_backend.backends import DEFAULT_BACKEND, require_backend
+from motion_backend.body.cast import Look, Role
 from motion_backend.director import Director, shares
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.story_figures import story_figures
-from motion_backend.motion import Action, Character, Motion, join
+from motion_backend.motion import Action, Character, Motion, Skill, join
 from motion_backend.physics.physics_record import physics_of
 from motion_backend.scene import scene_of
+from motion_backend.skeleton import MAX_HEIGHT, MIN_HEIGHT
+from planner_service.cast_choice import cast_for, check_character, named_as
 from planner_service.composition.compose import compose, script_of
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, METHODS, Request
 from planner_service.grounding.furnish import Furnished, furnish
@@ -37,10 +41,10 @@ Progress = Callable[[str, float], None]
 """Called with a stage's name and the share of it that is done, 0 to 1."""
 STAGES = ("plan", "furnish", "narrate", "act", "move", "judge")
 PRONOUNS = get_args(Pronouns)
+_ASLEEP: Final = re.compile(r"\b(?:asleep|sleeps?|sleeping|naps?|napping|dozes?|dozing|slumbers?)\b", re.IGNORECASE)
+"""Words of what is acted, seated or lying, with closed eyes."""
 MAX_SEED = 2**53 - 1
 """The largest whole number that every JSON reader keeps exactly."""
-MIN_HEIGHT, MAX_HEIGHT = 1.2, 2.2
-"""Metres."""
 
 
 class RequestError(UserError):
@@ -68,7 +72,8 @@ class StoryRequest:
     backend: str = DEFAULT_BACKEND
     seed: int = 0
     character: Character = field(default_factory=Character)
-    """Who acts; with the name and pronouns of the theme's person where both are left at their defaults."""
+    """Who acts; with the name and pronouns of the theme's person where both are left at their defaults. How they look
+    is filled up by `actor`."""
 
     def __post_init__(self) -> None:
         for room in self.rooms:
@@ -99,7 +104,12 @@ class StoryRequest:
         if not 0 <= self.seed <= MAX_SEED:
             raise RequestError(f"must be a whole number from 0 to {MAX_SEED}, got {self.seed}", at="seed")
         _check_character(self.character)
-        object.__setattr__(self, "character", cast_by(self.theme, self.character))
+        object.__setattr__(self, "character", named_as(self.theme, self.character))
+
+    @property
+    def acted_by(self) -> Character:
+        """The character with all that can be seen of it, as far as rules read it."""
+        return cast_for(self.theme, self.character, self.seed)
 
 
 def _check_character(character: Character) -> None:
@@ -111,6 +121,7 @@ def _check_character(character: Character) -> None:
     _one_of("pronouns", character.pronouns.strip().lower().split("/")[0], PRONOUNS, character.pronouns)
     if not MIN_HEIGHT <= character.height <= MAX_HEIGHT:
         raise RequestError(f"must be {MIN_HEIGHT} to {MAX_HEIGHT} metres, got {character.height:g}", at="height")
+    check_character(character)
 
 
 def _one_of(field: str, value: str, known: Sequence[str], shown: str | None = None) -> None:
@@ -183,6 +194,11 @@ class Story:
     """First frame and stop frame of every action."""
     figures: tuple[story_metrics.KeyframeFigures, ...]
     report: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def role(self) -> Role:
+        """Who is seen, and what the face shows."""
+        return role_of(self.planned.character, self.actions, self.planned.script)
 
 
 @dataclass
@@ -261,12 +277,32 @@ class Pipeline:
 
 
 def actor(request: StoryRequest, script: LongScript) -> Character:
-    """Who acts a script: whom the user described, else whom the model read in the theme, else whom the rules did."""
-    read = cast_by(request.theme, Character(height=request.character.height))
-    if script.person is None or request.character != read:
-        return request.character
-    person = script.person
-    return replace(read, name=person.name or read.name, pronouns=person.pronouns or read.pronouns)
+    """Who acts a script, with all that can be seen of them: whom the user described, else whom the model read in the
+    theme, else whom the rules did.
+    """
+    asked, read, person = request.character, cast_by(request.theme, Character()), script.person
+    if person is None or asked.member or (asked.name, asked.pronouns) != (read.name, read.pronouns):
+        return request.acted_by
+    called = replace(asked, name=person.name or read.name, pronouns=person.pronouns or read.pronouns)
+    return cast_for(request.theme, called, request.seed, person.age)
+
+
+def role_of(character: Character, actions: Sequence[Action], script: LongScript) -> Role:
+    """Who is seen acting the actions of a script: the look, and what the face shows in each keyframe."""
+    emotions = {action.keyframe: action.emotion for action in actions}
+    asleep = frozenset(
+        action.keyframe
+        for action in actions
+        if action.skill in (Skill.LIEDOWN, Skill.SITDOWN) and _ASLEEP.search(_told_of(action, script))
+    )
+    return Role(Look.of(character), emotions, asleep)
+
+
+def _told_of(action: Action, script: LongScript) -> str:
+    """All words of an action: its keyframe's, and those of the beats it shows."""
+    keyframe = script.keyframes[action.keyframe]
+    beats = (*([] if keyframe.beat is None else [keyframe.beat]), *keyframe.also)
+    return " ".join([keyframe.caption, action.interaction or "", *(script.beats[beat].text for beat in beats)])
 
 
 def given_script(request: StoryRequest) -> LongScript:

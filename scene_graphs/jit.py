@@ -19,6 +19,21 @@ def compiled(function: _F) -> _F:
         return cast(_F, numba.njit(nogil=True)(function))
 
 
+def filling_rows(number: int) -> Callable[[_F], _F]:
+    """The same for one kind of arguments alone, compiled or read where it is kept as its module is imported: so many
+    arrays of floats of three axes, however they lie in memory, and another that is filled."""
+    given = numba.types.Array(numba.float64, 3, "A", readonly=True)
+    signature = numba.void(*(given,) * number, numba.float64[:, :, ::1])
+
+    def decorate(function: _F) -> _F:
+        try:
+            return cast(_F, numba.njit(signature, cache=True, nogil=True)(function))
+        except RuntimeError:
+            return cast(_F, numba.njit(signature, nogil=True)(function))
+
+    return decorate
+
+
 def filling(function: _F) -> _F:
     """The same for what only fills arrays that it is given: that nothing is made saves counting who holds what, which
     takes longer than the work of a pixel."""

@@ -9,6 +9,7 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Generator, Iterator
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,8 +17,10 @@ import layers
 import psycopg
 import pytest
 import structlog
+import typer.main
+import typer.testing
 from databases import new_database
-from encoded import forget, hash_libraries_once
+from encoded import check_weights_once, forget, hash_libraries_once
 from examples import tries
 from hypothesis import settings
 from running import RunningService
@@ -35,6 +38,9 @@ os.environ.setdefault("SIMS_OLLAMA_URL", "none")
 settings.register_profile("ours", tries(100), derandomize=True)
 settings.load_profile("ours")
 hash_libraries_once()
+check_weights_once()
+# All commands are looked through for a twentieth of a second whenever one is asked for.
+typer.testing._get_command = cache(typer.main.get_command)  # type: ignore[attr-defined]
 
 
 @pytest.fixture(scope="session")
@@ -108,7 +114,7 @@ def pytest_collection_finish() -> None:
     """What was imported stays: the collector need not look it over while tests run either."""
     gc.freeze()
     gc.enable()
-    gc.set_threshold(10_000, 20, 20)
+    gc.set_threshold(200_000, 20, 20)
 
 
 def pytest_unconfigure() -> None:

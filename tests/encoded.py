@@ -35,9 +35,15 @@ def encoded() -> Path:
 
 def lend(data: Path) -> None:
     """Give a data folder what is encoded already."""
-    cache = data / "cache"
+    encoded()
+    for files in ("sentences-*.npz", "verified-*"):
+        _copy(files, data / "cache")
+
+
+def _copy(files: str, cache: Path) -> None:
+    """What the folder of this run has by such names, unless it is there."""
     cache.mkdir(parents=True, exist_ok=True)
-    for file in (*encoded().glob("sentences-*.npz"), *FOLDER.glob("verified-*")):
+    for file in FOLDER.glob(files):
         if not (cache / file.name).exists():
             shutil.copy2(file, cache / file.name)
 
@@ -58,6 +64,22 @@ def hash_libraries_once() -> None:
         return known[key].copy()
 
     HashingEncoder.encode = encode  # type: ignore[method-assign]
+
+
+def check_weights_once() -> None:
+    """The files of the installed encoder are hashed once in a run, however many tests open a library of their own."""
+    from motion_backend.language import minilm
+
+    plain = minilm.verify
+
+    def verify(folder: Path, cache: Path | None = None) -> None:
+        if folder == minilm.weights_folder():
+            plain(folder, FOLDER)
+            if cache is not None:
+                _copy("verified-*", cache)
+        plain(folder, cache)
+
+    minilm.verify = verify
 
 
 def forget() -> None:

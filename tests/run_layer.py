@@ -58,33 +58,18 @@ RELEASE = {"SIMS_TEST_KILLS": "20", "SIMS_TEST_STORIES": "50", "SIMS_TEST_EXAMPL
 """How much `test-all` tries, where nothing else is asked for."""
 
 
-KERNEL = ROOT / "scene_graphs" / "graph" / "branch_and_bound_kernel.py"
-FIRST_SEARCH = """
-from scene_graphs.graph.edit_distance import exact_distance
-from scene_graphs.layout_library import built_in_index
-index = built_in_index()
-graph = index.graph("study-0000")
-index.search(graph)
-exact_distance(graph, graph, index.costs)
-"""
+KERNELS = ("scene_graphs/graph/branch_and_bound_kernel.py", "motion_backend/rendering/film_kernel.py")
+"""Of what is compiled at the first use, what takes long."""
 
 
-FILM_KERNEL = ROOT / "motion_backend" / "rendering" / "film_kernel.py"
-FIRST_FILM = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/motion_backend/rendering/test_film.py"]
-
-
-def compile_search() -> None:
-    """The search for rooms and the film are compiled where nobody has done so yet: a part of set-up, and all processes
-    wait for one.
+def compile_once() -> None:
+    """What set-up compiles is compiled again where it has changed since, and all processes wait for one.
 
     What was compiled is kept beside the module; processes that begin at once would each compile it.
     """
-    if not _is_compiled(KERNEL):
-        print("· compiling the search for rooms, once", flush=True)
-        subprocess.run([sys.executable, "-c", FIRST_SEARCH], cwd=ROOT, check=True)
-    if not _is_compiled(FILM_KERNEL):
-        print("· compiling what draws films, once", flush=True)
-        subprocess.run([sys.executable, *FIRST_FILM], cwd=ROOT, check=False, stdout=subprocess.DEVNULL)
+    if not all(_is_compiled(ROOT / kernel) for kernel in KERNELS):
+        print("· compiling the search for rooms and what draws films, once", flush=True)
+        subprocess.run([sys.executable, "-c", "import install; exec(install.COMPILE)"], cwd=ROOT, check=True)
 
 
 def _is_compiled(module: Path) -> bool:
@@ -122,7 +107,7 @@ def main() -> int:
     one_thread = {"OMP_NUM_THREADS": "1"}
     environment = one_thread | (RELEASE if asked.layers == "test-all" else {}) | dict(os.environ)
     code, lines = 0, list[str]()
-    compile_search()
+    compile_once()
     for layer in LAYERS[asked.layers]:
         if asked.layers == "test-all":
             layer = replace(layer, wall=None, cpu=None)  # so much of it is not to be quick

@@ -16,6 +16,7 @@ from motion_backend.rendering.film_picture import to_rgb
 from motion_backend.rendering.film_shots import film_shots
 from planner_service.cli.layouts import graph_of_words
 from planner_service.evaluation.trials import Trial, perform
+from planner_service.output.cast_sheet import cast_sheet
 from planner_service.output.room_pictures import Shown, picture
 from planner_service.output.storyboard import COLUMNS, GAP, HEAD, PLAN, SIDE, TEXT, storyboard
 from planner_service.pipeline import Pipeline, Story, StoryRequest
@@ -58,6 +59,8 @@ def main() -> None:
         draw_found(index, Path(folder, "match.png"))
         save(cut(board, SHOWN), HERE / "storyboard.png")
         save(draw_acted(), HERE / "sheet.png")
+        # Skin and cloth have more colours than a palette.
+        Image.fromarray(cast_sheet()).save(HERE / "cast.png", optimize=True)
         for name in ("plan.png", "match.png"):
             # Lines of few pixels keep their colours, which mean something.
             save(np.asarray(Image.open(Path(folder, name)).convert("RGB")), HERE / name, Image.Quantize.MAXCOVERAGE)
@@ -72,7 +75,7 @@ def demo() -> StoryRequest:
 def draw_board(story: Story, path: Path) -> np.ndarray:
     """The whole storyboard as pixels. (H, W, 3)."""
     planned, targets = story.planned, [action.object_id for action in story.actions]
-    storyboard(planned.home, story.motion, planned.script.keyframes, path, planned.told.title, targets)
+    storyboard(planned.home, story.motion, planned.script.keyframes, path, planned.told.title, targets, story.role)
     return np.asarray(Image.open(path).convert("RGB"))
 
 
@@ -88,7 +91,7 @@ def draw_loop(story: Story, path: Path) -> None:
     }
     pictures = [
         Image.fromarray(to_rgb(picture))
-        for frame, picture in enumerate(film_frames(motion, shots, LOOP))
+        for frame, picture in enumerate(film_frames(motion, shots, LOOP, role=story.role))
         if frame in wanted
     ]
     pause = round(1000 * EVERY / motion.fps)

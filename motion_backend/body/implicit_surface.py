@@ -69,6 +69,28 @@ def intersection(blend: float, *fields: Field) -> Field:
     return _negated(inside)
 
 
+def difference(blend: float, field: Field, *holes: Field) -> Field:
+    """What is inside a shape and in none of the holes."""
+    return intersection(blend, field, *(_negated(hole) for hole in holes))
+
+
+def swollen(field: Field, by: float) -> Field:
+    """The shape grown by that many metres, all around."""
+    return field if by == 0 else lambda p: field(p) - by
+
+
+def ring(center: Sequence[float], axis: Sequence[float], radius: float, half: tuple[float, float]) -> Field:
+    """A ring around an axis; half sizes of its cross-section away from and along the axis."""
+    middle, out = np.asarray(center, dtype=float), np.asarray(axis, dtype=float) / np.linalg.norm(axis)
+
+    def field(p: Array) -> Array:
+        along = (p - middle) @ out
+        away = np.linalg.norm(p - middle - along[..., None] * out, axis=-1) - radius
+        return np.asarray((np.hypot(away / half[0], along / half[1]) - 1.0) * min(half))
+
+    return field
+
+
 def mirrored(field: Field) -> Field:
     """The shape on the left (+X) side on the right side too; it must not cross the middle."""
     return lambda p: field(np.concatenate([np.abs(p[..., :1]), p[..., 1:]], axis=-1))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,23 @@ class Material:
 
 
 @dataclass(frozen=True)
+class Morphs:
+    """Ways to move some vertices of a mesh, each by a share: what a face does. They hang on one joint alone."""
+
+    names: tuple[str, ...]
+    first: int
+    """The first vertex that is moved; all behind it are."""
+    offsets: Floats
+    """(K, F, 3) metres in the rest pose at a share of 1."""
+    joint: int
+    """What these vertices hang on."""
+
+    def scaled(self, by: float) -> Morphs:
+        """The same for a mesh of another size."""
+        return replace(self, offsets=(self.offsets * by).astype(np.float32))
+
+
+@dataclass(frozen=True)
 class SkinnedMesh:
     """A body's surface in the rest pose (pelvis at the origin, T-pose facing +Z) and how it hangs on the joints."""
 
@@ -39,6 +56,8 @@ class SkinnedMesh:
     materials: tuple[Material, ...]
     face_materials: NDArray[np.uint8]
     """(F,) index into `materials`."""
+    morphs: Morphs | None = None
+    """None for a mesh without a face that moves."""
 
     @property
     def face_colors(self) -> Floats:
@@ -60,8 +79,9 @@ def skin(
     skeleton: Skeleton,
     root_positions: NDArray[np.floating],
     local_rotations: NDArray[np.floating],
+    shares: NDArray[np.floating] | None = None,
 ) -> tuple[Floats, Floats]:
-    """World vertices (T, V, 3) and normals (T, V, 3) of a mesh in T poses."""
+    """World vertices (T, V, 3) and normals (T, V, 3) of a mesh in T poses; `shares` (T, K) of its morphs."""
     from motion_backend.body.skinning_kernel import skin_poses
 
     positions, world = skeleton.forward_kinematics(np.asarray(root_positions), np.asarray(local_rotations))
@@ -70,4 +90,7 @@ def skin(
     frames = np.concatenate([turn, shift[..., None]], axis=-1).astype(np.float64)  # (T, J, 3, 4)
     points, turned = (np.empty((len(frames), *mesh.vertices.shape), dtype=np.float32) for _ in range(2))
     skin_poses(mesh.vertices, mesh.normals, mesh.joints, mesh.weights, frames, points, turned)
+    if shares is not None and mesh.morphs is not None:
+        moved = np.einsum("tk,kfc->tfc", shares, mesh.morphs.offsets)
+        points[:, mesh.morphs.first :] += np.einsum("tab,tfb->tfa", turn[:, mesh.morphs.joint], moved)
     return points, turned

@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
-from motion_backend.body.mannequin_mesh import build_mannequin
-from motion_backend.body.skinning import SkinnedMesh
+from motion_backend.body.cast import PLAIN, Role
+from motion_backend.body.character_mesh import build_character
+from motion_backend.body.face_track import expression, face_track
+from motion_backend.body.skinning import Morphs, SkinnedMesh
 from motion_backend.formats.gltf_document import ARRAY_BUFFER, Document
-from motion_backend.motion import Motion
+from motion_backend.motion import Emotion, Motion
 from scene_graphs.json_fields import Json
 
 if TYPE_CHECKING:
@@ -20,6 +22,8 @@ if TYPE_CHECKING:
 
 GROUPS = ("floor", "wall", "ceiling", "door", "window", "rug")
 """Meshes whose names begin so are merged into a node of that name; all others into "furniture"."""
+STRAIGHT = 1e-3
+"""A change of pace, a frame, that nobody sees in a face."""
 
 
 class StaticMesh(Protocol):
@@ -47,10 +51,10 @@ class StaticMesh(Protocol):
     def roughness(self) -> float: ...
 
 
-def body_glb(motion: Motion) -> bytes:
-    """The animated mannequin alone."""
+def body_glb(motion: Motion, role: Role = PLAIN) -> bytes:
+    """The animated character alone."""
     document = Document()
-    return document.to_glb(_add_body(document, motion))
+    return document.to_glb(_add_body(document, motion, role))
 
 
 def scene_glb(home: Home) -> bytes:
@@ -58,10 +62,10 @@ def scene_glb(home: Home) -> bytes:
     return meshes_to_glb(_home_meshes(home))
 
 
-def film_glb(home: Home, motion: Motion) -> bytes:
-    """The home and the mannequin acting in it, in one file."""
+def film_glb(home: Home, motion: Motion, role: Role = PLAIN) -> bytes:
+    """The home and the character acting in it, in one file."""
     document = Document()
-    return document.to_glb([*_add_meshes(document, _home_meshes(home)), *_add_body(document, motion)])
+    return document.to_glb([*_add_meshes(document, _home_meshes(home)), *_add_body(document, motion, role)])
 
 
 def meshes_to_glb(meshes: Iterable[StaticMesh]) -> bytes:
@@ -106,8 +110,8 @@ def _merged(meshes: Sequence[StaticMesh]) -> tuple[NDArray[np.float32], NDArray[
     return vertices, np.concatenate([m.faces + start for m, start in zip(meshes, starts, strict=True)])
 
 
-def _add_body(document: Document, motion: Motion) -> list[int]:
-    """The mannequin's node and its pelvis's node."""
+def _add_body(document: Document, motion: Motion, role: Role) -> list[int]:
+    """The nodes of the body and of its face, and its pelvis's node."""
     joints = _add_joints(document, motion)
     inverse_bind = np.tile(np.eye(4, dtype=np.float32), (len(joints), 1, 1))
     inverse_bind[:, 3, :3] = -motion.skeleton.rest_positions  # rows here are columns in the file
@@ -115,9 +119,13 @@ def _add_body(document: Document, motion: Motion) -> list[int]:
         "skins",
         {"joints": joints, "skeleton": joints[0], "inverseBindMatrices": document.accessor(inverse_bind)},
     )
-    mesh = _add_skinned_mesh(document, build_mannequin(motion.skeleton))
-    _add_animation(document, motion, joints)
-    return [document.add("nodes", {"name": "body", "mesh": mesh, "skin": skin}), joints[0]]
+    mesh = build_character(motion.skeleton, role.look)
+    body, face = (
+        document.add("nodes", {"name": name, "mesh": _add_skinned_mesh(document, mesh, name), "skin": skin})
+        for name in ("body", "face")
+    )
+    _add_animation(document, motion, joints, face, face_track(motion, role))
+    return [body, face, joints[0]]
 
 
 def _add_joints(document: Document, motion: Motion) -> list[int]:
@@ -141,10 +149,16 @@ def _numbers(values: NDArray[np.floating]) -> list[float]:
     return [round(float(v), 6) for v in values]
 
 
-def _add_skinned_mesh(document: Document, mesh: SkinnedMesh) -> int:
+def _add_skinned_mesh(document: Document, mesh: SkinnedMesh, name: str) -> int:
+    """The part of a mesh that moves with the joints alone, "body", or the one that also does by itself, "face"."""
+    assert mesh.morphs is not None
+    faced, morphs = name == "face", mesh.morphs
     primitives = []
     for index, look in enumerate(mesh.materials):
-        used, faces = np.unique(mesh.faces[mesh.face_materials == index], return_inverse=True)
+        own = mesh.faces[mesh.face_materials == index]
+        used, faces = np.unique(own[(own[:, 0] >= morphs.first) == faced], return_inverse=True)
+        if not len(used):
+            continue
         shares = _shares(mesh.weights[used])
         holders = np.where(shares > 0, mesh.joints[used], 0).astype(np.uint8)
         attributes = {
@@ -154,8 +168,31 @@ def _add_skinned_mesh(document: Document, mesh: SkinnedMesh) -> int:
             "WEIGHTS_0": document.accessor(shares, ARRAY_BUFFER, normalized=True),
         }
         material = document.material(look.name, look.color, look.roughness)
-        primitives.append({"attributes": attributes, "indices": document.indices(faces), "material": material})
-    return document.add("meshes", {"name": "mannequin", "primitives": primitives})
+        primitive: Json = {"attributes": attributes, "indices": document.indices(faces), "material": material}
+        if faced:
+            primitive["targets"] = _targets(document, morphs, used - morphs.first)
+        primitives.append(primitive)
+    part: Json = {"name": name, "primitives": primitives}
+    if faced:
+        part |= {
+            "weights": [0.0] * len(morphs.names),
+            "extras": {"targetNames": list(morphs.names), "expressions": _expressions()},
+        }
+    return document.add("meshes", part)
+
+
+def _expressions() -> dict[str, list[float]]:
+    """The weights of every emotion, for players that have their own clock."""
+    return {emotion.value: expression(emotion).tolist() for emotion in Emotion}
+
+
+def _targets(document: Document, morphs: Morphs, used: NDArray[np.integer]) -> list[dict[str, int]]:
+    """What moves some vertices of a face, by unit; those that do not share zeros, which take no room."""
+    zeros = document.zeros(len(used))
+    return [
+        {"POSITION": document.accessor(offsets, ARRAY_BUFFER, bounds=True) if np.any(offsets) else zeros}
+        for offsets in morphs.offsets[:, used]
+    ]
 
 
 def _shares(weights: NDArray[np.floating]) -> NDArray[np.uint8]:
@@ -165,10 +202,13 @@ def _shares(weights: NDArray[np.floating]) -> NDArray[np.uint8]:
     return np.asarray(shares, dtype=np.uint8)
 
 
-def _add_animation(document: Document, motion: Motion, joints: list[int]) -> int:
-    """Every frame a key: the pelvis's way and the turn of every joint that turns at all.
+def _add_animation(
+    document: Document, motion: Motion, joints: list[int], face: int, track: NDArray[np.floating]
+) -> int:
+    """Every frame a key: the pelvis's way and the turn of every joint that turns at all; what the face does as seldom
+    as lines between keys allow.
 
-    Turns are 16-bit, which halves the file and moves no joint by more than 0.2 mm.
+    Turns are 16-bit, which halves the file and moves no joint by more than 0.2 mm; so is what the face does.
     """
     times = document.accessor(np.arange(len(motion), dtype=np.float32) / np.float32(motion.fps), bounds=True)
     samplers: list[Json] = []
@@ -184,8 +224,22 @@ def _add_animation(document: Document, motion: Motion, joints: list[int]) -> int
     for joint in range(len(joints)):
         if joint == 0 or (steps[:, joint] != steps[0, joint]).any():
             animate(joint, "rotation", document.accessor(steps[:, joint], normalized=True))
+    if len(motion) > 1:
+        kept = _bends(track)
+        seconds = document.accessor((kept / motion.fps).astype(np.float32), bounds=True)
+        shares = np.rint(np.clip(track[kept], -1, 1) * np.iinfo(np.int16).max).astype(np.int16)
+        output = document.accessor(shares.reshape(-1), normalized=True)
+        samplers.append({"input": seconds, "output": output})
+        channels.append({"sampler": len(samplers) - 1, "target": {"node": face, "path": "weights"}})
     extras: Json = {"fps": motion.fps, "keyframes": _spans(motion)}
     return document.add("animations", {"name": "motion", "samplers": samplers, "channels": channels, "extras": extras})
+
+
+def _bends(track: NDArray[np.floating]) -> NDArray[np.integer]:
+    """The frames between which a track (T, K) runs straight: those around every change of pace, the first, the last."""
+    pace = np.diff(track, axis=0)
+    bent = np.any(np.abs(np.diff(pace, axis=0)) > STRAIGHT, axis=1)
+    return np.flatnonzero(np.concatenate([[True], bent, [True]]))
 
 
 def _spans(motion: Motion) -> list[dict[str, Any]]:

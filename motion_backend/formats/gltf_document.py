@@ -65,6 +65,11 @@ class Document:
             part |= {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
         return self.add("accessors", part)
 
+    def zeros(self, count: int) -> int:
+        """So many vectors that are nought: an accessor without data, by the format's rule."""
+        part: Json = {"componentType": _COMPONENTS["float32"], "count": count, "type": "VEC3"}
+        return self.add("accessors", part | {"min": [0.0] * 3, "max": [0.0] * 3})
+
     def indices(self, faces: NDArray[np.integer]) -> int:
         """Store triangles (F, 3) in the smallest index type that holds them."""
         flat = np.asarray(faces).reshape(-1)

@@ -302,8 +302,10 @@ def _turning(body: Kinematics, joints: tuple[str, str]) -> Array:
 
 
 def _from_pelvis(body: Kinematics, points: Array) -> Array:
-    """Points (T, 2, 3) as the pelvis carries them along. (T, 2, 3)."""
-    return points - body.positions[:, None, INDEX["pelvis"]]
+    """Points (T, 2, 3) as the pelvis carries them along and round. (T, 2, 3)."""
+    away, ahead = points - body.positions[:, None, INDEX["pelvis"]], _heading(body)
+    turned = rotations.yaw_to_quat(-np.arctan2(ahead[:, 0], ahead[:, 2]))
+    return np.asarray(rotations.rotate(turned[:, None], away))
 
 
 def _in_pelvis(body: Kinematics, joint: str) -> Array:

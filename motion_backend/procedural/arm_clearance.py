@@ -56,8 +56,8 @@ STEP: Final = 1e-4
 """How far a wrist (metres) and an elbow (radians) are moved to see what goes with them."""
 FLOOR: Final = "floor"
 """The id of what is sat or lain on where that is no object."""
-SINKS: Final = 0.03
-"""How deep arms sink into what is sat or lain on (metres)."""
+SINKS, SINKS_IN_FLOOR = 0.03, 0.01
+"""How deep arms sink into what is sat or lain on, and into a floor (metres)."""
 FASTEST: Final = 12.0
 """Of a shoulder, an elbow and a wrist (radians a second): people walk, sit and reach with half of it."""
 TRIES: Final = ((8, 2.5), (12, 4.0), (18, 6.0), (26, 9.0))
@@ -90,7 +90,7 @@ class Around(NamedTuple):
         """What arms keep out of, and the height of the floor: who sits or lies sinks in a little."""
         if self.posture is Posture.STANDING:
             return self.solid, 0.0
-        return self.solid.sunk_into(self.under, SINKS), -SINKS if self.under == FLOOR else 0.0
+        return self.solid.sunk_into(self.under, SINKS), -SINKS_IN_FLOOR if self.under == FLOOR else 0.0
 
 
 def arms_clear(pose: Pose, start: Pose, around: Around, skeleton: Skeleton) -> Pose:
@@ -330,9 +330,13 @@ def _slowed(pose: Pose, start: Pose, skeleton: Skeleton) -> Pose:
 
 
 def _near(fast: NDArray[np.intp], frames: int, reach: int) -> Array:
-    """How much frames are about those that are too fast: 1 there, 0 from `reach` frames on. (frames,)."""
-    away = np.abs(np.arange(frames)[:, None] - fast).min(axis=1)
-    return smooth(2 * (1 - away / reach))
+    """How much frames are about those that are too fast: 1 there, 0 from `reach` frames on and in the first. (frames,).
+
+    An arm that was smoothed from the first frame on would set out faster than it came.
+    """
+    at = np.arange(frames)
+    away = np.abs(at[:, None] - fast).min(axis=1)
+    return smooth(2 * (1 - away / reach)) * smooth(at / fast.min())
 
 
 def _posed(pose: Pose, begun: Pose, about: Array, turning: _Turning, width: float, skeleton: Skeleton) -> Pose:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from motion_backend.backend_protocol import POSTURE_AFTER, BodyState, History, Part, PartKind
-from motion_backend.motion import FPS, Character, Motion, Note, Phase, PhaseKind
+from motion_backend.motion import FPS, Character, Motion, Note, Phase, PhaseKind, Posture
 from motion_backend.procedural.arm_clearance import Around, arms_clear
 from motion_backend.procedural.balance_pass import balanced
 from motion_backend.procedural.body_state import Body
@@ -21,7 +21,7 @@ from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.gaze import gazing
 from motion_backend.procedural.held_poses import idle, standing
 from motion_backend.procedural.pose import Pose, concatenate
-from motion_backend.procedural.pose_solver import hips_within, released, solve
+from motion_backend.procedural.pose_solver import head_clear, hips_within, released, solve
 from motion_backend.procedural.skill_controller import perform
 from motion_backend.procedural.tail import carried_on, frames_kept_back
 from motion_backend.procedural.takeover import eased_from, pose_of
@@ -112,7 +112,10 @@ def _to_motion(body: Body, part: Part) -> Motion:
     pose, start = concatenate(body.frames), body.begun
     if body.tail is not None:
         pose, start = carried_on(body.tail, pose), body.tail.at(0)
-    pose = hips_within(balanced(gazing(pose, body, part), body.phases, body.skeleton), body.skeleton)
+    pose = gazing(pose, body, part)
+    if part.kind is not PartKind.REACH and posture is not Posture.LYING:
+        pose = head_clear(pose, around.solid, body.skeleton)
+    pose = hips_within(balanced(pose, body.phases, body.skeleton), body.skeleton)
     pose = arms_clear(pose, start, around, body.skeleton)
     body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)
@@ -127,7 +130,7 @@ def _to_motion(body: Body, part: Part) -> Motion:
         notes=tuple(Note(part.action.keyframe, words) for words in body.otherwise),
     )
     kept = frames_kept_back(part, body.upcoming, whole) if body.stride is None else 0
-    body.tail = _freed(pose.at(slice(len(pose) - kept, None)), body.skeleton) if kept else None
+    body.tail = _freed(pose.at(slice(len(pose) - kept - 1, None)), body.skeleton) if kept else None
     return whole.part(0, len(pose) - kept)
 
 

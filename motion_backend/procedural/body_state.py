@@ -35,7 +35,7 @@ class Body:
     seed: int = 0
     """Of the story: what of a body lasts all through it is drawn from it."""
     tail: Pose | None = None
-    """What is still to be done of the part before (tail.py)."""
+    """The frame shown last, and what is still to be done of the part before (tail.py)."""
     stride: Stride | None = None
     """What it is walking in, where the last walk did not stop."""
     upcoming: tuple[Part, ...] = ()

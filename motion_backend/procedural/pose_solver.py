@@ -8,6 +8,7 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.body.joint_limits import overbent, within
+from motion_backend.body.scene_collision import Obstacles
 from motion_backend.inverse_kinematics import Limb, leg_rotations, two_bone
 from motion_backend.procedural.arm_solver import SIDES, Arm, hanging_from
 from motion_backend.procedural.pose import Pose
@@ -16,7 +17,11 @@ from motion_backend.skeleton import INDEX, Skeleton
 
 SPINE = ("spine1", "spine2", "spine3")
 EASED = 6
-"""Frames before and after in which a pelvis tips back (see `hips_within`)."""
+"""Frames before and after in which a pelvis tips back (see `hips_within`), or a trunk straightens (`head_clear`)."""
+HEAD = 0.10
+"""Half a head (metres at 1.70 m)."""
+STRAIGHTER = np.linspace(0.0, 1.5, 7)[:, None]
+"""Shares of the bend of spine and neck that are tried to be taken back; with more than 1 they bend the other way."""
 
 
 def solve(pose: Pose, skeleton: Skeleton) -> tuple[Array, Array]:
@@ -59,6 +64,39 @@ def hips_within(pose: Pose, skeleton: Skeleton) -> Pose:
     tipped[:, 0] = _early(stretched) - _early(bent)
     hips = rotations.compose(pose.hips, rotations.rotvec_to_quat(tipped))
     return replace(pose, hips=hips, spine=pose.spine - tipped)
+
+
+def head_clear(pose: Pose, solid: Obstacles, skeleton: Skeleton) -> Pose:
+    """Frames in which no head is in a wall or a thing that spine and neck are bent into: they are bent the less."""
+    heads = _heads(pose, skeleton)
+    close = solid.near(heads.min(axis=0) - HEAD, heads.max(axis=0) + HEAD)
+    if not len(close.owners):
+        return pose
+    room = HEAD * skeleton.scale
+    at = np.flatnonzero(close.depth(heads) > -room)
+    if not len(at):
+        return pose
+    tried = [close.depth(_heads(_straighter(pose.at(at), share), skeleton)) for share in STRAIGHTER]
+    deep = np.maximum(np.stack(tried), -room)
+    share = np.zeros(len(pose))
+    # The least that brings the head out, or the farthest.
+    share[at] = STRAIGHTER[np.argmin(deep, axis=0), 0]
+    return _straighter(pose, _early(share)[:, None])
+
+
+def _heads(pose: Pose, skeleton: Skeleton) -> Array:
+    """Middles of T heads. (T, 3)."""
+    turn, place = chest_frame(pose, skeleton)
+    half = rotations.rotvec_to_quat(pose.head / 2)
+    for name in ("neck", "head"):
+        place = place + rotations.rotate(turn, skeleton.offsets[INDEX[name]])
+        turn = rotations.compose(turn, half)
+    return np.asarray(place + rotations.rotate(turn, 0.5 * skeleton.offsets[INDEX["head"]]))
+
+
+def _straighter(pose: Pose, share: Array) -> Pose:
+    """The pose with spine and neck bent the less by such a share (..., 1)."""
+    return replace(pose, spine=(1 - share) * pose.spine, head=(1 - share) * pose.head)
 
 
 def _early(angle: Array) -> Array:

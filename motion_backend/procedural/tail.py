@@ -3,6 +3,7 @@ begins another.
 
 A part ends in a pose, and the next one sets out from that pose. Where the two flow together the last frames of the
 first are kept back, as a tail, and are added to the first frames of the second: what every handle had still to go.
+A tail begins with the frame before them, which was shown.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ TAILS: Final[dict[tuple[PartKind, PartKind], float]] = {
     (PartKind.RISE, PartKind.REACH): 0.35,
 }
 """Seconds of a part that are still done while the next kind of part begins; others end before anything begins."""
-_PLACES: Final = ("pelvis", "spine", "head", "ankles", "toes", "knees", "arms", "elbows", "reach")
+_PLACES: Final = ("pelvis", "spine", "head", "ankles", "toes", "knees", "arms", "reach")
 _TURNS: Final = ("hips", "feet", "palms")
 _SHARES: Final = ("reaching", "pressing")
 
@@ -58,6 +59,7 @@ def only_stands(part: Part) -> bool:
 
 def carried_on(tail: Pose, pose: Pose) -> Pose:
     """Frames of a part with the tail of the one before it, which ended where these set out from, added to the first."""
+    tail = tail.at(slice(1, None))
     frames, end = len(tail), tail.at(slice(len(tail) - 1, None))
     if len(pose) < frames:
         pose = concatenate([pose, pose.at(len(pose) - 1).repeat(frames - len(pose))])
@@ -71,6 +73,18 @@ def carried_on(tail: Pose, pose: Pose) -> Pose:
         to_go = rotations.compose(getattr(tail, name), rotations.inverse(getattr(end, name)))
         values[begun] = rotations.compose(to_go, values[begun])
         changed[name] = values
+    # A pole may point along its arm as well: only where the elbow is because of it can be gone on from.
+    to_go = rotations.compose(_bent(tail), rotations.inverse(_bent(end)))
+    elbows = pose.elbows.copy()
+    elbows[begun] = rotations.rotate(rotations.compose(to_go, _bent(pose.at(begun))), np.array([0.0, 1.0, 0.0]))
+    changed["elbows"] = elbows
     planted: Array = pose.planted.copy()
     planted[begun] = np.minimum(planted[begun], tail.planted)
     return replace(pose, **changed, planted=planted)
+
+
+def _bent(pose: Pose) -> Array:
+    """The frames that arms are bent in: along the arm, to the elbow, and square to both. (T, 2, 4)."""
+    along = rotations.normalize(pose.arms)
+    aside = rotations.normalize(pose.elbows - rotations.dot(pose.elbows, along) * along)
+    return rotations.basis_to_quat(along, aside, rotations.cross(along, aside))

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.motion import Motion
-from motion_backend.rendering.motion_figures import Prop, body_solids, home_props
+from motion_backend.rendering.motion_figures import Acting, Prop, home_props
 from motion_backend.rendering.rasterizer import Camera
 from motion_backend.rendering.renderer import Image, Solid, render
 from motion_backend.rotations import Array
@@ -112,6 +112,11 @@ class _Row:
     columns: int
 
     @cached_property
+    def acting(self) -> Acting:
+        """Who is drawn."""
+        return Acting.of(self.motion)
+
+    @cached_property
     def frames(self) -> list[int]:
         """The moments shown."""
         return [int(frame) for frame in np.linspace(0, len(self.motion) - 1, self.columns).round()]
@@ -158,7 +163,7 @@ class _Row:
         level, up = 6.0 * float(np.cos(pitch)), 6.0 * float(np.sin(pitch))
         eye = (x + level * float(np.sin(turned)), target[1] + up, z + level * float(np.cos(turned)))
         camera = Camera(eye, target, span=self.span)
-        body = body_solids(self.motion, [self.frames[column]])
+        body = self.acting.solids([self.frames[column]])
         solids = [*body, *self._around(column, camera)]
         if pitch > 0:
             solids += [_shadow(solid) for solid in body]

@@ -7,11 +7,16 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Final
 
-from motion_backend.motion import Motion
+import numpy as np
+
+from motion_backend.body.cast import PLAIN, Role
+from motion_backend.motion import Character, Motion
 from motion_backend.rendering.film_backdrop import Backdrop
 from motion_backend.rendering.film_picture import Planes
-from motion_backend.rendering.film_shots import FilmShot
-from motion_backend.rendering.motion_figures import body_solids
+from motion_backend.rendering.film_shots import FilmShot, film_shots
+from motion_backend.rendering.motion_figures import Acting
+from motion_backend.rotations import IDENTITY
+from motion_backend.skeleton import build_skeleton
 
 WORKERS: Final = 2
 """Pictures drawn at once; compiled code lets go of the interpreter."""
@@ -19,6 +24,8 @@ BATCH: Final = 15
 """Frames whose bodies are worked out at once."""
 AHEAD: Final = 4
 """Batches that wait to be taken, so that whoever writes slowly does not fill the memory."""
+SMALL: Final = (64, 36)
+"""Pixels across and down of a picture that nobody looks at."""
 
 
 def film_frames(
@@ -26,14 +33,16 @@ def film_frames(
     shots: Sequence[FilmShot],
     size: tuple[int, int],
     dressed: Callable[[int, Planes], Planes] = lambda _, picture: picture,
+    role: Role = PLAIN,
 ) -> Iterator[Planes]:
     """Every frame of a motion as a picture of that size (width, height), both even; see `film_picture`.
 
     `dressed` gets a frame's number and its picture, and gives the picture that is shown.
     """
+    acting = Acting.of(motion, role)
 
     def batch(scene: Future[Backdrop], frames: range) -> list[Planes]:
-        bodies = body_solids(motion, frames)
+        bodies = acting.solids(frames)
         return [dressed(i, scene.result().with_body(body)) for i, body in zip(frames, bodies, strict=True)]
 
     with ThreadPoolExecutor(WORKERS) as pool:
@@ -46,3 +55,24 @@ def film_frames(
                     yield from waiting.popleft().result()
         while waiting:
             yield from waiting.popleft().result()
+
+
+def compile_film() -> None:
+    """Film one small picture, so that what draws films and pictures is compiled and kept on disk: half a minute on a
+    fresh machine, else a second."""
+    from scene_graphs.home import home_from_layouts
+    from scene_graphs.layout_library import built_in_layouts
+
+    home = home_from_layouts(built_in_layouts()[:1], seed=0)
+    skeleton = build_skeleton(Character().height)
+    x, z = home.floor.representative_point().coords[0]
+    stands = Motion(
+        root_positions=np.array([[x, skeleton.standing_height, z]], np.float32),
+        local_rotations=np.tile(np.float32(IDENTITY), (1, len(skeleton.names), 1)),
+        contacts=np.ones((1, 4), np.float32),
+        skeleton=skeleton,
+        actions=np.zeros(1, np.int32),
+    )
+    width, height = SMALL
+    for _ in film_frames(stands, film_shots(home, stands, [0], width / height), SMALL):
+        pass

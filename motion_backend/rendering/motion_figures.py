@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from motion_backend.body.mannequin_mesh import build_mannequin
-from motion_backend.body.skinning import skin
+from motion_backend.body.cast import PLAIN, Role
+from motion_backend.body.character_mesh import build_character
+from motion_backend.body.face_track import face_track
+from motion_backend.body.skinning import SkinnedMesh, skin
 from motion_backend.rendering.rasterizer import Camera
 from motion_backend.rendering.renderer import Solid
 from motion_backend.walls import Side
@@ -24,12 +26,32 @@ ON_WALLS, SHADOWLESS = ("wall", "door", "window"), ("wall", "door", "window", "c
 """How the names of meshes begin that are a wall, in one or on one, and of those that would darken a whole room."""
 
 
-def body_solids(motion: Motion, frames: Sequence[int], opacity: float = 1.0) -> list[Solid]:
-    """The mannequin at some frames of a motion."""
-    mesh = build_mannequin(motion.skeleton)
-    chosen = np.asarray(frames)
-    vertices, normals = skin(mesh, motion.skeleton, motion.root_positions[chosen], motion.local_rotations[chosen])
-    return [Solid(v, mesh.faces, mesh.face_colors, n, opacity=opacity) for v, n in zip(vertices, normals, strict=True)]
+@dataclass(frozen=True)
+class Acting:
+    """Somebody acting a motion, ready to be drawn at any of its frames."""
+
+    motion: Motion
+    mesh: SkinnedMesh
+    face: NDArray[np.floating]
+    """Shares of what the face does. (T, K)."""
+
+    @staticmethod
+    def of(motion: Motion, role: Role = PLAIN) -> Acting:
+        """A motion with a look and a face."""
+        return Acting(motion, build_character(motion.skeleton, role.look), face_track(motion, role))
+
+    def solids(self, frames: Sequence[int], opacity: float = 1.0) -> list[Solid]:
+        """The body at some frames."""
+        mesh, motion, chosen = self.mesh, self.motion, np.asarray(frames)
+        poses = (motion.root_positions[chosen], motion.local_rotations[chosen])
+        vertices, normals = skin(mesh, motion.skeleton, *poses, self.face[chosen])
+        drawn = zip(vertices, normals, strict=True)
+        return [Solid(v, mesh.faces, mesh.face_colors, n, opacity=opacity) for v, n in drawn]
+
+
+def body_solids(motion: Motion, frames: Sequence[int], opacity: float = 1.0, role: Role = PLAIN) -> list[Solid]:
+    """The body at some frames of a motion."""
+    return Acting.of(motion, role).solids(frames, opacity)
 
 
 @dataclass(frozen=True)

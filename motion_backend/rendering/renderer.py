@@ -131,7 +131,8 @@ class _Scene:
             np.concatenate(normals).astype(np.float32),
             np.concatenate(flats).astype(np.float32),
             np.repeat([s.normals is not None for s in solids], counts),
-            np.concatenate(colors).astype(np.float32),
+            # Of rows that lie alike in memory, or all would be compiled once more.
+            np.concatenate(colors).astype(np.float32, order="C"),
         )
         return cls(
             surfaces, np.repeat([s.opacity for s in solids], counts), np.repeat([s.casts for s in solids], counts)

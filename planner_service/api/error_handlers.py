@@ -21,6 +21,7 @@ from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from motion_backend.backends import BrokenBackendError
+from motion_backend.body.cast import GIVEN
 from motion_backend.language.minilm import WeightsError
 from planner_service.api.errors import (  # fmt: skip
     MAX_FAULTS,
@@ -46,7 +47,7 @@ METHODS: Final = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
 OURS: Final = (OutputError, SettingsError, WeightsError)
 """Faults of the installation, not of a request."""
 NAMES: Final = {
-    "name": "character/name", "pronouns": "character/pronouns", "height": "character/height", "layout": "layouts",
+    **{field: f"character/{field}" for field in ("name", "pronouns", "height", *GIVEN)}, "layout": "layouts",
     "query": "q",
 }  # fmt: skip
 """Fields that have another place or name over HTTP."""

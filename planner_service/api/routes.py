@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from planner_service.api.cast.endpoints import cast_router
 from planner_service.api.extractions.endpoints import extract_router, extractions_router
 from planner_service.api.layouts.endpoints import layouts_router
 from planner_service.api.layouts.graph_endpoints import layout_graphs_router
@@ -16,6 +17,7 @@ from planner_service.api.web_page import page_router, service_router
 
 ROUTERS: Final = (
     stories_router, film_router, events_router, motions_router, task_plans_router, extract_router, extractions_router,
-    short_scripts_router, long_scripts_router, layouts_router, layout_graphs_router, service_router, page_router,
+    short_scripts_router, long_scripts_router, layouts_router, layout_graphs_router, cast_router, service_router,
+    page_router,
 )  # fmt: skip
 """In the order in which paths are looked for."""

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from planner_service.cli import (
+    cast_command,
     clips,
     evaluate,
     extract_command,
@@ -30,6 +31,7 @@ from scene_graphs.errors import UserError
 app = typer.Typer(no_args_is_help=True, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 app.command("story")(story.story)
 app.command("play")(play.play)
+app.command("cast")(cast_command.cast_command)
 app.command("extract")(extract_command.extract)
 app.command("record")(record_command.record)
 app.command("task")(tasks.task)

@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from rich.console import Console
 
 from motion_backend.motion import Character
+from planner_service.cli.cast_command import CharacterOption, character_given
 from planner_service.cli.story import check_output, produce
 from planner_service.library.library import open_shelves
 from planner_service.pipeline import Pipeline, RequestError, StoryRequest
@@ -37,7 +38,10 @@ def play(
         typer.Option(help="A layout file, or the id of a built-in layout; may be given up to 4 times."),
     ] = None,
     backend: Annotated[str | None, typer.Option(help="What moves the body (SIMS_BACKEND; procedural).")] = None,
-    height: Annotated[float, typer.Option(help="The character's height in metres, 1.2 to 2.2.")] = 1.70,
+    height: Annotated[
+        float, typer.Option(help="Metres, 1.1 to 2.2; left at 1.7, a child is as tall as children are.")
+    ] = 1.70,
+    character: CharacterOption = "",
     film: Annotated[bool, typer.Option("--film", help="Write film.mp4 too, in a minute or two.")] = False,
 ) -> None:
     """Act out a script of your own: nothing is planned, a home is found for it unless one is given."""
@@ -56,7 +60,7 @@ def play(
         layouts=chosen_layouts(layout or [], pipeline.shelves),
         seed=seed,
         backend=backend or settings.backend,
-        character=Character(height=height),
+        character=character_given(character, Character(height=height)),
     )
     produce(pipeline, request, out, film, console)
 

@@ -15,6 +15,8 @@ from rich.text import Text
 
 from motion_backend.backends import about
 from motion_backend.motion import Character
+from planner_service.cast_choice import told_look
+from planner_service.cli.cast_command import CharacterOption, character_given
 from planner_service.cli.console import ModelOption, plain_table
 from planner_service.library.library import open_shelves
 from planner_service.llm.factory import load_model
@@ -74,7 +76,10 @@ def story(
     ] = None,
     name: Annotated[str, typer.Option(help="The character's name; left out: the theme's own, else Sam.")] = "Sam",
     pronouns: Annotated[str, typer.Option(help="he, she or they; left out: as in the theme.")] = "they",
-    height: Annotated[float, typer.Option(help="The character's height in metres, 1.2 to 2.2.")] = 1.70,
+    height: Annotated[
+        float, typer.Option(help="Metres, 1.1 to 2.2; left at 1.7, a child is as tall as children are.")
+    ] = 1.70,
+    character: CharacterOption = "",
     film: Annotated[bool, typer.Option("--film", help="Write film.mp4 too, in a minute or two.")] = False,
     model: ModelOption = None,
 ) -> None:
@@ -91,7 +96,7 @@ def story(
         layouts=chosen_layouts(layout or [], pipeline.shelves),
         seed=seed,
         backend=backend or settings.backend,
-        character=Character(name, pronouns, height),
+        character=character_given(character, Character(name, pronouns, height)),
     )
     console = Console(markup=False)
     if not settings.llm_model and (line := hint(ollama_models(settings.ollama_url))):
@@ -182,6 +187,7 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
 
     console.print(f"\n{made.planned.told.title}\n", style="bold", highlight=False)
     console.print(made.planned.told.text + "\n", highlight=False)
+    console.print(f"played by {', '.join(told_look(made.planned.character))}\n", highlight=False)
     table = plain_table(
         "#", "moment", "at", "seconds", "reached", "off by", right=("#", "seconds", "off by"), fold=True
     )

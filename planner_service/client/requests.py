@@ -46,7 +46,8 @@ class Options(TypedDict, total=False):
     backend: str
     seed: int
     character: Mapping[str, object]
-    """name, pronouns (he, she, they), height (metres)."""
+    """name, pronouns (he, she, they), height (metres); how they look: member, age, build, skin, hair,
+    hair_color, outfit."""
     idempotency_key: str
     """Made up if not given: the call is safe to repeat. Give one to be safe over a restart of your own program."""
 

@@ -52,7 +52,7 @@ class Filmer:
         story = OpenStory(self.store, story_id, self.pipeline)
         motions = read_segments(self.store, story_id, range(len(story.actions)))
         segments = tuple(pairwise(accumulate(map(len, motions), initial=0)))
-        return Filmed(story.stage.home, join(motions), story.planned.told, segments)
+        return Filmed(story.stage.home, join(motions), story.planned.told, segments, story.role)
 
     def _telling(self, film_id: str) -> Callable[[float], None]:
         told = time.monotonic()

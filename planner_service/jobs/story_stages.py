@@ -19,6 +19,7 @@ from typing import Any, Final
 from sqlalchemy.exc import InterfaceError, OperationalError
 
 from motion_backend.backend_protocol import BodyState
+from motion_backend.body.cast import Role
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.director import Director, segments_of
 from motion_backend.formats.glb_film import film_glb
@@ -33,7 +34,7 @@ from planner_service.llm.budget import Spent
 from planner_service.llm.client import spent_on
 from planner_service.narration.narrator import Told
 from planner_service.output.story_export import report_to_dict
-from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, actor, judge
+from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, actor, judge, role_of
 from planner_service.scripts.script import LongScript
 from planner_service.store.story_store import Made, Stories, count_spent
 from scene_graphs.json_fields import Json
@@ -99,6 +100,11 @@ class OpenStory:
         script = self.stage.script.model_copy(update={"repairs": tuple(told["repairs"])})
         spent = Spent(**told["spent"]) if told["spent"] else None
         return Planned(self.request, script, self.stage, serialization.told_from_dict(told), spent)
+
+    @property
+    def role(self) -> Role:
+        """Who is seen, and what the face shows."""
+        return role_of(actor(self.request, self.stage.script), self.actions, self.stage.script)
 
     def script(self) -> LongScript:
         """The long script, as planning left it."""
@@ -204,12 +210,17 @@ class Maker:
         """The home and the animated body in one file."""
         story = self._opened(story_id)
         position = FIRST_SEGMENT + len(story.actions) + 1
-        self._record(story, "film", position, "film", lambda: (film_glb(story.stage.home, story.acted.motion), {}))
+
+        def make() -> tuple[bytes, Json]:
+            return film_glb(story.stage.home, story.acted.motion, story.role), {}
+
+        self._record(story, "film", position, "film", make)
         self.open.pop(story_id, None)
 
     def _script(self, story: OpenStory) -> tuple[bytes, Json]:
         script = story.pipeline.script(story.request)
-        return _to_bytes(script.model_dump(mode="json")), summary_of_script(script)
+        shown = summary_of_script(script) | {"character": vars(actor(story.request, script))}
+        return _to_bytes(script.model_dump(mode="json")), shown
 
     def _home(self, story: OpenStory) -> tuple[bytes, Json]:
         stage = story.pipeline.furnish(story.request, story.script())
@@ -226,7 +237,9 @@ class Maker:
         stage = story.stage
         actions = story.pipeline.act(story.request, stage)
         rows = [serialization.action_to_dict(action) for action in actions]
-        return _to_bytes({"actions": rows}), {"count": len(actions), "objects": [a.object_id for a in actions]}
+        summary = {"count": len(actions), "objects": [a.object_id for a in actions]}
+        asleep = role_of(story.request.acted_by, actions, stage.script).asleep
+        return _to_bytes({"actions": rows}), summary | {"asleep": sorted(asleep)}
 
     def _report(self, story: OpenStory) -> tuple[bytes, Json]:
         row = {"report": report_to_dict(story.acted)}

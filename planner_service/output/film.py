@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from motion_backend.body.cast import PLAIN, Role
 from motion_backend.formats.mp4 import write_mp4
 from motion_backend.rendering.film_frames import film_frames
 from motion_backend.rendering.film_picture import lay_words
@@ -72,11 +73,12 @@ class Filmed:
     told: Told
     segments: tuple[tuple[int, int], ...]
     """First frame and stop frame of every keyframe."""
+    role: Role = PLAIN
 
     @staticmethod
     def of(story: Story) -> Filmed:
         """One that was just made."""
-        return Filmed(story.planned.home, story.motion, story.planned.told, story.segments)
+        return Filmed(story.planned.home, story.motion, story.planned.told, story.segments, story.role)
 
 
 def write_film(
@@ -99,7 +101,7 @@ def write_film(
         return picture
 
     def counted() -> Iterator[Planes]:
-        for number, picture in enumerate(film_frames(motion, shots, size, dressed)):
+        for number, picture in enumerate(film_frames(motion, shots, size, dressed, filmed.role)):
             show(number / len(motion))
             yield picture
 

@@ -15,6 +15,7 @@ from motion_backend.formats.glb_film import film_glb
 from motion_backend.formats.motion_json import phase_to_dict
 from motion_backend.formats.npz import write_npz
 from motion_backend.metrics.figure_limits import held_against
+from planner_service.cast_choice import told_look
 from planner_service.grounding.keyframes_to_actions import action_to_dict
 from planner_service.output.film import Filmed, write_film
 from planner_service.output.storyboard import storyboard
@@ -46,7 +47,7 @@ def write_story(
         "report.json": lambda path: _write_json(path, report_to_dict(story)),
         "motion.npz": lambda path: write_npz(story.motion, path),
         "motion.bvh": lambda path: write_bvh(story.motion, path),
-        "film.glb": lambda path: path.write_bytes(film_glb(story.planned.home, story.motion)),
+        "film.glb": lambda path: path.write_bytes(film_glb(story.planned.home, story.motion, story.role)),
         "storyboard.png": lambda path: _write_storyboard(story, path),
     }
     if film:
@@ -88,7 +89,9 @@ def _write_storyboard(story: Story, path: Path) -> Path:
     planned, known = story.planned, {placed.id for placed in story.planned.home.objects}
     # What is done on the floor has no piece of furniture to outline.
     targets = [action.object_id if action.object_id in known else None for action in story.actions]
-    return storyboard(planned.home, story.motion, planned.script.keyframes, path, planned.told.title, targets)
+    return storyboard(
+        planned.home, story.motion, planned.script.keyframes, path, planned.told.title, targets, story.role
+    )
 
 
 class _Tried(Exception):  # noqa: N818
@@ -140,6 +143,8 @@ def story_to_markdown(story: Story) -> str:
             f"Theme: {script.theme}",
             "",
             _makers(planned),
+            "",
+            f"Played by {', '.join(told_look(planned.character))}.",
             "",
             *[f"- {chosen.script.id} ({chosen.score:.2f}): {chosen.script.summary}" for chosen in script.short_scripts],
             *beats,

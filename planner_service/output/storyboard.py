@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Motion, Skill
 from motion_backend.rendering.camera import Shot, choose_camera, choose_frames
-from motion_backend.rendering.motion_figures import Prop, around, body_solids, home_props
+from motion_backend.rendering.motion_figures import Acting, Prop, around, home_props
 from motion_backend.rendering.rasterizer import Camera
 from motion_backend.rendering.renderer import Image, render
 from motion_backend.rotations import Array
@@ -62,6 +63,7 @@ class _Stage:
     motion: Motion
     joints: NDArray[np.float32]
     props: list[Prop]
+    acting: Acting
 
 
 @dataclass(frozen=True)
@@ -85,9 +87,10 @@ def storyboard(
     path: Path | str,
     title: str = "",
     targets: Sequence[str | None] = (),
+    role: Role = PLAIN,
 ) -> Path:
     """Draw all keyframes a motion serves and save the picture as a PNG; `targets` are ids of the objects they use."""
-    stage = _Stage(home, motion, motion.joint_positions(), home_props(home))
+    stage = _Stage(home, motion, motion.joint_positions(), home_props(home), Acting.of(motion, role))
     served = np.unique(motion.actions).tolist()
     panels = [_panel(stage, i, keyframes[i], targets[i] if targets else None) for i in served]
     windows = sorted({panel.window for panel in panels})
@@ -126,9 +129,9 @@ def _picture(stage: _Stage, shot: Shot) -> Image:
     x, _, z = stage.joints[shot.frame, 0].tolist()
     poses = stage.joints[[shot.frame, *shot.ghosts]].reshape(-1, 3)
     solids = around(stage.props, camera, poses, stage.home.room_at((x, z)))
-    solids += body_solids(stage.motion, [shot.frame])
+    solids += stage.acting.solids([shot.frame])
     if shot.ghosts:
-        solids += body_solids(stage.motion, shot.ghosts, opacity=0.5)
+        solids += stage.acting.solids(shot.ghosts, opacity=0.5)
     return render(solids, camera, SIDE)
 
 

@@ -164,7 +164,7 @@ class Stories:
                 seed=request.seed,
                 backend=request.backend,
                 method=request.method,
-                character=json.dumps(vars(request.character)),
+                character=json.dumps(vars(request.acted_by)),
                 request=json.dumps(request_to_dict(request), separators=(",", ":")),
                 progress=0.0,
             )

@@ -52,6 +52,7 @@ def cast_by(theme: str, character: Character) -> Character:
         return character
     name = name_in(theme) or _name_of_hero(theme)
     told = called(clauses_of_text(theme), name) if name else ""
+    told = told or ("" if name else pronouns_of(f"the {head_of(hero_of(clauses_of_text(theme)))}"))
     pronouns = _pronouns_of_names().get(name.lower()) or told or _pronouns_in(theme, bool(name)) or default.pronouns
     return replace(character, name=name or default.name, pronouns=pronouns)
 

@@ -162,7 +162,7 @@ HOSTILE: dict[str, Behaviour] = {
 }  # fmt: skip
 
 
-FEW = {"invented", "echo", "endless", "429"}
+FEW = {"echo", "endless"}
 MODES = [mode if mode in FEW else pytest.param(mode, marks=pytest.mark.sweep) for mode in HOSTILE]
 
 

@@ -41,7 +41,7 @@ def hidden(eye: np.ndarray, solids: list, point: np.ndarray) -> bool:
     return False
 
 
-@for_each("yaw", np.arange(8) * np.pi / 4)
+@for_each("yaw", np.arange(4) * np.pi / 2 + 0.4)
 @for_each("middle", [(1.2, 1.2), (4.2, 1.2), (1.2, 4.2)])
 def test_no_wall_of_a_cornered_room_hides_a_body_from_any_side(yaw: float, middle: tuple[float, float]) -> None:
     body = BODY + np.array([middle[0] - 1.2, 0.0, middle[1] - 1.2])

@@ -114,7 +114,7 @@ export interface FurnitureGraph {
 
 export interface Story extends Summary {
   readonly method: string;
-  readonly character: { readonly name: string; readonly pronouns: string; readonly height: number };
+  readonly character: Character;
   readonly planner: string | null;
   readonly encoder: string | null;
   readonly text: string | null;
@@ -162,7 +162,24 @@ export interface NewStory {
   rooms?: string[];
   /** Ids of rooms to play in. */
   layouts?: readonly string[];
-  character: { name: string; pronouns: string; height: number };
+  character: { name: string; pronouns: string; height: number; member?: string };
+}
+
+/** Who acts, and how they look; words are empty in stories of old. */
+export interface Character {
+  readonly name: string;
+  readonly pronouns: string;
+  readonly height: number;
+  readonly member: string;
+  readonly age: string;
+  readonly outfit: string;
+}
+
+/** One of those who can play. */
+export interface Member {
+  readonly name: string;
+  readonly pronouns: string;
+  readonly age: string;
 }
 
 /** An answer that is not the one hoped for; status 0 when there was no answer at all. */
@@ -265,6 +282,11 @@ export const mp4Url = (id: string): string => `${story(id)}/film.mp4`;
 
 /** Have a story filmed; one that is there or under way stays. */
 export const makeFilm = (id: string): Promise<FilmJob> => json(`${story(id)}/film`, { method: "POST" });
+
+export async function getCast(): Promise<readonly Member[]> {
+  const { members } = await json<{ members: Member[] }>("v1/cast");
+  return members;
+}
 
 export const getFilm = (id: string): Promise<FilmJob> => json(`${story(id)}/film`);
 

@@ -11,11 +11,18 @@ export function showMaking(section: HTMLElement, story: Story): boolean {
   fill(
     section,
     h("h2", {}, "How it was made"),
+    ...player(story),
     ...beats(story),
     ...rooms(story),
     ...list("Put right", "What the script needed so that a body can act it.", story.repairs.map(noteWords)),
   );
   return true;
+}
+
+function player({ character }: Story): HTMLElement[] {
+  if (!character.member) return [];
+  const worn = character.outfit.replaceAll("_", " ");
+  return [h("p", { class: "player" }, `Played by ${capital(character.member)}: ${character.age}, ${character.height.toFixed(2)} m, in ${worn} clothes.`)];
 }
 
 function beats(story: Story): HTMLElement[] {

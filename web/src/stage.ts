@@ -5,6 +5,8 @@ import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 import type { Home, Point2 } from "./api";
 import { CameraMan, type CameraMode } from "./camera";
 import { Cutaway } from "./cutaway";
+import type { Emotion } from "./emotions";
+import { Face } from "./face";
 import { Fading } from "./fading";
 import { groundDisc, shade, subfloors } from "./ground";
 import { Lighting } from "./lighting";
@@ -28,6 +30,8 @@ export interface Mood {
 export class Stage {
   readonly cameraMan: CameraMan;
   readonly canvas: HTMLCanvasElement;
+  /** What the face shows. */
+  emotion: Emotion = "neutral";
   /** Set to have the next picture drawn. */
   dirty = true;
   readonly #renderer = renderer();
@@ -37,6 +41,7 @@ export class Stage {
   readonly #body = new Vector3(0, 0.95, 0);
   readonly #chest = new Vector3();
   #joints: Object3D[] = [];
+  #face: Face | null = null;
   #bodyRoot: Object3D | null = null;
   #home: Object3D | null = null;
   #cutaway: Cutaway | null = null;
@@ -92,6 +97,7 @@ export class Stage {
     });
     this.#joints = JOINT_NAMES.map((name) => scene.getObjectByName(name)).filter((joint) => joint !== undefined);
     if (this.#joints.length !== JOINT_NAMES.length) throw new Error("the body lacks joints");
+    this.#face = Face.of(scene);
     this.#scene.add(scene);
     this.#bodyRoot = scene;
     this.dirty = true;
@@ -168,6 +174,7 @@ export class Stage {
     if (this.#cutaway?.update(eye, this.#chest, pace)) this.dirty = true;
     if (this.#fading?.update(eye, this.#body, pace)) this.dirty = true;
     if (this.#lighting.drift(step)) this.dirty = true;
+    if (this.#face?.update(playing ? step : 0, this.emotion, this.cameraMan.calm || !playing)) this.dirty = true;
     if (!this.dirty) return;
     this.#draw();
     this.#watch(seconds);

@@ -1,6 +1,6 @@
 /** The theme box: what shall be played, by whom and where; what is wrong is said at the field it is about. */
 
-import { ApiError, postStory, type NewStory, type Story } from "./api";
+import { ApiError, getCast, postStory, type NewStory, type Story } from "./api";
 import { fill, h } from "./dom";
 import { announce } from "./live";
 import { capital } from "./words";
@@ -91,7 +91,9 @@ export class ThemeForm {
   #options(): HTMLElement {
     const name = h("input", { id: "name", name: "name", value: "Sam", maxlength: 40, autocomplete: "off" });
     const pronouns = choices("pronouns", [["she", "she"], ["he", "he"], ["they", "they"]], "radio", "they");
-    const height = h("input", { id: "height", name: "height", type: "number", value: "1.70", min: 1.2, max: 2.2, step: 0.01, inputmode: "decimal" });
+    const height = h("input", { id: "height", name: "height", type: "number", value: "1.70", min: 1.1, max: 2.2, step: 0.01, inputmode: "decimal" });
+    const member = h("select", { id: "member", name: "member" }, h("option", { value: "" }, "as the theme says"));
+    void getCast().then((members) => member.append(...members.map((one) => h("option", { value: one.name }, `${capital(one.name)}, ${one.age}, ${one.pronouns}`))), () => undefined);
     const rooms = choices("rooms", ROOMS, "checkbox");
     const seed = h("input", { id: "seed", name: "seed", type: "number", value: 0, min: 0, step: 1, inputmode: "numeric" });
     const method = choices("method", [["auto", "beat by beat"], ["matching", "from short scripts"], ["direct", "at one go"]], "radio", "auto");
@@ -102,6 +104,7 @@ export class ThemeForm {
       h(
         "div",
         { class: "fields" },
+        this.#group("Played by", member, "/character/member"),
         this.#field("Name", name, "/character/name", "Left at Sam, they: named as your theme names its person."),
         this.#group("Pronouns", pronouns, "/character/pronouns"),
         this.#field("Height in metres", height, "/character/height"),
@@ -141,7 +144,7 @@ export class ThemeForm {
       method: text("method"),
       ...(rooms.length ? { rooms } : {}),
       ...(this.#layouts.length ? { layouts: this.#layouts } : {}),
-      character: { name: text("name").trim() || "Sam", pronouns: text("pronouns"), height: Number(text("height") || 1.7) },
+      character: { name: text("name").trim() || "Sam", pronouns: text("pronouns"), height: Number(text("height") || 1.7), ...(text("member") ? { member: text("member") } : {}) },
     };
   }
 

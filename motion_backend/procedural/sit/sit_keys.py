@@ -216,6 +216,8 @@ class Rise:
     gathered_share: float
     low_fold_share: float
     low_lean_ratio: float
+    low_time_ratio: float
+    """How much longer it takes from the floor, for its depth."""
 
 
 @table

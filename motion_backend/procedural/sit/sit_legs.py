@@ -23,7 +23,7 @@ EASY_ANKLE: Final = 0.45
 """A foot that rests on its heel points so far down from square to the shin (radians)."""
 MAX_TOES_UP: Final = 1.25
 """How far a foot on its heel is pitched up at most (radians)."""
-ON_KNEE: Final = 0.09
+ON_KNEE: Final = 0.12
 """Ankle over the knee it is laid on (metres at 1.70 m)."""
 PAST_EDGE: Final = 0.08
 """How far past the front of the seat the ankle of a leg is that hands hold (metres)."""
@@ -183,7 +183,8 @@ def _ahead(row: SeatedLeg, seat: Seat, skeleton: Skeleton, room: float) -> float
         case "slouched":
             return min(ahead, room)
         case "ahead":
-            return float(np.clip(ahead, shin, max(room, shin)))
+            clears = _stretch(seat.edge, _drop(seat, scale), scale)
+            return float(np.clip(ahead, shin, max(min(room, clears), shin)))
         case "held":
             return max(seat.edge + PAST_EDGE, ahead)
         case _:

@@ -132,13 +132,13 @@ def _lost(name: str, index: int, place: Place, scale: float) -> tuple[str, str] 
     """What is not there for one hand, and where that is instead."""
     if name == "keys":
         return LACKED[name], "in the air"
+    low = place.seat.is_low(scale)
     if name not in SURFACES:
-        return None
+        return (LACKED[name], WHERE[ON_THE_FLOOR[name]]) if low and name in LACKED else None
     on_table, around = name in ON_TABLE, place.around
     if name in BUSY_ON_TABLE and around.table is not None and not _reaches_table(place, scale):
         return "table in easy reach", WHERE["lap"]
     there = around.table is not None if on_table else _palms(name, index, around)[index] is not None
-    low = place.seat.is_low(scale)
     if name == "behind" and there and not low:
         return LACKED[name], "on the seat"
     if low and name in ON_THE_FLOOR:
@@ -194,6 +194,7 @@ LACKED = {
     "propped": "room behind the hips",
     "edge": "room beside the thighs",
     "keys": "piano",
+    "clasped": "seat to lean from",
 } | dict.fromkeys(ON_TABLE, "table before the seat")
 """What is not there, of what hands were to be on, in words."""
 WHERE = {
@@ -213,18 +214,20 @@ ON_THE_FLOOR = {
 """Where hands lie instead where knees are up."""
 
 
-CLEAR_OF_KNEES = 10.0
-"""How far one leans back whose arms are crossed behind knees that are up (degrees)."""
+CLEAR_OF_KNEES, CLEAR_OF_LEGS = 10.0, 4.0
+"""How far one leans back whose arms are crossed behind knees that are up, and how far ahead at most over crossed legs
+(degrees)."""
 
 
 def _on_the_floor(style: Seated) -> Seated:
-    """The same on the floor: hands on the knees or round the shins; who does something sits tailorwise."""
+    """The same on the floor: hands on the knees or round the shins; who does something sits tailorwise, and so does who
+    has the hands on the thighs."""
     left, right = (ON_THE_FLOOR.get(name, name) for name in style.arms)
-    busy = style.doing not in ("", "music") or "folded" in style.arms or "forehead" in style.arms
+    busy = style.doing not in ("", "music") or {"folded", "forehead", "thighs"} & set(style.arms)
     legs = "crossed" if busy and style.legs in ("rest", "together") else style.legs
     shins = "own_shin" in (left, right)
-    # Between trunk and knees there is little room for folded arms.
-    recline = max(style.recline, CLEAR_OF_KNEES) if "crossed" in (left, right) else style.recline
+    # Between trunk and knees there is little room for arms.
+    recline = max(style.recline, CLEAR_OF_KNEES if "crossed" in (left, right) else -CLEAR_OF_LEGS)
     return replace(style, arms=(left, right), legs=legs, recline=recline, on_elbows=style.on_elbows and not shins)
 
 

@@ -31,7 +31,7 @@ from motion_backend.procedural.sit.sit_styles import Manner, Seated
 from motion_backend.procedural.touch.hand_rests import Holds, at_rest, follow
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
-from motion_backend.skeleton import Skeleton
+from motion_backend.skeleton import INDEX, Skeleton
 
 ARM = 0.54
 """Shoulder to wrist at the reference height (metres)."""
@@ -50,6 +50,9 @@ STEP = 1.8
 """Seconds a foot takes for a metre, where that is longer than a small step."""
 WAITS, WAITS_TO_STAND = 0.5, 0.9
 """Shares of a step after which the other foot leaves: a foot that leaves the floor waits until the other stands."""
+STRAIGHT, SLOWLY = (0.93, 0.10), 0.5
+"""A leg longer than such a share of its length is near straight, and the straighter the more slowly its foot sets out,
+up to such a power of its share of the way."""
 BEHIND = 0.02
 """A foot that is so much nearer to the pelvis lies behind the other's shin (metres)."""
 SINK = 0.014
@@ -85,7 +88,7 @@ def sit_down(
     low = place.seat.is_low(skeleton.scale)
     seconds = _hands_take(landed, settled, take, skeleton) * pace * (ROUND_KNEES if low else 1.0)
     moved = interpolate([0.0, seconds], poses, FPS)
-    moved = follow(_place_feet(moved, landed, settled, take), settled, holds, skeleton)
+    moved = follow(_place_feet(moved, landed, settled, take, skeleton), settled, holds, skeleton)
     moved = _taken(moved, landed, holds)
     moved = _round_the_thighs(moved, touched.reaching, low)
     return concatenate([part for part in (ready, down, settle, moved) if part is not None]), holds
@@ -234,7 +237,7 @@ def knees_over_feet(pose: Pose) -> Array:
     return np.asarray(forward + (KNEES_UP + LEVEL_KNEES_UP * level) * UP)
 
 
-def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move) -> Pose:
+def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move, skeleton: Skeleton) -> Pose:
     """Move the feet one after the other in small lifted steps from where they were to where they go."""
     ankles, feet, planted, knees = pose.ankles.copy(), pose.feet.copy(), pose.planted.copy(), pose.knees.copy()
     time, each = np.arange(1, len(pose) + 1) / FPS, move.foot_time_s
@@ -242,11 +245,12 @@ def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move) -> Pose:
     for order, index in enumerate(_first_foot(before, after)):
         gap = float(np.linalg.norm(after.ankles[index] - before.ankles[index]))
         share = np.clip((time - move.first_foot_s - order * wait) / max(each, STEP * gap), 0.0, 1.0)
-        way = smooth(share)[:, None]
+        begun = smooth(share) ** (1 + _straight(before, index, skeleton))
+        way = 1 - (1 - begun[:, None]) ** (1 + _straight(after, index, skeleton))
         ankles[:, index] = before.ankles[index] + way * (after.ankles[index] - before.ankles[index])
         rise = float(after.ankles[index, 1] - before.ankles[index, 1])
         # A foot that goes onto the other knee goes over it.
-        ankles[:, index, 1] += max(min(MAX_LIFT, LIFT * gap), min(RISES * rise, OVER)) * np.sin(np.pi * share) ** 2
+        ankles[:, index, 1] += max(min(MAX_LIFT, LIFT * gap), min(RISES * rise, OVER)) * np.sin(np.pi * way[:, 0]) ** 2
         feet[:, index] = rotations.slerp(before.feet[index], after.feet[index], way[:, 0])
         knees[:, index] = before.knees[index] + way * (after.knees[index] - before.knees[index])
         stands = np.where(share <= 0, before.planted[index], np.where(share >= 1, after.planted[index], 0.0))
@@ -256,8 +260,17 @@ def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move) -> Pose:
     if short:
         # The feet take longer than the trunk: hold the trunk until both are placed.
         held = pose.at(slice(len(pose) - 1, len(pose)))
-        return _place_feet(concatenate([pose, *([held] * short)]), before, after, move)
+        return _place_feet(concatenate([pose, *([held] * short)]), before, after, move, skeleton)
     return replace(pose, ankles=ankles, feet=feet, planted=planted, knees=knees)
+
+
+def _straight(pose: Pose, index: int, skeleton: Skeleton) -> float:
+    """How slowly the foot of a leg that is near straight sets out or arrives: its knee goes far as soon as it moves."""
+    side = ("left", "right")[index]
+    hip = pose.pelvis + rotations.rotate(pose.hips, skeleton.offsets[INDEX[f"{side}_hip"]])
+    length = -float(skeleton.offsets[INDEX["left_knee"], 1] + skeleton.offsets[INDEX["left_ankle"], 1])
+    share = float(np.linalg.norm(pose.ankles[index] - hip)) / length
+    return float(np.clip((share - STRAIGHT[0]) / STRAIGHT[1], 0.0, SLOWLY))
 
 
 def _first_foot(before: Pose, after: Pose) -> tuple[int, int]:
@@ -289,10 +302,10 @@ def stand_up(
     over = at_rest(over, push, skeleton)
     seconds = _hands_take(start, over, keys.gather, skeleton) * pace
     gather = interpolate([0.0, seconds], [start, replace(over, ankles=start.ankles, feet=start.feet)], FPS)
-    gather = follow(_place_feet(gather, start, over, keys.gather), over, push, skeleton)
+    gather = follow(_place_feet(gather, start, over, keys.gather, skeleton), over, push, skeleton)
     gather = _round_the_thighs(_taken(gather, start, push), over.reaching, low)
     over = gather.at(len(gather) - 1)
-    seconds = keys.rise.time_s * pace * (ANY_DEPTH + EACH_DEPTH * depth)
+    seconds = keys.rise.time_s * pace * (ANY_DEPTH + EACH_DEPTH * depth) * (keys.rise.low_time_ratio if low else 1.0)
     times = [*(row.time_share * seconds for row in (ready, *rows)), seconds]
     leant = replace(
         over,

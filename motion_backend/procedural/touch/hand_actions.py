@@ -17,6 +17,7 @@ from motion_backend.motion import FPS
 from motion_backend.procedural.pose import Pose, concatenate, interpolate, smooth
 from motion_backend.procedural.touch.hand_captions import Laid, with_arms
 from motion_backend.procedural.touch.hand_contacts import is_top
+from motion_backend.procedural.touch.hand_placement import gripped
 from motion_backend.procedural.touch.touch_keys import HeldTouches, TouchKey, TouchKeys, TouchPose, TouchTable
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
@@ -50,6 +51,8 @@ class Way:
     """For each pose of `down`, of such seconds."""
     looks: float = 1.0
     """How much of the time for looking at the thing it needs."""
+    turns: tuple[float, float] = (0.0, 0.0)
+    """How far a grip is turned to either side (radians)."""
     step: Callable[[Pose, tuple[int, int, int]], Pose] = lambda whole, _lengths: whole
     """A foot that steps up to the thing and back, in frames of coming, doing and leaving."""
 
@@ -194,23 +197,14 @@ def _rotate(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
     """A grip that is turned to and fro about what it holds; the elbow goes up and down with it, and the trunk along."""
     row = keys.rotate
     time, ease, held = _held(there, seconds, keys.ease_s)
-    index, normal = way.hands[0], way.laid.normal
-    angle = row.turn_rad * ease * _wave(row.turn_hz, time)
-    turn = rotations.rotvec_to_quat(angle[:, None] * normal)
-    side = 1.0 if index == 0 else -1.0
-    middle = rotations.rotate(there.palms[index], np.array([side * row.grip_m, 0.0, 0.0]))
-    reach, palms, elbows = held.reach.copy(), held.palms.copy(), held.elbows.copy()
-    reach[:, index] += middle - rotations.rotate(turn, middle)
-    palms[:, index] = rotations.compose(turn, held.palms[:, index])
-    elbows[:, index] += angle[:, None] * np.array([row.elbow_left_ratio, row.elbow_up_ratio * side, 0.0])
+    wave = _wave(row.turn_hz, time)
+    angle = ease * np.where(wave > 0, way.turns[1], -way.turns[0]) * wave
+    held = gripped(held, way.hands[0], angle, way.laid.normal, row)
     left, _ = way.turned()
     along = angle / row.turn_rad
     still = np.zeros_like(along)
     return replace(
         held,
-        reach=reach,
-        palms=palms,
-        elbows=elbows,
         pelvis=held.pelvis + row.pelvis_m * along[:, None] * np.array([left[0], 0.0, left[2]]),
         spine=held.spine + np.stack([still, row.spine_turn_rad * along, row.spine_side_rad * along], axis=1),
         head=held.head + np.stack([still, row.head_turn_rad * along, row.head_side_rad * along], axis=1),

@@ -23,6 +23,7 @@ from motion_backend.procedural.pose_solver import chest_frame
 from motion_backend.procedural.touch.hand_captions import Laid
 from motion_backend.procedural.touch.hand_contacts import is_top
 from motion_backend.procedural.touch.reach_keys import HandPlacement
+from motion_backend.procedural.touch.touch_keys import Rotate
 from motion_backend.rotations import Array
 from motion_backend.skeleton import HAND_REST, Skeleton
 
@@ -39,6 +40,8 @@ PALM: Final = np.array(
 1.70 m, the mannequin's)."""
 FOREARM: Final = np.array([[0.0, 0.042], [0.6, 0.034]])
 """Shares of a forearm from the elbow, and how thick it is there (metres at 1.70 m)."""
+TURNS, DEEPER = 31, 0.016
+"""So many turns of a grip are tried, and how much deeper a palm may be in the surface then (metres)."""
 
 
 def placed(bent: Pose, laid: Laid, elbows: Array, seen: Depth, skeleton: Skeleton, row: HandPlacement) -> Laid:
@@ -59,6 +62,33 @@ def placed(bent: Pose, laid: Laid, elbows: Array, seen: Depth, skeleton: Skeleto
         other = found.other
         found = replace(found, palm=chosen) if place == 0 or other is None else replace(found, other=(other[0], chosen))
     return replace(found, elbows=poles)
+
+
+def gripped(held: Pose, index: int, angle: Array, normal: Array, row: Rotate) -> Pose:
+    """T frames of a hand (0 left, 1 right) on a surface, its grip turned by angles (T,) about what it holds, and the
+    elbow with it."""
+    turn, side = rotations.rotvec_to_quat(angle[:, None] * normal), (1.0, -1.0)[index]
+    reach, palms, elbows = held.reach.copy(), held.palms.copy(), held.elbows.copy()
+    middle = rotations.rotate(palms[:, index], np.array([side * row.grip_m, 0.0, 0.0]))
+    reach[:, index] += middle - rotations.rotate(turn, middle)
+    palms[:, index] = rotations.compose(turn, palms[:, index])
+    elbows[:, index] += angle[:, None] * np.array([row.elbow_left_ratio, row.elbow_up_ratio * side, 0.0])
+    return replace(held, reach=reach, palms=palms, elbows=elbows)
+
+
+def turns_of_grip(there: Pose, laid: Laid, skeleton: Skeleton, row: Rotate) -> tuple[float, float]:
+    """How far a hand that lies in a single pose turns to either side with its palm on the surface (radians)."""
+    index, wrist, _ = laid.hands[0]
+    angles = np.linspace(-row.turn_rad, row.turn_rad, TURNS)
+    tried = gripped(there.repeat(TURNS), index, angles, laid.normal, row)
+    arm = Arm.of(tried, skeleton, index, chest_frame(tried, skeleton))
+    gap = ((_palm_skin(arm, skeleton.scale)[0] - wrist) @ laid.normal + HAND_REST).min(axis=1)
+    # As deep as it lies there, and hardly deeper.
+    lies = gap > gap[TURNS // 2] - DEEPER
+    first, last = np.argmin(lies[TURNS // 2 :: -1]), np.argmin(lies[TURNS // 2 :])
+    ends = [steps - 1 if steps else TURNS // 2 for steps in (first, last)]
+    step = row.turn_rad / (TURNS // 2)
+    return -step * float(ends[0]), step * float(ends[1])
 
 
 def _grid(laid: Laid, row: HandPlacement) -> tuple[Array, Array, Array]:
@@ -99,10 +129,8 @@ def _tries(
 
 def _cost(arm: Arm, tried: Pose, normal: Array, wrist: Array, seen: Depth, scale: float, row: HandPlacement) -> Array:
     """What an arm costs that is in something, hovers, or is strained. (N,)."""
-    joints = arm.joints()
-    upper, lower = arm_rotations(arm.limb, arm.side)
-    hand = rotations.compose(lower, joints[f"{arm.name}_wrist"])
-    skin = arm.wrist[:, None] + scale * rotations.rotate(hand[:, None], PALM * [float(arm.side), 1.0, 1.0])
+    upper, _ = arm_rotations(arm.limb, arm.side)
+    skin, hand, bent = _palm_skin(arm, scale)
     gap = (skin - wrist) @ normal + HAND_REST
     share, thick = FOREARM.T
     along = arm.elbow[:, None] + share[:, None] * arm.lengths[1] * arm.limb.lower[:, None]
@@ -110,7 +138,7 @@ def _cost(arm: Arm, tried: Pose, normal: Array, wrist: Array, seen: Depth, scale
     deep = seen(points.reshape(-1, 3)).reshape(points.shape[:2]) + np.append(np.zeros(len(PALM)), scale * thick)
     deepest = np.maximum(np.maximum(deep, 0.0).sum(axis=1), -gap.min(axis=1))
     strain = out_of_cone(f"{arm.name}_shoulder", rotations.compose(rotations.inverse(arm.clavicle), upper))
-    bend = rotations.length(rotations.quat_to_rotvec(joints[f"{arm.name}_wrist"]))[:, 0]
+    bend = rotations.length(rotations.quat_to_rotvec(bent))[:, 0]
     unlike = rotations.length(
         rotations.quat_to_rotvec(rotations.compose(rotations.inverse(hand), tried.palms[:, arm.which]))
     )[:, 0]
@@ -121,3 +149,11 @@ def _cost(arm: Arm, tried: Pose, normal: Array, wrist: Array, seen: Depth, scale
         + row.bend_per_rad * bend
         + row.unlike_per_rad * unlike
     )
+
+
+def _palm_skin(arm: Arm, scale: float) -> tuple[Array, Array, Array]:
+    """Points of a palm (N, P, 3), its hand's world and its wrist's local rotation (N, 4)."""
+    wrist, (_, lower) = arm.joints()[f"{arm.name}_wrist"], arm_rotations(arm.limb, arm.side)
+    hand = rotations.compose(lower, wrist)
+    skin = arm.wrist[:, None] + scale * rotations.rotate(hand[:, None], PALM * [float(arm.side), 1.0, 1.0])
+    return skin, hand, wrist

@@ -22,7 +22,7 @@ from motion_backend.procedural.sit.sit_transition import knees_over_feet
 from motion_backend.procedural.touch.hand_actions import Way, deed
 from motion_backend.procedural.touch.hand_captions import Laid
 from motion_backend.procedural.touch.hand_contacts import is_top
-from motion_backend.procedural.touch.hand_placement import Depth, placed
+from motion_backend.procedural.touch.hand_placement import Depth, placed, turns_of_grip
 from motion_backend.procedural.touch.kneel import down_on_knees, prone
 from motion_backend.procedural.touch.reach_keys import (
     Approach,
@@ -104,7 +104,8 @@ def touch(
     if raised:
         kneeling = (_folded(lead, above, laid, row),)
     times = manner.hold, tempo, pace, row.folding_s if raised else row.kneeling_step_s, max(looks, 1 / FPS)
-    way = Way(away, lead, kneeling, hand, laid, *times, partial(stepped, step=step, row=keys.reach.step))
+    turns = turns_of_grip(reached, laid, skeleton, keys.held.rotate) if manner.doing == "rotate" else (0.0, 0.0)
+    way = Way(away, lead, kneeling, hand, laid, *times, turns, partial(stepped, step=step, row=keys.reach.step))
     whole = deed(way, manner.doing, keys)
     knees = whole.knees if manner.prone else knees_over_feet(whole)
     return settle_from(start, replace(whole, knees=knees), FPS, seconds=row.settle_s)

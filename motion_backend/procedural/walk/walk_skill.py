@@ -92,8 +92,10 @@ NARROW_ARMS = {
 """What arms do where elbows or hands would meet furniture, and the clearance (metres) they need."""
 STAYING = 0.7
 """How long arms take into the pose they are held in where the body stays, and out of it (seconds)."""
-RUNS, ROOM_TO_RUN = 2.0, 6.0
-"""Who is to be faster (m/s) runs, and needs a way so long (metres) to come to that speed and to stop from it."""
+QUICK, RUNS = 1.7, 2.0
+"""Who is to be faster (m/s) walks quickly, and runs."""
+OFTEN, NEARLY = 0.9, 0.9
+"""A way with so little room that all but the fastest frames, this share, are slower than so much of it is told."""
 HALTS = 0.6
 """How far a walk goes on that has to stop (metres)."""
 ELBOW_ROOM = 0.26
@@ -122,9 +124,7 @@ def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Po
     arms = arms_on_the_way(body.pose, style.bearing.arms)
     style = replace(style, bearing=replace(style.bearing, arms=arms), character=gait_character(body.seed))
     path = _way_to(body, goal) if not near else np.array([body.place, goal])
-    if style.speed > RUNS and float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum()) < ROOM_TO_RUN:
-        body.note("no room to run: the way is too short")
-    turning = None
+    turning, made = None, len(body.frames)
     if away < SHORT_WAY and to_turn < TURNING_ROUND:
         path = np.array([body.place, goal])
     elif not near:
@@ -145,6 +145,17 @@ def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Po
         body.enter(PhaseKind.BACK_UP)
         path = np.array([body.place, goal])
     _stride(body, path, facing, style, onward if not near and turning is None else None)
+    if style.speed > QUICK:
+        _note_no_room(body, made, style.speed)
+
+
+def _note_no_room(body: Body, made: int, speed: float) -> None:
+    """Say so where the way, walked in all frames but the first that were `made` before it, was too short to get up to
+    a speed (m/s)."""
+    places = np.concatenate([one.pelvis for one in body.frames[made:]])[:, [0, 2]]
+    pace = np.linalg.norm(np.diff(places, axis=0), axis=1) * FPS
+    if len(pace) and float(np.quantile(pace, OFTEN)) < NEARLY * speed * body.skeleton.scale:
+        body.note(f"no room to {'run' if speed > RUNS else 'walk quickly'}: the way is too short")
 
 
 def _way_to(body: Body, goal: Point, off_m: float = 0.0) -> Array:

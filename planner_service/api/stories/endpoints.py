@@ -12,14 +12,14 @@ from typing import Annotated, Final, Literal
 from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
 
 from motion_backend.formats import FORMATS, encode
-from motion_backend.formats.glb_film import scene_glb
+from motion_backend.formats.glb_film import body_glb, scene_glb
 from motion_backend.motion import Character
 from planner_service.api.dependencies import PartsDep
 from planner_service.api.errors import Conflict, NotFound, NotReady, Unprocessable
 from planner_service.api.idempotent_submission import accept, repeated
 from planner_service.api.layouts import views
 from planner_service.api.stories.schemas import CharacterAsk, MotionAsk, StoryAsk, StoryPage, StoryShown
-from planner_service.api.stories.views import Footage, story_shown, story_summary
+from planner_service.api.stories.views import Footage, role_in, story_shown, story_summary
 from planner_service.api.web_page import unchanging
 from planner_service.components import Parts
 from planner_service.jobs.story_stages import HOME
@@ -105,7 +105,7 @@ def home_given(row: Json | None) -> Home | None:
 
 def character_of(ask: CharacterAsk | None) -> Character:
     """Who acts."""
-    return Character(ask.name, ask.pronouns, ask.height) if ask else Character()
+    return Character(**ask.model_dump()) if ask else Character()
 
 
 @stories_router.get("", response_model=StoryPage)
@@ -237,7 +237,8 @@ def motion(
     chosen = FORMATS[format_]
 
     def make() -> bytes:
-        return encode(footage.motion(stories, first, end), format_)
+        moved = footage.motion(stories, first, end)
+        return body_glb(moved, role_in(record)) if format_ == "glb" else encode(moved, format_)
 
     if complete:  # until then the headers change
         headers |= _named(record, chosen.suffix)

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, GetJsonSchemaHandler, StringConstraints
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticKnownError
 
 from motion_backend.backends import UnknownBackendError, offered_backends, require_backend
+from motion_backend.body.cast import cast
 from motion_backend.motion import Emotion, Skill
+from motion_backend.skeleton import MAX_HEIGHT, MIN_HEIGHT
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, Method
-from planner_service.pipeline import MAX_HEIGHT, MAX_SEED, MIN_HEIGHT
+from planner_service.pipeline import MAX_SEED
 from planner_service.scripts.script import MAX_NAME_LENGTH, Beat, Keyframe
 from planner_service.themes.beats import MAX_THEME_LENGTH
 from scene_graphs.home import MAX_ROOMS
@@ -58,12 +60,33 @@ class Ask(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True)
 
 
+LookWord = Annotated[str, Field(max_length=40)]
+
+
+def _look_word(name: str, what: str) -> Any:
+    """A field of how a character looks: empty, or one of the cast's words, which the request itself checks."""
+    return Field(
+        "",
+        description=f"{what} Empty: read in the theme, else chosen.",
+        json_schema_extra={"enum": ["", *cast().known(name)]},
+    )
+
+
 class CharacterAsk(Ask):
     """Who acts."""
 
     name: str = Field("Sam", min_length=1, max_length=MAX_NAME_LENGTH, description="Printable letters.")
     pronouns: Literal["he", "she", "they"] = "they"
-    height: float = Field(1.70, ge=MIN_HEIGHT, le=MAX_HEIGHT, description="Metres.")
+    height: float = Field(
+        1.70, ge=MIN_HEIGHT, le=MAX_HEIGHT, description="Metres; left at 1.7, a child is as tall as children are."
+    )
+    member: LookWord = _look_word("member", "Who of the cast plays; the other words say what differs.")
+    age: LookWord = _look_word("age", "An age group.")
+    build: LookWord = _look_word("build", "How much flesh there is.")
+    skin: LookWord = _look_word("skin", "Its tone.")
+    hair: LookWord = _look_word("hair", "How it is worn.")
+    hair_color: LookWord = _look_word("hair_color", "Its colour.")
+    outfit: LookWord = _look_word("outfit", "The clothes.")
 
 
 class StoryAsk(Ask):
@@ -130,6 +153,13 @@ class CharacterShown(BaseModel):
     name: str
     pronouns: str
     height: float = Field(description="Metres.")
+    member: str = Field("", description="Who of the cast plays.")
+    age: str = Field("", description="child, adult or old.")
+    build: str = ""
+    skin: str = ""
+    hair: str = ""
+    hair_color: str = ""
+    outfit: str = Field("", description="What is worn.")
 
 
 class Span(BaseModel):

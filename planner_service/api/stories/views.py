@@ -11,7 +11,8 @@ from datetime import UTC, datetime
 from functools import cached_property
 from typing import Final
 
-from motion_backend.motion import FPS, Emotion, Motion, Skill, join
+from motion_backend.body.cast import Look, Role
+from motion_backend.motion import FPS, Character, Emotion, Motion, Skill, join
 from planner_service.jobs.story_stages import STAGES, read_segments
 from planner_service.scripts.acted_beats import Shot, acted_beats, beats_in, leads
 from planner_service.scripts.script import Beat
@@ -67,7 +68,7 @@ def story_shown(record: Record) -> Json:
     keyframes = _keyframes(made, segments)
     shown = {
         "method": record.method,
-        "character": record.character,
+        "character": made.get("character", record.character),
         "planner": made.get("planner"),
         "encoder": made.get("encoder"),
         "text": made.get("text"),
@@ -118,6 +119,17 @@ def failure_of(record: Record) -> Json | None:
         detail = f"its worker ended {record.attempts} times while it was made; post it again, or tell the operator"
         return {"title": "Given up", "detail": detail}
     return record.error or {"title": "Something went wrong on our side", "detail": "the service's log says more"}
+
+
+def role_in(record: Record) -> Role:
+    """Who is seen in a story, as far as it is made."""
+    made: Json = {}
+    for artifact in record.artifacts:
+        if artifact.kind != "segment":
+            made |= artifact.summary
+    emotions = {row["index"]: Emotion(row["mood"]) for row in made.get("keyframes", [])}
+    look = Look.of(Character(**made.get("character", record.character)))
+    return Role(look, emotions, frozenset(made.get("asleep", ())))
 
 
 def _links(story_id: str) -> dict[str, str]:

@@ -57,7 +57,7 @@ def test_the_neutral_pose_fails_every_caption_that_says_something_else(skill: Sk
 
 @pytest.mark.parametrize("place", ["bed", "floor"])
 def test_who_lies_does_what_the_words_say(place: str) -> None:
-    some = captions()[Skill.LIEDOWN][::3]
+    some = captions()[Skill.LIEDOWN][::5]
     verdicts = [judge_caption(body.motion, body.action) for body in (lain(place, caption) for caption in some)]
     assert [verdict for verdict in verdicts if verdict is None or not verdict.kept] == []
 

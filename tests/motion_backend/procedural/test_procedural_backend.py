@@ -180,8 +180,8 @@ def test_nobody_lunges_into_a_walk(caption: str, emotion: str) -> None:
     assert np.abs(np.diff(height, n=2)).max() * 900 < 40
 
 
-@for_each("caption", ["walk", "skip steps running", "run and spin"])
-@for_each("distance", [0.2, 0.5, 1.4])
+@for_each("caption", ["walk", "run and spin"])
+@for_each("distance", [0.2, 1.4])
 def test_every_walk_ends_on_both_feet(caption: str, distance: float) -> None:
     start = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=(2.6, 2.6), facing=0.0)
     motions, _ = perform([start, Action(Skill.LOCO, caption, Emotion.HAPPY, goal=(2.6, 2.6 + distance), facing=0.0)])

@@ -9,12 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from acted import SMALL, sat, walked
+from numba.core.registry import CPUDispatcher
 
+from motion_backend.body import skinning_kernel
 from motion_backend.formats.mp4 import write_mp4
 from motion_backend.motion import Motion, join
+from motion_backend.rendering import depth_buffer, film_kernel, surface_light
 from motion_backend.rendering.camera import SEEN
 from motion_backend.rendering.film_backdrop import Backdrop
-from motion_backend.rendering.film_frames import film_frames
+from motion_backend.rendering.film_frames import compile_film, film_frames
 from motion_backend.rendering.film_picture import lay_words, split, to_rgb
 from motion_backend.rendering.film_shots import LONGEST, SHORTEST, FilmShot, film_shots
 from motion_backend.rendering.film_sight import Appearances
@@ -148,6 +151,19 @@ def test_a_film_has_all_frames_and_the_same_bytes_again(tmp_path: Path):
     assert len(shown) == 20
     drawn = next(iter(film_frames(motion, few, SIZE)))
     assert np.abs(shown[0].astype(int) - drawn).mean() < 4
+
+
+def test_what_set_up_compiles_is_what_films_and_pictures_are_drawn_with():
+    compile_film()
+    next(iter(film_frames(acted().part(0, 20), shots(), SIZE)))
+    kernels = [
+        kernel
+        for module in (depth_buffer, film_kernel, surface_light, skinning_kernel)
+        for kernel in vars(module).values()
+        if isinstance(kernel, CPUDispatcher)
+    ]
+    assert {kernel.py_func.__name__ for kernel in kernels if kernel.signatures} >= {"put_body", "shade_picture", "draw"}
+    assert [kernel.py_func.__name__ for kernel in kernels if len(kernel.signatures) > 1] == []
 
 
 def test_every_sentence_is_shown_while_what_it_tells_is_done():

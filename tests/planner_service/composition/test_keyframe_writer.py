@@ -77,7 +77,7 @@ def own(script: LongScript) -> list[PlannedKeyframe]:
     return [keyframe for keyframe in script.keyframes if not connects(keyframe)]
 
 
-@tries(120)
+@tries(80)
 @given(THEMES, st.integers(0, 3))
 def test_every_beat_is_shown_in_order_or_there_is_a_reason_and_a_body_can_act_it(theme: str, seed: int) -> None:
     script = planned_or_refused(theme, seed=seed)

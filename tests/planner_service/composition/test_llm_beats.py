@@ -356,15 +356,14 @@ def test_a_good_models_plan_is_the_long_script_that_is_acted(name: str) -> None:
 
 
 @for_each("mistake", list(MISTAKES))
-def test_whatever_a_weak_model_answers_every_theme_is_acted_and_it_is_said_what_the_rules_did(mistake: str) -> None:
-    for name in ("night-shift", "widow", "bad-news"):
-        source = Said(spoilt(mistake))
-        script = compose(THEMES[name], LIBRARY, model=ServedModel(source, Spending()))
-        assert script.keyframes
-        assert not check(script)
-        assert len(source.asked) <= 2
-        if "rules" in script.planner:
-            assert any("by rules" in line for line in script.repairs)
-        for index, beat in enumerate(script.beats):
-            if beat.kind == "undone":
-                assert index not in [keyframe.beat for keyframe in script.keyframes]
+def test_whatever_a_weak_model_answers_a_theme_is_acted_and_it_is_said_what_the_rules_did(mistake: str) -> None:
+    source = Said(spoilt(mistake))
+    script = compose(THEMES["bad-news"], LIBRARY, model=ServedModel(source, Spending()))
+    assert script.keyframes
+    assert not check(script)
+    assert len(source.asked) <= 2
+    if "rules" in script.planner:
+        assert any("by rules" in line for line in script.repairs)
+    for index, beat in enumerate(script.beats):
+        if beat.kind == "undone":
+            assert index not in [keyframe.beat for keyframe in script.keyframes]

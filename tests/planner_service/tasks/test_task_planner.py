@@ -15,6 +15,7 @@ from fastapi import FastAPI
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
+from layers import sampled
 from service_app import app_on, calling, check_problem
 from typer.testing import CliRunner
 
@@ -256,7 +257,10 @@ def pipeline() -> Pipeline:
     return Pipeline(Shelves())
 
 
-@pytest.mark.parametrize("action", ["watch TV on the sofa", "make a cup of tea with the left hand and drink it"])
+@pytest.mark.parametrize(
+    "action",
+    sampled(["make a cup of tea with the left hand and drink it", "watch TV on the sofa"], 2),
+)
 def test_the_body_reaches_every_step_that_is_said_to_be_acted(action: str, pipeline: Pipeline) -> None:
     plan = plan_task(action, home())
     assert all(step.acted for step in plan.steps)

@@ -25,7 +25,7 @@ def said(text: str) -> list[str]:
     return [clause.text for clause in clauses_of_text(text)]
 
 
-@tries(300)
+@tries(200)
 @given(themes())
 def test_a_theme_built_of_clauses_is_read_back_as_those_clauses_in_the_order_of_time(theme: BuiltTheme) -> None:
     read = clauses_of_text(theme.text)

@@ -153,7 +153,7 @@ def test_in_the_open_a_path_is_straight(one_room: Walkable) -> None:
 
 
 @given(SEEDS)
-@tries(6)
+@tries(3)
 def test_who_gets_there_gets_back_and_who_is_slimmer_too(seed: int) -> None:
     rng = np.random.default_rng(seed)
     rooms = built_in_layouts()

@@ -55,7 +55,7 @@ def which_has(side: str, name: str) -> int:
     return next(i for i, s in enumerate(found) if (np.sin(s.facing - s.approach) > 0) == (side == "left"))
 
 
-@pytest.mark.parametrize("caption", sampled(CAPTIONS, 3))
+@pytest.mark.parametrize("caption", sampled(CAPTIONS, 5))
 def test_a_lying_body_keeps_its_joints_and_its_place(caption: str) -> None:
     motion = lie(caption)
     assert motion.completed, motion.reason
@@ -167,7 +167,9 @@ def during(motion: Motion, *kinds: PhaseKind) -> slice:
     return slice(found[0].start, found[-1].stop)
 
 
-@pytest.mark.parametrize("caption", ["lying still", "side-lie on right", "curled up on the left side, knees drawn up"])
+@pytest.mark.parametrize(
+    "caption", sampled(["curled up on the left side, knees drawn up", "lying still", "side-lie on right"], 3)
+)
 def test_the_floor_is_lain_on_and_got_up_from(caption: str) -> None:
     down = on_the_floor(caption)[1]
     quick, slow = (up_again(caption, how) for how in ("get up quickly", "get up slowly"))

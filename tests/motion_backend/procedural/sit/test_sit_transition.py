@@ -95,7 +95,7 @@ CAPTIONS = (
 )
 
 
-@pytest.mark.parametrize("caption", sampled(CAPTIONS, 2))
+@pytest.mark.parametrize("caption", sampled(CAPTIONS, 4))
 def test_a_seated_body_is_within_its_limits_and_not_in_itself_or_the_seat(caption: str) -> None:
     motion, _ = seated(caption)
     positions, world = motion.skeleton.forward_kinematics(motion.root_positions, motion.local_rotations)

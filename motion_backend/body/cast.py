@@ -1,0 +1,224 @@
+"""The cast: who can be seen acting, how they look and what they wear, as rows of data/cast.toml.
+
+A look changes the surface alone. The skeleton stays that of the height, so that motion, contacts and figures do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Final, Literal, get_args
+
+import numpy as np
+
+from motion_backend.body.mannequin_mesh import MAX_PROPORTION, MIN_PROPORTION, Proportions
+from motion_backend.motion import Character, Emotion
+from scene_graphs.data_tables import read_table, require_known, table
+
+Color = tuple[float, float, float]
+Age = Literal["child", "adult", "old"]
+Build = Literal["slim", "average", "heavy"]
+Hair = Literal["bald", "balding", "short", "swept", "curly", "bob", "long", "ponytail", "bun"]
+Top = Literal["tee", "shirt", "tunic"]
+Over = Literal["", "cardigan", "coat"]
+Bottom = Literal["trousers", "shorts", "skirt"]
+Extra = Literal["collar", "tie", "belt", "hood", "bib", "apron", "neckline", "placket", "badge"]
+GIVEN: Final = ("member", "age", "build", "skin", "hair", "hair_color", "outfit")
+"""Fields of a character that say how it looks; each may be left empty."""
+
+
+@table
+class _Ratios:
+    """Sizes against the average body."""
+
+    girth_ratio: float
+    limbs_ratio: float
+    head_ratio: float
+
+
+@table
+class _Figure:
+    """Breadths and features that differ by sex, of the flesh alone."""
+
+    chest_ratio: float
+    hips_ratio: float
+    limbs_ratio: float
+    bust_m: float
+    brow_ratio: float
+    lips_ratio: float
+
+
+@table
+class AgeGroup:
+    """How old people of it are at most, and how tall."""
+
+    years_max: int
+    girth_ratio: float
+    limbs_ratio: float
+    head_ratio: float
+    height_m: float
+    height_min_m: float
+    height_max_m: float
+    heights_m: tuple[tuple[float, float], ...]
+    """Years and metres, where they grow."""
+
+    def height_at(self, years: float | None) -> float:
+        """Metres of somebody that old; of nobody knows how old, the usual."""
+        if years is None or not self.heights_m:
+            return self.height_m
+        return round(float(np.interp(years, *np.transpose(self.heights_m))), 2)
+
+
+@table
+class Member:
+    """One of the cast."""
+
+    name: str
+    pronouns: Literal["he", "she", "they"]
+    age: Age
+    build: Build
+    figure: str
+    skin: str
+    hair: Hair
+    hair_color: str
+    outfit: str
+    beard: bool = False
+    glasses: bool = False
+
+
+@table
+class Outfit:
+    """Garments and their colours; "" and black where there is none."""
+
+    name: str
+    top: Top
+    top_srgb: Color
+    bottom: Bottom
+    bottom_srgb: Color
+    shoes_srgb: Color
+    over: Over = ""
+    over_srgb: Color = (0.0, 0.0, 0.0)
+    accent_srgb: Color = (0.0, 0.0, 0.0)
+    extras: tuple[Extra, ...] = ()
+    loose: bool = False
+    """Cut wide."""
+
+
+@table
+class Cast:
+    """The whole table."""
+
+    skins_srgb: Mapping[str, Color]
+    hair_srgb: Mapping[str, Color]
+    builds: Mapping[str, _Ratios]
+    figures: Mapping[str, _Figure]
+    ages: Mapping[str, AgeGroup]
+    member: tuple[Member, ...]
+    outfit: tuple[Outfit, ...]
+
+    def __post_init__(self) -> None:
+        require_known("ages", get_args(Age), self.ages)
+        require_known("builds", get_args(Build), self.builds)
+        for one in self.member:
+            place = f"member {one.name}"
+            require_known(f"{place}.figure", [one.figure], self.figures)
+            require_known(f"{place}.skin", [one.skin], self.skins_srgb)
+            require_known(f"{place}.hair_color", [one.hair_color], self.hair_srgb)
+            require_known(f"{place}.outfit", [one.outfit], [outfit.name for outfit in self.outfit])
+
+    def known(self, name: str) -> tuple[str, ...]:
+        """What a field of a character (`GIVEN`) may be."""
+        return {
+            "member": tuple(one.name for one in self.member),
+            "age": get_args(Age),
+            "build": get_args(Build),
+            "skin": tuple(self.skins_srgb),
+            "hair": get_args(Hair),
+            "hair_color": tuple(self.hair_srgb),
+            "outfit": tuple(one.name for one in self.outfit),
+        }[name]
+
+    def named(self, name: str) -> Member:
+        """The member of that name."""
+        return next(one for one in self.member if one.name == name)
+
+
+@cache
+def cast() -> Cast:
+    """The cast that is shipped."""
+    known: Cast = read_table("motion_backend", "cast.toml", Cast)
+    return known
+
+
+@dataclass(frozen=True)
+class Look:
+    """How somebody looks: what a mesh is built from, in words of the cast's table."""
+
+    age: str = "adult"
+    build: str = "average"
+    figure: str = "straight"
+    """Breadths that differ by sex: straight, curved, or small for a child's."""
+    skin: str = "fair"
+    hair: str = "short"
+    hair_color: str = "brown"
+    beard: bool = False
+    glasses: bool = False
+    outfit: str = "casual"
+
+    @staticmethod
+    def of(character: Character) -> Look:
+        """A member of the cast, but for what is said of the character itself; the first member where none is named."""
+        known = cast()
+        member = known.named(character.member) if character.member else known.member[0]
+        age = character.age or member.age
+        alike = (age == "child") == (member.age == "child")
+        other = "small" if age == "child" else "curved" if character.pronouns == "she" else "straight"
+        return Look(
+            age=age,
+            build=character.build or member.build,
+            figure=member.figure if alike else other,
+            skin=character.skin or member.skin,
+            hair=character.hair or member.hair,
+            hair_color=character.hair_color or member.hair_color,
+            beard=member.beard and age != "child",
+            glasses=member.glasses,
+            outfit=character.outfit or member.outfit,
+        )
+
+    @property
+    def proportions(self) -> Proportions:
+        """Of the flesh, against the average body."""
+        known = cast()
+        build, figure, age = known.builds[self.build], known.figures[self.figure], known.ages[self.age]
+        return Proportions(
+            girth=_bounded(build.girth_ratio * age.girth_ratio),
+            chest=_bounded(figure.chest_ratio),
+            hips=_bounded(figure.hips_ratio),
+            limbs=_bounded(build.limbs_ratio * figure.limbs_ratio * age.limbs_ratio),
+            head=_bounded(build.head_ratio * age.head_ratio),
+        )
+
+    @property
+    def clothes(self) -> Outfit:
+        """What is worn."""
+        return next(one for one in cast().outfit if one.name == self.outfit)
+
+
+def _bounded(ratio: float) -> float:
+    return float(np.clip(ratio, MIN_PROPORTION, MAX_PROPORTION))
+
+
+@dataclass(frozen=True)
+class Role:
+    """Somebody seen acting: the look, and what the face is to show."""
+
+    look: Look = field(default_factory=Look)
+    emotions: Mapping[int, Emotion] = field(default_factory=dict)
+    """By keyframe; neutral where it is not named."""
+    asleep: frozenset[int] = frozenset()
+    """Keyframes with closed eyes."""
+
+
+PLAIN: Final = Role()
+"""Nobody in particular, who shows no feeling."""
