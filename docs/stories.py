@@ -115,7 +115,9 @@ def _parts(script: LongScript) -> str:
     parts = ", ".join(f"`{found.script.id}`" for found in script.short_scripts)
     said = f"{script.acted} of {script.asked} beats of the theme are acted"
     missed = "; ".join(f"“{beat.text}”: {beat.why}" for beat in script.beats if beat.asked and beat.why)
-    return said + (f" (not: {missed})" if missed else "") + "." + (f" Parts of {parts}." if parts else "")
+    stood = "; ".join(f"“{beat.text}”" for beat in script.beats if beat.stood_for)
+    said += (f" (not: {missed})" if missed else "") + "." + (f" Something stands for {stood}." if stood else "")
+    return said + (f" Parts of {parts}." if parts else "")
 
 
 def wrapped(text: str) -> Iterator[str]:

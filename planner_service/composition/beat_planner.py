@@ -42,7 +42,8 @@ def serve_beats(
     """The long script of a theme, beat by beat. ThemeError when nothing of it can be acted."""
     planned = _by_model(theme, library, request, model, record)
     read = _read_anew(planned) if planned else beats_of(theme)
-    writer = KeyframeWriter(request.seed, request.furniture, PartFinder(library, request.rooms).all_of(read).get)
+    parts = {} if request.method == "direct" else PartFinder(library, request.rooms).all_of(read)
+    writer = KeyframeWriter(request.seed, request.furniture, parts.get)
     if planned is None or any(one.keyframes is None for one in planned.beats):
         record.planners.append(RULES)
     writer.avoid(read)
@@ -67,9 +68,9 @@ def serve_beats(
         keyframes=acted,
         repairs=(*record.notes, *repairs),
         person=planned.person if planned else None,
-        method="auto",
+        method=request.method,
         planner=record.planner,
-        encoder=library.encoder.name,
+        encoder="" if request.method == "direct" else library.encoder.name,
         seed=request.seed,
     )
 
@@ -152,8 +153,8 @@ class PartFinder:
         deeds = {
             index: deed
             for index, one in enumerate(read)
-            if one.beat.kind == "deed" and (deed := deed_of(one.clause)) is not None and deed.skill is not Skill.LOCO
-        }
+            if one.beat.kind == "deed" and (deed := deed_of(one.clause)) is not None and self._may_do(deed, one)
+        }  # sentences are encoded only of what some script may do
         if not deeds:
             return {}
         scores = rank([read[index].text for index in deeds], self.library)
@@ -167,6 +168,13 @@ class PartFinder:
                     self._used.add(script.id)
                     break
         return found
+
+    def _may_do(self, deed: Deed, read: ReadBeat) -> bool:
+        """Whether some script in a beat's mood has a caption of its deed; a walk alone is no part of one."""
+        if deed.skill is Skill.LOCO or not (deed.pieces or deed.row.captions):
+            return False
+        shown = _captions_of(deed)
+        return not shown or any((read.beat.emotion, deed.skill, one) in self.library.captions for one in shown)
 
     def _plays(self, script: ShortScript, read: ReadBeat) -> bool:
         """Whether a script plays in the beat's mood, and where it may."""
@@ -191,7 +199,11 @@ def agrees(skill: Skill, caption: str, piece: str, deed: Deed) -> bool:
         return False
     kinds = furniture.categories_of(piece)
     there = any(not kinds.isdisjoint(furniture.categories_of(one)) for one in deed.pieces[:3] if one != "floor")
-    shown = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
+    shown = _captions_of(deed)
     if skill is Skill.TOUCH and not shown and not caption.startswith("touch medium"):
         return False
     return (caption in shown if shown else True) and (there or not deed.pieces)
+
+
+def _captions_of(deed: Deed) -> tuple[str, ...]:
+    return deed.row.captions if deed.skill is deed.row.skill else deed.row.seated

@@ -217,7 +217,7 @@ def unshown(clause: Clause, used: Collection[str]) -> tuple[str, ...]:
     """What a clause tells besides its deed, and neither the furniture that is used nor the deed's own saying has: "for
     her ladyship"."""
     row = said_row(clause)
-    known = frozenset(re.findall(r"[a-z]{4,}", " ".join(row.says))) if row else frozenset[str]()
+    known = frozenset(re.findall(r"[a-z]{4,}", " ".join(row.says)) if row else ()) - grammar().prepositions
     return tuple(
         text for text in details_of(clause)
         if known.isdisjoint(_lemmas(text)) and not (pieces_in(text) and set(used).issuperset(pieces_in(text)))

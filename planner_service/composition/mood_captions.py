@@ -11,7 +11,7 @@ from typing import Final
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.deed_lexicon import deed_table
 from planner_service.scripts.built_in_scripts import built_in
-from planner_service.scripts.caption_fallbacks import WALKS, usual
+from planner_service.scripts.caption_fallbacks import usual
 
 _MOODY: Final = {
     Emotion.HAPPY: "walk excitedly with arms opened",
@@ -39,7 +39,7 @@ def fitting(captions: Sequence[str], skill: Skill, mood: Emotion) -> list[str]:
 
 def walk_of(mood: Emotion) -> str:
     """How a mood alone is shown on one's feet."""
-    return _MOODY.get(mood, WALKS[mood])
+    return _MOODY.get(mood) or usual(Skill.LOCO, mood)
 
 
 @cache

@@ -81,12 +81,19 @@ class Judgement:
     @cached_property
     def named(self) -> tuple[int, ...]:
         """Those of the missing that the script says are not acted; all where the theme was refused."""
-        if self.script is None:
-            return self.missing
-        outcomes = planned_beats(self.script).outcomes
+        return self.missing if self.script is None else self._named(self.missing)
+
+    @property
+    def doubted(self) -> tuple[int, ...]:
+        """The acted beats that the script names nevertheless: stood for, or not shown in part."""
+        return self._named(self.acted)
+
+    def _named(self, indices: Sequence[int]) -> tuple[int, ...]:
+        """Those of some beats that the script says are not acted, or not shown."""
+        outcomes = planned_beats(self.script).outcomes if self.script else ()
         said = [one.beat.text for one in outcomes if not one.acted]
         said += [text for one in outcomes if one.acted for text in one.beat.unshown]
-        texts = {index: self.label.beats[index].text for index in self.missing}
+        texts = {index: self.label.beats[index].text for index in indices}
         return tuple(index for index, text in texts.items() if any(same_words(text, other) for other in said))
 
     def told(self, story: str) -> tuple[int, ...]:

@@ -193,6 +193,7 @@ def beat_figures(themes: Sequence[Judgement]) -> list[Figure]:
         share("beats: actable, acted in order", [(len(one.acted), len(one.actable)) for one in played], ACTED),
         share("beats: the rest, named as not acted", [_named_rest(one) for one in played]),
         share("beats: all not acted, named as such", [(len(one.named), len(one.missing)) for one in played], NAMED),
+        share("beats: acted, yet named", [(len(one.doubted), len(one.acted)) for one in played]),
     ]
     stories = [narrate(one.script, Character()) if one.script else None for one in played]
     # What is a thought the narrator says itself: the first of the two does not believe it.

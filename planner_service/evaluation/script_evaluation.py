@@ -23,7 +23,7 @@ from planner_service.evaluation.trials import FLOOR, Setting, places_for, settin
 from planner_service.grounding.keyframes_to_actions import Place, UnreachableError, act
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_actions import look_of
-from planner_service.scripts.caption_fallbacks import WALKS
+from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_repair import RISES
 from scene_graphs import furniture
@@ -173,7 +173,7 @@ def _joined(interactions: Sequence[Placed]) -> Iterator[Placed]:
             if rise is not None:
                 update: dict[str, Any] = {"skill": rise[0], "caption": rise[1]}
                 yield before.model_copy(update=update), rested
-        walk = WALKS[keyframe.mood]
+        walk = usual(Skill.LOCO, keyframe.mood)
         yield keyframe.model_copy(update={"skill": Skill.LOCO, "caption": walk}), place
         yield keyframe, place
 

@@ -14,41 +14,26 @@ from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Emotion, Skill
 from motion_backend.procedural.caption_coverage import understands
 from planner_service.scripts.captions import Vocabulary, agree, captions, sides
+from scene_graphs.data_tables import read_table, table
 
-WALKS: Final = {
-    "neutral": "smoothly forward walk",
-    "happy": "excited walk",
-    "angry": "angrily walking",
-    "hurried": "rush anxiously forward",
-    "tired": "head bowed and body bent while walking",
-    "sad": "walk with depression",
-    "stressed": "walking slowly, hands behind back",
-    "drunk": "walking drunkenly",
-    "relaxed": "smoothly forward walk",
-}
-"""The caption of a connecting walk, by emotion."""
-_POSES: Final = {
-    Skill.SITDOWN: {
-        "happy": "hands support on seat, legs straight",
-        "angry": "crossing arms",
-        "hurried": "sit upright with hands on thighs",
-        "tired": "lying back in chair, arms relaxed at sides",
-        "sad": "sitting with head bowed, hands resting on thighs",
-        "stressed": "supporting head with hands, head bowed",
-        "drunk": "lying back in chair, arms relaxed at sides",
-        "relaxed": "hands behind head, lean back, cross-legged",
-    },
-    Skill.LIEDOWN: {
-        "happy": "lying with hands under head, legs crossed",
-        "sad": "Lying down with right leg bent and hands covering face",
-        "stressed": "lying flat with hands over belly and knees bent",
-        "relaxed": "hands on belly",
-    },
-}
-_PLAIN: Final = {
-    Skill.SITDOWN: "sit upright with hands on thighs",
-    Skill.LIEDOWN: "lying down, legs straight",
-}
+
+@table
+class UsualCaptions:
+    """data/usual_captions.toml: captions by emotion; "neutral" for any that has none of its own."""
+
+    loco: dict[Emotion, str]
+    """Those of connecting walks."""
+    sitdown: dict[Emotion, str]
+    liedown: dict[Emotion, str]
+
+
+@cache
+def usual_captions() -> UsualCaptions:
+    """The captions that a mood has where nothing else is asked for."""
+    known: UsualCaptions = read_table("planner_service", "usual_captions.toml", UsualCaptions)
+    return known
+
+
 _HEIGHTS: Final = (("high", r"\bhigh|\babove\b|\bup to\b"), ("low", r"\blow\b|\blower\b|\bbend|\bunder\b"))
 _TOUCHES: Final = {"high": "An act of reaching high", "low": "touch low height", "medium": "touch medium height"}
 _SLOW: Final = r"slow|weari|heav|reluctan"
@@ -60,10 +45,11 @@ def usual(skill: Skill, mood: Emotion, caption: str = "") -> str:
     text = caption.lower()
     match skill:
         case Skill.LOCO:
-            return WALKS[mood]
+            return usual_captions().loco[mood]
         case Skill.SITDOWN | Skill.LIEDOWN:
-            pose = _POSES[skill].get(mood, _PLAIN[skill])
-            return pose if agree(caption, pose) else _PLAIN[skill]
+            poses = usual_captions().sitdown if skill is Skill.SITDOWN else usual_captions().liedown
+            pose = poses.get(mood, poses[Emotion.NEUTRAL])
+            return pose if agree(caption, pose) else poses[Emotion.NEUTRAL]
         case Skill.TOUCH:
             height = next((name for name, words in _HEIGHTS if re.search(words, text)), "medium")
             hand = {"left", "right"} & sides(caption)

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend.language.sentence_encoder import CachedEncoder, SentenceEncoder, Vectors
+from motion_backend.motion import Emotion, Skill
 from planner_service.scripts.built_in_scripts import texts_of
 from planner_service.scripts.keyword_index import KeywordIndex
 from planner_service.scripts.script import EMOTIONS, ShortScript
@@ -135,6 +136,11 @@ class ScriptLibrary:
     def emotions(self) -> NDArray[np.intp]:
         """The place of each script's emotion in `EMOTIONS`. (scripts,)."""
         return np.array([EMOTIONS.index(script.emotion) for script in self.scripts], np.intp)
+
+    @cached_property
+    def captions(self) -> frozenset[tuple[Emotion, Skill, str]]:
+        """Every caption that some keyframe has, with the emotion of its script and its skill."""
+        return frozenset((one.emotion, row.skill, row.caption) for one in self.scripts for row in one.keyframes)
 
     @cached_property
     def rooms(self) -> NDArray[np.intp]:

@@ -10,7 +10,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any, Final, Generic, TypeVar
 
 from motion_backend.motion import Emotion, Posture, Skill
-from planner_service.scripts.caption_fallbacks import WALKS
+from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.captions import Vocabulary, sides
 from planner_service.scripts.script import Keyframe, LongScript, ShortScript
 from planner_service.scripts.script_words import (
@@ -131,7 +131,7 @@ class Mending(Generic[K]):
         else:
             moods = [k.mood for k in (keyframe, *reversed(self.kept)) if _same_script(k, keyframe)]
             mood = next((mood for mood in moods if mood is not Emotion.NEUTRAL), Emotion.NEUTRAL)
-            caption, emotion = WALKS[mood], mood.value
+            caption, emotion = usual(Skill.LOCO, mood), mood.value
         update = {"skill": Skill.LOCO, "caption": caption, "emotion": emotion, "short_script": None, "also": ()}
         return keyframe.model_copy(update=fields(keyframe, update))
 

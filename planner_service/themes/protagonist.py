@@ -18,28 +18,6 @@ from planner_service.themes.things import things
 from planner_service.themes.verb_finder import tokens_of
 from scene_graphs.furniture import is_known
 
-_NAMES: Final = {
-    "she": """
-alice amelia amy ana andrea angela anita anja anna anne annie aisha barbara beatrice bella beth brigitte carla carmen
-caroline catherine charlotte chloe claire clara cora daisy diana ebba eliza ella ellen elena elisa elizabeth emily emma
-esther eva fatima fiona frida grace greta hannah heidi helen helena ida ines ingrid irene iris isabella jane jasmine
-jenny jessica joan johanna judith julia julie karen kate katherine katie laura layla leila lena leonie lily lina linda
-lisa lotte louise lucia lucy luna maria marie marta martha mary maya mei mia mila monica nadia nancy natalie nina nora
-olga olivia petra priya rachel rebecca rita rosa ruth sally sarah selma sofia sophia sophie stella susan sylvia teresa
-tina ursula vera victoria wendy yasmin yuki zoe
-""",
-    "he": """
-aaron adam ahmed alan albert alexander ali andrew anton antonio arthur ben benjamin bernard bill bob boris brian bruno
-carl carlos charles christian christopher daniel dave david diego dmitri edward emil eric erik felix finn frank fred
-frederick george gustav hans harry hassan henry hiroshi hugo ian ibrahim igor ivan jack jacob jakob james jan jason
-jens jim joe johan john jonas jonathan jose joseph juan karl kenji kevin klaus lars leo leon liam louis luca lucas
-luis luke marco marcus mario martin matthew max michael miguel mike mohammed moritz nathan nick nils noah oliver omar
-oscar otto pablo patrick paul pedro peter philip pierre ralph raj ravi richard robert roger samuel sebastian simon
-stefan steve sven theo thomas tim timothy tobias tom tony viktor walter will william yusuf
-""",
-    "they": "alex ashley casey charlie chris dana eli jamie jordan kim lee morgan nico noor pat quinn sam sasha",
-}  # fmt: skip
-_PRONOUNS_OF: Final = {name: pronouns for pronouns, names in _NAMES.items() for name in names.split()}
 _PRONOUN: Final = re.compile(r"\b(?:(?P<she>she|her|herself)|(?P<he>he|him|his|himself))\b", re.IGNORECASE)
 _SUBJECT: Final = re.compile(r"\b(?:(?P<she>she)|(?P<he>he))\b", re.IGNORECASE)
 _KINDS: Final = re.compile(
@@ -60,6 +38,13 @@ _FIRST_PERSON: Final = frozenset(("i", "we", "me", "my", "you"))
 _SUBJECTS: Final = frozenset(("he", "she", "they", "who"))
 
 
+@cache
+def _pronouns_of_names() -> dict[str, str]:
+    """The pronouns that first names tell, "they" for those of anybody."""
+    words = theme_words()
+    return {name: pronouns for pronouns in ("she", "he", "they") for name in words[f"names_{pronouns}"]}
+
+
 def cast_by(theme: str, character: Character) -> Character:
     """The character, renamed after the theme where its name and its pronouns were both left at their defaults."""
     default = Character()
@@ -68,7 +53,7 @@ def cast_by(theme: str, character: Character) -> Character:
     name = name_in(theme) or _name_of_hero(theme)
     told = called(clauses_of_text(theme), name) if name else ""
     told = told or ("" if name else pronouns_of(f"the {head_of(hero_of(clauses_of_text(theme)))}"))
-    pronouns = _PRONOUNS_OF.get(name.lower()) or told or _pronouns_in(theme, bool(name)) or default.pronouns
+    pronouns = _pronouns_of_names().get(name.lower()) or told or _pronouns_in(theme, bool(name)) or default.pronouns
     return replace(character, name=name or default.name, pronouns=pronouns)
 
 
@@ -87,14 +72,14 @@ def name_in(theme: str) -> str:
 def is_name(word: str) -> bool:
     """Whether a word is a name: one that we know, or one with a capital that no dictionary has."""
     low = word.lower()
-    return word[:1].isupper() and (low in _PRONOUNS_OF or not (kinds_of(low) or low in _not_names()))
+    return word[:1].isupper() and (low in _pronouns_of_names() or not (kinds_of(low) or low in _not_names()))
 
 
 @lru_cache(maxsize=2_000)
 def pronouns_of(subject: str) -> str:
     """ "he" or "she" for a person whose name or noun tells: "Anna", "the old man", "Mrs. Hill"; else ""."""
     words = re.findall(r"[^\W\d_]+", subject.lower())
-    known = (word if word in ("he", "she") else _TITLES.get(word) or _PRONOUNS_OF.get(word) for word in words)
+    known = (word if word in ("he", "she") else _TITLES.get(word) or _pronouns_of_names().get(word) for word in words)
     told = next((pronouns for pronouns in known if pronouns), "") or _pronouns_by(_KINDS, subject)
     return told if told in ("he", "she") else ""
 
@@ -218,7 +203,7 @@ def names_somebody(clause: Clause) -> bool:
     if clause.verb:
         return is_person(clause.doer)
     words = [token.text for token in tokens_of(clause.text)]
-    return any(word.lower() in theme_words()["people"] or word.lower() in _PRONOUNS_OF for word in words)
+    return any(word.lower() in theme_words()["people"] or word.lower() in _pronouns_of_names() for word in words)
 
 
 def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:

@@ -32,6 +32,10 @@ class ThemeWords:
     """Words that say no more when they stand beside a feeling."""
     foreign: str
     """The commonest words of other languages that are no English words."""
+    names_she: str
+    """First names, by the pronouns that they tell."""
+    names_he: str
+    names_they: str
 
     @property
     def sets(self) -> dict[str, frozenset[str]]:

@@ -19,7 +19,7 @@ from planner_service.composition.keyframe_writer import NOT_ACTED, SPOKEN_OF
 from planner_service.composition.request import Request
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.built_in_scripts import built_in
-from planner_service.scripts.caption_fallbacks import WALKS
+from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.script import LongScript, PlannedKeyframe
 from planner_service.scripts.script_library import Features, ScriptLibrary
 from planner_service.scripts.script_repair import check
@@ -210,7 +210,7 @@ def test_two_beats_that_one_posture_shows_are_one_keyframe() -> None:
 
 def test_a_mood_alone_is_walked() -> None:
     (walk,) = planned("He is drunk.").keyframes
-    assert (walk.skill, walk.caption, walk.mood) == (Skill.LOCO, WALKS["drunk"], Emotion.DRUNK)
+    assert (walk.skill, walk.caption, walk.mood) == (Skill.LOCO, usual(Skill.LOCO, Emotion.DRUNK), Emotion.DRUNK)
 
 
 def test_what_cannot_be_done_in_a_home_is_named() -> None:

@@ -129,9 +129,7 @@ def strings_in(tables: object) -> str:
 
 
 GRAMMAR = "a an and around at but did had he him his her i in into it its not of on other over she the them they up was"
-TABLES = stems(strings_in(vars(templates())).replace("~", " ")) | stems(
-    " ".join((*story_words().others, GRAMMAR))
-)
+TABLES = stems(strings_in(vars(templates())).replace("~", " ")) | stems(" ".join((*story_words().others, GRAMMAR)))
 
 
 @tries(60)

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from motion_backend.language.sentence_encoder import HashingEncoder
-from motion_backend.motion import Posture, Skill
+from motion_backend.motion import Emotion, Posture, Skill
 from planner_service.scripts.built_in_scripts import built_in
-from planner_service.scripts.caption_fallbacks import WALKS
+from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.captions import Vocabulary
 from planner_service.scripts.script import Keyframe, PlannedKeyframe
 from planner_service.scripts.script_repair import (
@@ -202,10 +202,10 @@ def uses(keyframes: Sequence[Keyframe]) -> list[Skill]:
     return [skill for skill, _ in itertools.groupby(done)]
 
 
-@for_each("emotion", WALKS)
-def test_a_connecting_walk_shows_the_mood(emotion: str) -> None:
+@for_each("emotion", Emotion)
+def test_a_connecting_walk_shows_the_mood(emotion: Emotion) -> None:
     walk = repair(script(f"sitdown chair, {emotion}"))[0][0]
-    assert (walk.caption, walk.emotion) == (WALKS[emotion], emotion)
+    assert (walk.caption, walk.emotion) == (usual(Skill.LOCO, emotion), emotion)
 
 
 def test_a_connecting_walk_goes_on_in_the_manner_of_the_walk_before_it() -> None:
