@@ -349,6 +349,10 @@ MEASURES: Final[dict[str, Callable[[Kinematics], Array]]] = {
     "hand_over_pelvis": lambda body: _high(_palms(body)) - _high(body.positions[:, None, INDEX["pelvis"]]),
     "hand_over_head": lambda body: _high(_palms(body)) - _high(body.positions[:, None, INDEX["head"]]),
     "hand_travel": lambda body: _travel(_from_pelvis(body, _palms(body))),
+    # And how far they go from side to side.
+    "hand_sweep": lambda body: np.broadcast_to(
+        np.ptp(_from_pelvis(body, _palms(body))[..., 0], axis=0), (len(body.motion), 2)
+    ),
     "hand_speed": lambda body: _speeds(body, _from_pelvis(body, _palms(body))),
     "hands_apart": lambda body: np.linalg.norm(_palms(body)[:, 0] - _palms(body)[:, 1], axis=-1),
     # Degrees that the left and the right hand turn in all.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Final
 
@@ -66,4 +65,4 @@ def character_given(argument: str, character: Character) -> Character:
                 f"{name} is given twice, {words[name]!r} and {value!r:.60}", "leave one out", at="--character"
             )
         words[name] = value.lower()
-    return replace(character, **words)
+    return Character(**(vars(character) | words))

@@ -110,6 +110,8 @@ def _inwards(row: Surface, place: Place, scale: float) -> float:
 def lacking(style: Seated, place: Place, skeleton: Skeleton, keys: SitPose) -> tuple[str, ...]:
     """What a way of sitting needs and is not there, and what is done instead (`Note.words`)."""
     said = _hands_lacking(style, place, skeleton)
+    if style.legs == "held" and place.seat.is_low(skeleton.scale):
+        said = (*said, "nothing to hang from: the right foot stands on the floor")
     if bends_a_leg(place.seat, style.legs, skeleton, place.room, keys.legs):
         said = (*said, "no room to stretch the legs: legs bent")
     if style.recline >= LEANS_BACK and _recline(replace(style, own=NOBODY), place, keys.trunk) < LEANT * np.radians(
@@ -208,6 +210,8 @@ ON_THE_FLOOR = {
     "thighs": "knees",
     "crossed_ankle": "knees",
     "belly": "knees",
+    "folded": "in_lap",
+    "folded_over": "in_lap_over",
     "clasped": "own_shin",
     "desk": "own_shin",
 }

@@ -36,10 +36,8 @@ from motion_backend.skeleton import INDEX, Skeleton
 ARM = 0.54
 """Shoulder to wrist at the reference height (metres)."""
 NOTHING: Holds = (None, None)
-AROUND, ROUND, OVER_KNEES = 0.4, 0.16, 0.5
-"""How far hands come out on their way down to the seat, up from it, and over knees that are up (arm lengths)."""
-ROUND_THIGHS, OVER_THIGHS = (1.0, 0.0, -0.5), (1.0, 1.0, 0.0)
-"""Which way the left one does: out and back on the way down, out and up between seat and lap."""
+AROUND, ROUND_THIGHS = 0.4, (1.0, 0.0, -0.5)
+"""How far hands come out on their way down to the seat (arm lengths), and which way the left one does."""
 LEAVES, ARRIVES = 0.3, 0.35
 """Shares of their way in which hands let go of what they held, and from which on they take hold of the next thing."""
 OVER, RISES = 0.14, 0.6
@@ -90,7 +88,6 @@ def sit_down(
     moved = interpolate([0.0, seconds], poses, FPS)
     moved = follow(_place_feet(moved, landed, settled, take, skeleton), settled, holds, skeleton)
     moved = _taken(moved, landed, holds)
-    moved = _round_the_thighs(moved, touched.reaching, low)
     return concatenate([part for part in (ready, down, settle, moved) if part is not None]), holds
 
 
@@ -107,16 +104,6 @@ ROUND_KNEES = 1.4
 def _depth(stood: Pose, seat: Seat, scale: float) -> float:
     """How deep a seat is below a standing body, against an ordinary one."""
     return float(np.clip((stood.pelvis[1] - seat.pelvis[1]) / (SEAT_DROP * scale), MIN_DEPTH, MAX_DEPTH))
-
-
-def _round_the_thighs(moved: Pose, hands: Array, low: bool) -> Pose:
-    """Hands on their way between lap and seat come out and up; `hands` (2,) says whether they go there.
-
-    On a low seat knees are up, and both hands go over them.
-    """
-    size = OVER_KNEES if low else ROUND * hands[:, None]
-    out = size * np.sin(np.pi * smooth(np.linspace(0.0, 1.0, len(moved))))[:, None, None]
-    return replace(moved, arms=moved.arms + out * both_sides(OVER_THIGHS))
 
 
 def _taken(moved: Pose, start: Pose, holds: Holds) -> Pose:
@@ -303,7 +290,7 @@ def stand_up(
     seconds = _hands_take(start, over, keys.gather, skeleton) * pace
     gather = interpolate([0.0, seconds], [start, replace(over, ankles=start.ankles, feet=start.feet)], FPS)
     gather = follow(_place_feet(gather, start, over, keys.gather, skeleton), over, push, skeleton)
-    gather = _round_the_thighs(_taken(gather, start, push), over.reaching, low)
+    gather = _taken(gather, start, push)
     over = gather.at(len(gather) - 1)
     seconds = keys.rise.time_s * pace * (ANY_DEPTH + EACH_DEPTH * depth) * (keys.rise.low_time_ratio if low else 1.0)
     times = [*(row.time_share * seconds for row in (ready, *rows)), seconds]

@@ -5,14 +5,12 @@ The numbers are in data/gait/arm_swing.toml.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import arm_arrays, arm_poses
-from motion_backend.procedural.pose import Pose, smooth
+from motion_backend.procedural.pose import smooth
 from motion_backend.procedural.walk.footsteps import Steps
 from motion_backend.procedural.walk.stride import Stride
 from motion_backend.procedural.walk.walk_styles import Walk
@@ -21,13 +19,6 @@ from scene_graphs.data_tables import read_table, table
 
 CARRIED = "carry"
 """The arm pose of a hand that holds something: it stays as it is where something is begun."""
-ALL_IN = 0.56
-"""Arms are brought in altogether at this share of the clearance that they need."""
-SPREAD_FROM, SPREAD_WITHIN = 0.9, 0.5
-"""Arms are spread that point this far from hanging (cosine), wholly so from so much more."""
-NARROWEST, ROOM_SMOOTHED, NARROWING = 17, 4.0, 15
-"""Frames about each of which the narrowest place counts, the width of the bell for it, and frames in which a segment's
-narrowed arms grow from none: it begins in what the one before left."""
 
 
 @table
@@ -218,29 +209,3 @@ def _tapping(side: int, frames: int) -> Array:
     away = np.tile([row.aside_arms * side, row.up_arms * side, row.ahead_arms], (frames, 1))
     away[:, 2] += row.away_arms * beating
     return away
-
-
-def arms_in(pose: Pose, room: Array, narrow: str, wide: float) -> Pose:
-    """Arms brought into the pose `narrow` where the way is: `room` (T,) is the clearance there, `wide` what they need.
-
-    Both are metres for a body of 1.70 m, from its middle.
-    """
-    from scipy.ndimage import gaussian_filter1d, minimum_filter1d
-
-    least = gaussian_filter1d(minimum_filter1d(room, NARROWEST, mode="nearest"), ROOM_SMOOTHED, mode="nearest")
-    share = smooth((wide - least) / (wide - ALL_IN * wide))
-    # A segment begins in the pose the one before left.
-    share = (share * smooth(np.arange(len(room)) / NARROWING))[:, None, None]
-    wrists, elbows = arm_arrays(narrow, narrow)
-    if narrow != "hang":
-        # Only as far as they are spread: arms that have come down at the end of the way stay down.
-        hang, _ = arm_arrays("hang", "hang")
-        down = np.sum(rotations.normalize(pose.arms) * rotations.normalize(hang), axis=-1, keepdims=True)
-        share = share * smooth((SPREAD_FROM - down) / SPREAD_WITHIN)
-    lengths = np.linalg.norm(pose.arms, axis=-1, keepdims=True)
-    along = rotations.normalize(pose.arms + share * (wrists - pose.arms))
-    return replace(
-        pose,
-        arms=along * (lengths + share * (np.linalg.norm(wrists, axis=-1, keepdims=True) - lengths)),
-        elbows=pose.elbows + share * (elbows - pose.elbows),
-    )

@@ -155,8 +155,6 @@ class Swing:
     """How far its tip points up at heel strike (radians)."""
     scuff: float = 0.0
     """How far its tip points up all the way, the heel low over the floor (radians)."""
-    round: float = 0.0
-    """How far outwards it goes round the other leg (metres)."""
     backwards: bool = False
     swings_out: float = 0.0
     """How far its tip points outwards half-way (radians)."""
@@ -174,7 +172,7 @@ class Swing:
         row, yaw = foot_table().way, self.start_yaw + 0.5 * self.turn
         outward = self.side * np.array([np.cos(yaw), 0.0, -np.sin(yaw)])
         turning = row.bow_turn_m * min(abs(self.turn) / row.bow_turn_rad, 1.0)
-        return np.asarray((row.bow_m + max(self.round, turning)) * outward)
+        return np.asarray((row.bow_m + turning) * outward)
 
     @property
     def size(self) -> float:

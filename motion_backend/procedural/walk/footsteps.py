@@ -28,8 +28,6 @@ SIDEWAYS = 90.0
 """How far from its way a body faces that steps sideways (degrees)."""
 DRIFT_RATES, DRIFT_SIZE = (0.61, 1.0, 1.43), 2.1
 """Rates of a drift's sines against the one asked for, in no whole ratio to each other; what their sum is divided by."""
-NO_WAY = 1e-9
-"""Square of a way that has no direction (metres²)."""
 SOFT_FRAMES, SOFT_BEFORE = 5.0, 20
 """Width of the bell that what steps scale is smoothed by, and how far it looks back (frames)."""
 
@@ -97,11 +95,6 @@ class LandingPlace:
     beside_m: float
     """A foot that lands so near along the way must not come too near to the other."""
     aside_max_m: float
-    round_max_m: float
-    """How far a foot swings round the other one,"""
-    round_from_share: float
-    """where that is between these shares of its way."""
-    round_to_share: float
 
 
 @table
@@ -343,7 +336,6 @@ def _swing_of(
         heel_off=rolled * (shape.hop_heel_off_share if beat.hop else 1.0),
         heel_strike=TIP_UP * style.strike * abs(stride) * (0.0 if beat.hop else 1.0),
         scuff=np.radians(style.scuff) * float(np.clip(stride / shape.scuff_stride_share, 0.0, 1.0)),
-        round=_way_round(origin, target, beside, heading, side) * skeleton.scale,
         backwards=leaves + stride < -2 * shape.backwards_share,
         swings_out=np.radians(shape.swings_out_deg) * style.character.of_side("toes_swing", "ratio", side),
         # The first heel rises from the first frame on, not before.
@@ -395,16 +387,6 @@ def _clear_of(beside: Array, target: Array, heading: float, side: int, apart: fl
     lack = apart - float(gap @ outward)
     near = abs(float(gap @ along)) < row.beside_m
     return np.asarray(target + np.clip(lack, 0.0, row.aside_max_m) * near * outward)
-
-
-def _way_round(start: Array, end: Array, beside: Array, heading: float, side: int) -> float:
-    """How much further outwards a foot must swing to pass the other one (metres)."""
-    row, outward = footstep_table().place, side * np.array([np.cos(heading), 0.0, -np.sin(heading)])
-    way = end - start
-    share = float(np.clip((beside - start) @ way / max(float(way @ way), NO_WAY), 0.0, 1.0))
-    gap = float((start + share * way - beside) @ outward)
-    passes = row.round_from_share < share < row.round_to_share
-    return float(np.clip(row.apart_m - gap, 0.0, row.round_max_m)) if passes else 0.0
 
 
 def _soften(values: Array) -> Array:

@@ -19,7 +19,6 @@ from motion_backend.procedural.held_poses import SPINE_LEAN, bend, idle
 from motion_backend.procedural.pose import interpolate, settle_from
 from motion_backend.procedural.touch.gestures import gesture
 from motion_backend.procedural.touch.hand_captions import arms_on_the_way
-from motion_backend.procedural.walk.arm_swing import arms_in
 from motion_backend.procedural.walk.gait import walk_on
 from motion_backend.procedural.walk.gait_character import gait_character
 from motion_backend.procedural.walk.root_path import SPACING, resample
@@ -82,14 +81,8 @@ SHORT_WAY = 0.20
 """A body that has not to turn round steps straight to a place nearer than this (metres)."""
 TURNING_ROUND = 1.2
 """A body that is, or arrives, turned away from where it will face by more (radians) turns before the last step."""
-NARROW_ARMS = {
-    "open": ("embracing", 0.80),
-    "balance": ("balance_ahead", 0.80),
-    "hips": ("hang", 0.50),
-    "pockets": ("hang", 0.45),
-    "behind_back": ("hang", 0.40),
-}
-"""What arms do where elbows or hands would meet furniture, and the clearance (metres) they need."""
+SPREAD, ROOM_TO_SPREAD = {"open": "embracing", "balance": "balance_ahead"}, 0.30
+"""Arms that need so much more room beside a way than the body does (metres), and what they do where there is less."""
 STAYING = 0.7
 """How long arms take into the pose they are held in where the body stays, and out of it (seconds)."""
 QUICK, RUNS = 1.7, 2.0
@@ -180,7 +173,7 @@ def halt(body: Body, action: Action) -> None:
 
 
 def _stride(body: Body, path: Array, facing: float | None, style: Walk, onward: Point | None = None) -> None:
-    """Walk along a path; arms that are spread come in where there is no room for them."""
+    """Walk along a path."""
     stride, body.stride = body.stride, None
     if stride is None and not style.aside:
         path = way_from(path, body.yaw, lambda points: _is_free(points, body.scene.walkable))
@@ -194,10 +187,11 @@ def _stride(body: Body, path: Array, facing: float | None, style: Walk, onward: 
     def spare(places: Array) -> Array:
         return np.asarray(walkable.field.at(places) - walkable.radius)
 
+    before = SPREAD.get(style.bearing.arms[0])
+    if before is not None and float(np.median(spare(resample(points)))) < ROOM_TO_SPREAD:
+        body.note("no room for open arms: to the front")
+        style = replace(style, bearing=replace(style.bearing, arms=(before, before)))
     frames, body.stride = walk_on(body.pose, points, end, style, body.skeleton, body.rng, stride, cut, spare)
-    if style.bearing.arms[0] in NARROW_ARMS:
-        room = body.scene.walkable.field.at(frames.pelvis[:, [0, 2]])
-        frames = arms_in(frames, room / body.skeleton.scale, *NARROW_ARMS[style.bearing.arms[0]])
     body.add(gesture(frames, style.doing))
 
 

@@ -111,7 +111,7 @@ def test_what_is_least_is_not_above_what_is_most() -> None:
         for low, high in (("_min_", "_max_"), ("_lift", "_land"), ("_from_share", "_to_share"))
         if (other := where.replace(low, high)) != where and other in found
     ]
-    assert len(pairs) >= 10
+    assert len(pairs) >= 9
     assert not [where for where, other in pairs if found[where] >= found[other]]
 
 
