@@ -197,6 +197,8 @@ LACKED = {
     "edge": "room beside the thighs",
     "keys": "piano",
     "clasped": "seat to lean from",
+    "folded": "lap to fold hands in",
+    "folded_over": "lap to fold hands in",
 } | dict.fromkeys(ON_TABLE, "table before the seat")
 """What is not there, of what hands were to be on, in words."""
 WHERE = {
@@ -210,8 +212,8 @@ ON_THE_FLOOR = {
     "thighs": "knees",
     "crossed_ankle": "knees",
     "belly": "knees",
-    "folded": "in_lap",
-    "folded_over": "in_lap_over",
+    "folded": "knees",
+    "folded_over": "knees",
     "clasped": "own_shin",
     "desk": "own_shin",
 }

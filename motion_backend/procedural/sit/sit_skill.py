@@ -31,6 +31,8 @@ from scene_graphs.affordances.affordances import Spot
 
 SHIN = 0.05
 """Half as wide as a shin is (metres)."""
+THIGH = 0.05
+"""Half as wide as a thigh is that may press against something a little (metres at 1.70 m)."""
 LEG, TOES = 0.12, 0.16
 """From the middle to a foot on either side, and from an ankle on to where toes end (metres)."""
 AHEAD, ASIDE, STEP = (0.44, 0.86), (0.12, 0.40), 0.02
@@ -114,9 +116,15 @@ def leg_room(obstacles: Obstacles, seat: Seat, scale: float) -> tuple[Room, Room
     # Before the seat's own front, where shins and feet of a sitter are.
     front = max(SHIN_REACH * scale, seat.edge) + SHIN
     room = []
+    # And beside the seat's front edge, where thighs pass that lead to such feet.
+    at_edge = [0.5 * LEG + (a - 0.5 * LEG) * min(seat.edge / front, 1.0) + THIGH * scale for a in aside]
     for side in (1, -1):
         points = np.array([seat.to_world((side * LEG, up, a + TOES)) for a in ahead for up in OF_FOOT])
-        beside = np.array([seat.to_world((side * a, up, front)) for a in aside for up in OF_SHIN])
+        places = [
+            (*((side * a, up, front) for up in OF_SHIN), (side * thigh, float(seat.pelvis[1]), seat.edge))
+            for a, thigh in zip(aside, at_edge, strict=True)
+        ]
+        beside = np.concatenate([seat.to_world(some) for some in places])
         room.append(Room(_before(ahead, near.depth(points), STEP), _before(aside, near.depth(beside), SHIN)))
     return room[0], room[1]
 

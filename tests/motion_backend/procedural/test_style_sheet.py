@@ -89,7 +89,7 @@ def test_the_pace_of_a_caption_bounds_that_of_the_emotion() -> None:
     for emotion in Emotion:
         usual = bearing_of(emotion)
         assert bearing_of(emotion, "stand up slowly").tempo == min(usual.tempo, 0.65)
-        assert bearing_of(emotion, "stand up abruptly").tempo == max(usual.tempo, 1.5)
+        assert bearing_of(emotion, "stand up abruptly").tempo == max(usual.tempo, 1.6)
         assert bearing_of(emotion, "sitting still").restless == pytest.approx(0.3 * usual.restless)
 
 
