@@ -172,7 +172,8 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
 
 def _may_be_noun(lemma: str) -> bool:
     """Whether a word is a noun, and no mark or numeral that a dictionary has as one."""
-    return is_noun(lemma) and lemma not in grammar().marks | grammar().numbers | {"one"}
+    known = grammar()
+    return is_noun(lemma) and lemma not in known.marks | known.numbers | known.prepositions | {"one"}
 
 
 def object_of(clause: Clause) -> str:
