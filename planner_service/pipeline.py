@@ -301,8 +301,9 @@ def role_of(character: Character, actions: Sequence[Action], script: LongScript)
 def _told_of(action: Action, script: LongScript) -> str:
     """All words of an action: its keyframe's, and those of the beats it shows."""
     keyframe = script.keyframes[action.keyframe]
-    beats = (*([] if keyframe.beat is None else [keyframe.beat]), *keyframe.also)
-    return " ".join([keyframe.caption, action.interaction or "", *(script.beats[beat].text for beat in beats)])
+    shown = {keyframe.beat, *keyframe.also}  # keyframes of one's own may name beats of a story that they are not from
+    beats = [beat.text for number, beat in enumerate(script.beats) if number in shown]
+    return " ".join([keyframe.caption, action.interaction or "", *beats])
 
 
 def given_script(request: StoryRequest) -> LongScript:

@@ -47,6 +47,7 @@ TUNIC_HEM: Final = -0.13
 _TORSO: Final[Box] = ((-0.46, -0.03, -0.22), (0.46, 0.6, 0.22))
 _LONG_TORSO: Final[Box] = ((-0.78, -0.19, -0.22), (0.78, 0.6, 0.22))
 _CHEST: Final[Box] = ((-0.16, -0.04, 0.0), (0.16, 0.60, 0.2))
+_BIB: Final[Box] = ((-0.23, -0.03, -0.18), (0.23, 0.58, 0.20))
 _NECK: Final[Box] = ((-0.12, 0.44, -0.18), (0.12, 0.62, 0.12))
 _LEGS: Final[Box] = ((-0.27, -0.87, -0.22), (0.27, 0.16, 0.22))
 _LEG: Final[Box] = ((0.0, -0.86, -0.12), (0.2, -0.10, 0.14))
@@ -138,7 +139,7 @@ def _extras(worn: Outfit, base: Field, wide: float) -> Iterator[Piece]:
             case "hood":
                 yield Piece(_cloth("top", worn.top_srgb), wardrobe.hood(wide), _NECK, wider, weigh_spine)
             case "bib":
-                yield Piece(accent, wardrobe.bib(base, 0.0), _TORSO, wider, weigh_shirt)
+                yield Piece(accent, wardrobe.bib(base, 0.0), _BIB, wider, weigh_shirt)
             case "apron":
                 yield Piece(accent, wardrobe.apron_skirt(wardrobe.skirt()), _LEGS, (0.02, 0.026, 0.02), weigh_skirt)
             case "neckline":

@@ -175,27 +175,22 @@ def hood(wide: float) -> Field:
 
 
 def bib(base: Field, floor: float) -> Field:
-    """The front of dungarees, a pinafore or an apron, and the straps that carry it."""
+    """The front of dungarees, a pinafore or an apron, and the straps that carry it, on what is worn under it."""
     front = intersection(
         0.006,
-        swollen(base, 0.007),
         half_space((0.122, 0, 0), (1, 0.10, 0)),
         half_space((-0.122, 0, 0), (-1, 0.10, 0)),
         half_space((0, 0.345, 0), (0, 1, 0)),
-        half_space((0, floor, 0), (0, -1, 0)),
         half_space((0, 0, 0.02), (0, 0, -1)),
-    )
-    around = intersection(
-        0.006, swollen(base, 0.007), half_space((0, 0.10, 0), (0, 1, 0)), half_space((0, floor, 0), (0, -1, 0))
     )
     strap = intersection(
         0.004,
-        swollen(base, 0.007),
         half_space((0.094, 0, 0), (1, 0, 0)),
         half_space((0.062, 0, 0), (-1, 0, 0)),
-        half_space((0, 0.33, 0), (0, -1, 0)),
+        half_space((0, 0.33, 0.10), (0, -1, 1.4)),  # lower behind than in front
     )
-    return union(0.004, front, around, mirrored(strap))
+    outline = union(0.004, front, half_space((0, 0.10, 0), (0, 1, 0)), mirrored(strap))
+    return intersection(0.006, swollen(base, 0.007), outline, half_space((0, floor, 0), (0, -1, 0)))
 
 
 def apron_skirt(base: Field) -> Field:

@@ -8,6 +8,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Final
 
 import numpy as np
+import shapely
 
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Character, Motion
@@ -65,7 +66,7 @@ def compile_film() -> None:
 
     home = home_from_layouts(built_in_layouts()[:1], seed=0)
     skeleton = build_skeleton(Character().height)
-    x, z = home.floor.representative_point().coords[0]
+    x, z = shapely.get_coordinates(shapely.point_on_surface(home.floor))[0]
     stands = Motion(
         root_positions=np.array([[x, skeleton.standing_height, z]], np.float32),
         local_rotations=np.tile(np.float32(IDENTITY), (1, len(skeleton.names), 1)),

@@ -81,18 +81,22 @@ class Judgement:
     @cached_property
     def named(self) -> tuple[int, ...]:
         """Those of the missing that the script says are not acted; all where the theme was refused."""
-        return self.missing if self.script is None else self._named(self.missing)
+        if self.script is None:
+            return self.missing
+        outcomes = planned_beats(self.script).outcomes
+        return self._said(self.missing, [one.beat.text for one in outcomes if not one.acted] + self._unshown)
 
     @property
     def doubted(self) -> tuple[int, ...]:
-        """The acted beats that the script names nevertheless: stood for, or not shown in part."""
-        return self._named(self.acted)
+        """The acted beats of which the script says nevertheless that something stands for them, or for a part."""
+        return self._said(self.acted, self._unshown)
 
-    def _named(self, indices: Sequence[int]) -> tuple[int, ...]:
-        """Those of some beats that the script says are not acted, or not shown."""
+    @property
+    def _unshown(self) -> list[str]:
         outcomes = planned_beats(self.script).outcomes if self.script else ()
-        said = [one.beat.text for one in outcomes if not one.acted]
-        said += [text for one in outcomes if one.acted for text in one.beat.unshown]
+        return [text for one in outcomes if one.acted for text in one.beat.unshown]
+
+    def _said(self, indices: Sequence[int], said: Sequence[str]) -> tuple[int, ...]:
         texts = {index: self.label.beats[index].text for index in indices}
         return tuple(index for index, text in texts.items() if any(same_words(text, other) for other in said))
 

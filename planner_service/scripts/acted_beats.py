@@ -95,8 +95,10 @@ class ActedBeats:
             return []
         share = f"{self.spare_share:.0%} of the screen time serves none of them"
         acted = [one.beat for one in self.outcomes if one.acted]
+        stood = sum(beat.stood_for for beat in acted)
+        in_part = f", {stood} of them only by what stands for it" if stood else ""
         return [
-            f"{self.acted} of {self.asked} beats of your theme are acted; {share}",
+            f"{self.acted} of {self.asked} beats of your theme are acted{in_part}; {share}",
             *(f"not acted: {one.beat.text} ({one.why})" for one in self.missing),
             *(f"not acted as such, something stands for it: {beat.text}" for beat in acted if beat.stood_for),
             *(

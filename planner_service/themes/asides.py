@@ -16,12 +16,7 @@ RELATIVES: Final = frozenset(("that", "which", "who"))
 _TELLING: Final = RELATIVES | {"whom", "whose"}
 MANNER: Final = frozenset(("way", "time", "moment", "minute", "day", "night", "morning", "year"))
 """Nouns that say no more than how or when what is told of them was: "the way he was taught"."""
-_SENSES: Final = frozenset(("hear", "see", "watch", "listen", "feel", "notice", "let", "overhear"))
-"""Verbs beside which stands what somebody else does: "hears the door slam"."""
-_STAYS: Final = frozenset(("sit", "lie", "stand", "lean", "rest", "kneel", "stay", "wait", "be", "walk", "go", "run"))
-"""Verbs after which a second place says more of the first."""
 ARTICLES: Final = frozenset(("the", "a", "an"))
-_OBJECTS: Final = frozenset(("him", "her", "them", "it", "me", "us"))
 OWNERS: Final = frozenset(("his", "her", "their", "its", "my", "our"))
 
 
@@ -51,8 +46,6 @@ def _tells_something(words: Sequence[Token]) -> bool:
 def without_asides(words: list[Token], main: int) -> tuple[list[Token], list[list[Token]]]:
     """The words of a clause, and those after a noun that tell of it with a verb of their own: "the flour | the cat has
     spilled", "a call | that never comes"; but "is told on the phone that he has won", which is what is said."""
-    if place := _sensed(words, main):
-        return words[:place], [words[place:]]
     says = any(lemma_of(word.low) in theme_words()["speech_verbs"] for word in words[main : main + 2])
     for place in range(main + 2, len(words) - 1):
         low, after = words[place].low, words[place + 1 :]
@@ -77,24 +70,6 @@ def without_relative(tokens: list[Token]) -> tuple[list[Token], list[Token]]:
     verb = verb_place(tokens[start + 1 :])
     end = None if verb is None else next_verb(tokens, start + 1 + verb)
     return (tokens, []) if end is None else ([*tokens[:start], *tokens[end:]], tokens[start:end])
-
-
-def _sensed(words: Sequence[Token], main: int) -> int:
-    """Where the verb stands of what somebody else is heard or seen doing: "hears the door | slam"; 0 for none."""
-    if not words or lemma_of(words[main].low) not in _SENSES:
-        return 0
-    small = grammar().prepositions | grammar().marks
-    for place in range(main + 2, len(words)):
-        low, before = words[place].low, words[place - 1].low
-        if low in grammar().subjects | THAT | {"and", "or", ",", "to"}:
-            return 0
-        doing = (verb_of(low) == low and not is_adjective(low)) or (low.endswith("ing") and bool(verb_of(low)))
-        marked = any(token.low in grammar().marks for token in words[main + 1 : place - 1]) and is_noun(before)
-        after = words[place + 1].low if place + 1 < len(words) else ""
-        goes_on = not after or after in small | grammar().adverbs or after.endswith("ly")
-        if doing and goes_on and before not in small and (marked or before in _OBJECTS):
-            return place
-    return 0
 
 
 def ends_noun(before: str, word: str) -> bool:

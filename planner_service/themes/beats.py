@@ -40,8 +40,6 @@ _RECEIVERS: Final = frozenset(("phone", "telephone", "receiver"))
 _BY_THEN: Final = re.compile(r"\bby (?:noon|midnight|dawn|dusk|evening|night|now|then|\d+|one|two|three|four|five|six|"
                                 r"seven|eight|nine|ten|eleven|twelve)\b", re.IGNORECASE)  # fmt: skip
 """By this what had been done belongs to the story: "by noon she had unpacked"."""
-_OF_ONESELF: Final = re.compile(r"\bI(?:'m)?\b")
-"""By this word one tells how one feels."""
 _QUOTED: Final = re.compile(r"«\d+»")
 EXPRESSIONS: Final = {
     verb: mood
@@ -138,9 +136,6 @@ def _read(clause: Clause, hero: str, pronoun: str) -> ReadBeat:
     if not sure and clause.subject:
         named, of_subject = _emotion(f"{clause.subject} {clause.text}")  # "a tired student …"
         emotion, sure = (named, True) if of_subject else (emotion, sure)
-    if not sure and not who:
-        own = " ".join(quote for quote in clause.quotes if _OF_ONESELF.search(quote))
-        emotion, sure = _emotion(own) if own and _emotion(own)[1] else (emotion, sure)
     if not sure and not who and (shown := EXPRESSIONS.get(clause.verb)):
         emotion, sure = shown, True
     if (kind == "other" or (kind == "undone" and not clause.unable)) and not sure:

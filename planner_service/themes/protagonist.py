@@ -128,7 +128,9 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     nouns = [one for one in nouns if pronouns_of(one.subject) in ("", pronoun or pronouns_of(one.subject))] or nouns
     if nouns:
         return max(nouns, key=lambda one: _heroic(one, pronoun) + min(deeds[one.subject], 4) / 8).subject
-    living = [one for one in mains[:1] if _may_live(one)]
+    opening = ("a ", "an ", "one ", "my ", "our ", "the ")
+    called = not people and " " not in "".join(mains[:1]) and "".join(mains[:1])[:1].isupper()  # "Rose", "Wen"
+    living = [one for one in mains[:1] if (called or one.lower().startswith(opening)) and _may_live(one)]
     return next(iter([*living, *(one.subject for one in people)]), "")
 
 

@@ -6,11 +6,11 @@ import pytest
 from for_each import for_each
 
 from motion_backend.body.cast import GIVEN, Look, cast
-from motion_backend.motion import Character
+from motion_backend.motion import Action, Character, Emotion, Skill
 from planner_service.cast_choice import CharacterError, cast_for, named_as
 from planner_service.cli.cast_command import character_given
-from planner_service.pipeline import StoryRequest, actor, request_from_dict, request_to_dict
-from planner_service.scripts.script import LongScript, Person
+from planner_service.pipeline import StoryRequest, actor, request_from_dict, request_to_dict, role_of
+from planner_service.scripts.script import LongScript, Person, PlannedKeyframe
 from scene_graphs.errors import UserError
 
 
@@ -129,6 +129,19 @@ def test_the_age_that_a_model_read_is_played() -> None:
     )
     found = actor(request, script)
     assert (found.age, found.height, found.pronouns) == ("child", 1.17, "she")
+
+
+def test_who_is_told_to_sleep_has_shut_eyes_also_in_a_script_of_ones_own() -> None:
+    """Keyframes cut out of a story may name beats that are not there; who shuffles sleepily looks where they go."""
+    own = [
+        PlannedKeyframe(skill=Skill.LOCO, emotion="tired", caption="shuffling sleepily forward", furniture="floor"),
+        PlannedKeyframe(skill=Skill.LIEDOWN, emotion="tired", caption="he falls asleep", furniture="bed", beat=7),
+    ]
+    script = LongScript(theme="", beats=(), short_scripts=(), keyframes=tuple(own))
+    actions = [Action(one.skill, one.caption, Emotion.TIRED, keyframe=index) for index, one in enumerate(own)]
+    role = role_of(Character(member="tom"), actions, script)
+    assert role.asleep == {1}
+    assert role.emotions == {0: Emotion.TIRED, 1: Emotion.TIRED}
 
 
 @for_each("field", GIVEN)

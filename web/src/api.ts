@@ -46,6 +46,8 @@ export interface Keyframe {
   readonly end: number | null;
   readonly short_script_id: string | null;
   readonly reached: boolean | null;
+  /** Whether the eyes are shut. */
+  readonly asleep: boolean;
 }
 
 /** One thing that the theme says, and what became of it. */

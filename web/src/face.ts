@@ -37,13 +37,13 @@ export class Face {
     return new Face(meshes, expressions as Record<string, number[]>, lids);
   }
 
-  /** Show a feeling; seconds since the last call. True where the face has moved. */
-  update(seconds: number, emotion: Emotion, still: boolean): boolean {
+  /** Show a feeling, or sleep; seconds since the last call. True where the face has moved. */
+  update(seconds: number, emotion: Emotion, asleep: boolean, still: boolean): boolean {
     const wanted = this.#expressions[emotion] ?? [];
     const step = still ? 1 : Math.min(1, (3 * seconds) / CHANGE);
     let moved = false;
     this.#shares = this.#shares.map((share, unit) => {
-      const to = wanted[unit] ?? 0;
+      const to = asleep && unit === this.#lids ? 1 : (wanted[unit] ?? 0);
       const next = Math.abs(to - share) < 1e-3 ? to : share + step * (to - share);
       moved ||= next !== share;
       return next;

@@ -265,7 +265,10 @@ export class Film {
 
   #mood(): void {
     const emotion = this.keyframe === null ? "neutral" : (this.#story?.keyframes[this.keyframe]?.mood ?? "neutral");
-    if (this.#stage) this.#stage.emotion = emotion;
+    if (this.#stage) {
+      this.#stage.emotion = emotion;
+      this.#stage.asleep = this.keyframe !== null && (this.#story?.keyframes[this.keyframe]?.asleep ?? false);
+    }
     this.#stage?.setMood({ dark: isDark(), around: color("--stage"), ground: color("--stage-floor"), tint: color(`--${emotion}`) });
   }
 

@@ -32,6 +32,7 @@ export class Stage {
   readonly canvas: HTMLCanvasElement;
   /** What the face shows. */
   emotion: Emotion = "neutral";
+  asleep = false;
   /** Set to have the next picture drawn. */
   dirty = true;
   readonly #renderer = renderer();
@@ -174,7 +175,7 @@ export class Stage {
     if (this.#cutaway?.update(eye, this.#chest, pace)) this.dirty = true;
     if (this.#fading?.update(eye, this.#body, pace)) this.dirty = true;
     if (this.#lighting.drift(step)) this.dirty = true;
-    if (this.#face?.update(playing ? step : 0, this.emotion, this.cameraMan.calm || !playing)) this.dirty = true;
+    if (this.#face?.update(playing ? step : 0, this.emotion, this.asleep, this.cameraMan.calm || !playing)) this.dirty = true;
     if (!this.dirty) return;
     this.#draw();
     this.#watch(seconds);

@@ -194,6 +194,7 @@ class KeyframeShown(BaseModel):
     end: int | None = Field(description="Behind the last frame.")
     short_script_id: str | None = Field(description="Where it comes from; null for a connecting keyframe.")
     reached: bool | None
+    asleep: bool = Field(False, description="Whether the eyes are shut; known once it can be acted.")
 
 
 class BeatShown(Beat):

@@ -87,6 +87,7 @@ def _keyframes(made: Json, segments: list[Json]) -> list[Json]:
     rows = [row | {"start": None, "end": None, "reached": None, "segments": []} for row in made.get("keyframes", [])]
     for row, object_id in zip(rows, made.get("objects", []), strict=False):
         row["object_id"] = object_id
+        row["asleep"] = row["index"] in made.get("asleep", ())
     for segment in segments:
         rows[segment["keyframe"]] |= {
             name: segment[name] for name in ("start", "end", "reached", "segments") if name in segment

@@ -1,0 +1,50 @@
+"""What captions show: a table whose parts are of captions that there are, and deeds that are only stood for."""
+
+from __future__ import annotations
+
+from for_each import for_each
+
+from motion_backend.language.sentence_encoder import HashingEncoder
+from motion_backend.motion import Skill
+from planner_service.composition.caption_senses import SenseTable, shows
+from planner_service.composition.compose import compose
+from planner_service.scripts.acted_beats import planned_beats
+from planner_service.scripts.built_in_scripts import built_in
+from planner_service.scripts.captions import captions
+from planner_service.scripts.script_library import Features, ScriptLibrary
+from planner_service.themes.sentence_parser import clauses_of_text
+from scene_graphs.data_tables import read_table
+
+
+def test_every_part_of_the_table_is_part_of_a_caption_of_its_skill() -> None:
+    known: SenseTable = read_table("planner_service", "caption_senses.toml", SenseTable)
+    for sense in known.sense:
+        there = [caption.lower() for caption in captions()[sense.skill.value]]
+        assert all(any(part in caption for caption in there) for part in sense.captions), sense
+
+
+@for_each(
+    ("text", "skill", "caption", "shown"),
+    [
+        ("She reads a book.", Skill.SITDOWN, "reading, book held in both hands", True),
+        ("She waltzes.", Skill.LOCO, "run and spin", True),
+        ("She sits there listening.", Skill.SITDOWN, "sitting still", True),
+        ("She picks up the key.", Skill.TOUCH, "pick up with the right hand", True),
+        ("She picks up the child.", Skill.TOUCH, "pick up with the right hand", False),
+        ("She bakes a cake.", Skill.TOUCH, "touch medium height", False),
+        ("She conducts an orchestra.", Skill.LOCO, "run and spin", False),
+        ("She looks out.", Skill.LOCO, "stand still", False),
+    ],
+)
+def test_a_caption_shows_its_own_deed_and_stands_for_any_other(
+    text: str, skill: Skill, caption: str, shown: bool
+) -> None:
+    assert shows(skill, caption, clauses_of_text(text)[0]) == shown
+
+
+def test_what_is_stood_for_is_acted_and_named() -> None:
+    library = ScriptLibrary(built_in(), Features(HashingEncoder()))
+    found = planned_beats(compose("She bakes a cake and sleeps.", library))
+    assert [one.beat.stood_for for one in found.outcomes if one.acted] == [True, False]
+    assert found.lines()[0].startswith("2 of 2 beats of your theme are acted, 1 of them only by what stands for it;")
+    assert "not acted as such, something stands for it: bakes a cake" in found.lines()
