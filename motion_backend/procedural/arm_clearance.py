@@ -37,7 +37,7 @@ SEEN, OUT = 0.003, 0.005
 """An arm this deep in something goes out of it, and one that is no deeper than this after that is out (metres)."""
 LEAD: Final = 14
 """Frames before and after it in which an arm does."""
-STIFF: Final = np.array([0.05, 0.05, 0.05, 0.002])
+STIFF: Final = np.array([0.05, 0.05, 0.05, 0.0004])
 """What it costs a wrist to go a metre elsewhere (m²), and an elbow to swing by a radian, against a metre of depth."""
 SPREAD: Final = 4.0
 """Frames over which a detour grows."""

@@ -16,7 +16,7 @@ from motion_backend.inverse_kinematics import two_bone
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays
 from motion_backend.procedural.held_poses import UP, bend, shoulders, upright
-from motion_backend.procedural.pose import Pose, settle_from, smooth
+from motion_backend.procedural.pose import Pose, interpolate, settle_from, smooth
 from motion_backend.procedural.pose_solver import chest_frame, released
 from motion_backend.procedural.sit.sit_transition import knees_over_feet
 from motion_backend.procedural.touch.hand_actions import Way, deed
@@ -101,7 +101,9 @@ def touch(
     kneeling = tuple(replace(key, reach=above.reach, palms=above.palms) for key in down)
     lead = _looking_there(away, reached, row)
     looks = min(float(np.linalg.norm(lead.head - start.head)) / keys.reach.arriving.looks_rad, 1.0)
-    times = manner.hold, tempo, pace, row.kneeling_step_s, max(looks, 1 / FPS)
+    if raised:
+        kneeling = (_folded(lead, above, laid, row),)
+    times = manner.hold, tempo, pace, row.folding_s if raised else row.kneeling_step_s, max(looks, 1 / FPS)
     turns = turns_of_grip(reached, laid, skeleton, keys.held.rotate) if manner.doing == "rotate" else (0.0, 0.0)
     way = Way(away, lead, kneeling, hand, laid, *times, turns, partial(stepped, step=step, row=keys.reach.step))
     whole = deed(way, manner.doing, keys)
@@ -113,6 +115,16 @@ def _feet(laid: Laid, skeleton: Skeleton, keys: ReachTable) -> tuple[int, ...]:
     """The feet that may step up to the thing: down low not the one whose knee would be in the hand's way."""
     low = float(laid.wrist[1]) < keys.hand.low_m * skeleton.scale
     return (1 - laid.hands[0][0],) if low else (0, 1)
+
+
+def _folded(lead: Pose, above: Pose, laid: Laid, row: Approach) -> Pose:
+    """Half-way to a raised hand, which comes up before the body: a straight arm would swing into what is there."""
+    arms, elbows = arm_arrays(row.folded, row.folded)
+    half = interpolate([-1.0, 1.0], [lead, above], 1).at(0)
+    for index in (0, 1):
+        if index not in [one for one, *_ in laid.hands]:
+            arms[index], elbows[index] = half.arms[index], half.elbows[index]
+    return replace(half, arms=arms, elbows=elbows)
 
 
 def _looking_there(away: Pose, reached: Pose, row: Approach) -> Pose:

@@ -39,6 +39,9 @@ class Approach:
     settle_s: float
     kneeling_ratio: float
     """Who kneels down takes so much longer."""
+    folded: str
+    """The arm pose through which a hand is raised, and from which it comes down."""
+    folding_s: float
     kneeling_step_s: float
     """For each step of getting down on the knees."""
     deep_m: float
