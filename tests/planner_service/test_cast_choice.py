@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 from for_each import for_each
 
@@ -14,7 +16,7 @@ from planner_service.scripts.script import LongScript, Person, PlannedKeyframe
 from scene_graphs.errors import UserError
 
 
-def seen(theme: str, seed: int = 0, **given: str) -> Character:
+def seen(theme: str, seed: int = 0, **given: Any) -> Character:
     return cast_for(theme, named_as(theme, Character(**given)), seed)
 
 
@@ -147,6 +149,7 @@ def test_who_is_told_to_sleep_has_shut_eyes_also_in_a_script_of_ones_own() -> No
 @for_each("field", GIVEN)
 def test_every_word_that_may_be_given_has_a_look(field: str) -> None:
     for word in cast().known(field):
-        look = Look.of(Character(**{field: word}))
+        given: dict[str, Any] = {field: word}
+        look = Look.of(Character(**given))
         assert look.clothes.name == look.outfit
         assert look.proportions
