@@ -198,7 +198,8 @@ class KeyframeWriter:
         shown = captions or captions_of(skill, mood)
         if resting is not None and here and resting.skill is skill:
             generic = deed.row.rests or deed.row.captions
-            if self._plain or not generic or resting.caption in captions:
+            stands_in = not any(shows(skill, one, read.clause) for one in shown)
+            if self._plain or not generic or stands_in or resting.caption in captions:
                 if self._plain and generic:
                     self.keyframes[-1] = self._resting = resting.model_copy(
                         update={"caption": self._one_of(shown, mood, index, skill), "emotion": mood.value}

@@ -77,6 +77,12 @@ def own(script: LongScript) -> list[PlannedKeyframe]:
     return [keyframe for keyframe in script.keyframes if not connects(keyframe)]
 
 
+def test_nobody_gets_up_and_sits_down_again_for_what_that_would_not_show() -> None:
+    script = planned("He drinks tea on the sofa while looking at a photo.")
+    assert [keyframe.skill for keyframe in script.keyframes].count(Skill.SITDOWN) == 1
+    assert [beat.stood_for for beat in script.beats] == [False, True]
+
+
 @tries(80)
 @given(THEMES, st.integers(0, 3))
 def test_every_beat_is_shown_in_order_or_there_is_a_reason_and_a_body_can_act_it(theme: str, seed: int) -> None:
