@@ -142,7 +142,10 @@ class _Teller:
             return phrases
         if last.skill is Skill.TOUCH and before and before[-1].leads:
             last = replace(before[-1], keyframes=(*before.pop().keyframes, *last.keyframes), leads=False)
-        return [*before, replace(last, text=last.text.partition(",")[0], purpose=purpose, manner="")]
+        text = last.text.partition(",")[0]
+        if last.at and last.at in text:
+            purpose = re.sub(rf"\b{re.escape(last.at)}\b", "it", purpose)
+        return [*before, replace(last, text=text, purpose=purpose, manner="")]
 
     def _with_event(self, told: Predicate, phrases: list[Phrase]) -> list[Phrase]:
         """What happens and how the body does it; once, where a phrase says the same or was written for it."""
