@@ -11,7 +11,6 @@ import pytest
 from acted import SMALL, sat, walked
 from numba.core.registry import CPUDispatcher
 
-from motion_backend.body import skinning_kernel
 from motion_backend.formats.mp4 import write_mp4
 from motion_backend.motion import Motion, join
 from motion_backend.rendering import depth_buffer, film_kernel, surface_light
@@ -158,7 +157,7 @@ def test_what_set_up_compiles_is_what_films_and_pictures_are_drawn_with():
     next(iter(film_frames(acted().part(0, 20), shots(), SIZE)))
     kernels = [
         kernel
-        for module in (depth_buffer, film_kernel, surface_light, skinning_kernel)
+        for module in (depth_buffer, film_kernel, surface_light)
         for kernel in vars(module).values()
         if isinstance(kernel, CPUDispatcher)
     ]
