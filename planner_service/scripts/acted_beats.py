@@ -52,7 +52,7 @@ class Outcome:
 
     @property
     def acted(self) -> bool:
-        """Whether the film shows it."""
+        """Whether the film shows it, or something that stands for it (`Beat.stood_for`)."""
         return not self.why
 
     def to_dict(self) -> Json:
@@ -76,8 +76,13 @@ class ActedBeats:
 
     @property
     def acted(self) -> int:
-        """How many of those are acted."""
+        """How many of those are acted, be it by what only stands for them."""
         return sum(one.acted for one in self.outcomes)
+
+    @property
+    def stood_for(self) -> int:
+        """How many of the acted ones are so only by what stands for them."""
+        return sum(one.acted and one.beat.stood_for for one in self.outcomes)
 
     @property
     def missing(self) -> tuple[Outcome, ...]:
@@ -95,10 +100,9 @@ class ActedBeats:
             return []
         share = f"{self.spare_share:.0%} of the screen time serves none of them"
         acted = [one.beat for one in self.outcomes if one.acted]
-        stood = sum(beat.stood_for for beat in acted)
-        in_part = f", {stood} of them only by what stands for it" if stood else ""
+        more = f", something stands for {self.stood_for} more" if self.stood_for else ""
         return [
-            f"{self.acted} of {self.asked} beats of your theme are acted{in_part}; {share}",
+            f"{self.acted - self.stood_for} of {self.asked} beats of your theme are acted{more}; {share}",
             *(f"not acted: {one.beat.text} ({one.why})" for one in self.missing),
             *(f"not acted as such, something stands for it: {beat.text}" for beat in acted if beat.stood_for),
             *(
@@ -114,7 +118,8 @@ class ActedBeats:
         return {
             "beats": [one.to_dict() for one in self.outcomes],
             "beats_asked": self.asked,
-            "beats_acted": self.acted,
+            "beats_acted": self.acted - self.stood_for,
+            "beats_stood_for": self.stood_for,
             "screen_time_without_beat": round(self.spare_share, 4) if self.outcomes else None,
         }
 

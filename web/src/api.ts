@@ -60,6 +60,8 @@ export interface Beat {
   readonly acted: boolean;
   /** Why it is not acted. */
   readonly why: string;
+  /** What of it no keyframe shows; its whole text where something only stands for it. */
+  readonly unshown: readonly string[];
 }
 
 export interface FoundScript {

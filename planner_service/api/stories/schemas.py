@@ -200,7 +200,7 @@ class KeyframeShown(BaseModel):
 class BeatShown(Beat):
     """One thing that the theme says, and what became of it; as planned while nothing has been moved."""
 
-    acted: bool = Field(description="Whether keyframes show it.")
+    acted: bool = Field(description="Whether keyframes show it, or only stand for it: then `unshown` has its text.")
 
 
 class ShortScriptChosen(BaseModel):

@@ -46,5 +46,5 @@ def test_what_is_stood_for_is_acted_and_named() -> None:
     library = ScriptLibrary(built_in(), Features(HashingEncoder()))
     found = planned_beats(compose("She bakes a cake and sleeps.", library))
     assert [one.beat.stood_for for one in found.outcomes if one.acted] == [True, False]
-    assert found.lines()[0].startswith("2 of 2 beats of your theme are acted, 1 of them only by what stands for it;")
+    assert found.lines()[0].startswith("1 of 2 beats of your theme are acted, something stands for 1 more;")
     assert "not acted as such, something stands for it: bakes a cake" in found.lines()
