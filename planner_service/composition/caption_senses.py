@@ -7,7 +7,7 @@ from functools import cache
 from typing import Final
 
 from motion_backend.motion import Skill
-from planner_service.composition.deed_lexicon import Deed, object_of, readings, says
+from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_table, object_of, readings, says
 from planner_service.scripts.script import Keyframe
 from planner_service.themes.protagonist import is_person
 from planner_service.themes.sentence_parser import Clause
@@ -53,7 +53,20 @@ def shows(skill: Skill, caption: str, clause: Clause) -> bool:
 
 
 def is_shown(clause: Clause, deed: Deed, keyframes: Iterable[Keyframe]) -> bool:
-    """Whether some keyframe shows a clause's deed; a posture that its saying is, shows itself."""
-    if deed.foreseen and not deed.row.captions and deed.skill in _POSTURES:
+    """Whether some keyframe shows a clause's deed: by what its caption is, or as the table of deeds shows it.
+
+    Fair viewers take a hand at the stove for baking, and whoever sits with the deed's own caption for doing it; not a
+    walk for whatever is done on one's feet, nor a hand for what is done to people.
+    """
+    if deed.skill in _POSTURES and not deed.row.captions:
         return True
-    return any(shows(one.skill, one.caption, clause) for one in keyframes)
+    return any(shows(one.skill, one.caption, clause) or _is_own(one, clause, deed.row) for one in keyframes)
+
+
+def _is_own(keyframe: Keyframe, clause: Clause, row: DeedRow) -> bool:
+    """Whether a keyframe at rest, or of a hand, is the one that the table has for a deed."""
+    if row.stands or row not in deed_table().deed:
+        return False
+    if keyframe.skill is Skill.TOUCH:
+        return row.skill is Skill.TOUCH and not is_person(object_of(clause))
+    return keyframe.skill in _POSTURES and keyframe.caption in (*row.captions, *row.seated, *row.lying)

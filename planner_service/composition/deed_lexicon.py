@@ -67,6 +67,8 @@ class DeedRow:
     rests: bool = False
     things: bool = False
     mood: str = ""
+    stands: bool = False
+    """Whether its captions only stand for it."""
     why: str = ""
     """Why a body at home does not do it."""
 
@@ -245,15 +247,22 @@ def said_row(clause: Clause) -> DeedRow | None:
 
 def _said(clause: Clause) -> tuple[int, DeedRow] | None:
     """The same, with how many words its saying has."""
-    ways, starts = deed_table().ways, list(readings(clause))
-    for anchored in (True, False):  # patterns that begin with a gap fit any verb, where no other does
-        for lemmas in starts:
-            fitting = [(pattern, row) for pattern, row in ways.get("".join(lemmas[:1]) if anchored else "", ())
-                       if _fits(pattern, lemmas)]  # fmt: skip
-            if fitting:
-                pattern, row = max(fitting, key=lambda one: sum(map(bool, one[0])))
-                return sum(map(bool, pattern)), row
+    ways = deed_table().ways
+    for lemmas in readings(clause):
+        fitting = [
+            (_words_in(pattern), row)
+            for first in ("".join(lemmas[:1]), "")
+            for pattern, row in ways.get(first, ())
+            if _fits(pattern, lemmas)
+        ]
+        if fitting:
+            return max(fitting, key=lambda one: one[0])
     return None
+
+
+def _words_in(pattern: Pattern) -> int:
+    """How many words a pattern has, its gaps and its end aside."""
+    return sum(bool(word) and word != _END for word in pattern)
 
 
 def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
