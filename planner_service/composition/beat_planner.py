@@ -15,12 +15,13 @@ import numpy as np
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.caption_senses import is_shown
 from planner_service.composition.deed_lexicon import Deed, deed_of, unshown
-from planner_service.composition.keyframe_writer import UNSHOWN, KeyframeWriter, Part
+from planner_service.composition.keyframe_writer import TOUCHES, UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
+from planner_service.composition.mood_captions import captions_of
 from planner_service.composition.request import RULES, Record, Request
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts.acted_beats import connects
-from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe, Retrieved, ShortScript
+from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe, Retrieved, ShortScript
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import repair
 from planner_service.scripts.script_search import rank
@@ -185,7 +186,7 @@ class PartFinder:
 def _part(script: ShortScript, read: ReadBeat, deed: Deed) -> tuple[PlannedKeyframe, ...]:
     """The walk and the keyframe of a script that do a deed in a mood; empty where none does."""
     for place, keyframe in enumerate(script.keyframes):
-        if agrees(keyframe.skill, keyframe.caption, keyframe.piece[0], deed) and keyframe.mood is read.beat.emotion:
+        if keyframe.mood is read.beat.emotion and agrees(keyframe, deed):
             walk = script.keyframes[place - 1] if place else None
             leads = walk is not None and walk.skill is Skill.LOCO and walk.furniture == keyframe.furniture
             taken = [walk, keyframe] if walk is not None and leads else [keyframe]
@@ -193,16 +194,14 @@ def _part(script: ShortScript, read: ReadBeat, deed: Deed) -> tuple[PlannedKeyfr
     return ()
 
 
-def agrees(skill: Skill, caption: str, piece: str, deed: Deed) -> bool:
-    """Whether a script's keyframe does a deed, with the caption that shows it, where the deed may be done."""
-    if skill is not deed.skill or not (deed.pieces or deed.row.captions):
+def agrees(keyframe: Keyframe, deed: Deed) -> bool:
+    """Whether a script's keyframe does a deed, with a caption that shows it and nothing else, where it may be done."""
+    if keyframe.skill is not deed.skill or not (deed.pieces or deed.row.captions):
         return False
-    kinds = furniture.categories_of(piece)
+    kinds = furniture.categories_of(keyframe.piece[0])
     there = any(not kinds.isdisjoint(furniture.categories_of(one)) for one in deed.pieces[:3] if one != "floor")
-    shown = _captions_of(deed)
-    if skill is Skill.TOUCH and not shown and not caption.startswith("touch medium"):
-        return False
-    return (caption in shown if shown else True) and (there or not deed.pieces)
+    shown = _captions_of(deed) or (TOUCHES if deed.skill is Skill.TOUCH else captions_of(deed.skill, keyframe.mood))
+    return keyframe.caption in shown and (there or not deed.pieces)
 
 
 def _captions_of(deed: Deed) -> tuple[str, ...]:

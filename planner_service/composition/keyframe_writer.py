@@ -44,11 +44,12 @@ NOT_ACTED: Final = {
 """Why beats of these kinds are not acted."""
 SPOKEN_OF: Final = "it is only spoken of"
 UNSHOWN: Final = "none of the captions shows it"
-_TOUCHES: Final = (
+TOUCHES: Final = (
     "touch medium height with the right hand",
     "touch medium height",
     "touch medium height with the left hand",
 )
+"""Captions of a hand that is laid on something, whatever it does there."""
 _ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
 _TAKEN: Final = DeedRow(
     ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
@@ -168,7 +169,7 @@ class KeyframeWriter:
             case Skill.LOCO:
                 self._walk(index, read, deed, mood)
             case Skill.TOUCH:
-                if self._add(index, read, deed, mood, Skill.TOUCH, deed.row.captions or _TOUCHES):
+                if self._add(index, read, deed, mood, Skill.TOUCH, deed.row.captions or TOUCHES):
                     self._resting = None
             case Skill.SITDOWN if self._lies() and deed.row.lying and not deed.named:
                 self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)

@@ -11,6 +11,7 @@ from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.story_words import story_words
 from planner_service.narration.tense import bases, form_of, in_past, says_how
 from planner_service.scripts.script import Beat
+from planner_service.themes.beats import EXPRESSIONS
 from planner_service.themes.lexicon import is_adjective, is_noun, past
 
 WAS: Final = "\ue000"
@@ -99,7 +100,8 @@ def _head(words: Sequence[str], feeling: bool) -> tuple[str, Sequence[str], bool
     if first in _helpers():
         goes_on = _helpers()[first] == WAS and form_of(after) == "ing" and not feeling
         return _head(rest, feeling) if goes_on else (_helpers()[first], rest, False)
-    plain = form_of(first) not in ("present", "ing", "past") or is_adjective(first)  # "laughed" says what is done
+    does = form_of(first) in ("present", "ing") or not EXPRESSIONS.keys().isdisjoint(bases(first))
+    plain = not does or is_adjective(first)  # "laughed" says what is done, "exhausted" how one is
     adjective = plain and says_how(first) and after not in ("down", "up", "out")
     if feeling and (adjective or (first in ("in", "at") and rest)):
         return WAS, words, False

@@ -47,7 +47,7 @@ EXPRESSIONS: Final = {
         Emotion.HAPPY: "laugh smile grin giggle chuckle beam sing hum whistle rejoice whoop",
         Emotion.ANGRY: "yell scream curse growl scowl snarl shout rant grumble hate detest resent despise",
         Emotion.SAD: "sigh frown sniffle",
-        Emotion.STRESSED: "tremble shake sweat panic flinch shudder gasp dread fear worry",
+        Emotion.STRESSED: "tremble sweat panic flinch shudder gasp dread fear worry",
         Emotion.TIRED: "yawn",
         Emotion.DRUNK: "hiccup",
     }.items()
@@ -138,7 +138,7 @@ def _read(clause: Clause, hero: str, pronoun: str) -> ReadBeat:
         emotion, sure = (named, True) if of_subject else (emotion, sure)
     if not sure and not who and (shown := EXPRESSIONS.get(clause.verb)):
         emotion, sure = shown, True
-    if (kind == "other" or (kind == "undone" and not clause.unable)) and not sure:
+    if kind == "other" or (kind == "undone" and not clause.unable and not sure):
         emotion = None
     beat = Beat(text=_bounded(text), emotion=emotion or Emotion.NEUTRAL, kind=kind, who=_bounded(who, 80))
     return ReadBeat(beat, clause, sure, emotion, next(iter(rooms_in(text)), None))

@@ -51,8 +51,9 @@ def cast_by(theme: str, character: Character) -> Character:
     if (character.name, character.pronouns) != (default.name, default.pronouns):
         return character
     name = name_in(theme) or _name_of_hero(theme)
-    told = called(clauses_of_text(theme), name) if name else ""
-    told = told or ("" if name else pronouns_of(f"the {head_of(hero_of(clauses_of_text(theme)))}"))
+    clauses = clauses_of_text(theme)
+    hero = hero_of(clauses)
+    told = called(clauses, hero if name in hero else name) if name else pronouns_of(f"the {head_of(hero)}")
     pronouns = _pronouns_of_names().get(name.lower()) or told or _pronouns_in(theme, bool(name)) or default.pronouns
     return replace(character, name=name or default.name, pronouns=pronouns)
 
@@ -130,7 +131,9 @@ def hero_of(clauses: Sequence[Clause]) -> str:
         return max(nouns, key=lambda one: _heroic(one, pronoun) + min(deeds[one.subject], 4) / 8).subject
     opening = ("a ", "an ", "one ", "my ", "our ", "the ")
     called = not people and " " not in "".join(mains[:1]) and "".join(mains[:1])[:1].isupper()  # "Rose", "Wen"
-    living = [one for one in mains[:1] if (called or one.lower().startswith(opening)) and _may_live(one)]
+    sooner = [(one.sentence, one.place) < first for one in told if one.joint in _MAIN_JOINTS][:1] == [True]
+    living = [one for one in mains[:1] if sooner and (called or one.lower().startswith(opening)) and _may_live(one)]
+    people.sort(key=lambda one: (one.sentence, one.place))
     return next(iter([*living, *(one.subject for one in people)]), "")
 
 

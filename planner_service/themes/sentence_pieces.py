@@ -8,9 +8,11 @@ from typing import Final
 
 from planner_service.themes.asides import THAT
 from planner_service.themes.lexicon import grammar, is_adjective, verb_of
-from planner_service.themes.verb_finder import Token, plain, tokens_of, verb_place
+from planner_service.themes.verb_finder import Token, is_adverb, plain, tokens_of, verb_place
 
 HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
+_PLAIN_SUBJECTS: Final = frozenset(("i", "you", "we", "they"))
+"""What does things in verbs' base forms."""
 _LATER_JOINTS: Final = frozenset(("before", "until", "while"))
 _NO_JOINTS: Final = {"once": ("at", "for", "more", "all"), "while": ("a", "long", "little", "short")}
 """What joining words stand after where they join nothing: "at once", "for a while"."""
@@ -23,6 +25,10 @@ class Piece:
     joint: str
     tokens: tuple[Token, ...]
     source: str = field(repr=False)
+    bare: bool = False
+    """Whether its first word is a verb in its base form, as the one before has it: "you wake up, | stretch"."""
+    verbless: bool = False
+    """Whether what looks like its verb says how somebody is: "Bored stiff, | the nurse tries"."""
 
     @property
     def text(self) -> str:
@@ -84,10 +90,10 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
         opens = bool(rest) and (rest[0].low in grammar().marks or rest[0].text[:1].isupper())
         is_subject = bool(rest) and rest[0].low in grammar().subjects
         return is_subject or (opens and verb_place(rest[:5]) not in (None, 0))
-    if low in ("after", "before", "until", "without", "instead"):
-        return bool(rest) and (
-            _starts_gerund(rest) or rest[0].low in grammar().subjects or (low != "instead" and _clause_follows(rest))
-        )
+    if low in grammar().with_gerund:
+        return bool(rest) and _starts_gerund(rest)
+    if low in ("after", "before", "until"):
+        return bool(rest) and (_starts_gerund(rest) or rest[0].low in grammar().subjects or _clause_follows(rest))
     return True
 
 
@@ -127,15 +133,33 @@ def _whole(pieces: list[Piece]) -> list[Piece]:
             piece = replace(piece, joint=joint, tokens=(*waiting.tokens, *mark, *piece.tokens))
             waiting = None
         beside = bool(whole) and len(piece.tokens) == 1 and _goes_beside(piece)  # "answers, pacing"
-        acts = beside or verb_place(piece.tokens) is not None
+        piece = replace(piece, bare=bool(whole) and waiting is None and not led and _is_bare(whole[-1], piece))
+        opens = not whole and place + 1 < len(pieces) and _describes_next(piece, pieces[place + 1])
+        piece = replace(piece, verbless=opens)
+        acts = beside or piece.bare or verb_place(piece.tokens) is not None
         if acts:
             whole.append(piece)
-        elif whole and not (led or _leads(whole[-1], piece, pieces[place + 1 :])):
+        elif whole and not (led or all(is_adverb(one.low) for one in piece.tokens)
+                            or _leads(whole[-1], piece, pieces[place + 1 :])):  # fmt: skip
             mark = _comma(whole[-1]) if piece.tokens[0].low in grammar().prepositions else ()
             whole[-1] = replace(whole[-1], tokens=(*whole[-1].tokens, *mark, *piece.tokens))
         else:
             waiting = piece
     return [*whole, waiting] if waiting is not None else whole
+
+
+def _is_bare(before: Piece, piece: Piece) -> bool:
+    """Whether a piece begins with a second verb in its base form: "they eat on the floor | and fall asleep"."""
+    at, first = verb_place(before.tokens), piece.tokens[0].low
+    plain = before.bare or (bool(at) and before.tokens[at - 1].low in _PLAIN_SUBJECTS)
+    same = plain and at is not None and verb_of(before.tokens[at].low) == before.tokens[at].low
+    return same and piece.joint in (",", "and", "then") and verb_of(first) == first and not is_adverb(first)
+
+
+def _describes_next(piece: Piece, after: Piece) -> bool:
+    """Whether a piece tells how somebody is who is named only after it: "Bored stiff, the nurse tries"."""
+    first, verb = piece.tokens[0].low, verb_place(after.tokens)
+    return first.endswith("ed") and verb_place(piece.tokens) == 0 and after.joint == "," and bool(verb)
 
 
 def _comma(piece: Piece) -> tuple[Token, ...]:
