@@ -49,7 +49,8 @@ _NOT_NOW: Final = frozenset(("before", "after", "until", "since", "during", "wit
 """Words before what is not done, or not yet."""
 _LIGHT_VERBS: Final = ("do", "have", "take", "play")
 """Verbs that a noun alone stands for: "dinner", "a nap", "yoga"."""
-_IT: Final = frozenset(("it", "there", "one", "them"))
+_IT: Final = frozenset(("it", "there", "one", "them", "backrest", "armrest"))
+"""What may mean a piece of furniture, or a thing, that was named before."""
 Pattern = tuple[frozenset[str], ...]
 """Base forms of each word; an empty set is a gap."""
 
@@ -149,7 +150,7 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     seated = any(affords(piece, "sit") or piece in deed_table().seats_at for piece in named) and not any(
         affords(piece, "lie") for piece in named
     )
-    if skill is Skill.LIEDOWN and seated and not _FLOOR.search(clause.text):
+    if skill is Skill.LIEDOWN and seated and not (_FLOOR.search(clause.text) or _UNDER.search(clause.text)):
         skill, need = Skill.SITDOWN, "sit"  # "collapses into the armchair"
     if need is None:
         pieces = [piece for piece in named if furniture.affordances(piece)]
@@ -236,7 +237,15 @@ def row_of(clause: Clause, about: str) -> DeedRow | None:
     """The row that a clause's words say, else by its things."""
     if clause.verb and re.search(r"^\w+ \w+sel(?:f|ves)\b", clause.text) and (row := _moved(clause)):
         return row
-    return said_row(clause) or _by_things(clause, about)
+    return said_row(_spelt_out(clause, about)) or _by_things(clause, about)
+
+
+def _spelt_out(clause: Clause, about: str) -> Clause:
+    """A clause with what "it" and "them" mean: of trainers "ties them" is ties the trainers."""
+    meant = next((word for word in reversed(_lemmas(about)) if word in things()), "")
+    if not meant or not {"it", "them"} & set(clause.lemmas[1:]) or said_row(clause):
+        return clause
+    return replace(clause, lemmas=tuple(meant if word in ("it", "them") else word for word in clause.lemmas))
 
 
 def said_row(clause: Clause) -> DeedRow | None:

@@ -31,6 +31,8 @@ from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import ReadBeat
+from planner_service.themes.details import details_of
+from planner_service.themes.lexicon import lemma_of
 from planner_service.themes.protagonist import names_somebody
 from planner_service.themes.sentence_parser import Clause
 from scene_graphs import furniture
@@ -50,11 +52,16 @@ TOUCHES: Final = (
     "touch medium height with the left hand",
 )
 """Captions of a hand that is laid on something, whatever it does there."""
+_AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside", "below"))
+"""Words before another place."""
+_MOST_PLACES: Final = 3
 _ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
 _TAKEN: Final = DeedRow(
     ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
 )
 """What is eaten or drunk on one's feet is taken from where it is."""
+_TELLING: Final = frozenset("lean cross wrap hip pocket tiptoe spin pace fold stretch hide".split())
+"""Words of captions that tell it from others, where a clause has them."""
 _STANDING: Final = DeedRow(("stand",), Skill.LOCO, captions=("stand still",))
 
 
@@ -169,8 +176,9 @@ class KeyframeWriter:
             case Skill.LOCO:
                 self._walk(index, read, deed, mood)
             case Skill.TOUCH:
-                if self._add(index, read, deed, mood, Skill.TOUCH, deed.row.captions or TOUCHES):
-                    self._resting = None
+                for piece in (deed, *_further(read.clause, deed)):
+                    if self._add(index, read, piece, mood, Skill.TOUCH, deed.row.captions or TOUCHES):
+                        self._resting = None
             case Skill.SITDOWN if self._lies() and deed.row.lying and not deed.named:
                 self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)
             case _:
@@ -180,12 +188,11 @@ class KeyframeWriter:
     def _goes_on(self, read: ReadBeat, deed: Deed) -> bool:
         """Whether it is done where one rests, and shows no more: "sits in the dark, listening"; nobody gets up for what
         would only stand for it."""
-        beside = read.clause.joint in ("ing", ",") and read.clause.text.split()[0].endswith("ing")
         stands_in = bool(deed.row.captions) and not any(
             shows(Skill.LOCO, one, read.clause) for one in deed.row.captions
         )
         rests = self._resting is not None and not deed.named and not deed.row.seated
-        return rests and (stands_in or (beside and deed.row.captions == _STANDING.captions))
+        return rests and (stands_in or (_is_beside(read) and deed.row.captions == _STANDING.captions))
 
     def _lies(self) -> bool:
         return self._resting is not None and self._resting.skill is Skill.LIEDOWN
@@ -199,7 +206,9 @@ class KeyframeWriter:
         shown = captions or captions_of(skill, mood)
         if resting is not None and here and resting.skill is skill:
             generic = deed.row.rests or deed.row.captions
-            stands_in = not any(shows(skill, one, read.clause) for one in shown)
+            stands_in = (deed.row.stands or _is_beside(read)) and not any(
+                shows(skill, one, read.clause) for one in shown
+            )
             if self._plain or not generic or stands_in or resting.caption in captions:
                 if self._plain and generic:
                     self.keyframes[-1] = self._resting = resting.model_copy(
@@ -282,6 +291,9 @@ class KeyframeWriter:
     ) -> bool:
         """A keyframe at furniture: of a script where one does the same, else written; False where there is none."""
         part = self.part_of(index) if mood is read.beat.emotion else None
+        at = self.keyframes[-1].furniture if self.keyframes else "floor"
+        if part is not None and at in deed.pieces and at != part.keyframes[-1].furniture:
+            part = None  # nobody goes elsewhere for what is done where one is
         same = part is not None and part.keyframes[-1].skill is skill
         if (
             part is not None
@@ -380,6 +392,20 @@ class KeyframeWriter:
 
     def _one_of(self, captions: Sequence[str], mood: Emotion, index: int, skill: Skill) -> str:
         """One caption by the seed, of those that the library uses in the mood if there are some."""
+        words = self._clause.lemmas if self._clause is not None else ()
+        named = [one for one in captions if len(_TELLING.intersection(words, map(lemma_of, one.split()))) > 0]
         told = [one for one in captions if self._clause is not None and shows(skill, one, self._clause)]
-        options = fitting(told or captions, skill, mood)
+        options = fitting(named or told or captions, skill, mood)
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
+
+
+def _further(clause: Clause, deed: Deed) -> list[Deed]:
+    """The same deed where else it is done: "looks under the bed, | behind the sofa"."""
+    places = (where(text) for text in details_of(clause)[:_MOST_PLACES] if deed.named and text.split()[0] in _AT)
+    found = [piece for some in places for piece in some[:1] if affords(piece, "touch") and piece != deed.pieces[0]]
+    return [Deed(deed.row, deed.skill, (piece,), True) for piece in dict.fromkeys(found)]
+
+
+def _is_beside(read: ReadBeat) -> bool:
+    """Whether it is done while something else is: "sits in the dark, | listening"."""
+    return read.clause.joint in ("ing", ",", "while") and read.clause.text.split()[0].endswith("ing")
