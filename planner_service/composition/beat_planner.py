@@ -12,10 +12,10 @@ from typing import Final
 
 import numpy as np
 
-from motion_backend.motion import Emotion, Skill
+from motion_backend.motion import Skill
 from planner_service.composition.caption_senses import is_shown
 from planner_service.composition.deed_lexicon import Deed, deed_of, unshown
-from planner_service.composition.keyframe_writer import TOUCHES, UNSHOWN, KeyframeWriter, Part
+from planner_service.composition.keyframe_writer import EXPRESSED, TOUCHES, UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
 from planner_service.composition.mood_captions import captions_of
 from planner_service.composition.request import RULES, Record, Request
@@ -31,8 +31,6 @@ from scene_graphs.furniture import canonical_room
 
 _OFFERED: Final = 6
 """Short scripts that are looked at for a beat."""
-_EXPRESSED: Final = (Emotion.HAPPY, Emotion.ANGRY, Emotion.SAD)
-"""Moods whose laughing, shouting and sighing a body's bearing shows; it does not sweat or yawn."""
 _MIN_SCORE: Final = 0.3
 """How well a short script must answer a beat for a part of it to be taken."""
 
@@ -131,7 +129,7 @@ def _besides(
 ) -> tuple[str, ...]:
     """What an acted beat tells and no keyframe shows: all of it, where its keyframes only stand for it."""
     if index in writer.moody:
-        seen = read.clause.verb not in EXPRESSIONS or read.beat.emotion in _EXPRESSED
+        seen = read.clause.verb not in EXPRESSIONS or read.beat.emotion in EXPRESSED
         return () if read.sure and seen else (read.text,)
     deed = writer.deeds.get(index)
     own = [one for one in keyframes if index in (one.beat, *one.also)]
@@ -199,7 +197,8 @@ def agrees(keyframe: Keyframe, deed: Deed) -> bool:
     if keyframe.skill is not deed.skill or not (deed.pieces or deed.row.captions):
         return False
     kinds = furniture.categories_of(keyframe.piece[0])
-    there = any(not kinds.isdisjoint(furniture.categories_of(one)) for one in deed.pieces[:3] if one != "floor")
+    there = any(not kinds.isdisjoint(furniture.categories_of(one)) for one in deed.pieces[: 1 if deed.named else 3]
+                if one != "floor")
     shown = _captions_of(deed) or (TOUCHES if deed.skill is Skill.TOUCH else captions_of(deed.skill, keyframe.mood))
     return keyframe.caption in shown and (there or not deed.pieces)
 

@@ -49,8 +49,7 @@ _NOT_NOW: Final = frozenset(("before", "after", "until", "since", "during", "wit
 """Words before what is not done, or not yet."""
 _LIGHT_VERBS: Final = ("do", "have", "take", "play")
 """Verbs that a noun alone stands for: "dinner", "a nap", "yoga"."""
-_IT: Final = frozenset(("it", "there", "one", "them", "backrest", "armrest"))
-"""What may mean a piece of furniture, or a thing, that was named before."""
+_IT: Final = frozenset(("it", "there", "one", "them"))
 Pattern = tuple[frozenset[str], ...]
 """Base forms of each word; an empty set is a gap."""
 

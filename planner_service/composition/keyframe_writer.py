@@ -30,7 +30,7 @@ from planner_service.composition.mood_captions import captions_of, fitting, walk
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
 from planner_service.scripts.script_words import NEEDS, affords
-from planner_service.themes.beats import ReadBeat
+from planner_service.themes.beats import EXPRESSIONS, ReadBeat
 from planner_service.themes.details import details_of
 from planner_service.themes.lexicon import lemma_of
 from planner_service.themes.protagonist import names_somebody
@@ -52,6 +52,8 @@ TOUCHES: Final = (
     "touch medium height with the left hand",
 )
 """Captions of a hand that is laid on something, whatever it does there."""
+EXPRESSED: Final = (Emotion.HAPPY, Emotion.ANGRY, Emotion.SAD)
+"""Moods whose laughing, shouting and sighing a body's bearing shows; it does not sweat or yawn."""
 _AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside", "below"))
 """Words before another place."""
 _MOST_PLACES: Final = 3
@@ -282,6 +284,8 @@ class KeyframeWriter:
             caption = self._one_of(captions_of(last.skill, mood), mood, index, last.skill)
             self.keyframes[-1] = self._resting = last.model_copy(update={"caption": caption, "emotion": mood.value})
             self._show(index)
+        elif beats[index].clause.verb in EXPRESSIONS and mood not in EXPRESSED:
+            self.why[index] = UNSHOWN
         else:
             self._put(index, Skill.LOCO, mood, walk_of(mood), "floor", beats[index].room)
             self._resting = None

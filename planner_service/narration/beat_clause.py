@@ -97,6 +97,8 @@ def _head(words: Sequence[str], feeling: bool) -> tuple[str, Sequence[str], bool
         return WAS, words, False
     if first == "to" and rest:
         return _head(rest, feeling)
+    if first in ("had", "having") and form_of(after) in ("past", "participle"):
+        return _head(rest, feeling)  # what had been done is told where it is acted
     if first in _helpers():
         goes_on = _helpers()[first] == WAS and form_of(after) == "ing" and not feeling
         return _head(rest, feeling) if goes_on else (_helpers()[first], rest, False)

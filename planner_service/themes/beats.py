@@ -138,7 +138,8 @@ def _read(clause: Clause, hero: str, pronoun: str) -> ReadBeat:
         emotion, sure = (named, True) if of_subject else (emotion, sure)
     if not sure and not who and (shown := EXPRESSIONS.get(clause.verb)):
         emotion, sure = shown, True
-    if kind == "other" or (kind == "undone" and not clause.unable and not sure):
+    theirs = who and clause.subject.lower() != "it"
+    if theirs or (not sure and kind == "undone" and not clause.unable):
         emotion = None
     beat = Beat(text=_bounded(text), emotion=emotion or Emotion.NEUTRAL, kind=kind, who=_bounded(who, 80))
     return ReadBeat(beat, clause, sure, emotion, next(iter(rooms_in(text)), None))
@@ -176,7 +177,8 @@ def is_feeling(clause: Clause) -> bool:
     """Whether a clause says nothing but how somebody feels: "becomes very sad"; or is words without a verb."""
     words = theme_words()
     if not clause.verb:  # "a cold kitchen" hints at a mood and is none
-        return any(feeling.sure for feeling in feelings(clause.text))
+        says_how = clause.text.split()[0].endswith("ed")  # "Bored stiff, …"
+        return any(feeling.sure or says_how for feeling in feelings(clause.text))
     if not words["posed"].isdisjoint(clause.lemmas):
         return False
     rest = [word for word in clause.lemmas[1:] if word not in words["state_words"]]
