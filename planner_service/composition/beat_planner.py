@@ -130,7 +130,7 @@ def _besides(
     """What an acted beat tells and no keyframe shows: all of it, where its keyframes only stand for it."""
     if index in writer.moody:
         seen = read.clause.verb not in EXPRESSIONS or read.beat.emotion in EXPRESSED
-        return () if read.sure and seen else (read.text,)
+        return () if (read.sure or read.beat.kind == "feeling") and seen else (read.text,)
     deed = writer.deeds.get(index)
     own = [one for one in keyframes if index in (one.beat, *one.also)]
     own = [one for one in own if not connects(one)] or own

@@ -34,6 +34,7 @@ _WAYS: Final = re.compile(
 )
 """A way through a home, whatever the verb that goes it."""
 _FLOOR: Final = re.compile(r"(?<!feet )(?<!foot )\b(?:on|onto|to) the (?:\w+ )?(?:floor|ground|rug|carpet)\b")
+_ON_TOP: Final = re.compile(r"\bon (?:the|a|his|her|their) (?:\w+ )?(?:table|desk|counter)")
 _UNDER: Final = re.compile(r"\b(?:under|beneath|underneath|behind|beside|next to)\b")
 _AT: Final = re.compile(r"\b(?:at|by|near|beside|before|behind|in front of|next to)\b")
 _INTO: Final = re.compile(
@@ -47,7 +48,7 @@ _MAX_FRAGMENT: Final = 4
 """Words of a sentence without a verb that may stand for a deed."""
 _NOT_NOW: Final = frozenset(("before", "after", "until", "since", "during", "without", "no", "not", "never", "nothing"))
 """Words before what is not done, or not yet."""
-_LIGHT_VERBS: Final = ("do", "have", "take", "play")
+_LIGHT_VERBS: Final = ("do", "have", "take", "play", "watch")
 """Verbs that a noun alone stands for: "dinner", "a nap", "yoga"."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
 Pattern = tuple[frozenset[str], ...]
@@ -155,9 +156,7 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
         pieces = [piece for piece in named if furniture.affordances(piece)]
         return Deed(found, skill, tuple(pieces), bool(pieces))
     fitting = [piece for piece in named if affords(piece, need)]
-    if skill is Skill.SITDOWN and not re.search(
-        r"\bon (?:the|a|his|her|their) (?:\w+ )?(?:table|desk|counter)", clause.text
-    ):
+    if skill is Skill.SITDOWN and not (found.skill is skill and _ON_TOP.search(clause.text)):
         seats = [seat for piece in named for seat in deed_table().seats_at.get(piece, ())]
         fitting = seats or fitting
     under = need == "lie" and bool(named) and not fitting and bool(_UNDER.search(clause.text))
@@ -339,7 +338,8 @@ def standing_at(clause: Clause) -> tuple[str, ...]:
 
 def names_things(clause: Clause) -> bool:
     """Whether a clause names furniture or things, which "it" may mean later."""
-    return bool(pieces_in(clause.text)) or any(word in things() for word in clause.lemmas)
+    words = (*clause.lemmas, *_lemmas(clause.subject))
+    return bool(pieces_in(clause.text)) or any(word in things() for word in words)
 
 
 def _fits(pattern: Pattern, lemmas: Sequence[str]) -> bool:

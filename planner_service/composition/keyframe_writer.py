@@ -57,6 +57,8 @@ EXPRESSED: Final = (Emotion.HAPPY, Emotion.ANGRY, Emotion.SAD)
 _AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside", "below"))
 """Words before another place."""
 _MOST_PLACES: Final = 3
+_AGAIN_VERBS: Final = ("start", "begin")
+_AGAIN: Final = frozenset(("again", "over", "afresh", "anew"))
 _ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
 _TAKEN: Final = DeedRow(
     ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
@@ -108,7 +110,7 @@ class KeyframeWriter:
         """Keyframes for the beat at a place; it is shown by one, by another beat's in its mood, or is in `why`."""
         read = beats[index]
         beat = read.beat
-        deed = deed_of(read.clause, self._about) if beat.kind == "deed" else None
+        deed = self._deed(read.clause) if beat.kind == "deed" else None
         self._about = read.text if names_things(read.clause) else self._about
         if beat.kind in NOT_ACTED:
             self.why[index] = SPOKEN_OF if read.clause.aside else NOT_ACTED[beat.kind]
@@ -121,6 +123,13 @@ class KeyframeWriter:
             self._feel(index, beats)
         else:
             self.why[index] = UNSHOWN
+
+    def _deed(self, clause: Clause) -> Deed | None:
+        """What a clause does; who starts again does what was done at rest last, else first."""
+        if clause.verb in _AGAIN_VERBS and not _AGAIN.isdisjoint(clause.lemmas) and self.deeds:
+            done = list(self.deeds.values())
+            return next((deed for deed in reversed(done) if deed.row.rests), done[0])
+        return deed_of(clause, self._about)
 
     def take(self, index: int, keyframes: Sequence[Keyframe], why: str, part: Part | None) -> None:
         """Keyframes that somebody else planned for a beat, of a short script where they are of one."""

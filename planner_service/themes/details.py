@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Final
 
+from planner_service.themes.asides import MANNER
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, verb_of
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.verb_finder import Token, tokens_of
@@ -29,7 +30,14 @@ def details_of(clause: Clause) -> tuple[str, ...]:
         return ()
     starts = [at for at in range(verb + _FEWEST, len(tokens)) if _starts(tokens, at)]
     found = [_words(clause.text, tokens[start:end]) for start, end in pairwise([*starts, len(tokens)])]
-    return tuple(text for text in found if len(text.split()) > 1)
+    return tuple(text for text in found if len(text.split()) > 1 and not _tells_when(text))
+
+
+def _tells_when(text: str) -> bool:
+    """Whether words only tell when, how long or how often: "for an hour", "every morning"."""
+    known = grammar()
+    small = known.prepositions | known.marks | known.numbers | known.times | known.adverbs | MANNER | {"so"}
+    return all(token.low in small or lemma_of(token.low) in small for token in tokens_of(text))
 
 
 def core_of(text: str, details: Sequence[str]) -> str:

@@ -158,8 +158,9 @@ def _is_bare(before: Piece, piece: Piece) -> bool:
 
 def _describes_next(piece: Piece, after: Piece) -> bool:
     """Whether a piece tells how somebody is who is named only after it: "Bored stiff, the nurse tries"."""
-    first, verb = piece.tokens[0].low, verb_place(after.tokens)
-    return first.endswith("ed") and verb_place(piece.tokens) == 0 and after.joint == "," and bool(verb)
+    verb, own = verb_place(after.tokens), verb_place(piece.tokens)
+    says_how = own is not None and all(is_adverb(one.low) for one in piece.tokens[:own])
+    return says_how and piece.tokens[own or 0].low.endswith("ed") and after.joint == "," and bool(verb)
 
 
 def _comma(piece: Piece) -> tuple[Token, ...]:

@@ -73,6 +73,7 @@ def plain(text: str) -> str:
     for long, short in _LONG:
         text = re.sub(rf"(?i)\b{long}\b", short, text)
     text = re.sub(r"(?i)\b(I|he|she|they|we)'d((?: (?:never|always|often|rather|not))* (\w+))", _would, text)
+    text = re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s been\b", r"\1 has been", text)
     return re.sub(
         r"\b(I|[Hh]e|[Ss]he|[Tt]hey|[Ww]e)'d\b", r"\1 had", re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s\b", r"\1 is", text)
     )
