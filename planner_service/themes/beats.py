@@ -12,7 +12,7 @@ from motion_backend.motion import Emotion
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
 from planner_service.themes.lexicon import is_known_word
-from planner_service.themes.protagonist import called, head_of, hero_of, is_hero
+from planner_service.themes.protagonist import called, head_of, hero_of, is_hero, is_person
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import tokens_of
@@ -138,7 +138,7 @@ def _read(clause: Clause, hero: str, pronoun: str) -> ReadBeat:
         emotion, sure = (named, True) if of_subject else (emotion, sure)
     if not sure and not who and (shown := EXPRESSIONS.get(clause.verb)):
         emotion, sure = shown, True
-    theirs = who and clause.subject.lower() != "it"
+    theirs = is_person(who)  # of what becomes of a dog, or an exam, the story's person feels something
     if theirs or (not sure and kind == "undone" and not clause.unable):
         emotion = None
     beat = Beat(text=_bounded(text), emotion=emotion or Emotion.NEUTRAL, kind=kind, who=_bounded(who, 80))
@@ -182,10 +182,9 @@ def is_feeling(clause: Clause) -> bool:
     if not words["posed"].isdisjoint(clause.lemmas):
         return False
     rest = [word for word in clause.lemmas[1:] if word not in words["state_words"]]
-    own = (
-        f"{clause.subject} " if head_of(clause.subject).lower() in words["body"] else ""
-    )  # "her heart is in her mouth"
-    return clause.verb in words["state_verbs"] and bool(feelings(own + clause.text)) and len(rest) <= 4
+    if head_of(clause.subject).lower() in words["body"]:  # "her heart is in her mouth"
+        return bool(feelings(f"{clause.subject} {clause.text}"))
+    return clause.verb in words["state_verbs"] and bool(feelings(clause.text)) and len(rest) <= 4
 
 
 def _refuse_foreign(text: str) -> None:

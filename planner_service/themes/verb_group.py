@@ -88,7 +88,7 @@ def _denying_step(words: Sequence[Token], group: VerbGroup, low: str, base: str,
         step = 3 if len(near) > 2 and near[2] == "to" else 2
     elif ahead in ("to", "from") and base in grammar().refusals | (_wishes(words[:at]) if ahead == "to" else set()):
         step = 2
-    elif base == "stop" and ahead.endswith("ing") and group.denied:  # who cannot stop doing it does it
+    elif base in ("stop", "help") and ahead.endswith("ing") and group.denied:  # who cannot stop doing it does it
         group.denied = group.unable = False
         return 1
     elif ahead.endswith("ing") and base in grammar().refusals | {"consider", "imagine", "stop"}:
