@@ -277,6 +277,8 @@ def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
     if clause.verb in theme_words()["speech_verbs"] and len(clause.lemmas) > 1:  # "says into the phone"
         yield ("talk", *clause.lemmas[1:])
     yield ("cannot", *clause.lemmas) if clause.unable else clause.lemmas
+    if not grammar().adverbs.isdisjoint(clause.lemmas):  # "is still on hold"
+        yield tuple(lemma for lemma in clause.lemmas if lemma not in grammar().adverbs)
     words = {token.low for token in tokens_of(clause.text)}
     for place, lemma in enumerate(clause.lemmas[1:], 1):
         if gerund(lemma) in words and lemma not in ("be",):

@@ -197,7 +197,8 @@ def is_person(subject: str) -> bool:
         return True
     if any(is_name(word) for word in words) and words[0].lower() not in ("the", "a", "an"):
         return True
-    if len(head) > 4 and head.endswith(("er", "or")):  # a "baker" is one who bakes
+    made = is_known(head) or lemma_of(head) in things()
+    if len(head) > 4 and head.endswith(("er", "or")) and not made:  # a "baker" is one who bakes
         stem = head.lower()[:-2]
         return any(kinds_of(verb) and is_third_person(verb) for verb in (f"{stem}s", f"{stem}es"))
     return len(head) > 5 and head.lower().endswith(("ist", "ian", "man", "woman", "person", "ress"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 from planner_service.themes.lexicon import (
@@ -40,7 +41,7 @@ _SEVERAL: Final = frozenset(("couple", "family", "pair", "people", "police", "te
 _SEEMS: Final = frozenset(("feels", "felt", "seems", "looks", "gets", "becomes"))
 """Verbs after which an adjective stands, besides the forms of be."""
 _PARTICLES: Final = frozenset(("up", "down", "out", "off", "away", "back"))
-_NOMINATIVES: Final = frozenset(("he", "she", "they", "i", "we"))
+_ARTICLES: Final = frozenset(("the", "a", "an"))
 _OBJECTS: Final = frozenset(("him", "them", "me", "himself", "herself", "back", "home", "and"))
 
 
@@ -178,8 +179,10 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
         return False
     if is_adjective(word) and before in grammar().be | _SEEMS:
         return False
-    if tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word):
-        return False  # "under the sofa cushions"
+    small = grammar().marks | grammar().prepositions
+    named = any(one.low in _ARTICLES and last.low not in small for last, one in pairwise(tokens[1 : at + 1]))
+    if tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word) and not named:
+        return False  # "under the sofa cushions", but "as quiet as a cat the burglar climbs in"
     if word == base:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
         ends = not after or after in grammar().prepositions | {",", "and"}

@@ -81,7 +81,7 @@ def _denying_step(words: Sequence[Token], group: VerbGroup, low: str, base: str,
     elif low == "able" and ahead == "to":
         group.unable |= group.denied
         return 2
-    elif low in ("unable", "about", "afraid", "too") and "to" in near:
+    elif low in ("unable", "about", "afraid", "too", "supposed", "meant") and "to" in near:
         group.unable |= low == "unable"
         step = near.index("to") + 1
     elif base in ("decide", "try", "choose", "prefer", "promise") and ahead == "not":
@@ -119,7 +119,7 @@ def _is_deed(word: str) -> bool:
 def _hinders(words: Sequence[Token], at: int) -> bool:
     """Whether "to be" only tells whether the deed after it can be done: "is not able to sleep"."""
     ahead = [token.low for token in words[at + 1 : at + 4] if token.low not in grammar().adverbs | grammar().denials]
-    leads = ahead[:1] in (["able"], ["unable"], ["about"], ["afraid"])
+    leads = ahead[:1] in (["able"], ["unable"], ["about"], ["afraid"], ["supposed"], ["meant"])
     return words[at].low in grammar().be and leads and "to" in ahead
 
 
