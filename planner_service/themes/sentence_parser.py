@@ -299,7 +299,7 @@ def _subject(tokens: Sequence[Token]) -> str:
     if named < last and parts[last][0].low in ARTICLES:  # "Mira, the tidy one, …"
         return parts[named][0].text
     words = [token.text for part in parts[last:] for token in part]
-    while words and (words[-1].lower() in grammar().adverbs or words[-1].lower().endswith("ly")):
+    while words and (words[-1].lower() in grammar().adverbs or (words[-1].islower() and words[-1].endswith("ly"))):
         words.pop()
     if words and words[-1].lower() in grammar().subjects:
         return words[-1]
