@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from motion_backend.motion import Skill
+from motion_backend.motion import Emotion, Skill
 from planner_service.composition.caption_senses import is_shown
 from planner_service.composition.deed_lexicon import Deed, deed_of, unshown
 from planner_service.composition.keyframe_writer import EXPRESSED, TOUCHES, UNSHOWN, KeyframeWriter, Part
@@ -31,6 +31,8 @@ from scene_graphs.furniture import canonical_room
 
 _OFFERED: Final = 6
 """Short scripts that are looked at for a beat."""
+_LIKELY: Final = 3
+"""Pieces of furniture where a deed is done most."""
 _MIN_SCORE: Final = 0.3
 """How well a short script must answer a beat for a part of it to be taken."""
 
@@ -145,50 +147,46 @@ class PartFinder:
 
     library: ScriptLibrary
     rooms: Sequence[str] = ()
-    _used: set[str] = field(default_factory=set)
+    _used: set[int] = field(default_factory=set)
 
     def all_of(self, read: Sequence[ReadBeat]) -> dict[int, Part]:
         """For each beat the part of the nearest script in which deed, mood, room and furniture agree, if any does."""
-        deeds = {
-            index: deed
-            for index, one in enumerate(read)
-            if one.beat.kind == "deed" and (deed := deed_of(one.clause)) is not None and self._may_do(deed, one)
-        }  # sentences are encoded only of what some script may do
-        if not deeds:
+        able = {index: parts for index, one in enumerate(read) if (parts := self._parts(one))}
+        if not able:
             return {}
-        scores = rank([read[index].text for index in deeds], self.library)
+        scores = rank([read[index].text for index in able], self.library)  # of what some script does alone
         found = {}
-        for row, (index, deed) in zip(scores, deeds.items(), strict=True):
-            for place in np.argsort(-row, kind="stable")[:_OFFERED]:
-                script = self.library.scripts[int(place)]
-                able = row[place] >= _MIN_SCORE and script.id not in self._used and self._plays(script, read[index])
-                if able and (keyframes := _part(script, read[index], deed)):
-                    found[index] = Part(script, float(row[place]), keyframes)
-                    self._used.add(script.id)
+        for row, (index, parts) in zip(scores, able.items(), strict=True):
+            for place in map(int, np.argsort(-row, kind="stable")[:_OFFERED]):
+                if place in parts and row[place] >= _MIN_SCORE and place not in self._used:
+                    taken = tuple(PlannedKeyframe.model_validate(one.model_dump()) for one in parts[place])
+                    found[index] = Part(self.library.scripts[place], float(row[place]), taken)
+                    self._used.add(place)
                     break
         return found
 
-    def _may_do(self, deed: Deed, read: ReadBeat) -> bool:
-        """Whether some script in a beat's mood has a caption of its deed; a walk alone is no part of one."""
-        if deed.skill is Skill.LOCO or not (deed.pieces or deed.row.captions):
-            return False
-        shown = _captions_of(deed)
-        return not shown or any((read.beat.emotion, deed.skill, one) in self.library.captions for one in shown)
+    def _parts(self, read: ReadBeat) -> dict[int, Sequence[Keyframe]]:
+        """The keyframes that do a beat's deed in its mood, by the places of the scripts that play where it may."""
+        deed = deed_of(read.clause) if read.beat.kind == "deed" else None
+        if deed is None or deed.skill is Skill.LOCO:  # a walk alone is no part of a script
+            return {}
+        shown = [(read.beat.emotion, deed.skill, one) for one in _captions_of(deed, read.beat.emotion)]
+        rooms = (read.room,) if read.room else tuple(map(canonical_room, self.rooms))
+        scripts = {place: self.library.scripts[place] for key in shown for place in self.library.captions.get(key, ())}
+        return {
+            place: part
+            for place, script in scripts.items()
+            if (not rooms or script.room in rooms) and (part := _part(script, read.beat.emotion, deed))
+        }
 
-    def _plays(self, script: ShortScript, read: ReadBeat) -> bool:
-        """Whether a script plays in the beat's mood, and where it may."""
-        allowed = (read.room,) if read.room else tuple(map(canonical_room, self.rooms))
-        return script.emotion is read.beat.emotion and (not allowed or script.room in allowed)
 
-
-def _part(script: ShortScript, read: ReadBeat, deed: Deed) -> tuple[PlannedKeyframe, ...]:
+def _part(script: ShortScript, mood: Emotion, deed: Deed) -> Sequence[Keyframe]:
     """The walk and the keyframe of a script that do a deed in a mood; empty where none does."""
     for place, keyframe in enumerate(script.keyframes):
-        if keyframe.mood is read.beat.emotion and agrees(keyframe, deed):
-            walk = script.keyframes[place - 1] if place else None
-            leads = walk is not None and walk.skill is Skill.LOCO and walk.furniture == keyframe.furniture
-            taken = [walk, keyframe] if walk is not None and leads else [keyframe]
-            return tuple(PlannedKeyframe.model_validate(one.model_dump()) for one in taken)
+        if keyframe.mood is mood and agrees(keyframe, deed):
+            walk = script.keyframes[place - 1] if place else keyframe
+            leads = walk.skill is Skill.LOCO and walk.furniture == keyframe.furniture
+            return (walk, keyframe) if leads else (keyframe,)
     return ()
 
 
@@ -197,11 +195,12 @@ def agrees(keyframe: Keyframe, deed: Deed) -> bool:
     if keyframe.skill is not deed.skill or not (deed.pieces or deed.row.captions):
         return False
     kinds = furniture.categories_of(keyframe.piece[0])
-    there = any(not kinds.isdisjoint(furniture.categories_of(one)) for one in deed.pieces[: 1 if deed.named else 3]
-                if one != "floor")
-    shown = _captions_of(deed) or (TOUCHES if deed.skill is Skill.TOUCH else captions_of(deed.skill, keyframe.mood))
-    return keyframe.caption in shown and (there or not deed.pieces)
+    pieces = [one for one in deed.pieces[: 1 if deed.named else _LIKELY] if one != "floor"]
+    there = any(not kinds.isdisjoint(furniture.categories_of(one)) for one in pieces)
+    return keyframe.caption in _captions_of(deed, keyframe.mood) and (there or not deed.pieces)
 
 
-def _captions_of(deed: Deed) -> tuple[str, ...]:
-    return deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
+def _captions_of(deed: Deed, mood: Emotion) -> Sequence[str]:
+    """The captions that show a deed, else those of its skill that show nothing but a mood."""
+    own = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
+    return own or (TOUCHES if deed.skill is Skill.TOUCH else captions_of(deed.skill, mood))

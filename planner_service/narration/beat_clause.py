@@ -73,20 +73,14 @@ def purpose(beat: Beat, hero: str, voice: Voice) -> str:
 
 
 def _own_clause(text: str) -> list[str]:
-    """Words up to a clause with a subject of its own, and without what joins them to those before."""
+    """Words without what joins them to those before."""
     words = re.sub(
         r"^(?:(?![\"“\ue001])\W|(?:and|but|then|so(?=,| (?:he|she|they|i)\b))\b)+",
         "",
         text.strip(),
         flags=re.IGNORECASE,
     ).split()
-    words = [word[:1].lower() + word[1:] if not at else word for at, word in enumerate(words)]
-    for at, word in enumerate(words[1:], start=1):
-        later = [_bare(one) for one in words[at + 1 :]]
-        finite = (form_of(one) in ("present", "past") or one in _of("subjects") or one in _helpers() for one in later)
-        if word.lower() in _of("cut") and any(finite):
-            return words[:at]
-    return words
+    return [word[:1].lower() + word[1:] if not at else word for at, word in enumerate(words)]
 
 
 def _head(words: Sequence[str], feeling: bool) -> tuple[str, Sequence[str], bool] | None:

@@ -29,8 +29,6 @@ class StoryWords:
     """Verbs for how somebody is, apart by spaces; so the next."""
     alone: str
     """Verbs that can stand alone after "and"."""
-    cut: str
-    """Words that begin a clause of its own, which is not told."""
     adverbs: str
     """Words before a verb that belong to it."""
     subjects: str
