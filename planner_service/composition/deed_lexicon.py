@@ -68,6 +68,8 @@ class DeedRow:
     rests: bool = False
     things: bool = False
     mood: str = ""
+    standing: bool = False
+    """Whether who is on their feet already does it standing."""
     stands: bool = False
     """Whether its captions only stand for it."""
     why: str = ""
@@ -255,10 +257,11 @@ def said_row(clause: Clause) -> DeedRow | None:
 def _said(clause: Clause) -> tuple[int, DeedRow] | None:
     """The same, with how many words its saying has."""
     ways = deed_table().ways
+    does = bool(clause.verb) or clause.text.split(" ", 1)[0].endswith("ing")  # "pacing", but not "wrapped in a blanket"
     for lemmas in readings(clause):
         fitting = [
             (_words_in(pattern), row)
-            for first in ("".join(lemmas[:1]), "")
+            for first in ("".join(lemmas[:1]) if does else "", "")
             for pattern, row in ways.get(first, ())
             if _fits(pattern, lemmas)
         ]

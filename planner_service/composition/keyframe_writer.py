@@ -57,8 +57,8 @@ EXPRESSED: Final = (Emotion.HAPPY, Emotion.ANGRY, Emotion.SAD)
 _AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside", "below"))
 """Words before another place."""
 _MOST_PLACES: Final = 3
-_AGAIN_VERBS: Final = ("start", "begin")
-_AGAIN: Final = frozenset(("again", "over", "afresh", "anew"))
+_AGAIN_VERBS: Final = ("start", "begin", "try")
+_AGAIN: Final = frozenset(("again", "over", "afresh", "anew", "more"))
 _ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
 _TAKEN: Final = DeedRow(
     ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
@@ -170,11 +170,14 @@ class KeyframeWriter:
 
     def _do(self, index: int, read: ReadBeat, deed: Deed) -> None:
         mood = read.beat.emotion
+        same_sentence = self._clause is not None and self._clause.sentence == read.clause.sentence
         self._clause = read.clause
         if deed.row.rests and _ON_FEET.search(read.text) and (stands := standing_at(read.clause)):
             deed = Deed(_TAKEN, Skill.TOUCH, stands, True)
         elif deed.row.rests and (deed.skill in self._avoided or _ON_FEET.search(read.text)):
             deed = Deed(_STANDING, Skill.LOCO, deed.pieces if deed.named else (), deed.named)
+        elif deed.row.standing and not (deed.named or read.clause.verb == "sit") and self._resting is None and same_sentence:
+            deed = Deed(_STANDING, Skill.LOCO, (), False)
         if deed.row.mood and mood is Emotion.NEUTRAL:
             mood = Emotion(deed.row.mood)
         match deed.skill:
@@ -406,7 +409,7 @@ class KeyframeWriter:
     def _one_of(self, captions: Sequence[str], mood: Emotion, index: int, skill: Skill) -> str:
         """One caption by the seed, of those that the library uses in the mood if there are some."""
         words = self._clause.lemmas if self._clause is not None else ()
-        named = [one for one in captions if len(_TELLING.intersection(words, map(lemma_of, one.split()))) > 0]
+        named = [one for one in captions if not _TELLING.isdisjoint({*words} & {*map(lemma_of, one.split())})]
         told = [one for one in captions if self._clause is not None and shows(skill, one, self._clause)]
         options = fitting(named or told or captions, skill, mood)
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]

@@ -56,7 +56,8 @@ def _starts(tokens: Sequence[Token], at: int) -> bool:
     if low == "to" and verb_of(after) == after and not is_noun(after):
         return True  # "opens the door | to greet her guests"
     beside = low.endswith("ing") and bool(verb_of(low)) and not is_noun(low) and is_noun(before.low)
-    linked = before.low in _LINKS and low in grammar().prepositions
+    pair = at > 1 and tokens[at - 2].low in grammar().prepositions  # "up and down the hall"
+    linked = before.low in _LINKS and low in grammar().prepositions and not pair
     beside = beside and not is_adjective(before.low) and before.low not in grammar().prepositions
     return linked or low in _LEADS or beside
 

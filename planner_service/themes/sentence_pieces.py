@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from planner_service.themes.asides import THAT
-from planner_service.themes.lexicon import grammar, is_adjective, verb_of
+from planner_service.themes.lexicon import grammar, is_adjective, past, verb_of
 from planner_service.themes.verb_finder import Token, is_adverb, plain, tokens_of, verb_place
 
 HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
@@ -134,7 +134,7 @@ def _whole(pieces: list[Piece]) -> list[Piece]:
             waiting = None
         beside = bool(whole) and len(piece.tokens) == 1 and _goes_beside(piece)  # "answers, pacing"
         piece = replace(piece, bare=bool(whole) and waiting is None and not led and _is_bare(whole[-1], piece))
-        opens = not whole and place + 1 < len(pieces) and _describes_next(piece, pieces[place + 1])
+        opens = not whole and _describes_next(piece, pieces[place + 1 :])
         piece = replace(piece, verbless=opens)
         acts = beside or piece.bare or verb_place(piece.tokens) is not None
         if acts:
@@ -149,18 +149,22 @@ def _whole(pieces: list[Piece]) -> list[Piece]:
 
 
 def _is_bare(before: Piece, piece: Piece) -> bool:
-    """Whether a piece begins with a second verb in its base form: "they eat on the floor | and fall asleep"."""
-    at, first = verb_place(before.tokens), piece.tokens[0].low
-    plain = before.bare or (bool(at) and before.tokens[at - 1].low in _PLAIN_SUBJECTS)
-    same = plain and at is not None and verb_of(before.tokens[at].low) == before.tokens[at].low
-    return same and piece.joint in (",", "and", "then") and verb_of(first) == first and not is_adverb(first)
+    """Whether a piece begins with a second verb, in the form of the first: "they eat on the floor | and fall asleep",
+    "she watched a film, | ordered sushi"."""
+    at, first = 0 if before.bare else verb_place(before.tokens), piece.tokens[0].low
+    if at is None or piece.joint not in (",", "and", "then") or is_adverb(first) or not verb_of(first):
+        return False
+    verb = before.tokens[at].low
+    plain = before.bare or (at > 0 and before.tokens[at - 1].low in _PLAIN_SUBJECTS)
+    both_plain = plain and verb_of(verb) == verb and verb_of(first) == first
+    return both_plain or (len(piece.tokens) > 1 and all(past(verb_of(one)) == one for one in (verb, first)))
 
 
-def _describes_next(piece: Piece, after: Piece) -> bool:
+def _describes_next(piece: Piece, after: Sequence[Piece]) -> bool:
     """Whether a piece tells how somebody is who is named only after it: "Bored stiff, the nurse tries"."""
-    verb, own = verb_place(after.tokens), verb_place(piece.tokens)
+    own, places = verb_place(piece.tokens), (verb_place(one.tokens) for one in after if one.joint == ",")
     says_how = own is not None and all(is_adverb(one.low) for one in piece.tokens[:own])
-    return says_how and piece.tokens[own or 0].low.endswith("ed") and after.joint == "," and bool(verb)
+    return says_how and piece.tokens[own or 0].low.endswith("ed") and any(places)
 
 
 def _comma(piece: Piece) -> tuple[Token, ...]:
