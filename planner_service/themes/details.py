@@ -26,7 +26,9 @@ def details_of(clause: Clause) -> tuple[str, ...]:
     """Stretches of a clause after its deed, in its words: "draws out a chair | for a lady, | thirty years gone"."""
     tokens = [token for token in tokens_of(clause.text) if token.text[:1].isalnum() or token.text in _MARKS]
     verb = next((at for at, token in enumerate(tokens) if lemma_of(token.text) == clause.verb), None)
-    if not clause.verb or verb is None or clause.quotes:
+    if not clause.verb:  # "Nothing but boredom, | a long grey Sunday"
+        return tuple(filter(None, map(str.strip, clause.text.split(",")[1:])))
+    if verb is None or clause.quotes:
         return ()
     starts = [at for at in range(verb + _FEWEST, len(tokens)) if _starts(tokens, at)]
     found = [_words(clause.text, tokens[start:end]) for start, end in pairwise([*starts, len(tokens)])]
