@@ -36,7 +36,6 @@ _WAYS: Final = re.compile(
 _FLOOR: Final = re.compile(r"(?<!feet )(?<!foot )\b(?:on|onto|to) the (?:\w+ )?(?:floor|ground|rug|carpet)\b")
 _ON_TOP: Final = re.compile(r"\bon (?:the|a|his|her|their) (?:\w+ )?(?:table|desk|counter)")
 _UNDER: Final = re.compile(r"\b(?:under|beneath|underneath|behind|beside|next to)\b")
-_AT: Final = re.compile(r"\b(?:at|by|near|beside|before|behind|in front of|next to)\b")
 _INTO: Final = re.compile(
     r"^\w+ (?:(?:him|her|my|them)sel\w+ |down |back |up )*(into|onto|out of|from|off) "
     r"(?:the|his|her|their|my|an?) ((?:\w+ ?)+)"
@@ -126,11 +125,6 @@ class Deed:
     """Furniture where it may be done, the likeliest first; empty: wherever one is."""
     named: bool
     """Whether the beat itself names the furniture."""
-
-    @property
-    def foreseen(self) -> bool:
-        """Whether the table has it: anything else was guessed by its things or its way."""
-        return self.row in deed_table().deed or bool(self.row.skill in NEEDS and self.skill is not Skill.TOUCH)
 
 
 def deed_of(clause: Clause, about: str = "") -> Deed | None:
@@ -290,8 +284,6 @@ def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
 
 def _by_things(clause: Clause, about: str) -> DeedRow | None:
     """What is done with things by a verb nobody foresaw: a hand is laid on them; or a way is gone."""
-    if clause.verb in ("be", "end", "stand", "stay", "appear") and _AT.search(clause.text) and _named(clause, about):
-        return DeedRow((clause.verb,), Skill.LOCO)
     if clause.verb in _EXPRESSED:
         return None
     if clause.verb and (row := _moved(clause)):
@@ -334,11 +326,6 @@ def where(text: str) -> tuple[str, ...]:
     """Furniture that words name, else where the first thing is that they name."""
     places = things()
     return tuple(pieces_in(text)) or next((places[word] for word in _lemmas(text) if word in places), ())
-
-
-def standing_at(clause: Clause) -> tuple[str, ...]:
-    """Where one stands who eats or drinks on one's feet; empty where nothing tells."""
-    return tuple(piece for piece in where(clause.text) if affords(piece, "touch"))
 
 
 def names_things(clause: Clause) -> bool:

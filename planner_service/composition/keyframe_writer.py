@@ -23,7 +23,6 @@ from planner_service.composition.deed_lexicon import (
     deed_table,
     names_things,
     room_of,
-    standing_at,
     where,
 )
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
@@ -32,7 +31,6 @@ from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScrip
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
 from planner_service.themes.details import details_of
-from planner_service.themes.lexicon import lemma_of
 from planner_service.themes.protagonist import names_somebody
 from planner_service.themes.sentence_parser import Clause
 from scene_graphs import furniture
@@ -64,8 +62,6 @@ _TAKEN: Final = DeedRow(
     ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
 )
 """What is eaten or drunk on one's feet is taken from where it is."""
-_TELLING: Final = frozenset("lean cross wrap hip pocket tiptoe spin pace fold stretch hide".split())
-"""Words of captions that tell it from others, where a clause has them."""
 _STANDING: Final = DeedRow(("stand",), Skill.LOCO, captions=("stand still",))
 
 
@@ -169,15 +165,9 @@ class KeyframeWriter:
                 self._avoided |= {deed.skill} & {Skill.SITDOWN, Skill.LIEDOWN}
 
     def _do(self, index: int, read: ReadBeat, deed: Deed) -> None:
+        deed = self._on_feet(read, deed)
         mood = read.beat.emotion
-        same_sentence = self._clause is not None and self._clause.sentence == read.clause.sentence
         self._clause = read.clause
-        if deed.row.rests and _ON_FEET.search(read.text) and (stands := standing_at(read.clause)):
-            deed = Deed(_TAKEN, Skill.TOUCH, stands, True)
-        elif deed.row.rests and (deed.skill in self._avoided or _ON_FEET.search(read.text)):
-            deed = Deed(_STANDING, Skill.LOCO, deed.pieces if deed.named else (), deed.named)
-        elif deed.row.standing and not (deed.named or read.clause.verb == "sit") and self._resting is None and same_sentence:
-            deed = Deed(_STANDING, Skill.LOCO, (), False)
         if deed.row.mood and mood is Emotion.NEUTRAL:
             mood = Emotion(deed.row.mood)
         match deed.skill:
@@ -198,6 +188,19 @@ class KeyframeWriter:
             case _:
                 shown = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
                 self._rest(index, read, deed, mood, deed.skill, shown)
+
+    def _on_feet(self, read: ReadBeat, deed: Deed) -> Deed:
+        """What is done at rest, where it is done standing: as is said, or as one is while nothing is said."""
+        at = tuple(piece for piece in where(read.text) if affords(piece, "touch"))
+        stands, last = bool(_ON_FEET.search(read.text)), self._clause
+        goes_on = self._resting is None and last is not None and last.sentence == read.clause.sentence
+        if deed.row.rests and stands and at:
+            return Deed(_TAKEN, Skill.TOUCH, at, True)
+        if deed.row.rests and (stands or deed.skill in self._avoided):
+            return Deed(_STANDING, Skill.LOCO, deed.pieces if deed.named else (), deed.named)
+        if deed.row.standing and goes_on and not (deed.named or read.clause.verb == "sit"):
+            return Deed(_STANDING, Skill.LOCO, (), False)
+        return deed
 
     def _goes_on(self, read: ReadBeat, deed: Deed) -> bool:
         """Whether it is done where one rests, and shows no more: "sits in the dark, listening"; nobody gets up for what
@@ -408,10 +411,8 @@ class KeyframeWriter:
 
     def _one_of(self, captions: Sequence[str], mood: Emotion, index: int, skill: Skill) -> str:
         """One caption by the seed, of those that the library uses in the mood if there are some."""
-        words = self._clause.lemmas if self._clause is not None else ()
-        named = [one for one in captions if not _TELLING.isdisjoint({*words} & {*map(lemma_of, one.split())})]
         told = [one for one in captions if self._clause is not None and shows(skill, one, self._clause)]
-        options = fitting(named or told or captions, skill, mood)
+        options = fitting(told or captions, skill, mood)
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
 
 

@@ -217,8 +217,6 @@ def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
     was about."""
     if not subject or subject.lower() == hero.lower():
         return True
-    if subject.lower() == "one" and _is_plural(hero):  # of several people the one is played who does something
-        return True
     low, main = subject.split()[-1].lower(), hero.split()[-1].lower() if hero else ""
     if main == "i" and low in _SUBJECTS - {"who"}:
         return low == pronoun
@@ -227,8 +225,6 @@ def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
     if low in _SUBJECTS:
         return low in ("they", "who") or (pronoun or pronouns_of(hero)) in ("", low)
     if head_of(subject).lower() in theme_words()["body"]:
-        return True
-    if hero and head_of(subject).lower() == head_of(hero).lower():
         return True
     if not is_person(subject):
         return False

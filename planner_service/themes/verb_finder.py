@@ -38,8 +38,6 @@ _SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|h
 
 
 _SEVERAL: Final = frozenset(("couple", "family", "pair", "people", "police", "team"))
-_SEEMS: Final = frozenset(("feels", "felt", "seems", "looks", "gets", "becomes"))
-"""Verbs after which an adjective stands, besides the forms of be."""
 _PARTICLES: Final = frozenset(("up", "down", "out", "off", "away", "back"))
 _ARTICLES: Final = frozenset(("the", "a", "an"))
 _OBJECTS: Final = frozenset(("him", "them", "me", "himself", "herself", "back", "home", "and"))
@@ -98,7 +96,6 @@ def verb_place(tokens: Sequence[Token]) -> int | None:
 def next_verb(tokens: Sequence[Token], before: int) -> int | None:
     """Where the next finite verb stands after one that stands at `before`, and after what that helps."""
     known = grammar()
-    objects: list[int] = []
     no_verb_after = known.auxiliaries | known.denials | known.marks | known.prepositions | known.numbers
     for place in range(before + 1, len(tokens)):
         low, last = tokens[place].low, tokens[place - 1].low
@@ -107,15 +104,8 @@ def next_verb(tokens: Sequence[Token], before: int) -> int | None:
             bool(base) and (is_third_person(low) or (low == past(base) and _acts(tokens, place)))
         )
         if finite and not (last in no_verb_after or (is_adverb(last) and place == before + 2)):
-            if place > before + 1 or not is_noun(low):
-                return place
-            objects.append(place)  # "who loves books | reads", but "whose dog died | cries"
-    return next(iter(objects), None)
-
-
-def has_verb(text: str) -> bool:
-    """Whether some word of the text acts as a verb."""
-    return verb_place(tokens_of(plain(text))) is not None
+            return place
+    return None
 
 
 def is_plural(word: str) -> bool:
@@ -148,8 +138,6 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
         return True
     if before == "to":
         return word == base and base not in grammar().not_verbs_after_to
-    if before in grammar().numbers and at and tokens[at - 1].low == "of":
-        return is_third_person(word)  # "a boy of six hides"
     if before in grammar().marks | grammar().numbers:
         return False
     if word.endswith("ing"):
@@ -176,8 +164,6 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
     word, before = tokens[place].low, tokens[at].low
     after = tokens[place + 1].low if place + 1 < len(tokens) else ""
     if is_adjective(before) and not is_noun(before) and is_noun(word):
-        return False
-    if is_adjective(word) and before in grammar().be | _SEEMS:
         return False
     small = grammar().marks | grammar().prepositions
     named = any(one.low in _ARTICLES and last.low not in small for last, one in pairwise(tokens[1 : at + 1]))
