@@ -340,6 +340,7 @@ def _swing_of(
         swings_out=np.radians(shape.swings_out_deg) * style.character.of_side("toes_swing", "ratio", side),
         # The first heel rises from the first frame on, not before.
         rise=min(HEEL_RISE, max(beat.window[0] - float(phase[0]), foot_table().way.rise_min_phase)),
+        scale=skeleton.scale,
     )
 
 

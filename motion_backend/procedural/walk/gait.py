@@ -243,10 +243,19 @@ def walk_on(
     pose = settle_from(start, pose, fps) if stride is None else _taken_up(start, pose, stride, fps)
     if cut_m is None:
         return pose, None
-    last = route.reaches(cut_m)
+    reached = route.reaches(cut_m)
+    last = _as_feet_change(steps, reached)
+    gone_m = cut_m + float(np.linalg.norm(np.diff(route.position[reached : last + 1], axis=0), axis=1).sum())
     made = last + 1 - (stride is not None)
     onward = pose.arms[made] - pose.arms[made - 1] if 0 < made < len(pose) else None
-    return pose.at(slice(0, made)), replace(_stride_at(last, path, cut_m, route, steps, spread), arms_onward=onward)
+    return pose.at(slice(0, made)), replace(_stride_at(last, path, gone_m, route, steps, spread), arms_onward=onward)
+
+
+def _as_feet_change(steps: Steps, frame: int) -> int:
+    """The frame from that one on, within a step, at which no foot goes fast: nobody changes his walk in mid-swing."""
+    within = min(int(np.searchsorted(steps.phase, steps.phase[frame] + 1)), len(steps.phase) - 1)
+    pace = np.linalg.norm(np.diff(steps.ankles[frame : within + 1], axis=0), axis=-1).max(axis=1)
+    return frame + int(np.argmin(pace)) if len(pace) else frame
 
 
 def _taken_up(start: Pose, pose: Pose, stride: Stride, fps: int) -> Pose:
