@@ -162,6 +162,8 @@ class Swing:
     """Phase from the first rise of its heel to the lift."""
     scale: float = 1.0
     """Size of the body against one of 1.70 m."""
+    bow_share: float = 1.0
+    """How much of its arc aside there is room for."""
 
     @property
     def turn(self) -> float:
@@ -174,7 +176,7 @@ class Swing:
         row, yaw = foot_table().way, self.start_yaw + 0.5 * self.turn
         outward = self.side * np.array([np.cos(yaw), 0.0, -np.sin(yaw)])
         turning = row.bow_turn_m * min(abs(self.turn) / row.bow_turn_rad, 1.0)
-        return np.asarray((row.bow_m + turning) * self.scale * outward)
+        return np.asarray((row.bow_m + turning) * self.bow_share * self.scale * outward)
 
     @property
     def size(self) -> float:

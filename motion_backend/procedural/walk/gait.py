@@ -7,7 +7,6 @@ the pelvis is, is in pelvis_height.py, arms are in arm_swing.py.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +16,7 @@ from motion_backend.motion import FPS
 from motion_backend.procedural.pose import Pose, settle_from, smooth
 from motion_backend.procedural.walk.arm_swing import arm_spread, swing_arms
 from motion_backend.procedural.walk.cadence import plan_phase
-from motion_backend.procedural.walk.footsteps import Steps, drift, plan_steps, yaw_of
+from motion_backend.procedural.walk.footsteps import Room, Steps, drift, plan_steps, yaw_of
 from motion_backend.procedural.walk.pelvis_height import landing, lifted
 from motion_backend.procedural.walk.root_path import SPACING, Route, evenly, plan_route, resample
 from motion_backend.procedural.walk.stride import BEATS, Stride
@@ -30,8 +29,6 @@ NEAR = 0.2
 """Who has gone so far along a way is no farther than this from there (metres)."""
 REJOINS = 0.8
 """Who is beside a way has come back to it after so much of it (metres)."""
-Room = Callable[[Array], Array]
-"""How much room there is beside what a body needs at places [x, z]: (N, 2) to (N,) metres."""
 
 
 @table
@@ -237,7 +234,7 @@ def walk_on(
     if style.wobble:
         route = _staggering(route, style.wobble, rng, fps, room)
     route, phase = plan_phase(route, style, skeleton, fps, rng, stride)
-    steps = plan_steps(start, route, phase, style, skeleton, rng, stride)
+    steps = plan_steps(start, route, phase, style, skeleton, rng, stride, room)
     spread = arm_spread(len(phase), style, stride)
     pose = _carry(start, route, steps, style, skeleton, rng, spread, stride is not None)
     pose = settle_from(start, pose, fps) if stride is None else _taken_up(start, pose, stride, fps)
