@@ -22,7 +22,7 @@ HEEL = np.array([0.0, -0.066, -0.055])
 """Heel from the ankle at the reference height."""
 TIP = np.array([0.0, -0.031, 0.068])
 """Tip of the toes from the ball of the foot, likewise."""
-HEEL_RISE, SETTLE = 0.40, 0.30
+HEEL_RISE, SETTLE = 0.47, 0.30
 """Phase from the first rise of the heel to the lift, and from heel strike to the flat foot."""
 SAMPLES = 600
 """Of a curve."""
@@ -81,6 +81,8 @@ class FootWay:
     """or turns so far."""
     size_min: float
     """Of a full step: a foot that would go less stays."""
+    out_power: float
+    """A foot points farthest outwards where its share of the way through the air, to this power, is a half."""
     rise_min_phase: float
     """The least a heel takes to rise, where a step begins at once."""
     leaving_ratio: float
@@ -248,7 +250,7 @@ class Feet:
         self.ankles[after, index] = swing.start + way[:, None] * (swing.end - swing.start)
         self.ankles[after, index] += (np.sin(np.pi * u) ** 2)[:, None] * swing.bow
         self.ankles[after, index, 1] += swing.height(1 - u if swing.backwards else u)
-        aside = swing.swings_out * swing.size * np.sin(np.pi * u) ** 2
+        aside = swing.swings_out * swing.size * np.sin(np.pi * u**row.out_power) ** 2
         self.yaw[after, index] = swing.start_yaw + smooth(u) * swing.turn + swing.side * aside
         self.planted[inside, index] = 0.0
         air = share[inside]

@@ -14,7 +14,7 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.procedural.pose import Pose, smooth
-from motion_backend.procedural.walk.foot_trajectory import HEEL_RISE, TIP_UP, Feet, Swing, foot_table
+from motion_backend.procedural.walk.foot_trajectory import HEEL_RISE, SETTLE, TIP_UP, Feet, Swing, foot_table
 from motion_backend.procedural.walk.root_path import Route
 from motion_backend.procedural.walk.stride import Step, Stride
 from motion_backend.procedural.walk.walk_styles import Walk, usual_width
@@ -343,8 +343,8 @@ def _swing_of(
         scuff=np.radians(style.scuff) * float(np.clip(stride / shape.scuff_stride_share, 0.0, 1.0)),
         backwards=leaves + stride < -2 * shape.backwards_share,
         swings_out=np.radians(shape.swings_out_deg) * style.character.of_side("toes_swing", "ratio", side),
-        # The first heel rises from the first frame on, not before.
-        rise=min(HEEL_RISE, max(beat.window[0] - float(phase[0]), foot_table().way.rise_min_phase)),
+        # The first heel rises from the first frame on, not before, and none before its foot has come down.
+        rise=min(HEEL_RISE, 1 + style.double - SETTLE, max(beat.window[0] - float(phase[0]), foot_table().way.rise_min_phase)),
         scale=skeleton.scale,
     )
 

@@ -111,6 +111,10 @@ class Lean:
     stamp_rad_per_m: float
     looks_share: float
     """Of the gaze's turn to where a way curves."""
+    hips_late_share: float
+    """Of a step, later than its lift hips are turned farthest to a foot that swings,"""
+    counter_early_share: float
+    """and so much earlier the chest is against them."""
     counter_ratio: float
     """Of the hips' turn, that the chest turns against it."""
 
@@ -171,7 +175,9 @@ class Knees:
     foot_ratio: float
     """As the foot does, so much more than as the pelvis does."""
     foot_max_rad: float
-    """But not as a foot that is turned further from the pelvis."""
+    """But not as a foot that is turned further from the pelvis,"""
+    inwards_rad: float
+    """and so much further in: shins are twisted."""
 
 
 @table
@@ -356,11 +362,14 @@ def _carry(
     brisk = np.clip(route.speed, 0.0, row.surge.brisk_max_mps) * moving * np.cos(np.radians(style.aside))
     ground = _support(route, steps, style, (moving, brisk, unsteady))
     own, wander = style.character, _wander(frames, rng)
-    hip_turn = np.radians(style.twist) * steps.first * np.cos(np.pi * steps.phase) * moving
+    hip_turn, counter = (
+        np.radians(style.twist) * steps.first * np.cos(np.pi * (steps.phase - late)) * moving
+        for late in (row.lean.hips_late_share, -row.lean.counter_early_share)
+    )
     roll, shoulders = _rolls(steps, style, moving)
-    lean = _leaning(route, style, brisk)
+    lean, walking = _leaning(route, style, brisk)
     nods = own.nod_ratio * brisk
-    tilt = row.lean.hips_share * lean + row.lean.hips_wave_rad * nods * steps.wave(row.lean.hips_wave_at_phase)
+    tilt = row.lean.hips_share * lean + walking + row.lean.hips_wave_rad * nods * steps.wave(row.lean.hips_wave_at_phase)
     hips = rotations.compose(
         rotations.yaw_to_quat(route.heading + hip_turn + np.radians(own.hips_turn_deg) * moving),
         rotations.rotvec_to_quat(np.stack([tilt, np.zeros(frames), roll], axis=1)),
@@ -369,7 +378,7 @@ def _carry(
     jolt = jolt + row.lean.stamp_rad_per_m * style.stamp * landing(steps)
     forward = row.lean.spine_share * lean + row.drunk.lean_rad * unsteady + jolt
     turned = row.lean.looks_share * np.radians(style.veer) * moving
-    turned = turned + np.radians(own.shoulder_turn_deg) * moving - row.lean.counter_ratio * own.counter_ratio * hip_turn
+    turned = turned + np.radians(own.shoulder_turn_deg) * moving - row.lean.counter_ratio * own.counter_ratio * counter
     spine = np.stack([forward, turned, shoulders - roll + row.drunk.side_rad * unsteady], axis=1)
     spine = spine + moving[:, None] * wander[:, :3]
     arms, elbows = swing_arms(style, steps, route.speed, spread, wander[:, 3:7].reshape(-1, 2, 2))
@@ -433,8 +442,8 @@ def _support(route: Route, steps: Steps, style: Walk, moved: tuple[Array, Array,
     return np.asarray(route.position + aside[:, None] * left + surge[:, None] * ahead)
 
 
-def _leaning(route: Route, style: Walk, brisk: Array) -> Array:
-    """How far trunk and pelvis together bend forwards. (T,)."""
+def _leaning(route: Route, style: Walk, brisk: Array) -> tuple[Array, Array]:
+    """How far trunk and pelvis together bend forwards, and how far a body in its walk leans from its hips. (T,) each."""
     row, frames = carriage().lean, len(route.heading)
     # A bowed body straightens up a little where it arrives, so as not to bump its head.
     since = np.arange(frames) - frames + row.straightens_frames
@@ -442,7 +451,7 @@ def _leaning(route: Route, style: Walk, brisk: Array) -> Array:
     bowed = style.bearing.lean > row.bowed_from_deg
     lean = np.radians(style.bearing.lean) * (1 - row.straightens_share * arriving * bowed)
     fast = np.clip(route.speed - row.fast_from_mps, 0, row.fast_within_mps)
-    return np.asarray(lean + row.walking_rad * brisk + row.fast_rad_per_mps * fast)
+    return np.asarray(lean), np.asarray(row.walking_rad * brisk + row.fast_rad_per_mps * fast)
 
 
 def _gaze(route: Route, style: Walk, hip_turn: Array, moved: tuple[Array, Array], rng: np.random.Generator) -> Array:
@@ -470,5 +479,6 @@ def _knees(hips: Array, feet: Array) -> Array:
     forward = np.array([0.0, 0.0, 1.0])
     row, ahead = carriage().knees, yaw_of(hips)[:, None]
     off = np.clip(rotations.wrap(feet - ahead), -row.foot_max_rad, row.foot_max_rad)
+    ahead = ahead - row.inwards_rad * np.array([1.0, -1.0])
     pelvis, foot = (rotations.rotate(rotations.yaw_to_quat(yaw), forward) for yaw in (ahead, ahead + off))
     return rotations.normalize(pelvis + row.foot_ratio * foot)
