@@ -18,8 +18,10 @@ WORSE: Final = 1.5
 """Times the plan's that a made body may be deep in furniture."""
 LOST: Final = 0.15
 """Metres from its goal at which a pelvis is not brought there any more."""
-HOVERS, SOME = 0.04, 3
-"""Metres over the floor at which a body floats whose plan stands, and frames in which that is overlooked."""
+HOVERS: Final = 0.04
+"""Metres over the floor at which a body floats whose plan stands."""
+SOME, DEEP = 4, 0.035
+"""Frames in which a body that floats, or is in furniture less than so many metres deep, is overlooked."""
 SLIDES: Final = 8.0
 """Centimetres a second that the best supported point of soles may slide over a passage: people's do 3 to 5."""
 
@@ -53,7 +55,7 @@ def _check_furniture(made: Motion, passage: PlannedPassage) -> None:
     obstacles, action = scene_of(passage.home).obstacles, passage.part.action
     own, planned = (penetration(Kinematics.of(motion), obstacles, action) for motion in (made, passage.plan))
     frames, most = int((own > CLEARLY_IN).sum()), WORSE * float((planned > CLEARLY_IN).sum())
-    if frames > most:
+    if frames > most + SOME * (own.max() < DEEP):
         raise RefusedError(f"the {passage.phase} was up to {own.max():.2f} m deep in furniture")
 
 

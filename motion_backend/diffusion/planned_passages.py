@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from motion_backend.backend_protocol import Part, PartKind
 from motion_backend.diffusion.conditions import MadeOf
 from motion_backend.diffusion.dataset import NEAR, PERIODIC, PHASES, WALKING
-from motion_backend.diffusion.motion_features import HeadingFrame, twist
+from motion_backend.diffusion.goal_cleanup import held_shares
+from motion_backend.diffusion.motion_features import HISTORY, STRIDE, WINDOW, HeadingFrame, twist
 from motion_backend.diffusion.rollout import HandGoal, PelvisGoal, Wish
 from motion_backend.diffusion.scene_encoder import voxel_image
 from motion_backend.diffusion.windows import SEATS, settled
@@ -23,10 +24,13 @@ from motion_backend.motion import FPS, Motion, PhaseKind, Skill
 from motion_backend.rotations import Array
 from motion_backend.scene import scene_of
 from motion_backend.skeleton import INDEX
+from motion_backend.walk_driver import SMOOTH
 from motion_backend.walk_generator import LOOK
 from scene_graphs.geometry.occupancy_grid import occupancy_pair
 from scene_graphs.home import Home
 
+WIDE: Final = 18
+"""Frames beyond the ends of a way that count for its smoothness."""
 SURE: Final = 2
 """Frames from the last known one to the middle of the first new one at 10 a second, which frame numbers are of."""
 
@@ -96,6 +100,22 @@ class PlannedPassage:
         goal = PelvisGoal(place[None], np.array([self.facing(at)]), self.is_seat, left)
         return Wish(self.caption, goal, None, number, MadeOf.PROCEDURAL, voxels=voxels)
 
+    def way(self, done: int) -> Array:
+        """Where the pelvis is to be in the new frames of the window after `done` frames, without its sway. (14, 3)."""
+        from scipy.ndimage import gaussian_filter1d
+
+        # Beyond its ends a way goes on as it begins and ends: smoothed, it is not drawn back from them.
+        places = self.plan.root_positions.astype(np.float64)
+        before, after = 2 * places[0] - places[:0:-1], 2 * places[-1] - places[-2::-1]
+        whole = np.concatenate([before[-WIDE:], places, after[:WIDE]])
+        begins = min(len(before), WIDE)
+        smooth = gaussian_filter1d(whole, SMOOTH, axis=0, mode="nearest")[begins : begins + len(places)]
+        return np.asarray(smooth[np.minimum(_keys(done), len(smooth) - 1)])
+
+    def held(self, done: int) -> Array:
+        """How far the hand is at its goal in the new frames of the window after `done` frames. (14,)."""
+        return held_shares(_keys(done), self.due, round(self.part.hold * FPS))
+
     def facing(self, at: int) -> float:
         """The yaw at a frame of the plan; of who lies down, from the pelvis to the head."""
         if self.kind is not PartKind.LIE:
@@ -119,6 +139,11 @@ class PlannedPassage:
             walking=self.is_periodic,
         )
         return np.asarray(voxel_image(pair)[None])
+
+
+def _keys(done: int) -> NDArray[np.int64]:
+    """The frames of a passage that a window after `done` frames has its new frames in. (14,)."""
+    return done + STRIDE * np.arange(1, WINDOW - HISTORY + 1) - 1
 
 
 def passages_of(home: Home, part: Part, plan: Motion, since: int = 0) -> list[PlannedPassage]:

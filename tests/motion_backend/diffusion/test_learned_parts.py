@@ -84,7 +84,7 @@ def standing(frames: int) -> Frames:
 
 def test_a_wrist_is_brought_where_it_is_to_be_and_nothing_else_moves() -> None:
     skeleton, frames = build_skeleton(), standing(30)
-    shift = held_shares(30, 15, 5)[:, None] * np.array([0.05, 0.03, 0.04])
+    shift = held_shares(np.arange(30), 15, 5)[:, None] * np.array([0.05, 0.03, 0.04])
     before = skeleton.forward_kinematics(frames.root, frames.local)[0]
     moved = wrist_brought(frames, skeleton, "right", shift)
     after = skeleton.forward_kinematics(moved.root, moved.local)[0]
@@ -94,7 +94,7 @@ def test_a_wrist_is_brought_where_it_is_to_be_and_nothing_else_moves() -> None:
 
 
 def test_a_hand_comes_stays_and_leaves() -> None:
-    shares_of = held_shares(120, 40, 20)
+    shares_of = held_shares(np.arange(120), 40, 20)
     assert (shares_of[40:61] == 1).all()
     assert shares_of[0] == 0 == shares_of[-1]
     assert np.abs(np.diff(shares_of)).max() < 0.1
