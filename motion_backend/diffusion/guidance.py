@@ -32,6 +32,8 @@ PULL: Final = 0.5
 """Share of what is left to the goal by which a guess is moved."""
 REACHES: Final = ("spine1", "spine2", "spine3", "collar", "shoulder", "elbow")
 """What turns for a hand, from the trunk to the elbow."""
+HOLD: Final = 0.8
+"""The same of a pose that is to be held."""
 READY: Final = (0.1, 0.1, 0.1, 0.5, 1.0, 1.0)
 """How readily each of them does: a trunk that comes along comes into the table."""
 DAMPED: Final = 0.02
@@ -71,6 +73,23 @@ def along(way: Tensor, pull: float = PULL) -> Guide:
         return moved
 
     return guide
+
+
+def posed(turns: Tensor, shares: Tensor, pull: float = HOLD) -> Guide:
+    """Guidance to a pose that is to be held: its features (14, 202), by shares (14,)."""
+
+    def guide(guess: Tensor) -> Tensor:
+        moved = guess.clone()
+        share = pull * shares[None, :, None]
+        moved[..., TURNS] += share * (turns[None, :, TURNS] - guess[..., TURNS])
+        return moved
+
+    return guide
+
+
+def both(first: Guide, second: Guide) -> Guide:
+    """One after the other."""
+    return lambda guess: second(first(guess))
 
 
 def reaching(goal: Array, left: bool, shares: Array, pull: float = PULL) -> Guide:
