@@ -280,9 +280,14 @@ def _laid(frames: Frames, passage: PlannedPassage, arms: str, number: int) -> tu
 
 
 def _settled(past: Frames, frames: Frames, passage: PlannedPassage, phase: Phase) -> Motion:
-    """Frames as motion, with standing feet held where they stand."""
+    """Frames as motion, with standing feet held where they stand; who sits or lies there has them where they rest."""
     whole, skeleton = past.then(frames), passage.plan.skeleton
-    root, local, contacts = held(whole.root, whole.local, skeleton, len(past))
+    if passage.since:
+        at = np.minimum(np.arange(len(frames)), len(passage.plan) - 1)
+        resting = np.concatenate([np.zeros((len(past), 4)), passage.plan.contacts[at]])
+        root, local, contacts = whole.root, rotations.continuous(whole.local), resting
+    else:
+        root, local, contacts = held(whole.root, whole.local, skeleton, len(past))
     new = slice(len(past), None)
     motion = Motion(
         root_positions=root[new].astype(np.float32),
