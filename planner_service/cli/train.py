@@ -74,6 +74,9 @@ def diffusion(
         Path | None, typer.Option(help="Clips whose test people judge the walk at every checkpoint.")
     ] = None,
     device: Annotated[str, typer.Option(help="cpu or cuda, where numbers are 16 bits wide.")] = "cpu",
+    history_noise: Annotated[
+        float, typer.Option(min=0, max=1, help="Deviations by which the history is disturbed at most; 0: not at all.")
+    ] = 0.06,
     start: Annotated[
         Path | None, typer.Option("--from", help="Weights of the same sizes to begin with, without their suffix.")
     ] = None,
@@ -97,6 +100,7 @@ def diffusion(
         rate or RATES[preset],
         save_every=save_every,
         seed=seed,
+        history_noise=history_noise,
         losses=WALK_LOSSES if learn is Learned.WALK else CONTACT_LOSSES,
     )
     people = None if judge is None else read_dataset(judge)

@@ -6,7 +6,7 @@ import numpy as np
 import torch
 from small_home import small_home
 
-from motion_backend.diffusion.guidance import HERE, along, reaching, towards
+from motion_backend.diffusion.guidance import HERE, along, posed, reaching, towards
 from motion_backend.diffusion.motion_features import FEATURES, PLACES, Poses, from_features, to_features
 from motion_backend.motion import Character
 from motion_backend.procedural.backend import ProceduralBackend
@@ -57,3 +57,11 @@ def test_a_hand_comes_nearer_by_trunk_and_arm_and_feet_stay() -> None:
     assert away[-1] < 0.02
     assert away[0] > 0.2
     assert np.abs(after - before)[:, [INDEX["left_foot"], INDEX["right_foot"], 0]].max() < 1e-4
+
+
+def test_a_pose_is_come_to_by_shares_and_the_root_is_left() -> None:
+    guess, wanted = torch.zeros(1, 14, FEATURES), torch.ones(14, FEATURES)
+    found = posed(wanted, torch.linspace(0.0, 1.0, 14), pull=0.5)(guess)
+    assert torch.equal(found[0, :, :3], guess[0, :, :3])
+    assert torch.equal(found[0, 0], guess[0, 0])
+    assert torch.allclose(found[0, -1, 3:135], torch.full((132,), 0.5))
