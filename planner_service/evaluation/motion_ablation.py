@@ -13,7 +13,6 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, Final
 
 import numpy as np
-import torch
 
 from motion_backend.backend_protocol import PartKind
 from motion_backend.diffusion.conditions import Conditions
@@ -39,8 +38,6 @@ from scene_graphs.home import Home
 from scene_graphs.layout_library import built_in_index
 from scene_graphs.navigation.path_planner import NoPath
 
-FRAME: Final = "frame"
-"""What is untold where frame numbers are: all of them are zero, as in locomotion (LINGO A.3)."""
 SKILLS: Final = {
     Skill.SITDOWN: PartKind.SIT, Skill.LIEDOWN: PartKind.LIE, Skill.STANDUP: PartKind.RISE,
     Skill.GETUP: PartKind.RISE, Skill.TOUCH: PartKind.REACH,
@@ -66,7 +63,7 @@ ABLATIONS: Final = (
     Ablation("as it ships"),
     Ablation("no scene", ("scene",), walks=False),
     Ablation("no text", ("text",)),
-    Ablation("no frame numbers", (FRAME,), walks=False),
+    Ablation("no frame numbers", ("frame",), walks=False),
     Ablation("5 steps", steps=5),
     Ablation("20 steps", steps=20),
     Ablation("100 steps", steps=100),
@@ -88,10 +85,7 @@ class AblatedSampler(Sampler):
 
     def windows(self, history: Array, given: Conditions, seed: int | list[int], guide: Guide | None = None) -> Array:
         """As a sampler's, but for what is not told."""
-        told = given.without(*(name for name in self.untold if name != FRAME))
-        if FRAME in self.untold:
-            told = replace(told, frame=torch.zeros_like(told.frame))
-        return super().windows(history, told, seed, guide)
+        return super().windows(history, given.without(*self.untold), seed, guide)
 
 
 @dataclass(frozen=True)

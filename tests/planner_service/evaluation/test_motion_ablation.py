@@ -13,7 +13,7 @@ from motion_backend.diffusion.conditions import Conditions
 from motion_backend.diffusion.denoiser import Denoiser, DenoiserSizes
 from motion_backend.diffusion.motion_features import FEATURES, HISTORY
 from motion_backend.diffusion.sampler import Sampler, Scale
-from planner_service.evaluation.motion_ablation import ABLATIONS, FRAME, AblatedSampler, Ablation
+from planner_service.evaluation.motion_ablation import ABLATIONS, AblatedSampler, Ablation
 
 
 def told() -> Conditions:
@@ -40,7 +40,7 @@ def test_what_is_left_out_is_not_told_and_nothing_else_changes(
     sampler = Sampler(network, Scale(torch.zeros(FEATURES), torch.ones(FEATURES)))
     found = AblatedSampler.of(sampler, ablation).windows(np.zeros((1, HISTORY, FEATURES)), told(), 0)
     assert found.shape == (1, 14, FEATURES)
-    expected = {"frame": 0 if FRAME in ablation.untold else 40}
+    expected = {"frame": 0 if "frame" in ablation.untold else 40}
     expected |= {f"has_{name}": int(name not in ablation.untold) for name in ("text", "pelvis", "hand")}
     for field in fields(Conditions):
         if field.name in expected:
