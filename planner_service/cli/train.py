@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Final
 import typer
 from rich.console import Console
 
+from planner_service.cli.train_embedding import embedding
+from planner_service.cli.train_physics import physics
 from planner_service.output.story_export import check_writable
 from planner_service.pipeline import RequestError
 
@@ -32,6 +34,10 @@ class Learned(StrEnum):
     ACTED = "acted"
     """What our own body acts: sitting, lying, rising, reaching, and walks that nobody was recorded in."""
     ALL = "all"
+
+
+app.command()(embedding)
+app.command()(physics)
 
 
 @app.callback()
