@@ -108,6 +108,11 @@ def next_verb(tokens: Sequence[Token], before: int) -> int | None:
     return None
 
 
+def has_verb(text: str) -> bool:
+    """Whether some word of the text acts as a verb."""
+    return verb_place(tokens_of(plain(text))) is not None
+
+
 def is_plural(word: str) -> bool:
     """Whether a word may be the plural of a noun, or mean several people."""
     nouns = kinds_of(word).get("NOUN", ())
