@@ -53,9 +53,12 @@ def stride_of(history: History, skeleton: Skeleton, style: Walk, rest: Array) ->
     gap = float((ankles[front] - ankles[behind])[[0, 2]] @ ahead)
     forward = 2 * gap * np.array([ahead[0], 0.0, ahead[1]])
     half, heading = style.double / 2, float(np.arctan2(*ahead))
+    # Feet turn the shorter way round: all yaws are told within half a turn of where the body goes.
+    yaw = heading + np.asarray(rotations.wrap(yaw - heading))
     now = BEATS - half  # the foot of the step before this beat's first comes down
     landing = _step(BEATS - 1, front, (ankles[front] - forward, ankles[front]), yaw[front], style, skeleton)
     onto, leads = _landing(np.concatenate([positions[-1:, 0, [0, 2]], rest]), ankles, behind, gap)
+    leads = heading + float(rotations.wrap(leads - heading))
     lifting = _step(BEATS, behind, (ankles[behind], onto), yaw[behind], style, skeleton)
     lifting = replace(lifting, swing=replace(lifting.swing, end_yaw=leads))
     before = np.stack([ankles[0], ankles[1]])

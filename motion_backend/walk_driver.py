@@ -50,8 +50,10 @@ LATER: Final = 12
 """Frames of its way beyond the stretch that a generator is to walk, in which its last step may end."""
 OFF: Final = 0.2
 """Metres beside its way at which a generator's body has lost it."""
-PASSES, BY = 0.2, 10
-"""Metres from a place within which it is passed by, and frames in which that was just now."""
+PASSES: Final = 0.2
+"""Metres from a place within which it is passed by."""
+NEAR_BY, BY = 0.28, 10
+"""Metres and frames within which a step ends by a place: half a step before it, or just behind it."""
 DEEPER: Final = 0.02
 """Metres by which a generator's body may be deeper in furniture than the procedural one."""
 CARRIAGE_S: Final = 0.5
@@ -78,8 +80,11 @@ STARTS_AND_STOPS: Final = "starts, stops and turns on the spot are the rules'"
 class Follower(Protocol):
     """Something that does what the procedural body would do, in frames of its own."""
 
-    def act(self, home: Home, part: Part, plan: Motion, state: BodyState) -> Motion:
-        """A plan done by somebody else; where he cannot, the plan itself. Its phases say who made it, and why."""
+    def act(self, home: Home, part: Part, plan: Motion, state: BodyState, frames: int) -> Motion:
+        """So many frames of a plan done by somebody else, who sees how it goes on; where he cannot, those of the plan.
+
+        Its phases say who made it, and why.
+        """
         ...
 
 
@@ -107,7 +112,7 @@ class WalkDriver:
                 why = why or (TOO_SHORT if not made else STARTS_AND_STOPS)
                 break
             start = walk.ruled.part(0, stretch[0])
-            led = self._acted(walk, start, STARTS_AND_STOPS) if stretch[0] else None
+            led = self._acted(walk, stretch[0], STARTS_AND_STOPS) if stretch[0] else None
             history, motion, beyond = self._stretch(walk, stretch, led)
             if len(motion) < LEAST and led is not None:
                 led = by_rules(start, STARTS_AND_STOPS)
@@ -128,15 +133,15 @@ class WalkDriver:
         rest, after = self._rest(walk, walk.ruled.reason or why)
         return join([*made, rest]), replace(after, index=index + 1)
 
-    def _acted(self, walk: _Walk, plan: Motion, why: str) -> Motion:
-        """A stretch of the procedural body's walk by the follower, or by itself."""
-        if self.follower is None or not len(plan):
-            return by_rules(plan, why)
-        return self.follower.act(walk.home, walk.part, plan, walk.state)
+    def _acted(self, walk: _Walk, frames: int, why: str) -> Motion:
+        """The first frames of the procedural body's walk by the follower, or by itself."""
+        if self.follower is None or not frames:
+            return by_rules(walk.ruled.part(0, frames), why)
+        return self.follower.act(walk.home, walk.part, walk.ruled, walk.state, frames)
 
     def _rest(self, walk: _Walk, why: str) -> tuple[Motion, BodyState]:
         """What is left of a walk once no stretch of it is the generator's any more, and the state after it."""
-        motion = self._acted(walk, walk.ruled, why)
+        motion = self._acted(walk, len(walk.ruled), why)
         if not walk.ruled.completed or all(phase.backend == ProceduralBackend.name for phase in motion.phases):
             return by_rules(walk.ruled, walk.ruled.reason or _told(motion) or why), walk.after
         if walk.stride is None:
@@ -361,7 +366,7 @@ def _steps_end(positions: Array, end: Array) -> int:
 
 def _landing_by(positions: Array, goal: Array) -> int | None:
     """The last frame of (T, 22, 3) in which a heel comes down as the body has just come by a place (2,)."""
-    near = np.linalg.norm(positions[:, 0][:, [0, 2]] - goal, axis=1) < PASSES
+    near = np.linalg.norm(positions[:, 0][:, [0, 2]] - goal, axis=1) < NEAR_BY
     landing = [int(at) for at in strides_landing(positions) if near[max(at - BY, 0) : at + 1].any()]
     return landing[-1] if landing else None
 

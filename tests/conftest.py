@@ -9,7 +9,6 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Generator, Iterator
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,8 +16,6 @@ import layers
 import psycopg
 import pytest
 import structlog
-import typer.main
-import typer.testing
 from databases import new_database
 from encoded import check_weights_once, forget, hash_libraries_once
 from examples import tries
@@ -39,8 +36,6 @@ settings.register_profile("ours", tries(100), derandomize=True)
 settings.load_profile("ours")
 hash_libraries_once()
 check_weights_once()
-# All commands are looked through for a twentieth of a second whenever one is asked for.
-typer.testing._get_command = cache(typer.main.get_command)  # type: ignore[attr-defined]
 
 
 @pytest.fixture(scope="session")

@@ -13,6 +13,8 @@ import networkx
 import pytest
 from for_each import for_each
 
+from planner_service.cli.late_commands import COMMANDS
+
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = {
     "prompts": set(),
@@ -171,6 +173,19 @@ def circles(imports: dict[str, set[str]]) -> list[list[str]]:
 def test_there_is_no_drawer_for_odds_and_ends() -> None:
     for path in modules():
         assert path.stem not in {"common", "utils", "util", "helpers", "types", "misc"}, path
+
+
+@pytest.mark.service
+def test_the_help_of_the_command_line_imports_no_command() -> None:
+    code = (
+        "import sys, contextlib, planner_service.cli as cli\nwith contextlib.suppress(SystemExit): cli.app(['--help'])"
+        "\nprint([name for name in ('numpy', 'pydantic', 'planner_service.pipeline') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+    _, _, listed = done.stdout.partition("Commands:")
+    assert all(f"  {name} " in listed for name in COMMANDS)
+    assert "..." not in listed, "what each does is a line, none of which is cut"
 
 
 @pytest.mark.service

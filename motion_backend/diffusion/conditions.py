@@ -79,8 +79,10 @@ class Conditions:
         return Conditions(**{name: None if value is None else value.to(device) for name, value in own.items()})
 
     def without(self, *names: str) -> Conditions:
-        """The same with some of text, pelvis, hand and scene masked."""
-        masks = {f"has_{name}": getattr(self, f"has_{name}") for name in names}
+        """The same with some of text, pelvis, hand and scene masked, and frame numbers zero, as in locomotion."""
+        masks = {f"has_{name}": getattr(self, f"has_{name}") for name in names if name != "frame"}
+        if "frame" in names:
+            masks["frame"] = self.frame
         return replace(self, **{name: None if mask is None else torch.zeros_like(mask) for name, mask in masks.items()})
 
 

@@ -21,7 +21,7 @@ from motion_backend import rotations
 from motion_backend.backend_protocol import PartKind
 from motion_backend.diffusion.conditions import MadeOf
 from motion_backend.mocap.clip import ClipError
-from motion_backend.mocap.dataset_file import Dataset, Entry, read_dataset
+from motion_backend.mocap.dataset_file import Dataset, Entry, npz_bytes, read_dataset
 from motion_backend.motion import Action, Motion, PhaseKind, Skill
 from motion_backend.rotations import Array
 
@@ -118,20 +118,20 @@ def read_stretches(path: Path) -> list[Stretch]:
 
 
 def write_stretches(stretches: Sequence[Stretch], path: Path) -> None:
-    """One .npz; the same stretches give the same bytes but for the times in it."""
+    """One .npz; the same stretches give the same bytes."""
     rows = [
         {"name": s.name, "person": s.person, "made_of": int(s.made_of), "frames": len(s), "split": s.split,
          "room": s.room, "plain": s.plain, "passages": [asdict(passage) for passage in s.passages]}
         for s in stretches
     ]  # fmt: skip
     manifest = json.dumps({"version": VERSION, "rows": rows}).encode()
-    np.savez_compressed(
-        path,
-        roots=np.concatenate([s.roots for s in stretches]).astype(np.float32),
-        local=np.round(np.concatenate([s.local for s in stretches]) * _UNIT).astype(np.int16),
-        contacts=(np.concatenate([s.contacts for s in stretches]) > 0.5).astype(np.uint8),
-        stretches=np.frombuffer(manifest, np.uint8),
-    )
+    arrays = {
+        "roots": np.concatenate([s.roots for s in stretches]).astype(np.float32),
+        "local": np.round(np.concatenate([s.local for s in stretches]) * _UNIT).astype(np.int16),
+        "contacts": (np.concatenate([s.contacts for s in stretches]) > 0.5).astype(np.uint8),
+        "stretches": np.frombuffer(manifest, np.uint8),
+    }
+    path.write_bytes(npz_bytes(arrays))
 
 
 def stretches_of(dataset: Dataset) -> list[Stretch]:

@@ -8,6 +8,7 @@ from typing import Final
 
 from motion_backend.backend_protocol import BodyState, Part, PartKind
 from motion_backend.diffusion.plan_follower import LAID_OVER, Followed, PlanFollower
+from motion_backend.diffusion.planned_passages import passages_of
 from motion_backend.motion import Motion, Posture
 from motion_backend.procedural.walk.walk_styles import walk_style
 from motion_backend.walk_driver import BORROWED, by_rules, ruled, style_of
@@ -28,19 +29,20 @@ class LearnedParts:
         plan, after = ruled(home, part, upcoming, state)
         if not len(plan) or not plan.completed:
             return by_rules(plan, plan.reason), after
-        done = self._followed(home, part, plan, state)
+        done = self._followed(home, part, plan, state, len(plan))
         after = replace(after, memory={**after.memory, SINCE: done.since})
         if not done.missed:
             return done.motion, after
         history = state.history.followed_by(done.motion)
         return done.motion, replace(after, history=history, memory={**after.memory, BORROWED: True})
 
-    def act(self, home: Home, part: Part, plan: Motion, state: BodyState) -> Motion:
-        """A plan acted by the model; where it cannot, the plan itself, which says why."""
-        return self._followed(home, part, plan, state).motion
+    def act(self, home: Home, part: Part, plan: Motion, state: BodyState, frames: int) -> Motion:
+        """So many frames of a plan acted by the model; where it cannot, the plan's, which say why."""
+        return self._followed(home, part, plan, state, frames).motion
 
-    def _followed(self, home: Home, part: Part, plan: Motion, state: BodyState) -> Followed:
-        return self.follower.follow(home, part, plan, state, _since(part, state), _laid_over(part))
+    def _followed(self, home: Home, part: Part, plan: Motion, state: BodyState, frames: int) -> Followed:
+        passages = passages_of(home, part, plan, _since(part, state), frames)
+        return self.follower.follow(passages, plan.notes, state, _laid_over(part))
 
 
 def _since(part: Part, state: BodyState) -> int:

@@ -4,24 +4,37 @@ from __future__ import annotations
 
 from typing import Final
 
+import numpy as np
+
 from motion_backend.backend_protocol import PartKind
 from motion_backend.diffusion.planned_passages import PlannedPassage
 from motion_backend.metrics.caption_predicates import judge_caption
 from motion_backend.metrics.foot_skate import support_slip
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.penetration import CLEARLY_IN, penetration
-from motion_backend.motion import Emotion, Motion, Skill
+from motion_backend.motion import FPS, Emotion, Motion, Skill
 from motion_backend.scene import scene_of
+from motion_backend.skeleton import INDEX
 from motion_backend.walk_driver import unlike_people
+from motion_backend.walk_generator import Frames
 
 WORSE: Final = 1.5
 """Times the plan's that a made body may be deep in furniture."""
 LOST: Final = 0.15
 """Metres from its goal at which a pelvis is not brought there any more."""
-HOVERS, SOME = 0.04, 3
-"""Metres over the floor at which a body floats whose plan stands, and frames in which that is overlooked."""
+HOVERS: Final = 0.04
+"""Metres over the floor at which a body floats whose plan stands."""
+SOME, DEEP = 4, 0.035
+"""Frames in which a body that floats, or is in furniture less than so many metres deep, is overlooked."""
 SLIDES: Final = 8.0
 """Centimetres a second that the best supported point of soles may slide over a passage: people's do 3 to 5."""
+
+
+JOLT: Final = 1.6
+"""Metres a second by which a joint above the legs may change its speed from frame to frame: more is a jump."""
+UPPER: Final = [index for name, index in INDEX.items() if not name.endswith(("hip", "knee", "ankle", "foot"))]
+HELD: Final = {Skill.SITDOWN: PartKind.HOLD, Skill.LIEDOWN: PartKind.HOLD, Skill.LOCO: PartKind.WALK}
+"""The part of a skill that shows its caption."""
 
 
 class RefusedError(Exception):
@@ -34,26 +47,48 @@ def refuse_beyond(metres: float, most: float, passage: PlannedPassage) -> None:
         raise RefusedError(f"the {passage.phase} ended {metres:.2f} m from its goal")
 
 
-def check(made: Motion, passage: PlannedPassage) -> None:
-    """RefusedError for a body that goes through furniture, floats or slides, or that its caption does not describe.
+def check(made: Motion, passage: PlannedPassage, past: Frames) -> None:
+    """RefusedError for a body that jumps, goes through furniture, floats or slides, or that its caption is not of.
 
-    The plan's is the measure: it may do that `WORSE` times as much.
+    The plan's is the measure: it may do that `WORSE` times as much. Past are the frames before it.
     """
+    _check_jumps(made, passage, past)
     _check_furniture(made, passage)
     _check_feet(made, passage)
+    action, part = passage.part.action, passage.part
+    if HELD.get(action.skill) is not part.kind or (passage.is_periodic and _is_plain(passage)):
+        return
+    own, planned = (judge_caption(motion, action) for motion in (made, passage.plan))
+    if own is not None and planned is not None and len(own.missed) > len(planned.missed):
+        raise RefusedError(f"it did not look like {action.caption!r:.40}")
+
+
+def _is_plain(passage: PlannedPassage) -> bool:
+    """Whether it is a walk like any other."""
     action = passage.part.action
-    walks = passage.is_periodic and action.skill is Skill.LOCO and passage.part.kind is PartKind.WALK
-    if walks and (unlike_people(action) or action.emotion is not Emotion.NEUTRAL):
-        own, planned = (judge_caption(motion, action) for motion in (made, passage.plan))
-        if own is not None and planned is not None and len(own.missed) > len(planned.missed):
-            raise RefusedError(f"it did not look like {action.caption!r:.40}")
+    return not unlike_people(action) and action.emotion is Emotion.NEUTRAL
+
+
+def _check_jumps(made: Motion, passage: PlannedPassage, past: Frames) -> None:
+    jolt, most = _jolt(made, past), _jolt(passage.plan, past[:0])
+    if jolt > max(JOLT, WORSE * most):
+        raise RefusedError(f"it jumped by {jolt:.1f} m/s in the {passage.phase}")
+
+
+def _jolt(motion: Motion, past: Frames) -> float:
+    """The largest change of speed from frame to frame of what is above the legs, the seam counted in."""
+    whole = past[-2:].then(Frames(motion.root_positions, motion.local_rotations))
+    places = motion.skeleton.forward_kinematics(whole.root, whole.local)[0][:, UPPER].astype(np.float64)
+    if len(places) < 3:
+        return 0.0
+    return float(np.linalg.norm(np.diff(places, 2, axis=0), axis=-1).max()) * FPS
 
 
 def _check_furniture(made: Motion, passage: PlannedPassage) -> None:
     obstacles, action = scene_of(passage.home).obstacles, passage.part.action
     own, planned = (penetration(Kinematics.of(motion), obstacles, action) for motion in (made, passage.plan))
     frames, most = int((own > CLEARLY_IN).sum()), WORSE * float((planned > CLEARLY_IN).sum())
-    if frames > most:
+    if frames > most + SOME * (own.max() < DEEP):
         raise RefusedError(f"the {passage.phase} was up to {own.max():.2f} m deep in furniture")
 
 

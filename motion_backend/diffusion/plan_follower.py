@@ -7,6 +7,7 @@ in furniture than may be, is made again from other noise, and else is left to th
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -14,7 +15,7 @@ import numpy as np
 import torch
 
 from motion_backend import rotations
-from motion_backend.backend_protocol import BodyState, History, Part, PartKind
+from motion_backend.backend_protocol import BodyState, History, PartKind
 from motion_backend.diffusion.completion_scheduler import DONE, CompletionScheduler
 from motion_backend.diffusion.goal_cleanup import (
     OVER,
@@ -22,28 +23,33 @@ from motion_backend.diffusion.goal_cleanup import (
     held_shares,
     pelvis_brought,
     with_arms_of,
+    with_carriage_of,
     wrist_brought,
 )
+from motion_backend.diffusion.guidance import Guide, along, both, posed, reaching, towards
 from motion_backend.diffusion.learned_walker import known_poses, spline
 from motion_backend.diffusion.motion_features import HISTORY, STRIDE, WINDOW, to_features
 from motion_backend.diffusion.passage_checks import LOST, RefusedError, check, refuse_beyond
-from motion_backend.diffusion.planned_passages import PlannedPassage, passages_of
+from motion_backend.diffusion.planned_passages import PlannedPassage
 from motion_backend.diffusion.rollout import Rollout, conditions
-from motion_backend.diffusion.sampler import Guide, Sampler, Scale, towards
+from motion_backend.diffusion.sampler import Sampler, Scale
 from motion_backend.diffusion.windows import THERE
 from motion_backend.metrics.contact_error import THRESHOLDS
 from motion_backend.mocap.foot_hold import held
-from motion_backend.motion import FPS, Motion, Phase, Skill, join
+from motion_backend.motion import FPS, Motion, Note, Phase, PhaseKind, Skill, join
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, Skeleton
 from motion_backend.stride_takeover import joined
-from motion_backend.walk_driver import by_rules, in_mood
+from motion_backend.walk_driver import by_rules
 from motion_backend.walk_generator import LOOK, Frames
-from scene_graphs.home import Home
 
-TRIES: Final = 3
-"""How often a passage is made, from other noise each time; what hands have a part in, at last with the plan's arms."""
+TRIES: Final = 4
+"""How often a passage is made, from other noise each time; at last with the plan's arms."""
 LAID_OVER: Final = "the arms are the rules', laid over it"
+OTHER: Final = 2
+"""Which try of a walk is made by the other weights."""
+CARRIAGE: Final = "the carriage is the rules', laid over it"
+CARRIED: Final = "the arms and the carriage are the rules', laid over it"
 LATER: Final = 2
 """Windows after the plan's end in which what is done may still come to its end."""
 KEPT: Final = 10
@@ -84,14 +90,13 @@ class PlanFollower:
     name: str = "diffusion"
 
     def follow(
-        self, home: Home, part: Part, plan: Motion, state: BodyState, since: int = 0, arms: str = ""
+        self, passages: Sequence[PlannedPassage], notes: tuple[Note, ...], state: BodyState, arms: str = ""
     ) -> Followed:
-        """A part from where its state left the body, passage by passage.
+        """Passages of a plan, one after the other, from where a state left the body.
 
         With `arms`, those of the plan are laid over what is made, and its phases say so in these words.
         """
         past = Frames(state.history.root_positions, state.history.local_rotations)
-        passages = passages_of(home, part, plan, since)
         made: list[Motion] = []
         missed: list[Missed] = []
         for index, passage in enumerate(passages):
@@ -105,32 +110,38 @@ class PlanFollower:
             past = past.then(_frames(motion))[-KEPT:]
             made.append(motion)
         last = passages[-1].since + len(made[-1])
-        return Followed(replace(join(made), notes=plan.notes), tuple(missed), last)
+        return Followed(replace(join(made), notes=notes), tuple(missed), last)
 
     def _tried(self, passage: PlannedPassage, past: Frames, seed: list[int], arms: str) -> tuple[Motion, float]:
         """A passage, and how far it was from its goal. RefusedError where none of the tries can stand."""
         why = RefusedError("")
         for number in range(TRIES):
             try:
-                frames, away = _Body(self, passage.plan.skeleton, past).through(passage, [*seed, number])
-                if passage.is_periodic and number:
-                    # What words alone did not make of it, the mood's carriage may.
-                    frames = in_mood(frames, passage.part.action, 0)
-                laid = arms or (LAID_OVER if number == TRIES - 1 and not passage.is_periodic else "")
-                if laid:
-                    frames = _overlaid(frames, passage.plan)
+                body = _Body(number, self, passage.plan.skeleton, past)
+                frames, away = body.through(passage, [*seed, number])
+                frames, laid = _laid(frames, passage, arms, number)
                 motion = _settled(past, frames, passage, Phase(passage.phase, 0, len(frames), self.name, laid))
-                check(motion, passage)
+                check(motion, passage, past)
                 return motion, away
             except RefusedError as error:
                 why = error
         raise why
 
+    def sampler(self, passage: PlannedPassage, number: int) -> Sampler:
+        """Whose weights make a try: both know our own body's walks, one better in stride, one from other poses."""
+        if not passage.is_periodic:
+            return self.acting
+        first, second = self.walking, self.acting
+        if passage.phase is PhaseKind.BACK_UP:
+            first, second = second, first
+        return second if number == OTHER else first
+
 
 @dataclass
 class _Body:
-    """A body that goes on window after window."""
+    """A body that goes on window after window, in one of the tries."""
 
+    number: int
     follower: PlanFollower
     skeleton: Skeleton
     past: Frames
@@ -158,14 +169,16 @@ class _Body:
         while made is None or len(made) < len(passage.plan) + LATER * LOOK:
             window, over = self._window(passage, 0 if made is None else len(made), past, seed)
             made, past = window if made is None else made.then(window), past.then(window)
-            if over and np.linalg.norm(made.root[-1] - passage.plan.root_positions[-1]) < THRESHOLDS[Skill.SITDOWN]:
-                return made[: max(min(len(made), len(passage.plan)), _arrived(made, passage))]
+            # Arms that come to a held pose come to it after the pelvis has come to its seat.
+            done = over and len(made) >= len(passage.plan)
+            if done and np.linalg.norm(made.root[-1] - passage.plan.root_positions[-1]) < LOST:
+                return made[: max(len(passage.plan), _arrived(made, passage))]
         raise RefusedError(f"the {passage.phase} was not over after {len(made) / FPS:.1f} s")
 
     def _window(self, passage: PlannedPassage, done: int, past: Frames, seed: list[int]) -> tuple[Frames, bool]:
         """The next 42 frames, and whether what is done is over with them."""
         known = known_poses(past)
-        sampler = self.follower.walking if passage.is_periodic else self.follower.acting
+        sampler = self.follower.sampler(passage, self.number)
         body = Rollout(sampler, self.skeleton, known)
         seen = sampler.denoiser.conditions.scene is not None
         wish = passage.wish(done, body.frame, seen)
@@ -182,11 +195,26 @@ class _Body:
         return found, completion > DONE
 
     def _guide(self, passage: PlannedPassage, done: int, body: Rollout) -> Guide | None:
-        """In the last windows of what has a seat the pelvis is pulled to it."""
+        """Walks are pulled to their way, hands to their goal, and pelvises to their seat in the last windows."""
+        frame = body.frame
+        if passage.is_periodic:
+            way = frame.inward(passage.way(done))[None, :, [0, 2]]
+            return along(torch.from_numpy(way.astype(np.float32)))
+        if passage.hand is not None:
+            goal, left = passage.hand
+            return reaching(frame.inward(goal[None])[0], left, passage.held(done))
         if not passage.is_seat or passage.due > done + LOOK:
             return None
-        place = body.frame.inward(passage.plan.root_positions[-1].astype(np.float64)[None])
-        return towards(torch.from_numpy(place.astype(np.float32)), (0, 1, 2))
+        # A body that is pulled up faster than its legs stretch leaves the floor: then it rises by itself.
+        by_itself = passage.kind is PartKind.RISE and self.number % 2
+        axes = (0, 2) if by_itself else (0, 1, 2)
+        place = frame.inward(passage.plan.root_positions[-1].astype(np.float64)[None])[:, axes]
+        seated = towards(torch.from_numpy(place.astype(np.float32)), axes)
+        if passage.kind is PartKind.RISE:
+            return seated
+        wanted = (passage.pose(done, frame), passage.settled(done))
+        pose, shares = (torch.from_numpy(one.astype(np.float32)) for one in wanted)
+        return both(seated, posed(pose, shares))
 
     def _brought(self, passage: PlannedPassage, made: Frames) -> tuple[Frames, float]:
         """Frames with pelvis or hand at the goal at last, and how far it was. RefusedError where it was too far."""
@@ -211,7 +239,7 @@ class _Body:
         )
         away = float(np.linalg.norm(goal - wrist[due]))
         refuse_beyond(away, THRESHOLDS[Skill.TOUCH], passage)
-        shares = held_shares(len(made), due, round(passage.part.hold * FPS))
+        shares = held_shares(np.arange(len(made)), due, round(passage.part.hold * FPS))
         return wrist_brought(made, self.skeleton, side, shares[:, None] * (planned - wrist)), away
 
 
@@ -232,17 +260,34 @@ def _arrived(made: Frames, passage: PlannedPassage) -> int:
     return int(later[-1]) + 1 if len(later) else len(made)
 
 
-def _overlaid(frames: Frames, plan: Motion) -> Frames:
-    """Frames with the arms of a plan, which are come to over a while."""
-    at = np.minimum(np.arange(len(frames)), len(plan) - 1)
-    share = eased((np.arange(len(frames)) + 1) / OVER)
-    return with_arms_of(frames, plan.local_rotations[at].astype(np.float64), share)
+def _laid(frames: Frames, passage: PlannedPassage, arms: str, number: int) -> tuple[Frames, str]:
+    """Frames with what of the plan is laid over a try, come to over a while, and the words for it.
+
+    What words did not make of a walk its carriage may; arms are laid over where they are the plan's, and at last.
+    """
+    at = np.minimum(np.arange(len(frames)), len(passage.plan) - 1)
+    # Who sits there already has come to it: what is left to the plan's arms dies away behind the seam.
+    plan, share = _frames(passage.plan), eased((np.arange(len(frames)) + 1) / (1 if passage.since else OVER))
+    plan = Frames(plan.root[at], plan.local[at])
+    carried, last = passage.is_periodic and number > 0, number == TRIES - 1
+    if carried:
+        frames = with_carriage_of(frames, plan, share)
+    if arms or last:
+        frames = with_arms_of(frames, plan.local, share)
+    if carried:
+        return frames, CARRIED if arms or last else CARRIAGE
+    return frames, arms or (LAID_OVER if last else "")
 
 
 def _settled(past: Frames, frames: Frames, passage: PlannedPassage, phase: Phase) -> Motion:
-    """Frames as motion, with standing feet held where they stand."""
+    """Frames as motion, with standing feet held where they stand; who sits or lies there has them where they rest."""
     whole, skeleton = past.then(frames), passage.plan.skeleton
-    root, local, contacts = held(whole.root, whole.local, skeleton, len(past))
+    if passage.since:
+        at = np.minimum(np.arange(len(frames)), len(passage.plan) - 1)
+        resting = np.concatenate([np.zeros((len(past), 4)), passage.plan.contacts[at]])
+        root, local, contacts = whole.root, rotations.continuous(whole.local), resting
+    else:
+        root, local, contacts = held(whole.root, whole.local, skeleton, len(past))
     new = slice(len(past), None)
     motion = Motion(
         root_positions=root[new].astype(np.float32),

@@ -7,6 +7,7 @@ told in training (windows.py): in locomotion where the window ends, else where t
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -15,18 +16,22 @@ from numpy.typing import NDArray
 from motion_backend.backend_protocol import Part, PartKind
 from motion_backend.diffusion.conditions import MadeOf
 from motion_backend.diffusion.dataset import NEAR, PERIODIC, PHASES, WALKING
-from motion_backend.diffusion.motion_features import HeadingFrame, twist
+from motion_backend.diffusion.goal_cleanup import eased, held_shares
+from motion_backend.diffusion.motion_features import HISTORY, STRIDE, WINDOW, HeadingFrame, Poses, to_features, twist
 from motion_backend.diffusion.rollout import HandGoal, PelvisGoal, Wish
 from motion_backend.diffusion.scene_encoder import voxel_image
 from motion_backend.diffusion.windows import SEATS, settled
-from motion_backend.motion import FPS, Motion, PhaseKind, Skill
+from motion_backend.motion import FPS, Motion, PhaseKind, Skill, join
 from motion_backend.rotations import Array
 from motion_backend.scene import scene_of
 from motion_backend.skeleton import INDEX
+from motion_backend.walk_driver import SMOOTH
 from motion_backend.walk_generator import LOOK
 from scene_graphs.geometry.occupancy_grid import occupancy_pair
 from scene_graphs.home import Home
 
+WIDE: Final = 18
+"""Frames beyond the ends of a way that count for its smoothness."""
 SURE: Final = 2
 """Frames from the last known one to the middle of the first new one at 10 a second, which frame numbers are of."""
 
@@ -40,6 +45,8 @@ class PlannedPassage:
     phase: PhaseKind
     plan: Motion
     """Its frames, as the procedural body would do it."""
+    onward: Motion | None = None
+    """How the plan goes on in the same phase, where it is not followed to its end."""
     since: int = 0
     """Frames in which it has gone on already, in the part before: who sits there has sat down before that."""
 
@@ -82,10 +89,15 @@ class PlannedPassage:
         away = np.linalg.norm(wrists - told[0], axis=1)
         return int(np.argmax(away < away.min() + NEAR))
 
+    @cached_property
+    def told(self) -> Motion:
+        """What its goals are told of: a walk that goes on is not told to stop."""
+        return self.plan if self.onward is None else join([self.plan, self.onward])
+
     def wish(self, done: int, frame: HeadingFrame, seen: bool) -> Wish:
         """What is told of the window that begins after `done` frames of it; `seen` with what stands around."""
-        at = min(done + LOOK, len(self.plan)) - 1 if self.is_periodic else len(self.plan) - 1
-        place = self.plan.root_positions[at].astype(np.float64)
+        at = min(done + LOOK, len(self.told)) - 1 if self.is_periodic else len(self.plan) - 1
+        place = self.told.root_positions[at].astype(np.float64)
         voxels = self._voxels(frame, place) if seen else None
         number, left = (0, None) if self.is_periodic else (self.since + done + SURE, self._left(done))
         hand = self.hand
@@ -96,10 +108,39 @@ class PlannedPassage:
         goal = PelvisGoal(place[None], np.array([self.facing(at)]), self.is_seat, left)
         return Wish(self.caption, goal, None, number, MadeOf.PROCEDURAL, voxels=voxels)
 
+    def way(self, done: int) -> Array:
+        """Where the pelvis is to be in the new frames of the window after `done` frames, without its sway. (14, 3)."""
+        from scipy.ndimage import gaussian_filter1d
+
+        # Beyond its ends a way goes on as it begins and ends: smoothed, it is not drawn back from them.
+        places = self.told.root_positions.astype(np.float64)
+        before, after = 2 * places[0] - places[:0:-1], 2 * places[-1] - places[-2::-1]
+        whole = np.concatenate([before[-WIDE:], places, after[:WIDE]])
+        begins = min(len(before), WIDE)
+        smooth = gaussian_filter1d(whole, SMOOTH, axis=0, mode="nearest")[begins : begins + len(places)]
+        return np.asarray(smooth[np.minimum(_keys(done), len(smooth) - 1)])
+
+    def pose(self, done: int, frame: HeadingFrame) -> Array:
+        """Features of the plan in the new frames of the window after `done` frames; at its end it stays. (14, 202)."""
+        at = np.minimum(_keys(done), len(self.plan) - 1)
+        roots, local = (
+            values[at].astype(np.float64) for values in (self.plan.root_positions, self.plan.local_rotations)
+        )
+        single = HeadingFrame(frame.origin[0], np.asarray(frame.yaw)[0], frame.scale)
+        return to_features(Poses(roots, local, np.zeros((len(at), 4))), single, self.plan.skeleton)
+
+    def settled(self, done: int) -> Array:
+        """How far a pose is held by then in the new frames of the window after `done` frames. (14,)."""
+        return np.ones(WINDOW - HISTORY) if self.since else eased(1 - (self.due - _keys(done)) / LOOK)
+
+    def held(self, done: int) -> Array:
+        """How far the hand is at its goal in the new frames of the window after `done` frames. (14,)."""
+        return held_shares(_keys(done), self.due, round(self.part.hold * FPS))
+
     def facing(self, at: int) -> float:
         """The yaw at a frame of the plan; of who lies down, from the pelvis to the head."""
         if self.kind is not PartKind.LIE:
-            return float(twist(self.plan.local_rotations[at, 0].astype(np.float64)))
+            return float(twist(self.told.local_rotations[at, 0].astype(np.float64)))
         places = self.plan.part(at, at + 1).joint_positions()[0].astype(np.float64)
         along = places[INDEX["head"]] - places[0]
         return float(np.arctan2(along[0], along[2]))
@@ -121,11 +162,19 @@ class PlannedPassage:
         return np.asarray(voxel_image(pair)[None])
 
 
-def passages_of(home: Home, part: Part, plan: Motion, since: int = 0) -> list[PlannedPassage]:
-    """The passages of a part's plan, in order; the first has gone on for `since` frames."""
+def _keys(done: int) -> NDArray[np.int64]:
+    """The frames of a passage that a window after `done` frames has its new frames in. (14,)."""
+    return done + STRIDE * np.arange(1, WINDOW - HISTORY + 1) - 1
+
+
+def passages_of(home: Home, part: Part, plan: Motion, since: int = 0, count: int | None = None) -> list[PlannedPassage]:
+    """The passages of the first `count` frames of a part's plan, in order; the first has gone on for `since` frames."""
     found: list[PlannedPassage] = []
+    end = len(plan) if count is None else count
     for phase in plan.phases:
-        if phase.stop > phase.start:
-            frames = plan.part(phase.start, phase.stop)
-            found.append(PlannedPassage(home, part, phase.kind, frames, 0 if found else since))
+        stop = min(phase.stop, end)
+        if stop > phase.start:
+            frames = plan.part(phase.start, stop)
+            onward = plan.part(stop, phase.stop) if phase.stop > stop else None
+            found.append(PlannedPassage(home, part, phase.kind, frames, onward, 0 if found else since))
     return found

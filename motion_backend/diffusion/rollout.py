@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from motion_backend.diffusion.conditions import HAND, MAX_SECONDS, PELVIS, TIME_UNIT, Conditions, MadeOf
+from motion_backend.diffusion.guidance import Guide
 from motion_backend.diffusion.motion_features import (
     HISTORY,
     RATE,
@@ -25,7 +26,7 @@ from motion_backend.diffusion.motion_features import (
     smoothly_joined,
     to_features,
 )
-from motion_backend.diffusion.sampler import Guide, Sampler
+from motion_backend.diffusion.sampler import Sampler
 from motion_backend.language.minilm import WIDTH as TEXT_WIDTH
 from motion_backend.language.sentence_encoder import load_encoder
 from motion_backend.mocap.foot_hold import held

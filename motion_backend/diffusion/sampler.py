@@ -1,11 +1,10 @@
 """Windows out of noise, one after the other: DDPM and DDIM loops around the denoiser, with clean history at each step.
 
-The noise process is noise_schedule.py, the network denoiser.py; here is the loop, and what pulls its guess to a goal.
+The noise process is noise_schedule.py, the network denoiser.py, what pulls its guess to a goal guidance.py.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -15,6 +14,7 @@ from torch import Tensor
 
 from motion_backend.diffusion.conditions import Conditions
 from motion_backend.diffusion.denoiser import Denoiser
+from motion_backend.diffusion.guidance import Guide
 from motion_backend.diffusion.motion_features import FEATURES, HISTORY, PLACES, WINDOW
 from motion_backend.diffusion.noise_schedule import NoiseSchedule, ddim_step, ddpm_step
 from motion_backend.rotations import Array
@@ -22,14 +22,10 @@ from motion_backend.skeleton import INDEX
 
 DDIM_STEPS: Final = 10
 """Of sampling, where nothing else is asked for: five are as good, twenty are no better."""
-PULL: Final = 0.5
-"""Share of what is left to the goal by which guidance moves each clean guess in the last windows of an action."""
 LEGS: Final = [
     PLACES.start + 3 * (INDEX[name] - 1) + axis for name in ("left_ankle", "right_ankle") for axis in (0, 1, 2)
 ]
 """Features by which the moment of a stride is told."""
-Guide = Callable[[Tensor], Tensor]
-"""Moves a clean guess (B, 14, 202), in metres and rotations, towards what it is to come to."""
 
 
 @dataclass(frozen=True)
@@ -113,19 +109,3 @@ class Sampler:
             else:
                 x = ddpm_step(self.schedule, x, clean, step, fresh())
         return clean
-
-
-def towards(goal: Tensor, axes: tuple[int, ...], pull: float = PULL) -> Guide:
-    """Guidance of the root: the last frame comes nearer to the goal (B, len(axes)) by a share, those before it by less.
-
-    Axes are 0, 1 and 2 for x, height and z in the heading frame.
-    """
-
-    def guide(guess: Tensor) -> Tensor:
-        share = pull * torch.linspace(1 / guess.shape[1], 1.0, guess.shape[1])[None, :, None]
-        moved = guess.clone()
-        lacking = goal[:, None] - guess[:, -1:, list(axes)]
-        moved[..., list(axes)] += share * lacking
-        return moved
-
-    return guide

@@ -1,7 +1,8 @@
 """The training loop (LINGO A.6): Adam with a falling rate, a slow average of the weights, a checkpoint now and then.
 
-What is drawn in a step depends on the seed and the step alone, so that a run that was broken off goes on as if it had
-not been. A loss that is not finite ends it, with its batch and the last good weights kept.
+What is drawn in a step depends on the seed and the step alone, and nothing else is by chance: a run that was broken off
+goes on as if it had not been, and the same data and seed give the same bytes of weights on the same machine with as
+many threads. A loss that is not finite ends it, with its batch and the last good weights kept.
 """
 
 from __future__ import annotations
@@ -9,7 +10,8 @@ from __future__ import annotations
 import json
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
@@ -34,8 +36,8 @@ from scene_graphs.errors import UserError
 
 Shares = Mapping[tuple[MadeOf, PartKind], float]
 WALK_SHARES: Final[Shares] = {
-    (MadeOf.RECORDED, PartKind.WALK): 0.4, (MadeOf.MATCHED, PartKind.WALK): 0.5,
-    (MadeOf.PROCEDURAL, PartKind.WALK): 0.1,
+    (MadeOf.RECORDED, PartKind.WALK): 0.33, (MadeOf.MATCHED, PartKind.WALK): 0.4,
+    (MadeOf.PROCEDURAL, PartKind.WALK): 0.22, (MadeOf.PROCEDURAL, PartKind.TURN): 0.05,
 }  # fmt: skip
 """Of windows where only walking is learned."""
 SHARES: Final[Shares] = {
@@ -48,15 +50,17 @@ SHARES: Final[Shares] = {
 }  # fmt: skip
 """Of windows where all skills are learned; those of which there is no motion fall to the others."""
 ACTED_SHARES: Final[Shares] = {
-    (MadeOf.PROCEDURAL, PartKind.WALK): 0.32, (MadeOf.PROCEDURAL, PartKind.TURN): 0.08,
-    (MadeOf.PROCEDURAL, PartKind.SIT): 0.19, (MadeOf.PROCEDURAL, PartKind.LIE): 0.12,
-    (MadeOf.PROCEDURAL, PartKind.RISE): 0.13, (MadeOf.PROCEDURAL, PartKind.REACH): 0.16,
+    (MadeOf.PROCEDURAL, PartKind.WALK): 0.24, (MadeOf.PROCEDURAL, PartKind.TURN): 0.08,
+    (MadeOf.PROCEDURAL, PartKind.SIT): 0.18, (MadeOf.PROCEDURAL, PartKind.LIE): 0.11,
+    (MadeOf.PROCEDURAL, PartKind.RISE): 0.19, (MadeOf.PROCEDURAL, PartKind.REACH): 0.2,
 }  # fmt: skip
 """Of windows where all that our own body acts is learned, starts, stops and odd walks too."""
 FLOORS: Final = ((ROOT, 0.1), (TURNS, 0.04), (PLACES, 0.02), (CONTACTS, 0.3))
 """Deviations that no feature goes below: what hardly varies is not blown up."""
 SAMPLED: Final = 2048
 """Windows that mean and deviation are taken from."""
+STEP: Final = "step"
+"""How far a run has come, among its tensors."""
 MAX_NORM: Final = 1.0
 """Of a gradient."""
 MOMENTS: Final = (0.9, 0.999)
@@ -141,6 +145,11 @@ class Run:
     curve: list[dict[str, float]] = field(default_factory=list)
     gaits: int = 0
     """Of how many people's walks are told apart."""
+
+    @property
+    def device(self) -> torch.device:
+        """Where its network is."""
+        return next(self.network.parameters()).device
 
 
 @dataclass(frozen=True)
@@ -242,6 +251,32 @@ def train(
     """
     folder.mkdir(parents=True, exist_ok=True)
     run = _begun(learner, bank, windows, config, folder, start)
+    with _repeatable(run.device):
+        _steps(learner, bank, windows, config, folder, run, at_checkpoint)
+    return averaged(learner, run, config)
+
+
+@contextmanager
+def _repeatable(device: torch.device) -> Iterator[None]:
+    """Only what gives the same numbers each time; a GPU has that of its libraries by their own settings alone."""
+    before = torch.are_deterministic_algorithms_enabled()
+    torch.use_deterministic_algorithms(device.type == "cpu")
+    try:
+        yield
+    finally:
+        torch.use_deterministic_algorithms(before)
+
+
+def _steps(
+    learner: Learner,
+    bank: WindowBank,
+    windows: Windows,
+    config: TrainConfig,
+    folder: Path,
+    run: Run,
+    at_checkpoint: Callable[[Run, Weights], Mapping[str, float]],
+) -> None:
+    """All steps that a run has not done yet."""
     recent: list[dict[str, float]] = []
     learner.network.train()
     while run.step < config.steps:
@@ -258,9 +293,8 @@ def train(
         if run.step % config.save_every == 0 or run.step == config.steps:
             means = {name: float(np.mean([one[name] for one in recent])) for name in recent[0]}
             recent = []
-            _checkpointed(learner, run, config, folder, means, at_checkpoint)
+            _checkpointed(learner, bank, run, config, folder, means, at_checkpoint)
             learner.network.train()
-    return averaged(learner, run, config)
 
 
 def averaged(learner: Learner, run: Run, config: TrainConfig) -> Weights:
@@ -275,7 +309,7 @@ def averaged(learner: Learner, run: Run, config: TrainConfig) -> Weights:
     told = {
         "kind": learner.kind, "sizes": dict(learner.sizes), "noise": asdict(config.noise),
         "gaits": run.gaits,
-        "training": {**config.to_dict(), "steps_done": run.step, "core_seconds": round(run.seconds)},
+        "training": {**config.to_dict(), "steps_done": run.step},
     }  # fmt: skip
     return Weights(network.eval().requires_grad_(False), scale, told)
 
@@ -286,7 +320,7 @@ def _begun(
     """A run at its beginning, or as it was saved."""
     device = next(learner.network.parameters()).device
     optimizer = Adam(list(learner.network.parameters()))
-    told = {"config": config.to_dict(), "sizes": dict(learner.sizes), "kind": learner.kind}
+    told = _told(learner, bank, config)
     state = folder / "run.json"
     if not state.exists():
         if start is not None:
@@ -297,15 +331,26 @@ def _begun(
         return Run(learner.network, average, scale, optimizer, gaits=len(bank.gaits))
     row = json.loads(state.read_text(encoding="utf-8"))
     if row["told"] != json.loads(json.dumps(told)):
-        raise CheckpointError(f"{folder} holds a run of another config", "give another folder, or the same options")
+        why = f"{folder} holds a run of another config or of other data"
+        raise CheckpointError(why, "give another folder, or the same data and options")
     tensors = {name: tensor.to(device) for name, tensor in read_tensors(folder / "run.safetensors").items()}
     learner.network.load_state_dict(_under("network.", tensors))
     for kind, kept in (("mean", optimizer.means), ("square", optimizer.squares)):
         for index, tensor in enumerate(kept):
             tensor.copy_(tensors[f"adam.{kind}.{index}"])
     scale = Scale(tensors[MEAN], tensors[DEVIATION])
-    average, done = _under("average.", tensors), (row["step"], row["seconds"], row["curve"])
+    # The tensors are written first: they say how far it came where it was broken off between the two.
+    step = int(tensors[STEP])
+    done = (step, row["seconds"], [one for one in row["curve"] if one["step"] <= step])
+    average = _under("average.", tensors)
     return Run(learner.network, average, scale, optimizer, *done, gaits=len(bank.gaits))
+
+
+def _told(learner: Learner, bank: WindowBank, config: TrainConfig) -> dict[str, Any]:
+    """What a run must have been begun with to be gone on with."""
+    return {
+        "config": config.to_dict(), "sizes": dict(learner.sizes), "kind": learner.kind, "data": bank.fingerprint,
+    }  # fmt: skip
 
 
 def _stepped(run: Run, loss: Tensor, config: TrainConfig) -> None:
@@ -320,6 +365,7 @@ def _stepped(run: Run, loss: Tensor, config: TrainConfig) -> None:
 
 def _checkpointed(
     learner: Learner,
+    bank: WindowBank,
     run: Run,
     config: TrainConfig,
     folder: Path,
@@ -334,9 +380,9 @@ def _checkpointed(
     tensors = {f"network.{name}": tensor for name, tensor in run.network.state_dict().items()}
     tensors |= {f"average.{name}": tensor for name, tensor in run.average.items()}
     tensors |= _optimizer_tensors(run.optimizer) | {MEAN: run.scale.mean, DEVIATION: run.scale.deviation}
+    tensors[STEP] = torch.tensor(run.step)
     save_file({name: tensor.detach().cpu().contiguous() for name, tensor in tensors.items()}, folder / "run.part")
-    told = {"config": config.to_dict(), "sizes": dict(learner.sizes), "kind": learner.kind}
-    row = {"told": told, "step": run.step, "seconds": run.seconds, "curve": run.curve}
+    row = {"told": _told(learner, bank, config), "step": run.step, "seconds": run.seconds, "curve": run.curve}
     (folder / "run.part").replace(folder / "run.safetensors")
     (folder / "run.json").write_text(json.dumps(row, indent=1), encoding="utf-8")
 

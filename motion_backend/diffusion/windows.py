@@ -6,6 +6,7 @@ belongs to. Half of all windows are seen in a mirror, words and goals with them.
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -133,6 +134,14 @@ class WindowBank:
         self._texts = torch.from_numpy(np.asarray(encode(words), dtype=np.float32))
         self._text = torch.tensor([place[p.caption] for _, p in rows])
         self._mirrored_text = torch.tensor([place[mirror_words(p.caption)] for _, p in rows])
+
+    @cached_property
+    def fingerprint(self) -> int:
+        """Of all that is learned from: a run goes on with the same only."""
+        found = zlib.crc32(repr([(index, passage) for index, passage in self.passages]).encode())
+        for tensor in (self._roots, self._six, self._contacts, self._texts, self._made_of, self._gait):
+            found = zlib.crc32(tensor.numpy().tobytes(), found)
+        return found
 
     def windows(self, shares: Mapping[tuple[MadeOf, PartKind], float], every: int = STRIDE) -> Windows:
         """All windows of passages that have a share, a window beginning `every` frames.

@@ -145,7 +145,7 @@ def _write_rows(path: Path, rows: dict[bytes, Vectors]) -> None:
 
 
 def load_encoder(prefer: Prefer = "minilm", cache: Path | None = None, folder: Path | None = None) -> SentenceEncoder:
-    """The encoder asked for; hashing, under its own name, where torch or the weights are not installed.
+    """The encoder asked for; hashing, under its own name, where the weights are not installed.
 
     `folder` holds the weights when they are not those of the pip package; `cache` remembers that their hash was
     checked. Raises `minilm.WeightsError` when the files are there but are not the expected ones.
@@ -156,6 +156,6 @@ def load_encoder(prefer: Prefer = "minilm", cache: Path | None = None, folder: P
         from motion_backend.language import minilm
 
         place = folder or minilm.weights_folder()
-        if place is not None and minilm.torch_is_installed():
+        if place is not None:
             return minilm.MiniLM(place, cache)
     return HashingEncoder()

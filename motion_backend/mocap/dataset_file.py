@@ -12,6 +12,7 @@ import lzma
 import tokenize
 import zipfile
 import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -116,6 +117,11 @@ def dataset_bytes(dataset: Dataset) -> bytes:
         "local_rotations": np.round(turns * _UNIT).astype(np.int16),
         "touching": np.concatenate([_packed(entry) for entry in dataset.entries]),
     }
+    return npz_bytes(arrays)
+
+
+def npz_bytes(arrays: Mapping[str, NDArray[Any]]) -> bytes:
+    """A compressed .npz without the time at which it was written: the same arrays give the same bytes."""
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w") as archive:
         for name, array in arrays.items():

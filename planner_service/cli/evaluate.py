@@ -19,6 +19,7 @@ from rich.table import Table
 from planner_service.cli.console import plain_table
 from planner_service.cli.evaluate_body import body
 from planner_service.cli.evaluate_embedding import embedding
+from planner_service.cli.evaluate_motion import motion
 from planner_service.cli.evaluate_physics import physics
 from planner_service.cli.evaluate_walks import walks
 from planner_service.llm.factory import load_model
@@ -108,6 +109,7 @@ app = typer.Typer(no_args_is_help=True, help="Measure the planner against writte
 app.command()(body)
 app.command()(walks)
 app.command()(embedding)
+app.command()(motion)
 app.command()(physics)
 app.command()(scripts)
 

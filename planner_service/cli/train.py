@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Final
 import typer
 from rich.console import Console
 
+from planner_service.cli.train_embedding import embedding
+from planner_service.cli.train_physics import physics
 from planner_service.output.story_export import check_writable
 from planner_service.pipeline import RequestError
 
@@ -32,6 +34,10 @@ class Learned(StrEnum):
     ACTED = "acted"
     """What our own body acts: sitting, lying, rising, reaching, and walks that nobody was recorded in."""
     ALL = "all"
+
+
+app.command()(embedding)
+app.command()(physics)
 
 
 @app.callback()
@@ -74,6 +80,9 @@ def diffusion(
         Path | None, typer.Option(help="Clips whose test people judge the walk at every checkpoint.")
     ] = None,
     device: Annotated[str, typer.Option(help="cpu or cuda, where numbers are 16 bits wide.")] = "cpu",
+    history_noise: Annotated[
+        float, typer.Option(min=0, max=1, help="Deviations by which the history is disturbed at most; 0: not at all.")
+    ] = 0.06,
     start: Annotated[
         Path | None, typer.Option("--from", help="Weights of the same sizes to begin with, without their suffix.")
     ] = None,
@@ -97,6 +106,7 @@ def diffusion(
         rate or RATES[preset],
         save_every=save_every,
         seed=seed,
+        history_noise=history_noise,
         losses=WALK_LOSSES if learn is Learned.WALK else CONTACT_LOSSES,
     )
     people = None if judge is None else read_dataset(judge)
@@ -139,7 +149,9 @@ def _training(files: list[Path]) -> list[Stretch]:
     """What is learned from: people and rooms of the test side are left out."""
     from motion_backend.diffusion.dataset import read_stretches
 
-    return [stretch for file in files for stretch in read_stretches(file) if stretch.split == "train"]
+    # Whatever the order in which files are named, the same is learned.
+    found = [stretch for file in files for stretch in read_stretches(file) if stretch.split == "train"]
+    return sorted(found, key=lambda one: (one.made_of, one.person, one.name, len(one)))
 
 
 def _bank(stretches: list[Stretch], scenes: bool) -> WindowBank:

@@ -26,6 +26,7 @@ from motion_backend.procedural.walk.walk_styles import walk_style
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
 from motion_backend.walk_generator import LOOK, Ahead, Frames
+from planner_service.evaluation.walk_comparison import MAX_SECONDS
 from planner_service.evaluation.walk_evaluation import CAPTION, Take, Walks, recorded_walks, spread, walks_of
 
 WINDOWS: Final = 4
@@ -80,7 +81,8 @@ def judged(sampler: Sampler, dataset: Dataset, people: int = 48, seed: int = 0) 
     made = walked(sampler, speeds, dataset.skeleton, seed)
     if len(made.walks.seconds) < 8:
         return {"goal_error": made.goal_error, "windows": len(made.walks.seconds)}
-    own = made.walks.seconds.of_one("learned")
+    # As many windows as everybody else is judged by: a judge who is shown more of a body tells it more surely.
+    own = made.walks.seconds.of_one("learned").spread(MAX_SECONDS)
     told = {f"auc {limb}": told_apart(unseen.seconds, own, limb).auc for limb in LIMBS}
     distance = discrepancy(everybody.features, everybody.groups, made.walks.features, made.walks.groups)
     wide = float(np.minimum(spread(everybody, made.walks), 1.0).mean())

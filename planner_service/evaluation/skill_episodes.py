@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import cycle
@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from motion_backend.backend_protocol import BodyState, Part, PartKind
+from motion_backend.backend_protocol import Part, PartKind
 from motion_backend.contact_goals import contact_goals
 from motion_backend.director import Director
 from motion_backend.embedding.text_motion_embedding import TextMotionEmbedding
@@ -24,14 +24,13 @@ from motion_backend.physics.policy_player import Acts, PolicyPlayer
 from motion_backend.physics.policy_view import View
 from motion_backend.physics.task import Task, plan_of
 from motion_backend.physics.tracker import fallen
-from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.rotations import Array
 from motion_backend.skeleton import build_skeleton
 from planner_service.evaluation.acted_motion import is_for_training
+from planner_service.evaluation.overheard_parts import Overheard
 from planner_service.evaluation.trials import Trial, act_trial, places_for, setting
 from planner_service.grounding.keyframes_to_actions import UnreachableError
 from planner_service.scripts.captions import captions
-from scene_graphs.home import Home
 from scene_graphs.layout_library import built_in_index
 from scene_graphs.navigation.path_planner import NoPath
 
@@ -89,7 +88,7 @@ def episode_of(trial: Trial) -> SkillEpisode | None:
     """None where the room has no place for it, or the plan does not do it either."""
     if not places_for(trial.skill, trial.caption, setting(trial.room)):
         return None
-    asked = _Overheard()
+    asked = Overheard()
     try:
         _, actions, motions = act_trial(trial, Director(asked))
     except (UnreachableError, NoPath):
@@ -115,23 +114,3 @@ def _embedding() -> TextMotionEmbedding:
 @cache
 def _words(caption: str) -> Array:
     return np.asarray(_embedding().texts([caption])[0], dtype=np.float64)
-
-
-@dataclass(frozen=True)
-class _Step:
-    part: Part
-    state: BodyState
-    motion: Motion
-
-
-class _Overheard(ProceduralBackend):
-    """The procedural body, and what it was asked for."""
-
-    def __init__(self) -> None:
-        self.steps: list[_Step] = []
-
-    def advance(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
-        motion, after = super().advance(home, part, upcoming, state)
-        if len(motion):
-            self.steps.append(_Step(part, state, motion))
-        return motion, after

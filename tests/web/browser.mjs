@@ -35,7 +35,8 @@ export async function scene(act, options = {}) {
   const flags = process.getuid?.() === 0 ? [...FLAGS, "--no-sandbox"] : FLAGS;
   const browser = await chromium.launch({ executablePath: findChromium(), args: flags });
   try {
-    const context = await browser.newContext({ baseURL: base, viewport: { width: 1100, height: 820 }, ...options });
+    // Software draws every point: half as many a side tell as much.
+    const context = await browser.newContext({ baseURL: base, viewport: { width: 1100, height: 820 }, deviceScaleFactor: 0.5, ...options });
     context.setDefaultTimeout(PATIENCE);
     const page = await context.newPage();
     const noted = watch(page);

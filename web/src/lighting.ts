@@ -55,6 +55,14 @@ export class Lighting {
     this.#spot.position.set(x - 1.2, y + 5, z + 1.5);
   }
 
+  /** Coarser shadows, where pictures take long. */
+  simplify(): void {
+    const { shadow } = this.#sun;
+    shadow.mapSize.set(512, 512);
+    shadow.map?.dispose();
+    shadow.map = null;
+  }
+
   dispose(): void {
     this.#sun.dispose();
     this.#spot.dispose();

@@ -18,6 +18,11 @@ import { wallSides } from "./walls";
 
 export { warmUp };
 
+/** Seconds after which a picture has taken long; the share of points a side that is left then, and the least ever. */
+const LONG = 0.05;
+const COARSER = 0.6;
+const COARSEST = 0.4;
+
 /** Colours and strengths that the page chooses. */
 export interface Mood {
   readonly dark: boolean;
@@ -50,6 +55,7 @@ export class Stage {
   readonly #stale = (): void => void (this.dirty = true);
   #heading = 0;
   #slow = 0;
+  #sharpness = 1;
 
   /** Throws where the browser has no WebGL. */
   constructor(holder: HTMLElement) {
@@ -158,7 +164,7 @@ export class Stage {
 
   resize(width: number, height: number): void {
     if (!width || !height) return;
-    this.#renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2) * (this.#slow > 1 ? 0.6 : 1));
+    this.#renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2) * this.#sharpness);
     this.#renderer.setSize(width, height);
     this.cameraMan.resize(width, height);
     // Another size empties the canvas, and it would be shown so until the next picture.
@@ -187,11 +193,15 @@ export class Stage {
     this.#renderer.render(this.#scene, this.cameraMan.camera);
   }
 
-  /** Fewer points where pictures take long. */
+  /** Fewer points where pictures take long, and fewer still where that did not help: software draws a few a second. */
   #watch(seconds: number): void {
-    if (this.#slow > 1) return;
-    this.#slow = seconds > 0.05 ? this.#slow + 0.04 : Math.max(this.#slow - 0.02, 0);
-    if (this.#slow > 1) this.resize(this.canvas.clientWidth, this.canvas.clientHeight);
+    if (this.#sharpness <= COARSEST) return;
+    this.#slow = seconds > LONG ? this.#slow + Math.max(0.04, seconds) : Math.max(this.#slow - 0.02, 0);
+    if (this.#slow < 1) return;
+    this.#slow = 0;
+    this.#sharpness *= COARSER;
+    this.#lighting.simplify();
+    this.resize(this.canvas.clientWidth, this.canvas.clientHeight);
   }
 
   dispose(): void {

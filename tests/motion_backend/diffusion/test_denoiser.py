@@ -13,7 +13,7 @@ from motion_backend.diffusion.conditions import Conditions, FramedText
 from motion_backend.diffusion.denoiser import PRESETS, Denoiser, DenoiserSizes
 from motion_backend.diffusion.motion_features import FEATURES, HISTORY, RATE, WINDOW
 from motion_backend.diffusion.noise_schedule import NoiseSchedule
-from motion_backend.diffusion.sampler import Sampler, Scale, towards
+from motion_backend.diffusion.sampler import Sampler, Scale
 from motion_backend.diffusion.scene_encoder import SceneEncoder, SceneSizes, voxel_image
 from motion_backend.diffusion.transformer import Layer
 
@@ -112,14 +112,6 @@ def test_history_is_clean_at_every_step_of_sampling(steps: int) -> None:
         assert np.allclose(first.numpy(), history, atol=1e-6)
     assert np.array_equal(found, sampler.windows(history, told(2), 7))
     assert not np.array_equal(found, sampler.windows(history, told(2), 8))
-
-
-def test_guidance_brings_the_last_frame_a_share_nearer_to_its_goal() -> None:
-    guess, goal = torch.zeros(2, 14, FEATURES), torch.tensor([[1.0, 2.0], [0.0, -4.0]])
-    found = towards(goal, (0, 2), pull=0.5)(guess)
-    assert torch.allclose(found[:, -1, [0, 2]], goal / 2)
-    assert torch.equal(found[..., 1], guess[..., 1])
-    assert (found[0, :, 0].diff() > 0).all()
 
 
 def test_voxels_of_another_shape_are_refused() -> None:

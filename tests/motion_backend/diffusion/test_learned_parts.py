@@ -10,15 +10,19 @@ import numpy as np
 import pytest
 from small_home import contact, rise, small_home
 
-from motion_backend.backend_protocol import BodyState
+from motion_backend import rotations
+from motion_backend.backend_protocol import BodyState, Part, PartKind
 from motion_backend.diffusion import plan_follower
 from motion_backend.diffusion.backend import DiffusionBackend
-from motion_backend.diffusion.goal_cleanup import held_shares, pelvis_brought, wrist_brought
+from motion_backend.diffusion.goal_cleanup import held_shares, pelvis_brought, with_carriage_of, wrist_brought
 from motion_backend.diffusion.own_strides import walkers
+from motion_backend.diffusion.passage_checks import RefusedError, check
+from motion_backend.diffusion.planned_passages import PlannedPassage
 from motion_backend.diffusion.windows import settled
 from motion_backend.director import Director, shares
-from motion_backend.motion import Action, Character, Motion, Skill
+from motion_backend.motion import Action, Character, Motion, PhaseKind, Skill
 from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, build_skeleton
 from motion_backend.walk_generator import Frames
 
@@ -84,7 +88,7 @@ def standing(frames: int) -> Frames:
 
 def test_a_wrist_is_brought_where_it_is_to_be_and_nothing_else_moves() -> None:
     skeleton, frames = build_skeleton(), standing(30)
-    shift = held_shares(30, 15, 5)[:, None] * np.array([0.05, 0.03, 0.04])
+    shift = held_shares(np.arange(30), 15, 5)[:, None] * np.array([0.05, 0.03, 0.04])
     before = skeleton.forward_kinematics(frames.root, frames.local)[0]
     moved = wrist_brought(frames, skeleton, "right", shift)
     after = skeleton.forward_kinematics(moved.root, moved.local)[0]
@@ -94,7 +98,7 @@ def test_a_wrist_is_brought_where_it_is_to_be_and_nothing_else_moves() -> None:
 
 
 def test_a_hand_comes_stays_and_leaves() -> None:
-    shares_of = held_shares(120, 40, 20)
+    shares_of = held_shares(np.arange(120), 40, 20)
     assert (shares_of[40:61] == 1).all()
     assert shares_of[0] == 0 == shares_of[-1]
     assert np.abs(np.diff(shares_of)).max() < 0.1
@@ -128,3 +132,54 @@ def test_a_character_of_another_size_sits_too_or_says_why_not() -> None:
     begun = director.begin(small_home(), replace(Character(), height=1.5), 3)
     motion, _ = director.act(small_home(), sits(), begun)
     assert motion.completed
+
+
+def test_a_carriage_is_laid_over_and_the_stride_is_left() -> None:
+    """A body that is bent over as another is keeps its legs and its way."""
+    frames = Frames(*stood_for(60))
+    bent = frames.local.copy()
+    bent[:, INDEX["spine1"]] = rotations.compose(
+        bent[:, INDEX["spine1"]], rotations.axis_to_quat("x", np.full(60, 0.4))
+    )
+    found = with_carriage_of(frames, Frames(frames.root, bent), np.linspace(0.0, 1.0, 60))
+    skeleton = build_skeleton()
+    before, wanted, after = (
+        skeleton.forward_kinematics(one.root, one.local)[0] for one in (frames, Frames(frames.root, bent), found)
+    )
+    legs = [INDEX[f"{side}_{name}"] for side in ("left", "right") for name in ("hip", "knee", "ankle", "foot")]
+    assert np.abs(after - before)[:, legs].max() < 1e-5
+    tilt = (after - before)[-1, INDEX["neck"], [0, 2]], (wanted - before)[-1, INDEX["neck"], [0, 2]]
+    assert np.linalg.norm(tilt[0]) > 0.7 * np.linalg.norm(tilt[1])
+    assert np.abs(after - before)[0].max() < 1e-5
+
+
+def stood_for(count: int) -> tuple[Array, Array]:
+    """A body that stands for so many frames."""
+    history = ProceduralBackend().begin(small_home(), Character(), 3).history
+    root, local = history.root_positions[-1:], history.local_rotations[-1:]
+    return np.repeat(root, count, axis=0), np.repeat(local, count, axis=0)
+
+
+def test_what_jumps_is_refused() -> None:
+    still = Frames(*stood_for(12))
+    root, local = stood_for(30)
+    local = local.copy()
+    local[15, INDEX["left_shoulder"]] = rotations.compose(
+        local[15, INDEX["left_shoulder"]], rotations.axis_to_quat("z", np.float64(0.8))
+    )
+    plan = moved(root, stood_for(30)[1])
+    passage = PlannedPassage(small_home(), acted_part(), PhaseKind.STAND, plan)
+    check(plan, passage, still)
+    with pytest.raises(RefusedError, match="jumped"):
+        check(moved(root, local), passage, still)
+
+
+def moved(root: Array, local: Array) -> Motion:
+    return Motion(
+        root.astype(np.float32), local.astype(np.float32), np.ones((len(root), 4), np.float32), build_skeleton(),
+        np.zeros(len(root), np.int32),
+    )  # fmt: skip
+
+
+def acted_part() -> Part:
+    return Part(PartKind.HOLD, sits())

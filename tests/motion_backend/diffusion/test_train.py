@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,13 +17,23 @@ from small_home import DIRECTOR, small_home
 from motion_backend.backend_protocol import PartKind
 from motion_backend.diffusion.body_kinematics import Kinematics, told_joints
 from motion_backend.diffusion.checkpoint import CheckpointError, load_denoiser, save_weights
+from motion_backend.diffusion.completion_scheduler import SchedulerSizes
 from motion_backend.diffusion.conditions import MadeOf
 from motion_backend.diffusion.dataset import Passage, Stretch, read_stretches, write_stretches
 from motion_backend.diffusion.denoiser import DenoiserSizes
 from motion_backend.diffusion.losses import LossWeights, losses
 from motion_backend.diffusion.motion_features import HISTORY, HeadingFrame, Poses, to_features
 from motion_backend.diffusion.sampler import Sampler, Scale
-from motion_backend.diffusion.train import Adam, TrainConfig, TrainingError, denoiser_learner, dropped, train
+from motion_backend.diffusion.train import (
+    Adam,
+    Learner,
+    TrainConfig,
+    TrainingError,
+    denoiser_learner,
+    dropped,
+    scheduler_learner,
+    train,
+)
 from motion_backend.diffusion.windows import WindowBank, Windows
 from motion_backend.mocap.augmentation import mirror
 from motion_backend.mocap.clip import ClipError
@@ -185,11 +195,14 @@ def test_adam_is_that_of_torch() -> None:
     assert torch.allclose(ours, theirs, atol=1e-5)
 
 
-def test_a_run_that_was_broken_off_ends_in_the_same_bytes(tmp_path: Path) -> None:
-    bank = bank_of(two_people())
-    windows, config = bank.windows({WALK: 1.0}), TrainConfig(4, batch=3, save_every=2, warmup=1)
-    whole = train(denoiser_learner(TINY, config), bank, windows, config, tmp_path / "whole")
+def learner_of(kind: str, config: TrainConfig) -> Learner:
+    if kind == "denoiser":
+        return denoiser_learner(TINY, config)
+    return scheduler_learner(SchedulerSizes(1, 2, 16, 16, True), config)
 
+
+@pytest.mark.parametrize("kind", ["denoiser", "scheduler"])
+def test_a_run_that_was_broken_off_ends_in_the_same_bytes(kind: str, tmp_path: Path) -> None:
     class BrokenOffError(Exception):
         pass
 
@@ -198,14 +211,45 @@ def test_a_run_that_was_broken_off_ends_in_the_same_bytes(tmp_path: Path) -> Non
             raise BrokenOffError
         return {}
 
+    config = TrainConfig(4, batch=3, save_every=2, warmup=1)
+
+    def trained(folder: str, at_checkpoint: Callable[[object, object], dict[str, float]] = lambda _r, _w: {}) -> None:
+        bank = bank_of(two_people())
+        windows = bank.windows({WALK: 1.0})
+        weights = train(learner_of(kind, config), bank, windows, config, tmp_path / folder, at_checkpoint)
+        save_weights(weights, tmp_path / folder / "shipped", half=True)
+
+    trained("whole")
     with pytest.raises(BrokenOffError):
-        train(denoiser_learner(TINY, config), bank, windows, config, tmp_path / "parts", breaks)
-    parts = train(denoiser_learner(TINY, config), bank, windows, config, tmp_path / "parts")
-    for one, other in zip(whole.network.state_dict().values(), parts.network.state_dict().values(), strict=True):
+        trained("parts", breaks)
+    # What else is drawn between the two parts is nothing to it.
+    torch.manual_seed(99)
+    trained("parts")
+    names = ("shipped", "step000002", "step000004")
+    files = [f"{name}.{kind}" for name in names for kind in ("safetensors", "json")]
+    for name in (*files, "run.safetensors"):
+        assert (tmp_path / "whole" / name).read_bytes() == (tmp_path / "parts" / name).read_bytes(), name
+
+
+def test_a_run_is_gone_on_with_by_the_same_data_and_options_alone(tmp_path: Path) -> None:
+    bank, config = bank_of(two_people()), TrainConfig(1, batch=2)
+    windows = bank.windows({WALK: 1.0})
+    train(denoiser_learner(TINY, config), bank, windows, config, tmp_path)
+    faster, fewer = replace(config, rate=1.0), bank_of(two_people()[:1])
+    for other, told in ((bank, faster), (fewer, config)):
+        with pytest.raises(CheckpointError, match="another config or of other data"):
+            train(denoiser_learner(TINY, told), other, other.windows({WALK: 1.0}), told, tmp_path)
+
+
+def test_a_run_broken_off_as_it_was_saved_goes_on_from_its_tensors(tmp_path: Path) -> None:
+    bank, config = bank_of(two_people()), TrainConfig(2, batch=2, save_every=1)
+    windows = bank.windows({WALK: 1.0})
+    whole = train(denoiser_learner(TINY, config), bank, windows, config, tmp_path)
+    row = json.loads((tmp_path / "run.json").read_text())
+    (tmp_path / "run.json").write_text(json.dumps(row | {"step": 1, "curve": row["curve"][:1]}))
+    again = train(denoiser_learner(TINY, config), bank, windows, config, tmp_path)
+    for one, other in zip(whole.network.state_dict().values(), again.network.state_dict().values(), strict=True):
         assert torch.equal(one, other)
-    other_config = replace(config, rate=1.0)
-    with pytest.raises(CheckpointError, match="another config"):
-        train(denoiser_learner(TINY, other_config), bank, windows, other_config, tmp_path / "parts")
 
 
 def test_a_loss_that_is_not_finite_ends_training_and_keeps_batch_and_weights(tmp_path: Path) -> None:
@@ -257,6 +301,8 @@ def test_stretches_come_back_from_disk(tmp_path: Path) -> None:
     assert found[1].passages == (reach,)
     assert np.allclose(found[1].roots, one.roots)
     assert np.abs(np.abs(np.sum(found[1].local * one.local, axis=-1)) - 1).max() < 1e-6
+    write_stretches([one, one], tmp_path / "again.npz")
+    assert (tmp_path / "again.npz").read_bytes() == (tmp_path / "acted.npz").read_bytes()
     (tmp_path / "acted.npz").write_bytes(b"nothing")
     with pytest.raises(ClipError, match=r"acted\.npz cannot be read"):
         read_stretches(tmp_path / "acted.npz")

@@ -13,7 +13,7 @@ from motion_backend.language import minilm
 from motion_backend.motion import Motion, Skill
 
 pytestmark = pytest.mark.skipif(
-    minilm.weights_folder() is None or not minilm.torch_is_installed(),
+    minilm.weights_folder() is None,
     reason="the MiniLM weights or torch are not installed",
 )
 MAX_BYTES = 3_000_000

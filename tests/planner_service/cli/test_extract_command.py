@@ -27,7 +27,7 @@ CUES = ((0.5, 1.5, "She storms through the room."), (1.6, 2.8, "She sits down on
 def own_library(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """A library of this test's own, and the encoder that needs no weights."""
     monkeypatch.setenv("SIMS_DATA_DIR", str(tmp_path / "data"))
-    monkeypatch.setattr("motion_backend.language.minilm.torch_is_installed", lambda: False)
+    monkeypatch.setattr("motion_backend.language.minilm.weights_folder", lambda: None)
 
 
 def sims(*words: str | Path, wide: bool = True) -> Result:

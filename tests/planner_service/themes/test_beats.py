@@ -13,7 +13,7 @@ from motion_backend.emotion_words import emotion_of
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import EMOTIONS
 from planner_service.themes.beats import MAX_THEME_LENGTH, ThemeError, beats_of, read_beat, rooms_in
-from planner_service.themes.verb_finder import has_verb
+from planner_service.themes.verb_finder import tokens_of, verb_place
 
 
 def kinds(theme: str) -> list[str]:
@@ -48,7 +48,8 @@ def test_what_is_denied_is_undone_what_others_do_is_theirs_and_all_else_is_a_dee
         ("Nobody comes, so she eats alone.", ["other", "deed"]),
         ("He cannot sleep.", ["deed"]),
         ("He cannot swim.", ["undone"]),
-        ("Her heart races. She sits down.", ["deed", "deed"]),
+        ("Her heart races. She sits down.", ["feeling", "deed"]),
+        ("Bored stiff, the nurse tries on a hat.", ["feeling", "deed"]),
         ("A person becomes very depressed.", ["feeling"]),
     ],
 )
@@ -193,12 +194,12 @@ def test_words_of_a_longer_saying_mean_what_the_whole_means() -> None:
 
 @for_each("text", ["reads books", "he yodels", "is sitting", "to win", "cried"])
 def test_verbs_are_known(text: str) -> None:
-    assert has_verb(text)
+    assert verb_place(tokens_of(text)) is not None
 
 
 @for_each("text", ["a walk", "the drink and his dreams", "butter", "insomnia"])
 def test_nouns_are_no_verbs(text: str) -> None:
-    assert not has_verb(text)
+    assert verb_place(tokens_of(text)) is None
 
 
 def test_a_mood_before_a_verb_is_felt_and_any_other_words_there_are_nobodys_deed() -> None:

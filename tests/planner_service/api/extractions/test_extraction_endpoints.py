@@ -64,7 +64,7 @@ def mute() -> bytes:
 
 @pytest.fixture
 def app(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[FastAPI]:
-    monkeypatch.setattr("motion_backend.language.minilm.torch_is_installed", lambda: False)
+    monkeypatch.setattr("motion_backend.language.minilm.weights_folder", lambda: None)
     with app_on(tmp_path, upload_mb=1) as app:
         yield app
 
