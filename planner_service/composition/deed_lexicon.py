@@ -6,6 +6,7 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
+from itertools import pairwise
 from typing import Final
 
 from motion_backend.motion import Skill
@@ -19,6 +20,7 @@ from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import tokens_of
+from planner_service.themes.verb_group import NEARLY
 from scene_graphs import furniture
 from scene_graphs.data_tables import read_table, require_known, table
 
@@ -49,6 +51,8 @@ _NOT_NOW: Final = frozenset(("before", "after", "until", "since", "during", "wit
 """Words before what is not done, or not yet."""
 _LIGHT_VERBS: Final = ("do", "have", "take", "play", "watch")
 """Verbs that a noun alone stands for: "dinner", "a nap", "yoga"."""
+_THROUGH: Final = frozenset(("through", "in", "around", "round", "up", "down", "out", "over", "across"))
+"""Words between a deed and the room that it is done to: "searches through the kitchen"."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
 Pattern = tuple[frozenset[str], ...]
 """Base forms of each word; an empty set is a gap."""
@@ -82,6 +86,7 @@ class DeedTable:
     not_furniture: str
     rooms: dict[str, tuple[str, ...]]
     usual: dict[str, dict[str, tuple[str, ...]]]
+    typical: dict[str, str]
     stands_on: dict[str, str]
     seats_at: dict[str, tuple[str, ...]]
     deed: tuple[DeedRow, ...]
@@ -160,11 +165,31 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
         fitting = ["floor"]
     if fitting:
         return Deed(found, skill, tuple(fitting), True)
+    if skill is Skill.TOUCH and (rooms := typical_of(clause.text)):
+        return Deed(found, skill, (rooms[0], *found.at), True)
     kept = [piece for piece in _kept(clause, about) if affords(piece, need)] if skill is Skill.TOUCH else []
     if skill is Skill.TOUCH and not (kept or found.at):
         return None
     order = (*kept, *found.at) if found.things else (*found.at, *kept)
     return Deed(found, skill, tuple(dict.fromkeys(order)), False)
+
+
+def typical_of(text: str) -> list[str]:
+    """What is typical of the rooms that something is done to, in their order: "searches the study, the hall and …";
+    none for those that it is only done in."""
+    words = [token.low for token in tokens_of(text)]
+    typical, known = deed_table().typical, grammar()
+    found: dict[str, None] = {}
+    before = 0
+    for at in range(len(words)):
+        name = " ".join(words[at : at + 2]) if " ".join(words[at : at + 2]) in typical else words[at]
+        if name in typical and (before or not known.prepositions & set(words[1:at]) - _THROUGH):
+            end = at + len(name.split())
+            listed = not before or all(word in known.marks | known.adverbs | {",", "and", "then"} for word in words[before:at])
+            if listed and at and not (words[end:] and is_noun(words[end]) and words[end] not in known.prepositions):
+                found[typical[name]] = None
+                before = end
+    return list(found)
 
 
 def _may_be_noun(lemma: str) -> bool:
@@ -273,12 +298,16 @@ def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
     """A clause's words from its verb on, then from every later -ing on."""
     if clause.verb in theme_words()["speech_verbs"] and len(clause.lemmas) > 1:  # "says into the phone"
         yield ("talk", *clause.lemmas[1:])
+    if clause.text.split(" ", 1)[0].lower() in NEARLY:
+        yield ("nearly", *clause.lemmas)
     yield ("cannot", *clause.lemmas) if clause.unable else clause.lemmas
     if not grammar().adverbs.isdisjoint(clause.lemmas):  # "is still on hold"
         yield tuple(lemma for lemma in clause.lemmas if lemma not in grammar().adverbs)
-    words = {token.low for token in tokens_of(clause.text)}
+    tokens = [token.low for token in tokens_of(clause.text)]
+    nouns = grammar().marks - {"to"}
+    beside = {word for before, word in pairwise(tokens) if before not in nouns}  # not "her reading glasses"
     for place, lemma in enumerate(clause.lemmas[1:], 1):
-        if gerund(lemma) in words and lemma not in ("be",):
+        if gerund(lemma) in beside and lemma not in ("be",):
             yield clause.lemmas[place:]
 
 

@@ -23,6 +23,7 @@ from planner_service.composition.deed_lexicon import (
     deed_table,
     names_things,
     room_of,
+    typical_of,
     where,
 )
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
@@ -313,6 +314,8 @@ class KeyframeWriter:
         at = self.keyframes[-1].furniture if self.keyframes else "floor"
         if part is not None and at in deed.pieces and at != part.keyframes[-1].furniture:
             part = None  # nobody goes elsewhere for what is done where one is
+        if part is not None and deed.named and not _is_at(part.keyframes[-1], deed):
+            part = None  # the same is done at another place already
         same = part is not None and part.keyframes[-1].skill is skill
         if (
             part is not None
@@ -416,10 +419,16 @@ class KeyframeWriter:
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
 
 
+def _is_at(keyframe: PlannedKeyframe, deed: Deed) -> bool:
+    kinds = furniture.categories_of(keyframe.piece[0])
+    return any(not kinds.isdisjoint(furniture.categories_of(piece)) for piece in deed.pieces[:1] if piece != "floor")
+
+
 def _further(clause: Clause, deed: Deed) -> list[Deed]:
     """The same deed where else it is done: "looks under the bed, | behind the sofa"."""
     places = (where(text) for text in details_of(clause)[:_MOST_PLACES] if deed.named and text.split()[0] in _AT)
-    found = [piece for some in places for piece in some[:1] if affords(piece, "touch") and piece != deed.pieces[0]]
+    found = [*(piece for some in places for piece in some[:1]), *typical_of(clause.text)[:_MOST_PLACES]]
+    found = [piece for piece in found if affords(piece, "touch") and piece != deed.pieces[0]]
     return [Deed(deed.row, deed.skill, (piece,), True) for piece in dict.fromkeys(found)]
 
 

@@ -25,7 +25,7 @@ from planner_service.themes.asides import (
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, verb_of
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
 from planner_service.themes.verb_finder import Token, verb_place
-from planner_service.themes.verb_group import verb_group
+from planner_service.themes.verb_group import NEARLY, verb_group
 
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
 _PLAIN: Final = re.compile(r"[A-Za-z ,'’-]+[.!?]?\s*")
@@ -201,7 +201,7 @@ def _without_opening(tokens: Sequence[Token]) -> list[Token]:
     known = grammar()
     for at, token in enumerate(tokens[:-1]):
         too = token.low == "too" and is_adjective(tokens[at + 1].low)
-        if too or token.low in known.denials or token.low not in known.adverbs | {"and", "but", "or"}:
+        if too or token.low in known.denials | NEARLY or token.low not in known.adverbs | {"and", "but", "or"}:
             return list(tokens[at:])
     return list(tokens[-1:])
 
@@ -209,9 +209,9 @@ def _without_opening(tokens: Sequence[Token]) -> list[Token]:
 def _denials(lead: Sequence[Token], subject: str) -> list[Token]:
     """Of the words before a verb those that deny it; all of them where nobody is named."""
     known = grammar()
-    denials = known.denials - known.subjects - (known.with_gerund if subject else frozenset())  # "without a word she"
+    denials = (known.denials | NEARLY) - known.subjects - (known.with_gerund if subject else frozenset())  # "without a word she"
     denying = [token for token in lead if token.low in denials]
-    return denying if subject else list(lead) if any(token.low in known.denials for token in lead) else []
+    return denying if subject else list(lead) if any(token.low in known.denials | NEARLY for token in lead) else []
 
 
 def _is_hindered(joint: str, lead: Sequence[Token], verb: Token) -> bool:
@@ -257,19 +257,23 @@ def _placed(clause: Clause, before: Sequence[Token], source: str) -> Clause:
 
 def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> list[Clause]:
     """A clause and the second deed of it: "sits reading a letter", "goes to the kitchen to make tea"."""
-    if clause.verb not in grammar().postures or clause.quotes:
+    if clause.quotes:
         return [clause]
+    moves = clause.verb in grammar().postures
     for place in range(main + 1, len(words)):
-        gerund = _is_beside(words[place].low, words[place - 1].low)
-        purpose = words[place - 1].low == "to" and _is_purpose(words, place)
-        if gerund or purpose:
-            stop = place - 1 if purpose else place
+        low, last = words[place].low, words[place - 1].low
+        denied = last in ("not", "never") and low.endswith("ing") and bool(verb_of(low))
+        purpose = moves and last == "to" and _is_purpose(words, place)
+        if denied or purpose or (moves and _is_beside(low, last)):
+            stop = place - (purpose or denied)
             if stop <= main:
                 continue
-            head, tail = words[:stop], words[place:]
-            lemmas = _lemmas(tail)
-            joint = "to" if purpose else "ing"
-            second = replace(clause, text=_text(source, tail), subject="", verb=lemmas[0], lemmas=lemmas, joint=joint)
+            head, tail = words[:stop], words[place - denied :]
+            lemmas = _lemmas(words[place:])
+            second = replace(
+                clause, text=_text(source, tail), subject="", verb=lemmas[0], lemmas=lemmas,
+                joint="to" if purpose else "ing", denied=denied,
+            )  # fmt: skip
             if len(head) - main == 1 and clause.verb in ("go", "come", "get") and purpose:
                 return [replace(second, subject=clause.subject, joint=clause.joint)]  # "goes to make a coffee"
             return [replace(clause, text=_text(source, head), lemmas=_lemmas(head[main:])), second]

@@ -155,6 +155,8 @@ def _is_bare(before: Piece, piece: Piece) -> bool:
     if at is None or piece.joint not in (",", "and", "then") or is_adverb(first):
         return False
     verb = before.tokens[at].low
+    if verb in grammar().do | grammar().modals:  # "did open the door, | touch the wall"
+        return verb_of(first) == first
     if not (verb_of(verb) and verb_of(first)):
         return False
     plain = before.bare or (at > 0 and before.tokens[at - 1].low in _PLAIN_SUBJECTS)

@@ -32,8 +32,12 @@ _LONG: Final = (
     ("as soon as", "when"),
     ("(?:every|each) time(?= (?:i|he|she|they|we|the|his|her|my)\\b)", "whenever"),
     ("at (?:long )?last|in the end", "finally"),
+    ("not until(?=.* (?:did|does|do) )", "only after"),
+    ("after (?:this|that)(?=,| (?:i|he|she|they|we|it|the|his|her|my|all)\\b)", "then"),
 )  # fmt: skip
 """Joints of several words, and those that say the same."""
+_INVERTED: Final = re.compile(r"(?i)(?<=\w)(,?) (did|does|do|had|has|have) (he|she|they|we|i)\b(?= \w+)(?! not\b)")
+"""A verb before who does it, as after "only when", "never" and "not until"."""
 _SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|had|have|should)nt\b")
 
 
@@ -71,11 +75,20 @@ def plain(text: str) -> str:
         text = re.sub(rf"(?i)(?<=\w){short}\b", whole, text)
     for long, short in _LONG:
         text = re.sub(rf"(?i)\b{long}\b", short, text)
+    text = _INVERTED.sub(_turned, text)
     text = re.sub(r"(?i)\b(I|he|she|they|we)'d((?: (?:never|always|often|rather|not))* (\w+))", _would, text)
     text = re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s been\b", r"\1 has been", text)
     return re.sub(
         r"\b(I|[Hh]e|[Ss]he|[Tt]hey|[Ww]e)'d\b", r"\1 had", re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s\b", r"\1 is", text)
     )
+
+
+def _turned(found: re.Match[str]) -> str:
+    """An inverted clause the other way about, and apart from what goes before it if that has a verb: "only when it was
+    dark | he did rise"."""
+    before = found.string[: found.start()].rsplit(".", 1)[-1]
+    told = found[1] or ("," if verb_place(tokens_of(before)) is not None else "")
+    return f"{told} {found[3]} {found[2]}"
 
 
 def _would(found: re.Match[str]) -> str:
@@ -130,6 +143,8 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
     if not base:
         return False
     at = place - 1
+    if place and word.endswith("ing") and tokens[at].low in ("not", "never"):
+        return True
     while at >= 0 and is_adverb(tokens[at].low):
         at -= 1
     if at < 0 or tokens[at].text == ",":

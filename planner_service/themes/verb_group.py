@@ -12,6 +12,8 @@ from planner_service.themes.verb_finder import Token, verb_place
 _LETTING: Final = frozenset(("let", "make", "force", "allow", "bring"))
 _ONESELF: Final = frozenset(("himself", "herself", "themselves", "themself", "myself", "yourself"))
 """Who lets or makes themselves do a thing does it."""
+NEARLY: Final = frozenset(("nearly", "almost"))
+"""Adverbs before what is not done after all."""
 _MAX_WORDS: Final = 6
 """Words within which the deed of an aspect stands: "spends the whole long evening reading"."""
 
@@ -48,6 +50,9 @@ def _step(words: Sequence[Token], group: VerbGroup) -> int:
         group.unable |= low == "cannot" or (at > 0 and words[at - 1].low in ("can", "could"))
         group.denied = True
         return 2 if low in grammar().with_gerund and ahead == "of" else 1
+    if low in NEARLY and at == 0 and verb_of(ahead) and not ahead.endswith("ing"):
+        group.denied = True
+        return 1
     if low == "no" and ahead == "longer":
         group.denied = True
         return 2
