@@ -317,12 +317,18 @@ def _by_things(clause: Clause, about: str) -> DeedRow | None:
         return None
     if clause.verb and (row := _moved(clause)):
         return row
-    if not clause.verb or clause.verb in _STATES:
+    if not clause.verb or clause.verb in _STATES or _says_how(clause):
         return None
     named = _named(clause, "" if "them" in clause.lemmas else about)
     if any(affords(piece, "touch") for piece in named) or _kept(clause, about):
         return DeedRow((clause.verb,), Skill.TOUCH, things=True)
     return DeedRow((clause.verb,), Skill.LOCO) if _WAYS.search(clause.text) else None
+
+
+def _says_how(clause: Clause) -> bool:
+    """Whether a verb of state only says how somebody is: "feels watched", not "feels the wall"."""
+    after = next((token.low for token in tokens_of(clause.text)[1:] if token.low not in grammar().adverbs), "")
+    return clause.verb in theme_words()["state_verbs"] | {"feel"} and after.endswith("ed") and bool(verb_of(after))
 
 
 def _moved(clause: Clause) -> DeedRow | None:

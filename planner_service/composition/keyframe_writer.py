@@ -32,6 +32,7 @@ from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScrip
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
 from planner_service.themes.details import details_of
+from planner_service.themes.lexicon import lemma_of
 from planner_service.themes.protagonist import names_somebody
 from planner_service.themes.sentence_parser import Clause
 from scene_graphs import furniture
@@ -98,6 +99,8 @@ class KeyframeWriter:
     _avoided: set[Skill] = field(default_factory=set)
     _about: str = ""
     """The words that named furniture last."""
+    _tried: Deed | None = None
+    """What was tried or begun last."""
     _clause: Clause | None = None
     """Of which deed it is written."""
     _plain: bool = False
@@ -115,6 +118,7 @@ class KeyframeWriter:
             self.why[index] = deed.row.why
         elif deed is not None:
             self.deeds[index] = deed
+            self._tried = deed if lemma_of(read.text.split()[0]) in _AGAIN_VERBS else self._tried
             self._do(index, read, deed)
         elif beat.kind == "feeling" or (read.felt is not None and read.sure):
             self._feel(index, beats)
@@ -122,10 +126,10 @@ class KeyframeWriter:
             self.why[index] = UNSHOWN
 
     def _deed(self, clause: Clause) -> Deed | None:
-        """What a clause does; who starts again does what was done at rest last, else first."""
+        """What a clause does; who starts again does what was tried last, else what was done at rest last, else first."""
         if clause.verb in _AGAIN_VERBS and not _AGAIN.isdisjoint(clause.lemmas) and self.deeds:
             done = list(self.deeds.values())
-            return next((deed for deed in reversed(done) if deed.row.rests), done[0])
+            return self._tried or next((deed for deed in reversed(done) if deed.row.rests), done[0])
         return deed_of(clause, self._about)
 
     def take(self, index: int, keyframes: Sequence[Keyframe], why: str, part: Part | None) -> None:
@@ -227,7 +231,8 @@ class KeyframeWriter:
             stands_in = (deed.row.stands or _is_beside(read)) and not any(
                 shows(skill, one, read.clause) for one in shown
             )
-            if self._plain or not generic or stands_in or resting.caption in captions:
+            told = self._plain and mood.value != resting.emotion and resting.mood in EXPRESSED
+            if (self._plain and not told) or not generic or stands_in or resting.caption in captions:
                 if self._plain and generic:
                     self.keyframes[-1] = self._resting = resting.model_copy(
                         update={"caption": self._one_of(shown, mood, index, skill), "emotion": mood.value}

@@ -41,6 +41,9 @@ _RECEIVERS: Final = frozenset(("phone", "telephone", "receiver"))
 _BY_THEN: Final = re.compile(r"\bby (?:noon|midnight|dawn|dusk|evening|night|now|then|\d+|one|two|three|four|five|six|"
                                 r"seven|eight|nine|ten|eleven|twelve)\b", re.IGNORECASE)  # fmt: skip
 """By this what had been done belongs to the story: "by noon she had unpacked"."""
+_ASKED: Final = re.compile(r"(?i)(?:please|(?:can|could|would|will) you|tell me|show me|give me|help me)\b")
+_ASKING: Final = frozenset(("", "it", "you", "i", "me", "please"))
+"""Who does things in a request, and is nobody whose story it is."""
 _QUOTED: Final = re.compile(r"«\d+»")
 EXPRESSIONS: Final = {
     verb: mood
@@ -110,7 +113,10 @@ def beats_of(theme: str) -> tuple[ReadBeat, ...]:
     """What a theme says happens, in the order of time. Raises ThemeError as `clean` does, and for other languages."""
     text = clean(theme)
     _refuse_foreign(text)
-    return read_beats(clauses_of_text(text))
+    clauses = clauses_of_text(text)
+    if _ASKED.match(text) and all(one.doer.lower() in _ASKING for one in clauses):
+        raise ThemeError(f"{text[:60]!r} asks for something, and tells of nobody.")
+    return read_beats(clauses)
 
 
 def read_beats(clauses: Sequence[Clause]) -> tuple[ReadBeat, ...]:

@@ -32,6 +32,7 @@ _LONG: Final = (
     ("as soon as", "when"),
     ("(?:every|each) time(?= (?:i|he|she|they|we|the|his|her|my)\\b)", "whenever"),
     ("at (?:long )?last|in the end", "finally"),
+    (",? of course", ""),
     ("not until(?=.* (?:did|does|do) )", "only after"),
     ("after (?:this|that)(?=,| (?:i|he|she|they|we|it|the|his|her|my|all)\\b)", "then"),
 )  # fmt: skip
