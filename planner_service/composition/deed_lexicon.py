@@ -53,6 +53,9 @@ _LIGHT_VERBS: Final = ("do", "have", "take", "play", "watch")
 """Verbs that a noun alone stands for: "dinner", "a nap", "yoga"."""
 _THROUGH: Final = frozenset(("through", "in", "around", "round", "up", "down", "out", "over", "across"))
 """Words between a deed and the room that it is done to: "searches through the kitchen"."""
+_LISTED: Final = re.compile(r",(?: and| then| or| even)*|\b(?:and|or)(?: then| even)*\b")
+_PLACED: Final = frozenset("in on under behind beneath below inside at above beside between into onto with".split())
+"""Words that each place of a list begins with."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
 Pattern = tuple[frozenset[str], ...]
 """Base forms of each word; an empty set is a gap."""
@@ -163,6 +166,9 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     under = need == "lie" and bool(named) and not fitting and bool(_UNDER.search(clause.text))
     if under or (need in ("sit", "lie") and _FLOOR.search(clause.text)):
         fitting = ["floor"]
+    listed = listed_places(clause) if skill is Skill.TOUCH else []
+    if listed:
+        return Deed(found, skill, (listed[0], *fitting, *found.at), True)
     if fitting:
         return Deed(found, skill, tuple(fitting), True)
     if skill is Skill.TOUCH and (rooms := typical_of(clause.text)):
@@ -172,6 +178,18 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
         return None
     order = (*kept, *found.at) if found.things else (*found.at, *kept)
     return Deed(found, skill, tuple(dict.fromkeys(order)), False)
+
+
+def listed_places(clause: Clause) -> list[str]:
+    """The furniture of two or more places or things that one thing is done to in turn, one for each: "looks under the
+    cushions, | in the fridge, | behind the sofa", "turns on the radio | and the tap"."""
+    parts = [part for part in _LISTED.split(clause.text) if part.strip()]
+    places = [where(part)[:1] for part in parts]
+    begins = [part.split()[0].lower() for part in parts[1:]]
+    led = all(word in _PLACED for word in begins)
+    bare = all(word in grammar().marks - {"to"} for word in begins) and not _PLACED & set(clause.text.split())
+    known = [piece for some in places for piece in some if affords(piece, "touch")]
+    return list(dict.fromkeys(known)) if (led or bare) and len(set(known)) > 1 and len(known) == len(parts) else []
 
 
 def typical_of(text: str) -> list[str]:
@@ -406,11 +424,17 @@ def pieces_in(text: str) -> list[str]:
     at = 0
     while at < len(words):
         size = next((size for size in (3, 2, 1) if _names(words[at : at + size], size)), 0)
-        if size and words[at] not in others:
+        if size and words[at] not in others and not (at == 0 and _is_a_deed(words)):
             piece = furniture.canonical(" ".join(words[at : at + size])).replace("_", " ")
             found.append(deed_table().stands_on.get(piece, piece))
         at += size or 1
     return found
+
+
+def _is_a_deed(words: Sequence[str]) -> bool:
+    """Whether a furniture word is a verb: "sinks onto the bottom stair"."""
+    led = len(words) > 1 and words[1] in ("into", "onto", "down", "to", "back", "on")
+    return led and bool(verb_of(words[0]))
 
 
 def _names(words: Sequence[str], size: int) -> bool:

@@ -23,6 +23,7 @@ from planner_service.composition.deed_lexicon import (
     deed_table,
     names_things,
     room_of,
+    listed_places,
     typical_of,
     where,
 )
@@ -59,6 +60,9 @@ _AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside"
 _MOST_PLACES: Final = 3
 _AGAIN_VERBS: Final = ("start", "begin", "try")
 _AGAIN: Final = frozenset(("again", "over", "afresh", "anew", "more"))
+_BY_A_WALL: Final = re.compile(r"\b(?:by|at|near|against) (?:the|a|an) (?:\w+ )?(?:window|door|wall)\b")
+"""Where nothing is kept that could be taken."""
+_GOES_ON: Final = re.compile(r"(?:goes|went|go|carries|carried|carry|keeps|kept|keep) (?:on|going)(?:,| with\b|$)")
 _ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
 _TAKEN: Final = DeedRow(
     ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
@@ -127,7 +131,8 @@ class KeyframeWriter:
 
     def _deed(self, clause: Clause) -> Deed | None:
         """What a clause does; who starts again does what was tried last, else what was done at rest last, else first."""
-        if clause.verb in _AGAIN_VERBS and not _AGAIN.isdisjoint(clause.lemmas) and self.deeds:
+        again = clause.verb in _AGAIN_VERBS and not _AGAIN.isdisjoint(clause.lemmas)
+        if (again or _GOES_ON.match(clause.text)) and self.deeds:
             done = list(self.deeds.values())
             return self._tried or next((deed for deed in reversed(done) if deed.row.rests), done[0])
         return deed_of(clause, self._about)
@@ -197,6 +202,7 @@ class KeyframeWriter:
     def _on_feet(self, read: ReadBeat, deed: Deed) -> Deed:
         """What is done at rest, where it is done standing: as is said, or as one is while nothing is said."""
         at = tuple(piece for piece in where(read.text) if affords(piece, "touch"))
+        at = () if _BY_A_WALL.search(read.text) else at
         stands, last = bool(_ON_FEET.search(read.text)), self._clause
         goes_on = self._resting is None and last is not None and last.sentence == read.clause.sentence
         if deed.row.rests and stands and at:
@@ -432,7 +438,8 @@ def _is_at(keyframe: PlannedKeyframe, deed: Deed) -> bool:
 def _further(clause: Clause, deed: Deed) -> list[Deed]:
     """The same deed where else it is done: "looks under the bed, | behind the sofa"."""
     places = (where(text) for text in details_of(clause)[:_MOST_PLACES] if deed.named and text.split()[0] in _AT)
-    found = [*(piece for some in places for piece in some[:1]), *typical_of(clause.text)[:_MOST_PLACES]]
+    listed = listed_places(clause) or typical_of(clause.text)
+    found = [*(piece for some in places for piece in some[:1]), *listed[: _MOST_PLACES + 1]]
     found = [piece for piece in found if affords(piece, "touch") and piece != deed.pieces[0]]
     return [Deed(deed.row, deed.skill, (piece,), True) for piece in dict.fromkeys(found)]
 

@@ -65,7 +65,8 @@ def _step(words: Sequence[Token], group: VerbGroup) -> int:
     if low in grammar().auxiliaries and (low in grammar().modals or _verb_follows(words, at) or _hinders(words, at)):
         group.perfect |= low == "had"
         return 1
-    if base in _LETTING and ahead in _ONESELF:  # "lets himself sit", "forces herself to eat"
+    after = words[at + 2].low if at + 2 < len(words) else ""
+    if base in _LETTING and ahead in _ONESELF and (after == "to" or verb_of(after) == after):  # "lets himself sit", "forces herself to eat"
         return 3 if [token.low for token in words[at + 2 : at + 3]] == ["to"] else 2
     if low == "used" and ahead == "to":  # "used to play", and does so no more
         group.perfect = True
