@@ -37,7 +37,7 @@ _LONG: Final = (
     ("after (?:this|that)(?=,| (?:i|he|she|they|we|it|the|his|her|my|all)\\b)", "then"),
 )  # fmt: skip
 """Joints of several words, and those that say the same."""
-_INVERTED: Final = re.compile(r"(?i)(?<=\w)(,?) (did|does|do|had|has|have) (he|she|they|we|i)\b(?= \w+)(?! not\b)")
+_INVERTED: Final = re.compile(r"(?i)(?<=\w)(?<! to)(,?) (did|does|do|had|has|have) (he|she|they|we|i)\b(?= (\w+))")
 """A verb before who does it, as after "only when", "never" and "not until"."""
 _SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|had|have|should)nt\b")
 
@@ -87,6 +87,10 @@ def plain(text: str) -> str:
 def _turned(found: re.Match[str]) -> str:
     """An inverted clause the other way about, and apart from what goes before it if that has a verb: "only when it was
     dark | he did rise"."""
+    base, word = verb_of(found[4]), found[4].lower()
+    fits = word == (base if found[2].lower() in grammar().do else participle(base)) if base else is_adverb(word)
+    if not fits:
+        return found[0]
     before = found.string[: found.start()].rsplit(".", 1)[-1]
     told = found[1] or ("," if verb_place(tokens_of(before)) is not None else "")
     return f"{told} {found[3]} {found[2]}"
@@ -141,8 +145,8 @@ def is_adverb(word: str) -> bool:
 def _acts(tokens: Sequence[Token], place: int) -> bool:
     """Whether the word there acts as a verb, going by its form and the words about it."""
     word, base = tokens[place].low, verb_of(tokens[place].text)
-    if not base:
-        return False
+    if not base or [token.low for token in tokens[place + 1 : place + 3]] == ["in", "hand"]:
+        return False  # "phone in hand"
     at = place - 1
     if place and word.endswith("ing") and tokens[at].low in ("not", "never"):
         return True

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from planner_service.themes.lexicon import grammar, verb_of
+from planner_service.themes.lexicon import grammar, participle, verb_of
 from planner_service.themes.verb_finder import Token, verb_place
 
 _LETTING: Final = frozenset(("let", "make", "force", "allow", "bring"))
@@ -140,7 +140,8 @@ def _verb_follows(words: Sequence[Token], at: int) -> bool:
             return bool(base) and low.endswith("ing")
         if helper in known.have:
             passed = any(one.low == "been" for one in words[at + 1 : at + 4])
-            return bool(base) and low != base and (passed or not low.endswith("ing"))
+            done = low != base or participle(base) == low  # "has not read"
+            return bool(base) and done and (passed or not low.endswith("ing"))
         return bool(base)
     return False
 
