@@ -187,7 +187,7 @@ def listed_places(clause: Clause) -> list[str]:
     places = [where(part)[:1] for part in parts]
     begins = [part.split()[0].lower() for part in parts[1:]]
     led = all(word in _PLACED for word in begins)
-    bare = all(word in grammar().marks - {"to"} for word in begins) and not _PLACED & set(clause.text.split())
+    bare = all(word in grammar().marks - {"to"} for word in begins) and not _PLACED & set(clause.text.split()[2:])
     known = [piece for some in places for piece in some if affords(piece, "touch")]
     return list(dict.fromkeys(known)) if (led or bare) and len(set(known)) > 1 and len(known) == len(parts) else []
 
@@ -203,7 +203,9 @@ def typical_of(text: str) -> list[str]:
         name = " ".join(words[at : at + 2]) if " ".join(words[at : at + 2]) in typical else words[at]
         if name in typical and (before or not known.prepositions & set(words[1:at]) - _THROUGH):
             end = at + len(name.split())
-            listed = not before or all(word in known.marks | known.adverbs | {",", "and", "then"} for word in words[before:at])
+            listed = not before or all(
+                word in known.marks | known.adverbs | {",", "and", "then"} for word in words[before:at]
+            )
             if listed and at and not (words[end:] and is_noun(words[end]) and words[end] not in known.prepositions):
                 found[typical[name]] = None
                 before = end

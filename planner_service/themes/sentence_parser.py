@@ -219,7 +219,9 @@ def _without_opening(tokens: Sequence[Token]) -> list[Token]:
 def _denials(lead: Sequence[Token], subject: str) -> list[Token]:
     """Of the words before a verb those that deny it; all of them where nobody is named."""
     known = grammar()
-    denials = (known.denials | NEARLY) - known.subjects - (known.with_gerund if subject else frozenset())  # "without a word she"
+    denials = (
+        (known.denials | NEARLY) - known.subjects - (known.with_gerund if subject else frozenset())
+    )  # "without a word she"
     denying = [token for token in lead if token.low in denials]
     return denying if subject else list(lead) if any(token.low in known.denials | NEARLY for token in lead) else []
 

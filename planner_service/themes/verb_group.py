@@ -66,7 +66,9 @@ def _step(words: Sequence[Token], group: VerbGroup) -> int:
         group.perfect |= low == "had"
         return 1
     after = words[at + 2].low if at + 2 < len(words) else ""
-    if base in _LETTING and ahead in _ONESELF and (after == "to" or verb_of(after) == after):  # "lets himself sit", "forces herself to eat"
+    if (
+        base in _LETTING and ahead in _ONESELF and (after == "to" or verb_of(after) == after)
+    ):  # "lets himself sit", "forces herself to eat"
         return 3 if [token.low for token in words[at + 2 : at + 3]] == ["to"] else 2
     if low == "used" and ahead == "to":  # "used to play", and does so no more
         group.perfect = True
