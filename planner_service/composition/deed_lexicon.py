@@ -54,7 +54,24 @@ _LIGHT_VERBS: Final = ("do", "have", "take", "play", "watch")
 _THROUGH: Final = frozenset(("through", "in", "around", "round", "up", "down", "out", "over", "across"))
 """Words between a deed and the room that it is done to: "searches through the kitchen"."""
 _LISTED: Final = re.compile(r",(?: and| then| or| even)*|\b(?:and|or)(?: then| even)*\b")
-_PLACED: Final = frozenset("in on under behind beneath below inside at above beside between into onto with".split())
+_PLACED: Final = frozenset(
+    (
+        "in",
+        "on",
+        "under",
+        "behind",
+        "beneath",
+        "below",
+        "inside",
+        "at",
+        "above",
+        "beside",
+        "between",
+        "into",
+        "onto",
+        "with",
+    )
+)
 """Words that each place of a list begins with."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
 Pattern = tuple[frozenset[str], ...]
@@ -166,13 +183,10 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     under = need == "lie" and bool(named) and not fitting and bool(_UNDER.search(clause.text))
     if under or (need in ("sit", "lie") and _FLOOR.search(clause.text)):
         fitting = ["floor"]
-    listed = listed_places(clause) if skill is Skill.TOUCH else []
-    if listed:
-        return Deed(found, skill, (listed[0], *fitting, *found.at), True)
+    if skill is Skill.TOUCH and (several := listed_places(clause) or ([] if fitting else typical_of(clause.text))):
+        fitting = [several[0], *fitting, *found.at]
     if fitting:
         return Deed(found, skill, tuple(fitting), True)
-    if skill is Skill.TOUCH and (rooms := typical_of(clause.text)):
-        return Deed(found, skill, (rooms[0], *found.at), True)
     kept = [piece for piece in _kept(clause, about) if affords(piece, need)] if skill is Skill.TOUCH else []
     if skill is Skill.TOUCH and not (kept or found.at):
         return None

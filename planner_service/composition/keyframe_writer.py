@@ -21,9 +21,9 @@ from planner_service.composition.deed_lexicon import (
     DeedRow,
     deed_of,
     deed_table,
+    listed_places,
     names_things,
     room_of,
-    listed_places,
     typical_of,
     where,
 )
@@ -130,7 +130,7 @@ class KeyframeWriter:
             self.why[index] = UNSHOWN
 
     def _deed(self, clause: Clause) -> Deed | None:
-        """What a clause does; who starts again does what was tried last, else what was done at rest last, else first."""
+        """What a clause does; who starts again does what was tried last, else done at rest last, else done first."""
         again = clause.verb in _AGAIN_VERBS and not _AGAIN.isdisjoint(clause.lemmas)
         if (again or _GOES_ON.match(clause.text)) and self.deeds:
             done = list(self.deeds.values())

@@ -126,8 +126,7 @@ def _sharing(before: Clause, parts: list[Clause]) -> list[Clause]:
     shared = before.perfect and before.joint not in grammar().earlier and not re.search(r"\bby\b", before.text)
     done = first.verb and not first.subject and first.joint in ("and", ",") and participle(first.verb)
     if shared and done == first.text.split(" ", 1)[0].lower():  # "had polished the spoons | and ironed the napkins"
-        parts = [replace(part, perfect=True) if part is first else part for part in parts]
-        return parts
+        return [replace(part, perfect=True) if part is first else part for part in parts]
     shares = before.denied and first.verb and not first.subject and first.joint in ("or", "nor", "and", ",")
     bare = first.text.split(" ", 1)[0].lower() == first.verb and re.search(
         rf"\b{re.escape(before.verb)}\b", before.text
@@ -227,7 +226,7 @@ def _denials(lead: Sequence[Token], subject: str) -> list[Token]:
 
 
 def _does_none(words: Sequence[Token]) -> bool:
-    """Whether a deed is done to nothing, which denies it: "labels nothing more", "opens no letter", not "does nothing"."""
+    """Whether a deed is done to nothing, which denies it: "labels nothing more"; not of "does nothing"."""
     if len(words) < _FEWEST_DENYING or verb_of(words[0].low) in _IDLE:
         return False
     rest = [token.low for token in words[1:]]
