@@ -161,7 +161,8 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
     if not subject and tokens[0].text.startswith("«"):
         subject = _inverted(tokens[place + 1 :])
         tokens = [*tokens[: place + 1], *tokens[place + 1 + len(subject.split()) :]]
-    words = _denials(tokens[:place], subject) + tokens[place:]
+    denials = _denials(tokens[:place], subject)
+    words = denials + tokens[place:]
     group = verb_group(words)
     hindered = _is_hindered(piece.joint, tokens[:place], words[0])
     words, told_of = without_asides(words, group.place)
@@ -182,6 +183,7 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
         # It tells how somebody is or where, and is nothing that anybody does.
         Clause(_text(piece.source, some), "", "", _lemmas(some), ",", aside=True, sentence=sentence)
         for some in (*besides_of(tokens[:place], subject, before), *_of_subject(tokens[:place], subject))
+        if not set(denials).issuperset(some)
     ]
     return [*besides, _placed(parts[0], before, piece.source), *parts[1:], *asides]
 
@@ -303,7 +305,7 @@ def _subject(tokens: Sequence[Token]) -> str:
         words.pop()
     if words and words[-1].lower() in grammar().subjects:
         return words[-1]
-    if words and (words[0].lower() == "to" or _describes(words)):
+    if words and ("to" in (words[0].lower(), words[-1].lower()) or _describes(words)):
         return ""
     while words and (words[0].lower() in grammar().adverbs or words[0].lower() in grammar().joints):
         words.pop(0)
