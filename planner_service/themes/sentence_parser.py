@@ -24,7 +24,7 @@ from planner_service.themes.asides import (
 )
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, verb_of
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
-from planner_service.themes.verb_finder import Token, verb_place
+from planner_service.themes.verb_finder import FLOATING, Token, verb_place
 from planner_service.themes.verb_group import verb_group
 
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
@@ -302,6 +302,8 @@ def _subject(tokens: Sequence[Token]) -> str:
         return parts[named][0].text
     words = [token.text for part in parts[last:] for token in part]
     while words and (words[-1].lower() in grammar().adverbs or (words[-1].islower() and words[-1].endswith("ly"))):
+        words.pop()
+    if len(words) > 1 and words[-1].lower() in FLOATING and words[-2].lower() in grammar().subjects:
         words.pop()
     if words and words[-1].lower() in grammar().subjects:
         return words[-1]

@@ -39,6 +39,8 @@ _SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|h
 
 
 _SEVERAL: Final = frozenset(("couple", "family", "pair", "people", "police", "team"))
+FLOATING: Final = frozenset(("all", "both", "each"))
+"""Words between several people and their verb."""
 _PARTICLES: Final = frozenset(("up", "down", "out", "off", "away", "back"))
 _ARTICLES: Final = frozenset(("the", "a", "an"))
 _OBJECTS: Final = frozenset(("him", "them", "me", "himself", "herself", "back", "home", "and"))
@@ -145,6 +147,8 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
     if before == "to":
         again = at > 0 and tokens[at - 1].low == word  # "from time to time"
         return word == base and base not in grammar().not_verbs_after_to and not again
+    if before in FLOATING and at and tokens[at - 1].low in grammar().subjects:
+        return True  # "they all duck"
     if before in grammar().marks | grammar().numbers:
         return False
     if word.endswith("ing"):
