@@ -344,7 +344,9 @@ def _swing_of(
         backwards=leaves + stride < -2 * shape.backwards_share,
         swings_out=np.radians(shape.swings_out_deg) * style.character.of_side("toes_swing", "ratio", side),
         # The first heel rises from the first frame on, not before, and none before its foot has come down.
-        rise=min(HEEL_RISE, 1 + style.double - SETTLE, max(beat.window[0] - float(phase[0]), foot_table().way.rise_min_phase)),
+        rise=min(
+            HEEL_RISE, 1 + style.double - SETTLE, max(beat.window[0] - float(phase[0]), foot_table().way.rise_min_phase)
+        ),
         scale=skeleton.scale,
     )
 

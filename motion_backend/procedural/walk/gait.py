@@ -369,7 +369,9 @@ def _carry(
     roll, shoulders = _rolls(steps, style, moving)
     lean, walking = _leaning(route, style, brisk)
     nods = own.nod_ratio * brisk
-    tilt = row.lean.hips_share * lean + walking + row.lean.hips_wave_rad * nods * steps.wave(row.lean.hips_wave_at_phase)
+    tilt = (
+        row.lean.hips_share * lean + walking + row.lean.hips_wave_rad * nods * steps.wave(row.lean.hips_wave_at_phase)
+    )
     hips = rotations.compose(
         rotations.yaw_to_quat(route.heading + hip_turn + np.radians(own.hips_turn_deg) * moving),
         rotations.rotvec_to_quat(np.stack([tilt, np.zeros(frames), roll], axis=1)),
@@ -443,7 +445,7 @@ def _support(route: Route, steps: Steps, style: Walk, moved: tuple[Array, Array,
 
 
 def _leaning(route: Route, style: Walk, brisk: Array) -> tuple[Array, Array]:
-    """How far trunk and pelvis together bend forwards, and how far a body in its walk leans from its hips. (T,) each."""
+    """How far trunk and pelvis bend forwards, and how far a body in its walk leans from its hips. (T,) each."""
     row, frames = carriage().lean, len(route.heading)
     # A bowed body straightens up a little where it arrives, so as not to bump its head.
     since = np.arange(frames) - frames + row.straightens_frames

@@ -83,6 +83,8 @@ TURNING_ROUND = 1.2
 """A body that is, or arrives, turned away from where it will face by more (radians) turns before the last step."""
 SPREAD, ROOM_TO_SPREAD = {"open": "embracing", "balance": "balance_ahead"}, 0.30
 """Arms that need so much more room beside a way than the body does (metres), and what they do where there is less."""
+NARROW = 0.2
+"""The share of a way that may have less."""
 STAYING = 0.7
 """How long arms take into the pose they are held in where the body stays, and out of it (seconds)."""
 QUICK, RUNS = 1.7, 2.0
@@ -187,7 +189,7 @@ def _stride(body: Body, path: Array, facing: float | None, style: Walk, onward: 
         return np.asarray(walkable.field.at(places) - walkable.radius)
 
     before = SPREAD.get(style.bearing.arms[0])
-    if before is not None and float(np.median(spare(resample(points)))) < ROOM_TO_SPREAD:
+    if before is not None and float(np.quantile(spare(resample(points)), NARROW)) < ROOM_TO_SPREAD:
         body.note("no room for open arms: to the front")
         style = replace(style, bearing=replace(style.bearing, arms=(before, before)))
     frames, body.stride = walk_on(body.pose, points, end, style, body.skeleton, body.rng, stride, cut, spare)
