@@ -149,6 +149,8 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
         return word == base and base not in grammar().not_verbs_after_to and not again
     if before in FLOATING and at and tokens[at - 1].low in grammar().subjects:
         return True  # "they all duck"
+    if before in grammar().numbers and at and tokens[at - 1].low == "of":
+        return is_third_person(word)  # "a girl of six jumps"
     if before in grammar().marks | grammar().numbers:
         return False
     if word.endswith("ing"):
