@@ -50,10 +50,8 @@ LATER: Final = 12
 """Frames of its way beyond the stretch that a generator is to walk, in which its last step may end."""
 OFF: Final = 0.2
 """Metres beside its way at which a generator's body has lost it."""
-PASSES: Final = 0.2
-"""Metres from a place within which it is passed by."""
-NEAR_BY, BY = 0.28, 10
-"""Metres and frames within which a step ends by a place: half a step before it, or just behind it."""
+PASSES, BY = 0.2, 10
+"""Metres from a place within which it is passed by, and frames in which that was just now."""
 DEEPER: Final = 0.02
 """Metres by which a generator's body may be deeper in furniture than the procedural one."""
 CARRIAGE_S: Final = 0.5
@@ -366,7 +364,7 @@ def _steps_end(positions: Array, end: Array) -> int:
 
 def _landing_by(positions: Array, goal: Array) -> int | None:
     """The last frame of (T, 22, 3) in which a heel comes down as the body has just come by a place (2,)."""
-    near = np.linalg.norm(positions[:, 0][:, [0, 2]] - goal, axis=1) < NEAR_BY
+    near = np.linalg.norm(positions[:, 0][:, [0, 2]] - goal, axis=1) < PASSES
     landing = [int(at) for at in strides_landing(positions) if near[max(at - BY, 0) : at + 1].any()]
     return landing[-1] if landing else None
 

@@ -118,8 +118,8 @@ class PlanFollower:
         for number in range(TRIES):
             try:
                 body = _Body(number, self, passage.plan.skeleton, past)
-                frames, away = body.through(passage, [*seed, number])
-                frames, laid = _laid(frames, passage, arms, number)
+                frames, laid = _laid(body.through(passage, [*seed, number]), passage, arms, number)
+                frames, away = body.brought(passage, frames)
                 motion = _settled(past, frames, passage, Phase(passage.phase, 0, len(frames), self.name, laid))
                 check(motion, passage, past)
                 return motion, away
@@ -147,10 +147,11 @@ class _Body:
     past: Frames
     """At 30 a second, in the world."""
 
-    def through(self, passage: PlannedPassage, seed: list[int]) -> tuple[Frames, float]:
-        """The frames of a passage, and how far from its goal they ended before they were brought there."""
-        made = self._ending(passage, seed) if passage.is_seat and not passage.since else self._lasting(passage, seed)
-        return self._brought(passage, made)
+    def through(self, passage: PlannedPassage, seed: list[int]) -> Frames:
+        """The frames of a passage, as they are made."""
+        if passage.is_seat and not passage.since:
+            return self._ending(passage, seed)
+        return self._lasting(passage, seed)
 
     def _lasting(self, passage: PlannedPassage, seed: list[int]) -> Frames:
         """A passage that lasts as long as its plan: the first window is cut, so that the last one ends with it."""
@@ -216,7 +217,7 @@ class _Body:
         pose, shares = (torch.from_numpy(one.astype(np.float32)) for one in wanted)
         return both(seated, posed(pose, shares))
 
-    def _brought(self, passage: PlannedPassage, made: Frames) -> tuple[Frames, float]:
+    def brought(self, passage: PlannedPassage, made: Frames) -> tuple[Frames, float]:
         """Frames with pelvis or hand at the goal at last, and how far it was. RefusedError where it was too far."""
         if passage.hand is not None:
             return self._hand_brought(passage, made, *passage.hand)

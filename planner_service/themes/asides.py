@@ -7,6 +7,7 @@ from itertools import groupby
 from typing import Final
 
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_third_person, lemma_of, verb_of
+from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import Token, next_verb, verb_place
 
 THAT: Final = frozenset(("that", "how", "what", "why", "if", "whether", "which", "who"))
@@ -44,9 +45,12 @@ def _tells_something(words: Sequence[Token]) -> bool:
 
 def without_asides(words: list[Token], main: int) -> tuple[list[Token], list[list[Token]]]:
     """The words of a clause, and those after a noun that tell of it with a verb of their own: "the flour | the cat has
-    spilled", "a call | that never comes"."""
+    spilled", "a call | that never comes"; but "is told on the phone that he has won", which is what is said."""
+    says = any(lemma_of(word.low) in theme_words()["speech_verbs"] for word in words[main : main + 2])
     for place in range(main + 2, len(words) - 1):
         low, after = words[place].low, words[place + 1 :]
+        if says and low == "that":
+            break
         if low in RELATIVES:
             is_told = verb_place(after[:3]) == 0 or tells(after)
         else:

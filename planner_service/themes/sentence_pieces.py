@@ -152,9 +152,11 @@ def _is_bare(before: Piece, piece: Piece) -> bool:
     """Whether a piece begins with a second verb, in the form of the first: "they eat on the floor | and fall asleep",
     "she watched a film, | ordered sushi"."""
     at, first = 0 if before.bare else verb_place(before.tokens), piece.tokens[0].low
-    if at is None or piece.joint not in (",", "and", "then") or is_adverb(first) or not verb_of(first):
+    if at is None or piece.joint not in (",", "and", "then") or is_adverb(first):
         return False
     verb = before.tokens[at].low
+    if not (verb_of(verb) and verb_of(first)):
+        return False
     plain = before.bare or (at > 0 and before.tokens[at - 1].low in _PLAIN_SUBJECTS)
     both_plain = plain and verb_of(verb) == verb and verb_of(first) == first
     return both_plain or (len(piece.tokens) > 1 and all(past(verb_of(one)) == one for one in (verb, first)))

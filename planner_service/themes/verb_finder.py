@@ -108,6 +108,11 @@ def next_verb(tokens: Sequence[Token], before: int) -> int | None:
     return None
 
 
+def has_verb(text: str) -> bool:
+    """Whether some word of the text acts as a verb."""
+    return verb_place(tokens_of(plain(text))) is not None
+
+
 def is_plural(word: str) -> bool:
     """Whether a word may be the plural of a noun, or mean several people."""
     nouns = kinds_of(word).get("NOUN", ())
@@ -138,6 +143,8 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
         return True
     if before == "to":
         return word == base and base not in grammar().not_verbs_after_to
+    if before in grammar().numbers and at and tokens[at - 1].low == "of":
+        return is_third_person(word)  # "a girl of six jumps"
     if before in grammar().marks | grammar().numbers:
         return False
     if word.endswith("ing"):
