@@ -115,6 +115,7 @@ def _step(number: int, index: int, way: tuple[Array, Array], yaw: float, style: 
         clearance=style.clearance,
         heel_off=float(np.radians(shape.heel_off_deg) * style.roll * size**shape.heel_off_power),
         heel_strike=float(TIP_UP * style.strike * size),
+        scale=skeleton.scale,
     )
     return Step(number, index, swing)
 

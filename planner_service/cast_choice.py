@@ -214,6 +214,7 @@ def _years(about: str) -> int | None:
         rf"\b(?:boy|girl|child|kid|man|woman)\s+of\s+{number}\b",
         rf"\baged\s+{number}\b",
         rf"(?:^|;\s*){number}(?:;|$)",
+        r"\b(teen(?:age[dr]?)?)\b",
     )
     for form in forms:
         if match := re.search(form, about, re.IGNORECASE):

@@ -145,9 +145,47 @@ def test_all_steps_are_told_and_torch_is_fetched_only_where_it_is_missing(
         assert [line for line in asked if "torch==" in line] == ["-m pip install torch==2.13.0"] * first
         assert "-m pip install -e .[dev]" in asked
         told = capsys.readouterr().out.splitlines()
-        assert [line[:3] for line in told if re.match(r"\d/\d .*:", line)] == [f"{n}/5" for n in range(1, 6)]
-        assert ("2/5 torch 2.13.0: is there" in told) is not first
+        assert [line[:3] for line in told if re.match(r"\d/\d .*:", line)] == [f"{n}/6" for n in range(1, 7)]
+        assert ("3/6 torch 2.13.0: is there" in told) is not first
         assert re.fullmatch(r"· \.venv is ready: torch-2.13.0\+cpu \(CPU build\), 0\.0 GB .* MB downloaded", told[-1])
+
+
+@pytest.mark.parametrize("works", [True, False])
+def test_uv_installs_where_it_is_and_pip_what_it_could_not(
+    works: bool, tmp_path: Path, venv: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    uv = venv / "bin" / "uv"
+    uv.write_text(f'#!/bin/sh\necho "uv $*" >> {tmp_path}/asked\n{"true" if works else "false"}\n')
+    uv.chmod(0o755)
+    (venv / "lib" / "python3.11" / "site-packages" / f"torch-{install.TORCH}.dist-info").mkdir()
+    monkeypatch.setattr(sys, "argv", ["install.py"])
+    assert install.main() == 0
+    asked = [line for line in (tmp_path / "asked").read_text().splitlines() if " install " in line]
+    wanted = ["--no-deps --require-hashes -r requirements-encoder.txt", "-e .[video]"]
+    by_uv = [line for line in asked if line.startswith("uv pip install --python")]
+    assert [any(line.endswith(f" {words}") for line in by_uv) for words in wanted] == [True, True]
+    assert [f"-m pip install {words}" in asked for words in wanted] == [not works] * 2
+    assert ("now pip does it" in capsys.readouterr().out) is not works
+
+
+def test_uv_takes_packages_from_where_pip_does() -> None:
+    said = (
+        ":env:.index-url='https://x.example/simple'\nglobal.extra-index-url='file:///a file:///b'\n"
+        "global.cert='/etc/ca.crt'\nuser.no-index='true'\nglobal.timeout='9'\n"
+    )
+    options, environment = install.as_uv(said)
+    assert " ".join(options[2:]) == (
+        "--index-url https://x.example/simple --extra-index-url file:///a --extra-index-url file:///b --no-index"
+    )
+    assert environment["SSL_CERT_FILE"] == "/etc/ca.crt"
+    assert install.as_uv("")[0] == options[:2], "as pip, it looks for the best in all of them"
+
+
+def test_what_uv_says_becomes_a_few_words(tmp_path: Path) -> None:
+    said = "Resolved 9 packages in 1s\nDownloading torch (191.8MiB)\nDownloading mypy (9.0MiB)\n"
+    assert install.phrase(said, tmp_path, 1) == ", downloading torch, mypy"
+    assert install.phrase(said + " Downloaded mypy\n", tmp_path, 1) == ", downloading torch"
+    assert install.phrase(said + " Downloaded mypy\n Downloaded torch\n", tmp_path, 1) == ", installing"
 
 
 @pytest.mark.parametrize(
@@ -167,7 +205,7 @@ def test_a_failure_shows_what_pip_said_and_what_to_do(
     monkeypatch.setattr(sys, "argv", ["install.py", "--torch-index", "https://x.example"])
     assert install.main() == 1
     said = capsys.readouterr()
-    assert "2/5 torch 2.13.0: failed after" in said.out
+    assert "3/6 torch 2.13.0: failed after" in said.out
     assert failure in said.err
     assert remedy in said.err.partition("What to do: ")[2]
 

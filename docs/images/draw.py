@@ -26,9 +26,9 @@ from scene_graphs.retrieval.layout_index import LayoutIndex
 HERE = Path(__file__).parent
 MAKEFILE = HERE.parents[1] / "Makefile"
 """It has the theme and the seed of the demo."""
-SHOWN = (1, 3, 5, 8)
+SHOWN = (1, 3, 5, 6)
 """Keyframes cut out of the storyboard, two in a row."""
-MOMENTS = ((1, 2.4), (3, 1.8), (5, 2.4), (8, 4.0))
+MOMENTS = ((1, 2.4), (3, 1.8), (5, 2.4), (6, 4.0))
 """Keyframes of the moving picture, and how many seconds around their middles it shows."""
 LOOP, EVERY = (480, 270), 3
 """Its size in pixels, and which of the film's frames it has: ten a second."""

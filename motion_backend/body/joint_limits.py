@@ -99,10 +99,11 @@ def beyond_limits(local_rotations: NDArray[np.floating]) -> Array:
 
 
 def overbent(joint: str, turn: Array) -> Array:
-    """How far a hinged joint bends beyond its range about its main hinge, signed. (T, 4) to (T,) radians."""
+    """How far a hinged joint is beyond its range about each of its axes as they are turned about, its main hinge
+    first, its bone last; signed, of the right as seen in a mirror. (T, 4) to (T, 3) radians."""
     group, place = _group_of(joint)
-    angle = cardan(turn * group.mirrored[place], group.order)[..., 0]
-    return np.asarray(angle - np.clip(angle, group.low[place, 0], group.high[place, 0]))
+    angles = cardan(turn * group.mirrored[place], group.order)
+    return np.asarray(angles - np.clip(angles, group.low[place], group.high[place]))
 
 
 def out_of_cone(joint: str, turn: Array) -> Array:

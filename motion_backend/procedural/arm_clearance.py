@@ -365,7 +365,8 @@ def _posed(pose: Pose, begun: Pose, about: Array, turning: _Turning, width: floa
         "elbows": pole,
         "reach": place,
         "palms": rotations.compose(lower, wrist),
-        "pressing": np.where(arm.pressing > 0, 1.0, 0.0),
+        # A hand that lets go in these frames is turned by them to the end.
+        "pressing": np.full(len(joints), float((arm.pressing[about > 0] > 0).any())),
     }
     return _with(pose, arm.which, about > 0, changed)
 

@@ -16,8 +16,13 @@ from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, Skeleton
 
 SPINE = ("spine1", "spine2", "spine3")
+SPINE_SHARES = np.array([[1 / 3, 1 / 3, 0.9], [1 / 3, 1 / 3, 0.05], [1 / 3, 1 / 3, 0.05]])
+"""How its joints share a bend forwards, a turn and a bend to the side, which is the loins'."""
 EASED = 6
 """Frames before and after in which a pelvis tips back (see `hips_within`), or a trunk straightens (`head_clear`)."""
+UNTWISTS = 3
+"""So often a knee is swung back whose hip is turned beyond its range: a bent one swings about another line than its
+thigh."""
 HEAD = 0.10
 """Half a head (metres at 1.70 m)."""
 STRAIGHTER = np.linspace(0.0, 1.5, 7)[:, None]
@@ -38,9 +43,8 @@ def trunk_and_legs(pose: Pose, skeleton: Skeleton) -> Array:
     """Local rotations (T, 22, 4) of all but the arms, which are stretched out to the sides."""
     local = np.tile(rotations.IDENTITY, (len(pose), len(skeleton.names), 1))
     local[:, INDEX["pelvis"]] = pose.hips
-    third = rotations.rotvec_to_quat(pose.spine / 3)
-    for name in SPINE:
-        local[:, INDEX[name]] = third
+    for name, turned in zip(SPINE, _spine(pose), strict=True):
+        local[:, INDEX[name]] = turned
     half = rotations.rotvec_to_quat(pose.head / 2)
     local[:, INDEX["neck"]] = local[:, INDEX["head"]] = within("neck", half)
     for index, (name, _) in enumerate(SIDES):
@@ -49,19 +53,21 @@ def trunk_and_legs(pose: Pose, skeleton: Skeleton) -> Array:
 
 
 def hips_within(pose: Pose, skeleton: Skeleton) -> Pose:
-    """Frames in which no hip bends or stretches beyond its range: the pelvis tips and the spine bends in its place.
+    """Frames in which no hip bends, stretches or spreads beyond its range: the pelvis tips and the spine bends in its
+    place.
 
-    Hips lie on the axis that the pelvis tips about, so that legs and feet stay where they are.
+    Hips lie on the axis that the pelvis tips about, and near to the one it rolls about: legs and feet stay where they
+    are.
     """
-    beyond = []
-    for index, (name, _) in enumerate(SIDES):
-        thigh, _ = leg_rotations(_leg(pose, skeleton, index, name))
-        beyond.append(overbent(f"{name}_hip", rotations.compose(rotations.inverse(pose.hips), thigh)))
-    stretched, bent = np.maximum(np.max(beyond, axis=0), 0.0), np.maximum(-np.min(beyond, axis=0), 0.0)
-    if not stretched.any() and not bent.any():
+    thighs = [leg_rotations(_leg(pose, skeleton, index, name))[0] for index, (name, _) in enumerate(SIDES)]
+    local = rotations.compose(rotations.inverse(pose.hips), np.stack(thighs))
+    left, right = (overbent(f"{name}_hip", turn) for (name, _), turn in zip(SIDES, local, strict=True))
+    bent, stretched = np.minimum(left, right)[:, 0], np.maximum(left, right)[:, 0]
+    needed = np.stack([stretched, -bent, left[:, 1], right[:, 1]])
+    if not (needed > 0).any():
         return pose
-    tipped = np.zeros((len(pose), 3))
-    tipped[:, 0] = _early(stretched) - _early(bent)
+    early = [_early(np.maximum(angle, 0.0)) for angle in needed]
+    tipped = np.stack([early[0] - early[1], np.zeros(len(pose)), early[2] - early[3]], axis=1)
     hips = rotations.compose(pose.hips, rotations.rotvec_to_quat(tipped))
     return replace(pose, hips=hips, spine=pose.spine - tipped)
 
@@ -110,19 +116,35 @@ def _early(angle: Array) -> Array:
 
 def chest_frame(pose: Pose, skeleton: Skeleton) -> tuple[Array, Array]:
     """World rotation (T, 4) and position (T, 3) of spine3, the frame that arms hang in."""
-    third = rotations.rotvec_to_quat(pose.spine / 3)
     rotation, position = pose.hips, pose.pelvis
-    for name in SPINE:
+    for name, turned in zip(SPINE, _spine(pose), strict=True):
         position = position + rotations.rotate(rotation, skeleton.offsets[INDEX[name]])
-        rotation = rotations.compose(rotation, third)
+        rotation = rotations.compose(rotation, turned)
     return rotation, position
 
 
+def _spine(pose: Pose) -> Array:
+    """What each joint of the spine turns. (3, T, 4)."""
+    return rotations.rotvec_to_quat(SPINE_SHARES[:, None] * pose.spine)
+
+
 def _leg(pose: Pose, skeleton: Skeleton, index: int, name: str) -> Limb:
+    """The leg with its foot where it is and its knee to where it points, as far as the hip turns about its bone."""
     offsets = skeleton.offsets
     hip = pose.pelvis + rotations.rotate(pose.hips, offsets[INDEX[f"{name}_hip"]])
     lengths = (-float(offsets[INDEX[f"{name}_knee"], 1]), -float(offsets[INDEX[f"{name}_ankle"], 1]))
-    return two_bone(hip, pose.ankles[:, index], pose.knees[:, index], lengths)
+    ankle, pole = pose.ankles[:, index], pose.knees[:, index]
+    leg, along = two_bone(hip, ankle, pole, lengths), rotations.normalize(ankle - hip)
+    for _ in range(UNTWISTS):
+        thigh, _ = leg_rotations(leg)
+        twisted = overbent(f"{name}_hip", rotations.compose(rotations.inverse(pose.hips), thigh))[:, 2:]
+        if not twisted.any():
+            break
+        # The more a knee is bent, the less its thigh turns as it swings.
+        swung = SIDES[index][1] * twisted * np.maximum(rotations.dot(leg.upper, along), 0.0)
+        pole = rotations.rotate(rotations.rotvec_to_quat(swung * along), rotations.cross(along, leg.hinge))
+        leg = two_bone(hip, ankle, pole, lengths)
+    return leg
 
 
 def _solve_leg(local: Array, pose: Pose, skeleton: Skeleton, index: int, name: str) -> None:

@@ -14,6 +14,7 @@ from motion_backend.procedural.sit.sit_skill import before_seat, leave_seat, sit
 from motion_backend.procedural.tail import only_stands
 from motion_backend.procedural.touch.touch_skill import before_thing, come_to_thing, reach
 from motion_backend.procedural.walk.walk_skill import go, halt, stay
+from motion_backend.procedural.walk.walk_styles import walk_style
 
 
 def perform(body: Body, part: Part) -> None:
@@ -32,7 +33,9 @@ def _walk(body: Body, part: Part) -> None:
     onward = None
     if body.upcoming and body.upcoming[0].kind is PartKind.WALK and body.upcoming[0].goal is not None:
         later = body.upcoming[0]
-        onward, _ = _bound_for(body, later, body.upcoming[0].goal, body.upcoming[1:])
+        # Nobody goes on sideways or backwards as he came.
+        if not walk_style(later.action.emotion, later.action.caption).aside:
+            onward, _ = _bound_for(body, later, body.upcoming[0].goal, body.upcoming[1:])
         # Who passes by does not turn to what is there.
         facing = facing if onward == goal else None
     body.enter(PhaseKind.WALK)

@@ -15,12 +15,13 @@ import numpy as np
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.caption_senses import is_shown
 from planner_service.composition.deed_lexicon import Deed, deed_of, unshown
-from planner_service.composition.keyframe_writer import UNSHOWN, KeyframeWriter, Part
+from planner_service.composition.keyframe_writer import EXPRESSED, TOUCHES, UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
+from planner_service.composition.mood_captions import captions_of
 from planner_service.composition.request import RULES, Record, Request
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts.acted_beats import connects
-from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe, Retrieved, ShortScript
+from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe, Retrieved, ShortScript
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import repair
 from planner_service.scripts.script_search import rank
@@ -30,8 +31,8 @@ from scene_graphs.furniture import canonical_room
 
 _OFFERED: Final = 6
 """Short scripts that are looked at for a beat."""
-_EXPRESSED: Final = (Emotion.HAPPY, Emotion.ANGRY, Emotion.SAD)
-"""Moods whose laughing, shouting and sighing a body's bearing shows; it does not sweat or yawn."""
+_LIKELY: Final = 3
+"""Pieces of furniture where a deed is done most."""
 _MIN_SCORE: Final = 0.3
 """How well a short script must answer a beat for a part of it to be taken."""
 
@@ -130,8 +131,8 @@ def _besides(
 ) -> tuple[str, ...]:
     """What an acted beat tells and no keyframe shows: all of it, where its keyframes only stand for it."""
     if index in writer.moody:
-        seen = read.clause.verb not in EXPRESSIONS or read.beat.emotion in _EXPRESSED
-        return () if read.sure and seen else (read.text,)
+        seen = read.clause.verb not in EXPRESSIONS or read.beat.emotion in EXPRESSED
+        return () if (read.sure or read.beat.kind == "feeling") and seen else (read.text,)
     deed = writer.deeds.get(index)
     own = [one for one in keyframes if index in (one.beat, *one.also)]
     own = [one for one in own if not connects(one)] or own
@@ -146,64 +147,60 @@ class PartFinder:
 
     library: ScriptLibrary
     rooms: Sequence[str] = ()
-    _used: set[str] = field(default_factory=set)
+    _used: set[int] = field(default_factory=set)
 
     def all_of(self, read: Sequence[ReadBeat]) -> dict[int, Part]:
         """For each beat the part of the nearest script in which deed, mood, room and furniture agree, if any does."""
-        deeds = {
-            index: deed
-            for index, one in enumerate(read)
-            if one.beat.kind == "deed" and (deed := deed_of(one.clause)) is not None and self._may_do(deed, one)
-        }  # sentences are encoded only of what some script may do
-        if not deeds:
+        able = {index: parts for index, one in enumerate(read) if (parts := self._parts(one))}
+        if not able:
             return {}
-        scores = rank([read[index].text for index in deeds], self.library)
+        scores = rank([read[index].text for index in able], self.library)  # of what some script does alone
         found = {}
-        for row, (index, deed) in zip(scores, deeds.items(), strict=True):
-            for place in np.argsort(-row, kind="stable")[:_OFFERED]:
-                script = self.library.scripts[int(place)]
-                able = row[place] >= _MIN_SCORE and script.id not in self._used and self._plays(script, read[index])
-                if able and (keyframes := _part(script, read[index], deed)):
-                    found[index] = Part(script, float(row[place]), keyframes)
-                    self._used.add(script.id)
+        for row, (index, parts) in zip(scores, able.items(), strict=True):
+            for place in map(int, np.argsort(-row, kind="stable")[:_OFFERED]):
+                if place in parts and row[place] >= _MIN_SCORE and place not in self._used:
+                    taken = tuple(PlannedKeyframe.model_validate(one.model_dump()) for one in parts[place])
+                    found[index] = Part(self.library.scripts[place], float(row[place]), taken)
+                    self._used.add(place)
                     break
         return found
 
-    def _may_do(self, deed: Deed, read: ReadBeat) -> bool:
-        """Whether some script in a beat's mood has a caption of its deed; a walk alone is no part of one."""
-        if deed.skill is Skill.LOCO or not (deed.pieces or deed.row.captions):
-            return False
-        shown = _captions_of(deed)
-        return not shown or any((read.beat.emotion, deed.skill, one) in self.library.captions for one in shown)
+    def _parts(self, read: ReadBeat) -> dict[int, Sequence[Keyframe]]:
+        """The keyframes that do a beat's deed in its mood, by the places of the scripts that play where it may."""
+        deed = deed_of(read.clause) if read.beat.kind == "deed" else None
+        if deed is None or deed.skill is Skill.LOCO:  # a walk alone is no part of a script
+            return {}
+        shown = [(read.beat.emotion, deed.skill, one) for one in _captions_of(deed, read.beat.emotion)]
+        rooms = (read.room,) if read.room else tuple(map(canonical_room, self.rooms))
+        scripts = {place: self.library.scripts[place] for key in shown for place in self.library.captions.get(key, ())}
+        return {
+            place: part
+            for place, script in scripts.items()
+            if (not rooms or script.room in rooms) and (part := _part(script, read.beat.emotion, deed))
+        }
 
-    def _plays(self, script: ShortScript, read: ReadBeat) -> bool:
-        """Whether a script plays in the beat's mood, and where it may."""
-        allowed = (read.room,) if read.room else tuple(map(canonical_room, self.rooms))
-        return script.emotion is read.beat.emotion and (not allowed or script.room in allowed)
 
-
-def _part(script: ShortScript, read: ReadBeat, deed: Deed) -> tuple[PlannedKeyframe, ...]:
+def _part(script: ShortScript, mood: Emotion, deed: Deed) -> Sequence[Keyframe]:
     """The walk and the keyframe of a script that do a deed in a mood; empty where none does."""
     for place, keyframe in enumerate(script.keyframes):
-        if agrees(keyframe.skill, keyframe.caption, keyframe.piece[0], deed) and keyframe.mood is read.beat.emotion:
-            walk = script.keyframes[place - 1] if place else None
-            leads = walk is not None and walk.skill is Skill.LOCO and walk.furniture == keyframe.furniture
-            taken = [walk, keyframe] if walk is not None and leads else [keyframe]
-            return tuple(PlannedKeyframe.model_validate(one.model_dump()) for one in taken)
+        if keyframe.mood is mood and agrees(keyframe, deed):
+            walk = script.keyframes[place - 1] if place else keyframe
+            leads = walk.skill is Skill.LOCO and walk.furniture == keyframe.furniture
+            return (walk, keyframe) if leads else (keyframe,)
     return ()
 
 
-def agrees(skill: Skill, caption: str, piece: str, deed: Deed) -> bool:
-    """Whether a script's keyframe does a deed, with the caption that shows it, where the deed may be done."""
-    if skill is not deed.skill or not (deed.pieces or deed.row.captions):
+def agrees(keyframe: Keyframe, deed: Deed) -> bool:
+    """Whether a script's keyframe does a deed, with a caption that shows it and nothing else, where it may be done."""
+    if keyframe.skill is not deed.skill or not (deed.pieces or deed.row.captions):
         return False
-    kinds = furniture.categories_of(piece)
-    there = any(not kinds.isdisjoint(furniture.categories_of(one)) for one in deed.pieces[:3] if one != "floor")
-    shown = _captions_of(deed)
-    if skill is Skill.TOUCH and not shown and not caption.startswith("touch medium"):
-        return False
-    return (caption in shown if shown else True) and (there or not deed.pieces)
+    kinds = furniture.categories_of(keyframe.piece[0])
+    pieces = [one for one in deed.pieces[: 1 if deed.named else _LIKELY] if one != "floor"]
+    there = any(not kinds.isdisjoint(furniture.categories_of(one)) for one in pieces)
+    return keyframe.caption in _captions_of(deed, keyframe.mood) and (there or not deed.pieces)
 
 
-def _captions_of(deed: Deed) -> tuple[str, ...]:
-    return deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
+def _captions_of(deed: Deed, mood: Emotion) -> Sequence[str]:
+    """The captions that show a deed, else those of its skill that show nothing but a mood."""
+    own = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
+    return own or (TOUCHES if deed.skill is Skill.TOUCH else captions_of(deed.skill, mood))

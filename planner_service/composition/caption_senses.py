@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from functools import cache
 from typing import Final
 
 from motion_backend.motion import Skill
-from planner_service.composition.deed_lexicon import Deed, object_of, readings, says
+from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_table, object_of, readings, says, where
 from planner_service.scripts.script import Keyframe
 from planner_service.themes.protagonist import is_person
 from planner_service.themes.sentence_parser import Clause
 from scene_graphs.data_tables import read_table, table
+from scene_graphs.furniture import categories_of
 
+_PLACE: Final = re.compile(
+    r"\b(?:on|onto|into|at|under|behind|over|against) ((?:the|a|an|his|her|their|my|every|each) (?:\w+ ?){1,2})"
+)
+"""Where a clause says that it is done."""
 _POSTURES: Final = (Skill.SITDOWN, Skill.LIEDOWN, Skill.STANDUP, Skill.GETUP)
 
 
@@ -53,7 +59,31 @@ def shows(skill: Skill, caption: str, clause: Clause) -> bool:
 
 
 def is_shown(clause: Clause, deed: Deed, keyframes: Iterable[Keyframe]) -> bool:
-    """Whether some keyframe shows a clause's deed; a posture that its saying is, shows itself."""
-    if deed.foreseen and not deed.row.captions and deed.skill in _POSTURES:
+    """Whether some keyframe shows a clause's deed: by what its caption is, or as the table of deeds shows it.
+
+    Fair viewers take a hand at the stove for baking, and whoever sits with the deed's own caption for doing it; not a
+    walk for whatever is done on one's feet, nor a hand for what is done to people.
+    """
+    if deed.skill in _POSTURES and not deed.row.captions:
         return True
-    return any(shows(one.skill, one.caption, clause) for one in keyframes)
+    return any(shows(one.skill, one.caption, clause) or _is_own(one, clause, deed.row) for one in keyframes)
+
+
+def _is_elsewhere(keyframe: Keyframe, clause: Clause) -> bool:
+    """Whether a clause tells of another place than a keyframe's: "draws a moustache on the mirror" at the desk."""
+    here = categories_of(keyframe.piece[0])
+    for told in _PLACE.findall(clause.text):
+        places = where(told)
+        seats = [seat for piece in places for seat in deed_table().seats_at.get(piece, ())]
+        if places and not any(here & categories_of(piece) for piece in (*places, *seats)):
+            return True
+    return False
+
+
+def _is_own(keyframe: Keyframe, clause: Clause, row: DeedRow) -> bool:
+    """Whether a keyframe at rest, or of a hand, is the one that the table has for a deed."""
+    if row.stands or row not in deed_table().deed or _is_elsewhere(keyframe, clause):
+        return False
+    if keyframe.skill is Skill.TOUCH:
+        return row.skill is Skill.TOUCH and not is_person(object_of(clause))
+    return keyframe.skill in _POSTURES and keyframe.caption in (*row.captions, *row.seated, *row.lying)

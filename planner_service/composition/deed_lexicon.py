@@ -34,8 +34,8 @@ _WAYS: Final = re.compile(
 )
 """A way through a home, whatever the verb that goes it."""
 _FLOOR: Final = re.compile(r"(?<!feet )(?<!foot )\b(?:on|onto|to) the (?:\w+ )?(?:floor|ground|rug|carpet)\b")
+_ON_TOP: Final = re.compile(r"\bon (?:the|a|his|her|their) (?:\w+ )?(?:table|desk|counter)")
 _UNDER: Final = re.compile(r"\b(?:under|beneath|underneath|behind|beside|next to)\b")
-_AT: Final = re.compile(r"\b(?:at|by|near|beside|before|behind|in front of|next to)\b")
 _INTO: Final = re.compile(
     r"^\w+ (?:(?:him|her|my|them)sel\w+ |down |back |up )*(into|onto|out of|from|off) "
     r"(?:the|his|her|their|my|an?) ((?:\w+ ?)+)"
@@ -47,7 +47,7 @@ _MAX_FRAGMENT: Final = 4
 """Words of a sentence without a verb that may stand for a deed."""
 _NOT_NOW: Final = frozenset(("before", "after", "until", "since", "during", "without", "no", "not", "never", "nothing"))
 """Words before what is not done, or not yet."""
-_LIGHT_VERBS: Final = ("do", "have", "take", "play")
+_LIGHT_VERBS: Final = ("do", "have", "take", "play", "watch")
 """Verbs that a noun alone stands for: "dinner", "a nap", "yoga"."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
 Pattern = tuple[frozenset[str], ...]
@@ -67,6 +67,10 @@ class DeedRow:
     rests: bool = False
     things: bool = False
     mood: str = ""
+    standing: bool = False
+    """Whether who is on their feet already does it standing."""
+    stands: bool = False
+    """Whether its captions only stand for it."""
     why: str = ""
     """Why a body at home does not do it."""
 
@@ -122,11 +126,6 @@ class Deed:
     named: bool
     """Whether the beat itself names the furniture."""
 
-    @property
-    def foreseen(self) -> bool:
-        """Whether the table has it: anything else was guessed by its things or its way."""
-        return self.row in deed_table().deed or bool(self.row.skill in NEEDS and self.skill is not Skill.TOUCH)
-
 
 def deed_of(clause: Clause, about: str = "") -> Deed | None:
     """The deed of a clause; None where nothing in its words is anything that a body does at home.
@@ -147,15 +146,13 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     seated = any(affords(piece, "sit") or piece in deed_table().seats_at for piece in named) and not any(
         affords(piece, "lie") for piece in named
     )
-    if skill is Skill.LIEDOWN and seated and not _FLOOR.search(clause.text):
+    if skill is Skill.LIEDOWN and seated and not (_FLOOR.search(clause.text) or _UNDER.search(clause.text)):
         skill, need = Skill.SITDOWN, "sit"  # "collapses into the armchair"
     if need is None:
         pieces = [piece for piece in named if furniture.affordances(piece)]
         return Deed(found, skill, tuple(pieces), bool(pieces))
     fitting = [piece for piece in named if affords(piece, need)]
-    if skill is Skill.SITDOWN and not re.search(
-        r"\bon (?:the|a|his|her|their) (?:\w+ )?(?:table|desk|counter)", clause.text
-    ):
+    if skill is Skill.SITDOWN and not (found.skill is skill and _ON_TOP.search(clause.text)):
         seats = [seat for piece in named for seat in deed_table().seats_at.get(piece, ())]
         fitting = seats or fitting
     under = need == "lie" and bool(named) and not fitting and bool(_UNDER.search(clause.text))
@@ -234,7 +231,15 @@ def row_of(clause: Clause, about: str) -> DeedRow | None:
     """The row that a clause's words say, else by its things."""
     if clause.verb and re.search(r"^\w+ \w+sel(?:f|ves)\b", clause.text) and (row := _moved(clause)):
         return row
-    return said_row(clause) or _by_things(clause, about)
+    return said_row(_spelt_out(clause, about)) or _by_things(clause, about)
+
+
+def _spelt_out(clause: Clause, about: str) -> Clause:
+    """A clause with what "it" and "them" mean: of trainers "ties them" is ties the trainers."""
+    meant = next((word for word in reversed(_lemmas(about)) if word in things()), "")
+    if not meant or not {"it", "them"} & set(clause.lemmas[1:]) or said_row(clause):
+        return clause
+    return replace(clause, lemmas=tuple(meant if word in ("it", "them") else word for word in clause.lemmas))
 
 
 def said_row(clause: Clause) -> DeedRow | None:
@@ -245,15 +250,23 @@ def said_row(clause: Clause) -> DeedRow | None:
 
 def _said(clause: Clause) -> tuple[int, DeedRow] | None:
     """The same, with how many words its saying has."""
-    ways, starts = deed_table().ways, list(readings(clause))
-    for anchored in (True, False):  # patterns that begin with a gap fit any verb, where no other does
-        for lemmas in starts:
-            fitting = [(pattern, row) for pattern, row in ways.get("".join(lemmas[:1]) if anchored else "", ())
-                       if _fits(pattern, lemmas)]  # fmt: skip
-            if fitting:
-                pattern, row = max(fitting, key=lambda one: sum(map(bool, one[0])))
-                return sum(map(bool, pattern)), row
+    ways = deed_table().ways
+    does = bool(clause.verb) or clause.text.split(" ", 1)[0].endswith("ing")  # "pacing", but not "wrapped in a blanket"
+    for lemmas in readings(clause):
+        fitting = [
+            (_words_in(pattern), row)
+            for first in ("".join(lemmas[:1]) if does else "", "")
+            for pattern, row in ways.get(first, ())
+            if _fits(pattern, lemmas)
+        ]
+        if fitting:
+            return max(fitting, key=lambda one: one[0])
     return None
+
+
+def _words_in(pattern: Pattern) -> int:
+    """How many words a pattern has, its gaps and its end aside."""
+    return sum(bool(word) and word != _END for word in pattern)
 
 
 def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
@@ -261,6 +274,8 @@ def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
     if clause.verb in theme_words()["speech_verbs"] and len(clause.lemmas) > 1:  # "says into the phone"
         yield ("talk", *clause.lemmas[1:])
     yield ("cannot", *clause.lemmas) if clause.unable else clause.lemmas
+    if not grammar().adverbs.isdisjoint(clause.lemmas):  # "is still on hold"
+        yield tuple(lemma for lemma in clause.lemmas if lemma not in grammar().adverbs)
     words = {token.low for token in tokens_of(clause.text)}
     for place, lemma in enumerate(clause.lemmas[1:], 1):
         if gerund(lemma) in words and lemma not in ("be",):
@@ -269,8 +284,6 @@ def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
 
 def _by_things(clause: Clause, about: str) -> DeedRow | None:
     """What is done with things by a verb nobody foresaw: a hand is laid on them; or a way is gone."""
-    if clause.verb in ("be", "end", "stand", "stay", "appear") and _AT.search(clause.text) and _named(clause, about):
-        return DeedRow((clause.verb,), Skill.LOCO)
     if clause.verb in _EXPRESSED:
         return None
     if clause.verb and (row := _moved(clause)):
@@ -315,14 +328,10 @@ def where(text: str) -> tuple[str, ...]:
     return tuple(pieces_in(text)) or next((places[word] for word in _lemmas(text) if word in places), ())
 
 
-def standing_at(clause: Clause) -> tuple[str, ...]:
-    """Where one stands who eats or drinks on one's feet; empty where nothing tells."""
-    return tuple(piece for piece in where(clause.text) if affords(piece, "touch"))
-
-
 def names_things(clause: Clause) -> bool:
     """Whether a clause names furniture or things, which "it" may mean later."""
-    return bool(pieces_in(clause.text)) or any(word in things() for word in clause.lemmas)
+    words = (*clause.lemmas, *_lemmas(clause.subject))
+    return bool(pieces_in(clause.text)) or any(word in things() for word in words)
 
 
 def _fits(pattern: Pattern, lemmas: Sequence[str]) -> bool:

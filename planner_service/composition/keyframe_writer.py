@@ -23,14 +23,14 @@ from planner_service.composition.deed_lexicon import (
     deed_table,
     names_things,
     room_of,
-    standing_at,
     where,
 )
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
 from planner_service.scripts.script_words import NEEDS, affords
-from planner_service.themes.beats import ReadBeat
+from planner_service.themes.beats import EXPRESSIONS, ReadBeat
+from planner_service.themes.details import details_of
 from planner_service.themes.protagonist import names_somebody
 from planner_service.themes.sentence_parser import Clause
 from scene_graphs import furniture
@@ -44,11 +44,19 @@ NOT_ACTED: Final = {
 """Why beats of these kinds are not acted."""
 SPOKEN_OF: Final = "it is only spoken of"
 UNSHOWN: Final = "none of the captions shows it"
-_TOUCHES: Final = (
+TOUCHES: Final = (
     "touch medium height with the right hand",
     "touch medium height",
     "touch medium height with the left hand",
 )
+"""Captions of a hand that is laid on something, whatever it does there."""
+EXPRESSED: Final = (Emotion.HAPPY, Emotion.ANGRY, Emotion.SAD)
+"""Moods whose laughing, shouting and sighing a body's bearing shows; it does not sweat or yawn."""
+_AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside", "below"))
+"""Words before another place."""
+_MOST_PLACES: Final = 3
+_AGAIN_VERBS: Final = ("start", "begin", "try")
+_AGAIN: Final = frozenset(("again", "over", "afresh", "anew", "more"))
 _ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
 _TAKEN: Final = DeedRow(
     ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
@@ -98,7 +106,7 @@ class KeyframeWriter:
         """Keyframes for the beat at a place; it is shown by one, by another beat's in its mood, or is in `why`."""
         read = beats[index]
         beat = read.beat
-        deed = deed_of(read.clause, self._about) if beat.kind == "deed" else None
+        deed = self._deed(read.clause) if beat.kind == "deed" else None
         self._about = read.text if names_things(read.clause) else self._about
         if beat.kind in NOT_ACTED:
             self.why[index] = SPOKEN_OF if read.clause.aside else NOT_ACTED[beat.kind]
@@ -111,6 +119,13 @@ class KeyframeWriter:
             self._feel(index, beats)
         else:
             self.why[index] = UNSHOWN
+
+    def _deed(self, clause: Clause) -> Deed | None:
+        """What a clause does; who starts again does what was done at rest last, else first."""
+        if clause.verb in _AGAIN_VERBS and not _AGAIN.isdisjoint(clause.lemmas) and self.deeds:
+            done = list(self.deeds.values())
+            return next((deed for deed in reversed(done) if deed.row.rests), done[0])
+        return deed_of(clause, self._about)
 
     def take(self, index: int, keyframes: Sequence[Keyframe], why: str, part: Part | None) -> None:
         """Keyframes that somebody else planned for a beat, of a short script where they are of one."""
@@ -150,12 +165,9 @@ class KeyframeWriter:
                 self._avoided |= {deed.skill} & {Skill.SITDOWN, Skill.LIEDOWN}
 
     def _do(self, index: int, read: ReadBeat, deed: Deed) -> None:
+        deed = self._on_feet(read, deed)
         mood = read.beat.emotion
         self._clause = read.clause
-        if deed.row.rests and _ON_FEET.search(read.text) and (stands := standing_at(read.clause)):
-            deed = Deed(_TAKEN, Skill.TOUCH, stands, True)
-        elif deed.row.rests and (deed.skill in self._avoided or _ON_FEET.search(read.text)):
-            deed = Deed(_STANDING, Skill.LOCO, deed.pieces if deed.named else (), deed.named)
         if deed.row.mood and mood is Emotion.NEUTRAL:
             mood = Emotion(deed.row.mood)
         match deed.skill:
@@ -168,23 +180,36 @@ class KeyframeWriter:
             case Skill.LOCO:
                 self._walk(index, read, deed, mood)
             case Skill.TOUCH:
-                if self._add(index, read, deed, mood, Skill.TOUCH, deed.row.captions or _TOUCHES):
-                    self._resting = None
+                for piece in (deed, *_further(read.clause, deed)):
+                    if self._add(index, read, piece, mood, Skill.TOUCH, deed.row.captions or TOUCHES):
+                        self._resting = None
             case Skill.SITDOWN if self._lies() and deed.row.lying and not deed.named:
                 self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)
             case _:
                 shown = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
                 self._rest(index, read, deed, mood, deed.skill, shown)
 
+    def _on_feet(self, read: ReadBeat, deed: Deed) -> Deed:
+        """What is done at rest, where it is done standing: as is said, or as one is while nothing is said."""
+        at = tuple(piece for piece in where(read.text) if affords(piece, "touch"))
+        stands, last = bool(_ON_FEET.search(read.text)), self._clause
+        goes_on = self._resting is None and last is not None and last.sentence == read.clause.sentence
+        if deed.row.rests and stands and at:
+            return Deed(_TAKEN, Skill.TOUCH, at, True)
+        if deed.row.rests and (stands or deed.skill in self._avoided):
+            return Deed(_STANDING, Skill.LOCO, deed.pieces if deed.named else (), deed.named)
+        if deed.row.standing and goes_on and not (deed.named or read.clause.verb == "sit"):
+            return Deed(_STANDING, Skill.LOCO, (), False)
+        return deed
+
     def _goes_on(self, read: ReadBeat, deed: Deed) -> bool:
         """Whether it is done where one rests, and shows no more: "sits in the dark, listening"; nobody gets up for what
         would only stand for it."""
-        beside = read.clause.joint in ("ing", ",") and read.clause.text.split()[0].endswith("ing")
         stands_in = bool(deed.row.captions) and not any(
             shows(Skill.LOCO, one, read.clause) for one in deed.row.captions
         )
         rests = self._resting is not None and not deed.named and not deed.row.seated
-        return rests and (stands_in or (beside and deed.row.captions == _STANDING.captions))
+        return rests and (stands_in or (_is_beside(read) and deed.row.captions == _STANDING.captions))
 
     def _lies(self) -> bool:
         return self._resting is not None and self._resting.skill is Skill.LIEDOWN
@@ -198,7 +223,9 @@ class KeyframeWriter:
         shown = captions or captions_of(skill, mood)
         if resting is not None and here and resting.skill is skill:
             generic = deed.row.rests or deed.row.captions
-            stands_in = not any(shows(skill, one, read.clause) for one in shown)
+            stands_in = (deed.row.stands or _is_beside(read)) and not any(
+                shows(skill, one, read.clause) for one in shown
+            )
             if self._plain or not generic or stands_in or resting.caption in captions:
                 if self._plain and generic:
                     self.keyframes[-1] = self._resting = resting.model_copy(
@@ -272,6 +299,8 @@ class KeyframeWriter:
             caption = self._one_of(captions_of(last.skill, mood), mood, index, last.skill)
             self.keyframes[-1] = self._resting = last.model_copy(update={"caption": caption, "emotion": mood.value})
             self._show(index)
+        elif beats[index].clause.verb in EXPRESSIONS and mood not in EXPRESSED:
+            self.why[index] = UNSHOWN
         else:
             self._put(index, Skill.LOCO, mood, walk_of(mood), "floor", beats[index].room)
             self._resting = None
@@ -281,6 +310,9 @@ class KeyframeWriter:
     ) -> bool:
         """A keyframe at furniture: of a script where one does the same, else written; False where there is none."""
         part = self.part_of(index) if mood is read.beat.emotion else None
+        at = self.keyframes[-1].furniture if self.keyframes else "floor"
+        if part is not None and at in deed.pieces and at != part.keyframes[-1].furniture:
+            part = None  # nobody goes elsewhere for what is done where one is
         same = part is not None and part.keyframes[-1].skill is skill
         if (
             part is not None
@@ -382,3 +414,15 @@ class KeyframeWriter:
         told = [one for one in captions if self._clause is not None and shows(skill, one, self._clause)]
         options = fitting(told or captions, skill, mood)
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
+
+
+def _further(clause: Clause, deed: Deed) -> list[Deed]:
+    """The same deed where else it is done: "looks under the bed, | behind the sofa"."""
+    places = (where(text) for text in details_of(clause)[:_MOST_PLACES] if deed.named and text.split()[0] in _AT)
+    found = [piece for some in places for piece in some[:1] if affords(piece, "touch") and piece != deed.pieces[0]]
+    return [Deed(deed.row, deed.skill, (piece,), True) for piece in dict.fromkeys(found)]
+
+
+def _is_beside(read: ReadBeat) -> bool:
+    """Whether it is done while something else is: "sits in the dark, | listening"."""
+    return read.clause.joint in ("ing", ",", "while") and read.clause.text.split()[0].endswith("ing")

@@ -231,9 +231,13 @@ class _Stage:
         """The freest place of a room to sit or lie on the floor, and the freest direction there."""
         best: tuple[float, Spot] | None = None
         length = 0.9 if need == "lie" else 0.5
-        for _ in range(60):
-            point = self.walkable.random_point(self.rng, room)
-            for yaw in np.arange(8) * np.pi / 4:
+        for attempt in range(120):
+            point, turned = self.walkable.random_point(self.rng, room), 0.0
+            if best is not None and attempt >= 60:  # in a crowded room beside the best so far
+                x, _, z = best[1].point
+                point = (x + float(self.rng.normal(0.0, 0.15)), z + float(self.rng.normal(0.0, 0.15)))
+                turned = float(self.rng.normal(best[1].facing, 0.3))
+            for yaw in turned + np.arange(8) * np.pi / 4:
                 ahead = np.array([np.sin(yaw), np.cos(yaw)])
                 ends = [np.asarray(point) + share * length * ahead for share in (-1.0, -0.5, 0.5, 1.0)]
                 spot = floor_spot(need, point, float(yaw))

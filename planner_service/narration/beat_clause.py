@@ -11,6 +11,7 @@ from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.story_words import story_words
 from planner_service.narration.tense import bases, form_of, in_past, says_how
 from planner_service.scripts.script import Beat
+from planner_service.themes.beats import EXPRESSIONS
 from planner_service.themes.lexicon import is_adjective, is_noun, past
 
 WAS: Final = "\ue000"
@@ -72,20 +73,14 @@ def purpose(beat: Beat, hero: str, voice: Voice) -> str:
 
 
 def _own_clause(text: str) -> list[str]:
-    """Words up to a clause with a subject of its own, and without what joins them to those before."""
+    """Words without what joins them to those before."""
     words = re.sub(
         r"^(?:(?![\"“\ue001])\W|(?:and|but|then|so(?=,| (?:he|she|they|i)\b))\b)+",
         "",
         text.strip(),
         flags=re.IGNORECASE,
     ).split()
-    words = [word[:1].lower() + word[1:] if not at else word for at, word in enumerate(words)]
-    for at, word in enumerate(words[1:], start=1):
-        later = [_bare(one) for one in words[at + 1 :]]
-        finite = (form_of(one) in ("present", "past") or one in _of("subjects") or one in _helpers() for one in later)
-        if word.lower() in _of("cut") and any(finite):
-            return words[:at]
-    return words
+    return [word[:1].lower() + word[1:] if not at else word for at, word in enumerate(words)]
 
 
 def _head(words: Sequence[str], feeling: bool) -> tuple[str, Sequence[str], bool] | None:
@@ -96,10 +91,13 @@ def _head(words: Sequence[str], feeling: bool) -> tuple[str, Sequence[str], bool
         return WAS, words, False
     if first == "to" and rest:
         return _head(rest, feeling)
+    if first in ("had", "having") and form_of(after) in ("past", "participle"):
+        return _head(rest, feeling)  # what had been done is told where it is acted
     if first in _helpers():
         goes_on = _helpers()[first] == WAS and form_of(after) == "ing" and not feeling
         return _head(rest, feeling) if goes_on else (_helpers()[first], rest, False)
-    plain = form_of(first) not in ("present", "ing", "past") or is_adjective(first)  # "laughed" says what is done
+    does = form_of(first) in ("present", "ing") or not EXPRESSIONS.keys().isdisjoint(bases(first))
+    plain = not does or is_adjective(first)  # "laughed" says what is done, "exhausted" how one is
     adjective = plain and says_how(first) and after not in ("down", "up", "out")
     if feeling and (adjective or (first in ("in", "at") and rest)):
         return WAS, words, False

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 from functools import cache, cached_property
+from typing import Final
 
 from motion_backend.motion import Skill
 from planner_service.narration.narrative_voice import require_blanks
-from planner_service.themes.patterns import pattern_at
 from scene_graphs.data_tables import read_table, require_known, table
+
+MAX_PATTERN_LENGTH: Final = 3000
+"""Letters of a pattern."""
 
 
 @table
@@ -29,8 +32,6 @@ class StoryWords:
     """Verbs for how somebody is, apart by spaces; so the next."""
     alone: str
     """Verbs that can stand alone after "and"."""
-    cut: str
-    """Words that begin a clause of its own, which is not told."""
     adverbs: str
     """Words before a verb that belong to it."""
     subjects: str
@@ -84,3 +85,16 @@ def title_of(theme: str, mood: str) -> str:
     }
     plain = story_words().mood_titles[mood].format(time=found["times"] or "Day")
     return found["titles"] or re.sub(r"^A (?=[AEIOU])", "An ", plain)
+
+
+@cache
+def pattern_at(place: str, pattern: str) -> re.Pattern[str]:
+    """A pattern of a table, whatever the letters' case; breaks between lines count for nothing. ValueError says at
+    which place in the data what is wrong."""
+    whole = pattern.replace("\n", "")
+    if len(whole) > MAX_PATTERN_LENGTH:
+        raise ValueError(f"{place}: {len(whole)} letters, at most {MAX_PATTERN_LENGTH} are compiled")
+    try:
+        return re.compile(whole, re.IGNORECASE)
+    except re.error as error:
+        raise ValueError(f"{place}: {error} in {whole[:60]!r}") from error

@@ -6,7 +6,7 @@ licence.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -138,9 +138,13 @@ class ScriptLibrary:
         return np.array([EMOTIONS.index(script.emotion) for script in self.scripts], np.intp)
 
     @cached_property
-    def captions(self) -> frozenset[tuple[Emotion, Skill, str]]:
-        """Every caption that some keyframe has, with the emotion of its script and its skill."""
-        return frozenset((one.emotion, row.skill, row.caption) for one in self.scripts for row in one.keyframes)
+    def captions(self) -> Mapping[tuple[Emotion, Skill, str], Sequence[int]]:
+        """The places of the scripts that have a caption, by the script's emotion, the keyframe's skill, and it."""
+        found: dict[tuple[Emotion, Skill, str], list[int]] = {}
+        for place, one in enumerate(self.scripts):
+            for key in {(one.emotion, row.skill, row.caption) for row in one.keyframes}:
+                found.setdefault(key, []).append(place)
+        return found
 
     @cached_property
     def rooms(self) -> NDArray[np.intp]:

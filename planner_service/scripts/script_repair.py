@@ -193,11 +193,6 @@ def repair(
     return tuple(mending.kept), tuple(map(str, mending.problems))
 
 
-def last_posture(keyframes: Sequence[Keyframe]) -> Posture:
-    """How the body is left when the script ends."""
-    return Mending(keyframes).posture
-
-
 def skill_of(word: str) -> Skill:
     """The skill a word means ("walk" is loco), or ValueError listing the skills."""
     skill = _SKILLS.get(_plain(word))

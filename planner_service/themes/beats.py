@@ -12,7 +12,7 @@ from motion_backend.motion import Emotion
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
 from planner_service.themes.lexicon import is_known_word
-from planner_service.themes.protagonist import called, head_of, hero_of, is_hero
+from planner_service.themes.protagonist import called, head_of, hero_of, is_hero, is_person
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import tokens_of
@@ -47,7 +47,7 @@ EXPRESSIONS: Final = {
         Emotion.HAPPY: "laugh smile grin giggle chuckle beam sing hum whistle rejoice whoop",
         Emotion.ANGRY: "yell scream curse growl scowl snarl shout rant grumble hate detest resent despise",
         Emotion.SAD: "sigh frown sniffle",
-        Emotion.STRESSED: "tremble shake sweat panic flinch shudder gasp dread fear worry",
+        Emotion.STRESSED: "tremble sweat panic flinch shudder gasp dread fear worry",
         Emotion.TIRED: "yawn",
         Emotion.DRUNK: "hiccup",
     }.items()
@@ -138,7 +138,8 @@ def _read(clause: Clause, hero: str, pronoun: str) -> ReadBeat:
         emotion, sure = (named, True) if of_subject else (emotion, sure)
     if not sure and not who and (shown := EXPRESSIONS.get(clause.verb)):
         emotion, sure = shown, True
-    if (kind == "other" or (kind == "undone" and not clause.unable)) and not sure:
+    theirs = is_person(who)  # of what becomes of a dog, or an exam, the story's person feels something
+    if theirs or (not sure and kind == "undone" and not clause.unable):
         emotion = None
     beat = Beat(text=_bounded(text), emotion=emotion or Emotion.NEUTRAL, kind=kind, who=_bounded(who, 80))
     return ReadBeat(beat, clause, sure, emotion, next(iter(rooms_in(text)), None))
@@ -176,14 +177,14 @@ def is_feeling(clause: Clause) -> bool:
     """Whether a clause says nothing but how somebody feels: "becomes very sad"; or is words without a verb."""
     words = theme_words()
     if not clause.verb:  # "a cold kitchen" hints at a mood and is none
-        return any(feeling.sure for feeling in feelings(clause.text))
+        says_how = clause.text.split()[0].endswith("ed")  # "Bored stiff, …"
+        return any(feeling.sure or says_how for feeling in feelings(clause.text))
     if not words["posed"].isdisjoint(clause.lemmas):
         return False
     rest = [word for word in clause.lemmas[1:] if word not in words["state_words"]]
-    own = (
-        f"{clause.subject} " if head_of(clause.subject).lower() in words["body"] else ""
-    )  # "her heart is in her mouth"
-    return clause.verb in words["state_verbs"] and bool(feelings(own + clause.text)) and len(rest) <= 4
+    if head_of(clause.subject).lower() in words["body"]:  # "her heart is in her mouth"
+        return bool(feelings(f"{clause.subject} {clause.text}"))
+    return clause.verb in words["state_verbs"] and bool(feelings(clause.text)) and len(rest) <= 4
 
 
 def _refuse_foreign(text: str) -> None:

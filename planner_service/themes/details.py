@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Final
 
+from planner_service.themes.asides import MANNER
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, verb_of
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.verb_finder import Token, tokens_of
@@ -25,11 +26,20 @@ def details_of(clause: Clause) -> tuple[str, ...]:
     """Stretches of a clause after its deed, in its words: "draws out a chair | for a lady, | thirty years gone"."""
     tokens = [token for token in tokens_of(clause.text) if token.text[:1].isalnum() or token.text in _MARKS]
     verb = next((at for at, token in enumerate(tokens) if lemma_of(token.text) == clause.verb), None)
-    if not clause.verb or verb is None or clause.quotes:
+    if not clause.verb:  # "Nothing but boredom, | a long grey Sunday"
+        return tuple(filter(None, map(str.strip, clause.text.split(",")[1:])))
+    if verb is None or clause.quotes:
         return ()
     starts = [at for at in range(verb + _FEWEST, len(tokens)) if _starts(tokens, at)]
     found = [_words(clause.text, tokens[start:end]) for start, end in pairwise([*starts, len(tokens)])]
-    return tuple(text for text in found if len(text.split()) > 1)
+    return tuple(text for text in found if len(text.split()) > 1 and not _tells_when(text))
+
+
+def _tells_when(text: str) -> bool:
+    """Whether words only tell when, how long or how often: "for an hour", "every morning"."""
+    known = grammar()
+    small = known.prepositions | known.marks | known.numbers | known.times | known.adverbs | MANNER | {"so"}
+    return all(token.low in small or lemma_of(token.low) in small for token in tokens_of(text))
 
 
 def core_of(text: str, details: Sequence[str]) -> str:
@@ -48,7 +58,8 @@ def _starts(tokens: Sequence[Token], at: int) -> bool:
     if low == "to" and verb_of(after) == after and not is_noun(after):
         return True  # "opens the door | to greet her guests"
     beside = low.endswith("ing") and bool(verb_of(low)) and not is_noun(low) and is_noun(before.low)
-    linked = before.low in _LINKS and low in grammar().prepositions
+    pair = at > 1 and tokens[at - 2].low in grammar().prepositions  # "up and down the hall"
+    linked = before.low in _LINKS and low in grammar().prepositions and not pair
     beside = beside and not is_adjective(before.low) and before.low not in grammar().prepositions
     return linked or low in _LEADS or beside
 

@@ -51,8 +51,9 @@ def cast_by(theme: str, character: Character) -> Character:
     if (character.name, character.pronouns) != (default.name, default.pronouns):
         return character
     name = name_in(theme) or _name_of_hero(theme)
-    told = called(clauses_of_text(theme), name) if name else ""
-    told = told or ("" if name else pronouns_of(f"the {head_of(hero_of(clauses_of_text(theme)))}"))
+    clauses = clauses_of_text(theme)
+    hero = hero_of(clauses)
+    told = called(clauses, hero if name in hero else name) if name else pronouns_of(f"the {head_of(hero)}")
     pronouns = _pronouns_of_names().get(name.lower()) or told or _pronouns_in(theme, bool(name)) or default.pronouns
     return replace(character, name=name or default.name, pronouns=pronouns)
 
@@ -130,7 +131,9 @@ def hero_of(clauses: Sequence[Clause]) -> str:
         return max(nouns, key=lambda one: _heroic(one, pronoun) + min(deeds[one.subject], 4) / 8).subject
     opening = ("a ", "an ", "one ", "my ", "our ", "the ")
     called = not people and " " not in "".join(mains[:1]) and "".join(mains[:1])[:1].isupper()  # "Rose", "Wen"
-    living = [one for one in mains[:1] if (called or one.lower().startswith(opening)) and _may_live(one)]
+    sooner = [(one.sentence, one.place) < first for one in told if one.joint in _MAIN_JOINTS][:1] == [True]
+    living = [one for one in mains[:1] if sooner and (called or one.lower().startswith(opening)) and _may_live(one)]
+    people.sort(key=lambda one: (one.sentence, one.place))
     return next(iter([*living, *(one.subject for one in people)]), "")
 
 
@@ -194,7 +197,8 @@ def is_person(subject: str) -> bool:
         return True
     if any(is_name(word) for word in words) and words[0].lower() not in ("the", "a", "an"):
         return True
-    if len(head) > 4 and head.endswith(("er", "or")):  # a "baker" is one who bakes
+    made = is_known(head) or lemma_of(head) in things()
+    if len(head) > 4 and head.endswith(("er", "or")) and not made:  # a "baker" is one who bakes
         stem = head.lower()[:-2]
         return any(kinds_of(verb) and is_third_person(verb) for verb in (f"{stem}s", f"{stem}es"))
     return len(head) > 5 and head.lower().endswith(("ist", "ian", "man", "woman", "person", "ress"))
@@ -213,8 +217,6 @@ def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
     was about."""
     if not subject or subject.lower() == hero.lower():
         return True
-    if subject.lower() == "one" and _is_plural(hero):  # of several people the one is played who does something
-        return True
     low, main = subject.split()[-1].lower(), hero.split()[-1].lower() if hero else ""
     if main == "i" and low in _SUBJECTS - {"who"}:
         return low == pronoun
@@ -223,8 +225,6 @@ def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
     if low in _SUBJECTS:
         return low in ("they", "who") or (pronoun or pronouns_of(hero)) in ("", low)
     if head_of(subject).lower() in theme_words()["body"]:
-        return True
-    if hero and head_of(subject).lower() == head_of(hero).lower():
         return True
     if not is_person(subject):
         return False

@@ -152,7 +152,7 @@ def _segmenter() -> Any:
 def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
     """The clauses of a piece: what is told before its subject, its own, second deeds without a joint, and asides."""
     tokens, relative = without_relative(_without_opening(piece.tokens))
-    place = verb_place(tokens)
+    place = 0 if piece.bare else None if piece.verbless else verb_place(tokens)
     if place is None:
         told = _quotes(tokens, quotes)
         return [Clause(piece.text, "", "", _lemmas(tokens), piece.joint, quotes=told, sentence=sentence)]
@@ -209,7 +209,8 @@ def _without_opening(tokens: Sequence[Token]) -> list[Token]:
 def _denials(lead: Sequence[Token], subject: str) -> list[Token]:
     """Of the words before a verb those that deny it; all of them where nobody is named."""
     known = grammar()
-    denying = [token for token in lead if token.low in known.denials - known.subjects]
+    denials = known.denials - known.subjects - (known.with_gerund if subject else frozenset())  # "without a word she"
+    denying = [token for token in lead if token.low in denials]
     return denying if subject else list(lead) if any(token.low in known.denials for token in lead) else []
 
 
@@ -298,7 +299,7 @@ def _subject(tokens: Sequence[Token]) -> str:
     if named < last and parts[last][0].low in ARTICLES:  # "Mira, the tidy one, …"
         return parts[named][0].text
     words = [token.text for part in parts[last:] for token in part]
-    while words and (words[-1].lower() in grammar().adverbs or words[-1].lower().endswith("ly")):
+    while words and (words[-1].lower() in grammar().adverbs or (words[-1].islower() and words[-1].endswith("ly"))):
         words.pop()
     if words and words[-1].lower() in grammar().subjects:
         return words[-1]

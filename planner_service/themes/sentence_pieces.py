@@ -7,10 +7,12 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from planner_service.themes.asides import THAT
-from planner_service.themes.lexicon import grammar, is_adjective, verb_of
-from planner_service.themes.verb_finder import Token, plain, tokens_of, verb_place
+from planner_service.themes.lexicon import grammar, is_adjective, past, verb_of
+from planner_service.themes.verb_finder import Token, is_adverb, plain, tokens_of, verb_place
 
 HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
+_PLAIN_SUBJECTS: Final = frozenset(("i", "you", "we", "they"))
+"""What does things in verbs' base forms."""
 _LATER_JOINTS: Final = frozenset(("before", "until", "while"))
 _NO_JOINTS: Final = {"once": ("at", "for", "more", "all"), "while": ("a", "long", "little", "short")}
 """What joining words stand after where they join nothing: "at once", "for a while"."""
@@ -23,6 +25,10 @@ class Piece:
     joint: str
     tokens: tuple[Token, ...]
     source: str = field(repr=False)
+    bare: bool = False
+    """Whether its first word is a verb in its base form, as the one before has it: "you wake up, | stretch"."""
+    verbless: bool = False
+    """Whether what looks like its verb says how somebody is: "Bored stiff, | the nurse tries"."""
 
     @property
     def text(self) -> str:
@@ -84,10 +90,10 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
         opens = bool(rest) and (rest[0].low in grammar().marks or rest[0].text[:1].isupper())
         is_subject = bool(rest) and rest[0].low in grammar().subjects
         return is_subject or (opens and verb_place(rest[:5]) not in (None, 0))
-    if low in ("after", "before", "until", "without", "instead"):
-        return bool(rest) and (
-            _starts_gerund(rest) or rest[0].low in grammar().subjects or (low != "instead" and _clause_follows(rest))
-        )
+    if low in grammar().with_gerund:
+        return bool(rest) and _starts_gerund(rest)
+    if low in ("after", "before", "until"):
+        return bool(rest) and (_starts_gerund(rest) or rest[0].low in grammar().subjects or _clause_follows(rest))
     return True
 
 
@@ -127,15 +133,40 @@ def _whole(pieces: list[Piece]) -> list[Piece]:
             piece = replace(piece, joint=joint, tokens=(*waiting.tokens, *mark, *piece.tokens))
             waiting = None
         beside = bool(whole) and len(piece.tokens) == 1 and _goes_beside(piece)  # "answers, pacing"
-        acts = beside or verb_place(piece.tokens) is not None
+        piece = replace(piece, bare=bool(whole) and waiting is None and not led and _is_bare(whole[-1], piece))
+        opens = not whole and _describes_next(piece, pieces[place + 1 :])
+        piece = replace(piece, verbless=opens)
+        acts = beside or piece.bare or verb_place(piece.tokens) is not None
         if acts:
             whole.append(piece)
-        elif whole and not (led or _leads(whole[-1], piece, pieces[place + 1 :])):
+        elif whole and not (led or all(is_adverb(one.low) for one in piece.tokens)
+                            or _leads(whole[-1], piece, pieces[place + 1 :])):  # fmt: skip
             mark = _comma(whole[-1]) if piece.tokens[0].low in grammar().prepositions else ()
             whole[-1] = replace(whole[-1], tokens=(*whole[-1].tokens, *mark, *piece.tokens))
         else:
             waiting = piece
     return [*whole, waiting] if waiting is not None else whole
+
+
+def _is_bare(before: Piece, piece: Piece) -> bool:
+    """Whether a piece begins with a second verb, in the form of the first: "they eat on the floor | and fall asleep",
+    "she watched a film, | ordered sushi"."""
+    at, first = 0 if before.bare else verb_place(before.tokens), piece.tokens[0].low
+    if at is None or piece.joint not in (",", "and", "then") or is_adverb(first):
+        return False
+    verb = before.tokens[at].low
+    if not (verb_of(verb) and verb_of(first)):
+        return False
+    plain = before.bare or (at > 0 and before.tokens[at - 1].low in _PLAIN_SUBJECTS)
+    both_plain = plain and verb_of(verb) == verb and verb_of(first) == first
+    return both_plain or (len(piece.tokens) > 1 and all(past(verb_of(one)) == one for one in (verb, first)))
+
+
+def _describes_next(piece: Piece, after: Sequence[Piece]) -> bool:
+    """Whether a piece tells how somebody is who is named only after it: "Bored stiff, the nurse tries"."""
+    own, places = verb_place(piece.tokens), (verb_place(one.tokens) for one in after if one.joint == ",")
+    says_how = own is not None and all(is_adverb(one.low) for one in piece.tokens[:own])
+    return says_how and piece.tokens[own or 0].low.endswith("ed") and any(places)
 
 
 def _comma(piece: Piece) -> tuple[Token, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 from planner_service.themes.lexicon import (
@@ -37,10 +38,8 @@ _SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|h
 
 
 _SEVERAL: Final = frozenset(("couple", "family", "pair", "people", "police", "team"))
-_SEEMS: Final = frozenset(("feels", "felt", "seems", "looks", "gets", "becomes"))
-"""Verbs after which an adjective stands, besides the forms of be."""
 _PARTICLES: Final = frozenset(("up", "down", "out", "off", "away", "back"))
-_NOMINATIVES: Final = frozenset(("he", "she", "they", "i", "we"))
+_ARTICLES: Final = frozenset(("the", "a", "an"))
 _OBJECTS: Final = frozenset(("him", "them", "me", "himself", "herself", "back", "home", "and"))
 
 
@@ -73,6 +72,7 @@ def plain(text: str) -> str:
     for long, short in _LONG:
         text = re.sub(rf"(?i)\b{long}\b", short, text)
     text = re.sub(r"(?i)\b(I|he|she|they|we)'d((?: (?:never|always|often|rather|not))* (\w+))", _would, text)
+    text = re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s been\b", r"\1 has been", text)
     return re.sub(
         r"\b(I|[Hh]e|[Ss]he|[Tt]hey|[Ww]e)'d\b", r"\1 had", re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s\b", r"\1 is", text)
     )
@@ -96,7 +96,6 @@ def verb_place(tokens: Sequence[Token]) -> int | None:
 def next_verb(tokens: Sequence[Token], before: int) -> int | None:
     """Where the next finite verb stands after one that stands at `before`, and after what that helps."""
     known = grammar()
-    objects: list[int] = []
     no_verb_after = known.auxiliaries | known.denials | known.marks | known.prepositions | known.numbers
     for place in range(before + 1, len(tokens)):
         low, last = tokens[place].low, tokens[place - 1].low
@@ -105,10 +104,8 @@ def next_verb(tokens: Sequence[Token], before: int) -> int | None:
             bool(base) and (is_third_person(low) or (low == past(base) and _acts(tokens, place)))
         )
         if finite and not (last in no_verb_after or (is_adverb(last) and place == before + 2)):
-            if place > before + 1 or not is_noun(low):
-                return place
-            objects.append(place)  # "who loves books | reads", but "whose dog died | cries"
-    return next(iter(objects), None)
+            return place
+    return None
 
 
 def has_verb(text: str) -> bool:
@@ -146,8 +143,6 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
         return True
     if before == "to":
         return word == base and base not in grammar().not_verbs_after_to
-    if before in grammar().numbers and at and tokens[at - 1].low == "of":
-        return is_third_person(word)  # "a boy of six hides"
     if before in grammar().marks | grammar().numbers:
         return False
     if word.endswith("ing"):
@@ -175,13 +170,13 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
     after = tokens[place + 1].low if place + 1 < len(tokens) else ""
     if is_adjective(before) and not is_noun(before) and is_noun(word):
         return False
-    if is_adjective(word) and before in grammar().be | _SEEMS:
-        return False
-    if tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word):
-        return False  # "under the sofa cushions"
+    small = grammar().marks | grammar().prepositions
+    named = any(one.low in _ARTICLES and last.low not in small for last, one in pairwise(tokens[1 : at + 1]))
+    if tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word) and not named:
+        return False  # "under the sofa cushions", but "as quiet as a cat the burglar climbs in"
     if word == base:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
-        ends = not after or after in grammar().prepositions | {",", "and"}
+        ends = not after or after in grammar().prepositions | _PARTICLES | {",", "and"}
         acts = not is_noun(word) or after in grammar().marks or (ends and tokens[0].low in grammar().marks and at <= 2)
         return (past(base) == base and named) or (is_plural(before) and acts)
     return not (is_noun(word) and word.endswith("s")) or _goes_on(after) or is_adjective(after) or is_noun(after)

@@ -81,13 +81,16 @@ def _denying_step(words: Sequence[Token], group: VerbGroup, low: str, base: str,
     elif low == "able" and ahead == "to":
         group.unable |= group.denied
         return 2
-    elif low in ("unable", "about", "afraid", "too") and "to" in near:
+    elif low in ("unable", "about", "afraid", "too", "supposed", "meant") and "to" in near:
         group.unable |= low == "unable"
         step = near.index("to") + 1
     elif base in ("decide", "try", "choose", "prefer", "promise") and ahead == "not":
         step = 3 if len(near) > 2 and near[2] == "to" else 2
     elif ahead in ("to", "from") and base in grammar().refusals | (_wishes(words[:at]) if ahead == "to" else set()):
         step = 2
+    elif base in ("stop", "help") and ahead.endswith("ing") and group.denied:  # who cannot stop doing it does it
+        group.denied = group.unable = False
+        return 1
     elif ahead.endswith("ing") and base in grammar().refusals | {"consider", "imagine", "stop"}:
         step = 1
     else:
@@ -116,7 +119,7 @@ def _is_deed(word: str) -> bool:
 def _hinders(words: Sequence[Token], at: int) -> bool:
     """Whether "to be" only tells whether the deed after it can be done: "is not able to sleep"."""
     ahead = [token.low for token in words[at + 1 : at + 4] if token.low not in grammar().adverbs | grammar().denials]
-    leads = ahead[:1] in (["able"], ["unable"], ["about"], ["afraid"])
+    leads = ahead[:1] in (["able"], ["unable"], ["about"], ["afraid"], ["supposed"], ["meant"])
     return words[at].low in grammar().be and leads and "to" in ahead
 
 

@@ -26,7 +26,15 @@ class ArmSwing:
     """Arms that hang."""
 
     early_phase: float
-    """So much earlier than half-way through the other side's step an arm is farthest forward."""
+    """So much earlier than half-way through the other side's step an arm is farthest forward,"""
+    folds_late_phase: float
+    """and so much later its elbow is bent most."""
+    beat_deg: float
+    """How far arms go back and forth with every step besides, and"""
+    beat_at_phase: float
+    folds_beat_deg: float
+    """how far elbows bend with it."""
+    folds_beat_at_phase: float
     usual_mps: float
     """Arms swing as far as the style says."""
     min_ratio: float
@@ -39,6 +47,8 @@ class ArmSwing:
     """Of the trunk's bend, that it does not follow."""
     elbow_deg: dict[str, float]
     """How much more than the style's an elbow is bent in each of the arm poses that swing."""
+    elbow_in_ratio: float
+    """How much further in elbows point that swing, against back."""
     straight_deg: float
     """The elbow of an arm that hangs still."""
     still_share: float
@@ -124,12 +134,16 @@ def swing_arms(style: Walk, steps: Steps, speed: Array, spread: Array, wander: A
     # An arm is farthest forward as the heel of the other side comes down, before that foot is flat.
     for index, side in ((0, 1), (1, -1)):
         early = row.early_phase - style.character.of_side("lag", "phase", side)
-        cycle = steps.first * np.cos(np.pi * (steps.phase + early)) * steps.moving
+        cycle, folded = (
+            side * steps.first * np.cos(np.pi * (steps.phase + early - late)) * steps.moving
+            for late in (0.0, row.folds_late_phase)
+        )
         if style.bearing.arms[index] in row.elbow_deg:
-            wrists[:, index] = _hanging(style, index, (side * cycle, steps.moving, wander[:, index]), speed)
+            wrists[:, index] = _hanging(style, index, (cycle, folded, wander[:, index]), steps, speed)
+            elbows[:, index, 0] -= side * row.elbow_in_ratio * steps.moving
         else:
             wrists[:, index] = _held(index, wrists[:, index], spread[:, index])
-            wrists[:, index, 2] += row.held_arms * side * cycle
+            wrists[:, index, 2] += row.held_arms * cycle
         if style.across:
             wrists[:, index] = _across(style, side, steps, wrists[:, index])
         if style.tap:
@@ -137,20 +151,25 @@ def swing_arms(style: Walk, steps: Steps, speed: Array, spread: Array, wander: A
     return wrists, elbows
 
 
-def _hanging(style: Walk, index: int, swung: tuple[Array, Array, Array], speed: Array) -> Array:
+def _hanging(style: Walk, index: int, swung: tuple[Array, Array, Array], steps: Steps, speed: Array) -> Array:
     """A wrist that swings: shoulder and elbow turn forward together, and further forward than back. (T, 3).
 
-    `swung` is the beat of its swing and how much the body moves (T,) each, and how far the arm is off (T, 2).
+    `swung` is the beat of its swing and of its elbow's (T,) each, and how far the arm is off (T, 2).
     """
-    row, side, (beat, moving, off), own = arm_table().swing, 1 if index == 0 else -1, swung, style.character
+    row, side, (beat, folded, off), own = arm_table().swing, 1 if index == 0 else -1, swung, style.character
     bent = max(style.elbow + row.elbow_deg[style.bearing.arms[index]] + own.of_side("elbow", "deg", side), 0.0)
-    reach = np.radians(style.swing) * np.clip(speed / row.usual_mps, row.min_ratio, row.max_ratio)
-    reach = np.minimum(reach * own.of_side("swing", "ratio", side), np.radians(row.swing_max_deg))
+    pace, moving = np.clip(speed / row.usual_mps, row.min_ratio, row.max_ratio), steps.moving
+    reach = np.minimum(
+        np.radians(style.swing) * pace * own.of_side("swing", "ratio", side), np.radians(row.swing_max_deg)
+    )
     # Arms hang down from a bent trunk.
     hangs = row.hangs_deg + row.free_share * style.bearing.lean + own.of_side("hang", "deg", side)
-    swing = reach * beat + np.radians(hangs) + off[:, 0] * moving
+    with_step = np.radians(row.beat_deg) * steps.wave(row.beat_at_phase)
+    swing = reach * beat + np.radians(hangs) + (pace * with_step + off[:, 0]) * moving
     more = (bent - row.straight_deg) * (row.still_share + row.moving_share * moving)
-    bend = np.radians(row.straight_deg + more) + row.folds_ratio * own.folds_ratio * (swing + reach * moving)
+    folds = row.folds_ratio * own.folds_ratio * (reach * (folded + moving) + np.radians(hangs))
+    bend = np.radians(row.straight_deg + more) + folds
+    bend = bend + np.radians(row.folds_beat_deg) * pace * moving * steps.wave(row.folds_beat_at_phase)
     shoulder, fore = swing - row.shoulder_share * bend, swing + row.forearm_share * bend
     aside = row.aside_arms + style.splay + own.of_side("splay", "arms", side) * moving
     aside = np.maximum(aside, row.aside_min_arms) + np.abs(off[:, 1]) * moving

@@ -22,7 +22,7 @@ HEEL = np.array([0.0, -0.066, -0.055])
 """Heel from the ankle at the reference height."""
 TIP = np.array([0.0, -0.031, 0.068])
 """Tip of the toes from the ball of the foot, likewise."""
-HEEL_RISE, SETTLE = 0.40, 0.30
+HEEL_RISE, SETTLE = 0.47, 0.30
 """Phase from the first rise of the heel to the lift, and from heel strike to the flat foot."""
 SAMPLES = 600
 """Of a curve."""
@@ -81,6 +81,8 @@ class FootWay:
     """or turns so far."""
     size_min: float
     """Of a full step: a foot that would go less stays."""
+    out_power: float
+    """A foot points farthest outwards where its share of the way through the air, to this power, is a half."""
     rise_min_phase: float
     """The least a heel takes to rise, where a step begins at once."""
     leaving_ratio: float
@@ -148,7 +150,7 @@ class Swing:
     window: tuple[float, float]
     """Phase of lift and landing."""
     clearance: float
-    """How high the ball of the foot swings in a full step (metres)."""
+    """How high the ball of the foot swings in a full step (metres at 1.70 m)."""
     heel_off: float
     """How far the foot pitches forward after toe off (radians)."""
     heel_strike: float
@@ -160,6 +162,10 @@ class Swing:
     """How far its tip points outwards half-way (radians)."""
     rise: float = HEEL_RISE
     """Phase from the first rise of its heel to the lift."""
+    scale: float = 1.0
+    """Size of the body against one of 1.70 m."""
+    bow_share: float = 1.0
+    """How much of its arc aside there is room for."""
 
     @property
     def turn(self) -> float:
@@ -172,13 +178,13 @@ class Swing:
         row, yaw = foot_table().way, self.start_yaw + 0.5 * self.turn
         outward = self.side * np.array([np.cos(yaw), 0.0, -np.sin(yaw)])
         turning = row.bow_turn_m * min(abs(self.turn) / row.bow_turn_rad, 1.0)
-        return np.asarray((row.bow_m + turning) * outward)
+        return np.asarray((row.bow_m + turning) * self.bow_share * self.scale * outward)
 
     @property
     def size(self) -> float:
         """0 for a foot that is already there, 1 for a full step."""
         row, distance = foot_table().way, float(np.linalg.norm(self.end - self.start))
-        return float(np.clip(max(distance / row.full_m, abs(self.turn) / row.full_rad), 0.0, 1.0))
+        return float(np.clip(max(distance / (row.full_m * self.scale), abs(self.turn) / row.full_rad), 0.0, 1.0))
 
     def height(self, u: Array) -> Array:
         """How high the ball of the foot is at shares of its way through the air. (T,)."""
@@ -189,7 +195,7 @@ class Swing:
         # A foot that does not roll is lifted gently, and put down so where it does not go far ahead.
         down = flat * (1.0 if self.backwards else 1 - self.size)
         gently = [1 - share * (1 - smooth(at / row.gentle_share)) for share, at in ((flat, u), (down, 1 - u))]
-        return np.asarray((lifted + level * np.interp(u, *_curve("level"))) * gently[0] * gently[1])
+        return np.asarray(self.scale * (lifted + level * np.interp(u, *_curve("level"))) * gently[0] * gently[1])
 
     def pitch(self, phase: Array) -> Array:
         """How far the foot is pitched about the floor, heel up positive. (T,)."""
@@ -244,7 +250,7 @@ class Feet:
         self.ankles[after, index] = swing.start + way[:, None] * (swing.end - swing.start)
         self.ankles[after, index] += (np.sin(np.pi * u) ** 2)[:, None] * swing.bow
         self.ankles[after, index, 1] += swing.height(1 - u if swing.backwards else u)
-        aside = swing.swings_out * swing.size * np.sin(np.pi * u) ** 2
+        aside = swing.swings_out * swing.size * np.sin(np.pi * u**row.out_power) ** 2
         self.yaw[after, index] = swing.start_yaw + smooth(u) * swing.turn + swing.side * aside
         self.planted[inside, index] = 0.0
         air = share[inside]

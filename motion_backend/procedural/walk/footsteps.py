@@ -7,14 +7,14 @@ moves from lift to landing is in foot_trajectory.py. The numbers are in data/gai
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from motion_backend import rotations
 from motion_backend.procedural.pose import Pose, smooth
-from motion_backend.procedural.walk.foot_trajectory import HEEL_RISE, TIP_UP, Feet, Swing, foot_table
+from motion_backend.procedural.walk.foot_trajectory import HEEL_RISE, SETTLE, TIP_UP, Feet, Swing, foot_table
 from motion_backend.procedural.walk.root_path import Route
 from motion_backend.procedural.walk.stride import Step, Stride
 from motion_backend.procedural.walk.walk_styles import Walk, usual_width
@@ -22,8 +22,12 @@ from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
 from scene_graphs.data_tables import read_table, table
 
+Room = Callable[[Array], Array]
+"""How much room there is beside what a body needs at places [x, z]: (N, 2) to (N,) metres."""
 LEAD = 0.35
 """Phase before the first step."""
+FOOT_ROOM = -0.06
+"""A foot may come so much nearer to what is beside the way than a body (metres)."""
 SIDEWAYS = 90.0
 """How far from its way a body faces that steps sideways (degrees)."""
 DRIFT_RATES, DRIFT_SIZE = (0.61, 1.0, 1.43), 2.1
@@ -253,6 +257,7 @@ def plan_steps(
     skeleton: Skeleton,
     rng: np.random.Generator,
     stride: Stride | None = None,
+    room: Room = lambda places: np.full(len(places), np.inf),
 ) -> Steps:
     """Where both feet are at every frame, from where they stand at the start, or in the stride they are in."""
     frames = len(phase)
@@ -265,7 +270,7 @@ def plan_steps(
             feet.add(step.swing, phase, step.index)
     hopping = np.zeros(frames)
     for beat in _beats(route, phase, first, style, -1 if stride is None else stride.begun):
-        swing = _swing_of(beat, feet, route, phase, style, skeleton, rng)
+        swing = _roomy(_swing_of(beat, feet, route, phase, style, skeleton, rng), room)
         hopping[_during(swing, phase)] = beat.hop
         feet.add(swing, phase, beat.index)
         made.append(Step(beat.number, beat.index, swing, beat.hop))
@@ -338,9 +343,19 @@ def _swing_of(
         scuff=np.radians(style.scuff) * float(np.clip(stride / shape.scuff_stride_share, 0.0, 1.0)),
         backwards=leaves + stride < -2 * shape.backwards_share,
         swings_out=np.radians(shape.swings_out_deg) * style.character.of_side("toes_swing", "ratio", side),
-        # The first heel rises from the first frame on, not before.
-        rise=min(HEEL_RISE, max(beat.window[0] - float(phase[0]), foot_table().way.rise_min_phase)),
+        # The first heel rises from the first frame on, not before, and none before its foot has come down.
+        rise=min(
+            HEEL_RISE, 1 + style.double - SETTLE, max(beat.window[0] - float(phase[0]), foot_table().way.rise_min_phase)
+        ),
+        scale=skeleton.scale,
     )
+
+
+def _roomy(swing: Swing, room: Room) -> Swing:
+    """The same with less of an arc aside, or with one to the other side, where there is no room for a foot."""
+    middle = 0.5 * (swing.start + swing.end) + swing.bow
+    lack = max(FOOT_ROOM - float(room(middle[None, [0, 2]])[0]), 0.0)
+    return replace(swing, bow_share=max(1 - lack / float(np.linalg.norm(swing.bow)), -1.0)) if lack else swing
 
 
 def _faces(route: Route, at: int, lands: int, side: int, place: LandingPlace) -> float:

@@ -7,7 +7,6 @@ the pelvis is, is in pelvis_height.py, arms are in arm_swing.py.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +16,7 @@ from motion_backend.motion import FPS
 from motion_backend.procedural.pose import Pose, settle_from, smooth
 from motion_backend.procedural.walk.arm_swing import arm_spread, swing_arms
 from motion_backend.procedural.walk.cadence import plan_phase
-from motion_backend.procedural.walk.footsteps import Steps, drift, plan_steps, yaw_of
+from motion_backend.procedural.walk.footsteps import Room, Steps, drift, plan_steps, yaw_of
 from motion_backend.procedural.walk.pelvis_height import landing, lifted
 from motion_backend.procedural.walk.root_path import SPACING, Route, evenly, plan_route, resample
 from motion_backend.procedural.walk.stride import BEATS, Stride
@@ -30,8 +29,6 @@ NEAR = 0.2
 """Who has gone so far along a way is no farther than this from there (metres)."""
 REJOINS = 0.8
 """Who is beside a way has come back to it after so much of it (metres)."""
-Room = Callable[[Array], Array]
-"""How much room there is beside what a body needs at places [x, z]: (N, 2) to (N,) metres."""
 
 
 @table
@@ -114,6 +111,10 @@ class Lean:
     stamp_rad_per_m: float
     looks_share: float
     """Of the gaze's turn to where a way curves."""
+    hips_late_share: float
+    """Of a step, later than its lift hips are turned farthest to a foot that swings,"""
+    counter_early_share: float
+    """and so much earlier the chest is against them."""
     counter_ratio: float
     """Of the hips' turn, that the chest turns against it."""
 
@@ -174,7 +175,9 @@ class Knees:
     foot_ratio: float
     """As the foot does, so much more than as the pelvis does."""
     foot_max_rad: float
-    """But not as a foot that is turned further from the pelvis."""
+    """But not as a foot that is turned further from the pelvis,"""
+    inwards_rad: float
+    """and so much further in: shins are twisted."""
 
 
 @table
@@ -237,16 +240,25 @@ def walk_on(
     if style.wobble:
         route = _staggering(route, style.wobble, rng, fps, room)
     route, phase = plan_phase(route, style, skeleton, fps, rng, stride)
-    steps = plan_steps(start, route, phase, style, skeleton, rng, stride)
+    steps = plan_steps(start, route, phase, style, skeleton, rng, stride, room)
     spread = arm_spread(len(phase), style, stride)
     pose = _carry(start, route, steps, style, skeleton, rng, spread, stride is not None)
     pose = settle_from(start, pose, fps) if stride is None else _taken_up(start, pose, stride, fps)
     if cut_m is None:
         return pose, None
-    last = route.reaches(cut_m)
+    reached = route.reaches(cut_m)
+    last = _as_feet_change(steps, reached)
+    gone_m = cut_m + float(np.linalg.norm(np.diff(route.position[reached : last + 1], axis=0), axis=1).sum())
     made = last + 1 - (stride is not None)
     onward = pose.arms[made] - pose.arms[made - 1] if 0 < made < len(pose) else None
-    return pose.at(slice(0, made)), replace(_stride_at(last, path, cut_m, route, steps, spread), arms_onward=onward)
+    return pose.at(slice(0, made)), replace(_stride_at(last, path, gone_m, route, steps, spread), arms_onward=onward)
+
+
+def _as_feet_change(steps: Steps, frame: int) -> int:
+    """The frame from that one on, within a step, at which no foot goes fast: nobody changes his walk in mid-swing."""
+    within = min(int(np.searchsorted(steps.phase, steps.phase[frame] + 1)), len(steps.phase) - 1)
+    pace = np.linalg.norm(np.diff(steps.ankles[frame : within + 1], axis=0), axis=-1).max(axis=1)
+    return frame + int(np.argmin(pace)) if len(pace) else frame
 
 
 def _taken_up(start: Pose, pose: Pose, stride: Stride, fps: int) -> Pose:
@@ -350,11 +362,16 @@ def _carry(
     brisk = np.clip(route.speed, 0.0, row.surge.brisk_max_mps) * moving * np.cos(np.radians(style.aside))
     ground = _support(route, steps, style, (moving, brisk, unsteady))
     own, wander = style.character, _wander(frames, rng)
-    hip_turn = np.radians(style.twist) * steps.first * np.cos(np.pi * steps.phase) * moving
+    hip_turn, counter = (
+        np.radians(style.twist) * steps.first * np.cos(np.pi * (steps.phase - late)) * moving
+        for late in (row.lean.hips_late_share, -row.lean.counter_early_share)
+    )
     roll, shoulders = _rolls(steps, style, moving)
-    lean = _leaning(route, style, brisk)
+    lean, walking = _leaning(route, style, brisk)
     nods = own.nod_ratio * brisk
-    tilt = row.lean.hips_share * lean + row.lean.hips_wave_rad * nods * steps.wave(row.lean.hips_wave_at_phase)
+    tilt = (
+        row.lean.hips_share * lean + walking + row.lean.hips_wave_rad * nods * steps.wave(row.lean.hips_wave_at_phase)
+    )
     hips = rotations.compose(
         rotations.yaw_to_quat(route.heading + hip_turn + np.radians(own.hips_turn_deg) * moving),
         rotations.rotvec_to_quat(np.stack([tilt, np.zeros(frames), roll], axis=1)),
@@ -363,7 +380,7 @@ def _carry(
     jolt = jolt + row.lean.stamp_rad_per_m * style.stamp * landing(steps)
     forward = row.lean.spine_share * lean + row.drunk.lean_rad * unsteady + jolt
     turned = row.lean.looks_share * np.radians(style.veer) * moving
-    turned = turned + np.radians(own.shoulder_turn_deg) * moving - row.lean.counter_ratio * own.counter_ratio * hip_turn
+    turned = turned + np.radians(own.shoulder_turn_deg) * moving - row.lean.counter_ratio * own.counter_ratio * counter
     spine = np.stack([forward, turned, shoulders - roll + row.drunk.side_rad * unsteady], axis=1)
     spine = spine + moving[:, None] * wander[:, :3]
     arms, elbows = swing_arms(style, steps, route.speed, spread, wander[:, 3:7].reshape(-1, 2, 2))
@@ -427,8 +444,8 @@ def _support(route: Route, steps: Steps, style: Walk, moved: tuple[Array, Array,
     return np.asarray(route.position + aside[:, None] * left + surge[:, None] * ahead)
 
 
-def _leaning(route: Route, style: Walk, brisk: Array) -> Array:
-    """How far trunk and pelvis together bend forwards. (T,)."""
+def _leaning(route: Route, style: Walk, brisk: Array) -> tuple[Array, Array]:
+    """How far trunk and pelvis bend forwards, and how far a body in its walk leans from its hips. (T,) each."""
     row, frames = carriage().lean, len(route.heading)
     # A bowed body straightens up a little where it arrives, so as not to bump its head.
     since = np.arange(frames) - frames + row.straightens_frames
@@ -436,7 +453,7 @@ def _leaning(route: Route, style: Walk, brisk: Array) -> Array:
     bowed = style.bearing.lean > row.bowed_from_deg
     lean = np.radians(style.bearing.lean) * (1 - row.straightens_share * arriving * bowed)
     fast = np.clip(route.speed - row.fast_from_mps, 0, row.fast_within_mps)
-    return np.asarray(lean + row.walking_rad * brisk + row.fast_rad_per_mps * fast)
+    return np.asarray(lean), np.asarray(row.walking_rad * brisk + row.fast_rad_per_mps * fast)
 
 
 def _gaze(route: Route, style: Walk, hip_turn: Array, moved: tuple[Array, Array], rng: np.random.Generator) -> Array:
@@ -464,5 +481,6 @@ def _knees(hips: Array, feet: Array) -> Array:
     forward = np.array([0.0, 0.0, 1.0])
     row, ahead = carriage().knees, yaw_of(hips)[:, None]
     off = np.clip(rotations.wrap(feet - ahead), -row.foot_max_rad, row.foot_max_rad)
+    ahead = ahead - row.inwards_rad * np.array([1.0, -1.0])
     pelvis, foot = (rotations.rotate(rotations.yaw_to_quat(yaw), forward) for yaw in (ahead, ahead + off))
     return rotations.normalize(pelvis + row.foot_ratio * foot)

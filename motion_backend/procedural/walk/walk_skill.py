@@ -83,6 +83,8 @@ TURNING_ROUND = 1.2
 """A body that is, or arrives, turned away from where it will face by more (radians) turns before the last step."""
 SPREAD, ROOM_TO_SPREAD = {"open": "embracing", "balance": "balance_ahead"}, 0.30
 """Arms that need so much more room beside a way than the body does (metres), and what they do where there is less."""
+NARROW = 0.2
+"""The share of a way that may have less."""
 STAYING = 0.7
 """How long arms take into the pose they are held in where the body stays, and out of it (seconds)."""
 QUICK, RUNS = 1.7, 2.0
@@ -97,8 +99,8 @@ TURNING_PLACES = (0.32, 0.26, 0.20, 0.14)
 """How far ahead of a seat it is turned round before backing up to it, the roomiest (metres),"""
 ROOMIER = 0.04
 """where that has so much more room than the seat (metres)."""
-TURNS_OFF = 0.5
-"""So far before a seat (metres) who is walking to it leaves the way for the turning place."""
+LEAVES_BEFORE = 0.5
+"""So far before its end (metres) a way is left by who goes to another place near there."""
 
 
 def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Point | None = None) -> None:
@@ -134,7 +136,7 @@ def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Po
         for way in before:
             _stride(body, way, None, style)
     if turning is not None and facing is not None:
-        _stride(body, _way_to(body, turning, TURNS_OFF), facing, style)
+        _stride(body, _way_to(body, turning), facing, style)
         body.enter(PhaseKind.BACK_UP)
         path = np.array([body.place, goal])
     _stride(body, path, facing, style, onward if not near and turning is None else None)
@@ -151,17 +153,16 @@ def _note_no_room(body: Body, made: int, speed: float) -> None:
         body.note(f"no room to {'run' if speed > RUNS else 'walk quickly'}: the way is too short")
 
 
-def _way_to(body: Body, goal: Point, off_m: float = 0.0) -> Array:
-    """The path (N, 2) to a place: who is walking goes on the way that the last walk was to go on by, to its end or so
-    far before it."""
+def _way_to(body: Body, goal: Point) -> Array:
+    """The path (N, 2) to a place: who is walking goes on by the way that the last walk was to go on by, and leaves it
+    before its end where that is not the place."""
     if body.stride is None:
         return body.scene.walkable.path(body.place, goal)
     rest = body.stride.rest
-    rest = rest[: max(len(rest) - int(off_m / SPACING), len(rest) // 2, 2)]
-    end = float(rest[-1, 0]), float(rest[-1, 1])
-    if np.hypot(goal[0] - end[0], goal[1] - end[1]) < AT_THE_SPOT:
+    if np.hypot(*(rest[-1] - goal)) < AT_THE_SPOT:
         return rest
-    return np.concatenate([rest, body.scene.walkable.path(end, goal)[1:]])
+    rest = rest[: max(len(rest) - int(LEAVES_BEFORE / SPACING), len(rest) // 2, 2)]
+    return np.concatenate([rest, body.scene.walkable.path((float(rest[-1, 0]), float(rest[-1, 1])), goal)[1:]])
 
 
 def halt(body: Body, action: Action) -> None:
@@ -188,7 +189,7 @@ def _stride(body: Body, path: Array, facing: float | None, style: Walk, onward: 
         return np.asarray(walkable.field.at(places) - walkable.radius)
 
     before = SPREAD.get(style.bearing.arms[0])
-    if before is not None and float(np.median(spare(resample(points)))) < ROOM_TO_SPREAD:
+    if before is not None and float(np.quantile(spare(resample(points)), NARROW)) < ROOM_TO_SPREAD:
         body.note("no room for open arms: to the front")
         style = replace(style, bearing=replace(style.bearing, arms=(before, before)))
     frames, body.stride = walk_on(body.pose, points, end, style, body.skeleton, body.rng, stride, cut, spare)

@@ -174,7 +174,7 @@ def test_a_joint_is_brought_within_its_range_but_one_that_bears_may_bend_deeper(
     turn = rotations.rotvec_to_quat(np.array([vector]) / 2)
     beyond = np.tile(rotations.IDENTITY, (1, len(JOINTS), 1))
     beyond[:, INDEX[joint]] = within(joint, turn, loaded)
-    deeper = max(-float(overbent(joint, turn)[0]), 0.0) if loaded else 0.0
+    deeper = max(-float(overbent(joint, turn)[0, 0]), 0.0) if loaded else 0.0
     assert beyond_limits(beyond)[0, INDEX[joint]] == pytest.approx(deeper, abs=1e-6)
 
 
@@ -189,7 +189,7 @@ def test_a_body_folded_or_stretched_too_far_tips_its_pelvis_and_leaves_legs_and_
     kept = hips_within(folded, skeleton)
     before, after = (solve(pose, skeleton) for pose in (folded, kept))
     hips = [INDEX["left_hip"], INDEX["right_hip"]]
-    assert np.all(np.abs(overbent("left_hip", after[1][:, hips[0]])) < 0.02)
+    assert np.all(np.abs(overbent("left_hip", after[1][:, hips[0]])[:, 0]) < 0.02)
     legs = [INDEX[f"{side}_{part}"] for side in ("left", "right") for part in ("hip", "knee", "ankle")]
     there, here = (skeleton.forward_kinematics(*made) for made in (before, after))
     np.testing.assert_allclose(there[0][:, legs], here[0][:, legs], atol=1e-5)

@@ -200,6 +200,10 @@ def test_parts_of_scripts_do_the_beats_deed_in_its_mood_with_a_caption_that_show
         ("She sits on the sofa. She is sad.", ["loco sofa", "sitdown sofa"]),
         ("He dances.", ["loco floor"]),
         ("She does not sit down. She reads.", ["loco floor"]),
+        ("She sits on the sofa and cries.", ["loco sofa", "sitdown sofa"]),
+        ("He throws his bag on the sofa and cries.", ["loco sofa", "touch sofa", "sitdown sofa"]),
+        ("She flops onto the sofa and watches a film.", ["loco sofa", "liedown sofa"]),
+        ("He looks under the bed, behind the sofa.", ["loco bed", "touch bed", "loco sofa", "touch sofa"]),
     ],
 )
 def test_as_few_keyframes_as_show_it_are_written(theme: str, told: list[str]) -> None:
@@ -212,6 +216,13 @@ def test_two_beats_that_one_posture_shows_are_one_keyframe() -> None:
     sits = script.keyframes[-1]
     assert ({sits.beat, *sits.also}, sits.caption) == ({0, 1}, "reading, book held in both hands")
     assert script.acted == script.asked == 2
+
+
+def test_who_starts_again_does_again_what_was_done_at_rest() -> None:
+    script = planned("He meditates. He throws his phone into the bin and starts again.")
+    sits = [keyframe for keyframe in script.keyframes if keyframe.skill is Skill.SITDOWN]
+    assert [keyframe.beat for keyframe in sits] == [0, 2]
+    assert sits[0].caption == sits[1].caption
 
 
 def test_a_mood_alone_is_walked() -> None:

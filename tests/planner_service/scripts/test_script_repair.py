@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from motion_backend.language.sentence_encoder import HashingEncoder
-from motion_backend.motion import Emotion, Posture, Skill
+from motion_backend.motion import Emotion, Skill
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.captions import Vocabulary
@@ -22,7 +22,6 @@ from planner_service.scripts.script_repair import (
     check,
     free_hand,
     hand_of,
-    last_posture,
     read_keyframe,
     repair,
     skill_of,
@@ -240,11 +239,6 @@ def test_problems_name_the_keyframe_the_fault_and_the_remedy() -> None:
 def test_our_own_short_scripts_use_known_words_only() -> None:
     for one in built_in():
         assert [str(problem) for problem in check(one) if problem.field != "skill"] == [], one.id
-
-
-def test_the_last_posture_is_told() -> None:
-    assert last_posture(script("liedown floor")) is Posture.LYING
-    assert last_posture(script("sitdown chair", "standup chair")) is Posture.STANDING
 
 
 @for_each(("word", "skill"), [("walk", "loco"), ("Sit down", "sitdown"), ("lie-down", "liedown"), ("reach", "touch")])

@@ -48,7 +48,8 @@ def test_what_is_denied_is_undone_what_others_do_is_theirs_and_all_else_is_a_dee
         ("Nobody comes, so she eats alone.", ["other", "deed"]),
         ("He cannot sleep.", ["deed"]),
         ("He cannot swim.", ["undone"]),
-        ("Her heart races. She sits down.", ["deed", "deed"]),
+        ("Her heart races. She sits down.", ["feeling", "deed"]),
+        ("Bored stiff, the nurse tries on a hat.", ["feeling", "deed"]),
         ("A person becomes very depressed.", ["feeling"]),
     ],
 )
