@@ -143,6 +143,8 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
         return True
     if before == "to":
         return word == base and base not in grammar().not_verbs_after_to
+    if before in grammar().numbers and at and tokens[at - 1].low == "of":
+        return is_third_person(word)  # "a girl of six jumps"
     if before in grammar().marks | grammar().numbers:
         return False
     if word.endswith("ing"):
