@@ -33,7 +33,12 @@ class Mistake(NamedTuple):
 
 
 BODIES: Final = (
-    Mistake("the pelvis turns the wrong way in every walk", GAIT, "hip_turn = np", "hip_turn = -np"),
+    Mistake(
+        "the pelvis turns the wrong way in every walk",
+        GAIT,
+        "route.heading + hip_turn + np",
+        "route.heading - hip_turn + np",
+    ),
     Mistake(
         "the pelvis is lowest over the standing foot",
         "motion_backend/procedural/walk/pelvis_height.py",
