@@ -63,8 +63,8 @@ def lower_onto(start, *others, **more):
     Mistake(
         "each arm swings with the leg of its own side",
         "motion_backend/procedural/walk/arm_swing.py",
-        "cycle = steps.first * np.cos(",
-        "cycle = -steps.first * np.cos(",
+        "side * steps.first * np.cos(",
+        "-side * steps.first * np.cos(",
     ),
     Mistake(
         "skating is counted below 3 cm instead of 5",
