@@ -340,8 +340,8 @@ def _nearest(places: Array, place: Array) -> int:
 
 
 def in_mood(made: Frames, action: Action, fixed: int) -> Frames:
-    """Trunk and head bent as a mood bends them, besides what the generator does."""
-    plain, moody = walk_style(action.emotion, "walk").bearing, Bearing()
+    """Trunk and head bent as a mood and a caption bend them, besides what the generator does."""
+    plain, moody = style_of(action).bearing, Bearing()
     lean, nod = np.radians(plain.lean - moody.lean), np.radians(plain.head - moody.head)
     if not lean and not nod:
         return made

@@ -125,7 +125,7 @@ def write_stretches(stretches: Sequence[Stretch], path: Path) -> None:
         for s in stretches
     ]  # fmt: skip
     manifest = json.dumps({"version": VERSION, "rows": rows}).encode()
-    arrays = {
+    arrays: dict[str, NDArray[Any]] = {
         "roots": np.concatenate([s.roots for s in stretches]).astype(np.float32),
         "local": np.round(np.concatenate([s.local for s in stretches]) * _UNIT).astype(np.int16),
         "contacts": (np.concatenate([s.contacts for s in stretches]) > 0.5).astype(np.uint8),

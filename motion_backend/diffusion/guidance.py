@@ -130,4 +130,4 @@ def _turns(arms: Array, lacking: Array) -> Array:
     weighed = columns * readiness
     whole = np.einsum("tnij,tnkj->tik", weighed, columns) + DAMPED * np.eye(3)
     needed = np.linalg.solve(whole, lacking[..., None])[..., 0]
-    return np.einsum("tnij,ti->tnj", weighed, needed)
+    return np.asarray(np.einsum("tnij,ti->tnj", weighed, needed))

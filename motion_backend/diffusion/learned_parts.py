@@ -58,5 +58,5 @@ def _laid_over(part: Part) -> str:
     if part.kind not in (PartKind.WALK, PartKind.TURN):
         return ""
     style, usual = style_of(part.action), walk_style(part.action.emotion, "walk")
-    posed = style.bearing.arms != usual.bearing.arms or style.doing != usual.doing or style.tap
+    posed = style.bearing.arms != usual.bearing.arms or style.doing != usual.doing
     return LAID_OVER if posed else ""

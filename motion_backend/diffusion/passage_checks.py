@@ -77,7 +77,8 @@ def _check_jumps(made: Motion, passage: PlannedPassage, past: Frames) -> None:
 
 def _jolt(motion: Motion, past: Frames) -> float:
     """The largest change of speed from frame to frame of what is above the legs, the seam counted in."""
-    whole = past[-2:].then(Frames(motion.root_positions, motion.local_rotations))
+    made = Frames(motion.root_positions.astype(np.float64), motion.local_rotations.astype(np.float64))
+    whole = past[-2:].then(made)
     places = motion.skeleton.forward_kinematics(whole.root, whole.local)[0][:, UPPER].astype(np.float64)
     if len(places) < 3:
         return 0.0

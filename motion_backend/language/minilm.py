@@ -176,8 +176,9 @@ class MiniLM:
             x = self._norm(f"{layer}.attention.output.LayerNorm", x + seen)
             inner = _gelu(self._linear(f"{layer}.intermediate.dense", x))
             x = self._norm(f"{layer}.output.LayerNorm", x + self._linear(f"{layer}.output.dense", inner))
-        mean: Floats = (x * real[..., None]).sum(axis=1) / lengths[:, None].astype(np.float32)
-        return mean / np.linalg.norm(mean, axis=1, keepdims=True)  # (B, 384)
+        mean = (x * real[..., None]).sum(axis=1) / lengths[:, None].astype(np.float32)
+        unit: Floats = mean / np.linalg.norm(mean, axis=1, keepdims=True)  # (B, 384)
+        return unit
 
     def _attention(self, name: str, x: Floats, real: NDArray[np.bool_]) -> Floats:
         q, k, v = (
@@ -187,7 +188,8 @@ class MiniLM:
         scores = np.where(real[:, None, None, :], q @ k.swapaxes(2, 3) / np.float32(np.sqrt(q.shape[-1])), -np.inf)
         shares = np.exp(scores - scores.max(axis=-1, keepdims=True))
         shares /= shares.sum(axis=-1, keepdims=True)
-        return (shares @ v).transpose(0, 2, 1, 3).reshape(x.shape)
+        seen: Floats = (shares @ v).transpose(0, 2, 1, 3).reshape(x.shape)
+        return seen
 
     def _linear(self, name: str, x: Floats) -> Floats:
         # A third faster this way round where rows are few.

@@ -110,7 +110,7 @@ def dataset_bytes(dataset: Dataset) -> bytes:
     # Names of files need not be UTF-8; what such a letter is replaced by is an escape of JSON.
     told = json.dumps(manifest, ensure_ascii=False, sort_keys=True)
     turns = np.concatenate([rotations.normalize(motion.local_rotations.astype(np.float64)) for motion in motions])
-    arrays = {
+    arrays: dict[str, NDArray[Any]] = {
         "manifest": np.frombuffer(told.encode(errors="backslashreplace"), dtype=np.uint8),
         "starts": np.cumsum([0, *(len(motion) for motion in motions)], dtype=np.int64),
         "root_positions": np.concatenate([motion.root_positions for motion in motions]).astype(np.float32),

@@ -16,8 +16,6 @@ from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, Skeleton
 
 SPINE = ("spine1", "spine2", "spine3")
-SPINE_SHARES = np.array([[1 / 3, 1 / 3, 0.9], [1 / 3, 1 / 3, 0.05], [1 / 3, 1 / 3, 0.05]])
-"""How its joints share a bend forwards, a turn and a bend to the side, which is the loins'."""
 EASED = 6
 """Frames before and after in which a pelvis tips back (see `hips_within`), or a trunk straightens (`head_clear`)."""
 UNTWISTS = 3
@@ -43,8 +41,9 @@ def trunk_and_legs(pose: Pose, skeleton: Skeleton) -> Array:
     """Local rotations (T, 22, 4) of all but the arms, which are stretched out to the sides."""
     local = np.tile(rotations.IDENTITY, (len(pose), len(skeleton.names), 1))
     local[:, INDEX["pelvis"]] = pose.hips
-    for name, turned in zip(SPINE, _spine(pose), strict=True):
-        local[:, INDEX[name]] = turned
+    third = rotations.rotvec_to_quat(pose.spine / 3)
+    for name in SPINE:
+        local[:, INDEX[name]] = third
     half = rotations.rotvec_to_quat(pose.head / 2)
     local[:, INDEX["neck"]] = local[:, INDEX["head"]] = within("neck", half)
     for index, (name, _) in enumerate(SIDES):
@@ -116,16 +115,12 @@ def _early(angle: Array) -> Array:
 
 def chest_frame(pose: Pose, skeleton: Skeleton) -> tuple[Array, Array]:
     """World rotation (T, 4) and position (T, 3) of spine3, the frame that arms hang in."""
+    third = rotations.rotvec_to_quat(pose.spine / 3)
     rotation, position = pose.hips, pose.pelvis
-    for name, turned in zip(SPINE, _spine(pose), strict=True):
+    for name in SPINE:
         position = position + rotations.rotate(rotation, skeleton.offsets[INDEX[name]])
-        rotation = rotations.compose(rotation, turned)
+        rotation = rotations.compose(rotation, third)
     return rotation, position
-
-
-def _spine(pose: Pose) -> Array:
-    """What each joint of the spine turns. (3, T, 4)."""
-    return rotations.rotvec_to_quat(SPINE_SHARES[:, None] * pose.spine)
 
 
 def _leg(pose: Pose, skeleton: Skeleton, index: int, name: str) -> Limb:

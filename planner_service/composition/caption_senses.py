@@ -8,7 +8,7 @@ from functools import cache
 from typing import Final
 
 from motion_backend.motion import Skill
-from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_table, object_of, readings, says, where
+from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_table, object_of, pieces_in, readings, says
 from planner_service.scripts.script import Keyframe
 from planner_service.themes.protagonist import is_person
 from planner_service.themes.sentence_parser import Clause
@@ -73,7 +73,7 @@ def _is_elsewhere(keyframe: Keyframe, clause: Clause) -> bool:
     """Whether a clause tells of another place than a keyframe's: "draws a moustache on the mirror" at the desk."""
     here = categories_of(keyframe.piece[0])
     for told in _PLACE.findall(clause.text):
-        places = where(told)
+        places = pieces_in(told)
         seats = [seat for piece in places for seat in deed_table().seats_at.get(piece, ())]
         if places and not any(here & categories_of(piece) for piece in (*places, *seats)):
             return True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import Final
@@ -50,7 +51,8 @@ def core_of(text: str, details: Sequence[str]) -> str:
     for detail in details:
         reasons = reasons or detail.split()[0].lower() in _REASONS
         text = text if reasons else text.replace(detail, "")
-    return " ".join(text.split()).rstrip(" ,;").replace(" ,", ",")
+    text = re.sub(r"\s*,[\s,]*", ", ", " ".join(text.split()))
+    return re.sub(r"(?:[\s,;]|\b(?:and|or|then)$)+$", "", text)
 
 
 def _starts(tokens: Sequence[Token], at: int) -> bool:

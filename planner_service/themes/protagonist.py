@@ -15,7 +15,7 @@ from planner_service.themes.lexicon import grammar, is_third_person, is_verb, ki
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
-from planner_service.themes.verb_finder import tokens_of
+from planner_service.themes.verb_finder import is_plural, tokens_of
 from scene_graphs.furniture import is_known
 
 _PRONOUN: Final = re.compile(r"\b(?:(?P<she>she|her|herself)|(?P<he>he|him|his|himself))\b", re.IGNORECASE)
@@ -127,13 +127,14 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     nouns = [one for one in people if not _is_pronoun(one.subject)
              and ((one.sentence, one.place) < first or is_name(one.subject.split()[0]))]  # fmt: skip
     nouns = [one for one in nouns if pronouns_of(one.subject) in ("", pronoun or pronouns_of(one.subject))] or nouns
+    nouns = [] if pronoun and all(_is_plural(one.subject) and one.joint in _ASIDE for one in nouns) else nouns
     if nouns:
         return max(nouns, key=lambda one: _heroic(one, pronoun) + min(deeds[one.subject], 4) / 8).subject
     opening = ("a ", "an ", "one ", "my ", "our ", "the ")
     called = not people and " " not in "".join(mains[:1]) and "".join(mains[:1])[:1].isupper()  # "Rose", "Wen"
     sooner = [(one.sentence, one.place) < first for one in told if one.joint in _MAIN_JOINTS][:1] == [True]
     living = [one for one in mains[:1] if sooner and (called or one.lower().startswith(opening)) and _may_live(one)]
-    people.sort(key=lambda one: (one.sentence, one.place))
+    people.sort(key=lambda one: (bool(pronoun) and _is_plural(one.subject), one.sentence, one.place))
     return next(iter([*living, *(one.subject for one in people)]), "")
 
 
@@ -178,8 +179,7 @@ def _is_pronoun(subject: str) -> bool:
 
 
 def _is_plural(subject: str) -> bool:
-    head = head_of(subject).lower()
-    return head.endswith("s") and lemma_of(head) != head
+    return is_plural(head_of(subject).lower())
 
 
 def is_person(subject: str) -> bool:

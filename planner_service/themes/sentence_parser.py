@@ -24,8 +24,8 @@ from planner_service.themes.asides import (
 )
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, participle, verb_of
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
-from planner_service.themes.verb_finder import Token, verb_place
 from planner_service.themes.verb_group import NEARLY, verb_group
+from planner_service.themes.verb_finder import FLOATING, Token, verb_place
 
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
 _PLAIN: Final = re.compile(r"[A-Za-z ,'’-]+[.!?]?\s*")
@@ -170,7 +170,8 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
     if not subject and tokens[0].text.startswith("«"):
         subject = _inverted(tokens[place + 1 :])
         tokens = [*tokens[: place + 1], *tokens[place + 1 + len(subject.split()) :]]
-    words = _denials(tokens[:place], subject) + tokens[place:]
+    denials = _denials(tokens[:place], subject)
+    words = denials + tokens[place:]
     group = verb_group(words)
     hindered = _is_hindered(piece.joint, tokens[:place], words[0])
     words, told_of = without_asides(words, group.place)
@@ -191,6 +192,7 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
         # It tells how somebody is or where, and is nothing that anybody does.
         Clause(_text(piece.source, some), "", "", _lemmas(some), ",", aside=True, sentence=sentence)
         for some in (*besides_of(tokens[:place], subject, before), *_of_subject(tokens[:place], subject))
+        if not set(denials).issuperset(some)
     ]
     return [*besides, _placed(parts[0], before, piece.source), *parts[1:], *asides]
 
@@ -324,9 +326,11 @@ def _subject(tokens: Sequence[Token]) -> str:
     words = [token.text for part in parts[last:] for token in part]
     while words and (words[-1].lower() in grammar().adverbs or (words[-1].islower() and words[-1].endswith("ly"))):
         words.pop()
+    if len(words) > 1 and words[-1].lower() in FLOATING and words[-2].lower() in grammar().subjects:
+        words.pop()
     if words and words[-1].lower() in grammar().subjects:
         return words[-1]
-    if words and (words[0].lower() == "to" or _describes(words)):
+    if words and ("to" in (words[0].lower(), words[-1].lower()) or _describes(words)):
         return ""
     while words and (words[0].lower() in grammar().adverbs or words[0].lower() in grammar().joints):
         words.pop(0)

@@ -29,7 +29,8 @@ _SLANG: Final = {
 }  # fmt: skip
 _LONG: Final = (
     ("by the time", "when"), ("rather than", "instead of"), ("(?<!the )till", "until"), ("which is to say", "and"),
-    ("as soon as", "when"),
+    ("as soon as", "when"), ("(?:so as|in order) (?=(?:not )?to)", ""),
+    (r"(so (?:\w+ ){1,6}?)that (?=(?:i|he|she|they|we)\b)", r"\1, so "),
     ("(?:every|each) time(?= (?:i|he|she|they|we|the|his|her|my)\\b)", "whenever"),
     ("at (?:long )?last|in the end", "finally"),
     (",? of course", ""),
@@ -43,6 +44,8 @@ _SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|h
 
 
 _SEVERAL: Final = frozenset(("couple", "family", "pair", "people", "police", "team"))
+FLOATING: Final = frozenset(("all", "both", "each"))
+"""Words between several people and their verb."""
 _PARTICLES: Final = frozenset(("up", "down", "out", "off", "away", "back"))
 _ARTICLES: Final = frozenset(("the", "a", "an"))
 _OBJECTS: Final = frozenset(("him", "them", "me", "himself", "herself", "back", "home", "and"))
@@ -162,7 +165,12 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
     if before in grammar().subjects or before in grammar().modals or before in ("do", "does", "did"):
         return True
     if before == "to":
-        return word == base and base not in grammar().not_verbs_after_to
+        again = at > 0 and tokens[at - 1].low == word  # "from time to time"
+        return word == base and base not in grammar().not_verbs_after_to and not again
+    if before in FLOATING and at and tokens[at - 1].low in grammar().subjects:
+        return True  # "they all duck"
+    if before in grammar().numbers and at and tokens[at - 1].low == "of":
+        return is_third_person(word)  # "a girl of six jumps"
     if before in grammar().marks | grammar().numbers:
         return False
     if word.endswith("ing"):
@@ -197,7 +205,8 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
     if word == base:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
         ends = not after or after in grammar().prepositions | _PARTICLES | {",", "and"}
-        acts = not is_noun(word) or after in grammar().marks or (ends and tokens[0].low in grammar().marks and at <= 2)
+        goes_on = after in grammar().marks or is_noun(after)
+        acts = not is_noun(word) or goes_on or (ends and tokens[0].low in grammar().marks and at <= 2)
         return (past(base) == base and named) or (is_plural(before) and acts)
     return not (is_noun(word) and word.endswith("s")) or _goes_on(after) or is_adjective(after) or is_noun(after)
 

@@ -33,7 +33,12 @@ class Mistake(NamedTuple):
 
 
 BODIES: Final = (
-    Mistake("the pelvis turns the wrong way in every walk", GAIT, "hip_turn = np", "hip_turn = -np"),
+    Mistake(
+        "the pelvis turns the wrong way in every walk",
+        GAIT,
+        "route.heading + hip_turn + np",
+        "route.heading - hip_turn + np",
+    ),
     Mistake(
         "the pelvis is lowest over the standing foot",
         "motion_backend/procedural/walk/pelvis_height.py",
@@ -58,8 +63,8 @@ def lower_onto(start, *others, **more):
     Mistake(
         "each arm swings with the leg of its own side",
         "motion_backend/procedural/walk/arm_swing.py",
-        "cycle = steps.first * np.cos(",
-        "cycle = -steps.first * np.cos(",
+        "side * steps.first * np.cos(",
+        "-side * steps.first * np.cos(",
     ),
     Mistake(
         "skating is counted below 3 cm instead of 5",

@@ -247,5 +247,6 @@ GESTURES: Final[dict[str, Callable[[Pose, Array, Array], Pose]]] = {
     "read": _read,
     "music": _music,
     "wave": partial(_in_waves, waves="wave"),
+    "tap": partial(_in_waves, waves="tap"),
 }
 """What hands can be told to do, by name."""

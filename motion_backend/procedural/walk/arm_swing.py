@@ -96,25 +96,12 @@ class ArmDance:
 
 
 @table
-class ChestTap:
-    """Hands leave the chest in turn and come back to it."""
-
-    hz: float
-    aside_arms: float
-    up_arms: float
-    """The left one higher, the right one lower."""
-    ahead_arms: float
-    away_arms: float
-
-
-@table
 class ArmTable:
     """data/gait/arm_swing.toml: arm lengths."""
 
     swing: ArmSwing
     spread: ArmSpread
     dance: ArmDance
-    tap: ChestTap
 
 
 def arm_table() -> ArmTable:
@@ -146,8 +133,6 @@ def swing_arms(style: Walk, steps: Steps, speed: Array, spread: Array, wander: A
             wrists[:, index, 2] += row.held_arms * cycle
         if style.across:
             wrists[:, index] = _across(style, side, steps, wrists[:, index])
-        if style.tap:
-            wrists[:, index] += _tapping(side, frames)
     return wrists, elbows
 
 
@@ -219,12 +204,3 @@ def _across(style: Walk, side: int, steps: Steps, wrist: Array) -> Array:
     )
     danced = np.stack([aside, up, row.ahead_arms - row.back_sideways_arms * np.abs(over)], axis=1)
     return np.asarray(wrist + (style.across * steps.moving)[:, None] * (danced - wrist))
-
-
-def _tapping(side: int, frames: int) -> Array:
-    """Hands leave the chest in turn and come back to it. (T, 3)."""
-    row = arm_table().tap
-    beating = np.maximum(np.sin(2 * np.pi * row.hz * np.arange(frames) / FPS + (0 if side > 0 else np.pi)), 0)
-    away = np.tile([row.aside_arms * side, row.up_arms * side, row.ahead_arms], (frames, 1))
-    away[:, 2] += row.away_arms * beating
-    return away

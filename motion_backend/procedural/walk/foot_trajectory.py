@@ -26,7 +26,7 @@ HEEL_RISE, SETTLE = 0.47, 0.30
 """Phase from the first rise of the heel to the lift, and from heel strike to the flat foot."""
 SAMPLES = 600
 """Of a curve."""
-TIP_UP = np.radians(24)
+TIP_UP = np.radians(25)
 """How far the tip of a foot points up at the heel strike of a full step."""
 
 

@@ -25,6 +25,8 @@ from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
 from scene_graphs.data_tables import read_table, table
 
+FEET_CHANGE = 0.6
+"""So much of a step later, at most, a walk goes over into the next."""
 NEAR = 0.2
 """Who has gone so far along a way is no farther than this from there (metres)."""
 REJOINS = 0.8
@@ -255,8 +257,9 @@ def walk_on(
 
 
 def _as_feet_change(steps: Steps, frame: int) -> int:
-    """The frame from that one on, within a step, at which no foot goes fast: nobody changes his walk in mid-swing."""
-    within = min(int(np.searchsorted(steps.phase, steps.phase[frame] + 1)), len(steps.phase) - 1)
+    """The frame from that one on, within a good half of a step, at which feet are slowest: nobody changes his walk in
+    mid-swing."""
+    within = min(int(np.searchsorted(steps.phase, steps.phase[frame] + FEET_CHANGE)), len(steps.phase) - 1)
     pace = np.linalg.norm(np.diff(steps.ankles[frame : within + 1], axis=0), axis=-1).max(axis=1)
     return frame + int(np.argmin(pace)) if len(pace) else frame
 

@@ -85,8 +85,6 @@ class Walk:
     """Whether it turns round on the way, goes back and comes again."""
     veer: Degrees
     """How far it looks to the left (right if negative) while its way curves there."""
-    tap: bool
-    """Hands tap the chest."""
     doing: str
     """What the hands do meanwhile: a name in `gestures.GESTURES`."""
     release: bool = False

@@ -165,7 +165,7 @@ def test_what_jumps_is_refused() -> None:
     root, local = stood_for(30)
     local = local.copy()
     local[15, INDEX["left_shoulder"]] = rotations.compose(
-        local[15, INDEX["left_shoulder"]], rotations.axis_to_quat("z", np.float64(0.8))
+        local[15, INDEX["left_shoulder"]], rotations.axis_to_quat("z", np.array(0.8))
     )
     plan = moved(root, stood_for(30)[1])
     passage = PlannedPassage(small_home(), acted_part(), PhaseKind.STAND, plan)

@@ -185,7 +185,7 @@ def test_feet_end_their_step_as_they_began_it() -> None:
         assert name == "level" or max(values) == 1.0, name
     # The heel leads the way up, and the tip of the foot comes up before it is set down.
     assert max(curves.heel_off, key=lambda point: point.share).at < 0.5
-    assert max(curves.heel_strike, key=lambda point: point.share).at == 1.0
+    assert 0.8 < max(curves.heel_strike, key=lambda point: point.share).at <= 1.0
 
 
 def test_every_gesture_in_waves_is_one_that_can_be_asked_for() -> None:

@@ -98,6 +98,8 @@ def test_whatever_is_denied_as_a_participle_is_not_done(deed: str, other: str, j
         ("The old nurse yawns. The nurse sits down.", ["", ""]),
         ("A dog sleeps. It wakes.", ["A dog", "It"]),
         ("reads a book and sleeps", ["", ""]),
+        ("When the children are asleep he reads.", ["the children", ""]),
+        ("Before he eats, the baby wakes, so he gets up.", ["the baby", "", ""]),
     ],
 )
 def test_one_person_is_played_and_others_are_named(theme: str, who: list[str]) -> None:

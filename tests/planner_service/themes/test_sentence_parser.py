@@ -99,6 +99,11 @@ def test_no_word_of_any_text_is_read_twice(text: str) -> None:
         ("“Come here!” her brother says.", ["says"]),
         ("As quiet as a cat the burglar climbs in.", ["climbs in as quiet as a cat"]),
         ("Freshly shaved, the man picks a shirt.", ["Freshly shaved", "picks a shirt"]),
+        ("From time to time she looks up.", ["looks up from time to time"]),
+        ("Quietly, so as not to wake him, she slips out.", ["Quietly, not to wake him", "slips out"]),
+        ("I was so proud that I read it to the cat.", ["was so proud", "read it to the cat"]),
+        ("Two old friends play chess.", ["play chess"]),
+        ("When the bell rings they all duck behind the sofa.", ["the bell rings", "duck behind the sofa"]),
         # verbs in their base forms
         ("You wake up, stretch and stare at the ceiling.", ["wake up", "stretch", "stare at the ceiling"]),
         ("They eat on the floor and fall asleep there.", ["eat on the floor", "fall asleep there"]),
