@@ -35,7 +35,9 @@ _WAYS: Final = re.compile(
     re.IGNORECASE,
 )
 """A way through a home, whatever the verb that goes it."""
-_FLOOR: Final = re.compile(r"(?<!feet )(?<!foot )\b(?:on|onto|to) the (?:\w+ )?(?:floor|ground|rug|carpet)\b")
+_FLOOR: Final = re.compile(
+    r"(?<!feet )(?<!foot )\b(?:on|onto|to) the (?:\w+ )?(?:floor|ground|rug|carpet|tiles|floorboards|mat)\b"
+)
 _ON_TOP: Final = re.compile(r"\bon (?:the|a|his|her|their) (?:\w+ )?(?:table|desk|counter)")
 _UNDER: Final = re.compile(r"\b(?:under|beneath|underneath|behind|beside|next to)\b")
 _INTO: Final = re.compile(

@@ -24,8 +24,8 @@ from planner_service.themes.asides import (
 )
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, participle, verb_of
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
-from planner_service.themes.verb_group import NEARLY, verb_group
 from planner_service.themes.verb_finder import FLOATING, Token, verb_place
+from planner_service.themes.verb_group import NEARLY, verb_group
 
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
 _PLAIN: Final = re.compile(r"[A-Za-z ,'’-]+[.!?]?\s*")
@@ -284,7 +284,8 @@ def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> l
     for place in range(main + 1, len(words)):
         low, last = words[place].low, words[place - 1].low
         denied = last in ("not", "never") and low.endswith("ing") and bool(verb_of(low))
-        purpose = moves and last == "to" and _is_purpose(words, place)
+        theirs = clause.verb == "wait" and any(word.low == "for" for word in words[main:place])
+        purpose = moves and last == "to" and not theirs and _is_purpose(words, place)
         if denied or purpose or (moves and _is_beside(low, last)):
             stop = place - (purpose or denied)
             if stop <= main:
