@@ -69,7 +69,7 @@ def test_half_of_every_kind_is_held_out() -> None:
         assert queries[kind, "tune"] == queries[kind, "held_out"] >= 10
     themes = Counter((theme.refuse, theme.split) for theme in labelled_themes())
     for refuse in (False, True):
-        assert abs(themes[refuse, "tune"] - themes[refuse, "held_out"]) <= 1
+        assert abs(themes[refuse, "tune"] - themes[refuse, "held_out"]) <= 2
 
 
 def test_what_shows_a_labelled_beat_is_at_furniture_that_there_is() -> None:
