@@ -33,6 +33,7 @@ NOTE_SECONDS = 15.0
 """From line to line about one step, in a log."""
 COMPILE = (
     "from scene_graphs.layout_library import compile_search; compile_search();"
+    "from scene_graphs.geometry.planar_faces import compile_faces; compile_faces();"
     "from motion_backend.rendering.film_frames import compile_film; compile_film()"
 )
 OFFLINE = r"Connection|timed out|Name or service|Proxy|SSLError|HTTP error|Retrying|No matching distribution"
