@@ -163,7 +163,7 @@ HOSTILE: dict[str, Behaviour] = {
 }  # fmt: skip
 
 
-FEW = {"echo", "endless"}
+FEW = {"echo"}
 MODES = [mode if mode in FEW else pytest.param(mode, marks=pytest.mark.sweep) for mode in HOSTILE]
 
 

@@ -25,7 +25,6 @@ from motion_backend.physics.physics_record import physics_of
 from motion_backend.procedural.backend import ProceduralBackend
 from scene_graphs.home import Home
 
-
 FRAMES = 6
 """More than one window of them, and hardly more."""
 
