@@ -32,6 +32,7 @@ PROBE_SECONDS = 5.0
 NOTE_SECONDS = 15.0
 """From line to line about one step, in a log."""
 COMPILE = (
+    "import planner_service.api.app, planner_service.jobs.worker, planner_service.cli.story, pysbd, lemminflect, torch;"
     "from scene_graphs.layout_library import compile_search; compile_search();"
     "from scene_graphs.geometry.planar_faces import compile_faces; compile_faces();"
     "from motion_backend.rendering.film_frames import compile_film; compile_film()"
@@ -231,7 +232,7 @@ def set_up(screen: Screen, extras: str, asked: str) -> None:
             fetched += installer.install(label, needed)
         else:
             screen.say(f"{label}: is there")
-    run(screen, "6/6 search and film, compiled for this machine", [installer.python, "-c", COMPILE])
+    run(screen, "6/6 commands, search and film, compiled for this machine", [installer.python, "-c", COMPILE])
     build = "CUDA" if any(packages().glob("torch/lib/libtorch_cuda*")) else "CPU"
     size = sum(path.lstat().st_size for path in VENV.rglob("*")) / 1e9
     took = f"{time.monotonic() - begin:.0f} s, {fetched:.0f} MB downloaded"

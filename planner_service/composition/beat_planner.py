@@ -26,6 +26,7 @@ from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import repair
 from planner_service.scripts.script_search import rank
 from planner_service.themes.beats import EXPRESSIONS, LANGUAGE, ReadBeat, ThemeError, beats_of, clean, read_beat
+from planner_service.themes.details import details_of
 from scene_graphs import furniture
 from scene_graphs.furniture import canonical_room
 
@@ -132,7 +133,8 @@ def _besides(
     """What an acted beat tells and no keyframe shows: all of it, where its keyframes only stand for it."""
     if index in writer.moody:
         seen = read.clause.verb not in EXPRESSIONS or read.beat.emotion in EXPRESSED
-        return () if (read.sure or read.beat.kind == "feeling") and seen else (read.text,)
+        known = (read.sure or read.beat.kind == "feeling") and seen
+        return details_of(read.clause) if known else (read.text,)
     deed = writer.deeds.get(index)
     own = [one for one in keyframes if index in (one.beat, *one.also)]
     own = [one for one in own if not connects(one)] or own

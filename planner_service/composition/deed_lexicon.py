@@ -6,6 +6,7 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
+from itertools import pairwise
 from typing import Final
 
 from motion_backend.motion import Skill
@@ -19,6 +20,7 @@ from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import tokens_of
+from planner_service.themes.verb_group import NEARLY
 from scene_graphs import furniture
 from scene_graphs.data_tables import read_table, require_known, table
 
@@ -33,7 +35,9 @@ _WAYS: Final = re.compile(
     re.IGNORECASE,
 )
 """A way through a home, whatever the verb that goes it."""
-_FLOOR: Final = re.compile(r"(?<!feet )(?<!foot )\b(?:on|onto|to) the (?:\w+ )?(?:floor|ground|rug|carpet)\b")
+_FLOOR: Final = re.compile(
+    r"(?<!feet )(?<!foot )\b(?:on|onto|to) the (?:\w+ )?(?:floor|ground|rug|carpet|tiles|floorboards|mat)\b"
+)
 _ON_TOP: Final = re.compile(r"\bon (?:the|a|his|her|their) (?:\w+ )?(?:table|desk|counter)")
 _UNDER: Final = re.compile(r"\b(?:under|beneath|underneath|behind|beside|next to)\b")
 _INTO: Final = re.compile(
@@ -49,6 +53,28 @@ _NOT_NOW: Final = frozenset(("before", "after", "until", "since", "during", "wit
 """Words before what is not done, or not yet."""
 _LIGHT_VERBS: Final = ("do", "have", "take", "play", "watch")
 """Verbs that a noun alone stands for: "dinner", "a nap", "yoga"."""
+_THROUGH: Final = frozenset(("through", "in", "around", "round", "up", "down", "out", "over", "across"))
+"""Words between a deed and the room that it is done to: "searches through the kitchen"."""
+_LISTED: Final = re.compile(r",(?: and| then| or| even)*|\b(?:and|or)(?: then| even)*\b")
+_PLACED: Final = frozenset(
+    (
+        "in",
+        "on",
+        "under",
+        "behind",
+        "beneath",
+        "below",
+        "inside",
+        "at",
+        "above",
+        "beside",
+        "between",
+        "into",
+        "onto",
+        "with",
+    )
+)
+"""Words that each place of a list begins with."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
 Pattern = tuple[frozenset[str], ...]
 """Base forms of each word; an empty set is a gap."""
@@ -82,6 +108,7 @@ class DeedTable:
     not_furniture: str
     rooms: dict[str, tuple[str, ...]]
     usual: dict[str, dict[str, tuple[str, ...]]]
+    typical: dict[str, str]
     stands_on: dict[str, str]
     seats_at: dict[str, tuple[str, ...]]
     deed: tuple[DeedRow, ...]
@@ -158,6 +185,8 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     under = need == "lie" and bool(named) and not fitting and bool(_UNDER.search(clause.text))
     if under or (need in ("sit", "lie") and _FLOOR.search(clause.text)):
         fitting = ["floor"]
+    if skill is Skill.TOUCH and (several := listed_places(clause) or ([] if fitting else typical_of(clause.text))):
+        fitting = [several[0], *fitting, *found.at]
     if fitting:
         return Deed(found, skill, tuple(fitting), True)
     kept = [piece for piece in _kept(clause, about) if affords(piece, need)] if skill is Skill.TOUCH else []
@@ -165,6 +194,38 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
         return None
     order = (*kept, *found.at) if found.things else (*found.at, *kept)
     return Deed(found, skill, tuple(dict.fromkeys(order)), False)
+
+
+def listed_places(clause: Clause) -> list[str]:
+    """The furniture of two or more places or things that one thing is done to in turn, one for each: "looks under the
+    cushions, | in the fridge, | behind the sofa", "turns on the radio | and the tap"."""
+    parts = [part for part in _LISTED.split(clause.text) if part.strip()]
+    places = [where(part)[:1] for part in parts]
+    begins = [part.split()[0].lower() for part in parts[1:]]
+    led = all(word in _PLACED for word in begins)
+    bare = all(word in grammar().marks - {"to"} for word in begins) and not _PLACED & set(clause.text.split()[2:])
+    known = [piece for some in places for piece in some if affords(piece, "touch")]
+    return list(dict.fromkeys(known)) if (led or bare) and len(set(known)) > 1 and len(known) == len(parts) else []
+
+
+def typical_of(text: str) -> list[str]:
+    """What is typical of the rooms that something is done to, in their order: "searches the study, the hall and …";
+    none for those that it is only done in."""
+    words = [token.low for token in tokens_of(text)]
+    typical, known = deed_table().typical, grammar()
+    found: dict[str, None] = {}
+    before = 0
+    for at in range(len(words)):
+        name = " ".join(words[at : at + 2]) if " ".join(words[at : at + 2]) in typical else words[at]
+        if name in typical and (before or not known.prepositions & set(words[1:at]) - _THROUGH):
+            end = at + len(name.split())
+            listed = not before or all(
+                word in known.marks | known.adverbs | {",", "and", "then"} for word in words[before:at]
+            )
+            if listed and at and not (words[end:] and is_noun(words[end]) and words[end] not in known.prepositions):
+                found[typical[name]] = None
+                before = end
+    return list(found)
 
 
 def _may_be_noun(lemma: str) -> bool:
@@ -273,12 +334,16 @@ def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
     """A clause's words from its verb on, then from every later -ing on."""
     if clause.verb in theme_words()["speech_verbs"] and len(clause.lemmas) > 1:  # "says into the phone"
         yield ("talk", *clause.lemmas[1:])
+    if clause.text.split(" ", 1)[0].lower() in NEARLY:
+        yield ("nearly", *clause.lemmas)
     yield ("cannot", *clause.lemmas) if clause.unable else clause.lemmas
     if not grammar().adverbs.isdisjoint(clause.lemmas):  # "is still on hold"
         yield tuple(lemma for lemma in clause.lemmas if lemma not in grammar().adverbs)
-    words = {token.low for token in tokens_of(clause.text)}
+    tokens = [token.low for token in tokens_of(clause.text)]
+    nouns = grammar().marks - {"to"}
+    beside = {word for before, word in pairwise(tokens) if before not in nouns}  # not "her reading glasses"
     for place, lemma in enumerate(clause.lemmas[1:], 1):
-        if gerund(lemma) in words and lemma not in ("be",):
+        if gerund(lemma) in beside and lemma not in ("be",):
             yield clause.lemmas[place:]
 
 
@@ -288,12 +353,18 @@ def _by_things(clause: Clause, about: str) -> DeedRow | None:
         return None
     if clause.verb and (row := _moved(clause)):
         return row
-    if not clause.verb or clause.verb in _STATES:
+    if not clause.verb or clause.verb in _STATES or _says_how(clause):
         return None
     named = _named(clause, "" if "them" in clause.lemmas else about)
     if any(affords(piece, "touch") for piece in named) or _kept(clause, about):
         return DeedRow((clause.verb,), Skill.TOUCH, things=True)
     return DeedRow((clause.verb,), Skill.LOCO) if _WAYS.search(clause.text) else None
+
+
+def _says_how(clause: Clause) -> bool:
+    """Whether a verb of state only says how somebody is: "feels watched", not "feels the wall"."""
+    after = next((token.low for token in tokens_of(clause.text)[1:] if token.low not in grammar().adverbs), "")
+    return clause.verb in theme_words()["state_verbs"] | {"feel"} and after.endswith("ed") and bool(verb_of(after))
 
 
 def _moved(clause: Clause) -> DeedRow | None:
@@ -371,11 +442,17 @@ def pieces_in(text: str) -> list[str]:
     at = 0
     while at < len(words):
         size = next((size for size in (3, 2, 1) if _names(words[at : at + size], size)), 0)
-        if size and words[at] not in others:
+        if size and words[at] not in others and not (at == 0 and _is_a_deed(words)):
             piece = furniture.canonical(" ".join(words[at : at + size])).replace("_", " ")
             found.append(deed_table().stands_on.get(piece, piece))
         at += size or 1
     return found
+
+
+def _is_a_deed(words: Sequence[str]) -> bool:
+    """Whether a furniture word is a verb: "sinks onto the bottom stair"."""
+    led = len(words) > 1 and words[1] in ("into", "onto", "down", "to", "back", "on")
+    return led and bool(verb_of(words[0]))
 
 
 def _names(words: Sequence[str], size: int) -> bool:

@@ -21,8 +21,10 @@ from planner_service.composition.deed_lexicon import (
     DeedRow,
     deed_of,
     deed_table,
+    listed_places,
     names_things,
     room_of,
+    typical_of,
     where,
 )
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
@@ -31,6 +33,7 @@ from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScrip
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
 from planner_service.themes.details import details_of
+from planner_service.themes.lexicon import lemma_of
 from planner_service.themes.protagonist import names_somebody
 from planner_service.themes.sentence_parser import Clause
 from scene_graphs import furniture
@@ -57,6 +60,9 @@ _AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside"
 _MOST_PLACES: Final = 3
 _AGAIN_VERBS: Final = ("start", "begin", "try")
 _AGAIN: Final = frozenset(("again", "over", "afresh", "anew", "more"))
+_BY_A_WALL: Final = re.compile(r"\b(?:by|at|near|against) (?:the|a|an) (?:\w+ )?(?:window|door|wall)\b")
+"""Where nothing is kept that could be taken."""
+_GOES_ON: Final = re.compile(r"(?:goes|went|go|carries|carried|carry|keeps|kept|keep) (?:on|going)(?:,| with\b|$)")
 _ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
 _TAKEN: Final = DeedRow(
     ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
@@ -97,6 +103,8 @@ class KeyframeWriter:
     _avoided: set[Skill] = field(default_factory=set)
     _about: str = ""
     """The words that named furniture last."""
+    _tried: Deed | None = None
+    """What was tried or begun last."""
     _clause: Clause | None = None
     """Of which deed it is written."""
     _plain: bool = False
@@ -114,6 +122,7 @@ class KeyframeWriter:
             self.why[index] = deed.row.why
         elif deed is not None:
             self.deeds[index] = deed
+            self._tried = deed if lemma_of(read.text.split()[0]) in _AGAIN_VERBS else self._tried
             self._do(index, read, deed)
         elif beat.kind == "feeling" or (read.felt is not None and read.sure):
             self._feel(index, beats)
@@ -121,10 +130,11 @@ class KeyframeWriter:
             self.why[index] = UNSHOWN
 
     def _deed(self, clause: Clause) -> Deed | None:
-        """What a clause does; who starts again does what was done at rest last, else first."""
-        if clause.verb in _AGAIN_VERBS and not _AGAIN.isdisjoint(clause.lemmas) and self.deeds:
+        """What a clause does; who starts again does what was tried last, else done at rest last, else done first."""
+        again = clause.verb in _AGAIN_VERBS and not _AGAIN.isdisjoint(clause.lemmas)
+        if (again or _GOES_ON.match(clause.text)) and self.deeds:
             done = list(self.deeds.values())
-            return next((deed for deed in reversed(done) if deed.row.rests), done[0])
+            return self._tried or next((deed for deed in reversed(done) if deed.row.rests), done[0])
         return deed_of(clause, self._about)
 
     def take(self, index: int, keyframes: Sequence[Keyframe], why: str, part: Part | None) -> None:
@@ -192,6 +202,7 @@ class KeyframeWriter:
     def _on_feet(self, read: ReadBeat, deed: Deed) -> Deed:
         """What is done at rest, where it is done standing: as is said, or as one is while nothing is said."""
         at = tuple(piece for piece in where(read.text) if affords(piece, "touch"))
+        at = () if _BY_A_WALL.search(read.text) else at
         stands, last = bool(_ON_FEET.search(read.text)), self._clause
         goes_on = self._resting is None and last is not None and last.sentence == read.clause.sentence
         if deed.row.rests and stands and at:
@@ -226,7 +237,8 @@ class KeyframeWriter:
             stands_in = (deed.row.stands or _is_beside(read)) and not any(
                 shows(skill, one, read.clause) for one in shown
             )
-            if self._plain or not generic or stands_in or resting.caption in captions:
+            told = self._plain and mood.value != resting.emotion and resting.mood in EXPRESSED
+            if (self._plain and not told) or not generic or stands_in or resting.caption in captions:
                 if self._plain and generic:
                     self.keyframes[-1] = self._resting = resting.model_copy(
                         update={"caption": self._one_of(shown, mood, index, skill), "emotion": mood.value}
@@ -313,6 +325,8 @@ class KeyframeWriter:
         at = self.keyframes[-1].furniture if self.keyframes else "floor"
         if part is not None and at in deed.pieces and at != part.keyframes[-1].furniture:
             part = None  # nobody goes elsewhere for what is done where one is
+        if part is not None and deed.named and not _is_at(part.keyframes[-1], deed):
+            part = None  # the same is done at another place already
         same = part is not None and part.keyframes[-1].skill is skill
         if (
             part is not None
@@ -416,10 +430,17 @@ class KeyframeWriter:
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
 
 
+def _is_at(keyframe: PlannedKeyframe, deed: Deed) -> bool:
+    kinds = furniture.categories_of(keyframe.piece[0])
+    return any(not kinds.isdisjoint(furniture.categories_of(piece)) for piece in deed.pieces[:1] if piece != "floor")
+
+
 def _further(clause: Clause, deed: Deed) -> list[Deed]:
     """The same deed where else it is done: "looks under the bed, | behind the sofa"."""
     places = (where(text) for text in details_of(clause)[:_MOST_PLACES] if deed.named and text.split()[0] in _AT)
-    found = [piece for some in places for piece in some[:1] if affords(piece, "touch") and piece != deed.pieces[0]]
+    listed = listed_places(clause) or typical_of(clause.text)
+    found = [*(piece for some in places for piece in some[:1]), *listed[: _MOST_PLACES + 1]]
+    found = [piece for piece in found if affords(piece, "touch") and piece != deed.pieces[0]]
     return [Deed(deed.row, deed.skill, (piece,), True) for piece in dict.fromkeys(found)]
 
 

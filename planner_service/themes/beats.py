@@ -16,6 +16,7 @@ from planner_service.themes.protagonist import called, head_of, hero_of, is_hero
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import tokens_of
+from planner_service.themes.verb_group import NEARLY
 from scene_graphs.errors import UserError
 
 MAX_THEME_LENGTH: Final = 2000
@@ -40,6 +41,9 @@ _RECEIVERS: Final = frozenset(("phone", "telephone", "receiver"))
 _BY_THEN: Final = re.compile(r"\bby (?:noon|midnight|dawn|dusk|evening|night|now|then|\d+|one|two|three|four|five|six|"
                                 r"seven|eight|nine|ten|eleven|twelve)\b", re.IGNORECASE)  # fmt: skip
 """By this what had been done belongs to the story: "by noon she had unpacked"."""
+_ASKED: Final = re.compile(r"(?i)(?:please|(?:can|could|would|will) you|tell me|show me|give me|help me)\b")
+_ASKING: Final = frozenset(("", "it", "you", "i", "me", "please"))
+"""Who does things in a request, and is nobody whose story it is."""
 _QUOTED: Final = re.compile(r"«\d+»")
 EXPRESSIONS: Final = {
     verb: mood
@@ -109,7 +113,10 @@ def beats_of(theme: str) -> tuple[ReadBeat, ...]:
     """What a theme says happens, in the order of time. Raises ThemeError as `clean` does, and for other languages."""
     text = clean(theme)
     _refuse_foreign(text)
-    return read_beats(clauses_of_text(text))
+    clauses = clauses_of_text(text)
+    if _ASKED.match(text) and all(one.doer.lower() in _ASKING for one in clauses):
+        raise ThemeError(f"{text[:60]!r} asks for something, and tells of nobody.")
+    return read_beats(clauses)
 
 
 def read_beats(clauses: Sequence[Clause]) -> tuple[ReadBeat, ...]:
@@ -161,11 +168,13 @@ def _kind(clause: Clause, who: str) -> BeatKind:
     words = theme_words()
     says = clause.verb in words["speech_verbs"] and words["not_said"].isdisjoint(clause.lemmas)
     quotes = any(len(quote.split()) > 1 or quote[-1] in ".,!?" for quote in clause.quotes)
+    quotes = quotes and clause.verb not in words["voiced_verbs"]
     if says or (quotes and _RECEIVERS.isdisjoint(clause.lemmas)):
         return "speech" if not who else "other"
     if who or (clause.aside and (clause.verb or not is_feeling(clause))):
         return "other"
-    if clause.denied and not (clause.unable and clause.verb in words["unable_verbs"]):
+    staggers = clause.verb in words["falling_verbs"] and clause.text.split()[0].lower() in NEARLY
+    if clause.denied and not (staggers or (clause.unable and clause.verb in words["unable_verbs"])):
         return "undone"
     before = clause.perfect and clause.joint not in _MEANWHILE and not _BY_THEN.search(clause.text)
     if before or (clause.verb in words["memory_verbs"] and not clause.unable) or clause.joint == "since":

@@ -16,6 +16,8 @@ _LEADS: Final = frozenset(("with", "without", "for", "like", "as", "despite", "a
 """Words before which a deed has been told, and after which stands how, for whom or when."""
 _REASONS: Final = frozenset(("after", "since", "before", "until", "for"))
 """Those of them that tell why or when."""
+_SENSED: Final = frozenset(("sound", "sight", "thought", "smell", "news", "noise", "mention", "idea", "click", "ring"))
+"""At which something is done: "at the sound of the key"."""
 _LINKS: Final = frozenset((",", "and", "or", "then"))
 """Words after which another place is told, where the same is done."""
 _MARKS: Final = frozenset((",", ";"))
@@ -59,6 +61,8 @@ def _starts(tokens: Sequence[Token], at: int) -> bool:
     after = tokens[at + 1].low if at + 1 < len(tokens) else ""
     if low == "to" and verb_of(after) == after and not is_noun(after):
         return True  # "opens the door | to greet her guests"
+    if low == "at" and any(token.low in _SENSED for token in tokens[at + 1 : at + 3]):
+        return True
     beside = low.endswith("ing") and bool(verb_of(low)) and not is_noun(low) and is_noun(before.low)
     pair = at > 1 and tokens[at - 2].low in grammar().prepositions  # "up and down the hall"
     linked = before.low in _LINKS and low in grammar().prepositions and not pair

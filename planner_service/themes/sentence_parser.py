@@ -22,10 +22,10 @@ from planner_service.themes.asides import (
     without_asides,
     without_relative,
 )
-from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, verb_of
+from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, participle, verb_of
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
 from planner_service.themes.verb_finder import FLOATING, Token, verb_place
-from planner_service.themes.verb_group import verb_group
+from planner_service.themes.verb_group import NEARLY, verb_group
 
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
 _PLAIN: Final = re.compile(r"[A-Za-z ,'’-]+[.!?]?\s*")
@@ -33,6 +33,11 @@ _SEMI: Final = re.compile(r"\n+|;\s+|:\s+|\s+[–—]\s*|\s*[–—]\s+|\s+-{1,2
 _SUPPOSING: Final = frozenset(("if", "unless"))
 """Joints before what is only thought of: "if he calls"."""
 
+_TITLE: Final = re.compile(r"\b(Mme|Mlle|Sgt|Capt|Col|Lt|Fr|Sr|St)\.(?= [A-Z])")
+"""Titles whose full stop ends no sentence."""
+_IDLE: Final = frozenset(("do", "be", "have", "lose", "waste", "take", "make", "pay", "give", "get", "leave"))
+"""Verbs that with "nothing" or "no" tell of a deed all the same: "does nothing", "loses no time"."""
+_FEWEST_DENYING: Final = 2
 _PARTICLES: Final = frozenset(("on", "off", "down", "up", "around", "there", "back"))
 _BULLET: Final = re.compile(r"^\s*(?:\d{1,2}[.)]|[-*•])\s+", re.MULTILINE)
 
@@ -75,7 +80,7 @@ class Clause:
 def clauses_of_text(text: str) -> tuple[Clause, ...]:
     """What a text tells, in the order of time."""
     quotes: list[str] = []
-    text = text.replace("«", "“").replace("»", "”")  # which stand for what is said below
+    text = _TITLE.sub(r"\1", text.replace("«", "“").replace("»", "”"))  # which stand for what is said below
 
     def kept(match: re.Match[str]) -> str:
         quotes.append(match[1] or match[2])
@@ -118,6 +123,10 @@ def _sharing(before: Clause, parts: list[Clause]) -> list[Clause]:
     if not first.verb and verb_of(word) == word:  # "does not smoke, | drink or dance"
         parts = [replace(part, verb=word) if part is first else part for part in parts]
         first = next(part for part in parts if part.text == first.text)
+    shared = before.perfect and before.joint not in grammar().earlier and not re.search(r"\bby\b", before.text)
+    done = first.verb and not first.subject and first.joint in ("and", ",") and participle(first.verb)
+    if shared and done == first.text.split(" ", 1)[0].lower():  # "had polished the spoons | and ironed the napkins"
+        return [replace(part, perfect=True) if part is first else part for part in parts]
     shares = before.denied and first.verb and not first.subject and first.joint in ("or", "nor", "and", ",")
     bare = first.text.split(" ", 1)[0].lower() == first.verb and re.search(
         rf"\b{re.escape(before.verb)}\b", before.text
@@ -169,7 +178,7 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
     lemmas = _lemmas(words[group.place :])
     first = Clause(
         _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, piece.joint,
-        denied=group.denied or hindered, unable=group.unable, perfect=group.perfect,
+        denied=group.denied or hindered or _does_none(words[group.place :]), unable=group.unable, perfect=group.perfect,
         absolute=bool(subject) and words[0].low.endswith("ing"),
         aside=piece.joint in _SUPPOSING or piece.tokens[0].low in ("if", "though"),
         quotes=_quotes(tokens, quotes), sentence=sentence,
@@ -203,7 +212,7 @@ def _without_opening(tokens: Sequence[Token]) -> list[Token]:
     known = grammar()
     for at, token in enumerate(tokens[:-1]):
         too = token.low == "too" and is_adjective(tokens[at + 1].low)
-        if too or token.low in known.denials or token.low not in known.adverbs | {"and", "but", "or"}:
+        if too or token.low in known.denials | NEARLY or token.low not in known.adverbs | {"and", "but", "or"}:
             return list(tokens[at:])
     return list(tokens[-1:])
 
@@ -211,9 +220,19 @@ def _without_opening(tokens: Sequence[Token]) -> list[Token]:
 def _denials(lead: Sequence[Token], subject: str) -> list[Token]:
     """Of the words before a verb those that deny it; all of them where nobody is named."""
     known = grammar()
-    denials = known.denials - known.subjects - (known.with_gerund if subject else frozenset())  # "without a word she"
+    denials = (
+        (known.denials | NEARLY) - known.subjects - (known.with_gerund if subject else frozenset())
+    )  # "without a word she"
     denying = [token for token in lead if token.low in denials]
-    return denying if subject else list(lead) if any(token.low in known.denials for token in lead) else []
+    return denying if subject else list(lead) if any(token.low in known.denials | NEARLY for token in lead) else []
+
+
+def _does_none(words: Sequence[Token]) -> bool:
+    """Whether a deed is done to nothing, which denies it: "labels nothing more"; not of "does nothing"."""
+    if len(words) < _FEWEST_DENYING or verb_of(words[0].low) in _IDLE:
+        return False
+    rest = [token.low for token in words[1:]]
+    return (rest[0] == "nothing" and rest[1:2] != ["but"]) or (rest[0] == "no" and rest[1:2] != ["longer"])
 
 
 def _is_hindered(joint: str, lead: Sequence[Token], verb: Token) -> bool:
@@ -259,19 +278,24 @@ def _placed(clause: Clause, before: Sequence[Token], source: str) -> Clause:
 
 def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> list[Clause]:
     """A clause and the second deed of it: "sits reading a letter", "goes to the kitchen to make tea"."""
-    if clause.verb not in grammar().postures or clause.quotes:
+    if clause.quotes:
         return [clause]
+    moves = clause.verb in grammar().postures
     for place in range(main + 1, len(words)):
-        gerund = _is_beside(words[place].low, words[place - 1].low)
-        purpose = words[place - 1].low == "to" and _is_purpose(words, place)
-        if gerund or purpose:
-            stop = place - 1 if purpose else place
+        low, last = words[place].low, words[place - 1].low
+        denied = last in ("not", "never") and low.endswith("ing") and bool(verb_of(low))
+        theirs = clause.verb == "wait" and any(word.low == "for" for word in words[main:place])
+        purpose = moves and last == "to" and not theirs and _is_purpose(words, place)
+        if denied or purpose or (moves and _is_beside(low, last)):
+            stop = place - (purpose or denied)
             if stop <= main:
                 continue
-            head, tail = words[:stop], words[place:]
-            lemmas = _lemmas(tail)
-            joint = "to" if purpose else "ing"
-            second = replace(clause, text=_text(source, tail), subject="", verb=lemmas[0], lemmas=lemmas, joint=joint)
+            head, tail = words[:stop], words[place - denied :]
+            lemmas = _lemmas(words[place:])
+            second = replace(
+                clause, text=_text(source, tail), subject="", verb=lemmas[0], lemmas=lemmas,
+                joint="to" if purpose else "ing", denied=denied,
+            )  # fmt: skip
             if len(head) - main == 1 and clause.verb in ("go", "come", "get") and purpose:
                 return [replace(second, subject=clause.subject, joint=clause.joint)]  # "goes to make a coffee"
             return [replace(clause, text=_text(source, head), lemmas=_lemmas(head[main:])), second]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from planner_service.themes.asides import THAT
-from planner_service.themes.lexicon import grammar, is_adjective, past, verb_of
+from planner_service.themes.lexicon import grammar, is_adjective, is_noun, past, verb_of
 from planner_service.themes.verb_finder import Token, is_adverb, plain, tokens_of, verb_place
 
 HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
@@ -86,6 +86,8 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
         return bool(rest)
     if low in ("so", "yet", "or"):
         return bool(rest) and (rest[0].low in grammar().subjects or (low != "yet" and verb_place(rest[:2]) is not None))
+    if low == "where" and ahead == "to":
+        return False  # "cannot decide where to put it"
     if low in ("once", "since", "where"):
         opens = bool(rest) and (rest[0].low in grammar().marks or rest[0].text[:1].isupper())
         is_subject = bool(rest) and rest[0].low in grammar().subjects
@@ -155,6 +157,9 @@ def _is_bare(before: Piece, piece: Piece) -> bool:
     if at is None or piece.joint not in (",", "and", "then") or is_adverb(first):
         return False
     verb = before.tokens[at].low
+    if verb in grammar().do | grammar().modals:  # "did open the door, | touch the wall"
+        led = len(piece.tokens) > 1 and piece.tokens[1].low in grammar().marks | grammar().prepositions
+        return verb_of(first) == first and (led or not is_noun(first))
     if not (verb_of(verb) and verb_of(first)):
         return False
     plain = before.bare or (at > 0 and before.tokens[at - 1].low in _PLAIN_SUBJECTS)

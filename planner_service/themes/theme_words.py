@@ -20,6 +20,10 @@ class ThemeWords:
     """What is answered or said with more than words."""
     unable_verbs: str
     """What somebody who cannot do it is seen trying: "cannot sleep"."""
+    falling_verbs: str
+    """What somebody who nearly does it is seen staggering by: "nearly falls"."""
+    voiced_verbs: str
+    """What somebody does who is quoted, and is seen doing: "“Dear John,” he writes"."""
     no_heroes: str
     """Nouns for what does things and is nobody a theme is about."""
     body: str

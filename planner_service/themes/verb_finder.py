@@ -33,8 +33,13 @@ _LONG: Final = (
     (r"(so (?:\w+ ){1,6}?)that (?=(?:i|he|she|they|we)\b)", r"\1, so "),
     ("(?:every|each) time(?= (?:i|he|she|they|we|the|his|her|my)\\b)", "whenever"),
     ("at (?:long )?last|in the end", "finally"),
+    (",? of course", ""),
+    ("not until(?=.* (?:did|does|do) )", "only after"),
+    ("after (?:this|that)(?=,| (?:i|he|she|they|we|it|the|his|her|my|all)\\b)", "then"),
 )  # fmt: skip
 """Joints of several words, and those that say the same."""
+_INVERTED: Final = re.compile(r"(?i)(?<=\w)(?<! to)(,?) (did|does|do|had|has|have) (he|she|they|we|i)\b(?= (\w+))")
+"""A verb before who does it, as after "only when", "never" and "not until"."""
 _SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|had|have|should)nt\b")
 
 
@@ -74,11 +79,24 @@ def plain(text: str) -> str:
         text = re.sub(rf"(?i)(?<=\w){short}\b", whole, text)
     for long, short in _LONG:
         text = re.sub(rf"(?i)\b{long}\b", short, text)
+    text = _INVERTED.sub(_turned, text)
     text = re.sub(r"(?i)\b(I|he|she|they|we)'d((?: (?:never|always|often|rather|not))* (\w+))", _would, text)
     text = re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s been\b", r"\1 has been", text)
     return re.sub(
         r"\b(I|[Hh]e|[Ss]he|[Tt]hey|[Ww]e)'d\b", r"\1 had", re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s\b", r"\1 is", text)
     )
+
+
+def _turned(found: re.Match[str]) -> str:
+    """An inverted clause the other way about, and apart from what goes before it if that has a verb: "only when it was
+    dark | he did rise"."""
+    base, word = verb_of(found[4]), found[4].lower()
+    fits = word == (base if found[2].lower() in grammar().do else participle(base)) if base else is_adverb(word)
+    if not fits:
+        return found[0]
+    before = found.string[: found.start()].rsplit(".", 1)[-1]
+    told = found[1] or ("," if verb_place(tokens_of(before)) is not None else "")
+    return f"{told} {found[3]} {found[2]}"
 
 
 def _would(found: re.Match[str]) -> str:
@@ -130,9 +148,11 @@ def is_adverb(word: str) -> bool:
 def _acts(tokens: Sequence[Token], place: int) -> bool:
     """Whether the word there acts as a verb, going by its form and the words about it."""
     word, base = tokens[place].low, verb_of(tokens[place].text)
-    if not base:
-        return False
+    if not base or [token.low for token in tokens[place + 1 : place + 3]] == ["in", "hand"]:
+        return False  # "phone in hand"
     at = place - 1
+    if place and word.endswith("ing") and tokens[at].low in ("not", "never"):
+        return True
     while at >= 0 and is_adverb(tokens[at].low):
         at -= 1
     if at < 0 or tokens[at].text == ",":

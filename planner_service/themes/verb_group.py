@@ -6,12 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from planner_service.themes.lexicon import grammar, verb_of
+from planner_service.themes.lexicon import grammar, participle, verb_of
 from planner_service.themes.verb_finder import Token, verb_place
 
 _LETTING: Final = frozenset(("let", "make", "force", "allow", "bring"))
 _ONESELF: Final = frozenset(("himself", "herself", "themselves", "themself", "myself", "yourself"))
 """Who lets or makes themselves do a thing does it."""
+NEARLY: Final = frozenset(("nearly", "almost"))
+"""Adverbs before what is not done after all."""
 _MAX_WORDS: Final = 6
 """Words within which the deed of an aspect stands: "spends the whole long evening reading"."""
 
@@ -48,6 +50,9 @@ def _step(words: Sequence[Token], group: VerbGroup) -> int:
         group.unable |= low == "cannot" or (at > 0 and words[at - 1].low in ("can", "could"))
         group.denied = True
         return 2 if low in grammar().with_gerund and ahead == "of" else 1
+    if low in NEARLY and at == 0 and verb_of(ahead) and not ahead.endswith("ing"):
+        group.denied = True
+        return 1
     if low == "no" and ahead == "longer":
         group.denied = True
         return 2
@@ -60,7 +65,10 @@ def _step(words: Sequence[Token], group: VerbGroup) -> int:
     if low in grammar().auxiliaries and (low in grammar().modals or _verb_follows(words, at) or _hinders(words, at)):
         group.perfect |= low == "had"
         return 1
-    if base in _LETTING and ahead in _ONESELF:  # "lets himself sit", "forces herself to eat"
+    after = words[at + 2].low if at + 2 < len(words) else ""
+    if (
+        base in _LETTING and ahead in _ONESELF and (after == "to" or verb_of(after) == after)
+    ):  # "lets himself sit", "forces herself to eat"
         return 3 if [token.low for token in words[at + 2 : at + 3]] == ["to"] else 2
     if low == "used" and ahead == "to":  # "used to play", and does so no more
         group.perfect = True
@@ -134,7 +142,8 @@ def _verb_follows(words: Sequence[Token], at: int) -> bool:
             return bool(base) and low.endswith("ing")
         if helper in known.have:
             passed = any(one.low == "been" for one in words[at + 1 : at + 4])
-            return bool(base) and low != base and (passed or not low.endswith("ing"))
+            done = low != base or participle(base) == low  # "has not read"
+            return bool(base) and done and (passed or not low.endswith("ing"))
         return bool(base)
     return False
 

@@ -225,6 +225,22 @@ def test_who_starts_again_does_again_what_was_done_at_rest() -> None:
     assert sits[0].caption == sits[1].caption
 
 
+def test_who_tries_again_does_again_what_was_tried() -> None:
+    script = planned("He tries to fix the clock, scratches his head and tries again.")
+    assert [keyframe.furniture for keyframe in own(script)][:1] == [keyframe.furniture for keyframe in own(script)][-1:]
+
+
+def test_every_place_of_a_list_is_gone_to_in_its_order() -> None:
+    script = planned("She searches the study, the kitchen and the bathroom. She checks the bed and the stove.")
+    touched = [keyframe.furniture for keyframe in script.keyframes if keyframe.skill is Skill.TOUCH]
+    assert touched == ["desk", "kitchen cabinet", "bathroom cabinet", "bed", "stove"]
+
+
+def test_a_beat_that_a_mood_shows_names_what_else_it_tells() -> None:
+    script = planned("She reads. She laughs, with confetti in her hair, at the sound of the key.")
+    assert script.beats[1].unshown == ("with confetti in her hair", "at the sound of the key")
+
+
 def test_a_mood_alone_is_walked() -> None:
     (walk,) = planned("He is drunk.").keyframes
     assert (walk.skill, walk.caption, walk.mood) == (Skill.LOCO, usual(Skill.LOCO, Emotion.DRUNK), Emotion.DRUNK)

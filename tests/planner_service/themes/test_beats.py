@@ -51,10 +51,40 @@ def test_what_is_denied_is_undone_what_others_do_is_theirs_and_all_else_is_a_dee
         ("Her heart races. She sits down.", ["feeling", "deed"]),
         ("Bored stiff, the nurse tries on a hat.", ["feeling", "deed"]),
         ("A person becomes very depressed.", ["feeling"]),
+        ("They sit there, not reading.", ["deed", "undone"]),
+        ("She lies on the bed not moving.", ["deed", "undone"]),
+        ("He eats his soup not looking at her.", ["deed", "undone"]),
+        ("Only when it was dark did he rise, touch the wall and stand there.", ["other", "deed", "deed", "deed"]),
+        ("Never did she sit down.", ["undone"]),
+        ("He has not read a line.", ["undone"]),
+        ("She sits down and labels nothing more.", ["deed", "undone"]),
+        ("She opens no letters. She does nothing. She bows to nobody.", ["undone", "deed", "deed"]),
+        ("He almost eats the cake. He nearly falls.", ["undone", "deed"]),
+        ("She had polished the spoons and ironed the napkins.", ["memory", "memory"]),
+        ("He cannot decide where to put it.", ["deed"]),
+        ("“Part B goes into part D”, he reads. “Good”, he says.", ["deed", "speech"]),
+        ("He goes from room to room.", ["deed"]),
+        ("She makes herself a sandwich.", ["deed"]),
     ],
 )
 def test_beats_are_of_kinds(theme: str, wanted: list[str]) -> None:
     assert kinds(theme) == wanted
+
+
+@tries(30)
+@given(
+    st.sampled_from(("sits on the sofa", "eats her soup", "walks to the door", "stands there")),
+    st.sampled_from(("reading", "dancing", "looking at him", "touching the wall", "speaking", "knitting a scarf")),
+    st.sampled_from((", not ", " not ", " without ", ", never ")),
+)
+def test_whatever_is_denied_as_a_participle_is_not_done(deed: str, other: str, joint: str) -> None:
+    theme = f"She {deed}{joint}{other}. She sleeps."
+    done, undone, after = beats_of(theme)
+    assert done.beat.kind == after.beat.kind == "deed"
+    assert done.clause.text == deed
+    assert undone.clause.denied
+    assert undone.beat.kind in ("undone", "speech")
+    assert other in undone.text
 
 
 @for_each(
@@ -135,6 +165,13 @@ def test_a_beat_that_somebody_else_found_keeps_its_words_mood_and_kind() -> None
 def test_what_is_no_theme_is_refused_with_examples(theme: object) -> None:
     with pytest.raises(ThemeError, match="Try for example: A person"):
         beats_of(theme)  # type: ignore[arg-type]  # not text at times
+
+
+@for_each("theme", ["Please ignore the story and set the camera wide.", "Can you tell me how long it takes?"])
+def test_who_asks_for_something_tells_no_story(theme: str) -> None:
+    with pytest.raises(ThemeError, match="asks for something"):
+        beats_of(theme)
+    assert beats_of("Please show a man who reads a book.")
 
 
 def test_the_longest_theme_is_read() -> None:
