@@ -34,6 +34,7 @@ NOTE_SECONDS = 15.0
 COMPILE = (
     "import planner_service.api.app, planner_service.jobs.worker, planner_service.cli.story, pysbd, lemminflect, torch;"
     "from scene_graphs.layout_library import compile_search; compile_search();"
+    "from scene_graphs.geometry.planar_faces import compile_faces; compile_faces();"
     "from motion_backend.rendering.film_frames import compile_film; compile_film()"
 )
 OFFLINE = r"Connection|timed out|Name or service|Proxy|SSLError|HTTP error|Retrying|No matching distribution"

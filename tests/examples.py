@@ -13,6 +13,6 @@ MIN_COUNT = 4
 """No property is tried with fewer, unless it asks for fewer."""
 
 
-def tries(count: int, **more: Any) -> settings:
+def tries(count: int, least: int = MIN_COUNT, **more: Any) -> settings:
     """Settings for a property that is worth so many examples. How long one takes says more about the machine."""
-    return settings(max_examples=max(min(count, MIN_COUNT), round(count * SCALE)), deadline=None, **more)
+    return settings(max_examples=max(min(count, least), round(count * SCALE)), deadline=None, **more)

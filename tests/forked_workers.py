@@ -15,6 +15,7 @@ import struct
 import traceback
 from collections.abc import Sequence
 from contextlib import suppress
+from importlib import import_module
 from itertools import groupby
 from typing import BinaryIO, cast
 
@@ -22,6 +23,8 @@ import pytest
 from encoded import encoded
 
 _NUMBER = struct.Struct("<I")
+SHARED = ("matplotlib.figure", "mujoco", "pydantic_ai.models.openai", "scipy.signal")
+"""What is imported late, and by tests of several files."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -34,6 +37,8 @@ def pytest_runtestloop(session: pytest.Session) -> bool | None:
     if not number or session.config.option.collectonly or session.testsfailed:
         return None
     encoded()  # Hardly a file of tests does without the libraries and tables that a plan needs.
+    for name in SHARED:
+        import_module(name)
     files = [list(tests) for _, tests in groupby(session.items, key=lambda item: item.path)]
     temporary = session.config._tmp_path_factory.getbasetemp()  # type: ignore[attr-defined]
     ahead, feed = os.pipe()

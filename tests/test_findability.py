@@ -105,6 +105,7 @@ def test_the_first_word_names_a_right_module(count: int | None) -> None:
     assert share >= MIN_FIRST_WORD, f"{share:.1%} of {len(asked)} are found; not found:\n" + "\n".join(missed)
 
 
+@pytest.mark.sweep
 @pytest.mark.skipif(minilm.weights_folder() is None, reason="the sentence encoder is not installed")
 def test_who_knows_names_alone_guesses_the_right_module(capsys: pytest.CaptureFixture[str]) -> None:
     asked = [concept for concept in concepts() if set(concept.places) & set(modules())]

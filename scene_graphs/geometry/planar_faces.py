@@ -41,25 +41,22 @@ class Block(NamedTuple):
 def best_block(gains: Gains) -> tuple[Block, float]:
     """The rectangle whose cells' gains (X, Z) have the greatest sum, and the sum.
 
-    Every pair of first and last rows is tried at once, with Kadane's greatest run along the columns: O(X² Z), once rows
+    Every pair of first and last rows is tried, with Kadane's greatest run along the columns: O(X² Z), once rows
     and columns that are like the one before are taken together. Of equal rectangles the first found is taken.
     """
+    # Here, since numba takes half a second, and most that ask for furniture have no mesh.
+    from scene_graphs.geometry.rectangle_kernel import greatest_run
+
     rows, columns = _changes(gains), _changes(gains.T)
     sums = np.pad(np.add.reduceat(np.cumsum(gains, axis=0)[rows[1:] - 1], columns[:-1], axis=1), ((1, 0), (0, 0)))
-    first, last = np.triu_indices(len(rows), 1)
-    run = np.full(len(first), -np.inf)
-    start = np.zeros(len(first), dtype=np.intp)
-    best, ends, starts = run.copy(), start.copy(), start.copy()
-    for column in range(len(columns) - 1):
-        here = sums[last, column] - sums[first, column]
-        fresh = run <= 0
-        start[fresh] = column
-        run = np.where(fresh, here, run + here)
-        better = run > best + 1e-9
-        best[better], starts[better], ends[better] = run[better], start[better], column + 1
-    chosen = int(best.argmax())
-    block = Block(rows[first[chosen]], rows[last[chosen]], columns[starts[chosen]], columns[ends[chosen]])
-    return Block(*(int(edge) for edge in block)), float(best[chosen])
+    best, first, last, start, end = greatest_run(np.ascontiguousarray(sums))
+    block = Block(rows[first], rows[last], columns[start], columns[end])
+    return Block(*(int(edge) for edge in block)), float(best)
+
+
+def compile_faces() -> None:
+    """Search once, so that the search is compiled and kept on disk."""
+    best_block(np.ones((1, 1)))
 
 
 def _changes(gains: Gains) -> NDArray[np.intp]:

@@ -32,6 +32,11 @@ def shelves() -> Shelves:
     return Shelves(cache=encoded())
 
 
+@pytest.fixture(scope="module")
+def by_rules(shelves: Shelves) -> Planned:
+    return Pipeline(shelves).plan(StoryRequest(THEME))
+
+
 def test_a_model_finds_the_events_arranges_the_scripts_and_tells_the_story(shelves: Shelves) -> None:
     model = ScriptedModel(answer_well, name="scripted-a")
     planned = plan(model, shelves, method="matching")
@@ -55,9 +60,8 @@ def test_a_model_plans_every_beat_in_one_call_and_tells_the_story(shelves: Shelv
     assert planned.character.name == "Sam"
 
 
-def test_a_model_changes_what_is_played(shelves: Shelves) -> None:
+def test_a_model_changes_what_is_played(shelves: Shelves, by_rules: Planned) -> None:
     by_model = plan(ScriptedModel(answer_well), shelves)
-    by_rules = Pipeline(shelves).plan(StoryRequest(THEME))
     assert by_rules.script.planner == "rules"
     assert by_model.script.keyframes != by_rules.script.keyframes
 
@@ -80,9 +84,10 @@ def test_the_theme_and_the_character_reach_the_model(shelves: Shelves) -> None:
         "{" * 99,
     ],
 )
-def test_a_model_that_talks_nonsense_is_done_without_and_this_is_said(nonsense: str, shelves: Shelves) -> None:
+def test_a_model_that_talks_nonsense_is_done_without_and_this_is_said(
+    nonsense: str, shelves: Shelves, by_rules: Planned
+) -> None:
     planned = plan(ScriptedModel(lambda _prompt, _schema: nonsense), shelves)
-    by_rules = Pipeline(shelves).plan(StoryRequest(THEME))
     assert planned.script.planner == "rules"
     assert planned.script.keyframes == by_rules.script.keyframes
     assert planned.told == by_rules.told
@@ -117,6 +122,7 @@ def test_a_model_may_write_the_keyframes_itself(shelves: Shelves) -> None:
     assert {keyframe.room for keyframe in planned.script.keyframes} == {"bedroom"}
 
 
+@pytest.mark.sweep
 def test_the_told_story_of_a_model_is_acted_out_and_says_who_told_it(shelves: Shelves) -> None:
     pipeline = Pipeline(shelves, model=ScriptedModel(answer_well, name="scripted-a"))
     made = pipeline.make(StoryRequest(THEME, seed=3))
@@ -136,7 +142,9 @@ def test_a_story_on_the_floor_needs_no_furniture(shelves: Shelves) -> None:
         return {"keyframes": keyframes} if schema.__name__ == "DirectScript" else answer_well(prompt, schema)
 
     request = StoryRequest("A tired person lies on the floor.", method="direct")
-    made = Pipeline(shelves, model=ScriptedModel(answer)).make(request)
+    made = Pipeline(shelves, model=ScriptedModel(answer, name="scripted-a")).make(request)
+    assert "Planner: llm:scripted-a" in story_to_markdown(made)
+    assert report_to_dict(made)["planner"] == "llm:scripted-a"
     assert [figure.reached for figure in made.figures] == [True] * len(made.figures)
     assert {action.object_id for action in made.actions} <= {None, "floor"}
     assert len(story_to_dict(made)["actions"]) == len(keyframes)

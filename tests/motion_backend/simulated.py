@@ -48,21 +48,22 @@ def tracked(plan: Plan, frames: int, height: float = 1.70) -> Tracked:
 
 
 @cache
-def stood(height: float = 1.70, seconds: int = 3) -> tuple[Plan, Tracked]:
+def stood(height: float = 1.70, seconds: float = 3) -> tuple[Plan, Tracked]:
     """A body that is to stand still."""
     state = after(HOME, height=height)
     plan = Plan(
         state.history.root_positions[-1:], state.history.local_rotations[-1:], np.ones((1, 4)), np.zeros(1, dtype=bool)
     )
-    plan = plan.last(30 * seconds + 31)
-    return plan, tracked(plan, 30 * seconds, height)
+    frames = round(30 * seconds)
+    plan = plan.last(frames + 31)
+    return plan, tracked(plan, frames, height)
 
 
 @cache
-def walked() -> tuple[Plan, Tracked]:
-    """The first two seconds of the walk."""
+def walked(frames: int = 40) -> tuple[Plan, Tracked]:
+    """The beginning of the walk, with its first steps."""
     plan = plan_of(walk())
-    return plan, tracked(plan, 60)
+    return plan, tracked(plan, frames)
 
 
 def standing_still(hold: float) -> tuple[Part, BodyState]:

@@ -61,14 +61,14 @@ def outlines(home: Home) -> list[shapely.Polygon]:
 
 
 @given(homes())
-@tries(10)
+@tries(10, least=2)
 def test_rooms_keep_the_thickness_of_a_wall_apart(home: Home) -> None:
     for first, second in combinations(outlines(home), 2):
         assert first.distance(second) > 0.8 * WALL_GAP
 
 
 @given(homes())
-@tries(10)
+@tries(10, least=2)
 def test_all_rooms_can_be_walked_to_from_each_other(home: Home) -> None:
     walkable = Walkable(home)
     inside = [walkable.random_point(np.random.default_rng(0), index) for index in range(len(home.rooms))]
@@ -77,7 +77,7 @@ def test_all_rooms_can_be_walked_to_from_each_other(home: Home) -> None:
 
 
 @given(homes())
-@tries(10)
+@tries(10, least=2)
 def test_furniture_keeps_off_the_way_through_a_doorway(home: Home) -> None:
     solid = [outline for _, outline in obstacles(home.objects)]
     for doorway in home.doorways:
@@ -90,7 +90,7 @@ def test_furniture_keeps_off_the_way_through_a_doorway(home: Home) -> None:
 
 
 @given(homes())
-@tries(10)
+@tries(10, least=2)
 def test_every_doorway_is_cut_through_both_walls(home: Home) -> None:
     for doorway in home.doorways:
         middle = shapely.Point(np.mean(doorway.segment, axis=0))
@@ -105,7 +105,7 @@ def test_every_doorway_is_cut_through_both_walls(home: Home) -> None:
 
 
 @given(homes())
-@tries(10)
+@tries(10, least=2)
 def test_openings_lie_on_their_wall_and_lead_outside_or_through_a_doorway(home: Home) -> None:
     for wall in home.walls:
         line = shapely.LineString(wall.segment)
@@ -114,7 +114,7 @@ def test_openings_lie_on_their_wall_and_lead_outside_or_through_a_doorway(home: 
 
 
 @given(homes())
-@tries(10)
+@tries(10, least=2)
 def test_furniture_moves_with_its_room(home: Home) -> None:
     for placed in home.objects:
         index, name = placed.id.split("/")
@@ -126,7 +126,7 @@ def test_furniture_moves_with_its_room(home: Home) -> None:
 
 
 @given(homes())
-@tries(10)
+@tries(10, least=2)
 def test_a_home_survives_its_json_exactly(home: Home) -> None:
     assert home_from_dict(json.loads(json.dumps(home_to_dict(home)))) == home
 

@@ -127,6 +127,7 @@ def test_people_between_two_walk_about_as_fast_as_these() -> None:
     assert crowd == walkers(paces, np.random.default_rng(0))
 
 
+@pytest.mark.sweep
 def test_a_character_of_another_size_sits_too_or_says_why_not() -> None:
     director = Director(DiffusionBackend(), ProceduralBackend())
     begun = director.begin(small_home(), replace(Character(), height=1.5), 3)

@@ -30,7 +30,7 @@ ENCODER = HashingEncoder(48)
 SMALL = AutoencoderConfig(
     size=16, text_size=48, text_hidden=24, patch=30, width=24, heads=2, hidden=32, encoder_layers=1
 )
-QUICK = TrainConfig(steps=30, batch=8, rate=5e-3, save_every=10)
+QUICK = TrainConfig(steps=20, batch=8, rate=5e-3, save_every=10)
 MOTIONS = [tumbling(45, seed) for seed in range(len(CAPTIONS))]
 DATASET = MotionTextDataset(
     tuple(
@@ -107,7 +107,7 @@ def test_a_run_that_was_cut_off_goes_on_as_if_it_had_not_been(tmp_path: Path, em
         trained(tmp_path, report=cut)
     np.testing.assert_array_equal(trained(tmp_path).motions(MOTIONS), embedding.motions(MOTIONS))
     with pytest.raises(TrainingError, match="other settings"):
-        trained(tmp_path, config=TrainConfig(steps=30, batch=9))
+        trained(tmp_path, config=TrainConfig(steps=20, batch=9))
     (tmp_path / CHECKPOINT).write_bytes(b"not this")
     with pytest.raises(TrainingError, match="damaged"):
         trained(tmp_path)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from for_each import for_each
+from layers import sampled
 
 from motion_backend.mocap.clip import Clip, ClipError
 from motion_backend.mocap.clip_captions import Label, Labels
@@ -19,6 +20,9 @@ from motion_backend.mocap.near_duplicates import near_copies
 from motion_backend.mocap.readers import read_clips
 
 MOTION = Path(os.environ.get("SIMS_TEST_DATA", ".")) / "motion"
+JUMPING = {"07_12": 2, "08_07": 7, "16_15": 3}
+"""Trials of CMU whose data jump, and how many frames are dropped for it."""
+WHOLE = pytest.mark.parametrize("whole", sampled([False, True], 2))
 pytestmark = pytest.mark.skipif(not (MOTION / "manifest.csv").is_file(), reason="SIMS_TEST_DATA holds no motion")
 
 
@@ -35,6 +39,13 @@ def clips(file: str) -> tuple[Clip, ...]:
 
 def of_kind(*kinds: str) -> list[str]:
     return [row["file"] for row in rows() if row["kind"] in kinds]
+
+
+def cmu(whole: bool) -> list[str]:
+    """CMU's recordings in BVH: all, or one of every subject and those whose data jump."""
+    files = [file for file in of_kind("real mocap") if file.startswith("cmu_bvh/")]
+    firsts = {file[8:10]: file for file in reversed(files)}
+    return [file for file in files if whole or file in firsts.values() or file[8:13] in JUMPING]
 
 
 def places(clip: Clip, positions, *joints: str):
@@ -102,28 +113,28 @@ def test_bodies_walk_the_way_they_face():
         assert np.einsum("ij,ij->", forward, path) > 0, file
 
 
-def test_cmu_bodies_have_the_sizes_that_were_measured():
+@WHOLE
+def test_cmu_bodies_have_the_sizes_that_were_measured(whole):
     legs = {}
-    for file in of_kind("real mocap"):
-        if file.startswith("cmu_bvh/"):
-            (clip,) = clips(file)
-            legs[file[8:10]] = leg(clip)
-            assert any("CMU's unit" in note for note in clip.notes)
+    for file in cmu(whole):
+        (clip,) = clips(file)
+        legs[file[8:10]] = leg(clip)
+        assert any("CMU's unit" in note for note in clip.notes)
     assert np.mean(list(legs.values())) == pytest.approx(0.83, abs=0.02)
     assert np.std(list(legs.values())) == pytest.approx(0.04, abs=0.02)
     assert all(abs(length - 0.83) < 0.08 for length in legs.values())
 
 
-def test_only_the_t_pose_is_dropped_but_where_the_data_jump():
+@WHOLE
+def test_only_the_t_pose_is_dropped_but_where_the_data_jump(whole):
     dropped = {}
-    for file in of_kind("real mocap"):
-        if file.startswith("cmu_bvh/"):
-            (clip,) = clips(file)
-            (note,) = (note for note in clip.notes if "dropped" in note)
-            dropped[file[8:13]] = int(note.split()[0])
-            positions = clip.part(0, 20).joint_positions()
-            assert np.linalg.norm(np.diff(positions, axis=0), axis=-1).max() * clip.fps < 15
-    assert {name: count for name, count in dropped.items() if count != 1} == {"07_12": 2, "08_07": 7, "16_15": 3}
+    for file in cmu(whole):
+        (clip,) = clips(file)
+        (note,) = (note for note in clip.notes if "dropped" in note)
+        dropped[file[8:13]] = int(note.split()[0])
+        positions = clip.part(0, 20).joint_positions()
+        assert np.linalg.norm(np.diff(positions, axis=0), axis=-1).max() * clip.fps < 15
+    assert {name: count for name, count in dropped.items() if count != 1} == JUMPING
 
 
 @for_each(

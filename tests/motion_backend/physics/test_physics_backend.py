@@ -25,13 +25,16 @@ from motion_backend.physics.physics_record import physics_of
 from motion_backend.procedural.backend import ProceduralBackend
 from scene_graphs.home import Home
 
+FRAMES = 6
+"""More than one window of them, and hardly more."""
+
 
 class Brief(ProceduralBackend):
     """Plans the first frames of everything."""
 
     def advance(self, home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) -> tuple[Motion, BodyState]:
         motion, after = super().advance(home, part, upcoming, state)
-        return motion.part(0, 8), after
+        return motion.part(0, FRAMES), after
 
 
 def brief(between: Callable[[], None] = lambda: None) -> PhysicsBackend:
@@ -72,7 +75,7 @@ def test_in_mode_policy_it_says_who_moved_the_body_and_why(tmp_path: Path) -> No
     assert report["mode"] == "mpc"
     (row,) = report["keyframes"]
     assert row["no_policy"] == ["there is no policy for it"]
-    assert row["modes"] == {"mpc": pytest.approx(8 / 30, abs=0.01)}
+    assert row["modes"] == {"mpc": pytest.approx(FRAMES / 30, abs=0.01)}
 
 
 def test_the_budget_of_a_story_is_that_of_the_process() -> None:

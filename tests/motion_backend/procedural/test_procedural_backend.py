@@ -102,9 +102,9 @@ def test_planted_feet_do_not_move() -> None:
 
 
 def test_the_same_seed_gives_the_same_bytes_and_another_seed_another_body() -> None:
-    again, _ = perform(day()[:4])
-    other, _ = perform(day()[:4], seed=4)
-    for first, second in zip(motions()[:4], again, strict=True):
+    again, _ = perform(day()[:2])
+    other, _ = perform(day()[:1], seed=4)
+    for first, second in zip(motions()[:2], again, strict=True):
         assert first.root_positions.tobytes() == second.root_positions.tobytes()
         assert first.local_rotations.tobytes() == second.local_rotations.tobytes()
     assert other[0].root_positions.tobytes() != motions()[0].root_positions.tobytes()
@@ -121,10 +121,11 @@ def test_any_segment_can_be_made_again_from_a_stored_state() -> None:
     np.testing.assert_array_equal(fresh.local_rotations, motions()[3].local_rotations)
 
 
-@pytest.mark.parametrize("height", sampled([1.45, 1.95], 2))
-def test_short_and_tall_bodies_reach_too(height: float) -> None:
-    motions, _ = perform(day(), height=height)
-    for index, (motion, action) in enumerate(zip(motions, day(), strict=True)):
+@pytest.mark.parametrize(("height", "count"), sampled([(1.45, 4), (1.45, 13), (1.95, 13)], 3))
+def test_short_and_tall_bodies_reach_too(height: float, count: int) -> None:
+    actions = day()[:count]
+    motions, _ = perform(actions, height=height)
+    for index, (motion, action) in enumerate(zip(motions, actions, strict=True)):
         figures = story_metrics.judge(motion, replace(action, keyframe=index), OBSTACLES)
         assert figures.reached, figures
 

@@ -9,9 +9,9 @@ from itertools import pairwise
 import pytest
 from examples import tries
 from film_made import Drawn, Making, film_of, four_shots
-from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
+from layers import sampled
 
 from planner_service.extraction.shot_detection import (
     MAX_FRAMES,
@@ -46,8 +46,9 @@ def test_hard_cuts_are_found_to_the_picture(lengths: list[tuple[int, int]]) -> N
     assert cuts(shots(drawn)) == wanted
 
 
-@for_each("seconds", [1.0, 2.0])
-@for_each("through_black", [False, True])
+@pytest.mark.parametrize(
+    ("seconds", "through_black"), sampled([(1.0, False), (1.0, True), (2.0, False), (2.0, True)], 3)
+)
 def test_a_fade_is_one_cut_within_it(seconds: float, through_black: bool) -> None:
     found = cuts(shots([Drawn(4, 0, seconds, through_black), Drawn(3, 1)]))
     assert len(found) == 1

@@ -47,6 +47,7 @@ def film() -> Film:
     return open_film(io.BytesIO(filmed()), "A quiet evening")
 
 
+@cache
 def scenes() -> list[Scene]:
     found = embedded_cues(film())
     assert found is not None

@@ -24,6 +24,7 @@ def run(*words: object) -> Result:
     return CliRunner().invoke(app, ["clips", "sheet", *map(str, words)])
 
 
+@pytest.mark.sweep
 def test_a_caption_is_acted_and_drawn_in_a_row(tmp_path: Path) -> None:
     out = tmp_path / "sheet.png"
     done = run("--caption", "crossing arms", "--room", "living-room-0002", "--out", out)

@@ -32,12 +32,17 @@ def told(served: list[int]) -> Motion:
     return Motion(roots, turns, np.ones((frames, 4), dtype=np.float32), build_skeleton(), actions)
 
 
-def test_every_keyframe_that_is_acted_gets_a_pair(tmp_path):
-    three = imread(storyboard(HOME, told([0, 1, 2]), KEYFRAMES, tmp_path / "three.png", "A test"))
-    one = imread(storyboard(HOME, told([1]), KEYFRAMES, tmp_path / "one.png"))
-    assert three.shape[1] > 3 * (SIDE[0] + PLAN[0])
+@pytest.fixture(scope="module")
+def one(tmp_path_factory):
+    """A picture of the second keyframe alone. (H, W, 4)."""
+    return imread(storyboard(HOME, told([1]), KEYFRAMES, tmp_path_factory.mktemp("one") / "one.png"))
+
+
+def test_every_keyframe_that_is_acted_gets_a_pair(tmp_path, one):
+    two = imread(storyboard(HOME, told([0, 2]), KEYFRAMES, tmp_path / "two.png", "A test"))
+    assert 2 * (SIDE[0] + PLAN[0]) < two.shape[1] < 3 * (SIDE[0] + PLAN[0])
     assert SIDE[0] + PLAN[0] < one.shape[1] < 2 * (SIDE[0] + PLAN[0])
-    assert three.shape[0] == one.shape[0]
+    assert two.shape[0] == one.shape[0]
 
 
 @pytest.mark.sweep
@@ -46,13 +51,12 @@ def test_the_same_story_gives_the_same_picture(tmp_path):
     assert first.read_bytes() == again.read_bytes()
 
 
-def test_the_furniture_a_keyframe_uses_is_outlined(tmp_path):
-    plain = imread(storyboard(HOME, told([1]), KEYFRAMES, tmp_path / "plain.png"))
+def test_the_furniture_a_keyframe_uses_is_outlined(tmp_path, one):
     marked = imread(storyboard(HOME, told([1]), KEYFRAMES, tmp_path / "marked.png", targets=[None, "0/bed", None]))
-    assert (plain != marked).any()
+    assert (one != marked).any()
 
 
-def test_the_pictures_show_the_home_and_not_an_empty_page(tmp_path):
-    picture = imread(storyboard(HOME, told([0]), KEYFRAMES, tmp_path / "one.png"))[..., :3]
+def test_the_pictures_show_the_home_and_not_an_empty_page(one):
+    picture = one[..., :3]
     pair = picture[60 : 60 + SIDE[1], 20 : 20 + PLAN[0] + SIDE[0]]
     assert len(np.unique((pair * 255).astype(int).reshape(-1, 3), axis=0)) > 500

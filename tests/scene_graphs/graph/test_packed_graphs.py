@@ -74,7 +74,7 @@ def test_a_packed_graph_is_the_graph(rooms: list[FurnitureGraph]) -> None:
 
 
 @given(ROOMS, ROOMS, st.randoms(use_true_random=False))
-@QUICK
+@tries(25)
 def test_rooms_are_taken_and_joined_as_lists_are(a: list[FurnitureGraph], b: list[FurnitureGraph], luck: Any) -> None:
     first, second, both = packed(a), packed(b, len(a)), packed([*a, *b])
     joined = PackedRooms.join([first, second])

@@ -6,6 +6,7 @@ from dataclasses import replace
 from math import cos, pi, sin
 
 import numpy as np
+import pytest
 from examples import tries
 from for_each import for_each
 from hypothesis import given
@@ -106,6 +107,7 @@ def spun(placed: Placed, quarters: int) -> Placed:
     return replace(placed, yaw=placed.yaw + quarters * pi / 2, size=(d, h, w) if quarters % 2 else placed.size)
 
 
+@pytest.mark.sweep
 def test_fronts_of_generated_rooms_are_found_again() -> None:
     """What stands in our own rooms has a known front: nine in ten are guessed right from the bare boxes."""
     right: dict[str, list[bool]] = {}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from functools import cache
 from itertools import combinations
 from pathlib import Path
 
@@ -24,6 +25,12 @@ from scene_graphs.retrieval.layout_index import LayoutIndex
 ROOM = next(layout for layout in built_in_layouts() if layout.room_type == "bedroom")
 
 
+@cache
+def index() -> LayoutIndex:
+    return LayoutIndex(built_in_layouts()[:40])
+
+
+@cache
 def best_spots(layout: Layout) -> list:
     check = RoomCheck(layout)
     found = (next(check.usable(placed, verb), None) for placed in layout.objects for verb in AFFORDANCES)
@@ -80,12 +87,11 @@ def test_the_floor_between_the_wings_of_a_corner_sofa_stays_free_and_its_name_is
 
 
 def test_a_match_shows_how_near_each_piece_is_and_what_is_missing(tmp_path: Path) -> None:
-    index = LayoutIndex(built_in_layouts()[:40])
     query = graph_from_uses([("bed", 1), ("wardrobe", 1), ("stove", 1)], [["lie"], ["touch"], ["touch"]])
-    match = index.search(query, 1, "bedroom")[0]
+    match = index().search(query, 1, "bedroom")[0]
     assert [node.category for node in match.missing] == ["stove"]
     path = tmp_path / "match.svg"
-    draw_match(query, [index.layout(match.layout_id)], match, path, ["stove: nothing of its group"])
+    draw_match(query, [index().layout(match.layout_id)], match, path, ["stove: nothing of its group"])
     text = path.read_text()
     assert "stove: nothing of its group" in text
     assert "what is asked for" in text
@@ -95,11 +101,10 @@ def test_a_match_shows_how_near_each_piece_is_and_what_is_missing(tmp_path: Path
 
 
 def test_a_home_of_two_rooms_is_drawn_beside_its_query(tmp_path: Path) -> None:
-    index = LayoutIndex(built_in_layouts()[:40])
     query = graph_from_uses([("bed", 1), ("nightstand", 1), ("sofa", 1), ("dining_table", 1)])
-    match = retrieve_home(index, query, 2)[0]
+    match = retrieve_home(index(), query, 2)[0]
     assert len(match.layout_ids) == 2
-    layouts = [index.layout(name) for name in match.layout_ids]
+    layouts = [index().layout(name) for name in match.layout_ids]
     figure = draw_match(query, layouts, match, tmp_path / "home.svg")
     assert len(figure.axes) == 3
     assert all(name in (tmp_path / "home.svg").read_text() for name in match.layout_ids)

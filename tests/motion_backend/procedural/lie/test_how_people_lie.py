@@ -5,7 +5,9 @@ from __future__ import annotations
 from itertools import product
 
 import numpy as np
+import pytest
 from acted import Body, got_up, lain
+from layers import sampled
 
 from motion_backend.body.self_collision import self_penetration
 from motion_backend.metrics.joint_speed import MOST, fastest_joint
@@ -18,13 +20,15 @@ BACK = ("hands on belly", "lying down, legs straight", "lying on the back, arms 
 SIDE = {"side-lie on left, legs bent": 1, "curled up on the left side, knees drawn up": 1, "side-lie on right": -1}
 PLACES = [("bed", "small"), ("sofa", "small"), ("floor", "small"), ("bed", "hall")]
 UP = np.array([0.0, 1.0, 0.0])
+EVERYWHERE = pytest.mark.parametrize("everywhere", sampled([False, True], 2))
 
 
-def lying(captions: tuple[str, ...]) -> list[tuple[tuple[str, ...], Body]]:
+def lying(captions: tuple[str, ...], everywhere: bool = False) -> list[tuple[tuple[str, ...], Body]]:
+    """Every caption on the bed, and one of a kind elsewhere: or each of them in each place of the small home."""
     return [
         ((place, home, caption), lain(place, caption, home=home))
         for (place, home), caption in product(PLACES, captions)
-        if home == "small" or caption in (BACK[0], "side-lie on right")
+        if caption in (BACK[0], "side-lie on right") or (home == "small" and (everywhere or place == "bed"))
     ]
 
 
@@ -34,8 +38,9 @@ def above(body: Body, joint: str) -> np.ndarray:
     return body.at(joint)[-FPS:, 1] - body.action.spot.point[1]
 
 
-def test_a_lying_body_is_level_and_rests_on_the_surface() -> None:
-    for name, body in lying(BACK):
+@EVERYWHERE
+def test_a_lying_body_is_level_and_rests_on_the_surface(everywhere: bool) -> None:
+    for name, body in lying(BACK, everywhere):
         trunk = body.at("neck") - body.at("pelvis")
         assert abs(np.degrees(np.arcsin(trunk[-1, 1] / np.linalg.norm(trunk[-1])))) < 8, name
         assert np.abs(above(body, "pelvis") - LYING_REST).max() < 0.03, name
@@ -46,11 +51,12 @@ def test_a_lying_body_is_level_and_rests_on_the_surface() -> None:
         assert -0.05 < low.min() - body.action.spot.point[1] < 0.03, name
 
 
-def test_who_lies_on_the_back_looks_up_and_who_lies_on_a_side_looks_to_the_other() -> None:
-    for name, body in lying(BACK):
+@EVERYWHERE
+def test_who_lies_on_the_back_looks_up_and_who_lies_on_a_side_looks_to_the_other(everywhere: bool) -> None:
+    for name, body in lying(BACK, everywhere):
         for joint in ("pelvis", "spine3"):
             assert (body.axis(joint, (0.0, 0.0, 1.0))[-FPS:] @ UP).min() > 0.9, (name, joint)
-    for name, body in lying(tuple(SIDE)):
+    for name, body in lying(tuple(SIDE), everywhere):
         # The left of a body that lies on its left points down.
         down = -SIDE[name[2]] * (body.axis("pelvis", (1.0, 0.0, 0.0))[-FPS:] @ UP)
         assert down.min() > 0.85, name
@@ -59,8 +65,9 @@ def test_who_lies_on_the_back_looks_up_and_who_lies_on_a_side_looks_to_the_other
         assert above(body, f"{upper}_hip").min() > above(body, f"{lower}_hip").max() + 0.1, name
 
 
-def test_straight_legs_are_straight_bent_ones_bent_and_curled_ones_more() -> None:
-    for place, home in PLACES[:3]:
+@EVERYWHERE
+def test_straight_legs_are_straight_bent_ones_bent_and_curled_ones_more(everywhere: bool) -> None:
+    for place, home in PLACES[: 3 if everywhere else 1]:
         straight = lain(place, "lying down, legs straight", home=home)
         bent = lain(place, "Legs are bent while lying flat", home=home)
         curled = lain(place, "curled up on the left side, knees drawn up", home=home)
