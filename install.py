@@ -109,11 +109,16 @@ def torch_index(asked: str, system: str) -> tuple[str, str]:
     )
 
 
-def as_uv(configured: str) -> tuple[list[str], dict[str, str]]:
-    """Where `pip config list` has packages come from, as options and environment of uv, which does not read it."""
+def as_uv(configured: str, given: list[str]) -> tuple[list[str], dict[str, str]]:
+    """Where `pip config list` has packages come from, as options and environment of uv, which does not read it.
+
+    What is `given` on the command line counts before it, as with pip.
+    """
     options, environment = ["--index-strategy", "unsafe-best-match"], {"UV_SYSTEM_CERTS": "1"}
     for key, value in re.findall(r"^[\w:.-]+\.([\w-]+)='(.*)'$", configured, re.MULTILINE):
-        if key in ("index-url", "extra-index-url", "find-links", "trusted-host"):
+        if f"--{key}" in given:
+            continue
+        if key in ("index-url", "extra-index-url", "find-links", "constraint", "trusted-host"):
             option = {"trusted-host": "allow-insecure-host"}.get(key, key)
             options += [word for one in value.split() for word in (f"--{option}", one)]
         elif key == "no-index" and value in ("1", "true", "yes", "on"):
@@ -195,15 +200,14 @@ class Installer:
         if not self.uv.exists():
             return run(self.screen, label, pip)
         asked = [self.python, "-m", "pip", "config", "list"]
-        options, more = as_uv(subprocess.run(asked, capture_output=True, text=True, check=False).stdout)
-        if "--index-url" in words:
-            options = []
+        options, more = as_uv(subprocess.run(asked, capture_output=True, text=True, check=False).stdout, words)
         try:
             return run(
                 self.screen, label, [str(self.uv), "pip", "install", "--python", self.python, *options, *words], more
             )
-        except subprocess.CalledProcessError:
-            self.screen.say("    uv could not: now pip does it")
+        except subprocess.CalledProcessError as error:
+            said = next(filter(None, reversed(str(error.output).splitlines())), "")
+            self.screen.say(f"    uv could not ({said.strip()[:200]}): now pip does it")
             return run(self.screen, label, pip)
 
 

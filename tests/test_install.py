@@ -155,7 +155,7 @@ def test_uv_installs_where_it_is_and_pip_what_it_could_not(
     works: bool, tmp_path: Path, venv: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     uv = venv / "bin" / "uv"
-    uv.write_text(f'#!/bin/sh\necho "uv $*" >> {tmp_path}/asked\n{"true" if works else "false"}\n')
+    uv.write_text(f'#!/bin/sh\necho "uv $*" >> {tmp_path}/asked\n{"true" if works else "echo no route; false"}\n')
     uv.chmod(0o755)
     (venv / "lib" / "python3.11" / "site-packages" / f"torch-{install.TORCH}.dist-info").mkdir()
     monkeypatch.setattr(sys, "argv", ["install.py"])
@@ -165,7 +165,7 @@ def test_uv_installs_where_it_is_and_pip_what_it_could_not(
     by_uv = [line for line in asked if line.startswith("uv pip install --python")]
     assert [any(line.endswith(f" {words}") for line in by_uv) for words in wanted] == [True, True]
     assert [f"-m pip install {words}" in asked for words in wanted] == [not works] * 2
-    assert ("now pip does it" in capsys.readouterr().out) is not works
+    assert ("uv could not (no route): now pip does it" in capsys.readouterr().out) is not works
 
 
 def test_uv_takes_packages_from_where_pip_does() -> None:
@@ -173,12 +173,15 @@ def test_uv_takes_packages_from_where_pip_does() -> None:
         ":env:.index-url='https://x.example/simple'\nglobal.extra-index-url='file:///a file:///b'\n"
         "global.cert='/etc/ca.crt'\nuser.no-index='true'\nglobal.timeout='9'\n"
     )
-    options, environment = install.as_uv(said)
+    options, environment = install.as_uv(said, [])
     assert " ".join(options[2:]) == (
         "--index-url https://x.example/simple --extra-index-url file:///a --extra-index-url file:///b --no-index"
     )
     assert environment["SSL_CERT_FILE"] == "/etc/ca.crt"
-    assert install.as_uv("")[0] == options[:2], "as pip, it looks for the best in all of them"
+    assert install.as_uv("", [])[0] == options[:2], "as pip, it looks for the best in all of them"
+    chosen, _ = install.as_uv(said, ["--index-url", "https://y.example", "torch"])
+    assert "https://x.example/simple" not in chosen, "what is asked for counts before it"
+    assert "file:///a" in chosen
 
 
 def test_what_uv_says_becomes_a_few_words(tmp_path: Path) -> None:

@@ -20,8 +20,9 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.backend_protocol import PartKind
 from motion_backend.diffusion.conditions import MadeOf
+from motion_backend.formats.npz import archive
 from motion_backend.mocap.clip import ClipError
-from motion_backend.mocap.dataset_file import Dataset, Entry, npz_bytes, read_dataset
+from motion_backend.mocap.dataset_file import Dataset, Entry, read_dataset
 from motion_backend.motion import Action, Motion, PhaseKind, Skill
 from motion_backend.rotations import Array
 
@@ -131,7 +132,7 @@ def write_stretches(stretches: Sequence[Stretch], path: Path) -> None:
         "contacts": (np.concatenate([s.contacts for s in stretches]) > 0.5).astype(np.uint8),
         "stretches": np.frombuffer(manifest, np.uint8),
     }
-    path.write_bytes(npz_bytes(arrays))
+    path.write_bytes(archive(arrays, level=6))
 
 
 def stretches_of(dataset: Dataset) -> list[Stretch]:

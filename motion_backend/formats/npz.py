@@ -65,8 +65,8 @@ def npz_bytes(motion: Motion) -> bytes:
     return archive(arrays)
 
 
-def archive(arrays: Mapping[str, NDArray[Any]]) -> bytes:
-    """An npz of arrays by name: the same bytes for the same arrays."""
+def archive(arrays: Mapping[str, NDArray[Any]], level: int = 1) -> bytes:
+    """An npz of arrays by name, compressed at a level of 1 to 9: the same bytes for the same arrays."""
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w") as entries:
         for name, array in arrays.items():
@@ -74,7 +74,7 @@ def archive(arrays: Mapping[str, NDArray[Any]]) -> bytes:
             entry.compress_type = zipfile.ZIP_DEFLATED
             content = io.BytesIO()
             np.lib.format.write_array(content, np.ascontiguousarray(array).reshape(array.shape), allow_pickle=False)
-            entries.writestr(entry, content.getvalue(), compresslevel=1)
+            entries.writestr(entry, content.getvalue(), compresslevel=level)
     return file.getvalue()
 
 

@@ -6,13 +6,11 @@ position to 0.1 mm. The same clips give the same bytes.
 
 from __future__ import annotations
 
-import io
 import json
 import lzma
 import tokenize
 import zipfile
 import zlib
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
+from motion_backend.formats.npz import archive
 from motion_backend.mocap.clip import MAX_COORDINATE, ClipError
 from motion_backend.mocap.clip import MAX_FRAMES as MAX_CLIP_SECONDS
 from motion_backend.motion import FPS, Motion
@@ -34,7 +33,6 @@ _DAMAGED = (
     tokenize.TokenError, zipfile.BadZipFile, zlib.error, lzma.LZMAError,
 )  # fmt: skip
 """What zipfile, numpy's reader of headings and json raise for bytes that they did not write."""
-_LONG_AGO = (1980, 1, 1, 0, 0, 0)
 _UNIT = 32767.0
 _FRAMES = {"root_positions": (np.float32, (3,)), "local_rotations": (np.int16, (22, 4)), "touching": (np.uint8, ())}
 
@@ -117,20 +115,7 @@ def dataset_bytes(dataset: Dataset) -> bytes:
         "local_rotations": np.round(turns * _UNIT).astype(np.int16),
         "touching": np.concatenate([_packed(entry) for entry in dataset.entries]),
     }
-    return npz_bytes(arrays)
-
-
-def npz_bytes(arrays: Mapping[str, NDArray[Any]]) -> bytes:
-    """A compressed .npz without the time at which it was written: the same arrays give the same bytes."""
-    file = io.BytesIO()
-    with zipfile.ZipFile(file, "w") as archive:
-        for name, array in arrays.items():
-            entry = zipfile.ZipInfo(name + ".npy", _LONG_AGO)
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            content = io.BytesIO()
-            np.lib.format.write_array(content, np.ascontiguousarray(array), allow_pickle=False)
-            archive.writestr(entry, content.getvalue(), compresslevel=6)
-    return file.getvalue()
+    return archive(arrays, level=6)
 
 
 def is_dataset(path: Path) -> bool:

@@ -18,7 +18,7 @@ import { wallSides } from "./walls";
 
 export { warmUp };
 
-/** Seconds after which a picture has taken long; the share of points a side that is left then, and the least ever. */
+/** Seconds after which a picture has taken long; the share of points a side that is left then; where that ends. */
 const LONG = 0.05;
 const COARSER = 0.6;
 const COARSEST = 0.4;
