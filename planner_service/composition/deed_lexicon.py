@@ -16,9 +16,10 @@ from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS
 from planner_service.themes.details import details_of
 from planner_service.themes.lexicon import gerund, grammar, is_noun, lemma_of, verb_of
+from planner_service.themes.protagonist import is_person
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
-from planner_service.themes.things import things
+from planner_service.themes.things import things, things_called
 from planner_service.themes.verb_finder import tokens_of
 from planner_service.themes.verb_group import NEARLY
 from scene_graphs import furniture
@@ -76,6 +77,8 @@ _PLACED: Final = frozenset(
 )
 """Words that each place of a list begins with."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
+_ANYWHERE: Final = ("table", "kitchen counter", "desk", "cabinet")
+"""Where a thing may be of which nobody knows where it is kept."""
 Pattern = tuple[frozenset[str], ...]
 """Base forms of each word; an empty set is a gap."""
 
@@ -190,8 +193,8 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     if fitting:
         return Deed(found, skill, tuple(fitting), True)
     kept = [piece for piece in _kept(clause, about) if affords(piece, need)] if skill is Skill.TOUCH else []
-    if skill is Skill.TOUCH and not (kept or found.at):
-        return None
+    if skill is Skill.TOUCH and not (kept or found.at):  # hands do it to what no list has
+        return Deed(replace(found, stands=True), skill, _ANYWHERE, False) if _may_be_touched(clause) else None
     order = (*kept, *found.at) if found.things else (*found.at, *kept)
     return Deed(found, skill, tuple(dict.fromkeys(order)), False)
 
@@ -246,6 +249,12 @@ def _is_of_body(clause: Clause, row: DeedRow) -> bool:
     races = row.skill is Skill.LOCO and not row.mood and bool(body & set(_lemmas(clause.subject)[-1:]))
     noun = object_of(clause)
     return races or (row.skill is Skill.TOUCH and row.things and noun in body and noun not in things())
+
+
+def _may_be_touched(clause: Clause) -> bool:
+    """Whether hands may do a deed to what it is done to: to a noun that is no person and no part of the body."""
+    noun = object_of(clause)
+    return bool(noun) and noun not in theme_words()["body"] and not is_person(noun)
 
 
 def _deed_of_fragment(clause: Clause) -> Deed | None:
@@ -431,6 +440,8 @@ def _pattern(says: str) -> Pattern:
 
 
 def _forms(word: str) -> tuple[str, ...]:
+    if word.startswith("@"):
+        return things_called(word[1:])
     return (word,) if word == "lay" else (word, lemma_of(word))  # who lies lays nothing
 
 
@@ -443,7 +454,8 @@ def pieces_in(text: str) -> list[str]:
     while at < len(words):
         size = next((size for size in (3, 2, 1) if _names(words[at : at + size], size)), 0)
         if size and words[at] not in others and not (at == 0 and _is_a_deed(words)):
-            piece = furniture.canonical(" ".join(words[at : at + size])).replace("_", " ")
+            name = " ".join(words[at : at + size])
+            piece = deed_table().stands_on.get(name) or furniture.canonical(name).replace("_", " ")
             found.append(deed_table().stands_on.get(piece, piece))
         at += size or 1
     return found
@@ -458,6 +470,8 @@ def _is_a_deed(words: Sequence[str]) -> bool:
 def _names(words: Sequence[str], size: int) -> bool:
     """Whether these very words, and not only the last of them, are a furniture word."""
     whole = " ".join(words)
+    if whole in deed_table().stands_on:
+        return True
     if len(words) < size or not furniture.is_known(whole):
         return False
     return size == 1 or furniture.canonical(whole) != furniture.canonical(" ".join(words[1:]))
