@@ -15,7 +15,7 @@ from planner_service.scripts.script import EMOTIONS
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS
 from planner_service.themes.details import details_of
-from planner_service.themes.lexicon import gerund, grammar, is_noun, lemma_of, verb_of
+from planner_service.themes.lexicon import gerund, grammar, is_adjective, is_noun, lemma_of, verb_of
 from planner_service.themes.protagonist import is_person
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
@@ -37,8 +37,12 @@ _WAYS: Final = re.compile(
 )
 """A way through a home, whatever the verb that goes it."""
 _FLOOR: Final = re.compile(
-    r"(?<!feet )(?<!foot )\b(?:on|onto|to) the (?:\w+ )?(?:floor|ground|rug|carpet|tiles|floorboards|mat)\b"
+    r"(?<!feet )(?<!foot )\b(?:on|onto|to) (?:the|an?|his|her|their|my) (?:\w+ )?"
+    r"(?:floor|ground|(?:hearth)?rug|carpet|tiles|lino|floorboards|(?:door|yoga |gym )?mat)\b"
 )
+_GROUND: Final = re.compile(r"\b(?:floor|floorboards?|(?:hearth)?rugs?|carpets?|(?:door)?mats?|tiles|lino|skirting)\b")
+"""What hands reach down to."""
+_LOW: Final = ("touch low height with the right hand", "touch low height")
 _ON_TOP: Final = re.compile(r"\bon (?:the|a|his|her|their) (?:\w+ )?(?:table|desk|counter)")
 _UNDER: Final = re.compile(r"\b(?:under|beneath|underneath|behind|beside|next to)\b")
 _INTO: Final = re.compile(
@@ -188,6 +192,8 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     under = need == "lie" and bool(named) and not fitting and bool(_UNDER.search(clause.text))
     if under or (need in ("sit", "lie") and _FLOOR.search(clause.text)):
         fitting = ["floor"]
+    if skill is Skill.TOUCH and not named and _GROUND.search(clause.text):
+        found = replace(found, captions=_LOW)
     if skill is Skill.TOUCH and (several := listed_places(clause) or ([] if fitting else typical_of(clause.text))):
         fitting = [several[0], *fitting, *found.at]
     if fitting:
@@ -307,9 +313,10 @@ def row_of(clause: Clause, about: str) -> DeedRow | None:
 def _spelt_out(clause: Clause, about: str) -> Clause:
     """A clause with what "it" and "them" mean: of trainers "ties them" is ties the trainers."""
     meant = next((word for word in reversed(_lemmas(about)) if word in things()), "")
-    if not meant or not {"it", "them"} & set(clause.lemmas[1:]) or said_row(clause):
+    if not meant or not {"it", "them"} & set(clause.lemmas[1:]):
         return clause
-    return replace(clause, lemmas=tuple(meant if word in ("it", "them") else word for word in clause.lemmas))
+    known = replace(clause, lemmas=tuple(meant if word in ("it", "them") else word for word in clause.lemmas))
+    return known if (_said(known) or (0,))[0] > (_said(clause) or (0,))[0] else clause
 
 
 def said_row(clause: Clause) -> DeedRow | None:
@@ -373,7 +380,8 @@ def _by_things(clause: Clause, about: str) -> DeedRow | None:
 def _says_how(clause: Clause) -> bool:
     """Whether a verb of state only says how somebody is: "feels watched", not "feels the wall"."""
     after = next((token.low for token in tokens_of(clause.text)[1:] if token.low not in grammar().adverbs), "")
-    return clause.verb in theme_words()["state_verbs"] | {"feel"} and after.endswith("ed") and bool(verb_of(after))
+    so = (after.endswith("ed") and bool(verb_of(after))) or (is_adjective(after) and not is_noun(after))
+    return clause.verb in theme_words()["state_verbs"] | {"feel"} and so
 
 
 def _moved(clause: Clause) -> DeedRow | None:

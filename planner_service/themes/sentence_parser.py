@@ -232,7 +232,8 @@ def _does_none(words: Sequence[Token]) -> bool:
     if len(words) < _FEWEST_DENYING or verb_of(words[0].low) in _IDLE:
         return False
     rest = [token.low for token in words[1:]]
-    return (rest[0] == "nothing" and rest[1:2] != ["but"]) or (rest[0] == "no" and rest[1:2] != ["longer"])
+    none = rest[0] in ("nothing", "nobody", "none", "neither") or rest[:2] == ["no", "one"]
+    return (none and rest[1:2] != ["but"]) or (rest[0] == "no" and rest[1:2] != ["longer"])
 
 
 def _is_hindered(joint: str, lead: Sequence[Token], verb: Token) -> bool:

@@ -35,6 +35,10 @@ _LONG: Final = (
     ("at (?:long )?last|in the end", "finally"),
     (",? of course", ""),
     ("not until(?=.* (?:did|does|do) )", "only after"),
+    (r"no sooner had (.{3,60}?),? than", r"\1 when"),
+    (r"(?:hardly|barely|scarcely) had (?=.{3,80} (?:when|before)\b)", ""),
+    (r"had (?:hardly|barely|scarcely|only just|just) (?=.{3,80} when\b)", ""),
+    (r"((?:the|an?|his|her|their|my) (?:\w+ )?\w+) (?:(?:still )?(?:had|has|needs|needed) to|must) be (\w+ed)", r"they \2 \1"),
     ("after (?:this|that)(?=,| (?:i|he|she|they|we|it|the|his|her|my|all)\\b)", "then"),
 )  # fmt: skip
 """Joints of several words, and those that say the same."""
