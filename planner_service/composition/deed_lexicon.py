@@ -16,7 +16,7 @@ from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS
 from planner_service.themes.details import details_of
 from planner_service.themes.lexicon import gerund, grammar, is_adjective, is_noun, lemma_of, verb_of
-from planner_service.themes.protagonist import is_person
+from planner_service.themes.protagonist import head_of, is_person
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things, things_called
@@ -42,6 +42,9 @@ _FLOOR: Final = re.compile(
 )
 _GROUND: Final = re.compile(r"\b(?:floor|floorboards?|(?:hearth)?rugs?|carpets?|(?:door)?mats?|tiles|lino|skirting)\b")
 """What hands reach down to."""
+_UNDER_IT: Final = re.compile(r"\b(?:under|beneath|underneath|below) (?:the|an?|his|her|their|my|every|each)\b")
+_GOAL: Final = re.compile(r"\b(?:over|on|onto|into|in|inside|under|against|behind|beneath|beside) ((?:\w+ ?){1,4})")
+"""Where something is put."""
 _LOW: Final = ("touch low height with the right hand", "touch low height")
 _ON_TOP: Final = re.compile(r"\bon (?:the|a|his|her|their) (?:\w+ )?(?:table|desk|counter)")
 _UNDER: Final = re.compile(r"\b(?:under|beneath|underneath|behind|beside|next to)\b")
@@ -175,7 +178,8 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     skill = found.skill
     need = NEEDS.get(skill)
     in_bed = any(furniture.group_of(piece) == "bed" for piece in named)
-    if skill is Skill.SITDOWN and not found.rests and in_bed and clause.verb != "sit":
+    sits = clause.verb in ("sit", "perch", "settle") or "edge" in clause.lemmas
+    if skill is Skill.SITDOWN and not found.rests and in_bed and not sits:
         skill, need = Skill.LIEDOWN, "lie"
     seated = any(affords(piece, "sit") or piece in deed_table().seats_at for piece in named) and not any(
         affords(piece, "lie") for piece in named
@@ -192,7 +196,11 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     under = need == "lie" and bool(named) and not fitting and bool(_UNDER.search(clause.text))
     if under or (need in ("sit", "lie") and _FLOOR.search(clause.text)):
         fitting = ["floor"]
-    if skill is Skill.TOUCH and not named and _GROUND.search(clause.text):
+    if skill is Skill.TOUCH:  # "drapes lights | over the wardrobe"
+        goals = [piece for place in _GOAL.findall(clause.text) for piece in pieces_in(place)]
+        named.sort(key=lambda piece: piece not in goals)
+    low = _UNDER_IT if named else _GROUND
+    if skill is Skill.TOUCH and low.search(clause.text):
         found = replace(found, captions=_LOW)
     if skill is Skill.TOUCH and (several := listed_places(clause) or ([] if fitting else typical_of(clause.text))):
         fitting = [several[0], *fitting, *found.at]
@@ -350,6 +358,8 @@ def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
     """A clause's words from its verb on, then from every later -ing on."""
     if clause.verb in theme_words()["speech_verbs"] and len(clause.lemmas) > 1:  # "says into the phone"
         yield ("talk", *clause.lemmas[1:])
+    if lemma_of(head_of(clause.subject)) in theme_words()["body"]:  # "arms folded", "her knees drew up"
+        yield (*clause.lemmas[:1], *_lemmas(clause.subject), *clause.lemmas[1:])
     if clause.text.split(" ", 1)[0].lower() in NEARLY:
         yield ("nearly", *clause.lemmas)
     yield ("cannot", *clause.lemmas) if clause.unable else clause.lemmas

@@ -24,6 +24,7 @@ from planner_service.themes.asides import (
 )
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, participle, verb_of
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
+from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import FLOATING, Token, verb_place
 from planner_service.themes.verb_group import NEARLY, verb_group
 
@@ -39,7 +40,9 @@ _IDLE: Final = frozenset(("do", "be", "have", "lose", "waste", "take", "make", "
 """Verbs that with "nothing" or "no" tell of a deed all the same: "does nothing", "loses no time"."""
 _FEWEST_DENYING: Final = 2
 _PARTICLES: Final = frozenset(("on", "off", "down", "up", "around", "there", "back"))
-_BULLET: Final = re.compile(r"^\s*(?:\d{1,2}[.)]|[-*•])\s+", re.MULTILINE)
+_BULLET: Final = re.compile(r"(?:^\s*(?:\d{1,2}[.)]|[-*•])|(?<=[.!?;:] )\d{1,2}[.)])\s+", re.MULTILINE)
+_DAYTIMES: Final = frozenset("dusk dawn night midnight evening morning noon daylight twilight winter summer spring autumn".split())
+"""What falls, breaks or comes, and is nobody."""
 
 
 @dataclass(frozen=True)
@@ -170,6 +173,8 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
     if not subject and tokens[0].text.startswith("«"):
         subject = _inverted(tokens[place + 1 :])
         tokens = [*tokens[: place + 1], *tokens[place + 1 + len(subject.split()) :]]
+    if not subject and _is_theirs(tokens, place):
+        subject = " ".join(token.text for token in tokens[1:place])
     denials = _denials(tokens[:place], subject)
     words = denials + tokens[place:]
     group = verb_group(words)
@@ -195,6 +200,14 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
         if not set(denials).issuperset(some)
     ]
     return [*besides, _placed(parts[0], before, piece.source), *parts[1:], *asides]
+
+
+def _is_theirs(tokens: Sequence[Token], place: int) -> bool:
+    """Whether others are told doing it, after a preposition: "of his mother crying", "with the dog barking"."""
+    words = theme_words()
+    noun = lemma_of(tokens[place - 1].text) if place > 1 else ""
+    others = noun in words["people"] or noun in words["no_heroes"] or tokens[place - 1].text[:1].isupper()
+    return place > 1 and tokens[place].low.endswith("ing") and tokens[0].low in grammar().prepositions and others
 
 
 def _of_subject(lead: Sequence[Token], subject: str) -> list[list[Token]]:
@@ -332,6 +345,8 @@ def _subject(tokens: Sequence[Token]) -> str:
         words.pop()
     if words and words[-1].lower() in grammar().subjects:
         return words[-1]
+    if tokens and tokens[-1].low in _DAYTIMES and len(words) == 1:
+        return words[0]  # "dusk thickened"
     if words and ("to" in (words[0].lower(), words[-1].lower()) or _describes(words)):
         return ""
     while words and (words[0].lower() in grammar().adverbs or words[0].lower() in grammar().joints):

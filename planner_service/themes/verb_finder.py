@@ -14,10 +14,12 @@ from planner_service.themes.lexicon import (
     is_noun,
     is_third_person,
     kinds_of,
+    lemma_of,
     participle,
     past,
     verb_of,
 )
+from planner_service.themes.things import things
 
 _WORD: Final = re.compile(r"«\d+»|\b(?:Mrs?|Ms|Dr|Prof)\.|[^\W_]+(?:['’-][^\W_]+)*|[^\w\s]", re.UNICODE)
 _CONTRACTION: Final = re.compile(r"(?i)\b(ca|wo|sha|[a-z]+?)n['’]t\b")
@@ -190,6 +192,8 @@ def _opens(word: str, base: str, after: str) -> bool:
     sure = is_third_person(word) or participle(base) != past(base) == word  # "fell", "woke"
     if is_adjective(word) and not (sure or after in grammar().marks | grammar().prepositions | _PARTICLES):
         return False
+    if is_third_person(word) and lemma_of(word) in things() and (not after or is_adverb(after) or after == "everywhere"):
+        return False  # "Boxes everywhere."
     if is_third_person(word) or word != base:
         names = is_noun(word) and bool(verb_of(after)) and not (is_noun(after) or after.endswith("ing"))
         return not names or is_adjective(after)
