@@ -49,7 +49,7 @@ _QUOTED: Final = re.compile(r"«\d+»")
 EXPRESSIONS: Final = {
     verb: mood
     for mood, verbs in {
-        Emotion.HAPPY: "laugh smile grin giggle chuckle beam sing hum whistle rejoice whoop",
+        Emotion.HAPPY: "laugh smile grin giggle chuckle beam sing rejoice whoop",
         Emotion.ANGRY: "yell scream curse growl scowl snarl shout rant grumble hate detest resent despise",
         Emotion.SAD: "sigh frown sniffle",
         Emotion.STRESSED: "tremble sweat panic flinch shudder gasp dread fear worry",

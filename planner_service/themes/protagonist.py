@@ -131,7 +131,7 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     if nouns:
         return max(nouns, key=lambda one: _heroic(one, pronoun) + min(deeds[one.subject], 4) / 8).subject
     opening = ("a ", "an ", "one ", "my ", "our ", "the ")
-    called = not people and " " not in "".join(mains[:1]) and "".join(mains[:1])[:1].isupper()  # "Rose", "Wen"
+    called = not people and " " not in "".join(mains[:1]) and is_name("".join(mains[:1]))  # "Rose", "Wen"
     sooner = [(one.sentence, one.place) < first for one in told if one.joint in _MAIN_JOINTS][:1] == [True]
     living = [one for one in mains[:1] if sooner and (called or one.lower().startswith(opening)) and _may_live(one)]
     people.sort(key=lambda one: (bool(pronoun) and _is_plural(one.subject), one.sentence, one.place))

@@ -100,7 +100,8 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
             parts = _clause(piece, quotes, number)
             parts = _sharing(_main(told[-1]), parts) if told else parts
             own = _main(parts).subject
-            own = doer if own.lower() in RELATIVES and doer else own
+            if own.lower() in RELATIVES and doer:
+                own = _told_last(told) or doer
             told.append(
                 [replace(part, doer=part.subject if part.aside else own or doer, place=len(told)) for part in parts]
             )
@@ -111,6 +112,13 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
                 doer = own or doer
         found += [part for place in in_time(pieces) for part in told[place]]
     return tuple(found)
+
+
+def _told_last(told: Sequence[Sequence[Clause]]) -> str:
+    """Somebody else whom the clause before ends with: "burps the baby, | who was sick"."""
+    last = _main(told[-1]).text.rsplit(" ", 1)[-1] if told else ""
+    others = theme_words()["people"] | theme_words()["no_heroes"]
+    return f"the {last}" if lemma_of(last) in others else ""
 
 
 def _main(parts: Sequence[Clause]) -> Clause:

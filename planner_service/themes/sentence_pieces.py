@@ -8,6 +8,8 @@ from typing import Final
 
 from planner_service.themes.asides import THAT
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, past, verb_of
+from planner_service.themes.theme_words import theme_words
+from planner_service.themes.things import things
 from planner_service.themes.verb_finder import Token, is_adverb, plain, tokens_of, verb_place
 
 HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
@@ -175,7 +177,8 @@ def _is_plain_verb(piece: Piece) -> bool:
     led = after is not None and (
         after.text.startswith("«") or after.low in known.marks | known.prepositions | known.subjects | known.numbers
     )
-    return verb_of(first) == first and (led or not is_noun(first))
+    told = led or not is_noun(first) or first in theme_words()["speech_verbs"]
+    return verb_of(first) == first and (told or (after is not None and first not in things()))
 
 
 def _describes_next(piece: Piece, after: Sequence[Piece]) -> bool:
