@@ -189,6 +189,9 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     if need is None:
         pieces = [piece for piece in named if furniture.affordances(piece)]
         return Deed(found, skill, tuple(pieces), bool(pieces))
+    if skill is Skill.TOUCH:  # "drapes lights | over the wardrobe"
+        goals = [piece for place in _GOAL.findall(clause.text) for piece in pieces_in(place)]
+        named.sort(key=lambda piece: piece not in goals)
     fitting = [piece for piece in named if affords(piece, need)]
     if skill is Skill.SITDOWN and not (found.skill is skill and _ON_TOP.search(clause.text)):
         seats = [seat for piece in named for seat in deed_table().seats_at.get(piece, ())]
@@ -196,9 +199,6 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     under = need == "lie" and bool(named) and not fitting and bool(_UNDER.search(clause.text))
     if under or (need in ("sit", "lie") and _FLOOR.search(clause.text)):
         fitting = ["floor"]
-    if skill is Skill.TOUCH:  # "drapes lights | over the wardrobe"
-        goals = [piece for place in _GOAL.findall(clause.text) for piece in pieces_in(place)]
-        named.sort(key=lambda piece: piece not in goals)
     low = _UNDER_IT if named else _GROUND
     if skill is Skill.TOUCH and low.search(clause.text):
         found = replace(found, captions=_LOW)
@@ -260,7 +260,9 @@ def object_of(clause: Clause) -> str:
 def _is_of_body(clause: Clause, row: DeedRow) -> bool:
     """Whether only a part of the body does it, or has it done to it: "his heart raced", "opens one eye"."""
     body = theme_words()["body"]
-    races = row.skill is Skill.LOCO and not row.mood and bool(body & set(_lemmas(clause.subject)[-1:]))
+    parts = _lemmas(clause.subject)[-1:]
+    folded = says(row.says, (clause.verb, *parts, *clause.lemmas[1:]))  # "arms folded"
+    races = row.skill is Skill.LOCO and not (row.mood or folded) and bool(body & set(parts))
     noun = object_of(clause)
     return races or (row.skill is Skill.TOUCH and row.things and noun in body and noun not in things())
 
@@ -269,6 +271,10 @@ def _may_be_touched(clause: Clause) -> bool:
     """Whether hands may do a deed to what it is done to: to a noun that is no person and no part of the body."""
     noun = object_of(clause)
     return bool(noun) and noun not in theme_words()["body"] and not is_person(noun)
+
+
+def _eaten(word: str) -> bool:
+    return lemma_of(word) in (*things_called("food"), *things_called("drink"))
 
 
 def _deed_of_fragment(clause: Clause) -> Deed | None:
@@ -287,7 +293,9 @@ def _deed_of_fragment(clause: Clause) -> Deed | None:
     for skill in (Skill.LIEDOWN, Skill.SITDOWN):
         if len(rests) == 1 and piece and affords(piece, NEEDS[skill]):
             return Deed(DeedRow((rests[0],), skill), skill, (piece,), True)
-    listed = clause.sentence > 0 and words[0] not in grammar().marks
+    listed = clause.sentence > 0 and words[0] not in grammar().marks and any(map(is_noun, rests))
+    if listed and len(rests) == 1 and (kept := things().get(lemma_of(rests[0]))) and not _eaten(rests[0]):  # "Keys."
+        return Deed(DeedRow((rests[0],), Skill.TOUCH, stands=True), Skill.TOUCH, kept, False)
     for light in _LIGHT_VERBS if listed else ():  # "Tuesday: yoga" is done, "a banana" only spoken of
         verb = replace(clause, verb=light, lemmas=(light, *map(lemma_of, told)))
         if (found := _said(verb)) and found[0] > 1:

@@ -73,10 +73,22 @@ def _starts(tokens: Sequence[Token], at: int) -> bool:
     if low == "at" and any(token.low in _SENSED for token in tokens[at + 1 : at + 3]):
         return True
     beside = low.endswith("ing") and bool(verb_of(low)) and not is_noun(low) and is_noun(before.low)
+    absolute = before.text == "," and _is_absolute(tokens[at:])
     pair = at > 1 and tokens[at - 2].low in grammar().prepositions  # "up and down the hall"
     linked = before.low in _LINKS and low in grammar().prepositions and not pair
     beside = beside and not is_adjective(before.low) and before.low not in grammar().prepositions
-    return linked or low in _LEADS or beside
+    return linked or absolute or low in _LEADS or beside
+
+
+def _is_absolute(tokens: Sequence[Token]) -> bool:
+    """Whether words up to the next comma tell how something else is: "one shoe cradled in her lap"."""
+    end = next((at for at, token in enumerate(tokens) if token.text in _MARKS), len(tokens))
+    words = tokens[:end]
+    return any(
+        at and token.low.endswith(("ed", "ing")) and verb_of(token.low) and not is_noun(token.low)
+        and words[at - 1].low not in grammar().marks and not is_adjective(words[at - 1].low)
+        for at, token in enumerate(words)
+    )  # fmt: skip
 
 
 def _words(text: str, tokens: Sequence[Token]) -> str:

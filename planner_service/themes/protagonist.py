@@ -164,7 +164,8 @@ def _heroic(clause: Clause, pronoun: str) -> float:
     own, first = pronouns_of(clause.subject), clause.subject.split()[0].lower()
     fits = 4 * bool(pronoun and own == pronoun)
     several = _is_plural(clause.subject)
-    return fits - 2 * (first in OWNERS) - (1 + bool(pronoun)) * several / 2 - (clause.joint in _ASIDE)
+    small = head_of(clause.subject).lower() in ("baby", "infant", "newborn")
+    return fits - small - 2 * (first in OWNERS) - (1 + bool(pronoun)) * several / 2 - (clause.joint in _ASIDE)
 
 
 def _may_live(subject: str) -> bool:

@@ -22,7 +22,7 @@ from planner_service.themes.asides import (
     without_asides,
     without_relative,
 )
-from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, participle, verb_of
+from planner_service.themes.lexicon import grammar, is_adjective, is_noun, kinds_of, lemma_of, participle, verb_of
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import FLOATING, Token, verb_place
@@ -36,6 +36,8 @@ _SUPPOSING: Final = frozenset(("if", "unless"))
 
 _TITLE: Final = re.compile(r"\b(Mme|Mlle|Sgt|Capt|Col|Lt|Fr|Sr|St)\.(?= [A-Z])")
 """Titles whose full stop ends no sentence."""
+_LOUD: Final = re.compile(r"\b[A-Z]{4,}\b")
+"""Names as screenplays write them."""
 _IDLE: Final = frozenset(("do", "be", "have", "lose", "waste", "take", "make", "pay", "give", "get", "leave"))
 """Verbs that with "nothing" or "no" tell of a deed all the same: "does nothing", "loses no time"."""
 _FEWEST_DENYING: Final = 2
@@ -83,6 +85,7 @@ class Clause:
 def clauses_of_text(text: str) -> tuple[Clause, ...]:
     """What a text tells, in the order of time."""
     quotes: list[str] = []
+    text = _LOUD.sub(lambda one: one[0] if kinds_of(one[0]) else one[0].capitalize(), text)
     text = _TITLE.sub(r"\1", text.replace("«", "“").replace("»", "”"))  # which stand for what is said below
 
     def kept(match: re.Match[str]) -> str:
@@ -346,7 +349,7 @@ def _subject(tokens: Sequence[Token]) -> str:
     named = next((at for at, part in enumerate(parts) if len(part) == 1 and _is_called([part[0].text])), last)
     if named < last and parts[last][0].low in ARTICLES:  # "Mira, the tidy one, …"
         return parts[named][0].text
-    words = [token.text for part in parts[last:] for token in part]
+    words = [token.text for token in (parts[last] if parts else ())]
     while words and (words[-1].lower() in grammar().adverbs or (words[-1].islower() and words[-1].endswith("ly"))):
         words.pop()
     if len(words) > 1 and words[-1].lower() in FLOATING and words[-2].lower() in grammar().subjects:
