@@ -166,6 +166,9 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
     if at < 0 or tokens[at].text == ",":
         if at >= 0 and word == base != past(base):
             return False  # nobody is told to do things
+        alone = {token.low for token in tokens[place + 1 :]} <= grammar().adverbs | {"everywhere"}
+        if not place and tokens[1:] and alone and is_third_person(word) and lemma_of(word) in things():
+            return False  # "Boxes everywhere."
         return _orders(tokens, place) or _opens(word, base, tokens[place + 1].low if place + 1 < len(tokens) else "")
     before = tokens[at].low
     if before.startswith("«") and word != base:
@@ -206,8 +209,6 @@ def _opens(word: str, base: str, after: str) -> bool:
     sure = is_third_person(word) or participle(base) != past(base) == word  # "fell", "woke"
     if is_adjective(word) and not (sure or after in grammar().marks | grammar().prepositions | _PARTICLES):
         return False
-    if is_third_person(word) and lemma_of(word) in things() and (not after or is_adverb(after) or after == "everywhere"):
-        return False  # "Boxes everywhere."
     if is_third_person(word) or word != base:
         names = is_noun(word) and bool(verb_of(after)) and not (is_noun(after) or after.endswith("ing"))
         return not names or is_adjective(after)
