@@ -260,9 +260,10 @@ def object_of(clause: Clause) -> str:
 def _is_of_body(clause: Clause, row: DeedRow) -> bool:
     """Whether only a part of the body does it, or has it done to it: "his heart raced", "opens one eye"."""
     body = theme_words()["body"]
-    parts = _lemmas(clause.subject)[-1:]
-    folded = says(row.says, (clause.verb, *parts, *clause.lemmas[1:]))  # "arms folded"
-    races = row.skill is Skill.LOCO and not (row.mood or folded) and bool(body & set(parts))
+    parts = [lemma_of(head_of(clause.subject))]
+    rest = clause.lemmas[1:]  # "arms folded", but not "elbows wobbling"
+    folded = says(row.says, (clause.verb, *parts, *rest)) and not says(row.says, (clause.verb, "thing", *rest))
+    races = row.skill in (Skill.LOCO, Skill.TOUCH) and not (row.mood or folded) and bool(body & set(parts))
     noun = object_of(clause)
     return races or (row.skill is Skill.TOUCH and row.things and noun in body and noun not in things())
 
@@ -479,7 +480,7 @@ def pieces_in(text: str) -> list[str]:
     at = 0
     while at < len(words):
         size = next((size for size in (3, 2, 1) if _names(words[at : at + size], size)), 0)
-        if size and words[at] not in others and not (at == 0 and _is_a_deed(words)):
+        if size and not (size == 1 and words[at] in others) and not (at == 0 and _is_a_deed(words)):
             name = " ".join(words[at : at + size])
             piece = deed_table().stands_on.get(name) or furniture.canonical(name).replace("_", " ")
             found.append(deed_table().stands_on.get(piece, piece))

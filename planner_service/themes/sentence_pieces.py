@@ -18,6 +18,11 @@ _PLAIN_SUBJECTS: Final = frozenset(("i", "you", "we", "they"))
 _LATER_JOINTS: Final = frozenset(("before", "until", "while"))
 _NO_JOINTS: Final = {"once": ("at", "for", "more", "all"), "while": ("a", "long", "little", "short")}
 """What joining words stand after where they join nothing: "at once", "for a while"."""
+_PAIRS: Final = frozenset(
+    (("up", "down"), ("down", "up"), ("back", "forth"), ("to", "fro"), ("round", "round"), ("over", "over"),
+     ("on", "on"), ("in", "out"), ("again", "again"), ("off", "on"), ("on", "off"))
+)  # fmt: skip
+"""Words that "and" makes one: "up and down"."""
 
 
 @dataclass(frozen=True)
@@ -76,6 +81,8 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
     if place and tokens[place - 1].low in _NO_JOINTS.get(low, ()):
         return False
     ahead = rest[0].low if rest else ""
+    if low == "and" and place and (tokens[place - 1].low, ahead) in _PAIRS:
+        return False
     if low in ("though", "if") and place and tokens[place - 1].low == "as":
         return False
     if low == "as" and ahead in ("though", "if"):
