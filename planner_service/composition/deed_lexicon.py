@@ -191,7 +191,7 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
         return Deed(found, skill, tuple(pieces), bool(pieces))
     if skill is Skill.TOUCH:  # "drapes lights | over the wardrobe"
         goals = [piece for place in _GOAL.findall(clause.text) for piece in pieces_in(place)]
-        named.sort(key=lambda piece: piece not in goals)
+        named.sort(key=lambda piece: "," not in clause.text and piece not in goals)
     fitting = [piece for piece in named if affords(piece, need)]
     if skill is Skill.SITDOWN and not (found.skill is skill and _ON_TOP.search(clause.text)):
         seats = [seat for piece in named for seat in deed_table().seats_at.get(piece, ())]
@@ -490,7 +490,8 @@ def pieces_in(text: str) -> list[str]:
 
 def _is_a_deed(words: Sequence[str]) -> bool:
     """Whether a furniture word is a verb: "sinks onto the bottom stair"."""
-    led = len(words) > 1 and words[1] in ("into", "onto", "down", "to", "back", "on")
+    ways = {"into", "onto", "down", "to", "back", "on"}
+    led = len(words) > 1 and words[1] in ways | (grammar().marks - {"of"})
     return led and bool(verb_of(words[0]))
 
 

@@ -28,7 +28,7 @@ _SHORT: Final = {"ca": "can not", "wo": "will not", "sha": "shall not"}
 _ENDS: Final = (("'ll", " will"), ("'ve", " have"), ("'re", " are"), ("'m", " am"))
 _SLANG: Final = {
     "n": "and", "n'": "and", "'n'": "and", "cant": "can not", "wont": "will not", "gonna": "going to", "&": "and",
-    "wanna": "want to", "gotta": "have to", "cuz": "because", "bc": "because", "w/": "with",
+    "w/o": "without", "em": "them", "wanna": "want to", "gotta": "have to", "cuz": "because", "bc": "because", "w/": "with",
 }  # fmt: skip
 _LONG: Final = (
     ("by the time", "when"), ("rather than", "instead of"), ("(?<!the )till", "until"), ("which is to say", "and"),
@@ -42,7 +42,7 @@ _LONG: Final = (
     (r"no sooner had (.{3,60}?),? than", r"\1 when"),
     (r"(?:hardly|barely|scarcely) had (?=.{3,80} (?:when|before)\b)", ""),
     (r"had (?:hardly|barely|scarcely|only just|just) (?=.{3,80} when\b)", ""),
-    (r"((?:the|an?|his|her|their|my) (?:\w+ )?\w+) (?:(?:still )?(?:had|has|needs|needed) to|must) be (\w+ed)", r"they \2 \1"),
+    (r"(?!he|she|they|it|i|we|you)((?:(?:the|an?|his|her|their|my) (?:\w+ )?)?\w{3,}) (?:(?:still )?(?:had|has|needs|needed) to|must) be (\w+ed)", r"they \2 \1"),
     ("after (?:this|that)(?=,| (?:i|he|she|they|we|it|the|his|her|my|all)\\b)", "then"),
 )  # fmt: skip
 """Joints of several words, and those that say the same."""
@@ -193,7 +193,7 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
 def _orders(tokens: Sequence[Token], place: int) -> bool:
     """Whether a word that opens a sentence tells what to do, to what follows it: "load dirty plates", "welcome Anna"."""
     word, after = tokens[place].low, tokens[place + 1] if place + 1 < len(tokens) else None
-    if place or after is None or verb_of(word) != word or word in theme_words()["people"] or word in things():
+    if place or after is None or verb_of(word) != word or word in theme_words()["people"] | {"miss", *things()}:
         return False
     told = after.text[:1].isupper() or is_adjective(after.low) or (is_noun(after.low) and lemma_of(after.low) in things())
     return told and not any(
