@@ -61,6 +61,11 @@ _NOT_NOW: Final = frozenset(("before", "after", "until", "since", "during", "wit
 """Words before what is not done, or not yet."""
 _LIGHT_VERBS: Final = ("do", "have", "take", "play", "watch")
 """Verbs that a noun alone stands for: "dinner", "a nap", "yoga"."""
+_PUT_VERBS: Final = ("put", "take", "turn", "lay")
+_PUT: Final = frozenset(("on", "off", "up", "down", "out", "away", "in"))
+"""Words that tell what is done to what stands before them: "kettle on"."""
+_FEWEST_SAID: Final = 2
+"""Words that a saying must have of them: the verb, the thing and the last."""
 _THROUGH: Final = frozenset(("through", "in", "around", "round", "up", "down", "out", "over", "across"))
 """Words between a deed and the room that it is done to: "searches through the kitchen"."""
 _LISTED: Final = re.compile(r",(?: and| then| or| even)*|\b(?:and|or)(?: then| even)*\b")
@@ -283,7 +288,13 @@ def _deed_of_fragment(clause: Clause) -> Deed | None:
     words = [token.low for token in tokens_of(clause.text) if token.text[:1].isalpha()]
     told = [word for word in words if word not in grammar().adverbs | grammar().joints]
     alone = clause.joint in ("", "then", ",") and 0 < len(told) <= _MAX_FRAGMENT and words[0] not in _NOT_NOW
-    if not alone or told[0] in theme_words()["body"]:
+    if not alone or told[0] in ("out", "away"):
+        return None
+    for light in _PUT_VERBS if len(told) > 1 and told[-1] in _PUT else ():  # "kettle on, shoes off, feet up"
+        verb = replace(clause, verb=light, lemmas=(light, *map(lemma_of, told)))
+        if (found := _said(verb)) and found[0] > _FEWEST_SAID - (light == "turn"):
+            return deed_of(verb)
+    if told[0] in theme_words()["body"]:
         return None
     if verb_of(told[0]) == told[0]:
         verb = replace(clause, verb=told[0], lemmas=tuple(map(lemma_of, told)))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from planner_service.themes.asides import THAT
-from planner_service.themes.lexicon import grammar, is_adjective, is_noun, past, verb_of
+from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, past, verb_of
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import Token, is_adverb, plain, tokens_of, verb_place
@@ -65,6 +65,8 @@ def pieces_of(sentence: str) -> list[Piece]:
             current.append(token)
     if current:
         cut.append(Piece(joint, tuple(current), source))
+    if len(tokens) == 1 and lemma_of(tokens[0].low) in things():  # "Shoes. Keys?"
+        return [replace(cut[0], verbless=True)]
     return _whole(cut)
 
 

@@ -166,9 +166,9 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
     if at < 0 or tokens[at].text == ",":
         if at >= 0 and word == base != past(base):
             return False  # nobody is told to do things
-        alone = {token.low for token in tokens[place + 1 :]} <= grammar().adverbs | {"everywhere"}
-        if not place and tokens[1:] and alone and is_third_person(word) and lemma_of(word) in things():
-            return False  # "Boxes everywhere."
+        alone = {token.low for token in tokens[1:]} <= grammar().adverbs | _PARTICLES | {"everywhere", "on", "in"}
+        if not place and tokens[1:] and alone and not word.endswith(("ed", "ing")) and lemma_of(word) in things():
+            return False  # "Boxes everywhere.", "kettle on, shoes off"
         return _orders(tokens, place) or _opens(word, base, tokens[place + 1].low if place + 1 < len(tokens) else "")
     before = tokens[at].low
     if before.startswith("«") and word != base:
@@ -212,7 +212,8 @@ def _opens(word: str, base: str, after: str) -> bool:
     if is_third_person(word) or word != base:
         names = is_noun(word) and bool(verb_of(after)) and not (is_noun(after) or after.endswith("ing"))
         return not names or is_adjective(after)
-    return not is_noun(word) or (_goes_on(after) and bool(after))
+    lies_there = word in things() and after in grammar().prepositions  # "Bag on the bed."
+    return not is_noun(word) or (_goes_on(after) and bool(after) and not lies_there)
 
 
 def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
