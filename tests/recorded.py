@@ -9,6 +9,7 @@ import json
 import math
 import os
 import platform
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
@@ -18,6 +19,8 @@ import pytest
 FOLDER: Final = Path(__file__).parent / "data" / "recorded"
 ABSOLUTE, RELATIVE = 2e-3, 1e-2
 """By how much a number may differ: libraries of another version round otherwise."""
+NUMBERS: Final = re.compile(r"\[[-\d.,\s]+\]")
+"""A list of numbers, which is written in a line."""
 MACHINE: Final = "x86_64"
 """Where it was recorded: elsewhere last digits differ, and with them now and then which of two ways is taken."""
 
@@ -26,7 +29,9 @@ def agrees(name: str, found: Mapping[str, Any]) -> None:
     """Hold what was found against what was recorded by that name, or record it."""
     path = FOLDER / f"{name}.json"
     if os.environ.get("SIMS_TEST_RECORD"):
-        path.write_text(json.dumps(found, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+        text = json.dumps(found, indent=1, ensure_ascii=False)
+        text = NUMBERS.sub(lambda row: " ".join(row[0].split()), text)
+        path.write_text(text + "\n", encoding="utf-8")
         return
     if platform.machine() != MACHINE:
         pytest.skip(f"recorded on {MACHINE}, this is {platform.machine()}")
