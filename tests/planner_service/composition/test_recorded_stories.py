@@ -54,4 +54,5 @@ def outcome(beat: Beat) -> str:
 def grounded(action: Action) -> list[Any]:
     spot = action.spot and [*action.spot.point, action.spot.facing]
     place = [*(action.goal or ()), *(spot or ()), *([action.facing] if action.facing is not None else [])]
-    return [f"{action.skill.value} {action.object_id} {action.hand} {action.hold}", *(round(float(x), 3) for x in place)]
+    done = f"{action.skill.value} {action.object_id} {action.hand} {action.hold}"
+    return [done, *(round(float(number), 3) for number in place)]
