@@ -185,6 +185,7 @@ class _Stage:
     def _to_touch(self, found: list[Spot], caption: str) -> Spot:
         """One of the spots of a piece of the wanted height, with room for arms, on which nothing lies."""
         wanted = height_of(caption)
+        found = [s for s in found if self._elbows.within_arms_way(s)] or found
         level = [[s for s in found if s.height == height] for height in (wanted, "medium", "low")]
         suited = ([s for s in some if suits(s, caption, self._elbows.solid)] for some in level)
         found = next(filter(None, suited), level[0] or level[1] or found)
@@ -194,7 +195,6 @@ class _Stage:
             found = self._elbows.roomiest(found)
             found.sort(key=lambda s: -s.point[1])
             found = [s for s in found if s.point[1] > found[0].point[1] - 0.1]
-        found = [s for s in found if self._elbows.within_arms_way(s)] or found
         least = min(self._cluttered(s) for s in found)
         found = [s for s in found if self._cluttered(s) == least]
         # The body may come back to a piece: it need not touch the very same place again.
