@@ -121,13 +121,15 @@ def act(
     home: Home,
     seed: int,
     words: Words = hashed_words,
+    scale: float = 1.0,
 ) -> tuple[Action, ...]:
     """Ground every keyframe in the home. Raises UnreachableError naming the keyframe that cannot be done.
 
     An action's caption is what is performed: where the body knows no word of the keyframe's, the nearest of `words`.
+    `scale` is the size of the body against one of 1.70 m.
     """
     scene = scene_of(home)
-    stage = _Stage(home, scene.walkable, np.random.default_rng([seed, 7]), words)
+    stage = _Stage(home, scene.walkable, np.random.default_rng([seed, 7]), words, scale)
     drafts: list[Action] = []
     for index, (keyframe, place) in enumerate(zip(keyframes, places, strict=True)):
         before = keyframes[index - 1] if index else None
@@ -140,8 +142,10 @@ def act(
 class _Stage:
     """The home while actions are being grounded: where the body stands and what it rests on."""
 
-    def __init__(self, home: Home, walkable: Walkable, rng: np.random.Generator, words: Words) -> None:
-        self.home, self.walkable, self.rng, self.words = home, walkable, rng, words
+    def __init__(
+        self, home: Home, walkable: Walkable, rng: np.random.Generator, words: Words, scale: float = 1.0
+    ) -> None:
+        self.home, self.walkable, self.rng, self.words, self.scale = home, walkable, rng, words, scale
         self.at: Point | None = None
         self.resting: Spot | None = None
 
@@ -179,7 +183,7 @@ class _Stage:
         if need == "touch":
             return self._to_touch(found, keyframe.caption)
         if need == "sit":
-            return seat_for(found, mood, keyframe.caption, self._elbows.solid)
+            return seat_for(found, mood, keyframe.caption, self._elbows.solid, self.scale)
         return place_to_lie(found, keyframe.caption)
 
     def _to_touch(self, found: list[Spot], caption: str) -> Spot:

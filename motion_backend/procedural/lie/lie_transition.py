@@ -15,6 +15,7 @@ from motion_backend.procedural.lie.lie_keys import LieKeys, LiePose, OverEdge, P
 from motion_backend.procedural.lie.lie_pose import Bed, lying
 from motion_backend.procedural.lie.lie_styles import Lying
 from motion_backend.procedural.pose import Pose, interpolate
+from motion_backend.procedural.sit.sit_legs import at_front
 from motion_backend.procedural.touch.hand_contacts import palm_on
 from motion_backend.procedural.walk.footsteps import home_ankle
 from motion_backend.rotations import Array
@@ -49,7 +50,7 @@ def edge_seat(bed: Bed, standing_point: tuple[float, float], outward: float, edg
     along[1] = 0.0
     pelvis = bed.pelvis + inside * out + along
     pelvis[1] = bed.pelvis[1] - SOFT
-    return Seat(pelvis, outward, np.inf)
+    return at_front(Seat(pelvis, outward, np.inf, edge - inside), scale)
 
 
 @dataclass(frozen=True)
@@ -190,7 +191,7 @@ def freed(pose: Pose, bed: Bed) -> list[Pose]:
 def _sitting(row: SittingUp, start: Pose, seat: Seat, skeleton: Skeleton) -> Pose:
     """Upright on the edge with both feet down."""
     out = np.array([np.sin(seat.yaw), np.cos(seat.yaw)])
-    feet_at = seat.pelvis[[0, 2]] + SHIN_REACH * skeleton.scale * out
+    feet_at = seat.pelvis[[0, 2]] + seat.feet_ahead(skeleton.scale) * out
     return replace(
         start,
         pelvis=seat.pelvis,

@@ -17,7 +17,7 @@ from motion_backend.procedural.body_state import Body, Point, spot_of
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import SHIN_REACH, Seat, idle
 from motion_backend.procedural.sit.sit_keys import sit_keys
-from motion_backend.procedural.sit.sit_legs import Room, is_to_be_straight, perch, straight_reach
+from motion_backend.procedural.sit.sit_legs import Room, at_front, is_to_be_straight, perch, straight_reach
 from motion_backend.procedural.sit.sit_own import in_own_way, own_seat
 from motion_backend.procedural.sit.sit_pose import LEANS_BACK, ON_TABLE, Place, back_for, lacking
 from motion_backend.procedural.sit.sit_styles import Seated, sit_style
@@ -28,6 +28,7 @@ from motion_backend.procedural.touch.handholds import TABLE_REACH, Pair, handhol
 from motion_backend.procedural.walk.walk_skill import go
 from motion_backend.rotations import Array
 from scene_graphs.affordances.affordances import Spot
+from scene_graphs.affordances.sit_and_lie import EDGE
 
 SHIN = 0.05
 """Half as wide as a shin is (metres)."""
@@ -51,7 +52,7 @@ SLOW, QUICK = 0.76, 1.25
 
 def before_seat(body: Body, action: Action) -> tuple[Point, float]:
     """Where to stand so that shins will be upright once seated, and the yaw with the back to the seat."""
-    seat = Seat.of(spot_of(action))
+    seat = at_front(Seat.of(spot_of(action)), body.skeleton.scale)
     return seat.standing_point(body.skeleton.scale), seat.yaw
 
 
@@ -143,12 +144,16 @@ ABOUT = 1.4
 """A table in reach is within this distance of the pelvis (metres)."""
 
 
-def seat_for(found: Sequence[Spot], emotion: Emotion, caption: str, obstacles: Obstacles) -> Spot:
+def seat_for(
+    found: Sequence[Spot], emotion: Emotion, caption: str, obstacles: Obstacles, scale: float = 1.0
+) -> Spot:
     """The first of the sit spots, and the place on it, where the most hands have what they are to lie on.
 
+    Who is smaller (`scale`) sits nearer to its front, for knees to bend over the edge.
     Chairs stand so far from their tables that a body can get between: at a table one sits on the front of the seat.
     """
     style = sit_style(emotion, caption)
+    found = [_slid(spot, spot.edge - EDGE * scale) for spot in found] if scale < 1.0 else found
     if set(ON_TABLE) & set(style.arms):
         return next((near for spot in found if (near := _drawn_up(spot, obstacles))), found[0])
     if any(is_to_be_straight(style.legs)):

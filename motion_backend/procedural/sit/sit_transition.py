@@ -11,7 +11,7 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays
-from motion_backend.procedural.held_poses import UP, Seat, bend, both_sides, part_way, standing, upright
+from motion_backend.procedural.held_poses import BENT_LEG, UP, Seat, bend, both_sides, part_way, standing, upright
 from motion_backend.procedural.pose import Pose, concatenate, interpolate, smooth
 from motion_backend.procedural.pose_solver import released
 from motion_backend.procedural.sit.sit_keys import (
@@ -26,6 +26,7 @@ from motion_backend.procedural.sit.sit_keys import (
     SitKeys,
     StandUp,
 )
+from motion_backend.procedural.sit.sit_legs import at_front
 from motion_backend.procedural.sit.sit_pose import Place, seated
 from motion_backend.procedural.sit.sit_styles import Manner, Seated
 from motion_backend.procedural.touch.hand_rests import Holds, at_rest, follow
@@ -51,6 +52,10 @@ WAITS, WAITS_TO_STAND = 0.5, 0.9
 STRAIGHT, SLOWLY = (0.93, 0.10), 0.5
 """A leg longer than such a share of its length is near straight, and the straighter the more slowly its foot sets out,
 up to such a power of its share of the way."""
+HOPS = 0.03
+"""A leg that is too short by more than this does not stretch for the floor (metres)."""
+SLIDES = 0.05
+"""A pelvis that moves by more while feet are taken elsewhere slides on its seat (metres)."""
 BEHIND = 0.02
 """A foot that is so much nearer to the pelvis lies behind the other's shin (metres)."""
 SINK = 0.014
@@ -76,9 +81,10 @@ def sit_down(
     pace, take = 1 / style.bearing.tempo, keys.down.take
     ready = _looking_back(start, style.manner, pace, keys.down.look)
     before = start if ready is None else ready.at(len(ready) - 1)
-    down = lower_onto(before, place.seat, style, felt, skeleton, keys.down)
+    front = at_front(place.seat, skeleton.scale)
+    down = lower_onto(before, front, style, felt, skeleton, keys.down)
     landed = down.at(len(down) - 1)
-    settle = _settling(landed, place.seat, style, pace, keys.down.settle)
+    settle = _settling(landed, front, style, pace, keys.down.settle)
     touched = settle.at(len(settle) - 1)
     landed = released(touched, skeleton)
     settled, holds = seated(landed, place, style, skeleton, keys.pose)
@@ -150,7 +156,7 @@ def lower_onto(start: Pose, seat: Seat, style: Seated, felt: Holds, skeleton: Sk
     """Standing to first contact with the seat, a hand or two feeling for it."""
     depth = _depth(start, seat, skeleton.scale)
     way = _way_down(seat, style, depth, keys.lower, seat.is_low(skeleton.scale))
-    poses = [_lowered(row, start, way) for row in keys.pose]
+    poses = [_in_reach(_lowered(row, start, way), skeleton) for row in keys.pose]
     contact = at_rest(poses[-1], felt, skeleton)
     before = [
         _feeling(pose, contact, row.felt_share, felt, skeleton)
@@ -187,6 +193,18 @@ def _lowered(row: Lowered, start: Pose, way: _WayDown) -> Pose:
         reaching=np.zeros(2),
         pressing=np.zeros(2),
     )
+
+
+def _in_reach(pose: Pose, skeleton: Skeleton) -> Pose:
+    """A key pose with feet off the floor where the seat is too high for its legs: one hops up, and down."""
+    ankles, planted = pose.ankles.copy(), pose.planted.copy()
+    for index, side in enumerate(("left", "right")):
+        hip = pose.pelvis + rotations.rotate(pose.hips, skeleton.offsets[INDEX[f"{side}_hip"]])
+        level = np.hypot(*(ankles[index] - hip)[[0, 2]])
+        height = np.sqrt(max((BENT_LEG * skeleton.scale) ** 2 - level**2, 0.0))
+        if hip[1] - ankles[index, 1] > height + HOPS:
+            ankles[index, 1], planted[index] = hip[1] - height, 0.0
+    return replace(pose, ankles=ankles, planted=planted)
 
 
 def _feeling(pose: Pose, contact: Pose, share: float, felt: Holds, skeleton: Skeleton) -> Pose:
@@ -229,6 +247,9 @@ def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move, skeleton: Ske
     ankles, feet, planted, knees = pose.ankles.copy(), pose.feet.copy(), pose.planted.copy(), pose.knees.copy()
     time, each = np.arange(1, len(pose) + 1) / FPS, move.foot_time_s
     wait = (WAITS if after.planted.all() else WAITS_TO_STAND) * each
+    if float(np.linalg.norm(after.pelvis - before.pelvis)) > SLIDES:
+        # Who slides back on a seat that is too high for the feet takes both along.
+        wait = 0.0
     for order, index in enumerate(_first_foot(before, after)):
         gap = float(np.linalg.norm(after.ankles[index] - before.ankles[index]))
         share = np.clip((time - move.first_foot_s - order * wait) / max(each, STEP * gap), 0.0, 1.0)
@@ -278,7 +299,7 @@ def stand_up(
 
     Feet are so much farther back than under upright shins (`drawn`, metres): the less the weight has to go ahead.
     """
-    low, pace = seat.is_low(skeleton.scale), 1 / bearing.tempo
+    low, pace, seat = seat.is_low(skeleton.scale), 1 / bearing.tempo, at_front(seat, skeleton.scale)
     place = seat.standing_point(skeleton.scale) - drawn * np.array([np.sin(seat.yaw), np.cos(seat.yaw)])
     end = standing((float(place[0]), float(place[1])), seat.yaw, bearing, skeleton)
     depth = _depth(end, seat, skeleton.scale)
@@ -286,7 +307,7 @@ def stand_up(
     ready, rows = keys.pose[0], keys.low_pose if low else keys.pose[1:]
     fold = keys.rise.low_fold_share if low else 0.0
     over = _over_the_feet(start, end, seat, keys.rise.gathered_share * lean, fold, ready)
-    over = at_rest(over, push, skeleton)
+    over = at_rest(_in_reach(over, skeleton), push, skeleton)
     seconds = _hands_take(start, over, keys.gather, skeleton) * pace
     gather = interpolate([0.0, seconds], [start, replace(over, ankles=start.ankles, feet=start.feet)], FPS)
     gather = follow(_place_feet(gather, start, over, keys.gather, skeleton), over, push, skeleton)
@@ -300,7 +321,7 @@ def stand_up(
         **_lean(seat, lean, fold, ready),
     )
     over_feet = lean * (keys.rise.low_lean_ratio if low else 1.0)
-    risen = [_risen(row, over, end, seat, over_feet) for row in rows]
+    risen = [_in_reach(_risen(row, replace(over, ankles=end.ankles, planted=end.planted), end, seat, over_feet), skeleton) for row in rows]
     up = interpolate([0.0, *times], [over, leant, *risen, replace(end, reach=over.reach, palms=over.palms)], FPS)
     up = follow(replace(up, knees=knees_over_feet(up)), over, push, skeleton)
     return concatenate([gather, up])
