@@ -21,6 +21,7 @@ from motion_backend.procedural.lie.lie_pose import place_to_lie
 from motion_backend.procedural.sit.sit_skill import seat_for
 from motion_backend.procedural.touch.hand_contacts import suits
 from motion_backend.scene import scene_of
+from motion_backend.state_machine import alongside
 from planner_service.grounding.touch_stance import LEG_ROOM, ElbowRoom
 from planner_service.scripts.caption_actions import Hands, done_in, look_of
 from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
@@ -148,6 +149,8 @@ class _Stage:
         self.home, self.walkable, self.rng, self.words, self.scale = home, walkable, rng, words, scale
         self.at: Point | None = None
         self.resting: Spot | None = None
+        self.on: Spot | None = None
+        """What it sits or lies on still."""
 
     def contact(self, index: int, keyframe: Keyframe, place: Place, free: str = "right") -> Action:
         """The action of a keyframe; walks get their goal later, when what follows them is known."""
@@ -161,8 +164,10 @@ class _Stage:
                 hand, spot = self._elbows.freely(spot, hand, keyframe.caption)
             else:
                 self.resting = spot
+            self.on = None if keyframe.skill is Skill.TOUCH else spot
             self.at = spot.standing
             return replace(action, object_id=spot.object_id, spot=spot, hand=hand, hold=HOLDS[keyframe.skill])
+        self.on = None
         if keyframe.skill in (Skill.STANDUP, Skill.GETUP) and self.resting is not None:
             return replace(action, object_id=self.resting.object_id, spot=self.resting)
         return action
@@ -182,6 +187,8 @@ class _Stage:
             )
         if need == "touch":
             return self._to_touch(found, keyframe.caption)
+        # Who sits or lies there lies down, or sits up, without leaving the piece.
+        found = [s for s in found if alongside(self.on, s)] or found
         if need == "sit":
             return seat_for(found, mood, keyframe.caption, self._elbows.solid, self.scale)
         return place_to_lie(found, keyframe.caption)

@@ -12,7 +12,7 @@ import numpy as np
 
 from motion_backend.backend_protocol import Part
 from motion_backend.body.scene_collision import Obstacles
-from motion_backend.motion import FPS, Action, Emotion, PhaseKind
+from motion_backend.motion import FPS, Action, Emotion, PhaseKind, Posture
 from motion_backend.procedural.body_state import Body, Point, spot_of
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import SHIN_REACH, Seat, idle
@@ -21,7 +21,7 @@ from motion_backend.procedural.sit.sit_legs import Room, at_front, is_to_be_stra
 from motion_backend.procedural.sit.sit_own import in_own_way, own_seat
 from motion_backend.procedural.sit.sit_pose import LEANS_BACK, ON_TABLE, Place, back_for, lacking
 from motion_backend.procedural.sit.sit_styles import Seated, sit_style
-from motion_backend.procedural.sit.sit_transition import sit_down, stand_up
+from motion_backend.procedural.sit.sit_transition import settle_in, sit_down, stand_up
 from motion_backend.procedural.touch.gestures import gesture
 from motion_backend.procedural.touch.hand_rests import BACK, HOLDS, Hold, Holds, follow, on_thing
 from motion_backend.procedural.touch.handholds import TABLE_REACH, Pair, handholds, table_before
@@ -57,20 +57,24 @@ def before_seat(body: Body, action: Action) -> tuple[Point, float]:
 
 
 def sit(body: Body, part: Part) -> None:
-    """From standing: down onto the seat, and into the way of sitting."""
+    """From standing: down onto the seat, and into the way of sitting; or only into it, for who has sat up there."""
     action = part.action
     own = own_seat(sit_keys().spread, body.seed, body.rng)
     style = replace(sit_style(action.emotion, action.caption), own=own)
     seat = Seat.of(spot_of(action))
     keys = in_own_way(sit_keys(), own, seat.is_low(body.skeleton.scale))
-    body.enter(PhaseKind.WALK)
-    go(body, *before_seat(body, action), action)
+    if body.posture is not Posture.LYING:
+        body.enter(PhaseKind.WALK)
+        go(body, *before_seat(body, action), action)
     body.enter(PhaseKind.SITDOWN)
     around = handholds(seat, body.scene.obstacles, body.skeleton.scale)
     place = Place(seat, around, leg_room(body.scene.obstacles, seat, body.skeleton.scale))
-    under = around.behind if seat.is_low(body.skeleton.scale) else around.beside
-    felt = _grips(around.armrests, under, seat, style.manner.hands)
-    down, body.holds = sit_down(body.pose, place, style, felt, body.skeleton, keys)
+    if body.posture is Posture.LYING:
+        down, body.holds = settle_in(body.pose, place, style, body.skeleton, keys)
+    else:
+        under = around.behind if seat.is_low(body.skeleton.scale) else around.beside
+        felt = _grips(around.armrests, under, seat, style.manner.hands)
+        down, body.holds = sit_down(body.pose, place, style, felt, body.skeleton, keys)
     body.add(down)
     body.note(*lacking(style, place, body.skeleton, sit_keys().pose))
 

@@ -78,26 +78,31 @@ def sit_down(
 
     `felt` is what the hands feel for on the way down. Returned with it is what they lie on in the end.
     """
-    pace, take = 1 / style.bearing.tempo, keys.down.take
+    pace = 1 / style.bearing.tempo
     ready = _looking_back(start, style.manner, pace, keys.down.look)
     before = start if ready is None else ready.at(len(ready) - 1)
     front = at_front(place.seat, skeleton.scale)
     down = lower_onto(before, front, style, felt, skeleton, keys.down)
     landed = down.at(len(down) - 1)
     settle = _settling(landed, front, style, pace, keys.down.settle)
-    touched = settle.at(len(settle) - 1)
+    moved, holds = settle_in(settle.at(len(settle) - 1), place, style, skeleton, keys)
+    return concatenate([part for part in (ready, down, settle, moved) if part is not None]), holds
+
+
+def settle_in(touched: Pose, place: Place, style: Seated, skeleton: Skeleton, keys: SitKeys) -> tuple[Pose, Holds]:
+    """From the seat that is sat on into the way of sitting, and what the hands then lie on."""
+    pace, take = 1 / style.bearing.tempo, keys.down.take
     landed = released(touched, skeleton)
     settled, holds = seated(landed, place, style, skeleton, keys.pose)
     poses = [landed, replace(settled, ankles=landed.ankles, feet=landed.feet)]
     low = place.seat.is_low(skeleton.scale)
-    seconds = _hands_take(landed, settled, take, skeleton) * pace * (ROUND_KNEES if low else 1.0)
+    seconds = hands_take(landed, settled, take, skeleton) * pace * (ROUND_KNEES if low else 1.0)
     moved = interpolate([0.0, seconds], poses, FPS)
-    moved = follow(_place_feet(moved, landed, settled, take, skeleton), settled, holds, skeleton)
-    moved = _taken(moved, landed, holds)
-    return concatenate([part for part in (ready, down, settle, moved) if part is not None]), holds
+    moved = follow(place_feet(moved, landed, settled, take, skeleton), settled, holds, skeleton)
+    return _taken(moved, landed, holds), holds
 
 
-def _hands_take(start: Pose, end: Pose, move: Move, skeleton: Skeleton) -> float:
+def hands_take(start: Pose, end: Pose, move: Move, skeleton: Skeleton) -> float:
     """Seconds that hands take from pose to pose at tempo 1: from the head longer than from the lap."""
     travel = float(np.linalg.norm(end.arms - start.arms, axis=1).max()) * ARM * skeleton.scale
     return max(move.min_time_s, move.time_per_m_s * travel)
@@ -242,7 +247,7 @@ def knees_over_feet(pose: Pose) -> Array:
     return np.asarray(forward + (KNEES_UP + LEVEL_KNEES_UP * level) * UP)
 
 
-def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move, skeleton: Skeleton) -> Pose:
+def place_feet(pose: Pose, before: Pose, after: Pose, move: Move, skeleton: Skeleton) -> Pose:
     """Move the feet one after the other in small lifted steps from where they were to where they go."""
     ankles, feet, planted, knees = pose.ankles.copy(), pose.feet.copy(), pose.planted.copy(), pose.knees.copy()
     time, each = np.arange(1, len(pose) + 1) / FPS, move.foot_time_s
@@ -268,7 +273,7 @@ def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move, skeleton: Ske
     if short:
         # The feet take longer than the trunk: hold the trunk until both are placed.
         held = pose.at(slice(len(pose) - 1, len(pose)))
-        return _place_feet(concatenate([pose, *([held] * short)]), before, after, move, skeleton)
+        return place_feet(concatenate([pose, *([held] * short)]), before, after, move, skeleton)
     return replace(pose, ankles=ankles, feet=feet, planted=planted, knees=knees)
 
 
@@ -308,9 +313,9 @@ def stand_up(
     fold = keys.rise.low_fold_share if low else 0.0
     over = _over_the_feet(start, end, seat, keys.rise.gathered_share * lean, fold, ready)
     over = at_rest(_in_reach(over, skeleton), push, skeleton)
-    seconds = _hands_take(start, over, keys.gather, skeleton) * pace
+    seconds = hands_take(start, over, keys.gather, skeleton) * pace
     gather = interpolate([0.0, seconds], [start, replace(over, ankles=start.ankles, feet=start.feet)], FPS)
-    gather = follow(_place_feet(gather, start, over, keys.gather, skeleton), over, push, skeleton)
+    gather = follow(place_feet(gather, start, over, keys.gather, skeleton), over, push, skeleton)
     gather = _taken(gather, start, push)
     over = gather.at(len(gather) - 1)
     seconds = keys.rise.time_s * pace * (ANY_DEPTH + EACH_DEPTH * depth) * (keys.rise.low_time_ratio if low else 1.0)
