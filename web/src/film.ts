@@ -45,10 +45,13 @@ export class Film {
   #last = 0;
   #drawn = -1;
   #visible = true;
+  /** The keyframe that it begins with, until it has begun. */
+  #from: number | null;
 
-  /** `shown` is told when another keyframe is being acted. */
-  constructor(id: string, shown: (keyframe: number | null) => void) {
+  /** `shown` is told when another keyframe is being acted; the film begins with `from`, or at its beginning. */
+  constructor(id: string, shown: (keyframe: number | null) => void, from: number | null = null) {
     this.#id = id;
+    this.#from = from;
     this.#shown = shown;
     this.reel = new Reel(id, () => this.#feed());
     this.timeline = new Timeline((frame) => this.player.seek(frame / FPS), (keyframe) => this.seekKeyframe(keyframe), FPS);
@@ -205,14 +208,30 @@ export class Film {
 
   #open(): void {
     const ready = this.reel.track.ready > 0 && (this.#arch.classList.contains("flat") || (this.#stage?.hasHome && this.#stage.hasBody));
-    if (this.#opened || !ready) return;
+    if (this.#opened || !ready || !this.#reaches()) return;
     this.#opened = true;
+    if (this.#from !== null) this.player.seek((this.#startOf(this.#from) ?? 0) / FPS);
+    this.#from = null;
     this.reel.track.sample(this.player.time, this.#pose);
     this.#stage?.pose(this.#pose);
     this.#tick();
     this.#stage?.setMode(this.#mode);
     this.#arch.classList.remove("closed");
     if (!isStill()) this.player.play();
+  }
+
+  /** Whether the moment that it begins with can be seen, or never will be. */
+  #reaches(): boolean {
+    if (this.#from === null) return true;
+    const start = this.#startOf(this.#from);
+    const { ready } = this.reel.track;
+    return (start !== null && ready > start + 1) || (this.#over() && ready >= (this.#story?.motion.frames ?? 0));
+  }
+
+  /** The first frame of a keyframe, or of the last one where there are fewer by now. */
+  #startOf(keyframe: number): number | null {
+    const all = this.#story?.keyframes ?? [];
+    return all[Math.min(keyframe, all.length - 1)]?.start ?? null;
   }
 
   #loop(now: number): void {

@@ -24,7 +24,8 @@ function route(): void {
   const room = /^#\/rooms(?:\/(.*))?$/.exec(path);
   roomsLink.ariaCurrent = room ? "page" : null;
   if (id) {
-    view = new StoryView(id, () => (location.hash = "#/"));
+    const from = /^\d+$/.exec(new URLSearchParams(query).get("from") ?? "")?.[0];
+    view = new StoryView(id, () => (location.hash = "#/"), from === undefined ? null : Number(from));
     fill(main, view.element);
   } else if (room) {
     void showRooms(room[1] ?? "", query);

@@ -25,6 +25,8 @@ export class StoryView {
   readonly #script: ScriptList;
   readonly #title = h("h1", {}, "…");
   readonly #theme = h("p", { class: "theme" });
+  readonly #origin = h("p", { class: "origin", hidden: true });
+  readonly #change = h("button", { type: "button", class: "plain small", hidden: true, onclick: () => void this.#edit() }, "Change it");
   readonly #foot = h("div", { class: "row foot" });
   readonly #sections: { readonly script: HTMLElement; readonly report: HTMLElement; readonly making: HTMLElement; readonly files: HTMLElement };
   readonly #left: () => void;
@@ -34,8 +36,8 @@ export class StoryView {
   #again = false;
   #live = true;
 
-  /** `left` is called when the story is no more. */
-  constructor(id: string, left: () => void) {
+  /** `left` is called when the story is no more; the film begins with the keyframe `from`, or at its beginning. */
+  constructor(id: string, left: () => void, from: number | null = null) {
     this.id = id;
     this.#left = left;
     const seek = (keyframe: number): void => this.film.seekKeyframe(keyframe);
@@ -45,13 +47,13 @@ export class StoryView {
     this.film = new Film(id, (keyframe) => {
       this.#telling.show(keyframe);
       this.#script.show(keyframe);
-    });
+    }, from);
     const section = (name: string): HTMLElement => h("section", { class: name, hidden: true });
     this.#sections = { script: section("script"), report: section("report"), making: section("making"), files: section("downloads") };
-    fill(this.#sections.script, h("h2", {}, "The script"), this.#script.element);
+    fill(this.#sections.script, h("div", { class: "row spread" }, h("h2", {}, "The script"), this.#change), this.#script.element);
     fill(
       this.element,
-      h("header", { class: "title" }, this.#title, this.#theme),
+      h("header", { class: "title" }, this.#title, this.#theme, this.#origin),
       this.#steps.element,
       this.film.element,
       h("section", { class: "book", "aria-label": "The told story" }, this.#telling.element),
@@ -98,7 +100,9 @@ export class StoryView {
     this.#script.update(story.keyframes, story.motion.fps, before !== null);
     this.film.update(story);
     const seek = (keyframe: number): void => this.film.seekKeyframe(keyframe);
+    this.#showOrigin(story);
     this.#sections.script.hidden = story.keyframes.length === 0;
+    this.#change.hidden = !story.home || !this.#script.element.isConnected;
     if (!making || before?.stage !== story.stage) {
       this.#sections.report.hidden = !showReport(this.#sections.report, story, seek);
       this.#sections.making.hidden = !showMaking(this.#sections.making, story);
@@ -106,6 +110,37 @@ export class StoryView {
     }
     if (making && !this.#unfollow) this.#follow();
     if (!making) this.#close(story, before);
+  }
+
+  /** What a take derives from, and what of it is the same. */
+  #showOrigin(story: Story): void {
+    this.#origin.hidden = !story.derived_from;
+    if (!story.derived_from) return;
+    const same = story.reused ? `; its first ${count(story.reused, "moment")} ${story.reused === 1 ? "is" : "are"} the same` : "";
+    fill(this.#origin, "A take of ", h("a", { href: `#/stories/${story.derived_from}` }, "the story before"), `${same}.`);
+  }
+
+  /** The script becomes a form; its code is fetched when it is first asked for. */
+  async #edit(): Promise<void> {
+    if (!this.#story) return;
+    this.#change.disabled = true;
+    const { element } = this.#script;
+    try {
+      const { ScriptEditor } = await import("./script-editor");
+      const close = (): void => {
+        editor.element.replaceWith(element);
+        this.#change.hidden = false;
+        this.#change.focus();
+      };
+      const editor = await ScriptEditor.open(this.#story, (take, from) => (location.hash = `#/stories/${take.id}?from=${from}`), close);
+      this.film.player.pause();
+      element.replaceWith(editor.element);
+      this.#change.hidden = true;
+      editor.focus();
+    } catch (error) {
+      announce(error instanceof Error ? error.message : String(error));
+    }
+    this.#change.disabled = false;
   }
 
   #follow(): void {
