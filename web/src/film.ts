@@ -21,12 +21,12 @@ const ASIDE: Readonly<Record<Skill, number>> = { touch: 2, loco: 0.85, sitdown: 
 export class Film {
   readonly element = h("section", { class: "theatre", "aria-label": "Film" });
   readonly player = new Player();
-  readonly reel: Reel;
+  reel: Reel;
   readonly timeline: Timeline;
   readonly controls: Controls;
   keyframe: number | null = null;
-  readonly #id: string;
-  readonly #shown: (keyframe: number | null) => void;
+  #id: string;
+  #shown: (keyframe: number | null) => void;
   readonly #map = new MiniMap();
   readonly #holder = h("div", { class: "picture", tabindex: 0, role: "img", "aria-label": "The film. A, D, W and S turn the camera" });
   readonly #subtitle = h("p", { class: "subtitle", hidden: true });
@@ -47,6 +47,8 @@ export class Film {
   #visible = true;
   /** The keyframe that it begins with, until it has begun. */
   #from: number | null;
+  /** Who the body on the stage is. */
+  #cast = "";
 
   /** `shown` is told when another keyframe is being acted; the film begins with `from`, or at its beginning. */
   constructor(id: string, shown: (keyframe: number | null) => void, from: number | null = null) {
@@ -68,6 +70,21 @@ export class Film {
     this.#loop(performance.now());
     // The stage takes a moment to build, and is wanted as soon as there is something to show.
     this.#raised = this.#raise();
+  }
+
+  /** The stage as it stands for another take of the story, in the same home; it goes on with the keyframe `from`. */
+  retake(id: string, shown: (keyframe: number | null) => void, from: number | null): void {
+    this.reel.stop();
+    this.player.pause();
+    [this.#id, this.#shown, this.#from] = [id, shown, from];
+    this.reel = new Reel(id, () => this.#feed());
+    if (from === null) this.player.seek(0);
+    this.#story = this.keyframe = null;
+    this.#opened = false;
+    this.#drawn = -1;
+    this.notice();
+    this.#wait.hidden = false;
+    this.#holder.focus({ preventScroll: true });
   }
 
   /** What buttons and keys ask for. */
@@ -187,8 +204,10 @@ export class Film {
   }
 
   async #fetchBody(): Promise<void> {
-    if (this.#asked.body) return;
+    const cast = JSON.stringify(this.#story?.character);
+    if (this.#asked.body && cast === this.#cast) return;
     this.#asked.body = true;
+    this.#cast = cast;
     try {
       const glb = await getGlb(motionUrl(this.#id, "glb", 0, 1));
       await (await this.#raised)?.setBody(glb);
@@ -217,6 +236,7 @@ export class Film {
     this.#tick();
     this.#stage?.setMode(this.#mode);
     this.#arch.classList.remove("closed");
+    this.#showState();
     if (!isStill()) this.player.play();
   }
 
@@ -293,7 +313,7 @@ export class Film {
 
   #showState(): void {
     this.controls.update(this.player);
-    this.#wait.hidden = this.player.state !== "waiting" || !this.#opened;
+    if (this.#opened || this.#arch.classList.contains("closed")) this.#wait.hidden = this.player.state !== "waiting" || !this.#opened;
   }
 
   #setMode(mode: CameraMode): void {

@@ -47,13 +47,13 @@ export class ScriptEditor {
     this.#now = this.#before = { script: draftOf(story.keyframes), seed: String(story.seed), backend: story.backend };
     this.#seed = h("input", { id: "take-seed", type: "number", min: 0, step: 1, inputmode: "numeric", onchange: () => this.#stage({ seed: this.#seed.value }) });
     this.#backend = h("select", { id: "take-backend", onchange: () => this.#stage({ backend: this.#backend.value }) }, ...words.backends.map((one) => h("option", { value: one.backend, title: one.about }, one.backend)));
-    const leave = h("button", { type: "button", class: "plain", onclick: () => this.#left() }, "Leave it as it was");
+    const leave = h("button", { type: "button", class: "plain small", onclick: () => this.#left() }, "Leave it");
     fill(
       this.element,
+      h("div", { class: "row editor-head" }, h("h2", {}, "Change the script"), leave),
       this.#list,
       h("div", { class: "staging" }, h("label", { for: "take-seed" }, "Seed"), this.#seed, h("label", { for: "take-backend" }, "Moved by"), this.#backend),
-      this.#problem,
-      h("div", { class: "row" }, this.#play, this.#undo, leave),
+      h("div", { class: "editor-foot" }, this.#problem, h("div", { class: "row" }, this.#play, this.#undo)),
     );
     this.element.addEventListener("keydown", (event) => {
       if (event.key !== "z" || !(event.ctrlKey || event.metaKey) || event.shiftKey || event.target === this.#seed) return;
@@ -84,6 +84,8 @@ export class ScriptEditor {
 
   #back(): void {
     const before = this.#past.pop();
+    // What was changed before this take began is in the story that it is a take of.
+    if (!before && this.#story.derived_from) location.hash = `#/stories/${this.#story.derived_from}`;
     if (!before) return;
     this.#now = before;
     this.#show();
@@ -97,7 +99,7 @@ export class ScriptEditor {
     this.#seed.value = this.#now.seed;
     this.#backend.value = this.#now.backend;
     const untouched = this.#from() === null;
-    this.#undo.disabled = this.#past.length === 0;
+    this.#undo.disabled = this.#past.length === 0 && !this.#story.derived_from;
     this.#play.disabled = untouched;
     this.#problem.hidden = true;
     this.#key = newKey();
@@ -123,26 +125,32 @@ export class ScriptEditor {
       h("button", { type: "button", class: "quiet round", "data-at": `${at} ${field}`, "aria-label": `${name}: ${words}`, title: capital(words), disabled, onclick: act }, icon(picture));
     return h(
       "li",
-      { class: other ? "draft other" : "draft", "data-emotion": draft.emotion },
+      { class: other ? "draft other" : "draft", "data-emotion": this.#mood(draft) },
       h("span", { class: "cue-number" }, String(at + 1)),
       h(
         "div",
         { class: "draft-fields" },
         choose("skill", "what is done", SKILLS.map((skill) => [skill, capital(SKILL_WORDS[skill])] as const), draft.skill, (value) => this.#reskill(at, value as Skill)),
+        choose("object_id", "where", this.#places(draft), draft.object_id ?? FLOOR, (value) => this.#do(placed(script, at, value || null), `${name}: ${this.#nameOf(value)}`)),
         choose("caption", "how", this.#words.captions(draft.skill).map((caption) => [caption, caption] as const), draft.caption, (caption) => this.#do(changed(script, at, { caption }), `${name}: ${caption}`)),
         choose("emotion", "in which mood", EMOTIONS.map((emotion) => [emotion, emotion] as const), draft.emotion, (emotion) => this.#do(changed(script, at, { emotion }), `${name}: ${emotion}`)),
-        choose("object_id", "where", this.#places(draft), draft.object_id ?? FLOOR, (value) => this.#do(placed(script, at, value || null), `${name}: ${this.#nameOf(value)}`)),
-      ),
-      h(
-        "div",
-        { class: "draft-moves" },
-        button("up", "earlier", "up", at === 0, () => this.#do(moved(script, at, -1), `${name} is now moment ${at}`, `${at - 1} up`)),
-        button("down", "later", "downward", at === script.length - 1, () => this.#do(moved(script, at, 1), `${name} is now moment ${at + 2}`, `${at + 1} down`)),
-        button("add", "put another behind it", "plus", false, () => this.#do(added(script, at, this.#fresh(draft)), `Moment ${at + 2} is new`, `${at + 1} skill`)),
-        button("drop", "leave it out", "trash", script.length === 1, () => this.#do(dropped(script, at), `${name} is left out`, `${Math.min(at, script.length - 2)} drop`)),
+        h(
+          "div",
+          { class: "draft-moves" },
+          button("up", "earlier", "up", at === 0, () => this.#do(moved(script, at, -1), `${name} is now moment ${at}`, `${at - 1} up`)),
+          button("down", "later", "downward", at === script.length - 1, () => this.#do(moved(script, at, 1), `${name} is now moment ${at + 2}`, `${at + 1} down`)),
+          button("add", "put another behind it", "plus", false, () => this.#do(added(script, at, this.#fresh(draft)), `Moment ${at + 2} is new`, `${at + 1} skill`)),
+          button("drop", "leave it out", "trash", script.length === 1, () => this.#do(dropped(script, at), `${name} is left out`, `${Math.min(at, script.length - 2)} drop`)),
+        ),
       ),
       h("p", { class: "wrong", hidden: true }),
     );
+  }
+
+  /** What its emotion means, where it is in words of its own. */
+  #mood({ index, emotion }: Draft): string {
+    const before = this.#story.keyframes.find((keyframe) => keyframe.index === index);
+    return before?.emotion === emotion ? before.mood : emotion;
   }
 
   /** A walk about, in the mood of the moment before. */
