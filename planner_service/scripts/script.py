@@ -140,6 +140,8 @@ class PlannedKeyframe(Keyframe):
     also: tuple[int, ...] = ()
     """Further beats that it shows: who sits on the sofa and reads does both in one keyframe."""
     room: Room | None = None
+    object_id: str | None = Field(None, max_length=200)
+    """The object of the home that somebody chose for it; None: one is found."""
 
 
 class Retrieved(BaseModel):
