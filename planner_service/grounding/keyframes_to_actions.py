@@ -21,6 +21,7 @@ from motion_backend.procedural.lie.lie_pose import place_to_lie
 from motion_backend.procedural.sit.sit_skill import seat_for
 from motion_backend.procedural.touch.hand_contacts import suits
 from motion_backend.scene import scene_of
+from motion_backend.state_machine import alongside
 from planner_service.grounding.touch_stance import LEG_ROOM, ElbowRoom
 from planner_service.scripts.caption_actions import Hands, done_in, look_of
 from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
@@ -42,6 +43,12 @@ _AWAY: Final = (1.8, 1.5, 1.2, 0.9, 0.7)
 """How far a walk to the front goes, the best first (metres)."""
 _ROOM: Final = 0.25
 """Clearance where it should end (metres)."""
+FREE_FLOOR: Final = 0.35
+"""Clearance all along a body on the floor at which one stops looking for a better place (metres)."""
+FLOOR_TRIES: Final = 120
+"""Places on the floor that are looked at: half of them anywhere in the room, the others beside the best of those."""
+BESIDE_BEST, TURNED_ASIDE = 0.15, 0.3
+"""Deviations of those from it: metres to each side, radians."""
 
 
 def stays(caption: str) -> bool:
@@ -115,35 +122,57 @@ class Place:
     object_id: str | None = None
 
 
+@dataclass(frozen=True)
+class Kept:
+    """What a keyframe came to when it was grounded before, in the same home and with the same seed."""
+
+    action: Action
+    leads_elsewhere: bool = False
+    """Whether something else follows it now: a walk then goes where that begins."""
+
+
 def act(
     keyframes: Sequence[Keyframe],
     places: Sequence[Place],
     home: Home,
     seed: int,
     words: Words = hashed_words,
+    scale: float = 1.0,
+    kept: Sequence[Kept | None] = (),
 ) -> tuple[Action, ...]:
     """Ground every keyframe in the home. Raises UnreachableError naming the keyframe that cannot be done.
 
     An action's caption is what is performed: where the body knows no word of the keyframe's, the nearest of `words`.
+    `scale` is the size of the body against one of 1.70 m. `kept` has, for each keyframe that was grounded before, what
+    came of it, else None: that stays as it was.
     """
     scene = scene_of(home)
-    stage = _Stage(home, scene.walkable, np.random.default_rng([seed, 7]), words)
+    stage = _Stage(home, scene.walkable, np.random.default_rng([seed, 7]), words, scale)
+    known = kept or [None] * len(keyframes)
     drafts: list[Action] = []
-    for index, (keyframe, place) in enumerate(zip(keyframes, places, strict=True)):
+    for index, (keyframe, place, old) in enumerate(zip(keyframes, places, known, strict=True)):
         before = keyframes[index - 1] if index else None
-        drafts.append(stage.contact(index, keyframe, place, free_hand(before)))
+        if old is not None and keyframe.skill in (*NEEDS, Skill.LOCO):
+            drafts.append(stage.keep(index, old))
+        else:  # who rises does so from what it rests on now
+            drafts.append(stage.contact(index, keyframe, place, free_hand(before)))
+    aimed = [old is not None and not old.leads_elsewhere for old in known]
     hands = Hands()
     return tuple(hands.follow(action, done_in(keyframes[action.keyframe].caption))
-                 for action in stage.walks(drafts, places, scene.beginning(seed)[0]))  # fmt: skip
+                 for action in stage.walks(drafts, places, scene.beginning(seed)[0], aimed))  # fmt: skip
 
 
 class _Stage:
     """The home while actions are being grounded: where the body stands and what it rests on."""
 
-    def __init__(self, home: Home, walkable: Walkable, rng: np.random.Generator, words: Words) -> None:
-        self.home, self.walkable, self.rng, self.words = home, walkable, rng, words
+    def __init__(
+        self, home: Home, walkable: Walkable, rng: np.random.Generator, words: Words, scale: float = 1.0
+    ) -> None:
+        self.home, self.walkable, self.rng, self.words, self.scale = home, walkable, rng, words, scale
         self.at: Point | None = None
         self.resting: Spot | None = None
+        self.on: Spot | None = None
+        """What it sits or lies on still."""
 
     def contact(self, index: int, keyframe: Keyframe, place: Place, free: str = "right") -> Action:
         """The action of a keyframe; walks get their goal later, when what follows them is known."""
@@ -157,11 +186,21 @@ class _Stage:
                 hand, spot = self._elbows.freely(spot, hand, keyframe.caption)
             else:
                 self.resting = spot
+            self.on = None if keyframe.skill is Skill.TOUCH else spot
             self.at = spot.standing
             return replace(action, object_id=spot.object_id, spot=spot, hand=hand, hold=HOLDS[keyframe.skill])
+        self.on = None
         if keyframe.skill in (Skill.STANDUP, Skill.GETUP) and self.resting is not None:
             return replace(action, object_id=self.resting.object_id, spot=self.resting)
         return action
+
+    def keep(self, index: int, old: Kept) -> Action:
+        """An action as it was, the body left where that leaves it; how long it is held is reckoned anew."""
+        action = old.action
+        if action.spot is not None:
+            self.at = action.spot.standing
+            self.resting = self.resting if action.skill is Skill.TOUCH else action.spot
+        return replace(action, keyframe=index, hold=HOLDS.get(action.skill, Action.hold))
 
     def _spot(self, index: int, keyframe: Keyframe, mood: Emotion, place: Place) -> Spot:
         need = NEEDS[keyframe.skill]
@@ -178,13 +217,16 @@ class _Stage:
             )
         if need == "touch":
             return self._to_touch(found, keyframe.caption)
+        # Who sits or lies there lies down, or sits up, without leaving the piece.
+        found = [s for s in found if alongside(self.on, s)] or found
         if need == "sit":
-            return seat_for(found, mood, keyframe.caption, self._elbows.solid)
+            return seat_for(found, mood, keyframe.caption, self._elbows.solid, self.scale)
         return place_to_lie(found, keyframe.caption)
 
     def _to_touch(self, found: list[Spot], caption: str) -> Spot:
         """One of the spots of a piece of the wanted height, with room for arms, on which nothing lies."""
         wanted = height_of(caption)
+        found = [s for s in found if self._elbows.within_arms_way(s)] or found
         level = [[s for s in found if s.height == height] for height in (wanted, "medium", "low")]
         suited = ([s for s in some if suits(s, caption, self._elbows.solid)] for some in level)
         found = next(filter(None, suited), level[0] or level[1] or found)
@@ -194,7 +236,6 @@ class _Stage:
             found = self._elbows.roomiest(found)
             found.sort(key=lambda s: -s.point[1])
             found = [s for s in found if s.point[1] > found[0].point[1] - 0.1]
-        found = [s for s in found if self._elbows.within_arms_way(s)] or found
         least = min(self._cluttered(s) for s in found)
         found = [s for s in found if self._cluttered(s) == least]
         # The body may come back to a piece: it need not touch the very same place again.
@@ -231,12 +272,15 @@ class _Stage:
         """The freest place of a room to sit or lie on the floor, and the freest direction there."""
         best: tuple[float, Spot] | None = None
         length = 0.9 if need == "lie" else 0.5
-        for attempt in range(120):
-            point, turned = self.walkable.random_point(self.rng, room), 0.0
-            if best is not None and attempt >= 60:  # in a crowded room beside the best so far
+        for attempt in range(FLOOR_TRIES):
+            if best is None or attempt < FLOOR_TRIES // 2:
+                point, turned = self.walkable.random_point(self.rng, room), 0.0
+            else:  # in a crowded room beside the best so far, but not through a wall or a doorway
                 x, _, z = best[1].point
-                point = (x + float(self.rng.normal(0.0, 0.15)), z + float(self.rng.normal(0.0, 0.15)))
-                turned = float(self.rng.normal(best[1].facing, 0.3))
+                aside_x, aside_z = self.rng.normal(0.0, BESIDE_BEST, 2).tolist()
+                point, turned = (x + aside_x, z + aside_z), float(self.rng.normal(best[1].facing, TURNED_ASIDE))
+                if self.home.room_at(point) != room or not self.walkable.sees((x, z), point):
+                    continue
             for yaw in turned + np.arange(8) * np.pi / 4:
                 ahead = np.array([np.sin(yaw), np.cos(yaw)])
                 ends = [np.asarray(point) + share * length * ahead for share in (-1.0, -0.5, 0.5, 1.0)]
@@ -246,31 +290,46 @@ class _Stage:
                 room_left = min(self.walkable.clearance((float(e[0]), float(e[1]))) for e in ends)
                 if best is None or room_left > best[0]:
                     best = (room_left, spot)
-            if best is not None and best[0] > 0.35:
+            if best is not None and best[0] > FREE_FLOOR:
                 break
         if best is None or best[0] <= 0.0:
             raise UnreachableError(f"room {room} has no free floor to {need} on", "choose another room")
         return best[1]
 
-    def walks(self, drafts: list[Action], places: Sequence[Place], begins: Point) -> list[Action]:
+    def walks(
+        self, drafts: list[Action], places: Sequence[Place], begins: Point, aimed: Sequence[bool]
+    ) -> list[Action]:
         """Give every walk its goal: where the next contact with the same thing begins, beside a thing, or anywhere.
 
-        `begins` is where the body stands before the first of them.
+        `begins` is where the body stands before the first of them; those that are `aimed` have their goal.
         """
         done: list[tuple[Action, Point | None]] = []
         at: Point | None = begins
         for index, action in enumerate(drafts):
-            wanders = action.skill is Skill.LOCO and places[index].object_id is None
-            ahead = in_front(action.caption, self.walkable, at, done) if wanders else None
-            if ahead is not None:
-                action = replace(action, goal=ahead, facing=None)
-            elif action.skill is Skill.LOCO and not (wanders and stays(action.caption)):
+            if action.skill is Skill.LOCO and not aimed[index]:
                 following = drafts[index + 1] if index + 1 < len(drafts) else None
-                action = self._walk(action, following, places[index], at)
+                action = self._aimed(action, following, places[index], at, done)
             last = index == len(drafts) - 1
             done.append((replace(action, hold=action.hold + LAST_HOLD) if last else action, at))
             at = action.goal or (action.spot.standing if action.spot else at)
         return [action for action, _ in done]
+
+    def _aimed(
+        self,
+        action: Action,
+        following: Action | None,
+        place: Place,
+        at: Point | None,
+        done: Sequence[tuple[Action, Point | None]],
+    ) -> Action:
+        """A walk with its goal; who stands still or waves has none."""
+        wanders = place.object_id is None
+        if wanders and action.goal is not None and (following is None or following.object_id != "floor"):
+            return action  # where it wandered before is as good as anywhere
+        ahead = in_front(action.caption, self.walkable, at, done) if wanders else None
+        if ahead is not None:
+            return replace(action, goal=ahead, facing=None)
+        return action if wanders and stays(action.caption) else self._walk(action, following, place, at)
 
     def _walk(self, action: Action, following: Action | None, place: Place, at: Point | None) -> Action:
         same = following is not None and following.skill in NEEDS and following.object_id == action.object_id

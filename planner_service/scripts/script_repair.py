@@ -77,7 +77,8 @@ class Mending(Generic[K]):
         if place_of(keyframe) != place_of(self._resting):
             fault = f"{keyframe.skill} from the {keyframe.furniture} while resting on the {self._resting.furniture}"
             self._note(index, "furniture", fault, f"rises from the {self._resting.furniture}")
-            update = {"furniture": self._resting.furniture, "room": getattr(self._resting, "room", None)}
+            update = {"furniture": self._resting.furniture}
+            update |= {name: getattr(self._resting, name, None) for name in ("room", "object_id")}
             keyframe = keyframe.model_copy(update=fields(keyframe, update))
         self._stand(keyframe)
 
@@ -98,10 +99,10 @@ class Mending(Generic[K]):
         self._stand(self._resting.model_copy(update=fields(keyframe, update)))
 
     def _use(self, index: int, keyframe: K) -> None:
-        """Sit, lie or touch: on one's feet and beside the object, or from sitting to lying on the same one."""
+        """Sit, lie or touch: on one's feet and beside the object, or from sitting to lying and back on the same one."""
         place = place_of(keyframe)
-        lies_back = keyframe.skill is Skill.LIEDOWN and self.posture is Posture.SEATED
-        if not (lies_back and self._resting is not None and place_of(self._resting) == place):
+        stays = {Posture.SEATED: Skill.LIEDOWN, Posture.LYING: Skill.SITDOWN}.get(self.posture) is keyframe.skill
+        if not (stays and self._resting is not None and place_of(self._resting) == place):
             self._be_standing(index, keyframe)
             if self._at != place and not is_floor(keyframe.piece[0]):
                 self._note(index, "skill", f"{_told(keyframe)} without a walk to it", "loco put in")

@@ -18,13 +18,15 @@ let leaveRooms: (() => void) | null = null;
 let turn = 0;
 
 function route(): void {
-  clear();
   const [path = "", query = ""] = location.hash.split("?");
   const id = /^#\/stories\/([\w-]+)$/.exec(path)?.[1];
+  const before = id && view?.handsOver(id) ? view : null;
+  clear();
   const room = /^#\/rooms(?:\/(.*))?$/.exec(path);
   roomsLink.ariaCurrent = room ? "page" : null;
   if (id) {
-    view = new StoryView(id, () => (location.hash = "#/"));
+    const from = /^\d+$/.exec(new URLSearchParams(query).get("from") ?? "")?.[0];
+    view = new StoryView(id, () => (location.hash = "#/"), from === undefined ? null : Number(from), before);
     fill(main, view.element);
   } else if (room) {
     void showRooms(room[1] ?? "", query);
