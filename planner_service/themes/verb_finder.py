@@ -212,7 +212,7 @@ def _opens(word: str, base: str, after: str) -> bool:
     if is_third_person(word) or word != base:
         names = is_noun(word) and bool(verb_of(after)) and not (is_noun(after) or after.endswith("ing"))
         return not names or is_adjective(after)
-    lies_there = word in things() and after in grammar().prepositions  # "Bag on the bed."
+    lies_there = word in things() and word not in theme_words()["body"] and after in grammar().prepositions  # "Bag on the bed."
     return not is_noun(word) or (_goes_on(after) and bool(after) and not lies_there)
 
 
