@@ -66,7 +66,7 @@ def numbers(rows: Any, where: str) -> Iterator[tuple[str, str, float]]:
                 if is_dataclass(each):
                     yield from numbers(each, f"{inside}.{name}")
                 elif isinstance(each, float):
-                    yield f"{inside}.{name}", field.name, each
+                    yield f"{inside}.{name}", name if field.name == "spread" else field.name, each
         elif isinstance(value, tuple) and value and is_dataclass(value[0]):
             for index, row in enumerate(value):
                 yield from numbers(row, f"{inside}[{getattr(row, 'name', index)}]")
