@@ -26,9 +26,9 @@ from motion_backend.procedural.touch.reach import Manner, touch
 from motion_backend.procedural.touch.touch_keys import TouchKeys, TouchTable, touch_keys
 from motion_backend.procedural.walk.arm_swing import arm_table
 from motion_backend.procedural.walk.cadence import cadence
+from motion_backend.procedural.walk.carriage import carriage
 from motion_backend.procedural.walk.foot_trajectory import foot_table
 from motion_backend.procedural.walk.footsteps import footstep_table
-from motion_backend.procedural.walk.gait import carriage
 from motion_backend.procedural.walk.gait_character import character_table
 from motion_backend.procedural.walk.pelvis_height import pelvis_table
 from motion_backend.procedural.walk.root_path import root_path_table
