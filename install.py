@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import ast
 import contextlib
 import os
 import platform
@@ -31,6 +32,21 @@ CPU_INDEX = "https://download.pytorch.org/whl/cpu"
 PROBE_SECONDS = 5.0
 NOTE_SECONDS = 15.0
 """From line to line about one step, in a log."""
+UV_SETTINGS = {
+    "index-url": "UV_INDEX_URL",
+    "extra-index-url": "UV_EXTRA_INDEX_URL",
+    "find-links": "UV_FIND_LINKS",
+    "trusted-host": "UV_INSECURE_HOST",
+    "cert": "SSL_CERT_FILE",
+    "proxy": "ALL_PROXY",
+}
+"""What pip is told of where packages come from, and the same for uv."""
+NO_MATTER = (
+    "timeout default-timeout retries quiet verbose log progress-bar no-color no-input disable-pip-version-check "
+    "no-python-version-warning no-warn-script-location root-user-action cache-dir no-cache-dir no-compile compile "
+    "prefer-binary require-virtualenv"
+)
+"""What pip is told that changes nothing of what is installed."""
 COMPILE = (
     "import planner_service.api.app, planner_service.jobs.worker, planner_service.cli.story, pysbd, lemminflect, torch;"
     "from scene_graphs.layout_library import compile_search; compile_search();"
@@ -109,23 +125,23 @@ def torch_index(asked: str, system: str) -> tuple[str, str]:
     )
 
 
-def as_uv(configured: str, given: list[str]) -> tuple[list[str], dict[str, str]]:
-    """Where `pip config list` has packages come from, as options and environment of uv, which does not read it.
+def as_uv(configured: str) -> dict[str, str] | None:
+    """What `pip config list` says of where packages come from as an environment of uv, which does not read it.
 
-    What is `given` on the command line counts before it, as with pip.
+    Not as options, which everybody may read while they run: addresses may hold passwords, and what is asked for on the
+    command line counts before it, as with pip. None where it says something else, which only pip can follow.
     """
-    options, environment = ["--index-strategy", "unsafe-best-match"], {"UV_SYSTEM_CERTS": "1"}
-    for key, value in re.findall(r"^[\w:.-]+\.([\w-]+)='(.*)'$", configured, re.MULTILINE):
-        if f"--{key}" in given:
-            continue
-        if key in ("index-url", "extra-index-url", "find-links", "constraint", "trusted-host"):
-            option = {"trusted-host": "allow-insecure-host"}.get(key, key)
-            options += [word for one in value.split() for word in (f"--{option}", one)]
-        elif key == "no-index" and value in ("1", "true", "yes", "on"):
-            options.append("--no-index")
-        elif key in ("cert", "proxy"):
-            environment |= {"SSL_CERT_FILE": value} if key == "cert" else {"ALL_PROXY": value}
-    return options, environment
+    settings: dict[str, str] = {}
+    for section in ("global", "install", ":env:"):  # the later one counts, as with pip
+        for key, value in re.findall(rf"^{section}\.([\w-]+)=(.*)$", configured, re.MULTILINE):
+            settings[key] = str(ast.literal_eval(value))
+    environment = {"UV_SYSTEM_CERTS": "1", "UV_INDEX_STRATEGY": "unsafe-best-match"}
+    for key, value in settings.items():
+        if key in UV_SETTINGS:
+            environment[UV_SETTINGS[key]] = ("," if key == "find-links" else " ").join(value.split())
+        elif key not in NO_MATTER.split():
+            return None
+    return environment
 
 
 def phrase(said: str, downloads: Path, before: int) -> str:
@@ -199,12 +215,16 @@ class Installer:
         pip = [self.python, "-m", "pip", "install", *words]
         if not self.uv.exists():
             return run(self.screen, label, pip)
-        asked = [self.python, "-m", "pip", "config", "list"]
-        options, more = as_uv(subprocess.run(asked, capture_output=True, text=True, check=False).stdout, words)
+        listed = subprocess.run(
+            [self.python, "-m", "pip", "config", "list"], capture_output=True, text=True, check=False
+        )
+        environment = None if listed.returncode else as_uv(listed.stdout)
+        if environment is None:
+            self.screen.say("    pip is configured in ways that uv does not know: pip does it")
+            return run(self.screen, label, pip)
         try:
-            return run(
-                self.screen, label, [str(self.uv), "pip", "install", "--python", self.python, *options, *words], more
-            )
+            by_uv = [str(self.uv), "pip", "install", "--python", self.python, *words]
+            return run(self.screen, label, by_uv, environment)
         except subprocess.CalledProcessError as error:
             said = next(filter(None, reversed(str(error.output).splitlines())), "")
             self.screen.say(f"    uv could not ({said.strip()[:200]}): now pip does it")

@@ -130,7 +130,7 @@ class Director:
         """An action part by part; what follows a part that failed is left out."""
         action, state = take.action, take.state
         place = (state.pelvis[0], state.pelvis[2]) if state.posture is Posture.STANDING else None
-        parts, later = parts_of(action, state.posture, place), self._later(take)
+        parts, later = parts_of(action, state.posture, place, state.rest), self._later(take)
         segments: list[Motion] = []
         for index, part in enumerate(parts):
             segment, state = yield from self._part(Request(take.home, part, (*parts[index + 1 :], *later), state))
@@ -144,7 +144,9 @@ class Director:
         return _judged(join(segments), action), state
 
     def _later(self, take: Take) -> tuple[Part, ...]:
-        return parts_of(take.following, ENDS[take.action.skill]) if take.following is not None else ()
+        if take.following is None:
+            return ()
+        return parts_of(take.following, ENDS[take.action.skill], rest=take.action.spot)
 
     def _part(self, asked: Request) -> Asking:
         """A part by the backend, else by the one behind it, every phase labelled with who made it and why."""

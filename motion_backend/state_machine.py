@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from motion_backend import rotations
 from motion_backend.backend_protocol import Part, PartKind
 from motion_backend.metrics.contact_error import (
     HAND_OVER,
@@ -24,6 +25,7 @@ from motion_backend.metrics.contact_error import (
 )
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import Action, Posture, Skill
+from scene_graphs.affordances.affordances import Spot
 
 ENTERING: Final[dict[Skill, tuple[PartKind, ...]]] = {
     Skill.LOCO: (PartKind.WALK,),
@@ -36,8 +38,14 @@ ENTERING: Final[dict[Skill, tuple[PartKind, ...]]] = {
 """What a standing body does for each skill, in order."""
 STOOD, STOOD_ALREADY = 0.3, 0.8
 """Seconds that one stays on the feet one has come to, and on those one stood on."""
+ON_FLOOR: Final = 0.02
+"""A place no higher than this is the floor (metres)."""
 AT_THE_SPOT: Final = 0.04
 """A body this near to its goal (metres) need not walk: it turns."""
+ON_THE_PIECE: Final = {Posture.SEATED: Skill.LIEDOWN, Posture.LYING: Skill.SITDOWN}
+"""What is done without rising first by who rests on the same piece, beside the place for it."""
+BESIDE, TURNED = 0.65, 0.2
+"""A place to sit is beside one to lie that is no farther along the edge (metres) and looks over it (radians)."""
 RISINGS: Final = (Skill.STANDUP, Skill.GETUP)
 """Skills of which nothing is left to do once the body stands."""
 ENDS: Final[dict[Skill, Posture]] = {
@@ -76,14 +84,29 @@ DONE: Final[dict[Skill, Rule]] = {
 """Skills with a goal; rising is done once the body has stood for as long as `RISEN` says."""
 
 
-def parts_of(action: Action, posture: Posture, place: tuple[float, float] | None = None) -> tuple[Part, ...]:
-    """All that a body in a posture does for an action, in order (Eq. 6); `place` is where it stands, where known."""
+def parts_of(
+    action: Action, posture: Posture, place: tuple[float, float] | None = None, rest: Spot | None = None
+) -> tuple[Part, ...]:
+    """All that a body in a posture does for an action, in order (Eq. 6); `place` is where it stands, where known, and
+    `rest` what it sits or lies on: from sitting one lies down there, and sits up from lying."""
+    if ON_THE_PIECE.get(posture) is action.skill and alongside(rest, action.spot):
+        return tuple(_part(kind, action, place) for kind in ENTERING[action.skill] if kind is not PartKind.WALK)
     rising = () if posture is Posture.STANDING else (Part(PartKind.RISE, action),)
     if action.skill is Skill.LOCO and action.goal is None:
         return (*rising, Part(PartKind.HOLD, action, hold=action.hold))
     if action.skill in RISINGS:
         return (*rising, Part(PartKind.HOLD, action, hold=STOOD if rising else STOOD_ALREADY))
     return (*rising, *(_part(kind, action, place) for kind in ENTERING[action.skill]))
+
+
+def alongside(one: Spot | None, other: Spot | None) -> bool:
+    """Whether a place to sit and one to lie are beside each other on the same edge of a piece."""
+    if one is None or other is None or one.object_id != other.object_id or one.point[1] < ON_FLOOR:
+        return False
+    turn = float(rotations.wrap(one.approach - other.approach))
+    along = np.array([np.cos(one.approach), -np.sin(one.approach)])
+    away = np.array([other.point[0] - one.point[0], other.point[2] - one.point[2]])
+    return abs(turn) < TURNED and abs(float(away @ along)) < BESIDE
 
 
 def _part(kind: PartKind, action: Action, place: tuple[float, float] | None) -> Part:

@@ -15,7 +15,7 @@ from motion_backend.metrics.story_figures import story_figures
 from motion_backend.motion import Action, Character, Motion, Skill, join
 from motion_backend.physics.physics_record import physics_of
 from motion_backend.scene import scene_of
-from motion_backend.skeleton import MAX_HEIGHT, MIN_HEIGHT
+from motion_backend.skeleton import MAX_HEIGHT, MIN_HEIGHT, REFERENCE_HEIGHT
 from planner_service.cast_choice import cast_for, check_character, named_as
 from planner_service.composition.compose import compose, script_of
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, METHODS, Request
@@ -264,7 +264,12 @@ class Pipeline:
         def words() -> Vocabulary:
             return Vocabulary.built_in(self.shelves.scripts().encoder)
 
+<<<<<<< HEAD
         return act(stage.script.keyframes, stage.places, stage.home, request.seed, words, kept)
+=======
+        scale = actor(request, stage.script).height / REFERENCE_HEIGHT
+        return act(stage.script.keyframes, stage.places, stage.home, request.seed, words, scale)
+>>>>>>> main
 
     def make(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Story:
         """Theme to acted story."""

@@ -170,18 +170,35 @@ def test_uv_installs_where_it_is_and_pip_what_it_could_not(
 
 def test_uv_takes_packages_from_where_pip_does() -> None:
     said = (
-        ":env:.index-url='https://x.example/simple'\nglobal.extra-index-url='file:///a file:///b'\n"
-        "global.cert='/etc/ca.crt'\nuser.no-index='true'\nglobal.timeout='9'\n"
+        ":env:.index-url='https://me:secret@x.example/simple'\nglobal.index-url='https://y.example'\n"
+        "global.extra-index-url='\\nfile:///a\\nfile:///b'\ninstall.find-links='/a /b'\ndownload.only-binary='x'\n"
+        "global.cert='/etc/ca.crt'\nglobal.timeout='9'\n"
     )
-    options, environment = install.as_uv(said, [])
-    assert " ".join(options[2:]) == (
-        "--index-url https://x.example/simple --extra-index-url file:///a --extra-index-url file:///b --no-index"
-    )
-    assert environment["SSL_CERT_FILE"] == "/etc/ca.crt"
-    assert install.as_uv("", [])[0] == options[:2], "as pip, it looks for the best in all of them"
-    chosen, _ = install.as_uv(said, ["--index-url", "https://y.example", "torch"])
-    assert "https://x.example/simple" not in chosen, "what is asked for counts before it"
-    assert "file:///a" in chosen
+    usual = {"UV_SYSTEM_CERTS": "1", "UV_INDEX_STRATEGY": "unsafe-best-match"}
+    assert install.as_uv("") == usual, "as pip, it looks for the best in all of them"
+    assert install.as_uv(said) == usual | {
+        "UV_INDEX_URL": "https://me:secret@x.example/simple",
+        "UV_EXTRA_INDEX_URL": "file:///a file:///b",
+        "UV_FIND_LINKS": "/a,/b",
+        "SSL_CERT_FILE": "/etc/ca.crt",
+    }
+
+
+@pytest.mark.parametrize("key", ["only-binary", "require-hashes", "no-index", "constraint", "something-new"])
+def test_what_only_pip_can_follow_is_left_to_pip(key: str) -> None:
+    assert install.as_uv(f"global.{key}='x'\n") is None
+
+
+def test_where_pip_cannot_say_how_it_is_configured_pip_installs(
+    tmp_path: Path, venv: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    python = venv / "bin" / "python"
+    python.write_text(f'#!/bin/sh\necho "$*" >> {tmp_path}/asked\n[ "$3" != config ]\n')
+    (venv / "bin" / "uv").write_text("#!/bin/sh\nexit 1\n")
+    (venv / "bin" / "uv").chmod(0o755)
+    install.Installer(install.Screen(sys.stdout)).install("5/6 all", ["x"])
+    assert "-m pip install x" in (tmp_path / "asked").read_text()
+    assert "uv does not know: pip does it" in capsys.readouterr().out
 
 
 def test_what_uv_says_becomes_a_few_words(tmp_path: Path) -> None:

@@ -114,15 +114,14 @@ def out_of_cone(joint: str, turn: Array) -> Array:
     return _beyond_cone(turn * _mirrored([INDEX[joint]]), limit)
 
 
-def within(joint: str, turn: Array, loaded: bool = False) -> Array:
+def within(joint: str, turn: Array, loaded: NDArray[np.bool_] | bool = False) -> Array:
     """A hinged joint's rotations with all angles brought within their ranges. (T, 4).
 
-    A `loaded` one may go below the lower end of its main hinge's, as shins over feet that stand on the floor do.
+    Where it is `loaded` (T,) it may go below the lower end of its main hinge's, as shins over feet that stand do.
     """
     group, place = _group_of(joint)
     angles = cardan(turn * group.mirrored[place], group.order)
-    low = group.low[place].copy()
-    low[0] = -np.inf if loaded else low[0]
+    low = np.where(np.asarray(loaded)[..., None] & (np.arange(3) == 0), -np.inf, group.low[place])
     angles = np.clip(angles, low, group.high[place])
     parts = [rotations.axis_to_quat(axis, angles[..., column]) for column, axis in enumerate(group.order)]
     return np.asarray(rotations.compose(rotations.compose(parts[0], parts[1]), parts[2]) * group.mirrored[place])

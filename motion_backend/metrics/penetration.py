@@ -7,7 +7,7 @@ import numpy as np
 from motion_backend.body import capsules
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Action, Skill
+from motion_backend.motion import Action, Motion, PhaseKind, Skill
 from motion_backend.rotations import Array
 
 CUSHION = 0.05
@@ -42,14 +42,19 @@ def penetration(body: Kinematics, obstacles: Obstacles, action: Action | None) -
         points = capsules.skin_points(flat_start[touching], flat_end[touching], radius[touching])
         depth = close.inside(points.reshape(-1, 3), index).reshape(len(touching), -1).max(axis=1)
         bodies = touching % len(capsules.BODIES)
-        depth = depth - np.array([cushion(action, owner, capsules.BODIES[b].name) for b in bodies])
+        depth = depth - np.array([cushion(action, owner, capsules.BODIES[b].name, lies(body.motion)) for b in bodies])
         np.maximum.at(deepest, touching // len(capsules.BODIES), depth)
     return deepest
 
 
-def cushion(action: Action | None, owner: str, body: str) -> float:
-    """Contact bodies may sink into their own target and nowhere else."""
+def lies(motion: Motion) -> bool:
+    """Whether a body lies in a part of a motion: who sits up lay there."""
+    return any(phase.kind in (PhaseKind.LIEDOWN, PhaseKind.GETUP) for phase in motion.phases)
+
+
+def cushion(action: Action | None, owner: str, body: str, lay: bool = False) -> float:
+    """Contact bodies may sink into their own target and nowhere else; all of them where the body lies, or `lay`."""
     if action is None or action.object_id != owner or action.skill in (Skill.LOCO, Skill.TOUCH):
         return 0.0
-    lying = action.skill in (Skill.LIEDOWN, Skill.GETUP)
+    lying = lay or action.skill in (Skill.LIEDOWN, Skill.GETUP)
     return CUSHION if lying or body in _SITTING else 0.0

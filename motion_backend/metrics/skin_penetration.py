@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from motion_backend.body import capsules
 from motion_backend.body.mannequin_mesh import build_mannequin
 from motion_backend.body.skinning import SkinnedMesh, skin
-from motion_backend.metrics.penetration import CLEARLY_IN, cushion
+from motion_backend.metrics.penetration import CLEARLY_IN, cushion, lies
 from motion_backend.motion import Action, Motion
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, JOINTS, PARENTS, Skeleton
@@ -84,14 +84,14 @@ def skin_penetration(motion: Motion, action: Action | None, shapes: Sequence[Sha
             own = points[frame]
             inside = np.flatnonzero(((own > shape.low) & (own < shape.high)).all(axis=1))
             if len(inside):
-                allowed = _allowed(action, shape.owner)[bodies[inside]]
+                allowed = _allowed(action, shape.owner, lies(motion))[bodies[inside]]
                 deepest[frame] = max(deepest[frame], (shape.depth(own[inside].astype(np.float64)) - allowed).max())
     return SkinDepth(deepest)
 
 
-def _allowed(action: Action | None, owner: str) -> Array:
+def _allowed(action: Action | None, owner: str, lying: bool) -> Array:
     """How deep each of the 15 bodies may be in a piece. (15,) metres."""
-    return np.array([cushion(action, owner, body.name) for body in capsules.BODIES])
+    return np.array([cushion(action, owner, body.name, lying) for body in capsules.BODIES])
 
 
 @lru_cache(maxsize=8)

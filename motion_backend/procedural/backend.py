@@ -37,7 +37,8 @@ STANDS = 1.0
 
 
 ENTERS = (PartKind.SIT, PartKind.LIE)
-"""Parts that are in the posture they end in, for what arms may lie on; all others in the one they begin in."""
+"""Parts that are in the posture they end in, for what arms may lie on, but in sitting up; all others in the one they
+begin in."""
 
 
 class ProceduralBackend:
@@ -106,7 +107,8 @@ def _remembered(body: Body) -> dict[str, Any]:
 def _to_motion(body: Body, part: Part) -> Motion:
     """The frames made for a part, but those that are done together with what comes next."""
     action = part.action
-    posture = POSTURE_AFTER[part.kind] if part.kind in ENTERS else body.posture
+    enters = part.kind in ENTERS and body.posture is not Posture.LYING
+    posture = POSTURE_AFTER[part.kind] if enters else body.posture
     under = body.rest if part.kind not in ENTERS else action.spot
     around = Around(part, posture, under.object_id if under else None, body.scene.obstacles.solid())
     pose, start = concatenate(body.frames), body.begun

@@ -16,12 +16,14 @@ from motion_backend.procedural.pose import Pose, smooth
 from motion_backend.procedural.pose_solver import chest_frame
 from motion_backend.procedural.walk.footsteps import drift, home_ankle
 from motion_backend.rotations import Array
-from motion_backend.skeleton import INDEX, SEATED_REST, Skeleton
+from motion_backend.skeleton import ANKLE_HEIGHT, INDEX, SEATED_REST, Skeleton
 from scene_graphs.affordances.affordances import Spot
 from scene_graphs.data_tables import read_table, table
 
 SHIN_REACH = 0.42
 """Seated pelvis to ankle on the floor with upright shins, at the reference height."""
+BENT_LEG, LEAST_REACH = 0.80, 0.10
+"""A leg between a seat and the floor is no longer, and its foot no less far ahead (metres at 1.70 m)."""
 STANCE = 0.085
 """Half as far as the feet of a standing body are apart (metres at 1.70 m)."""
 UNLOCKED, SUNK = 0.998, 0.004
@@ -165,9 +167,17 @@ class Seat:
         """Whether one sits on the floor, or nearly."""
         return bool(self.pelvis[1] < LOW * scale)
 
+    def feet_ahead(self, scale: float) -> float:
+        """How far ahead of the pelvis feet stand before it: shins are upright, legs that are too short for that bent
+        (metres)."""
+        if self.is_low(scale):
+            return FLOOR_REACH * scale
+        drop = float(self.pelvis[1]) / scale - ANKLE_HEIGHT
+        return scale * min(SHIN_REACH, float(np.sqrt(max(BENT_LEG**2 - drop**2, LEAST_REACH**2))))
+
     def standing_point(self, scale: float) -> tuple[float, float]:
         """[x, z] of the pelvis standing before it, over where the feet are when seated."""
-        x, _, z = self.to_world((0.0, 0.0, (FLOOR_REACH if self.is_low(scale) else SHIN_REACH) * scale))
+        x, _, z = self.to_world((0.0, 0.0, self.feet_ahead(scale)))
         return float(x), float(z)
 
     def to_world(self, left_up_ahead: ArrayLike) -> Array:

@@ -147,7 +147,7 @@ def _solve_leg(local: Array, pose: Pose, skeleton: Skeleton, index: int, name: s
     local[:, INDEX[f"{name}_hip"]] = rotations.compose(rotations.inverse(pose.hips), thigh)
     local[:, INDEX[f"{name}_knee"]] = rotations.compose(rotations.inverse(thigh), shin)
     foot = rotations.compose(rotations.inverse(shin), pose.feet[:, index])
-    local[:, INDEX[f"{name}_ankle"]] = within(f"{name}_ankle", foot, loaded=True)
+    local[:, INDEX[f"{name}_ankle"]] = within(f"{name}_ankle", foot, loaded=pose.planted[:, index] > 0)
     local[:, INDEX[f"{name}_foot"]] = rotations.axis_to_quat("x", -pose.toes[:, index])
 
 

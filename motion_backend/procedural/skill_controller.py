@@ -9,7 +9,8 @@ from motion_backend.motion import Action, PhaseKind, Posture
 from motion_backend.procedural.body_state import Body, Point, spot_of, spot_under
 from motion_backend.procedural.emotion_style import bearing_of
 from motion_backend.procedural.held_poses import Seat
-from motion_backend.procedural.lie.lie_skill import before_bed, get_up, leave_bed, lie, stay_lying
+from motion_backend.procedural.lie.lie_skill import before_bed, get_up, leave_bed, lie, sit_up, stay_lying
+from motion_backend.procedural.sit.sit_legs import at_front
 from motion_backend.procedural.sit.sit_skill import before_seat, leave_seat, sit, stay_seated
 from motion_backend.procedural.tail import only_stands
 from motion_backend.procedural.touch.touch_skill import before_thing, come_to_thing, reach
@@ -52,6 +53,15 @@ def _bound_for(body: Body, part: Part, goal: Point, upcoming: tuple[Part, ...]) 
     return goal, part.facing
 
 
+def _sit(body: Body, part: Part) -> None:
+    """From standing, or from lying on the same piece."""
+    if body.posture is Posture.LYING:
+        body.enter(PhaseKind.GETUP)
+        seat = at_front(Seat.of(spot_of(part.action)), body.skeleton.scale)
+        sit_up(body, bearing_of(part.action.emotion, part.action.caption), seat)
+    sit(body, part)
+
+
 def _rise(body: Body, part: Part) -> None:
     """From what the body rests on to standing."""
     bearing = bearing_of(part.action.emotion, part.action.caption)
@@ -88,7 +98,7 @@ PLACES: dict[PartKind, Callable[[Body, Action], tuple[Point, float]]] = {
 PARTS: dict[PartKind, Callable[[Body, Part], None]] = {
     PartKind.WALK: _walk,
     PartKind.TURN: _walk,
-    PartKind.SIT: sit,
+    PartKind.SIT: _sit,
     PartKind.LIE: lie,
     PartKind.REACH: reach,
     PartKind.RISE: _rise,

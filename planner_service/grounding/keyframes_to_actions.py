@@ -21,6 +21,7 @@ from motion_backend.procedural.lie.lie_pose import place_to_lie
 from motion_backend.procedural.sit.sit_skill import seat_for
 from motion_backend.procedural.touch.hand_contacts import suits
 from motion_backend.scene import scene_of
+from motion_backend.state_machine import alongside
 from planner_service.grounding.touch_stance import LEG_ROOM, ElbowRoom
 from planner_service.scripts.caption_actions import Hands, done_in, look_of
 from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
@@ -130,16 +131,27 @@ def act(
     home: Home,
     seed: int,
     words: Words = hashed_words,
+<<<<<<< HEAD
     kept: Sequence[Kept | None] = (),
+=======
+    scale: float = 1.0,
+>>>>>>> main
 ) -> tuple[Action, ...]:
     """Ground every keyframe in the home. Raises UnreachableError naming the keyframe that cannot be done.
 
     An action's caption is what is performed: where the body knows no word of the keyframe's, the nearest of `words`.
+<<<<<<< HEAD
     `kept` has, for each keyframe that was grounded before, what came of it, else None: that stays as it was.
     """
     scene = scene_of(home)
     stage = _Stage(home, scene.walkable, np.random.default_rng([seed, 7]), words)
     known = kept or [None] * len(keyframes)
+=======
+    `scale` is the size of the body against one of 1.70 m.
+    """
+    scene = scene_of(home)
+    stage = _Stage(home, scene.walkable, np.random.default_rng([seed, 7]), words, scale)
+>>>>>>> main
     drafts: list[Action] = []
     for index, (keyframe, place, old) in enumerate(zip(keyframes, places, known, strict=True)):
         before = keyframes[index - 1] if index else None
@@ -156,10 +168,14 @@ def act(
 class _Stage:
     """The home while actions are being grounded: where the body stands and what it rests on."""
 
-    def __init__(self, home: Home, walkable: Walkable, rng: np.random.Generator, words: Words) -> None:
-        self.home, self.walkable, self.rng, self.words = home, walkable, rng, words
+    def __init__(
+        self, home: Home, walkable: Walkable, rng: np.random.Generator, words: Words, scale: float = 1.0
+    ) -> None:
+        self.home, self.walkable, self.rng, self.words, self.scale = home, walkable, rng, words, scale
         self.at: Point | None = None
         self.resting: Spot | None = None
+        self.on: Spot | None = None
+        """What it sits or lies on still."""
 
     def contact(self, index: int, keyframe: Keyframe, place: Place, free: str = "right") -> Action:
         """The action of a keyframe; walks get their goal later, when what follows them is known."""
@@ -173,8 +189,10 @@ class _Stage:
                 hand, spot = self._elbows.freely(spot, hand, keyframe.caption)
             else:
                 self.resting = spot
+            self.on = None if keyframe.skill is Skill.TOUCH else spot
             self.at = spot.standing
             return replace(action, object_id=spot.object_id, spot=spot, hand=hand, hold=HOLDS[keyframe.skill])
+        self.on = None
         if keyframe.skill in (Skill.STANDUP, Skill.GETUP) and self.resting is not None:
             return replace(action, object_id=self.resting.object_id, spot=self.resting)
         return action
@@ -202,13 +220,16 @@ class _Stage:
             )
         if need == "touch":
             return self._to_touch(found, keyframe.caption)
+        # Who sits or lies there lies down, or sits up, without leaving the piece.
+        found = [s for s in found if alongside(self.on, s)] or found
         if need == "sit":
-            return seat_for(found, mood, keyframe.caption, self._elbows.solid)
+            return seat_for(found, mood, keyframe.caption, self._elbows.solid, self.scale)
         return place_to_lie(found, keyframe.caption)
 
     def _to_touch(self, found: list[Spot], caption: str) -> Spot:
         """One of the spots of a piece of the wanted height, with room for arms, on which nothing lies."""
         wanted = height_of(caption)
+        found = [s for s in found if self._elbows.within_arms_way(s)] or found
         level = [[s for s in found if s.height == height] for height in (wanted, "medium", "low")]
         suited = ([s for s in some if suits(s, caption, self._elbows.solid)] for some in level)
         found = next(filter(None, suited), level[0] or level[1] or found)
@@ -218,7 +239,6 @@ class _Stage:
             found = self._elbows.roomiest(found)
             found.sort(key=lambda s: -s.point[1])
             found = [s for s in found if s.point[1] > found[0].point[1] - 0.1]
-        found = [s for s in found if self._elbows.within_arms_way(s)] or found
         least = min(self._cluttered(s) for s in found)
         found = [s for s in found if self._cluttered(s) == least]
         # The body may come back to a piece: it need not touch the very same place again.

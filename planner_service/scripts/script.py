@@ -175,7 +175,7 @@ class Beat(BaseModel):
     """Why no keyframe shows it; empty where one does."""
     unshown: tuple[Line, ...] = ()
     """What its words tell besides, which no keyframe shows: "for her ladyship"; all of them where something only stands
-    for it: a hand on the stove for "bakes a cake"."""
+    for it: a spin for "conducts an orchestra"."""
 
     @property
     def stood_for(self) -> bool:

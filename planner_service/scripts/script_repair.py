@@ -99,10 +99,10 @@ class Mending(Generic[K]):
         self._stand(self._resting.model_copy(update=fields(keyframe, update)))
 
     def _use(self, index: int, keyframe: K) -> None:
-        """Sit, lie or touch: on one's feet and beside the object, or from sitting to lying on the same one."""
+        """Sit, lie or touch: on one's feet and beside the object, or from sitting to lying and back on the same one."""
         place = place_of(keyframe)
-        lies_back = keyframe.skill is Skill.LIEDOWN and self.posture is Posture.SEATED
-        if not (lies_back and self._resting is not None and place_of(self._resting) == place):
+        stays = {Posture.SEATED: Skill.LIEDOWN, Posture.LYING: Skill.SITDOWN}.get(self.posture) is keyframe.skill
+        if not (stays and self._resting is not None and place_of(self._resting) == place):
             self._be_standing(index, keyframe)
             if self._at != place and not is_floor(keyframe.piece[0]):
                 self._note(index, "skill", f"{_told(keyframe)} without a walk to it", "loco put in")

@@ -131,7 +131,7 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     if nouns:
         return max(nouns, key=lambda one: _heroic(one, pronoun) + min(deeds[one.subject], 4) / 8).subject
     opening = ("a ", "an ", "one ", "my ", "our ", "the ")
-    called = not people and " " not in "".join(mains[:1]) and "".join(mains[:1])[:1].isupper()  # "Rose", "Wen"
+    called = not people and " " not in "".join(mains[:1]) and is_name("".join(mains[:1]))  # "Rose", "Wen"
     sooner = [(one.sentence, one.place) < first for one in told if one.joint in _MAIN_JOINTS][:1] == [True]
     living = [one for one in mains[:1] if sooner and (called or one.lower().startswith(opening)) and _may_live(one)]
     people.sort(key=lambda one: (bool(pronoun) and _is_plural(one.subject), one.sentence, one.place))
@@ -164,7 +164,8 @@ def _heroic(clause: Clause, pronoun: str) -> float:
     own, first = pronouns_of(clause.subject), clause.subject.split()[0].lower()
     fits = 4 * bool(pronoun and own == pronoun)
     several = _is_plural(clause.subject)
-    return fits - 2 * (first in OWNERS) - (1 + bool(pronoun)) * several / 2 - (clause.joint in _ASIDE)
+    small = head_of(clause.subject).lower() in ("baby", "infant", "newborn")
+    return fits - small - 2 * (first in OWNERS) - (1 + bool(pronoun)) * several / 2 - (clause.joint in _ASIDE)
 
 
 def _may_live(subject: str) -> bool:

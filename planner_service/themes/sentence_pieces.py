@@ -8,6 +8,8 @@ from typing import Final
 
 from planner_service.themes.asides import THAT
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, past, verb_of
+from planner_service.themes.theme_words import theme_words
+from planner_service.themes.things import things
 from planner_service.themes.verb_finder import Token, is_adverb, plain, tokens_of, verb_place
 
 HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
@@ -158,13 +160,25 @@ def _is_bare(before: Piece, piece: Piece) -> bool:
         return False
     verb = before.tokens[at].low
     if verb in grammar().do | grammar().modals:  # "did open the door, | touch the wall"
-        led = len(piece.tokens) > 1 and piece.tokens[1].low in grammar().marks | grammar().prepositions
-        return verb_of(first) == first and (led or not is_noun(first))
+        return _is_plain_verb(piece)
     if not (verb_of(verb) and verb_of(first)):
         return False
+    if at == 0 and not before.bare and verb_of(verb) == verb:  # "feed the cat, | iron a shirt"
+        return _is_plain_verb(piece)
     plain = before.bare or (at > 0 and before.tokens[at - 1].low in _PLAIN_SUBJECTS)
     both_plain = plain and verb_of(verb) == verb and verb_of(first) == first
     return both_plain or (len(piece.tokens) > 1 and all(past(verb_of(one)) == one for one in (verb, first)))
+
+
+def _is_plain_verb(piece: Piece) -> bool:
+    """Whether a piece begins with a verb in its base form, told by what follows where it may be a noun too."""
+    first, after = piece.tokens[0].low, piece.tokens[1] if len(piece.tokens) > 1 else None
+    known = grammar()
+    led = after is not None and (
+        after.text.startswith("«") or after.low in known.marks | known.prepositions | known.subjects | known.numbers
+    )
+    told = led or not is_noun(first) or first in theme_words()["speech_verbs"]
+    return verb_of(first) == first and (told or (after is not None and first not in things()))
 
 
 def _describes_next(piece: Piece, after: Sequence[Piece]) -> bool:

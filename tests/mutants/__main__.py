@@ -28,7 +28,7 @@ from mutants.watched_session import load_libraries
 ROOT: Final = Path(__file__).resolve().parents[2]
 LIMIT: Final = 0.80
 """Share of a package's sampled bugs that the tests are to see."""
-SECONDS: Final = 20.0
+SECONDS: Final = 40.0
 """Of tests that are tried on one bug."""
 LEFT_OUT: Final = (
     KERNEL,

@@ -10,7 +10,7 @@ import re
 import sys
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
 from typing import Any, Final
@@ -28,10 +28,15 @@ FILE_SECONDS: Final = 400.0
 """Processor time that the tests of one file may take while they are watched."""
 
 KERNEL: Final = "scene_graphs/graph/branch_and_bound_kernel.py"
-"""Compiled: no watching sees its lines, and bugs in it are tried uncompiled."""
 OF_KERNEL: Final = tuple(
     f"tests/scene_graphs/{name}.py" for name in ("graph/test_edit_distance", "retrieval/test_layout_index")
 )
+"""What sees its bugs."""
+JIT: Final = "from scene_graphs.jit import"
+RECORDED: Final = "/test_recorded_"
+"""Files whose tests see most."""
+UNCOMPILED: Final = 10.0
+"""Times as long a test takes."""
 IMPORTED: Final = re.compile(r"^\s*(?:from|import) (\w+)", re.MULTILINE)
 CTRACE: Final = {"COVERAGE_CORE": "ctrace"}
 """The tracer that can tell tests apart."""
@@ -160,26 +165,23 @@ class Selection:
         self._readers = cache(self._lines_that_read)
 
     def tests(self, bug: Bug) -> list[TimedTest]:
-        """Those of files that mirror the module, then others that run its line, then the rest of their files.
+        """Those that compare with what was recorded, those of files that mirror the module, then others that run its
+        line, then the rest of their files.
 
         Of a file all tests are tried, since what it makes once and keeps is seen to run in the first of them alone.
         Quick files go first, and what comes after `seconds` is left out.
         """
-        if bug.path == KERNEL:
-            return [
-                TimedTest(test, watching.file, 10 * seconds)
-                for watching in self._watchings
-                if watching.file in OF_KERNEL
-                for test, seconds in watching.tests.items()
-                if "compile" not in test
-            ]
+        if is_compiled(self._root, bug.path):
+            ranked = [(one, list(one.tests)) for one in self._watchings if _sees_compiled(one.file, bug.path)]
+            chosen = self._within(sorted(ranked, key=lambda one: one[0].seconds))
+            return [replace(one, seconds=UNCOMPILED * one.seconds) for one in chosen if "compile" not in one.name]
         shown = [bug] if not bug.names else list(self._readers(bug.path, bug.names)) or [bug]
         near, direct, rest = [], [], []
-        for watching in sorted(self._watchings, key=lambda one: one.seconds):
+        for watching in sorted(self._watchings, key=lambda one: (RECORDED not in one.file, one.seconds)):
             first = [test for test in watching.tests if any(watching.runs(test, one) for one in shown)]
-            if first or (not bug.names and watching.runs(Watched.IMPORTS, bug)):
+            if first or (bug in shown and watching.runs(Watched.IMPORTS, bug)):
                 others = [test for test in watching.tests if test not in set(first)]
-                if _mirrors(watching.file, bug.path):
+                if RECORDED in watching.file or _mirrors(watching.file, bug.path):
                     near.append((watching, [*first, *others]))
                 else:
                     direct.append((watching, first))
@@ -211,6 +213,16 @@ class Selection:
         return found
 
 
+def _sees_compiled(test: str, module: str) -> bool:
+    return test in OF_KERNEL if module == KERNEL else _mirrors(test, module)
+
+
+@cache
+def is_compiled(root: Path, path: str) -> bool:
+    """Whether a module is compiled when it is called: no watching sees its lines, and its bugs are tried uncompiled."""
+    return JIT in (root / path).read_text(encoding="utf-8")
+
+
 def _mirrors(test: str, module: str) -> bool:
     """Whether a test file stands where a module does."""
     return Path(test).parent == Path("tests") / Path(module).parent
@@ -219,9 +231,14 @@ def _mirrors(test: str, module: str) -> bool:
 def _readers(text: str, names: tuple[str, ...]) -> set[int]:
     """Lines inside functions that read one of some names."""
     functions = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)]
-    return {
-        node.lineno
-        for function in functions
-        for node in ast.walk(function)
-        if (isinstance(node, ast.Name) and node.id in names) or (isinstance(node, ast.Attribute) and node.attr in names)
-    }
+    lines: set[int] = set()
+    for function in functions:
+        first = function.body[0].lineno
+        for node in ast.walk(function):
+            if (isinstance(node, ast.Name) and node.id in names) or (
+                isinstance(node, ast.Attribute) and node.attr in names
+            ):
+                # What is read for an argument that is not given counts wherever the function is called.
+                whole = range(first, (function.end_lineno or first) + 1)
+                lines |= {node.lineno} if node.lineno >= first else set(whole)
+    return lines

@@ -9,7 +9,7 @@ from typing import Final
 import pytest
 
 from mutants.bug import Bug
-from mutants.coverage_map import KERNEL, Selection, TimedTest
+from mutants.coverage_map import Selection, TimedTest, is_compiled
 from mutants.scratch_tree import ScratchTree
 from mutants.watched_session import OPTIONS, Chosen, child
 
@@ -35,7 +35,7 @@ def attempt(bug: Bug, tree: ScratchTree, selection: Selection) -> Verdict:
     if not tests:
         return Verdict(bug, False, "no test of the quick layer runs it")
     with tree.with_bug(bug):
-        code, failed = _run(tree, tests, compiled=bug.path != KERNEL)
+        code, failed = _run(tree, tests, uncompiled=is_compiled(tree.folder, bug.path))
     if code == 124:
         return Verdict(bug, True, "(it does not end)")
     if code not in (0, 1, 2):
@@ -43,14 +43,14 @@ def attempt(bug: Bug, tree: ScratchTree, selection: Selection) -> Verdict:
     return Verdict(bug, code != 0, failed or f"{len(tests)} tests pass")
 
 
-def _run(tree: ScratchTree, tests: list[TimedTest], compiled: bool) -> tuple[int, str]:
+def _run(tree: ScratchTree, tests: list[TimedTest], uncompiled: bool) -> tuple[int, str]:
     note = tree.out.with_suffix(".failed")
     note.unlink(missing_ok=True)
     files = list(dict.fromkeys(test.file for test in tests))
     by_file = [test.name for file in files for test in tests if test.file == file]
 
     def work() -> int:
-        if not compiled:
+        if uncompiled:
             import numba
 
             vars(numba.config)["DISABLE_JIT"] = True

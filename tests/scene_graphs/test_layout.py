@@ -60,7 +60,7 @@ def test_a_row_is_read_with_pos_for_position_and_canonical_categories() -> None:
     assert layout.objects[0].position == (0.0, 0.0, 1.0)
     assert layout.objects[0].category == "sofa"
     assert layout.tags == ("bedroom",)
-    assert layout.doors[0].top == 2.1
+    assert (layout.doors[0].bottom, layout.doors[0].top) == (0.0, 2.1)
 
 
 def test_writing_a_row_and_reading_it_is_the_identity() -> None:

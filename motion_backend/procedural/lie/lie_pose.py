@@ -36,6 +36,8 @@ NECK, SKULL, MIDDLE = (0.0, 0.20, 0.0), (0.0, 0.09, 0.0), (0.0, 0.06, 0.01)
 
 LOWER: Final = (0.0, -0.065, 0.0)
 """The right hand lies so much lower where both lie on the trunk (metres at 1.70 m)."""
+TALLER: Final = 0.06
+"""How much higher a pelvis rests for every 1.70 m by which a body is larger (metres)."""
 ROLL: Final = 1.31
 """How far a pelvis is turned over to lie on a side (radians)."""
 SKULL_RADIUS: Final = 0.085
@@ -109,16 +111,20 @@ class Bed:
     beside: tuple[float, float] = (np.inf, np.inf)
     """Distance to what is in the way beside the body's left and right (metres)."""
 
+    lift: float = 0.0
+    """How much higher than of others the pelvis of a large body rests (metres)."""
+
     @staticmethod
-    def of(spot: Spot) -> Bed:
-        """The bed of a lie spot."""
-        pelvis = np.asarray(spot.point) + LYING_REST * np.asarray(spot.normal)
-        return Bed(pelvis, spot.facing, spot.approach, spot.edge, spot.back)
+    def of(spot: Spot, scale: float = 1.0) -> Bed:
+        """The bed of a lie spot, for a body of that size."""
+        lift = TALLER * max(scale - 1, 0.0)
+        pelvis = np.asarray(spot.point) + (LYING_REST + lift) * np.asarray(spot.normal)
+        return Bed(pelvis, spot.facing, spot.approach, spot.edge, spot.back, lift=lift)
 
     @property
     def surface(self) -> float:
         """Height of the mattress (metres)."""
-        return float(self.pelvis[1]) - LYING_REST
+        return float(self.pelvis[1]) - LYING_REST - self.lift
 
     @property
     def edge_side(self) -> str:
@@ -239,7 +245,7 @@ def _on_a_side(pose: Pose, bed: Bed, style: Lying, skeleton: Skeleton, keys: Lie
     curl = row.tucked_curl_rad if style.legs == "tucked" else 0.0
     pose = replace(
         pose,
-        pelvis=bed.pelvis + row.pelvis_up_m * UP,
+        pelvis=bed.pelvis + (row.pelvis_up_m + bed.lift) * UP,
         hips=_askew(bed.hips(style.side), bed, style.own),
         spine=bend(curl + abs(style.own.curve), side=row.spine_side_rad * down, turn=row.spine_turn_rad * down),
     )

@@ -8,7 +8,7 @@ import numpy as np
 
 from motion_backend.backend_protocol import Part
 from motion_backend.body.scene_collision import Obstacles
-from motion_backend.motion import FPS, Action, PhaseKind
+from motion_backend.motion import FPS, Action, PhaseKind, Posture
 from motion_backend.procedural.body_state import Body, Point, spot_of, spot_under
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import UP, Seat, idle
@@ -16,8 +16,9 @@ from motion_backend.procedural.lie.lie_keys import lie_keys, paced
 from motion_backend.procedural.lie.lie_on_floor import Mat, kneel_down, kneel_up, lie_down_from_knees, rise_to_knees
 from motion_backend.procedural.lie.lie_pose import Bed, lacking
 from motion_backend.procedural.lie.lie_styles import lie_style, own_way
-from motion_backend.procedural.lie.lie_transition import edge_seat, lie_down, rise_to_edge
+from motion_backend.procedural.lie.lie_transition import edge_seat, lie_down, on_the_edge, rise_to_edge
 from motion_backend.procedural.sit.sit_keys import sit_keys
+from motion_backend.procedural.sit.sit_legs import at_front
 from motion_backend.procedural.sit.sit_skill import leave_seat
 from motion_backend.procedural.sit.sit_styles import Seated
 from motion_backend.procedural.sit.sit_transition import NOTHING, lower_onto
@@ -56,13 +57,21 @@ def before_bed(body: Body, action: Action) -> tuple[Point, float]:
 
 
 def lie(body: Body, part: Part) -> None:
-    """From standing: onto the edge of the bed, or onto the knees on the floor; down, and into the pose."""
+    """From standing: onto the edge of the bed, or onto the knees on the floor; down, and into the pose; or from where
+    the body sits."""
     action = part.action
     keys = paced(lie_keys(), body.rng)
     style = own_way(lie_style(action.emotion, action.caption), keys.own, body.seed, body.rng)
     spot = spot_of(action)
     made = _made(body, spot)
     body.note(*lacking(style, made, body.skeleton, keys.pose))
+    if body.posture is Posture.SEATED:
+        body.enter(PhaseKind.LIEDOWN)
+        seat = at_front(Seat.of(spot_under(body)), body.skeleton.scale)
+        body.add(on_the_edge(body.pose, seat, style.bearing, body.skeleton, keys, sit_keys().up.gather))
+        body.add(lie_down(body.pose, seat, made, style, body.skeleton, keys))
+        body.holds = NOTHING
+        return
     body.enter(PhaseKind.WALK)
     go(body, *before_bed(body, action), action)
     body.enter(PhaseKind.EDGE)
@@ -85,13 +94,19 @@ def stay_lying(body: Body, part: Part) -> None:
     body.add(idle(body.pose, part.hold, CALM * style.bearing.restless, body.rng, FPS))
 
 
+def sit_up(body: Body, bearing: Bearing, seat: Seat) -> None:
+    """From lying to sitting on a seat at the edge."""
+    keys = paced(lie_keys(), body.rng)
+    body.add(rise_to_edge(body.pose, seat, Bed.of(spot_under(body), body.skeleton.scale), bearing, body.skeleton, keys))
+
+
 def get_up(body: Body, bearing: Bearing) -> None:
     """From lying to the edge of the bed, or from the floor to the knees."""
-    spot, keys = spot_under(body), paced(lie_keys(), body.rng)
+    spot = spot_under(body)
     if _on_floor(spot):
-        body.add(rise_to_knees(body.pose, Mat(Bed.of(spot), body.skeleton), bearing, keys))
+        body.add(rise_to_knees(body.pose, Mat(Bed.of(spot, body.skeleton.scale), body.skeleton), bearing, paced(lie_keys(), body.rng)))
     else:
-        body.add(rise_to_edge(body.pose, _edge_of(body, spot), Bed.of(spot), bearing, body.skeleton, keys))
+        sit_up(body, bearing, _edge_of(body, spot))
 
 
 def leave_bed(body: Body, bearing: Bearing) -> None:
@@ -100,7 +115,7 @@ def leave_bed(body: Body, bearing: Bearing) -> None:
     if not _on_floor(spot):
         leave_seat(body, _edge_of(body, spot), bearing)
         return
-    body.add(kneel_up(body.pose, Mat(Bed.of(spot), body.skeleton), bearing, paced(lie_keys(), body.rng).floor_up))
+    body.add(kneel_up(body.pose, Mat(Bed.of(spot, body.skeleton.scale), body.skeleton), bearing, paced(lie_keys(), body.rng).floor_up))
 
 
 def _on_floor(spot: Spot) -> bool:
@@ -109,12 +124,13 @@ def _on_floor(spot: Spot) -> bool:
 
 def _edge_of(body: Body, spot: Spot) -> Seat:
     """The edge of a bed that is sat on before and after lying."""
-    return edge_seat(Bed.of(spot), spot.standing, spot.approach, spot.edge, body.skeleton.scale)
+    return edge_seat(Bed.of(spot, body.skeleton.scale), spot.standing, spot.approach, spot.edge, body.skeleton.scale)
 
 
 def _made(body: Body, spot: Spot) -> Bed:
     """The bed with what lies on it and stands around it."""
-    bed, scale = Bed.of(spot), body.skeleton.scale
+    scale = body.skeleton.scale
+    bed = Bed.of(spot, scale)
     up = np.array([np.sin(bed.head_yaw), 0.0, np.cos(bed.head_yaw)])
     left = np.array([-up[2], 0.0, up[0]])
     solid = body.scene.obstacles.solid()

@@ -15,6 +15,9 @@ from motion_backend.procedural.lie.lie_keys import LieKeys, LiePose, OverEdge, P
 from motion_backend.procedural.lie.lie_pose import Bed, lying
 from motion_backend.procedural.lie.lie_styles import Lying
 from motion_backend.procedural.pose import Pose, interpolate
+from motion_backend.procedural.sit.sit_keys import Move
+from motion_backend.procedural.sit.sit_legs import at_front
+from motion_backend.procedural.sit.sit_transition import hands_take, place_feet
 from motion_backend.procedural.touch.hand_contacts import palm_on
 from motion_backend.procedural.walk.footsteps import home_ankle
 from motion_backend.rotations import Array
@@ -26,8 +29,8 @@ ASIDE, HIGHER = 0.10, 0.03
 """How far it goes aside to come off the other one, and towards the head (metres)."""
 CROSSED = 0.07
 """Ankles nearer to each other from side to side are crossed (metres)."""
-ON_EDGE = 0.12
-"""Who sits on the edge of a bed sits so far inside it at least (metres)."""
+ON_EDGE, WELL_ON = 0.12, 0.301
+"""Who sits on the edge of a bed sits so far inside it at least, and at most (metres)."""
 SOFT = 0.01
 """How much lower the pelvis is that sits on what it would lie on (metres)."""
 PAST_HAND = 0.12
@@ -44,12 +47,12 @@ def edge_seat(bed: Bed, standing_point: tuple[float, float], outward: float, edg
     out = np.array([np.sin(outward), 0.0, np.cos(outward)])
     stand = np.array([standing_point[0], 0.0, standing_point[1]])
     from_bed = float((stand - bed.pelvis) @ out)
-    inside = float(np.clip(from_bed - SHIN_REACH * scale, -np.inf, edge - ON_EDGE))
+    inside = float(np.clip(from_bed - SHIN_REACH * scale, edge - WELL_ON, edge - ON_EDGE))
     along = stand - bed.pelvis - from_bed * out
     along[1] = 0.0
     pelvis = bed.pelvis + inside * out + along
     pelvis[1] = bed.pelvis[1] - SOFT
-    return Seat(pelvis, outward, np.inf)
+    return at_front(Seat(pelvis, outward, np.inf, edge - inside), scale)
 
 
 @dataclass(frozen=True)
@@ -111,6 +114,14 @@ class Edge:
     def in_order(self, hands: Array) -> Array:
         """What is given for the hand below and the one above, for left and right. (2, ...)."""
         return hands if self.below == 0 else hands[::-1]
+
+
+def on_the_edge(start: Pose, seat: Seat, bearing: Bearing, skeleton: Skeleton, keys: LieKeys, move: Move) -> Pose:
+    """From a way of sitting to sitting upright on the edge, feet side by side and hands free."""
+    seated = _sitting(keys.up.end, start, seat, skeleton)
+    seconds = hands_take(start, seated, move, skeleton) / bearing.tempo
+    moved = interpolate([0.0, seconds], [start, replace(seated, ankles=start.ankles, feet=start.feet)], FPS)
+    return place_feet(moved, start, seated, move, skeleton)
 
 
 def lie_down(landed: Pose, seat: Seat, bed: Bed, style: Lying, skeleton: Skeleton, keys: LieKeys) -> Pose:
@@ -190,7 +201,7 @@ def freed(pose: Pose, bed: Bed) -> list[Pose]:
 def _sitting(row: SittingUp, start: Pose, seat: Seat, skeleton: Skeleton) -> Pose:
     """Upright on the edge with both feet down."""
     out = np.array([np.sin(seat.yaw), np.cos(seat.yaw)])
-    feet_at = seat.pelvis[[0, 2]] + SHIN_REACH * skeleton.scale * out
+    feet_at = seat.pelvis[[0, 2]] + seat.feet_ahead(skeleton.scale) * out
     return replace(
         start,
         pelvis=seat.pelvis,

@@ -15,8 +15,9 @@ from motion_backend.procedural.sit.sit_own import NOBODY, OwnSeat
 from motion_backend.rotations import Array
 from motion_backend.skeleton import ANKLE_HEIGHT, INDEX, Skeleton
 
-HANGING: Final = 0.72
-"""Above this pelvis height over the ankle feet hang (metres at 1.70 m)."""
+CLEARS, THIGH_UNDER = 0.17, 0.068
+"""A thigh's middle line comes down no farther to a seat's front edge, from the hip, for feet to stand before it
+(metres), less what is under that line (metres at 1.70 m): seats give, and so does flesh."""
 HEEL: Final = 0.055
 """Ankle to heel along the sole (metres at 1.70 m)."""
 EASY_ANKLE: Final = 0.45
@@ -107,7 +108,7 @@ def seated_legs(
 ) -> Legs:
     """Both legs on a seat, where the left and the right foot have that much room."""
     ways = WAYS["folded" if legs == "crossed" and seat.is_low(skeleton.scale) else legs]
-    hung = seat.pelvis[1] - skeleton.ankle_height > HANGING * skeleton.scale
+    hung = feet_hang(seat, skeleton.scale)
     solved: list[tuple[Array, Array, Array, float]] = []
     for index, way in enumerate(ways):
         leg = _leg(keys.of(way), seat, skeleton, room[index].ahead)
@@ -242,9 +243,8 @@ def bends_a_leg(seat: Seat, legs: str, skeleton: Skeleton, room: tuple[Room, Roo
     scale = skeleton.scale
     least = straight_reach(seat, scale) - STRETCH_STEP
     rows = [keys.of(way) for way in WAYS[legs]]
-    too_high = _drop(seat, scale) > HANGING * scale
     return any(
-        straight and (too_high or _ahead(row, seat, skeleton, one.ahead) - row.beyond_m * scale < least)
+        straight and (feet_hang(seat, scale) or _ahead(row, seat, skeleton, one.ahead) - row.beyond_m * scale < least)
         for straight, row, one in zip(is_to_be_straight(legs), rows, room, strict=True)
     )
 
@@ -262,16 +262,36 @@ def perch(seat: Seat, scale: float) -> float:
     return max(seat.edge - PERCH, 0.0)
 
 
+def at_front(seat: Seat, scale: float) -> Seat:
+    """The seat as one gets onto it and off it, with feet on the floor: short legs would go through it but at its very
+    front."""
+    slope = _slope(seat.feet_ahead(scale), float(seat.pelvis[1]) - ANKLE_HEIGHT * scale, scale)
+    clears = (CLEARS - THIGH_UNDER * scale) / np.tan(slope) if slope > 0 else np.inf
+    ahead = seat.edge - float(clears)
+    if ahead <= 0 or seat.is_low(scale):
+        return seat
+    way = np.array([np.sin(seat.yaw), 0.0, np.cos(seat.yaw)])
+    return Seat(seat.pelvis + ahead * way, seat.yaw, seat.back + ahead, seat.edge - ahead)
+
+
+def feet_hang(seat: Seat, scale: float) -> bool:
+    """Whether feet of who sits there do not come down to the floor."""
+    return at_front(seat, scale) is not seat
+
+
 def _stretch(edge: float, drop: float, scale: float) -> float:
     """How far ahead a stretched foot goes: as far as the thigh clears the seat's front edge, so far ahead (metres)."""
-    thigh, shank = THIGH * scale, SHANK * scale
     for ahead in np.arange(MAX_STRETCH, SHIN_REACH, -STRETCH_STEP) * scale:
-        reach = float(np.hypot(ahead, drop))
-        if reach > MAX_STRETCH * scale:
+        if np.hypot(ahead, drop) > MAX_STRETCH * scale:
             continue
-        # The knee lies above the line from hip to ankle: the thigh's slope follows from the triangle they make.
-        inner = np.arccos(np.clip((thigh**2 + reach**2 - shank**2) / (2 * thigh * reach), -1.0, 1.0))
-        sinks = np.tan(np.arctan2(drop, ahead) - inner) * edge
-        if sinks < MAX_SINK * scale:
+        if np.tan(_slope(float(ahead), drop, scale)) * edge < MAX_SINK * scale:
             return float(ahead)
     return SHIN_REACH * scale
+
+
+def _slope(ahead: float, drop: float, scale: float) -> float:
+    """How steeply a thigh goes down whose ankle is so far ahead of its hip and below it (metres; radians)."""
+    thigh, shank, reach = THIGH * scale, SHANK * scale, float(np.hypot(ahead, drop))
+    # The knee lies above the line from hip to ankle: the thigh's slope follows from the triangle they make.
+    inner = np.arccos(np.clip((thigh**2 + reach**2 - shank**2) / (2 * thigh * reach), -1.0, 1.0))
+    return float(np.arctan2(drop, ahead) - inner)

@@ -12,22 +12,23 @@ import numpy as np
 
 from motion_backend.backend_protocol import Part
 from motion_backend.body.scene_collision import Obstacles
-from motion_backend.motion import FPS, Action, Emotion, PhaseKind
+from motion_backend.motion import FPS, Action, Emotion, PhaseKind, Posture
 from motion_backend.procedural.body_state import Body, Point, spot_of
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import SHIN_REACH, Seat, idle
 from motion_backend.procedural.sit.sit_keys import sit_keys
-from motion_backend.procedural.sit.sit_legs import Room, is_to_be_straight, perch, straight_reach
+from motion_backend.procedural.sit.sit_legs import Room, at_front, is_to_be_straight, perch, straight_reach
 from motion_backend.procedural.sit.sit_own import in_own_way, own_seat
 from motion_backend.procedural.sit.sit_pose import LEANS_BACK, ON_TABLE, Place, back_for, lacking
 from motion_backend.procedural.sit.sit_styles import Seated, sit_style
-from motion_backend.procedural.sit.sit_transition import sit_down, stand_up
+from motion_backend.procedural.sit.sit_transition import settle_in, sit_down, stand_up
 from motion_backend.procedural.touch.gestures import gesture
 from motion_backend.procedural.touch.hand_rests import BACK, HOLDS, Hold, Holds, follow, on_thing
 from motion_backend.procedural.touch.handholds import TABLE_REACH, Pair, handholds, table_before
 from motion_backend.procedural.walk.walk_skill import go
 from motion_backend.rotations import Array
 from scene_graphs.affordances.affordances import Spot
+from scene_graphs.affordances.sit_and_lie import EDGE
 
 SHIN = 0.05
 """Half as wide as a shin is (metres)."""
@@ -51,25 +52,29 @@ SLOW, QUICK = 0.76, 1.25
 
 def before_seat(body: Body, action: Action) -> tuple[Point, float]:
     """Where to stand so that shins will be upright once seated, and the yaw with the back to the seat."""
-    seat = Seat.of(spot_of(action))
+    seat = at_front(Seat.of(spot_of(action)), body.skeleton.scale)
     return seat.standing_point(body.skeleton.scale), seat.yaw
 
 
 def sit(body: Body, part: Part) -> None:
-    """From standing: down onto the seat, and into the way of sitting."""
+    """From standing: down onto the seat, and into the way of sitting; or only into it, for who has sat up there."""
     action = part.action
     own = own_seat(sit_keys().spread, body.seed, body.rng)
     style = replace(sit_style(action.emotion, action.caption), own=own)
     seat = Seat.of(spot_of(action))
     keys = in_own_way(sit_keys(), own, seat.is_low(body.skeleton.scale))
-    body.enter(PhaseKind.WALK)
-    go(body, *before_seat(body, action), action)
+    if body.posture is not Posture.LYING:
+        body.enter(PhaseKind.WALK)
+        go(body, *before_seat(body, action), action)
     body.enter(PhaseKind.SITDOWN)
     around = handholds(seat, body.scene.obstacles, body.skeleton.scale)
     place = Place(seat, around, leg_room(body.scene.obstacles, seat, body.skeleton.scale))
-    under = around.behind if seat.is_low(body.skeleton.scale) else around.beside
-    felt = _grips(around.armrests, under, seat, style.manner.hands)
-    down, body.holds = sit_down(body.pose, place, style, felt, body.skeleton, keys)
+    if body.posture is Posture.LYING:
+        down, body.holds = settle_in(body.pose, place, style, body.skeleton, keys)
+    else:
+        under = around.behind if seat.is_low(body.skeleton.scale) else around.beside
+        felt = _grips(around.armrests, under, seat, style.manner.hands)
+        down, body.holds = sit_down(body.pose, place, style, felt, body.skeleton, keys)
     body.add(down)
     body.note(*lacking(style, place, body.skeleton, sit_keys().pose))
 
@@ -143,12 +148,16 @@ ABOUT = 1.4
 """A table in reach is within this distance of the pelvis (metres)."""
 
 
-def seat_for(found: Sequence[Spot], emotion: Emotion, caption: str, obstacles: Obstacles) -> Spot:
+def seat_for(
+    found: Sequence[Spot], emotion: Emotion, caption: str, obstacles: Obstacles, scale: float = 1.0
+) -> Spot:
     """The first of the sit spots, and the place on it, where the most hands have what they are to lie on.
 
+    Who is smaller (`scale`) sits nearer to its front, for knees to bend over the edge.
     Chairs stand so far from their tables that a body can get between: at a table one sits on the front of the seat.
     """
     style = sit_style(emotion, caption)
+    found = [_slid(spot, spot.edge - EDGE * scale) for spot in found] if scale < 1.0 else found
     if set(ON_TABLE) & set(style.arms):
         return next((near for spot in found if (near := _drawn_up(spot, obstacles))), found[0])
     if any(is_to_be_straight(style.legs)):

@@ -11,7 +11,7 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays
-from motion_backend.procedural.held_poses import UP, Seat, bend, both_sides, part_way, standing, upright
+from motion_backend.procedural.held_poses import BENT_LEG, UP, Seat, bend, both_sides, part_way, standing, upright
 from motion_backend.procedural.pose import Pose, concatenate, interpolate, smooth
 from motion_backend.procedural.pose_solver import released
 from motion_backend.procedural.sit.sit_keys import (
@@ -26,6 +26,7 @@ from motion_backend.procedural.sit.sit_keys import (
     SitKeys,
     StandUp,
 )
+from motion_backend.procedural.sit.sit_legs import at_front
 from motion_backend.procedural.sit.sit_pose import Place, seated
 from motion_backend.procedural.sit.sit_styles import Manner, Seated
 from motion_backend.procedural.touch.hand_rests import Holds, at_rest, follow
@@ -51,6 +52,10 @@ WAITS, WAITS_TO_STAND = 0.5, 0.9
 STRAIGHT, SLOWLY = (0.93, 0.10), 0.5
 """A leg longer than such a share of its length is near straight, and the straighter the more slowly its foot sets out,
 up to such a power of its share of the way."""
+HOPS = 0.03
+"""A leg that is too short by more than this does not stretch for the floor (metres)."""
+SLIDES = 0.05
+"""A pelvis that moves by more while feet are taken elsewhere slides on its seat (metres)."""
 BEHIND = 0.02
 """A foot that is so much nearer to the pelvis lies behind the other's shin (metres)."""
 SINK = 0.014
@@ -73,25 +78,31 @@ def sit_down(
 
     `felt` is what the hands feel for on the way down. Returned with it is what they lie on in the end.
     """
-    pace, take = 1 / style.bearing.tempo, keys.down.take
+    pace = 1 / style.bearing.tempo
     ready = _looking_back(start, style.manner, pace, keys.down.look)
     before = start if ready is None else ready.at(len(ready) - 1)
-    down = lower_onto(before, place.seat, style, felt, skeleton, keys.down)
+    front = at_front(place.seat, skeleton.scale)
+    down = lower_onto(before, front, style, felt, skeleton, keys.down)
     landed = down.at(len(down) - 1)
-    settle = _settling(landed, place.seat, style, pace, keys.down.settle)
-    touched = settle.at(len(settle) - 1)
+    settle = _settling(landed, front, style, pace, keys.down.settle)
+    moved, holds = settle_in(settle.at(len(settle) - 1), place, style, skeleton, keys)
+    return concatenate([part for part in (ready, down, settle, moved) if part is not None]), holds
+
+
+def settle_in(touched: Pose, place: Place, style: Seated, skeleton: Skeleton, keys: SitKeys) -> tuple[Pose, Holds]:
+    """From the seat that is sat on into the way of sitting, and what the hands then lie on."""
+    pace, take = 1 / style.bearing.tempo, keys.down.take
     landed = released(touched, skeleton)
     settled, holds = seated(landed, place, style, skeleton, keys.pose)
     poses = [landed, replace(settled, ankles=landed.ankles, feet=landed.feet)]
     low = place.seat.is_low(skeleton.scale)
-    seconds = _hands_take(landed, settled, take, skeleton) * pace * (ROUND_KNEES if low else 1.0)
+    seconds = hands_take(landed, settled, take, skeleton) * pace * (ROUND_KNEES if low else 1.0)
     moved = interpolate([0.0, seconds], poses, FPS)
-    moved = follow(_place_feet(moved, landed, settled, take, skeleton), settled, holds, skeleton)
-    moved = _taken(moved, landed, holds)
-    return concatenate([part for part in (ready, down, settle, moved) if part is not None]), holds
+    moved = follow(place_feet(moved, landed, settled, take, skeleton), settled, holds, skeleton)
+    return _taken(moved, landed, holds), holds
 
 
-def _hands_take(start: Pose, end: Pose, move: Move, skeleton: Skeleton) -> float:
+def hands_take(start: Pose, end: Pose, move: Move, skeleton: Skeleton) -> float:
     """Seconds that hands take from pose to pose at tempo 1: from the head longer than from the lap."""
     travel = float(np.linalg.norm(end.arms - start.arms, axis=1).max()) * ARM * skeleton.scale
     return max(move.min_time_s, move.time_per_m_s * travel)
@@ -150,7 +161,7 @@ def lower_onto(start: Pose, seat: Seat, style: Seated, felt: Holds, skeleton: Sk
     """Standing to first contact with the seat, a hand or two feeling for it."""
     depth = _depth(start, seat, skeleton.scale)
     way = _way_down(seat, style, depth, keys.lower, seat.is_low(skeleton.scale))
-    poses = [_lowered(row, start, way) for row in keys.pose]
+    poses = [_in_reach(_lowered(row, start, way), skeleton) for row in keys.pose]
     contact = at_rest(poses[-1], felt, skeleton)
     before = [
         _feeling(pose, contact, row.felt_share, felt, skeleton)
@@ -189,6 +200,18 @@ def _lowered(row: Lowered, start: Pose, way: _WayDown) -> Pose:
     )
 
 
+def _in_reach(pose: Pose, skeleton: Skeleton) -> Pose:
+    """A key pose with feet off the floor where the seat is too high for its legs: one hops up, and down."""
+    ankles, planted = pose.ankles.copy(), pose.planted.copy()
+    for index, side in enumerate(("left", "right")):
+        hip = pose.pelvis + rotations.rotate(pose.hips, skeleton.offsets[INDEX[f"{side}_hip"]])
+        level = np.hypot(*(ankles[index] - hip)[[0, 2]])
+        height = np.sqrt(max((BENT_LEG * skeleton.scale) ** 2 - level**2, 0.0))
+        if hip[1] - ankles[index, 1] > height + HOPS:
+            ankles[index, 1], planted[index] = hip[1] - height, 0.0
+    return replace(pose, ankles=ankles, planted=planted)
+
+
 def _feeling(pose: Pose, contact: Pose, share: float, felt: Holds, skeleton: Skeleton) -> Pose:
     """Hands that will hold on come out to the side on their way round the thighs, and are there so far already."""
     outwards = AROUND * contact.reaching[:, None] * both_sides(ROUND_THIGHS)
@@ -224,11 +247,14 @@ def knees_over_feet(pose: Pose) -> Array:
     return np.asarray(forward + (KNEES_UP + LEVEL_KNEES_UP * level) * UP)
 
 
-def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move, skeleton: Skeleton) -> Pose:
+def place_feet(pose: Pose, before: Pose, after: Pose, move: Move, skeleton: Skeleton) -> Pose:
     """Move the feet one after the other in small lifted steps from where they were to where they go."""
     ankles, feet, planted, knees = pose.ankles.copy(), pose.feet.copy(), pose.planted.copy(), pose.knees.copy()
     time, each = np.arange(1, len(pose) + 1) / FPS, move.foot_time_s
     wait = (WAITS if after.planted.all() else WAITS_TO_STAND) * each
+    if float(np.linalg.norm(after.pelvis - before.pelvis)) > SLIDES:
+        # Who slides back on a seat that is too high for the feet takes both along.
+        wait = 0.0
     for order, index in enumerate(_first_foot(before, after)):
         gap = float(np.linalg.norm(after.ankles[index] - before.ankles[index]))
         share = np.clip((time - move.first_foot_s - order * wait) / max(each, STEP * gap), 0.0, 1.0)
@@ -247,7 +273,7 @@ def _place_feet(pose: Pose, before: Pose, after: Pose, move: Move, skeleton: Ske
     if short:
         # The feet take longer than the trunk: hold the trunk until both are placed.
         held = pose.at(slice(len(pose) - 1, len(pose)))
-        return _place_feet(concatenate([pose, *([held] * short)]), before, after, move, skeleton)
+        return place_feet(concatenate([pose, *([held] * short)]), before, after, move, skeleton)
     return replace(pose, ankles=ankles, feet=feet, planted=planted, knees=knees)
 
 
@@ -278,7 +304,7 @@ def stand_up(
 
     Feet are so much farther back than under upright shins (`drawn`, metres): the less the weight has to go ahead.
     """
-    low, pace = seat.is_low(skeleton.scale), 1 / bearing.tempo
+    low, pace, seat = seat.is_low(skeleton.scale), 1 / bearing.tempo, at_front(seat, skeleton.scale)
     place = seat.standing_point(skeleton.scale) - drawn * np.array([np.sin(seat.yaw), np.cos(seat.yaw)])
     end = standing((float(place[0]), float(place[1])), seat.yaw, bearing, skeleton)
     depth = _depth(end, seat, skeleton.scale)
@@ -286,10 +312,10 @@ def stand_up(
     ready, rows = keys.pose[0], keys.low_pose if low else keys.pose[1:]
     fold = keys.rise.low_fold_share if low else 0.0
     over = _over_the_feet(start, end, seat, keys.rise.gathered_share * lean, fold, ready)
-    over = at_rest(over, push, skeleton)
-    seconds = _hands_take(start, over, keys.gather, skeleton) * pace
+    over = at_rest(_in_reach(over, skeleton), push, skeleton)
+    seconds = hands_take(start, over, keys.gather, skeleton) * pace
     gather = interpolate([0.0, seconds], [start, replace(over, ankles=start.ankles, feet=start.feet)], FPS)
-    gather = follow(_place_feet(gather, start, over, keys.gather, skeleton), over, push, skeleton)
+    gather = follow(place_feet(gather, start, over, keys.gather, skeleton), over, push, skeleton)
     gather = _taken(gather, start, push)
     over = gather.at(len(gather) - 1)
     seconds = keys.rise.time_s * pace * (ANY_DEPTH + EACH_DEPTH * depth) * (keys.rise.low_time_ratio if low else 1.0)
@@ -300,7 +326,7 @@ def stand_up(
         **_lean(seat, lean, fold, ready),
     )
     over_feet = lean * (keys.rise.low_lean_ratio if low else 1.0)
-    risen = [_risen(row, over, end, seat, over_feet) for row in rows]
+    risen = [_in_reach(_risen(row, replace(over, ankles=end.ankles, planted=end.planted), end, seat, over_feet), skeleton) for row in rows]
     up = interpolate([0.0, *times], [over, leant, *risen, replace(end, reach=over.reach, palms=over.palms)], FPS)
     up = follow(replace(up, knees=knees_over_feet(up)), over, push, skeleton)
     return concatenate([gather, up])

@@ -17,7 +17,7 @@ from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays
 from motion_backend.procedural.held_poses import UP, bend, shoulders, upright
 from motion_backend.procedural.pose import Pose, interpolate, settle_from, smooth
-from motion_backend.procedural.pose_solver import chest_frame, released
+from motion_backend.procedural.pose_solver import chest_frame, released, trunk_and_legs
 from motion_backend.procedural.sit.sit_transition import knees_over_feet
 from motion_backend.procedural.touch.hand_actions import Way, deed
 from motion_backend.procedural.touch.hand_captions import Laid
@@ -274,7 +274,7 @@ def _reaching(start: Pose, laid: Laid, skeleton: Skeleton, depth: Depth, keys: R
 
 
 def _misses(tries: Pose, laid: Laid, skeleton: Skeleton, depth: Depth, row: ReachSearch) -> Array:
-    """How far hands are from their goals in T postures, and heads in what is touched. (T,) metres."""
+    """How far hands are from their goals in T postures, and heads and knees in what is touched. (T,) metres."""
     arm = ARM_LENGTH * skeleton.scale
     miss = np.zeros(len(tries))
     for index, wrist, _ in laid.hands:
@@ -283,7 +283,11 @@ def _misses(tries: Pose, laid: Laid, skeleton: Skeleton, depth: Depth, row: Reac
     # The head stays clear of what is touched: before a front one bends the knees instead.
     chest, place = chest_frame(tries, skeleton)
     head = place + rotations.rotate(chest, np.array([0.0, row.head_up_m, row.head_ahead_m]) * skeleton.scale)
-    return np.asarray(miss + np.maximum(depth(head) + row.head_room_m, 0.0))
+    miss = miss + np.maximum(depth(head) + row.head_room_m, 0.0)
+    joints, _ = skeleton.forward_kinematics(tries.pelvis, trunk_and_legs(tries, skeleton))
+    for name in ("left_knee", "right_knee"):
+        miss = miss + np.maximum(depth(joints[:, INDEX[name]].astype(np.float64)) + row.knee_room_m, 0.0)
+    return np.asarray(miss)
 
 
 def _effort(miss: Array, bent: tuple[Array, Array], laid: Laid, skeleton: Skeleton, row: ReachEffort) -> Array:

@@ -163,7 +163,9 @@ class ReachSearch:
     """The middle of the head from the chest."""
     head_ahead_m: float
     head_room_m: float
-    """That it keeps to furniture."""
+    """That it keeps to furniture,"""
+    knee_room_m: float
+    """and the middles of both knees."""
 
 
 @table

@@ -26,6 +26,8 @@ HEEL_RISE, SETTLE = 0.47, 0.30
 """Phase from the first rise of the heel to the lift, and from heel strike to the flat foot."""
 SAMPLES = 600
 """Of a curve."""
+ROUNDED = 0.035
+"""Width of the bell that the corners of a curve are rounded by, in phases: a limb has no jumps of acceleration."""
 TIP_UP = np.radians(25)
 """How far the tip of a foot points up at the heel strike of a full step."""
 
@@ -127,12 +129,15 @@ def foot_table() -> FootTable:
 
 @cache
 def _curve(name: str) -> tuple[Array, Array]:
-    """A smooth curve through the points of that name that keeps their shape, finely sampled."""
+    """A smooth curve near the points of that name, through the first and the last, finely sampled."""
     from scipy.interpolate import PchipInterpolator
+    from scipy.ndimage import gaussian_filter1d
 
     x, y = np.array([astuple(point) for point in getattr(foot_table().curve, name)]).T
     fine = np.linspace(x[0], x[-1], SAMPLES)
-    return fine, np.asarray(PchipInterpolator(x, y)(fine))
+    values, wide = PchipInterpolator(x, y)(fine), ROUNDED / (fine[1] - fine[0])
+    beyond = np.pad(values, SAMPLES - 1, mode="reflect", reflect_type="odd")
+    return fine, np.asarray(gaussian_filter1d(beyond, wide))[SAMPLES - 1 : 1 - SAMPLES]
 
 
 @dataclass(frozen=True)

@@ -26,8 +26,10 @@ Room = Callable[[Array], Array]
 """How much room there is beside what a body needs at places [x, z]: (N, 2) to (N,) metres."""
 LEAD = 0.35
 """Phase before the first step."""
-FOOT_ROOM = -0.06
-"""A foot may come so much nearer to what is beside the way than a body (metres)."""
+FOOT_ROOM, TIP_ROOM = -0.06, -0.13
+"""An ankle, and the tips of toes, may come so much nearer to what is beside the way than a body (metres)."""
+TIP, ON_ITS_WAY = 0.17, (0.35, 0.5, 0.65)
+"""From an ankle to the tip of its toes (metres at 1.70 m); shares of a foot's way at which it is looked for room."""
 SIDEWAYS = 90.0
 """How far from its way a body faces that steps sideways (degrees)."""
 DRIFT_RATES, DRIFT_SIZE = (0.61, 1.0, 1.43), 2.1
@@ -353,8 +355,11 @@ def _swing_of(
 
 def _roomy(swing: Swing, room: Room) -> Swing:
     """The same with less of an arc aside, or with one to the other side, where there is no room for a foot."""
-    middle = 0.5 * (swing.start + swing.end) + swing.bow
-    lack = max(FOOT_ROOM - float(room(middle[None, [0, 2]])[0]), 0.0)
+    share = np.array(ON_ITS_WAY)[:, None]
+    ankles = (1 - share) * swing.start + share * swing.end + swing.bow
+    yaw = swing.start_yaw + share * swing.turn
+    tips = ankles[:, [0, 2]] + TIP * swing.scale * np.concatenate([np.sin(yaw), np.cos(yaw)], axis=1)
+    lack = max(FOOT_ROOM - float(room(ankles[1:2, [0, 2]])[0]), TIP_ROOM - float(room(tips).min()), 0.0)
     return replace(swing, bow_share=max(1 - lack / float(np.linalg.norm(swing.bow)), -1.0)) if lack else swing
 
 

@@ -24,7 +24,6 @@ LOWEST_OF, SMOOTHED, SMOOTHED_OVER = 5, 1.0, 2
 class Landing:
     """Just after a foot comes down (shares of a step)."""
 
-    before_share: float
     at_phase: float
     wide_share: float
 
@@ -147,5 +146,5 @@ def _bounce(route: Route, steps: Steps, style: Walk) -> Array:
 def landing(steps: Steps) -> Array:
     """1 just after each foot comes down, 0 otherwise. (T,)."""
     row = pelvis_table().landing
-    since = (steps.phase + row.before_share) % 1.0
-    return np.asarray(np.exp(-(((since - row.at_phase) / row.wide_share) ** 2)) * steps.moving)
+    since = (steps.phase - row.at_phase + 0.5) % 1.0 - 0.5
+    return np.asarray(np.exp(-((since / row.wide_share) ** 2)) * steps.moving)

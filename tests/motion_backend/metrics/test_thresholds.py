@@ -141,6 +141,15 @@ def test_two_centimetres_are_clearly_in(depth: float, share: float) -> None:
     assert figures.pen_mean == pytest.approx(figures.pen_max)
 
 
+def test_the_deepest_of_all_frames_counts_and_their_mean_beside_it() -> None:
+    still = standing_still(6)
+    motion = standing_still(root=np.repeat([[0.0, 0.0, 0.0], [0.0, 0.1, 0.0]], 3, axis=0))
+    crown = Kinematics.of(still).positions[0, INDEX["head"], 1] + 0.09 + 0.09 * np.sqrt(0.5)
+    ceiling = box((0.0, crown + 0.5, 0.0), (4.0, 1.0, 4.0))
+    figures = story_metrics.judge(motion, Action(Skill.LOCO, "walk", Emotion.NEUTRAL), ceiling)
+    assert figures.pen_max > 1.5 * figures.pen_mean > 0
+
+
 @for_each(
     ("skill", "owner", "allowed"),
     [(Skill.SITDOWN, "0/box", 0.05), (Skill.STANDUP, "0/box", 0.05), (Skill.LIEDOWN, "0/box", 0.05),

@@ -127,6 +127,7 @@ def test_a_candidate_and_its_mirror_image_come_equally_often(
     assert len(pairs) == 5
     for one, other in pairs:
         assert mirrored(other) == one
+        assert (other.hand, other.name) == ("left", one.name.replace("right hand", "left hand"))
         assert planner.frequencies[one.name] == pytest.approx(planner.frequencies[other.name], rel=1e-3)
         assert counts[one] == pytest.approx(counts[other], rel=2 * TOLERANCE), one.name
 

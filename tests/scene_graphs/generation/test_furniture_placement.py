@@ -132,6 +132,19 @@ def test_chairs_at_a_table_stand_apart(seed: int, seats: int) -> None:
     assert not any(solids_overlap(a, b) for i, a in enumerate(placed[:-1]) for b in placed[i + 1 : -1])
 
 
+@given(st.integers(0, 10_000))
+def test_seats_beside_a_table_stand_at_both_its_ends_and_face_it(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    group = furniture_groups.lounge(rng, 5.0, "loveseat_sofa", ("armchair", "armchair"), has_table=True)
+    assert group is not None
+    items = group.items
+    table = next(item for item in items if item.category == "coffee_table")
+    seats = [item for item in items if item.category == "armchair"]
+    assert sorted(np.sign(seat.x - table.x) for seat in seats) == [-1.0, 1.0]
+    for seat in seats:
+        assert np.sin(seat.yaw) * (table.x - seat.x) > 0
+
+
 def test_nothing_is_put_on_something_nor_before_a_door() -> None:
     shell = Shell(((-2.0, -2.0), (-2.0, 2.0), (2.0, 2.0), (2.0, -2.0)), 2.6, doors=((0, 0.0),))
     room = Arrangement(shell, np.random.default_rng(0))

@@ -54,6 +54,17 @@ def test_it_equals_brute_force(query: FurnitureGraph, room: FurnitureGraph) -> N
     assert distance(query, room) == brute_force(query, room)
 
 
+def test_it_equals_brute_force_among_pieces_all_alike() -> None:
+    """Where only relations tell one from another, the search goes back the most."""
+    rng = np.random.default_rng(0)
+    for _ in range(24):
+        query, room = (
+            build(["dining_chair"] * size, {pair for pair in combinations(range(size), 2) if rng.random() < 0.5})
+            for size in (4, 5)
+        )
+        assert distance(query, room) == brute_force(query, room)
+
+
 @given(graphs(4, WORDS, "needs"), graphs(5, CATEGORIES, "offers"))
 @QUICK
 def test_it_equals_brute_force_where_affordances_are_needed(query: FurnitureGraph, room: FurnitureGraph) -> None:

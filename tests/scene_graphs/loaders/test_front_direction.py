@@ -67,6 +67,13 @@ def test_a_beds_foot_points_away_from_its_pillows() -> None:
         assert turned.size == (1.7, 0.8, 2.1)
 
 
+def test_other_things_and_pillows_elsewhere_do_not_turn_a_bed() -> None:
+    bed = piece("b", "double_bed", 2.5, 1.1, 1.7, 2.1)
+    alone = faced([bed], FLOOR, {"b"})[0]
+    for other in (piece("o", "book", 2.5, 1.8, 0.2, 0.3), piece("p", "pillow", 4.5, 3.5, 0.4, 0.6)):
+        assert faced([bed, other], FLOOR, {"b"})[0] == alone
+
+
 def test_a_bed_without_pillows_has_its_head_at_the_wall() -> None:
     turned = faced([piece("b", "single_bed", 2.5, 1.1, 1.0, 2.0)], FLOOR, {"b"})[0]
     assert front_of(turned) == (0.0, 1.0)

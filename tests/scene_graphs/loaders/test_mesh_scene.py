@@ -303,6 +303,7 @@ def test_whatever_an_obj_says_it_is_read_or_refused(lines: list[str]) -> None:
         ("o sofa\nv 1 2", "line 2: v must be followed by three numbers"),
         ("v 0 0 0\nf 1 2 3", "line 2: there is no point '2' of 1"),
         ("v 0 0 nan", "line 1: a point beyond any room"),
+        ("v 0 1e7 0\nv 0 -1.1e7 0", "line 2: a point beyond any room"),
         ("f " + "1 " * 20_000, "more than 10000 corners"),
         ("hello", "has no faces"),
     ],

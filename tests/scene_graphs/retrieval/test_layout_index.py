@@ -138,6 +138,18 @@ def test_a_room_whose_bound_promises_too_much_comes_second_in_any_stage(first_st
     assert index.search(query)[0].layout_id == "honest"
 
 
+def test_of_rooms_as_far_the_one_that_promised_more_comes_first() -> None:
+    query = build(["desk", "stool"], {(0, 1)})
+    hopeful = build(["desk", "stool", "coffee_table"], {(1, 2)})
+    honest = build(["desk", "stool", "coffee_table"], set())
+    rooms = [room("honest", []), room("hopeful", [])]
+    found = LayoutIndex.of_packed(pack([honest, hopeful], rooms), rooms).search(query, 2)
+    assert [(match.layout_id, match.lower_bound, match.distance) for match in found] == [
+        ("hopeful", 1, 21),
+        ("honest", 21, 21),
+    ]
+
+
 def test_a_room_is_not_called_the_nearest_while_one_that_met_the_limit_may_be_nearer() -> None:
     query = build(["stool"] * 3, {(0, 1), (1, 2)})
     apart, hidden = build(["stool"] * 3, set()), build(["stool"] * 6, {(3, 4), (4, 5)})
