@@ -264,12 +264,8 @@ class Pipeline:
         def words() -> Vocabulary:
             return Vocabulary.built_in(self.shelves.scripts().encoder)
 
-<<<<<<< HEAD
-        return act(stage.script.keyframes, stage.places, stage.home, request.seed, words, kept)
-=======
         scale = actor(request, stage.script).height / REFERENCE_HEIGHT
-        return act(stage.script.keyframes, stage.places, stage.home, request.seed, words, scale)
->>>>>>> main
+        return act(stage.script.keyframes, stage.places, stage.home, request.seed, words, scale, kept)
 
     def make(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Story:
         """Theme to acted story."""

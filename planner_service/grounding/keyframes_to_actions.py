@@ -131,27 +131,18 @@ def act(
     home: Home,
     seed: int,
     words: Words = hashed_words,
-<<<<<<< HEAD
-    kept: Sequence[Kept | None] = (),
-=======
     scale: float = 1.0,
->>>>>>> main
+    kept: Sequence[Kept | None] = (),
 ) -> tuple[Action, ...]:
     """Ground every keyframe in the home. Raises UnreachableError naming the keyframe that cannot be done.
 
     An action's caption is what is performed: where the body knows no word of the keyframe's, the nearest of `words`.
-<<<<<<< HEAD
-    `kept` has, for each keyframe that was grounded before, what came of it, else None: that stays as it was.
-    """
-    scene = scene_of(home)
-    stage = _Stage(home, scene.walkable, np.random.default_rng([seed, 7]), words)
-    known = kept or [None] * len(keyframes)
-=======
-    `scale` is the size of the body against one of 1.70 m.
+    `scale` is the size of the body against one of 1.70 m. `kept` has, for each keyframe that was grounded before, what
+    came of it, else None: that stays as it was.
     """
     scene = scene_of(home)
     stage = _Stage(home, scene.walkable, np.random.default_rng([seed, 7]), words, scale)
->>>>>>> main
+    known = kept or [None] * len(keyframes)
     drafts: list[Action] = []
     for index, (keyframe, place, old) in enumerate(zip(keyframes, places, known, strict=True)):
         before = keyframes[index - 1] if index else None
@@ -200,9 +191,9 @@ class _Stage:
     def keep(self, index: int, old: Kept) -> Action:
         """An action as it was, the body left where that leaves it; how long it is held is reckoned anew."""
         action = old.action
-        if action.spot is not None:
-            self.at = action.spot.standing
-            self.resting = self.resting if action.skill is Skill.TOUCH else action.spot
+        self.on = action.spot if action.skill in (Skill.SITDOWN, Skill.LIEDOWN) else None
+        self.resting = self.on or self.resting
+        self.at = action.spot.standing if action.spot is not None else self.at
         return replace(action, keyframe=index, hold=HOLDS.get(action.skill, Action.hold))
 
     def _spot(self, index: int, keyframe: Keyframe, mood: Emotion, place: Place) -> Spot:
