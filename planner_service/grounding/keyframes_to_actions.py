@@ -43,6 +43,12 @@ _AWAY: Final = (1.8, 1.5, 1.2, 0.9, 0.7)
 """How far a walk to the front goes, the best first (metres)."""
 _ROOM: Final = 0.25
 """Clearance where it should end (metres)."""
+FREE_FLOOR: Final = 0.35
+"""Clearance all along a body on the floor at which one stops looking for a better place (metres)."""
+FLOOR_TRIES: Final = 120
+"""Places on the floor that are looked at: half of them anywhere in the room, the others beside the best of those."""
+BESIDE_BEST, TURNED_ASIDE = 0.15, 0.3
+"""Deviations of those from it: metres to each side, radians."""
 
 
 def stays(caption: str) -> bool:
@@ -266,12 +272,15 @@ class _Stage:
         """The freest place of a room to sit or lie on the floor, and the freest direction there."""
         best: tuple[float, Spot] | None = None
         length = 0.9 if need == "lie" else 0.5
-        for attempt in range(120):
-            point, turned = self.walkable.random_point(self.rng, room), 0.0
-            if best is not None and attempt >= 60:  # in a crowded room beside the best so far
+        for attempt in range(FLOOR_TRIES):
+            if best is None or attempt < FLOOR_TRIES // 2:
+                point, turned = self.walkable.random_point(self.rng, room), 0.0
+            else:  # in a crowded room beside the best so far, but not through a wall or a doorway
                 x, _, z = best[1].point
-                point = (x + float(self.rng.normal(0.0, 0.15)), z + float(self.rng.normal(0.0, 0.15)))
-                turned = float(self.rng.normal(best[1].facing, 0.3))
+                aside_x, aside_z = self.rng.normal(0.0, BESIDE_BEST, 2).tolist()
+                point, turned = (x + aside_x, z + aside_z), float(self.rng.normal(best[1].facing, TURNED_ASIDE))
+                if self.home.room_at(point) != room or not self.walkable.sees((x, z), point):
+                    continue
             for yaw in turned + np.arange(8) * np.pi / 4:
                 ahead = np.array([np.sin(yaw), np.cos(yaw)])
                 ends = [np.asarray(point) + share * length * ahead for share in (-1.0, -0.5, 0.5, 1.0)]
@@ -281,7 +290,7 @@ class _Stage:
                 room_left = min(self.walkable.clearance((float(e[0]), float(e[1]))) for e in ends)
                 if best is None or room_left > best[0]:
                     best = (room_left, spot)
-            if best is not None and best[0] > 0.35:
+            if best is not None and best[0] > FREE_FLOOR:
                 break
         if best is None or best[0] <= 0.0:
             raise UnreachableError(f"room {room} has no free floor to {need} on", "choose another room")

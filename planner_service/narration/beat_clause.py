@@ -12,7 +12,7 @@ from planner_service.narration.story_words import story_words
 from planner_service.narration.tense import bases, form_of, in_past, says_how
 from planner_service.scripts.script import Beat
 from planner_service.themes.beats import EXPRESSIONS
-from planner_service.themes.lexicon import is_adjective, is_noun, past
+from planner_service.themes.lexicon import grammar, is_adjective, is_noun, past
 
 WAS: Final = "\ue000"
 """Stands for was or were until the subject is known; no theme has it."""
@@ -98,7 +98,7 @@ def _head(words: Sequence[str], feeling: bool) -> tuple[str, Sequence[str], bool
         return _head(rest, feeling) if goes_on else (_helpers()[first], rest, False)
     does = form_of(first) in ("present", "ing") or not EXPRESSIONS.keys().isdisjoint(bases(first))
     plain = not does or is_adjective(first)  # "laughed" says what is done, "exhausted" how one is
-    adjective = plain and says_how(first) and after not in ("down", "up", "out")
+    adjective = plain and says_how(first) and after not in ("down", "up", "out", *grammar().marks)
     if feeling and (adjective or (first in ("in", "at") and rest)):
         return WAS, words, False
     told = in_past(first)
