@@ -145,7 +145,9 @@ def furnished_again(stage: Furnished, script: LongScript) -> Furnished:
     """The same home for a script that has changed: its keyframes name their objects, or play on a room's floor."""
     rooms = {keyframe.room: place.room for keyframe, place in zip(stage.script.keyframes, stage.places, strict=True)}
     met = list(dict.fromkeys(keyframe.room for keyframe in script.keyframes if keyframe.room))
-    graphs = {room: merge([graph for _, graph in _script_graphs(script, room, met)]).graph for room in met}
+    graphs: dict[str, FurnitureGraph] = {
+        room: merge([graph for _, graph in _script_graphs(script, room, met)]).graph for room in met
+    }
     places = tuple(
         Place(rooms.get(keyframe.room, 0)) if keyframe.object_id is None else place_in(keyframe.object_id)
         for keyframe in script.keyframes

@@ -197,9 +197,9 @@ class _Stage:
     def keep(self, index: int, old: Kept) -> Action:
         """An action as it was, the body left where that leaves it; how long it is held is reckoned anew."""
         action = old.action
-        if action.spot is not None:
-            self.at = action.spot.standing
-            self.resting = self.resting if action.skill is Skill.TOUCH else action.spot
+        self.on = action.spot if action.skill in (Skill.SITDOWN, Skill.LIEDOWN) else None
+        self.resting = self.on or self.resting
+        self.at = action.spot.standing if action.spot is not None else self.at
         return replace(action, keyframe=index, hold=HOLDS.get(action.skill, Action.hold))
 
     def _spot(self, index: int, keyframe: Keyframe, mood: Emotion, place: Place) -> Spot:

@@ -135,7 +135,7 @@ class _Reader:
             furniture=old.furniture if old is not None and same else self._word(one, chosen),
             beat=old.beat if old else None,
             also=old.also if old else (),
-            room=self._room(chosen, old),  # type: ignore[arg-type]
+            room=self._room(chosen, old),
             object_id=chosen,
         )
 

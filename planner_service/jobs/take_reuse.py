@@ -50,7 +50,7 @@ class Grounded(Protocol):
 def kept_actions(take: Grounded, origin: Grounded | None) -> list[Kept | None]:
     """For each keyframe of a take what it was grounded as before; empty where nothing of that still holds."""
     try:
-        if origin is None or origin.request.seed != take.request.seed or origin.stage.home != take.stage.home:
+        if origin is None or _setting(origin) != _setting(take):
             return []
         actions = origin.actions
     except StoryGone:  # deleted, or not as far yet
@@ -62,7 +62,13 @@ def kept_actions(take: Grounded, origin: Grounded | None) -> list[Kept | None]:
             last = step + 1 == block.size
             ends = block.a + block.size == len(before) and block.b + block.size == len(now)
             found[block.b + step] = Kept(actions[block.a + step], leads_elsewhere=last and not ends)
-    return [None if one and _follows_another(index, one, found) else one for index, one in enumerate(found)]
+    skills = [keyframe.skill for keyframe in take.stage.script.keyframes]
+    return [None if one and _depends(index, one, found, skills) else one for index, one in enumerate(found)]
+
+
+def _setting(story: Grounded) -> tuple[object, ...]:
+    """What grounding goes by besides the keyframes."""
+    return story.request.seed, actor(story.request, story.stage.script).height, story.stage.home
 
 
 def _said(stage: Furnished) -> list[tuple[object, ...]]:
@@ -73,14 +79,14 @@ def _said(stage: Furnished) -> list[tuple[object, ...]]:
     ]
 
 
-def _follows_another(index: int, one: Kept, found: Sequence[Kept | None]) -> bool:
-    """Whether another keyframe comes before it now that has a say in it: which hand is free, what one rises from."""
-    if one.action.skill in RISES:
-        return True
+def _depends(index: int, one: Kept, found: Sequence[Kept | None], skills: Sequence[Skill]) -> bool:
+    """Whether what comes before it has a say in it and is another now: which hand is free, what one rests on."""
     before = found[index - 1] if index else None
     came_first = index == 0 and one.action.keyframe == 0
     after_the_same = before is not None and before.action.keyframe + 1 == one.action.keyframe
-    return one.action.skill is Skill.TOUCH and not (came_first or after_the_same)
+    if one.action.skill is Skill.LOCO or came_first or after_the_same:
+        return one.action.skill in RISES
+    return one.action.skill in (*RISES, Skill.TOUCH) or skills[index - 1] is not Skill.LOCO
 
 
 def reused_segments(take: Grounded, origin: Grounded | None, rows: Sequence[Json], director: Director) -> list[Made]:
