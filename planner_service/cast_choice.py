@@ -29,6 +29,11 @@ _ARRIVING: Final = re.compile(
     r"\b(?:com|came|get|got|return|arriv|back)\w*\b[^.!?]*\bhome\b|\bwork\b|\bshift\b", re.IGNORECASE
 )
 """Whoever does is dressed."""
+TEENS: Final = 15
+"""Years of a teenager whose age is not told."""
+_TEENAGE: Final = re.compile(
+    r"(?:^|;)(?:(?!\b(?:of|with|for|to|and|whose)\b)[^;])*\bteen(?:age[dr]?)?\b", re.IGNORECASE
+)
 _RETIRED: Final = re.compile(r"\b(?:retired|former|ex)\b", re.IGNORECASE)
 """Whose work is over wears nothing for it."""
 _IS: Final = r"(?:\s+(?:is|was|am)|['’](?:s|m))\s+(?:still\s+|only\s+|just\s+)?(?:an?\s+|the\s+)?(?P<told>[^,.;!?]+)"
@@ -214,13 +219,12 @@ def _years(about: str) -> int | None:
         rf"\b(?:boy|girl|child|kid|man|woman)\s+of\s+{number}\b",
         rf"\baged\s+{number}\b",
         rf"(?:^|;\s*){number}(?:;|$)",
-        r"\b(teen(?:age[dr]?)?)\b",
     )
     for form in forms:
         if match := re.search(form, about, re.IGNORECASE):
             word = match[1].lower()
             return min(int(word) if word.isdigit() else _words().numbers[word], 120)
-    return None
+    return TEENS if _TEENAGE.search(about) else None
 
 
 def _says(text: str, words: Sequence[str]) -> bool:

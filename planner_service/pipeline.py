@@ -20,7 +20,7 @@ from planner_service.cast_choice import cast_for, check_character, named_as
 from planner_service.composition.compose import compose, script_of
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, METHODS, Request
 from planner_service.grounding.furnish import Furnished, furnish
-from planner_service.grounding.keyframes_to_actions import act
+from planner_service.grounding.keyframes_to_actions import Kept, act
 from planner_service.grounding.room_assignment import usual_furniture
 from planner_service.library.library import Shelves
 from planner_service.llm.budget import Spent
@@ -258,14 +258,14 @@ class Pipeline:
                 stage = replace(stage, script=stage.script.model_copy(update={"repairs": repairs}))
         return stage, narrate(stage.script, character, request.seed, stage.names)
 
-    def act(self, request: StoryRequest, stage: Furnished) -> tuple[Action, ...]:
-        """The keyframes of a script, grounded in its home."""
+    def act(self, request: StoryRequest, stage: Furnished, kept: Sequence[Kept | None] = ()) -> tuple[Action, ...]:
+        """The keyframes of a script, grounded in its home; what is `kept` of each of them stays as it was."""
 
         def words() -> Vocabulary:
             return Vocabulary.built_in(self.shelves.scripts().encoder)
 
         scale = actor(request, stage.script).height / REFERENCE_HEIGHT
-        return act(stage.script.keyframes, stage.places, stage.home, request.seed, words, scale)
+        return act(stage.script.keyframes, stage.places, stage.home, request.seed, words, scale, kept)
 
     def make(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Story:
         """Theme to acted story."""

@@ -110,8 +110,8 @@ def environment(settings: Settings, worker_id: str) -> dict[str, str]:
         "SIMS_LOG_LEVEL": settings.log_level,
         "SIMS_WORKER_ID": worker_id,
     }
-    # Two threads of torch on two busy cores are many times slower than one.
-    calm = {"OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+    # Two threads of torch or of NumPy's BLAS on two busy cores are many times slower than one.
+    calm = {"OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     return {**os.environ, **calm, **{name: value for name, value in given.items() if value is not None}}
 
 

@@ -49,6 +49,7 @@ HOMES = {
     "httpx2": {"planner_service/llm"},
     "av": {"planner_service/extraction", "motion_backend/formats"},
     "faster_whisper": {"planner_service/extraction"},
+    "mcp": {"planner_service"},
 }
 """Where a third-party library may be imported; libraries not named here may be used anywhere they are needed."""
 FORBIDDEN = {"pickle", "shelve", "marshal"}

@@ -53,7 +53,12 @@ class DiffusionBackend:
 @lru_cache(maxsize=2)
 def walking(folder: Path = WEIGHTS) -> Sampler:
     """The sampler of the weights that walk. CheckpointError."""
-    weights, schedule = load_denoiser(folder / "walk")
+    return walking_by(folder / "walk")
+
+
+def walking_by(path: Path) -> Sampler:
+    """The sampler of some weights, whose path has no suffix, as they walk in stories. CheckpointError."""
+    weights, schedule = load_denoiser(path)
     strides = None if weights.strides is None else weights.strides.double().numpy()
     gaits = int(weights.config.get("gaits", 0))
     paces = np.array(weights.config["paces"]) if "paces" in weights.config else None

@@ -30,10 +30,10 @@ Guide = Callable[[Tensor], Tensor]
 """Moves a clean guess (B, 14, 202), in metres and rotations, towards what it is to come to."""
 PULL: Final = 0.5
 """Share of what is left to the goal by which a guess is moved."""
-REACHES: Final = ("spine1", "spine2", "spine3", "collar", "shoulder", "elbow")
-"""What turns for a hand, from the trunk to the elbow."""
 HOLD: Final = 0.8
 """The same of a pose that is to be held."""
+REACHES: Final = ("spine1", "spine2", "spine3", "collar", "shoulder", "elbow")
+"""What turns for a hand, from the trunk to the elbow."""
 READY: Final = (0.1, 0.1, 0.1, 0.5, 1.0, 1.0)
 """How readily each of them does: a trunk that comes along comes into the table."""
 DAMPED: Final = 0.02

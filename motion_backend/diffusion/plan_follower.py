@@ -44,7 +44,8 @@ from motion_backend.walk_driver import by_rules
 from motion_backend.walk_generator import LOOK, Frames
 
 TRIES: Final = 4
-"""How often a passage is made, from other noise each time; at last with the plan's arms."""
+"""How often a passage is made, each time from other noise: as it comes, then a walk by the other weights, and at last
+with the plan's arms; a walk takes the plan's carriage from its third try on."""
 LAID_OVER: Final = "the arms are the rules', laid over it"
 OTHER: Final = 2
 """Which try of a walk is made by the other weights."""

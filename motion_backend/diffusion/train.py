@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import math
 import time
+import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
@@ -145,6 +146,8 @@ class Run:
     curve: list[dict[str, float]] = field(default_factory=list)
     gaits: int = 0
     """Of how many people's walks are told apart."""
+    told: dict[str, Any] = field(default_factory=dict)
+    """What it was begun with, and must be gone on with."""
 
     @property
     def device(self) -> torch.device:
@@ -258,13 +261,14 @@ def train(
 
 @contextmanager
 def _repeatable(device: torch.device) -> Iterator[None]:
-    """Only what gives the same numbers each time; a GPU has that of its libraries by their own settings alone."""
-    before = torch.are_deterministic_algorithms_enabled()
-    torch.use_deterministic_algorithms(device.type == "cpu")
+    """On the CPU only what gives the same numbers each time; for a GPU whatever its user has set."""
+    before, warns = torch.are_deterministic_algorithms_enabled(), torch.is_deterministic_algorithms_warn_only_enabled()
+    if device.type == "cpu":
+        torch.use_deterministic_algorithms(True)
     try:
         yield
     finally:
-        torch.use_deterministic_algorithms(before)
+        torch.use_deterministic_algorithms(before, warn_only=warns)
 
 
 def _steps(
@@ -293,7 +297,7 @@ def _steps(
         if run.step % config.save_every == 0 or run.step == config.steps:
             means = {name: float(np.mean([one[name] for one in recent])) for name in recent[0]}
             recent = []
-            _checkpointed(learner, bank, run, config, folder, means, at_checkpoint)
+            _checkpointed(learner, run, config, folder, means, at_checkpoint)
             learner.network.train()
 
 
@@ -320,7 +324,7 @@ def _begun(
     """A run at its beginning, or as it was saved."""
     device = next(learner.network.parameters()).device
     optimizer = Adam(list(learner.network.parameters()))
-    told = _told(learner, bank, config)
+    told = _told(learner, bank, windows, config, start)
     state = folder / "run.json"
     if not state.exists():
         if start is not None:
@@ -328,10 +332,10 @@ def _begun(
         scale = start.scale if start is not None else measured_scale(bank, windows, config.seed)
         scale = Scale(scale.mean.to(device), scale.deviation.to(device))
         average = {name: tensor.detach().clone() for name, tensor in learner.network.state_dict().items()}
-        return Run(learner.network, average, scale, optimizer, gaits=len(bank.gaits))
+        return Run(learner.network, average, scale, optimizer, gaits=len(bank.gaits), told=told)
     row = json.loads(state.read_text(encoding="utf-8"))
-    if row["told"] != json.loads(json.dumps(told)):
-        why = f"{folder} holds a run of another config or of other data"
+    if row["told"] != told:
+        why = f"{folder} holds a run of another config, of other data or from another start"
         raise CheckpointError(why, "give another folder, or the same data and options")
     tensors = {name: tensor.to(device) for name, tensor in read_tensors(folder / "run.safetensors").items()}
     learner.network.load_state_dict(_under("network.", tensors))
@@ -343,14 +347,21 @@ def _begun(
     step = int(tensors[STEP])
     done = (step, row["seconds"], [one for one in row["curve"] if one["step"] <= step])
     average = _under("average.", tensors)
-    return Run(learner.network, average, scale, optimizer, *done, gaits=len(bank.gaits))
+    return Run(learner.network, average, scale, optimizer, *done, gaits=len(bank.gaits), told=told)
 
 
-def _told(learner: Learner, bank: WindowBank, config: TrainConfig) -> dict[str, Any]:
-    """What a run must have been begun with to be gone on with."""
-    return {
+def _told(
+    learner: Learner, bank: WindowBank, windows: Windows, config: TrainConfig, start: Weights | None
+) -> dict[str, Any]:
+    """What a run must have been begun with to be gone on with, as JSON has it."""
+    begun = 0
+    for tensor in [] if start is None else start.network.state_dict().values():
+        begun = zlib.crc32(tensor.cpu().numpy().tobytes(), begun)
+    told = {
         "config": config.to_dict(), "sizes": dict(learner.sizes), "kind": learner.kind, "data": bank.fingerprint,
+        "drawn": windows.fingerprint, "start": begun,
     }  # fmt: skip
+    return dict(json.loads(json.dumps(told)))
 
 
 def _stepped(run: Run, loss: Tensor, config: TrainConfig) -> None:
@@ -365,7 +376,6 @@ def _stepped(run: Run, loss: Tensor, config: TrainConfig) -> None:
 
 def _checkpointed(
     learner: Learner,
-    bank: WindowBank,
     run: Run,
     config: TrainConfig,
     folder: Path,
@@ -382,9 +392,10 @@ def _checkpointed(
     tensors |= _optimizer_tensors(run.optimizer) | {MEAN: run.scale.mean, DEVIATION: run.scale.deviation}
     tensors[STEP] = torch.tensor(run.step)
     save_file({name: tensor.detach().cpu().contiguous() for name, tensor in tensors.items()}, folder / "run.part")
-    row = {"told": _told(learner, bank, config), "step": run.step, "seconds": run.seconds, "curve": run.curve}
+    row = {"told": run.told, "step": run.step, "seconds": run.seconds, "curve": run.curve}
     (folder / "run.part").replace(folder / "run.safetensors")
-    (folder / "run.json").write_text(json.dumps(row, indent=1), encoding="utf-8")
+    (folder / "run.part").write_text(json.dumps(row, indent=1), encoding="utf-8")
+    (folder / "run.part").replace(folder / "run.json")
 
 
 def _optimizer_tensors(optimizer: Adam) -> dict[str, Tensor]:

@@ -67,6 +67,14 @@ class Windows:
         return self.starts[chosen], self.passages[chosen]
 
     @cached_property
+    def fingerprint(self) -> int:
+        """Of what may be drawn, and how often."""
+        found = 0
+        for kept in (self.starts, self.passages, self.weights):
+            found = zlib.crc32(np.ascontiguousarray(kept).tobytes(), found)
+        return found
+
+    @cached_property
     def _sums(self) -> Array:
         return np.asarray(np.cumsum(self.weights))
 

@@ -24,10 +24,13 @@ FILES = {
 }
 LAYERS, HEADS, WIDTH, MAX_TOKENS = 6, 12, 384, 256
 _BATCH = 32
+"""Texts encoded at once."""
 _ERF = np.array([1.061405429, -1.453152027, 1.421413741, -0.284496736, 0.254829592], dtype=np.float32)
-_ROWS = 32
-"""Of which all that is computed stays near the processor."""
+"""Factors of the polynomial, from the highest power down: see `_gelu`."""
 _ERF_REACH = np.float32(0.3275911 / np.sqrt(2))
+"""How fast its variable falls with x, for erf(x / sqrt 2)."""
+_ROWS = 32
+"""Worked on at once by `_gelu`: so few that what it computes on the way stays in the processor's cache."""
 _MAX_WORD_LENGTH = 100
 
 
@@ -149,7 +152,9 @@ class MiniLM:
     def __init__(self, folder: Path, cache: Path | None = None) -> None:
         verify(folder, cache)
         from safetensors.numpy import load_file
+        from threadpoolctl import ThreadpoolController
 
+        self._threads = ThreadpoolController()
         self._weights: dict[str, Floats] = load_file(folder / "model.safetensors")
         self._tokens = WordPiece((folder / "vocab.txt").read_text(encoding="utf-8").split("\n"))
 
@@ -157,8 +162,10 @@ class MiniLM:
         """One unit row a text, of at most 256 tokens. (N, 384) float32."""
         ids = [self._tokens.encode(text) for text in texts]
         rows = np.zeros((len(ids), WIDTH), dtype=np.float32)
-        for batch in _batches([len(row) for row in ids]):
-            rows[batch] = self._forward([ids[index] for index in batch])
+        # Last digits change with the number of threads; on busy cores several take many times as long as one.
+        with self._threads.limit(limits=1, user_api="blas"):
+            for batch in _batches([len(row) for row in ids]):
+                rows[batch] = self._forward([ids[index] for index in batch])
         return rows
 
     def _forward(self, batch: list[list[int]]) -> Floats:

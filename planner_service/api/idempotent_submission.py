@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Final, Literal
 
 from sqlalchemy import Connection, func, select
@@ -17,12 +17,13 @@ from planner_service.jobs.extraction_stages import STAGES, Gathered, keep_all, m
 from planner_service.jobs.queue import EXTRACT, EXTRACTIONS, FILMS, SHOOT
 from planner_service.jobs.uploads import Coming
 from planner_service.pipeline import StoryRequest
-from planner_service.store.extraction_store import ExtractionRequest, add_extraction, put_made
+from planner_service.store.extraction_store import ExtractionRequest, add_extraction
 from planner_service.store.film_store import add_film, film_of, hold_story
-from planner_service.store.story_store import Record, Stories, now
+from planner_service.store.story_store import Made, Record, Stories, now, put_made
 from planner_service.store.tables import WAITING, idempotency_keys, state_of, stories, workflow_status
+from planner_service.store.take_store import add_take
 
-Kind = Literal["story", "motion", "extraction"]
+Kind = Literal["story", "motion", "take", "extraction"]
 """One key means another thing for each."""
 FULL_QUEUE: Final = 10
 """Seconds after which a caller with too many stories may try again."""
@@ -52,6 +53,19 @@ def accept(parts: Parts, caller: str, wanted: StoryRequest, body: str, key: str 
         return table.add(connection, caller, wanted)
 
     return accepted(parts, caller, "motion" if wanted.keyframes else "story", body, key, make, parts.jobs.enqueue)
+
+
+def accept_take(
+    parts: Parts, caller: str, wanted: StoryRequest, origin: str, known: Sequence[Made], body: str, key: str | None
+) -> Record:
+    """The same for a story that derives from another one, whose first stages are `known`."""
+    check_backend(wanted.backend)
+    table = Stories(parts.engine)
+
+    def make(connection: Connection) -> str:
+        return add_take(connection, table, caller, wanted, origin, known)
+
+    return accepted(parts, caller, "take", body, key, make, parts.jobs.enqueue)
 
 
 def accept_extraction(parts: Parts, caller: str, wanted: ExtractionRequest, coming: Coming, key: str | None) -> Record:

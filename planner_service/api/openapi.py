@@ -28,6 +28,7 @@ TAGS: Final = [
     {"name": "long scripts", "description": "Planning alone: a theme becomes keyframes."},
     {"name": "layouts", "description": "The library of furnished rooms."},
     {"name": "layout graphs", "description": "Which furniture stands by which, merged over several scripts."},
+    {"name": "vocabularies", "description": "What the fields of a keyframe may be."},
     {"name": "service", "description": "Health, figures and logging in."},
 ]
 ALWAYS: Final = {

@@ -28,7 +28,7 @@ SHOWN: Final = {
 
 def motion(
     clips: Annotated[
-        Path | None, typer.Option(help="Collection of `sims clips build`: its test people judge walks.")
+        Path | None, typer.Option(help="Collection of `sims clips build`: its people judge walks, and walk in sheets.")
     ] = None,
     ablate: Annotated[bool, typer.Option("--ablate", help="The learned body without each thing it is told.")] = False,
     parts: Annotated[int, typer.Option(min=1, max=1000, help="Parts of each skill, in rooms not learned from.")] = 6,
@@ -48,6 +48,8 @@ def motion(
     """
     if not ablate and not weights and sheets is None:
         raise RequestError("there is nothing to do", "give --ablate, --weights or --sheets FOLDER")
+    if weights and clips is None:
+        raise RequestError("weights are judged by people", "give --clips FILE too", at="--weights")
     console, found = Console(markup=False, highlight=False), dict[str, "Sequence[Ablated]"]()
     if ablate:
         found["parts at furniture"] = _parts(parts)
@@ -60,7 +62,7 @@ def motion(
             console.print(_table(name, rows))
             console.print()
     if sheets is not None:
-        _draw(sheets, clips, seed, console)
+        _draw(sheets, clips, seed, Console(markup=False, highlight=False, stderr=as_json))
 
 
 def _parts(count: int) -> Sequence[Ablated]:
@@ -71,20 +73,15 @@ def _parts(count: int) -> Sequence[Ablated]:
 
 
 def _walks(clips: Path, people: int, ablate: bool, weights: Sequence[Path]) -> Sequence[Ablated]:
-    from motion_backend.diffusion.backend import walking
-    from motion_backend.diffusion.checkpoint import load_denoiser
-    from motion_backend.diffusion.sampler import Sampler
+    from motion_backend.diffusion.backend import walking, walking_by
     from motion_backend.mocap.dataset_file import read_dataset
     from planner_service.evaluation.motion_ablation import ABLATIONS, Ablated, ablate_walks
 
     dataset = read_dataset(clips)
     rows = list(ablate_walks(walking(), dataset, people, ABLATIONS if ablate else ABLATIONS[:1]))
     for path in weights:
-        own, schedule = load_denoiser(path)
-        sampler = Sampler(own.network, own.scale, schedule, gaits=int(own.config.get("gaits", 0)))
-        rows += [
-            Ablated(path.parent.name, one.figures) for one in ablate_walks(sampler, dataset, people, ABLATIONS[:1])
-        ]
+        judged = ablate_walks(walking_by(path), dataset, people, ABLATIONS[:1])
+        rows += [Ablated(str(path), one.figures) for one in judged]
     return rows
 
 

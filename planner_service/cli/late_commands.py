@@ -24,6 +24,7 @@ COMMANDS: Final = {
     "task": ("tasks:task", "Break an instruction into steps, and act it out"),
     "routine": ("tasks:routine", "Plan what to do in a room, without end"),
     "serve": ("service:serve", "Serve the HTTP API and the page, with their workers"),
+    "mcp": ("mcp:mcp", "Offer the service to an agent as tools (MCP)"),
     "worker": ("service:worker", "Make stories for a service that runs elsewhere"),
     "jobs": ("service:jobs", "Stories in the making, and taking them up again"),
     "scripts": ("scripts:app", "Search, check and extend the library of short scripts"),

@@ -108,6 +108,7 @@ EXTRAS = {
     "llm": ("pydantic_ai", "models over HTTP"),
     "llamacpp": ("llama_cpp", "weights of your own, in a GGUF file"),
     "video": ("av", "films"),
+    "mcp": ("mcp", "agents"),
     "asr": ("faster_whisper", "the speech of films, on this machine"),
 }
 """Extras of the package: what each installs, and for what."""

@@ -103,6 +103,18 @@ def act(keyframes: Sequence[Json], **options: Unpack[MotionOptions]) -> Call[Sto
     return _made("/v1/motions", {"keyframes": list(keyframes)}, dict(options))
 
 
+def take(
+    story_id: str, keyframes: Sequence[Json] | None = None, home: Json | None = None, **options: Unpack[Options]
+) -> Call[Story]:
+    """Derive a story from a story: with another script, home, seed, backend or character; all else stays as it was.
+
+    `keyframes` is the whole script as it is to be: those of the story by their `index`, changed or not, and new ones.
+    ApiError 409 before the story has its home.
+    """
+    script = None if keyframes is None else list(keyframes)
+    return _made(_at("stories", story_id, "takes"), _given(keyframes=script, home=home), dict(options))
+
+
 def _made(path: str, body: Json, options: Json) -> Call[Story]:
     key = options.pop("idempotency_key", None) or str(uuid.uuid4())
     return Call("POST", path, _story, body=body | options, headers={"Idempotency-Key": key})
@@ -264,6 +276,31 @@ def change_short_script(script: Json) -> Call[Json]:
 def delete_short_script(script_id: str) -> Call[None]:
     """Remove one of your own."""
     return Call("DELETE", _at("short-scripts", script_id), _nothing)
+
+
+def captions(skill: str | None = None) -> Call[list[Json]]:
+    """How skills can be done: [{caption, skill}]."""
+    return Call("GET", "/v1/captions", _items, _given(skill=skill))
+
+
+def emotions() -> Call[list[Json]]:
+    """The nine emotions, and words that mean them: [{emotion, words}]."""
+    return Call("GET", "/v1/emotions", _items)
+
+
+def furniture(affords: Literal["sit", "lie", "touch"] | None = None) -> Call[list[Json]]:
+    """What keyframes can name: [{word, category, of_class, group, affords}]."""
+    return Call("GET", "/v1/furniture", _items, _given(affords=affords))
+
+
+def skills() -> Call[list[Json]]:
+    """What a body can do in one keyframe: [{skill, needs, usual, captions}]."""
+    return Call("GET", "/v1/skills", _items)
+
+
+def backends() -> Call[list[Json]]:
+    """What can move a body at this service: [{backend, about, default}]."""
+    return Call("GET", "/v1/backends", _items)
 
 
 def long_script(theme: str, **options: Any) -> Call[Json]:

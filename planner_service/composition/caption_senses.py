@@ -82,7 +82,7 @@ def _is_elsewhere(keyframe: Keyframe, clause: Clause) -> bool:
 
 def _is_own(keyframe: Keyframe, clause: Clause, row: DeedRow) -> bool:
     """Whether a keyframe at rest, or of a hand, is the one that the table has for a deed."""
-    if row.stands or row not in deed_table().deed or _is_elsewhere(keyframe, clause):
+    if row.stands or all(row.says is not one.says for one in deed_table().deed) or _is_elsewhere(keyframe, clause):
         return False
     if keyframe.skill is Skill.TOUCH:
         return row.skill is Skill.TOUCH and not is_person(object_of(clause))

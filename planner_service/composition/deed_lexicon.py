@@ -15,10 +15,11 @@ from planner_service.scripts.script import EMOTIONS
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS
 from planner_service.themes.details import details_of
-from planner_service.themes.lexicon import gerund, grammar, is_noun, lemma_of, verb_of
+from planner_service.themes.lexicon import gerund, grammar, is_adjective, is_noun, lemma_of, verb_of
+from planner_service.themes.protagonist import head_of, is_person
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
-from planner_service.themes.things import things
+from planner_service.themes.things import things, things_called
 from planner_service.themes.verb_finder import tokens_of
 from planner_service.themes.verb_group import NEARLY
 from scene_graphs import furniture
@@ -36,8 +37,15 @@ _WAYS: Final = re.compile(
 )
 """A way through a home, whatever the verb that goes it."""
 _FLOOR: Final = re.compile(
-    r"(?<!feet )(?<!foot )\b(?:on|onto|to) the (?:\w+ )?(?:floor|ground|rug|carpet|tiles|floorboards|mat)\b"
+    r"(?<!feet )(?<!foot )\b(?:on|onto|to) (?:the|an?|his|her|their|my) (?:\w+ )?"
+    r"(?:floor|ground|(?:hearth)?rug|carpet|tiles|lino|floorboards|(?:door|yoga |gym )?mat)\b"
 )
+_GROUND: Final = re.compile(r"\b(?:floor|floorboards?|(?:hearth)?rugs?|carpets?|(?:door)?mats?|tiles|lino|skirting)\b")
+"""What hands reach down to."""
+_UNDER_IT: Final = re.compile(r"\b(?:under|beneath|underneath|below) (?:the|an?|his|her|their|my|every|each)\b")
+_GOAL: Final = re.compile(r"\b(?:over|on|onto|into|in|inside|under|against|behind|beneath|beside) ((?:\w+ ?){1,4})")
+"""Where something is put."""
+_LOW: Final = ("touch low height with the right hand", "touch low height")
 _ON_TOP: Final = re.compile(r"\bon (?:the|a|his|her|their) (?:\w+ )?(?:table|desk|counter)")
 _UNDER: Final = re.compile(r"\b(?:under|beneath|underneath|behind|beside|next to)\b")
 _INTO: Final = re.compile(
@@ -53,6 +61,11 @@ _NOT_NOW: Final = frozenset(("before", "after", "until", "since", "during", "wit
 """Words before what is not done, or not yet."""
 _LIGHT_VERBS: Final = ("do", "have", "take", "play", "watch")
 """Verbs that a noun alone stands for: "dinner", "a nap", "yoga"."""
+_PUT_VERBS: Final = ("put", "take", "turn", "lay")
+_PUT: Final = frozenset(("on", "off", "up", "down", "out", "away", "in"))
+"""Words that tell what is done to what stands before them: "kettle on"."""
+_FEWEST_SAID: Final = 2
+"""Words that a saying must have of them: the verb, the thing and the last."""
 _THROUGH: Final = frozenset(("through", "in", "around", "round", "up", "down", "out", "over", "across"))
 """Words between a deed and the room that it is done to: "searches through the kitchen"."""
 _LISTED: Final = re.compile(r",(?: and| then| or| even)*|\b(?:and|or)(?: then| even)*\b")
@@ -76,6 +89,8 @@ _PLACED: Final = frozenset(
 )
 """Words that each place of a list begins with."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
+_ANYWHERE: Final = ("table", "kitchen counter", "desk", "cabinet")
+"""Where a thing may be of which nobody knows where it is kept."""
 Pattern = tuple[frozenset[str], ...]
 """Base forms of each word; an empty set is a gap."""
 
@@ -168,7 +183,8 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     skill = found.skill
     need = NEEDS.get(skill)
     in_bed = any(furniture.group_of(piece) == "bed" for piece in named)
-    if skill is Skill.SITDOWN and not found.rests and in_bed and clause.verb != "sit":
+    sits = clause.verb in ("sit", "perch", "settle") or "edge" in clause.lemmas
+    if skill is Skill.SITDOWN and not found.rests and in_bed and not sits:
         skill, need = Skill.LIEDOWN, "lie"
     seated = any(affords(piece, "sit") or piece in deed_table().seats_at for piece in named) and not any(
         affords(piece, "lie") for piece in named
@@ -178,6 +194,9 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     if need is None:
         pieces = [piece for piece in named if furniture.affordances(piece)]
         return Deed(found, skill, tuple(pieces), bool(pieces))
+    if skill is Skill.TOUCH:  # "drapes lights | over the wardrobe"
+        goals = [piece for place in _GOAL.findall(clause.text) for piece in pieces_in(place)]
+        named.sort(key=lambda piece: "," not in clause.text and piece not in goals)
     fitting = [piece for piece in named if affords(piece, need)]
     if skill is Skill.SITDOWN and not (found.skill is skill and _ON_TOP.search(clause.text)):
         seats = [seat for piece in named for seat in deed_table().seats_at.get(piece, ())]
@@ -185,13 +204,16 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     under = need == "lie" and bool(named) and not fitting and bool(_UNDER.search(clause.text))
     if under or (need in ("sit", "lie") and _FLOOR.search(clause.text)):
         fitting = ["floor"]
+    low = _UNDER_IT if named else _GROUND
+    if skill is Skill.TOUCH and low.search(clause.text):
+        found = replace(found, captions=_LOW)
     if skill is Skill.TOUCH and (several := listed_places(clause) or ([] if fitting else typical_of(clause.text))):
         fitting = [several[0], *fitting, *found.at]
     if fitting:
         return Deed(found, skill, tuple(fitting), True)
     kept = [piece for piece in _kept(clause, about) if affords(piece, need)] if skill is Skill.TOUCH else []
-    if skill is Skill.TOUCH and not (kept or found.at):
-        return None
+    if skill is Skill.TOUCH and not (kept or found.at):  # hands do it to what no list has
+        return Deed(replace(found, stands=True), skill, _ANYWHERE, False) if _may_be_touched(clause) else None
     order = (*kept, *found.at) if found.things else (*found.at, *kept)
     return Deed(found, skill, tuple(dict.fromkeys(order)), False)
 
@@ -243,9 +265,22 @@ def object_of(clause: Clause) -> str:
 def _is_of_body(clause: Clause, row: DeedRow) -> bool:
     """Whether only a part of the body does it, or has it done to it: "his heart raced", "opens one eye"."""
     body = theme_words()["body"]
-    races = row.skill is Skill.LOCO and not row.mood and bool(body & set(_lemmas(clause.subject)[-1:]))
+    parts = [lemma_of(head_of(clause.subject))]
+    rest = clause.lemmas[1:]  # "arms folded", but not "elbows wobbling"
+    folded = says(row.says, (clause.verb, *parts, *rest)) and not says(row.says, (clause.verb, "thing", *rest))
+    races = row.skill in (Skill.LOCO, Skill.TOUCH) and not (row.mood or folded) and bool(body & set(parts))
     noun = object_of(clause)
     return races or (row.skill is Skill.TOUCH and row.things and noun in body and noun not in things())
+
+
+def _may_be_touched(clause: Clause) -> bool:
+    """Whether hands may do a deed to what it is done to: to a noun that is no person and no part of the body."""
+    noun = object_of(clause)
+    return bool(noun) and noun not in theme_words()["body"] and not is_person(noun)
+
+
+def _eaten(word: str) -> bool:
+    return lemma_of(word) in (*things_called("food"), *things_called("drink"))
 
 
 def _deed_of_fragment(clause: Clause) -> Deed | None:
@@ -253,7 +288,13 @@ def _deed_of_fragment(clause: Clause) -> Deed | None:
     words = [token.low for token in tokens_of(clause.text) if token.text[:1].isalpha()]
     told = [word for word in words if word not in grammar().adverbs | grammar().joints]
     alone = clause.joint in ("", "then", ",") and 0 < len(told) <= _MAX_FRAGMENT and words[0] not in _NOT_NOW
-    if not alone or told[0] in theme_words()["body"]:
+    if not alone or told[0] in ("out", "away"):
+        return None
+    for light in _PUT_VERBS if len(told) > 1 and told[-1] in _PUT else ():  # "kettle on, shoes off, feet up"
+        verb = replace(clause, verb=light, lemmas=(light, *map(lemma_of, told)))
+        if (found := _said(verb)) and found[0] > _FEWEST_SAID - (light == "turn"):
+            return deed_of(verb)
+    if told[0] in theme_words()["body"]:
         return None
     if verb_of(told[0]) == told[0]:
         verb = replace(clause, verb=told[0], lemmas=tuple(map(lemma_of, told)))
@@ -264,7 +305,9 @@ def _deed_of_fragment(clause: Clause) -> Deed | None:
     for skill in (Skill.LIEDOWN, Skill.SITDOWN):
         if len(rests) == 1 and piece and affords(piece, NEEDS[skill]):
             return Deed(DeedRow((rests[0],), skill), skill, (piece,), True)
-    listed = clause.sentence > 0 and words[0] not in grammar().marks
+    listed = clause.sentence > 0 and words[0] not in grammar().marks and any(map(is_noun, rests))
+    if listed and len(rests) == 1 and (kept := things().get(lemma_of(rests[0]))) and not _eaten(rests[0]):  # "Keys."
+        return Deed(DeedRow((rests[0],), Skill.TOUCH, stands=True), Skill.TOUCH, kept, False)
     for light in _LIGHT_VERBS if listed else ():  # "Tuesday: yoga" is done, "a banana" only spoken of
         verb = replace(clause, verb=light, lemmas=(light, *map(lemma_of, told)))
         if (found := _said(verb)) and found[0] > 1:
@@ -298,9 +341,10 @@ def row_of(clause: Clause, about: str) -> DeedRow | None:
 def _spelt_out(clause: Clause, about: str) -> Clause:
     """A clause with what "it" and "them" mean: of trainers "ties them" is ties the trainers."""
     meant = next((word for word in reversed(_lemmas(about)) if word in things()), "")
-    if not meant or not {"it", "them"} & set(clause.lemmas[1:]) or said_row(clause):
+    if not meant or not {"it", "them"} & set(clause.lemmas[1:]):
         return clause
-    return replace(clause, lemmas=tuple(meant if word in ("it", "them") else word for word in clause.lemmas))
+    known = replace(clause, lemmas=tuple(meant if word in ("it", "them") else word for word in clause.lemmas))
+    return known if (_said(known) or (0,))[0] > (_said(clause) or (0,))[0] else clause
 
 
 def said_row(clause: Clause) -> DeedRow | None:
@@ -334,6 +378,8 @@ def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
     """A clause's words from its verb on, then from every later -ing on."""
     if clause.verb in theme_words()["speech_verbs"] and len(clause.lemmas) > 1:  # "says into the phone"
         yield ("talk", *clause.lemmas[1:])
+    if lemma_of(head_of(clause.subject)) in theme_words()["body"]:  # "arms folded", "her knees drew up"
+        yield (*clause.lemmas[:1], *_lemmas(clause.subject), *clause.lemmas[1:])
     if clause.text.split(" ", 1)[0].lower() in NEARLY:
         yield ("nearly", *clause.lemmas)
     yield ("cannot", *clause.lemmas) if clause.unable else clause.lemmas
@@ -364,7 +410,8 @@ def _by_things(clause: Clause, about: str) -> DeedRow | None:
 def _says_how(clause: Clause) -> bool:
     """Whether a verb of state only says how somebody is: "feels watched", not "feels the wall"."""
     after = next((token.low for token in tokens_of(clause.text)[1:] if token.low not in grammar().adverbs), "")
-    return clause.verb in theme_words()["state_verbs"] | {"feel"} and after.endswith("ed") and bool(verb_of(after))
+    so = (after.endswith("ed") and bool(verb_of(after))) or (is_adjective(after) and not is_noun(after))
+    return clause.verb in theme_words()["state_verbs"] | {"feel"} and so
 
 
 def _moved(clause: Clause) -> DeedRow | None:
@@ -431,6 +478,8 @@ def _pattern(says: str) -> Pattern:
 
 
 def _forms(word: str) -> tuple[str, ...]:
+    if word.startswith("@"):
+        return things_called(word[1:])
     return (word,) if word == "lay" else (word, lemma_of(word))  # who lies lays nothing
 
 
@@ -442,8 +491,9 @@ def pieces_in(text: str) -> list[str]:
     at = 0
     while at < len(words):
         size = next((size for size in (3, 2, 1) if _names(words[at : at + size], size)), 0)
-        if size and words[at] not in others and not (at == 0 and _is_a_deed(words)):
-            piece = furniture.canonical(" ".join(words[at : at + size])).replace("_", " ")
+        if size and not (size == 1 and words[at] in others) and not (at == 0 and _is_a_deed(words)):
+            name = " ".join(words[at : at + size])
+            piece = deed_table().stands_on.get(name) or furniture.canonical(name).replace("_", " ")
             found.append(deed_table().stands_on.get(piece, piece))
         at += size or 1
     return found
@@ -451,13 +501,16 @@ def pieces_in(text: str) -> list[str]:
 
 def _is_a_deed(words: Sequence[str]) -> bool:
     """Whether a furniture word is a verb: "sinks onto the bottom stair"."""
-    led = len(words) > 1 and words[1] in ("into", "onto", "down", "to", "back", "on")
+    ways = {"into", "onto", "down", "to", "back", "on"}
+    led = len(words) > 1 and words[1] in ways | (grammar().marks - {"of"})
     return led and bool(verb_of(words[0]))
 
 
 def _names(words: Sequence[str], size: int) -> bool:
     """Whether these very words, and not only the last of them, are a furniture word."""
     whole = " ".join(words)
+    if whole in deed_table().stands_on:
+        return True
     if len(words) < size or not furniture.is_known(whole):
         return False
     return size == 1 or furniture.canonical(whole) != furniture.canonical(" ".join(words[1:]))

@@ -187,6 +187,8 @@ class KeyframeWriter:
                 self._show(index)
             case Skill.LOCO if deed.row.seated and self._resting is not None and self._resting.skill is Skill.SITDOWN:
                 self._rest(index, read, deed, mood, Skill.SITDOWN, deed.row.seated)
+            case Skill.LOCO if deed.row.seated and self._lies() and not deed.named:
+                self._show(index)  # "lies there and stares at the wall"
             case Skill.LOCO:
                 self._walk(index, read, deed, mood)
             case Skill.TOUCH:

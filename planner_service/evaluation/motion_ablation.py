@@ -168,10 +168,9 @@ def _summed(made: Sequence[tuple[Home, Step, Followed]], name: str) -> dict[str,
         float((penetration(body, scene_of(home).obstacles, step.part.action) > CLEARLY_IN).mean())
         for (home, step, _), body in zip(made, bodies, strict=True)
     ]
-    return {
+    found = {
         "own": frames[True] / max(sum(frames.values()), 1),
-        "off": float(np.median(off)) if off else float("nan"),
-        "off_most": float(np.max(off)) if off else float("nan"),
         "in_furniture": float(np.mean(deep)),
         "slip": float(np.mean([support_slip(body) for body in bodies])),
     }
+    return found | ({"off": float(np.median(off)), "off_most": float(np.max(off))} if off else {})

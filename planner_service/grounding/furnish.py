@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from planner_service.grounding.keyframes_to_actions import NEEDS, Place
-from planner_service.grounding.object_assignment import Placing, StandIn, usable_offers
+from planner_service.grounding.object_assignment import Placing, StandIn, place_in, usable_offers
 from planner_service.grounding.room_assignment import housed
 from planner_service.grounding.seat_access import pull_to_dict, seat, seat_with_pulls
 from planner_service.scripts.script import LongScript, PlannedKeyframe
@@ -139,6 +139,20 @@ def furnish(
     matches = _matches(unique, chosen, seating.said)
     pulled = tuple(replace(match, pulls=seating.pulls.get(room, ())) for room, match in enumerate(matches))
     return Furnished(script, seating.placing.home, pulled, seating.places, merged)
+
+
+def furnished_again(stage: Furnished, script: LongScript) -> Furnished:
+    """The same home for a script that has changed: its keyframes name their objects, or play on a room's floor."""
+    rooms = {keyframe.room: place.room for keyframe, place in zip(stage.script.keyframes, stage.places, strict=True)}
+    met = list(dict.fromkeys(keyframe.room for keyframe in script.keyframes if keyframe.room))
+    graphs: dict[str, FurnitureGraph] = {
+        room: merge([graph for _, graph in _script_graphs(script, room, met)]).graph for room in met
+    }
+    places = tuple(
+        Place(rooms.get(keyframe.room, 0)) if keyframe.object_id is None else place_in(keyframe.object_id)
+        for keyframe in script.keyframes
+    )
+    return replace(stage, script=script, places=places, graphs=graphs)
 
 
 def _room_types(script: LongScript, rooms: Sequence[str]) -> list[str]:

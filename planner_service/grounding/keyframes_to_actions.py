@@ -43,6 +43,12 @@ _AWAY: Final = (1.8, 1.5, 1.2, 0.9, 0.7)
 """How far a walk to the front goes, the best first (metres)."""
 _ROOM: Final = 0.25
 """Clearance where it should end (metres)."""
+FREE_FLOOR: Final = 0.35
+"""Clearance all along a body on the floor at which one stops looking for a better place (metres)."""
+FLOOR_TRIES: Final = 120
+"""Places on the floor that are looked at: half of them anywhere in the room, the others beside the best of those."""
+BESIDE_BEST, TURNED_ASIDE = 0.15, 0.3
+"""Deviations of those from it: metres to each side, radians."""
 
 
 def stays(caption: str) -> bool:
@@ -116,6 +122,15 @@ class Place:
     object_id: str | None = None
 
 
+@dataclass(frozen=True)
+class Kept:
+    """What a keyframe came to when it was grounded before, in the same home and with the same seed."""
+
+    action: Action
+    leads_elsewhere: bool = False
+    """Whether something else follows it now: a walk then goes where that begins."""
+
+
 def act(
     keyframes: Sequence[Keyframe],
     places: Sequence[Place],
@@ -123,21 +138,28 @@ def act(
     seed: int,
     words: Words = hashed_words,
     scale: float = 1.0,
+    kept: Sequence[Kept | None] = (),
 ) -> tuple[Action, ...]:
     """Ground every keyframe in the home. Raises UnreachableError naming the keyframe that cannot be done.
 
     An action's caption is what is performed: where the body knows no word of the keyframe's, the nearest of `words`.
-    `scale` is the size of the body against one of 1.70 m.
+    `scale` is the size of the body against one of 1.70 m. `kept` has, for each keyframe that was grounded before, what
+    came of it, else None: that stays as it was.
     """
     scene = scene_of(home)
     stage = _Stage(home, scene.walkable, np.random.default_rng([seed, 7]), words, scale)
+    known = kept or [None] * len(keyframes)
     drafts: list[Action] = []
-    for index, (keyframe, place) in enumerate(zip(keyframes, places, strict=True)):
+    for index, (keyframe, place, old) in enumerate(zip(keyframes, places, known, strict=True)):
         before = keyframes[index - 1] if index else None
-        drafts.append(stage.contact(index, keyframe, place, free_hand(before)))
+        if old is not None and keyframe.skill in (*NEEDS, Skill.LOCO):
+            drafts.append(stage.keep(index, old))
+        else:  # who rises does so from what it rests on now
+            drafts.append(stage.contact(index, keyframe, place, free_hand(before)))
+    aimed = [old is not None and not old.leads_elsewhere for old in known]
     hands = Hands()
     return tuple(hands.follow(action, done_in(keyframes[action.keyframe].caption))
-                 for action in stage.walks(drafts, places, scene.beginning(seed)[0]))  # fmt: skip
+                 for action in stage.walks(drafts, places, scene.beginning(seed)[0], aimed))  # fmt: skip
 
 
 class _Stage:
@@ -171,6 +193,14 @@ class _Stage:
         if keyframe.skill in (Skill.STANDUP, Skill.GETUP) and self.resting is not None:
             return replace(action, object_id=self.resting.object_id, spot=self.resting)
         return action
+
+    def keep(self, index: int, old: Kept) -> Action:
+        """An action as it was, the body left where that leaves it; how long it is held is reckoned anew."""
+        action = old.action
+        self.on = action.spot if action.skill in (Skill.SITDOWN, Skill.LIEDOWN) else None
+        self.resting = self.on or self.resting
+        self.at = action.spot.standing if action.spot is not None else self.at
+        return replace(action, keyframe=index, hold=HOLDS.get(action.skill, Action.hold))
 
     def _spot(self, index: int, keyframe: Keyframe, mood: Emotion, place: Place) -> Spot:
         need = NEEDS[keyframe.skill]
@@ -242,12 +272,15 @@ class _Stage:
         """The freest place of a room to sit or lie on the floor, and the freest direction there."""
         best: tuple[float, Spot] | None = None
         length = 0.9 if need == "lie" else 0.5
-        for attempt in range(120):
-            point, turned = self.walkable.random_point(self.rng, room), 0.0
-            if best is not None and attempt >= 60:  # in a crowded room beside the best so far
+        for attempt in range(FLOOR_TRIES):
+            if best is None or attempt < FLOOR_TRIES // 2:
+                point, turned = self.walkable.random_point(self.rng, room), 0.0
+            else:  # in a crowded room beside the best so far, but not through a wall or a doorway
                 x, _, z = best[1].point
-                point = (x + float(self.rng.normal(0.0, 0.15)), z + float(self.rng.normal(0.0, 0.15)))
-                turned = float(self.rng.normal(best[1].facing, 0.3))
+                aside_x, aside_z = self.rng.normal(0.0, BESIDE_BEST, 2).tolist()
+                point, turned = (x + aside_x, z + aside_z), float(self.rng.normal(best[1].facing, TURNED_ASIDE))
+                if self.home.room_at(point) != room or not self.walkable.sees((x, z), point):
+                    continue
             for yaw in turned + np.arange(8) * np.pi / 4:
                 ahead = np.array([np.sin(yaw), np.cos(yaw)])
                 ends = [np.asarray(point) + share * length * ahead for share in (-1.0, -0.5, 0.5, 1.0)]
@@ -257,31 +290,46 @@ class _Stage:
                 room_left = min(self.walkable.clearance((float(e[0]), float(e[1]))) for e in ends)
                 if best is None or room_left > best[0]:
                     best = (room_left, spot)
-            if best is not None and best[0] > 0.35:
+            if best is not None and best[0] > FREE_FLOOR:
                 break
         if best is None or best[0] <= 0.0:
             raise UnreachableError(f"room {room} has no free floor to {need} on", "choose another room")
         return best[1]
 
-    def walks(self, drafts: list[Action], places: Sequence[Place], begins: Point) -> list[Action]:
+    def walks(
+        self, drafts: list[Action], places: Sequence[Place], begins: Point, aimed: Sequence[bool]
+    ) -> list[Action]:
         """Give every walk its goal: where the next contact with the same thing begins, beside a thing, or anywhere.
 
-        `begins` is where the body stands before the first of them.
+        `begins` is where the body stands before the first of them; those that are `aimed` have their goal.
         """
         done: list[tuple[Action, Point | None]] = []
         at: Point | None = begins
         for index, action in enumerate(drafts):
-            wanders = action.skill is Skill.LOCO and places[index].object_id is None
-            ahead = in_front(action.caption, self.walkable, at, done) if wanders else None
-            if ahead is not None:
-                action = replace(action, goal=ahead, facing=None)
-            elif action.skill is Skill.LOCO and not (wanders and stays(action.caption)):
+            if action.skill is Skill.LOCO and not aimed[index]:
                 following = drafts[index + 1] if index + 1 < len(drafts) else None
-                action = self._walk(action, following, places[index], at)
+                action = self._aimed(action, following, places[index], at, done)
             last = index == len(drafts) - 1
             done.append((replace(action, hold=action.hold + LAST_HOLD) if last else action, at))
             at = action.goal or (action.spot.standing if action.spot else at)
         return [action for action, _ in done]
+
+    def _aimed(
+        self,
+        action: Action,
+        following: Action | None,
+        place: Place,
+        at: Point | None,
+        done: Sequence[tuple[Action, Point | None]],
+    ) -> Action:
+        """A walk with its goal; who stands still or waves has none."""
+        wanders = place.object_id is None
+        if wanders and action.goal is not None and (following is None or following.object_id != "floor"):
+            return action  # where it wandered before is as good as anywhere
+        ahead = in_front(action.caption, self.walkable, at, done) if wanders else None
+        if ahead is not None:
+            return replace(action, goal=ahead, facing=None)
+        return action if wanders and stays(action.caption) else self._walk(action, following, place, at)
 
     def _walk(self, action: Action, following: Action | None, place: Place, at: Point | None) -> Action:
         same = following is not None and following.skill in NEEDS and following.object_id == action.object_id

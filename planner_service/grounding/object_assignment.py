@@ -74,6 +74,8 @@ class Placing:
     def _place(self, index: int, keyframe: PlannedKeyframe, room: str) -> Place:
         if keyframe.on_floor:
             return Place(self.numbers[room])
+        if keyframe.object_id is not None:
+            return place_in(keyframe.object_id)
         word, instance = keyframe.piece
         node = Furniture(canonical(word), instance)
         object_id = self._object(keyframe, room, node)
@@ -84,7 +86,7 @@ class Placing:
             )
         if object_id is None and keyframe.skill in NEEDS:
             self.stand_ins[room, node] = FLOOR
-        return Place(self.numbers[room] if object_id is None else int(object_id.split("/")[0]), object_id)
+        return Place(self.numbers[room]) if object_id is None else place_in(object_id)
 
     def _object(self, keyframe: PlannedKeyframe, room: str, node: Furniture) -> str | None:
         # A connecting keyframe speaks of what the script before or after it uses: those come after its own.
@@ -119,6 +121,11 @@ class Placing:
         best = min(fitting, key=lambda p: (is_minor(p.category), not kept[p.id], p.id in taken, p.id))
         self.stand_ins[room, node] = best.id
         return best.id
+
+
+def place_in(object_id: str) -> Place:
+    """An object of a home with the room that it stands in."""
+    return Place(int(object_id.partition("/")[0]), object_id)
 
 
 def usable_offers(home: Home) -> dict[str, frozenset[str]]:

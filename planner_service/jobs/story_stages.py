@@ -12,10 +12,12 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext, suppress
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from typing import Any, Final
 
+import structlog
+from sqlalchemy import Connection
 from sqlalchemy.exc import InterfaceError, OperationalError
 
 from motion_backend.backend_protocol import BodyState
@@ -30,13 +32,16 @@ from motion_backend.scene import scene_of
 from planner_service.grounding.furnish import Furnished
 from planner_service.jobs import serialization
 from planner_service.jobs.serialization import summary_of_home, summary_of_script
+from planner_service.jobs.take_reuse import kept_actions, reused_segments
 from planner_service.llm.budget import Spent
 from planner_service.llm.client import spent_on
 from planner_service.narration.narrator import Told
 from planner_service.output.story_export import report_to_dict
 from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, actor, judge, role_of
 from planner_service.scripts.script import LongScript
-from planner_service.store.story_store import Made, Stories, count_spent
+from planner_service.store.story_store import Made, Stories, count_spent, put_made
+from planner_service.store.take_store import origin_of
+from scene_graphs.home import Home
 from scene_graphs.json_fields import Json
 
 STAGES: Final = ("plan", "furnish", "narrate", "act", "move", "judge", "film")
@@ -50,6 +55,22 @@ ASKED_EVERY: Final = 2.0
 """Seconds between two looks whether somebody still wants an action that takes long."""
 _OPEN: Final = AT_ONCE
 """Stories whose home and actions a worker keeps at hand."""
+log = structlog.get_logger("sims.worker")
+
+
+@dataclass
+class Homes:
+    """Homes of stories at hand: what is worked out about one is worked out once, though several stories play in it."""
+
+    known: OrderedDict[Home, Home] = field(default_factory=OrderedDict)
+
+    def shared(self, stage: Furnished) -> Furnished:
+        """The same script in the home that is at hand, where an equal one is."""
+        home = self.known.setdefault(stage.home, stage.home)
+        self.known.move_to_end(home)
+        while len(self.known) > _OPEN:
+            self.known.popitem(last=False)
+        return replace(stage, home=home)
 
 
 @dataclass
@@ -59,6 +80,7 @@ class OpenStory:
     store: Stories
     id: str
     house: Pipeline
+    homes: Homes = field(default_factory=Homes)
 
     @cached_property
     def pipeline(self) -> Pipeline:
@@ -73,12 +95,25 @@ class OpenStory:
     @cached_property
     def stage(self) -> Furnished:
         """The script in its home, as furnishing left it."""
-        return serialization.furnished_from_dict(self._json(HOME))
+        return self.homes.shared(serialization.furnished_from_dict(self._json(HOME)))
 
     @cached_property
     def actions(self) -> tuple[Action, ...]:
         """What there is to do."""
         return tuple(serialization.action_from_dict(row) for row in self._json(ACTIONS)["actions"])
+
+    @cached_property
+    def origin(self) -> OpenStory | None:
+        """The story that this one is a take of, or None; nothing of it may be left."""
+        found = origin_of(self.store.engine, self.id)
+        return None if found is None else OpenStory(self.store, found, self.house, self.homes)
+
+    def segments(self, count: int) -> list[Made]:
+        """The first so many segments, as far as they are there without a gap."""
+        found = self.store.made(self.id, range(FIRST_SEGMENT, FIRST_SEGMENT + count))
+        return [
+            one for index, one in enumerate(found) if one.kind == "segment" and one.position == FIRST_SEGMENT + index
+        ]
 
     @cached_property
     def obstacles(self) -> Obstacles:
@@ -128,6 +163,7 @@ class Maker:
     pipeline: Pipeline
     worker: str
     open: OrderedDict[str, OpenStory] = field(default_factory=OrderedDict)
+    homes: Homes = field(default_factory=Homes)
     directors: dict[str, Director] = field(default_factory=dict)
     turn: threading.RLock = field(default_factory=threading.RLock)
     """Held by whoever computes: stories take turns, and only those that wait for a language model let others go on."""
@@ -152,7 +188,16 @@ class Maker:
     def act(self, story_id: str) -> int:
         """Keyframes to actions; how many there are."""
         story = self._opened(story_id)
-        self._record(story, "act", ACTIONS, "actions", lambda: self._actions(story))
+        taken: list[Made] = []
+
+        def make() -> tuple[bytes, Json]:
+            data, summary, reused = self._actions(story)
+            taken.extend(reused)
+            return data, summary
+
+        self._record(story, "act", ACTIONS, "actions", make, lambda connection: put_made(connection, story_id, taken))
+        if taken:
+            log.info("segments taken over", derived_from=story.origin and story.origin.id, reused=len(taken))
         return len(story.actions)
 
     def move(self, story_id: str, index: int) -> None:
@@ -167,6 +212,8 @@ class Maker:
         following = story.actions[index + 1] if index + 1 < len(story.actions) else None
         position = FIRST_SEGMENT + index
         first = 0
+        if self.store.has(story_id, position):  # taken over from another story
+            return
         if index == 0:
             state = director.begin(home, actor(story.request, story.stage.script), story.request.seed)
         else:
@@ -174,8 +221,8 @@ class Maker:
             first = self._end_of(story_id, position - 1)
         backend: Any = director.backend
         if hasattr(backend, "between"):
-            done = _DONE["act"] + index / len(story.actions) * (_DONE["move"] - _DONE["act"])
-            backend.between = _now_and_then(lambda: self.store.go_on(story_id, round(done, 4)))
+            done = _moved(index, len(story.actions))
+            backend.between = _now_and_then(lambda: self.store.go_on(story_id, done))
         motion, after = director.act(home, action, state, following)
         figures = story_metrics.judge(motion, action, story.obstacles)
         summary = {
@@ -187,14 +234,13 @@ class Maker:
             "reason": figures.reason,
             "segments": [asdict(segment) for segment in segments_of(motion)],
         }
-        share = (index + 1) / len(story.actions)
         made = Made(
             kind="segment",
             position=position,
             data=npz_bytes(motion),
             summary=summary,
             following="judge" if index + 1 == len(story.actions) else None,
-            progress=round(_DONE["act"] + share * (_DONE["move"] - _DONE["act"]), 4),
+            progress=_moved(index + 1, len(story.actions)),
             seconds=time.perf_counter() - started,
             state=after.to_dict(),
         )
@@ -219,12 +265,11 @@ class Maker:
 
     def _script(self, story: OpenStory) -> tuple[bytes, Json]:
         script = story.pipeline.script(story.request)
-        shown = summary_of_script(script) | {"character": vars(actor(story.request, script))}
-        return _to_bytes(script.model_dump(mode="json")), shown
+        return script_made(story.request, script)
 
     def _home(self, story: OpenStory) -> tuple[bytes, Json]:
         stage = story.pipeline.furnish(story.request, story.script())
-        return _to_bytes(serialization.furnished_to_dict(stage)), summary_of_home(stage)
+        return home_made(stage)
 
     def _told(self, story: OpenStory) -> tuple[bytes, Json]:
         stage, told = story.pipeline.tell(story.request, story.stage)
@@ -233,33 +278,45 @@ class Maker:
         row["spent"] = asdict(spent) if spent else None
         return _to_bytes(row), row
 
-    def _actions(self, story: OpenStory) -> tuple[bytes, Json]:
-        stage = story.stage
-        actions = story.pipeline.act(story.request, stage)
+    def _actions(self, story: OpenStory) -> tuple[bytes, Json, list[Made]]:
+        """What there is to do, and the segments that a take has in common with the story it derives from."""
+        stage, origin = story.stage, story.origin
+        actions = story.pipeline.act(story.request, stage, kept_actions(story, origin))
         rows = [serialization.action_to_dict(action) for action in actions]
         summary = {"count": len(actions), "objects": [a.object_id for a in actions]}
         asleep = role_of(story.request.acted_by, actions, stage.script).asleep
-        return _to_bytes({"actions": rows}), summary | {"asleep": sorted(asleep)}
+        director = self._director(story.request.backend) if origin else None
+        taken = reused_segments(story, origin, rows, director) if director else []
+        own = [_own(one, index, len(actions)) for index, one in enumerate(taken)]
+        summary |= {"asleep": sorted(asleep), "reused": len(own)}
+        return _to_bytes({"actions": rows}), summary, own
 
     def _report(self, story: OpenStory) -> tuple[bytes, Json]:
         row = {"report": report_to_dict(story.acted)}
         return _to_bytes(row), row
 
     def _record(
-        self, story: OpenStory, stage: str, position: int, kind: str, make: Callable[[], tuple[bytes, Json]]
+        self,
+        story: OpenStory,
+        stage: str,
+        position: int,
+        kind: str,
+        make: Callable[[], tuple[bytes, Json]],
+        also: Callable[[Connection], None] = lambda _connection: None,
     ) -> None:
+        if self.store.has(story.id, position):  # made before a crash, or known before the story began
+            return
         started, before = time.perf_counter(), spent_on(story.pipeline.model) or Spent()
         with self._turn_of(stage):
             data, summary = make()
         spent = (spent_on(story.pipeline.model) or Spent()) - before
-        following = STAGES[STAGES.index(stage) + 1] if stage != STAGES[-1] else None
-        if following == "narrate" and story.request.keyframes:
-            following = "act"
-        made = Made(
-            kind, position, data, summary, following, _DONE[stage], time.perf_counter() - started,
-            title=summary.get("title"),
-        )  # fmt: skip
-        self.store.record(story.id, made, self.worker, lambda connection: count_spent(connection, self.worker, spent))
+        made = staged(story.request, stage, position, kind, data, summary, time.perf_counter() - started)
+
+        def with_it(connection: Connection) -> None:
+            count_spent(connection, self.worker, spent)
+            also(connection)
+
+        self.store.record(story.id, made, self.worker, with_it)
 
     def _turn_of(self, stage: str) -> AbstractContextManager[object]:
         """What a stage holds while it is made."""
@@ -269,7 +326,7 @@ class Maker:
     def _opened(self, story_id: str) -> OpenStory:
         with self._opening:
             if story_id not in self.open:
-                self.open[story_id] = OpenStory(self.store, story_id, self.pipeline)
+                self.open[story_id] = OpenStory(self.store, story_id, self.pipeline, self.homes)
             self.open.move_to_end(story_id)
             while len(self.open) > _OPEN:
                 self.open.popitem(last=False)
@@ -283,6 +340,45 @@ class Maker:
     def _end_of(self, story_id: str, position: int) -> int:
         found = self.store.get(story_id, position - 1).artifacts
         return int(found[0].summary["end"])
+
+
+def script_made(request: StoryRequest, script: LongScript) -> tuple[bytes, Json]:
+    """A script as it is stored, and what is shown of it."""
+    shown = summary_of_script(script) | {"character": vars(actor(request, script))}
+    return _to_bytes(script.model_dump(mode="json")), shown
+
+
+def home_made(stage: Furnished) -> tuple[bytes, Json]:
+    """The same of a script in its home."""
+    return _to_bytes(serialization.furnished_to_dict(stage)), summary_of_home(stage)
+
+
+def staged(
+    request: StoryRequest, stage: str, position: int, kind: str, data: bytes, summary: Json, seconds: float = 0.0
+) -> Made:
+    """What a stage made, with what comes after it."""
+    following = STAGES[STAGES.index(stage) + 1] if stage != STAGES[-1] else None
+    if following == "narrate" and request.keyframes:
+        following = "act"
+    return Made(kind, position, data, summary, following, _DONE[stage], seconds, title=summary.get("title"))
+
+
+def known_before(request: StoryRequest, script: LongScript, stage: Furnished | None) -> list[Made]:
+    """Script and, where it stays, home of a story for which both are known before it begins."""
+    made = [staged(request, "plan", SCRIPT, "script", *script_made(request, script))]
+    return made if stage is None else [*made, staged(request, "furnish", HOME, "home", *home_made(stage))]
+
+
+def _own(one: Made, index: int, count: int) -> Made:
+    """A segment of another story as one of this, which has so many."""
+    following = "judge" if index + 1 == count else None
+    summary = one.summary | {"reused": True}
+    return replace(one, summary=summary, following=following, progress=_moved(index + 1, count), seconds=0.0)
+
+
+def _moved(count: int, of: int) -> float:
+    """Share of the whole that is done when so many segments are made."""
+    return round(_DONE["act"] + count / of * (_DONE["move"] - _DONE["act"]), 4)
 
 
 def _now_and_then(ask: Callable[[], None]) -> Callable[[], None]:

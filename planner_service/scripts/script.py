@@ -140,6 +140,8 @@ class PlannedKeyframe(Keyframe):
     also: tuple[int, ...] = ()
     """Further beats that it shows: who sits on the sofa and reads does both in one keyframe."""
     room: Room | None = None
+    object_id: str | None = Field(None, max_length=200)
+    """The object of the home that somebody chose for it; None: one is found."""
 
 
 class Retrieved(BaseModel):
@@ -173,7 +175,7 @@ class Beat(BaseModel):
     """Why no keyframe shows it; empty where one does."""
     unshown: tuple[Line, ...] = ()
     """What its words tell besides, which no keyframe shows: "for her ladyship"; all of them where something only stands
-    for it: a hand on the stove for "bakes a cake"."""
+    for it: a spin for "conducts an orchestra"."""
 
     @property
     def stood_for(self) -> bool:

@@ -77,7 +77,8 @@ class Mending(Generic[K]):
         if place_of(keyframe) != place_of(self._resting):
             fault = f"{keyframe.skill} from the {keyframe.furniture} while resting on the {self._resting.furniture}"
             self._note(index, "furniture", fault, f"rises from the {self._resting.furniture}")
-            update = {"furniture": self._resting.furniture, "room": getattr(self._resting, "room", None)}
+            update: dict[str, Any] = {"furniture": self._resting.furniture}
+            update |= {name: getattr(self._resting, name, None) for name in ("room", "object_id")}
             keyframe = keyframe.model_copy(update=fields(keyframe, update))
         self._stand(keyframe)
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
 from sqlalchemy import Connection, Engine, select
 
-from planner_service.store.story_store import EXTRACTION, Made, StoryGone, artifact_row, new_id, now
-from planner_service.store.tables import artifacts, stories
+from planner_service.store.story_store import EXTRACTION, StoryGone, new_id, now
+from planner_service.store.tables import stories
 
 
 @dataclass(frozen=True)
@@ -54,11 +53,6 @@ def add_extraction(connection: Connection, caller: str, request: ExtractionReque
         )
     )
     return extraction_id
-
-
-def put_made(connection: Connection, extraction_id: str, made: Sequence[Made]) -> None:
-    """What came of an extraction that was made at once."""
-    connection.execute(artifacts.insert(), [artifact_row(extraction_id, one) for one in made])
 
 
 def extraction_request(engine: Engine, extraction_id: str) -> ExtractionRequest:

@@ -6,7 +6,7 @@ import hashlib
 import json
 import secrets
 import time
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
@@ -18,7 +18,15 @@ from sqlalchemy.exc import IntegrityError
 from motion_backend.backend_protocol import Unwanted
 from planner_service.llm.budget import Spent
 from planner_service.pipeline import StoryRequest, request_from_dict, request_to_dict
-from planner_service.store.tables import CANCELLED, artifacts, idempotency_keys, stage_times, stories, workflow_status
+from planner_service.store.tables import (
+    CANCELLED,
+    artifacts,
+    idempotency_keys,
+    stage_times,
+    stories,
+    takes,
+    workflow_status,
+)
 from scene_graphs.json_fields import Json
 
 STORIES: Final = ("story", "motion")
@@ -37,6 +45,7 @@ _LISTED: Final = (
     stories.c.method,
     stories.c.character,
     stories.c.error,
+    takes.c.derived_from,
     workflow_status.c.status,
     workflow_status.c.recovery_attempts,
 )
@@ -106,6 +115,8 @@ class Record:
     method: str
     character: Json
     artifacts: tuple[Artifact, ...] = ()
+    derived_from: str | None = None
+    """The story that it is a take of."""
 
 
 def new_id(milliseconds: int) -> str:
@@ -137,6 +148,12 @@ def artifact_row(story_id: str, made: Made) -> Json:
         "seconds": made.seconds,
         "made": now(),
     }
+
+
+def put_made(connection: Connection, story_id: str, made: Sequence[Made]) -> None:
+    """What was made of a story at once, or before it began, inside the caller's transaction."""
+    if made:
+        connection.execute(artifacts.insert(), [artifact_row(story_id, one) for one in made])
 
 
 class Stories:
@@ -233,6 +250,19 @@ class Stories:
             error = json.dumps({"title": title, "detail": detail})
             connection.execute(update(stories).where(stories.c.id == story_id).values(error=error))
 
+    def made(self, story_id: str, positions: Sequence[int]) -> list[Made]:
+        """What the stages at these positions made, whole and in order; those that are not there are left out."""
+        here = (artifacts.c.story_id == story_id) & artifacts.c.position.in_(positions)
+        with self.engine.connect() as connection:
+            rows = connection.execute(select(artifacts).where(here).order_by(artifacts.c.position)).all()
+        return [
+            Made(
+                row.kind, row.position, row.data, json.loads(row.summary), row.following, row.progress, row.seconds,
+                json.loads(row.state) if row.state else None,
+            )
+            for row in rows
+        ]  # fmt: skip
+
     def data(self, story_id: str, position: int) -> bytes:
         """What the stage at a position made. StoryGone if it is not there."""
         return self.segment(story_id, position)[0]
@@ -300,7 +330,7 @@ class Stories:
 def _listed() -> Select[Any]:
     """Stories beside what the job engine says of them."""
     joined = stories.outerjoin(workflow_status, workflow_status.c.workflow_uuid == stories.c.id)
-    return select(*_LISTED).select_from(joined)
+    return select(*_LISTED).select_from(joined.outerjoin(takes, takes.c.story_id == stories.c.id))
 
 
 _ONE: Final = _listed().where(stories.c.id == bindparam("id"))
@@ -329,6 +359,7 @@ def _record(row: Row[Any], made: tuple[Artifact, ...] = ()) -> Record:
         method=row.method,
         character=json.loads(row.character),
         artifacts=made,
+        derived_from=row.derived_from,
     )
 
 

@@ -52,6 +52,14 @@ artifacts = Table(
 )
 """What every recorded stage and segment made. Written once and never changed."""
 
+takes = Table(
+    "takes",
+    metadata,
+    Column("story_id", Text, ForeignKey("stories.id", ondelete="CASCADE"), primary_key=True),
+    Column("derived_from", Text, nullable=False),  # which may be deleted by now
+)
+"""Stories that were derived from another one, and from which."""
+
 idempotency_keys = Table(
     "idempotency_keys",
     metadata,

@@ -36,19 +36,22 @@ _LOUDER: Final = {"stressed": ("drunk", "angry", "sad", "hurried"), "relaxed": (
 """Moods that a mere hint of another one does not end within a sentence: who is angry paces with anger."""
 _MEANWHILE: Final = frozenset(("after", "once", "when", "until", "as"))
 """Joints after which what had been done belongs to the story: "once he had paid, he sat down"."""
-_RECEIVERS: Final = frozenset(("phone", "telephone", "receiver"))
+_RECEIVERS: Final = frozenset(("phone", "telephone", "receiver", "headset", "handset", "mouthpiece", "intercom", "mobile"))
 """What is said into these is seen."""
 _BY_THEN: Final = re.compile(r"\bby (?:noon|midnight|dawn|dusk|evening|night|now|then|\d+|one|two|three|four|five|six|"
                                 r"seven|eight|nine|ten|eleven|twelve)\b", re.IGNORECASE)  # fmt: skip
 """By this what had been done belongs to the story: "by noon she had unpacked"."""
 _ASKED: Final = re.compile(r"(?i)(?:please|(?:can|could|would|will) you|tell me|show me|give me|help me)\b")
+_QUESTION: Final = re.compile(r"(?i)(?:what|which|how|where|why|is|are|does|do|can|should)\b[^.!?]*\?")
 _ASKING: Final = frozenset(("", "it", "you", "i", "me", "please"))
 """Who does things in a request, and is nobody whose story it is."""
+_SETTLING: Final = frozenset(("sleep", "down", "warm", "comfortable"))
+"""What somebody who cannot get it is seen trying to get to: "cannot get to sleep"."""
 _QUOTED: Final = re.compile(r"«\d+»")
 EXPRESSIONS: Final = {
     verb: mood
     for mood, verbs in {
-        Emotion.HAPPY: "laugh smile grin giggle chuckle beam sing hum whistle rejoice whoop",
+        Emotion.HAPPY: "laugh smile grin giggle chuckle beam sing rejoice whoop",
         Emotion.ANGRY: "yell scream curse growl scowl snarl shout rant grumble hate detest resent despise",
         Emotion.SAD: "sigh frown sniffle",
         Emotion.STRESSED: "tremble sweat panic flinch shudder gasp dread fear worry",
@@ -114,7 +117,8 @@ def beats_of(theme: str) -> tuple[ReadBeat, ...]:
     text = clean(theme)
     _refuse_foreign(text)
     clauses = clauses_of_text(text)
-    if _ASKED.match(text) and all(one.doer.lower() in _ASKING for one in clauses):
+    asks = _ASKED.match(text) and all(one.doer.lower() in _ASKING for one in clauses)
+    if asks or (_QUESTION.fullmatch(text) and not any(is_person(one.doer) for one in clauses)):
         raise ThemeError(f"{text[:60]!r} asks for something, and tells of nobody.")
     return read_beats(clauses)
 
@@ -174,7 +178,8 @@ def _kind(clause: Clause, who: str) -> BeatKind:
     if who or (clause.aside and (clause.verb or not is_feeling(clause))):
         return "other"
     staggers = clause.verb in words["falling_verbs"] and clause.text.split()[0].lower() in NEARLY
-    if clause.denied and not (staggers or (clause.unable and clause.verb in words["unable_verbs"])):
+    tries = clause.unable and (clause.verb in words["unable_verbs"] or not _SETTLING.isdisjoint(clause.lemmas))
+    if clause.denied and not (staggers or tries):
         return "undone"
     before = clause.perfect and clause.joint not in _MEANWHILE and not _BY_THEN.search(clause.text)
     if before or (clause.verb in words["memory_verbs"] and not clause.unable) or clause.joint == "since":

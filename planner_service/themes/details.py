@@ -10,6 +10,7 @@ from typing import Final
 from planner_service.themes.asides import MANNER
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, verb_of
 from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.things import things
 from planner_service.themes.verb_finder import Token, tokens_of
 
 _LEADS: Final = frozenset(("with", "without", "for", "like", "as", "despite", "after", "since", "before", "until"))
@@ -21,6 +22,7 @@ _SENSED: Final = frozenset(("sound", "sight", "thought", "smell", "news", "noise
 _LINKS: Final = frozenset((",", "and", "or", "then"))
 """Words after which another place is told, where the same is done."""
 _MARKS: Final = frozenset((",", ";"))
+_MOST_OF_TOOL: Final = 4
 _FEWEST: Final = 2
 """Words that a deed is told in at least."""
 
@@ -35,7 +37,14 @@ def details_of(clause: Clause) -> tuple[str, ...]:
         return ()
     starts = [at for at in range(verb + _FEWEST, len(tokens)) if _starts(tokens, at)]
     found = [_words(clause.text, tokens[start:end]) for start, end in pairwise([*starts, len(tokens)])]
-    return tuple(text for text in found if len(text.split()) > 1 and not _tells_when(text))
+    return tuple(text for text in found if len(text.split()) > 1 and not (_tells_when(text) or _is_tool(text)))
+
+
+def _is_tool(text: str) -> bool:
+    """Whether words only tell of a thing that a deed is done with, or for: "with honey", "for the cake"."""
+    words = [token.low for token in tokens_of(text)]
+    near = words[0] in ("with", "for") and len(words) <= _MOST_OF_TOOL
+    return near and lemma_of(words[-1]) in things() and grammar().prepositions.isdisjoint(words[1:])
 
 
 def _tells_when(text: str) -> bool:
@@ -64,10 +73,23 @@ def _starts(tokens: Sequence[Token], at: int) -> bool:
     if low == "at" and any(token.low in _SENSED for token in tokens[at + 1 : at + 3]):
         return True
     beside = low.endswith("ing") and bool(verb_of(low)) and not is_noun(low) and is_noun(before.low)
+    amid = low == "between" and after not in grammar().marks  # "between two calls"
+    absolute = before.text == "," and _is_absolute(tokens[at:])
     pair = at > 1 and tokens[at - 2].low in grammar().prepositions  # "up and down the hall"
     linked = before.low in _LINKS and low in grammar().prepositions and not pair
     beside = beside and not is_adjective(before.low) and before.low not in grammar().prepositions
-    return linked or low in _LEADS or beside
+    return linked or absolute or amid or low in _LEADS or beside
+
+
+def _is_absolute(tokens: Sequence[Token]) -> bool:
+    """Whether words up to the next comma tell how something else is: "one shoe cradled in her lap"."""
+    end = next((at for at, token in enumerate(tokens) if token.text in _MARKS), len(tokens))
+    words = tokens[:end]
+    return any(
+        at and token.low.endswith(("ed", "ing")) and verb_of(token.low) and not is_noun(token.low)
+        and words[at - 1].low not in grammar().marks and not is_adjective(words[at - 1].low)
+        for at, token in enumerate(words)
+    )  # fmt: skip
 
 
 def _words(text: str, tokens: Sequence[Token]) -> str:

@@ -85,7 +85,7 @@ def verb_of(word: str) -> str:
     return known or (_guessed_verb(word) if word == low else "")
 
 
-_INFLECTED: Final = re.compile(r"[a-z]{3,}(?:[^s]s|ed|ing)")
+_INFLECTED: Final = re.compile(r"(?!\w*(?:ers|ors|ists|ions|ments)$)[a-z]{3,}(?:[^s]s|ed|ing)")
 
 
 @cache

@@ -54,7 +54,8 @@ def cast_by(theme: str, character: Character) -> Character:
     clauses = clauses_of_text(theme)
     hero = hero_of(clauses)
     told = called(clauses, hero if name in hero else name) if name else pronouns_of(f"the {head_of(hero)}")
-    pronouns = _pronouns_of_names().get(name.lower()) or told or _pronouns_in(theme, bool(name)) or default.pronouns
+    titled = pronouns_of(hero) if name and name in hero else ""
+    pronouns = titled or _pronouns_of_names().get(name.lower()) or told or _pronouns_in(theme, bool(name)) or default.pronouns
     return replace(character, name=name or default.name, pronouns=pronouns)
 
 
@@ -131,7 +132,7 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     if nouns:
         return max(nouns, key=lambda one: _heroic(one, pronoun) + min(deeds[one.subject], 4) / 8).subject
     opening = ("a ", "an ", "one ", "my ", "our ", "the ")
-    called = not people and " " not in "".join(mains[:1]) and "".join(mains[:1])[:1].isupper()  # "Rose", "Wen"
+    called = not people and " " not in "".join(mains[:1]) and is_name("".join(mains[:1]))  # "Rose", "Wen"
     sooner = [(one.sentence, one.place) < first for one in told if one.joint in _MAIN_JOINTS][:1] == [True]
     living = [one for one in mains[:1] if sooner and (called or one.lower().startswith(opening)) and _may_live(one)]
     people.sort(key=lambda one: (bool(pronoun) and _is_plural(one.subject), one.sentence, one.place))
@@ -164,7 +165,8 @@ def _heroic(clause: Clause, pronoun: str) -> float:
     own, first = pronouns_of(clause.subject), clause.subject.split()[0].lower()
     fits = 4 * bool(pronoun and own == pronoun)
     several = _is_plural(clause.subject)
-    return fits - 2 * (first in OWNERS) - (1 + bool(pronoun)) * several / 2 - (clause.joint in _ASIDE)
+    small = head_of(clause.subject).lower() in ("baby", "infant", "newborn")
+    return fits - small - 2 * (first in OWNERS) - (1 + bool(pronoun)) * several / 2 - (clause.joint in _ASIDE)
 
 
 def _may_live(subject: str) -> bool:
@@ -216,6 +218,8 @@ def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
     """Whether a subject is whom the theme is about, whom it calls by a pronoun. Nobody named: it goes on with who it
     was about."""
     if not subject or subject.lower() == hero.lower():
+        return True
+    if subject.lower().endswith(("both of them", "all of them", "two of them", "both of us")):
         return True
     low, main = subject.split()[-1].lower(), hero.split()[-1].lower() if hero else ""
     if main == "i" and low in _SUBJECTS - {"who"}:

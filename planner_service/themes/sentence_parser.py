@@ -22,8 +22,9 @@ from planner_service.themes.asides import (
     without_asides,
     without_relative,
 )
-from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, participle, verb_of
+from planner_service.themes.lexicon import grammar, is_adjective, is_noun, kinds_of, lemma_of, participle, verb_of
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
+from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import FLOATING, Token, verb_place
 from planner_service.themes.verb_group import NEARLY, verb_group
 
@@ -35,11 +36,15 @@ _SUPPOSING: Final = frozenset(("if", "unless"))
 
 _TITLE: Final = re.compile(r"\b(Mme|Mlle|Sgt|Capt|Col|Lt|Fr|Sr|St)\.(?= [A-Z])")
 """Titles whose full stop ends no sentence."""
+_LOUD: Final = re.compile(r"\b[A-Z]{4,}\b")
+"""Names as screenplays write them."""
 _IDLE: Final = frozenset(("do", "be", "have", "lose", "waste", "take", "make", "pay", "give", "get", "leave"))
 """Verbs that with "nothing" or "no" tell of a deed all the same: "does nothing", "loses no time"."""
 _FEWEST_DENYING: Final = 2
 _PARTICLES: Final = frozenset(("on", "off", "down", "up", "around", "there", "back"))
-_BULLET: Final = re.compile(r"^\s*(?:\d{1,2}[.)]|[-*•])\s+", re.MULTILINE)
+_BULLET: Final = re.compile(r"(?:^\s*(?:\d{1,2}[.)]|[-*•])|(?<=[.!?;:] )\d{1,2}[.)])\s+", re.MULTILINE)
+_DAYTIMES: Final = frozenset("dusk dawn night midnight evening morning noon daylight twilight winter summer spring autumn".split())
+"""What falls, breaks or comes, and is nobody."""
 
 
 @dataclass(frozen=True)
@@ -80,6 +85,7 @@ class Clause:
 def clauses_of_text(text: str) -> tuple[Clause, ...]:
     """What a text tells, in the order of time."""
     quotes: list[str] = []
+    text = _LOUD.sub(lambda one: one[0] if kinds_of(one[0]) else one[0].capitalize(), text)
     text = _TITLE.sub(r"\1", text.replace("«", "“").replace("»", "”"))  # which stand for what is said below
 
     def kept(match: re.Match[str]) -> str:
@@ -97,7 +103,8 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
             parts = _clause(piece, quotes, number)
             parts = _sharing(_main(told[-1]), parts) if told else parts
             own = _main(parts).subject
-            own = doer if own.lower() in RELATIVES and doer else own
+            if own.lower() in RELATIVES and doer:
+                own = _told_last(told) or doer
             told.append(
                 [replace(part, doer=part.subject if part.aside else own or doer, place=len(told)) for part in parts]
             )
@@ -108,6 +115,12 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
                 doer = own or doer
         found += [part for place in in_time(pieces) for part in told[place]]
     return tuple(found)
+
+
+def _told_last(told: Sequence[Sequence[Clause]]) -> str:
+    """Somebody else whom the clause before ends with: "burps the baby, | who was sick"."""
+    last = _main(told[-1]).text.rsplit(" ", 1)[-1] if told else ""
+    return f"the {last}" if is_noun(last) and " " in _main(told[-1]).text else ""
 
 
 def _main(parts: Sequence[Clause]) -> Clause:
@@ -170,6 +183,8 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
     if not subject and tokens[0].text.startswith("«"):
         subject = _inverted(tokens[place + 1 :])
         tokens = [*tokens[: place + 1], *tokens[place + 1 + len(subject.split()) :]]
+    if not subject and _is_theirs(tokens, place):
+        subject = " ".join(token.text for token in tokens[1:place])
     denials = _denials(tokens[:place], subject)
     words = denials + tokens[place:]
     group = verb_group(words)
@@ -195,6 +210,14 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
         if not set(denials).issuperset(some)
     ]
     return [*besides, _placed(parts[0], before, piece.source), *parts[1:], *asides]
+
+
+def _is_theirs(tokens: Sequence[Token], place: int) -> bool:
+    """Whether others are told doing it, after a preposition: "of his mother crying", "with the dog barking"."""
+    words = theme_words()
+    noun = lemma_of(tokens[place - 1].text) if place > 1 else ""
+    others = noun in words["people"] or noun in words["no_heroes"] or tokens[place - 1].text[:1].isupper()
+    return place > 1 and tokens[place].low.endswith("ing") and tokens[0].low in grammar().prepositions and others
 
 
 def _of_subject(lead: Sequence[Token], subject: str) -> list[list[Token]]:
@@ -232,7 +255,8 @@ def _does_none(words: Sequence[Token]) -> bool:
     if len(words) < _FEWEST_DENYING or verb_of(words[0].low) in _IDLE:
         return False
     rest = [token.low for token in words[1:]]
-    return (rest[0] == "nothing" and rest[1:2] != ["but"]) or (rest[0] == "no" and rest[1:2] != ["longer"])
+    none = rest[0] in ("nothing", "nobody", "none", "neither") or rest[:2] == ["no", "one"]
+    return (none and rest[1:2] != ["but"] and rest[1:3] != ["in", "particular"]) or (rest[0] == "no" and rest[1:2] != ["longer"])
 
 
 def _is_hindered(joint: str, lead: Sequence[Token], verb: Token) -> bool:
@@ -324,13 +348,15 @@ def _subject(tokens: Sequence[Token]) -> str:
     named = next((at for at, part in enumerate(parts) if len(part) == 1 and _is_called([part[0].text])), last)
     if named < last and parts[last][0].low in ARTICLES:  # "Mira, the tidy one, …"
         return parts[named][0].text
-    words = [token.text for part in parts[last:] for token in part]
+    words = [token.text for token in (parts[last] if parts else ())]
     while words and (words[-1].lower() in grammar().adverbs or (words[-1].islower() and words[-1].endswith("ly"))):
         words.pop()
     if len(words) > 1 and words[-1].lower() in FLOATING and words[-2].lower() in grammar().subjects:
         words.pop()
     if words and words[-1].lower() in grammar().subjects:
         return words[-1]
+    if tokens and tokens[-1].low in _DAYTIMES and len(words) == 1:
+        return words[0]  # "dusk thickened"
     if words and ("to" in (words[0].lower(), words[-1].lower()) or _describes(words)):
         return ""
     while words and (words[0].lower() in grammar().adverbs or words[0].lower() in grammar().joints):

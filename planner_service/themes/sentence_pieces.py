@@ -7,7 +7,9 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from planner_service.themes.asides import THAT
-from planner_service.themes.lexicon import grammar, is_adjective, is_noun, past, verb_of
+from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, past, verb_of
+from planner_service.themes.theme_words import theme_words
+from planner_service.themes.things import things
 from planner_service.themes.verb_finder import Token, is_adverb, plain, tokens_of, verb_place
 
 HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
@@ -16,6 +18,11 @@ _PLAIN_SUBJECTS: Final = frozenset(("i", "you", "we", "they"))
 _LATER_JOINTS: Final = frozenset(("before", "until", "while"))
 _NO_JOINTS: Final = {"once": ("at", "for", "more", "all"), "while": ("a", "long", "little", "short")}
 """What joining words stand after where they join nothing: "at once", "for a while"."""
+_PAIRS: Final = frozenset(
+    (("up", "down"), ("down", "up"), ("back", "forth"), ("to", "fro"), ("round", "round"), ("over", "over"),
+     ("on", "on"), ("in", "out"), ("again", "again"), ("off", "on"), ("on", "off"))
+)  # fmt: skip
+"""Words that "and" makes one: "up and down"."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +65,8 @@ def pieces_of(sentence: str) -> list[Piece]:
             current.append(token)
     if current:
         cut.append(Piece(joint, tuple(current), source))
+    if len(tokens) == 1 and lemma_of(tokens[0].low) in things():  # "Shoes. Keys?"
+        return [replace(cut[0], verbless=True)]
     return _whole(cut)
 
 
@@ -74,6 +83,8 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
     if place and tokens[place - 1].low in _NO_JOINTS.get(low, ()):
         return False
     ahead = rest[0].low if rest else ""
+    if low == "and" and place and (tokens[place - 1].low, ahead) in _PAIRS:
+        return False
     if low in ("though", "if") and place and tokens[place - 1].low == "as":
         return False
     if low == "as" and ahead in ("though", "if"):
@@ -158,13 +169,25 @@ def _is_bare(before: Piece, piece: Piece) -> bool:
         return False
     verb = before.tokens[at].low
     if verb in grammar().do | grammar().modals:  # "did open the door, | touch the wall"
-        led = len(piece.tokens) > 1 and piece.tokens[1].low in grammar().marks | grammar().prepositions
-        return verb_of(first) == first and (led or not is_noun(first))
+        return _is_plain_verb(piece)
     if not (verb_of(verb) and verb_of(first)):
         return False
+    if at == 0 and not before.bare and verb_of(verb) == verb:  # "feed the cat, | iron a shirt"
+        return _is_plain_verb(piece)
     plain = before.bare or (at > 0 and before.tokens[at - 1].low in _PLAIN_SUBJECTS)
     both_plain = plain and verb_of(verb) == verb and verb_of(first) == first
     return both_plain or (len(piece.tokens) > 1 and all(past(verb_of(one)) == one for one in (verb, first)))
+
+
+def _is_plain_verb(piece: Piece) -> bool:
+    """Whether a piece begins with a verb in its base form, told by what follows where it may be a noun too."""
+    first, after = piece.tokens[0].low, piece.tokens[1] if len(piece.tokens) > 1 else None
+    known = grammar()
+    led = after is not None and (
+        after.text.startswith("«") or after.low in known.marks | known.prepositions | known.subjects | known.numbers
+    )
+    told = led or not is_noun(first) or first in theme_words()["speech_verbs"]
+    return verb_of(first) == first and (told or (after is not None and first not in things()))
 
 
 def _describes_next(piece: Piece, after: Sequence[Piece]) -> bool:

@@ -12,6 +12,8 @@ from scene_graphs.data_tables import read_table, table
 class KeptThings:
     """Things, and the furniture where they are, the likeliest first."""
 
+    called: str
+    """How patterns of other tables mean all of them: "@food"."""
     things: str
     at: tuple[str, ...]
 
@@ -32,3 +34,10 @@ def things() -> Mapping[str, tuple[str, ...]]:
         for thing in kept.things.split():
             found.setdefault(thing, kept.at)
     return found
+
+
+@cache
+def things_called(name: str) -> tuple[str, ...]:
+    """All things of a kind: of "food"."""
+    known: ThingTable = read_table("planner_service", "things.toml", ThingTable)
+    return next(tuple(kept.things.split()) for kept in known.kept if kept.called == name)

@@ -33,6 +33,8 @@ OF_KERNEL: Final = tuple(
 )
 """What sees its bugs."""
 JIT: Final = "from scene_graphs.jit import"
+RECORDED: Final = "/test_recorded_"
+"""Files whose tests see most."""
 UNCOMPILED: Final = 10.0
 """Times as long a test takes."""
 IMPORTED: Final = re.compile(r"^\s*(?:from|import) (\w+)", re.MULTILINE)
@@ -163,7 +165,8 @@ class Selection:
         self._readers = cache(self._lines_that_read)
 
     def tests(self, bug: Bug) -> list[TimedTest]:
-        """Those of files that mirror the module, then others that run its line, then the rest of their files.
+        """Those that compare with what was recorded, those of files that mirror the module, then others that run its
+        line, then the rest of their files.
 
         Of a file all tests are tried, since what it makes once and keeps is seen to run in the first of them alone.
         Quick files go first, and what comes after `seconds` is left out.
@@ -174,11 +177,11 @@ class Selection:
             return [replace(one, seconds=UNCOMPILED * one.seconds) for one in chosen if "compile" not in one.name]
         shown = [bug] if not bug.names else list(self._readers(bug.path, bug.names)) or [bug]
         near, direct, rest = [], [], []
-        for watching in sorted(self._watchings, key=lambda one: one.seconds):
+        for watching in sorted(self._watchings, key=lambda one: (RECORDED not in one.file, one.seconds)):
             first = [test for test in watching.tests if any(watching.runs(test, one) for one in shown)]
             if first or (bug in shown and watching.runs(Watched.IMPORTS, bug)):
                 others = [test for test in watching.tests if test not in set(first)]
-                if _mirrors(watching.file, bug.path):
+                if RECORDED in watching.file or _mirrors(watching.file, bug.path):
                     near.append((watching, [*first, *others]))
                 else:
                     direct.append((watching, first))
@@ -232,8 +235,9 @@ def _readers(text: str, names: tuple[str, ...]) -> set[int]:
     for function in functions:
         first = function.body[0].lineno
         for node in ast.walk(function):
-            name = node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else ""
-            if name in names:
+            if (isinstance(node, ast.Name) and node.id in names) or (
+                isinstance(node, ast.Attribute) and node.attr in names
+            ):
                 # What is read for an argument that is not given counts wherever the function is called.
                 whole = range(first, (function.end_lineno or first) + 1)
                 lines |= {node.lineno} if node.lineno >= first else set(whole)

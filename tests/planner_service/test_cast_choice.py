@@ -31,6 +31,8 @@ def seen(theme: str, seed: int = 0, **given: Any) -> Character:
         ("A girl of six plays in the living room.", {"age": "child", "pronouns": "she", "height": 1.17}),
         ("A six-year-old boy jumps around.", {"age": "child", "pronouns": "he", "height": 1.17}),
         ("Lena, aged nine, does her homework.", {"age": "child", "height": 1.33}),
+        ("A teenage boy plays a game.", {"age": "adult", "pronouns": "he", "height": 1.7}),
+        ("The grandmother of a teenager knits on the sofa.", {"age": "old", "pronouns": "she"}),
         ("She is 80 years old and looks for her book.", {"age": "old", "pronouns": "she"}),
         ("A thirty-year-old man reads.", {"age": "adult", "pronouns": "he"}),
         ("A bald man in a suit paces up and down.", {"hair": "bald", "outfit": "office"}),

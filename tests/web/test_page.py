@@ -162,6 +162,34 @@ def test_the_text_follows_the_film_and_leads_back_to_it(watched: dict[str, Any],
         assert words(moment["words"]) in words(story["text"][span["start"] : span["end"]])
 
 
+def test_how_one_sits_is_changed_beside_the_film_and_seen(
+    watched: dict[str, Any], story: dict[str, Any], client: httpx.Client
+) -> None:
+    changed, at = watched["changed"], watched["changed"]["at"]
+    count = len(story["keyframes"])
+    assert changed["counts"] == [count, count - 1, count + 1, count], "what is done can be undone"
+    assert changed["carried"] == f"Moment {at}: earlier", "the keyboard stays with what it moves"
+    assert changed["wrong"] == []
+    assert changed["sideways"] <= 0
+    take = client.get(f"/v1/stories/{changed['take']}").raise_for_status().json()
+    client.post(f"/v1/stories/{changed['take']}/cancel")
+    assert take["derived_from"] == story["id"]
+    assert take["reused"] == at - 1, "all before the walk to the seat is the old story's"
+    assert f"its first {at - 1} moments are the same" in changed["origin"]
+    assert changed["keyframe"] == at, "it plays from the first change"
+    assert [one["caption"] for one in take["keyframes"]] == [
+        changed["caption"] if one["index"] == at else one["caption"] for one in story["keyframes"]
+    ]
+    print(f"from the click to the changed moment: {changed['milliseconds']:.0f} ms")
+    before, after = (np.array(changed[name]["joints"]) for name in ("before", "after"))
+    assert np.linalg.norm((before - before[0]) - (after - after[0]), axis=1).max() > APART, "the pose is another"
+    assert changed["apart"] > 0.001, "and is seen to be"
+    options: dict[str, str | int] = {"format": "f32", "from": changed["after"]["frame"]}
+    answer = client.get(f"/v1/stories/{changed['take']}/motion", params=options | {"to": int(options["from"]) + 1})
+    truth = np.frombuffer(answer.raise_for_status().content, "<f4").reshape(22, 3)
+    assert np.linalg.norm(after - truth, axis=1).max() < APART
+
+
 def test_stories_survive_a_reload_and_the_gallery_has_them_all(
     visit: Visit, story: dict[str, Any], client: httpx.Client
 ) -> None:

@@ -1,6 +1,6 @@
 /** A theme is posted with the keyboard alone; its film begins while it is being made, the body moves, the text follows. */
 
-import { around, compare, holding, scene, settle, shoot, state, until } from "./browser.mjs";
+import { around, compare, complaints, holding, overhang, scene, settle, shoot, state, until } from "./browser.mjs";
 
 const [, , service, theme, worker] = process.argv;
 
@@ -85,6 +85,52 @@ async function pictures(page, one, later) {
   return { first, second, still: changed[0], moved: changed[1], clip };
 }
 
+/** The pose in which a keyframe ends, and its picture: the next one begins with it. */
+async function ending(page, keyframe) {
+  const there = await moment(page, keyframe + 1);
+  return { ...there, picture: await shoot(page, await page.locator(".picture").boundingBox()) };
+}
+
+/** How one sits is changed with the form beside the film, with what else it can do, and played from there. */
+async function changed(page) {
+  const { links, keyframes } = await (await fetch(`${service}/v1/stories/${(await state(page)).storyId}`)).json();
+  const at = keyframes.findIndex(({ skill }) => skill === "sitdown");
+  const before = await ending(page, at);
+  await page.getByRole("button", { name: "Change the script" }).click();
+  const rows = page.locator(".draft");
+  await rows.first().waitFor();
+  const counts = [await rows.count()];
+  const on = (words) => page.getByLabel(`Moment ${at + 1}: ${words}`);
+  await on("leave it out").click();
+  counts.push(await rows.count());
+  await page.keyboard.press("Control+z");
+  await on("put another behind it").click();
+  counts.push(await rows.count());
+  await page.getByRole("button", { name: "Undo" }).click();
+  await on("earlier").press("Enter");
+  const carried = await page.evaluate(() => document.activeElement.getAttribute("aria-label"));
+  await page.keyboard.press("Control+z");
+  counts.push(await rows.count());
+  const wrong = await complaints(page);
+  const sideways = await overhang(page);
+  const captions = await on("how").locator("option").evaluateAll((all) => all.map((option) => option.value));
+  const caption = captions.find((one) => /legs|knees|cross/.test(one) && one !== keyframes[at].caption);
+  await on("how").selectOption(caption);
+  const [begun] = [performance.now(), await page.getByRole("button", { name: "Play this" }).click()];
+  await until(page, (seen) => seen.storyId !== links.self.split("/").at(-1) && seen.playing);
+  const { storyId, keyframe } = await state(page);
+  const milliseconds = performance.now() - begun;
+  const origin = await page.locator(".origin").textContent();
+  await page.keyboard.press("Space");
+  await until(page, (seen) => !seen.playing);
+  while (!(await (await fetch(`${service}/v1/stories/${storyId}`)).json()).keyframes[at + 1].start) await page.waitForTimeout(50);
+  await page.locator(".blocks .made").nth(at + 1).waitFor();
+  const after = await ending(page, at);
+  const { changed: apart } = await compare(page, before.picture, after.picture);
+  const pose = ({ joints }) => ({ joints });
+  return { at, take: storyId, keyframe, counts, carried, wrong, sideways, caption, origin, milliseconds, apart: apart[0], before: pose(before), after: { ...pose(after), frame: after.frame } };
+}
+
 await scene(async (page) => {
   await post(page);
   await page.waitForFunction(() => window.seen.lit.length > 2);
@@ -115,5 +161,6 @@ await scene(async (page) => {
     await page.locator(".told .moment").nth(sentence).click();
     clicked.push({ words: await page.locator(".told .moment").nth(sentence).textContent(), ...(await lit(page)) });
   }
-  return { grown, drawn, follow, colours, bounds, told, clicked, story: (await state(page)).storyId };
+  const story = (await state(page)).storyId;
+  return { grown, drawn, follow, colours, bounds, told, clicked, story, changed: await changed(page) };
 });

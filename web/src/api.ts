@@ -25,6 +25,8 @@ export interface Summary {
   readonly backend: string;
   readonly duration: number | null;
   readonly error: Failure | null;
+  /** The story that this one is a take of. */
+  readonly derived_from: string | null;
 }
 
 export interface Keyframe {
@@ -48,6 +50,8 @@ export interface Keyframe {
   readonly reached: boolean | null;
   /** Whether the eyes are shut. */
   readonly asleep: boolean;
+  /** Whether its frames are those of the story that this one derives from. */
+  readonly reused: boolean;
 }
 
 /** One thing that the theme says, and what became of it. */
@@ -131,6 +135,8 @@ export interface Story extends Summary {
   readonly home: { readonly rooms: readonly FoundRoom[] } | null;
   readonly motion: { readonly frames: number; readonly fps: number; readonly duration: number; readonly complete: boolean };
   readonly report: Report | null;
+  /** Moments, from the first on, whose motion was taken over from the story it derives from. */
+  readonly reused: number;
 }
 
 export type Point2 = readonly [number, number];
@@ -240,6 +246,19 @@ const story = (id: string): string => `v1/stories/${encodeURIComponent(id)}`;
 export function postStory(request: NewStory, key: string): Promise<Story> {
   const headers = { "Content-Type": "application/json", "Idempotency-Key": key };
   return json("v1/stories", { method: "POST", headers, body: JSON.stringify(request) });
+}
+
+/** What is to be different in a take of a story. */
+export interface NewTake {
+  keyframes: readonly { index?: number; skill: Skill; emotion: string; caption: string; furniture: string; object_id?: string }[];
+  seed: number;
+  backend: string;
+}
+
+/** Derive a story from a story. The same key posted again makes no second one. */
+export function postTake(id: string, take: NewTake, key: string): Promise<Story> {
+  const headers = { "Content-Type": "application/json", "Idempotency-Key": key };
+  return json(`${story(id)}/takes`, { method: "POST", headers, body: JSON.stringify(take) });
 }
 
 export const getStory = (id: string, signal?: AbortSignal): Promise<Story> => json(story(id), signal ? { signal } : {});

@@ -16,6 +16,9 @@ export interface Wishes {
   help(): void;
 }
 
+/** Two rows of buttons on one page choose each for itself. */
+let rows = 0;
+
 export class Controls {
   readonly element: HTMLElement;
   readonly #play: HTMLButtonElement;
@@ -31,8 +34,9 @@ export class Controls {
     this.#play = button("Play", "play", () => wishes.toggle(), "primary round");
     this.#map = button("Plan of the home", "map", () => wishes.map());
     this.#map.setAttribute("aria-pressed", "true");
-    const speeds = SPEEDS.map((speed) => radio("speed", String(speed), `${speed === 0.5 ? "½" : speed}×`, `${speed} times as fast`, () => wishes.speed(speed)));
-    const cameras = ([["follow", "Follow"], ["orbit", "Overview"]] as const).map(([mode, words]) => radio("camera", mode, words, null, () => wishes.camera(mode)));
+    const row = ++rows;
+    const speeds = SPEEDS.map((speed) => radio(`speed-${row}`, String(speed), `${speed === 0.5 ? "½" : speed}×`, `${speed} times as fast`, () => wishes.speed(speed)));
+    const cameras = ([["follow", "Follow"], ["orbit", "Overview"]] as const).map(([mode, words]) => radio(`camera-${row}`, mode, words, null, () => wishes.camera(mode)));
     this.#speeds = speeds.map(({ input }) => input);
     this.#cameras = cameras.map(({ input }) => input);
     this.#cameraChoice = h("div", { class: "segment cameras", role: "radiogroup", "aria-label": "Camera" }, ...cameras.map(({ label }) => label));

@@ -21,12 +21,12 @@ const ASIDE: Readonly<Record<Skill, number>> = { touch: 2, loco: 0.85, sitdown: 
 export class Film {
   readonly element = h("section", { class: "theatre", "aria-label": "Film" });
   readonly player = new Player();
-  readonly reel: Reel;
+  reel: Reel;
   readonly timeline: Timeline;
   readonly controls: Controls;
   keyframe: number | null = null;
-  readonly #id: string;
-  readonly #shown: (keyframe: number | null) => void;
+  #id: string;
+  #shown: (keyframe: number | null) => void;
   readonly #map = new MiniMap();
   readonly #holder = h("div", { class: "picture", tabindex: 0, role: "img", "aria-label": "The film. A, D, W and S turn the camera" });
   readonly #subtitle = h("p", { class: "subtitle", hidden: true });
@@ -45,10 +45,15 @@ export class Film {
   #last = 0;
   #drawn = -1;
   #visible = true;
+  /** The keyframe that it begins with, until it has begun. */
+  #from: number | null;
+  /** Who the body on the stage is. */
+  #cast = "";
 
-  /** `shown` is told when another keyframe is being acted. */
-  constructor(id: string, shown: (keyframe: number | null) => void) {
+  /** `shown` is told when another keyframe is being acted; the film begins with `from`, or at its beginning. */
+  constructor(id: string, shown: (keyframe: number | null) => void, from: number | null = null) {
     this.#id = id;
+    this.#from = from;
     this.#shown = shown;
     this.reel = new Reel(id, () => this.#feed());
     this.timeline = new Timeline((frame) => this.player.seek(frame / FPS), (keyframe) => this.seekKeyframe(keyframe), FPS);
@@ -65,6 +70,21 @@ export class Film {
     this.#loop(performance.now());
     // The stage takes a moment to build, and is wanted as soon as there is something to show.
     this.#raised = this.#raise();
+  }
+
+  /** The stage as it stands for another take of the story, in the same home; it goes on with the keyframe `from`. */
+  retake(id: string, shown: (keyframe: number | null) => void, from: number | null): void {
+    this.reel.stop();
+    this.player.pause();
+    [this.#id, this.#shown, this.#from] = [id, shown, from];
+    this.reel = new Reel(id, () => this.#feed());
+    if (from === null) this.player.seek(0);
+    this.#story = this.keyframe = null;
+    this.#opened = false;
+    this.#drawn = -1;
+    this.notice();
+    this.#wait.hidden = false;
+    this.#holder.focus({ preventScroll: true });
   }
 
   /** What buttons and keys ask for. */
@@ -184,8 +204,10 @@ export class Film {
   }
 
   async #fetchBody(): Promise<void> {
-    if (this.#asked.body) return;
+    const cast = JSON.stringify(this.#story?.character);
+    if (this.#asked.body && cast === this.#cast) return;
     this.#asked.body = true;
+    this.#cast = cast;
     try {
       const glb = await getGlb(motionUrl(this.#id, "glb", 0, 1));
       await (await this.#raised)?.setBody(glb);
@@ -205,14 +227,31 @@ export class Film {
 
   #open(): void {
     const ready = this.reel.track.ready > 0 && (this.#arch.classList.contains("flat") || (this.#stage?.hasHome && this.#stage.hasBody));
-    if (this.#opened || !ready) return;
+    if (this.#opened || !ready || !this.#reaches()) return;
     this.#opened = true;
+    if (this.#from !== null) this.player.seek((this.#startOf(this.#from) ?? 0) / FPS);
+    this.#from = null;
     this.reel.track.sample(this.player.time, this.#pose);
     this.#stage?.pose(this.#pose);
     this.#tick();
     this.#stage?.setMode(this.#mode);
     this.#arch.classList.remove("closed");
+    this.#showState();
     if (!isStill()) this.player.play();
+  }
+
+  /** Whether the moment that it begins with can be seen, or never will be. */
+  #reaches(): boolean {
+    if (this.#from === null) return true;
+    const start = this.#startOf(this.#from);
+    const { ready } = this.reel.track;
+    return (start !== null && ready > start + 1) || (this.#over() && ready >= (this.#story?.motion.frames ?? 0));
+  }
+
+  /** The first frame of a keyframe, or of the last one where there are fewer by now. */
+  #startOf(keyframe: number): number | null {
+    const all = this.#story?.keyframes ?? [];
+    return all[Math.min(keyframe, all.length - 1)]?.start ?? null;
   }
 
   #loop(now: number): void {
@@ -274,7 +313,7 @@ export class Film {
 
   #showState(): void {
     this.controls.update(this.player);
-    this.#wait.hidden = this.player.state !== "waiting" || !this.#opened;
+    if (this.#opened || this.#arch.classList.contains("closed")) this.#wait.hidden = this.player.state !== "waiting" || !this.#opened;
   }
 
   #setMode(mode: CameraMode): void {

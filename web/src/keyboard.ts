@@ -25,6 +25,9 @@ const HELP: readonly (readonly [string, string])[] = [
   ["?", "this list"],
 ];
 
+/** The last key that was obeyed: two films on a page both obey it. */
+let last: KeyboardEvent | null = null;
+
 /** Listen until the answer is called. */
 export function listenKeys(keys: Keys): () => void {
   const acts: Readonly<Record<string, (shift: boolean) => void>> = {
@@ -44,8 +47,9 @@ export function listenKeys(keys: Keys): () => void {
   };
   const listener = (event: KeyboardEvent): void => {
     const act = acts[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-    if (!act || event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented || busy(event)) return;
+    if (!act || event.ctrlKey || event.metaKey || event.altKey || (event.defaultPrevented && event !== last) || busy(event)) return;
     event.preventDefault();
+    last = event;
     act(event.shiftKey);
   };
   document.addEventListener("keydown", listener);

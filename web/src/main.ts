@@ -12,24 +12,32 @@ import { ThemeForm } from "./theme-form";
 
 const main = framed("main");
 let view: StoryView | null = null;
-/** Leaves the rooms, where they are shown. */
-let leaveRooms: (() => void) | null = null;
+/** Leaves the rooms, or two films beside each other, where they are shown. */
+let leave: (() => void) | null = null;
 /** Counts what was shown, so that what comes late is not shown over what was asked for since. */
 let turn = 0;
 
 function route(): void {
-  clear();
   const [path = "", query = ""] = location.hash.split("?");
   const id = /^#\/stories\/([\w-]+)$/.exec(path)?.[1];
+  const asked = new URLSearchParams(query);
+  const beside = /^[\w-]+$/.exec(asked.get("beside") ?? "")?.[0];
+  const before = id && !beside && view?.handsOver(id) ? view : null;
+  clear();
   const room = /^#\/rooms(?:\/(.*))?$/.exec(path);
   roomsLink.ariaCurrent = room ? "page" : null;
   if (id) {
-    view = new StoryView(id, () => (location.hash = "#/"));
-    fill(main, view.element);
+    const number = /^\d+$/.exec(asked.get("from") ?? "")?.[0];
+    const from = number === undefined ? null : Number(number);
+    if (beside) void showBoth([beside, id], from);
+    else {
+      view = new StoryView(id, () => (location.hash = "#/"), from, before);
+      fill(main, view.element);
+    }
   } else if (room) {
     void showRooms(room[1] ?? "", query);
   } else {
-    showHome(new URLSearchParams(query).getAll("in"));
+    showHome(asked.getAll("in"));
   }
   window.scrollTo(0, 0);
 }
@@ -38,8 +46,8 @@ function clear(): void {
   turn++;
   view?.dispose();
   view = null;
-  leaveRooms?.();
-  leaveRooms = null;
+  leave?.();
+  leave = null;
 }
 
 /** The library, or one of its rooms; its code is fetched when it is first asked for. */
@@ -47,7 +55,18 @@ async function showRooms(id: string, query: string): Promise<void> {
   const mine = turn;
   fill(main);
   const { rooms } = await import("./rooms");
-  if (mine === turn) leaveRooms = rooms.show(main, decode(id), query);
+  if (mine === turn) leave = rooms.show(main, decode(id), query);
+}
+
+/** Two stories beside each other; their code is fetched when they are first asked for. */
+async function showBoth(ids: readonly string[], from: number | null): Promise<void> {
+  const mine = turn;
+  fill(main);
+  const { SideBySide } = await import("./side-by-side");
+  if (mine !== turn) return;
+  const pair = new SideBySide(ids, from);
+  leave = () => pair.dispose();
+  fill(main, pair.element);
 }
 
 /** An id from an address; one that is not well written names no room. */
@@ -82,8 +101,8 @@ function askForKey(): void {
 
 async function start(): Promise<void> {
   const session = await getSession().catch(() => ({ required: false, authenticated: false }));
-  const leave = h("button", { type: "button", class: "plain small", onclick: () => void logOut().then(askForKey) }, "Leave");
-  fill(framed("tools"), roomsLink, session.authenticated && session.required ? leave : null, appearance);
+  const out = h("button", { type: "button", class: "plain small", onclick: () => void logOut().then(askForKey) }, "Leave");
+  fill(framed("tools"), roomsLink, session.authenticated && session.required ? out : null, appearance);
   if (session.required && !session.authenticated) askForKey();
   else route();
 }

@@ -1,4 +1,4 @@
-/** The page's one renderer, made and warmed up before it is wanted. */
+/** The page's renderer, made and warmed up before it is wanted; a second one only while two films are shown. */
 
 import {
   BoxGeometry, Bone, BufferAttribute, Mesh, MeshBasicMaterial, MeshStandardMaterial, NeutralToneMapping, PCFShadowMap, PerspectiveCamera, Scene,
@@ -8,25 +8,32 @@ import { patchWall } from "./cutaway";
 import { glassOf, patchShare } from "./fading";
 import { Lighting } from "./lighting";
 
-let shared: WebGLRenderer | null = null;
+/** Those that nobody draws with now. */
+const free: WebGLRenderer[] = [];
+let made = 0;
 /** Kept, since a program goes with the last material that uses it. */
 let warmer: Scene | null = null;
 
-/** Made on first use: making one takes long, and browsers give out few. Throws without WebGL. */
-export function renderer(): WebGLRenderer {
-  if (!shared) {
-    shared = new WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
-    shared.shadowMap.enabled = true;
-    shared.shadowMap.type = PCFShadowMap;
-    shared.toneMapping = NeutralToneMapping;
-  }
-  return shared;
+/** One that is free, until it is given back; else a new one: making one takes long, and browsers give out few. Throws without WebGL. */
+export function lend(): WebGLRenderer {
+  const known = free.pop();
+  if (known) return known;
+  const fresh = new WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
+  fresh.shadowMap.enabled = true;
+  fresh.shadowMap.type = PCFShadowMap;
+  fresh.toneMapping = NeutralToneMapping;
+  made++;
+  return fresh;
+}
+
+export function giveBack(drawing: WebGLRenderer): void {
+  free.push(drawing);
 }
 
 /** Have the programs built that homes and bodies need, by drawing a small scene with every kind of surface. */
 export function warmUp(): void {
-  // Whoever draws already has had them built, and must keep the canvas.
-  if (shared) return;
+  // Whoever draws already has had them built.
+  if (made) return;
   warmer = new Scene();
   const lighting = new Lighting(warmer);
   lighting.aim(new Vector3(0, 1, 0));
@@ -47,9 +54,10 @@ export function warmUp(): void {
   warmer.add(new Mesh(box(), new MeshBasicMaterial({ vertexColors: true, toneMapped: false })), body());
   const camera = new PerspectiveCamera();
   camera.position.set(0, 0, 4);
-  const drawing = renderer();
+  const drawing = lend();
   drawing.setSize(64, 64);
   drawing.render(warmer, camera);
+  giveBack(drawing);
 }
 
 function box(): BoxGeometry {

@@ -12,7 +12,7 @@ import { groundDisc, shade, subfloors } from "./ground";
 import { Lighting } from "./lighting";
 import { heading, JOINT_NAMES, type Point3, type Pose } from "./pose";
 import { isMesh } from "./pieces";
-import { renderer, warmUp } from "./rendering";
+import { giveBack, lend, warmUp } from "./rendering";
 import { boxesOf, Lookout } from "./sight";
 import { wallSides } from "./walls";
 
@@ -40,7 +40,7 @@ export class Stage {
   asleep = false;
   /** Set to have the next picture drawn. */
   dirty = true;
-  readonly #renderer = renderer();
+  readonly #renderer = lend();
   readonly #scene = new Scene();
   readonly #lighting = new Lighting(this.#scene);
   readonly #ground: Mesh;
@@ -215,5 +215,6 @@ export class Stage {
     this.#lighting.dispose();
     this.#renderer.renderLists.dispose();
     this.canvas.remove();
+    giveBack(this.#renderer);
   }
 }

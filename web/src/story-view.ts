@@ -19,12 +19,18 @@ const AGAIN_MS = 2500;
 export class StoryView {
   readonly element = h("article", { class: "story" });
   readonly film: Film;
+  /** Stories that play in this very home, so that the film can go on with them: its own takes, and what it is a take of. */
+  readonly #near = new Set<string>();
+  #handed = false;
   readonly id: string;
   readonly #steps: Steps;
   readonly #telling: Telling;
   readonly #script: ScriptList;
   readonly #title = h("h1", {}, "…");
   readonly #theme = h("p", { class: "theme" });
+  readonly #origin = h("p", { class: "origin", hidden: true });
+  readonly #change = h("button", { type: "button", class: "plain small", hidden: true, onclick: () => void this.#edit() }, "Change the script");
+  readonly #book = h("section", { class: "book", "aria-label": "The told story" });
   readonly #foot = h("div", { class: "row foot" });
   readonly #sections: { readonly script: HTMLElement; readonly report: HTMLElement; readonly making: HTMLElement; readonly files: HTMLElement };
   readonly #left: () => void;
@@ -33,28 +39,40 @@ export class StoryView {
   #fetching = false;
   #again = false;
   #live = true;
+  /** Whether the script is to be changed as soon as it is there. */
+  #goesOn = false;
 
-  /** `left` is called when the story is no more. */
-  constructor(id: string, left: () => void) {
+  /**
+   * `left` is called when the story is no more; the film begins with the keyframe `from`, or at its beginning. Another
+   * view may have handed its film over: then the script is still being changed.
+   */
+  constructor(id: string, left: () => void, from: number | null = null, before: StoryView | null = null) {
     this.id = id;
     this.#left = left;
     const seek = (keyframe: number): void => this.film.seekKeyframe(keyframe);
     this.#steps = new Steps(() => void this.#cancel());
     this.#telling = new Telling(seek);
     this.#script = new ScriptList(seek);
-    this.film = new Film(id, (keyframe) => {
+    const shown = (keyframe: number | null): void => {
       this.#telling.show(keyframe);
       this.#script.show(keyframe);
-    });
+    };
+    this.film = before?.film ?? new Film(id, shown, from);
+    if (before) {
+      this.film.retake(id, shown, from);
+      this.#near.add(before.id);
+      this.#goesOn = true;
+    }
     const section = (name: string): HTMLElement => h("section", { class: name, hidden: true });
     this.#sections = { script: section("script"), report: section("report"), making: section("making"), files: section("downloads") };
-    fill(this.#sections.script, h("h2", {}, "The script"), this.#script.element);
+    fill(this.#sections.script, h("div", { class: "row spread" }, h("h2", {}, "The script"), this.#change), this.#script.element);
+    fill(this.#book, this.#telling.element);
     fill(
       this.element,
-      h("header", { class: "title" }, this.#title, this.#theme),
+      h("header", { class: "title" }, this.#title, this.#theme, this.#origin),
       this.#steps.element,
       this.film.element,
-      h("section", { class: "book", "aria-label": "The told story" }, this.#telling.element),
+      this.#book,
       h("div", { class: "backstage" }, this.#sections.script, h("div", { class: "column" }, this.#sections.report, this.#sections.files, this.#foot), this.#sections.making),
     );
     void this.refresh();
@@ -78,10 +96,15 @@ export class StoryView {
     if (this.#again && this.#live) void this.refresh();
   }
 
+  /** Whether the film can go on with that story as it stands on the stage; then it is no longer this view's. */
+  handsOver(id: string): boolean {
+    return (this.#handed = this.#near.has(id));
+  }
+
   dispose(): void {
     this.#live = false;
     this.#unfollow?.();
-    this.film.dispose();
+    if (!this.#handed) this.film.dispose();
   }
 
   #show(story: Story): void {
@@ -98,7 +121,10 @@ export class StoryView {
     this.#script.update(story.keyframes, story.motion.fps, before !== null);
     this.film.update(story);
     const seek = (keyframe: number): void => this.film.seekKeyframe(keyframe);
+    this.#showOrigin(story);
     this.#sections.script.hidden = story.keyframes.length === 0;
+    this.#change.hidden = !story.home;
+    if (this.#goesOn && story.home && !making) void this.#edit(false);
     if (!making || before?.stage !== story.stage) {
       this.#sections.report.hidden = !showReport(this.#sections.report, story, seek);
       this.#sections.making.hidden = !showMaking(this.#sections.making, story);
@@ -106,6 +132,45 @@ export class StoryView {
     }
     if (making && !this.#unfollow) this.#follow();
     if (!making) this.#close(story, before);
+  }
+
+  /** What a take derives from, and what of it is the same. */
+  #showOrigin(story: Story): void {
+    this.#origin.hidden = !story.derived_from;
+    if (!story.derived_from) return;
+    const same = story.reused ? `; its first ${count(story.reused, "moment")} ${story.reused === 1 ? "is" : "are"} the same` : "";
+    fill(this.#origin, "A take of ", h("a", { href: `#/stories/${story.derived_from}` }, "the story before"), `${same}. `, h("a", { href: `#/stories/${story.id}?beside=${story.derived_from}` }, "See both side by side"));
+  }
+
+  /** Beside the film the script can be changed; its code is fetched when it is first asked for. */
+  async #edit(asked = true): Promise<void> {
+    if (!this.#story) return;
+    this.#goesOn = false;
+    this.#change.disabled = true;
+    try {
+      const { ScriptEditor } = await import("./script-editor");
+      const close = (): void => {
+        this.element.classList.remove("editing");
+        fill(this.#book, this.#telling.element);
+        this.#change.disabled = false;
+        this.#change.focus();
+      };
+      const editor = await ScriptEditor.open(this.#story, (take, from) => this.#goOn(take.id, from), close);
+      if (!this.#live) return;
+      this.element.classList.add("editing");
+      fill(this.#book, editor.element);
+      if (!asked) return;
+      this.film.player.pause();
+      editor.focus();
+    } catch (error) {
+      this.#change.disabled = false;
+      announce(error instanceof Error ? error.message : String(error));
+    }
+  }
+
+  #goOn(id: string, from: number): void {
+    this.#near.add(id);
+    location.hash = `#/stories/${id}?from=${from}`;
   }
 
   #follow(): void {

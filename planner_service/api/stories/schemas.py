@@ -14,6 +14,7 @@ from motion_backend.body.cast import cast
 from motion_backend.motion import Emotion, Skill
 from motion_backend.skeleton import MAX_HEIGHT, MIN_HEIGHT
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, Method
+from planner_service.grounding.script_revision import EditedKeyframe
 from planner_service.pipeline import MAX_SEED
 from planner_service.scripts.script import MAX_NAME_LENGTH, Beat, Keyframe
 from planner_service.themes.beats import MAX_THEME_LENGTH
@@ -31,6 +32,8 @@ METHOD = (
 )
 MAX_KEYFRAMES = 60
 """Keyframes of one motion."""
+MAX_TAKEN = 200
+"""Keyframes of a take: stories may be longer than motions."""
 
 
 def _known(name: str) -> str:
@@ -147,6 +150,32 @@ class MotionAsk(Ask):
     character: CharacterAsk | None = None
 
 
+class TakeAsk(Ask):
+    """What is to be different in a take of a story; what is left out stays as it is."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [
+                {
+                    "keyframes": [
+                        {"index": 0, "skill": "loco", "emotion": "tired", "caption": "slow walk", "furniture": "sofa"},
+                        {"skill": "sitdown", "emotion": "sad", "caption": "sit slumped", "furniture": "sofa"},
+                    ]
+                },
+                {"seed": 7, "backend": "procedural"},
+            ]
+        }
+    )
+
+    keyframes: list[EditedKeyframe] | None = Field(
+        None, min_length=1, max_length=MAX_TAKEN, description="The whole script as it is to be, in order."
+    )
+    home: Json | None = Field(None, description="Another home, as GET /v1/stories/{id}/home gives it.")
+    seed: Seed | None = Field(None, description="Another staging of the same script; null: as it was.")
+    backend: BackendName | None = Field(None, description="What moves the body; null: what did.")
+    character: CharacterAsk | None = Field(None, description="Who acts; null: who did.")
+
+
 class CharacterShown(BaseModel):
     """Who acts."""
 
@@ -194,6 +223,8 @@ class KeyframeShown(BaseModel):
     end: int | None = Field(description="Behind the last frame.")
     short_script_id: str | None = Field(description="Where it comes from; null for a connecting keyframe.")
     reached: bool | None
+    segments: list[SegmentShown] = Field([], description="Who made its frames, in order; known once they are there.")
+    reused: bool = Field(False, description="Whether its frames are those of the story that this one derives from.")
     asleep: bool = Field(False, description="Whether the eyes are shut; known once it can be acted.")
 
 
@@ -294,6 +325,7 @@ class Links(BaseModel):
     self_: str = Field(alias="self")
     events: str
     cancel: str
+    takes: str = Field(description="POST here derives a story from this one.")
     motion: str
     film: str
     mp4: str = Field(description="The story filmed, for any player; POST to `self`/film makes it.")
@@ -316,6 +348,7 @@ class StorySummary(BaseModel):
     backend: str
     duration: float = Field(description="Seconds of motion that are ready.")
     error: Failure | None
+    derived_from: str | None = Field(None, description="The story that this one is a take of; it may be deleted.")
     links: Links
 
 
@@ -333,6 +366,9 @@ class StoryShown(StorySummary):
     )
     repairs: list[str] = Field([], description="What checking changed, and why.")
     keyframes: list[KeyframeShown] = []
+    reused: int = Field(
+        0, description="Keyframes, from the first on, whose motion was taken over from `derived_from` as it was."
+    )
     short_scripts: list[ShortScriptChosen] = []
     graph: GraphShown = Field(default_factory=GraphShown)
     home: HomeShown | None = None

@@ -50,6 +50,7 @@ def story_summary(record: Record, frames: int) -> Json:
         "backend": record.backend,
         "duration": round(frames / FPS, 3),
         "error": failure_of(record),
+        "derived_from": record.derived_from,
         "links": _links(record.id),
     }
 
@@ -76,6 +77,7 @@ def story_shown(record: Record) -> Json:
         "home": made.get("home"),
         "beats": _beats(made, keyframes, segments),
         "keyframes": keyframes,
+        "reused": made.get("reused", 0),
         "motion": {"frames": frames, "duration": round(frames / FPS, 3), "complete": complete},
         "report": made.get("report"),
     }
@@ -90,7 +92,7 @@ def _keyframes(made: Json, segments: list[Json]) -> list[Json]:
         row["asleep"] = row["index"] in made.get("asleep", ())
     for segment in segments:
         rows[segment["keyframe"]] |= {
-            name: segment[name] for name in ("start", "end", "reached", "segments") if name in segment
+            name: segment[name] for name in ("start", "end", "reached", "segments", "reused") if name in segment
         }
     return rows
 
@@ -135,7 +137,7 @@ def role_in(record: Record) -> Role:
 
 def _links(story_id: str) -> dict[str, str]:
     here = f"/v1/stories/{story_id}"
-    parts = {name: f"{here}/{name}" for name in ("events", "cancel", "motion", "home")}
+    parts = {name: f"{here}/{name}" for name in ("events", "cancel", "takes", "motion", "home")}
     return {"self": here, **parts, "film": f"{here}/film.glb", "mp4": f"{here}/film.mp4", "scene": f"{here}/scene.glb"}
 
 

@@ -237,8 +237,13 @@ def test_a_run_is_gone_on_with_by_the_same_data_and_options_alone(tmp_path: Path
     train(denoiser_learner(TINY, config), bank, windows, config, tmp_path)
     faster, fewer = replace(config, rate=1.0), bank_of(two_people()[:1])
     for other, told in ((bank, faster), (fewer, config)):
-        with pytest.raises(CheckpointError, match="another config or of other data"):
+        with pytest.raises(CheckpointError, match="another config, of other data or from another start"):
             train(denoiser_learner(TINY, told), other, other.windows({WALK: 1.0}), told, tmp_path)
+    skewed = replace(windows, weights=np.linspace(1, 2, len(windows)) / (1.5 * len(windows)))
+    weights = train(denoiser_learner(TINY, config), bank, windows, config, tmp_path / "start")
+    for drawn, start in ((skewed, None), (windows, weights)):
+        with pytest.raises(CheckpointError, match="from another start"):
+            train(denoiser_learner(TINY, config), bank, drawn, config, tmp_path, start=start)
 
 
 def test_a_run_broken_off_as_it_was_saved_goes_on_from_its_tensors(tmp_path: Path) -> None:

@@ -24,7 +24,7 @@ from planner_service.composition.deed_lexicon import (
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.lexicon import past, third_person
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
-from planner_service.themes.things import things
+from planner_service.themes.things import things, things_called
 from scene_graphs import furniture
 
 FILLINGS = ("the old", "the", "", "herself", "a")
@@ -43,10 +43,15 @@ def deed(text: str, about: str = "") -> Deed:
 
 def ways(says: str) -> Iterator[list[str]]:
     """The saying with each of its words once."""
-    slots = [word.split("|") for word in says.split()]
+    slots = [each(word) for word in says.split()]
     for place, slot in enumerate(slots):
         for word in slot if len(slot) > 1 else slot[: place == 0]:
             yield [word if other == place else those[0] for other, those in enumerate(slots)]
+
+
+def each(slot: str) -> list[str]:
+    """The words of a slot; of a kind of things the first."""
+    return [things_called(word[1:])[0] if word.startswith("@") else word for word in slot.split("|")]
 
 
 def told(words: list[str]) -> Iterator[str]:
@@ -61,7 +66,7 @@ def told(words: list[str]) -> Iterator[str]:
 
 def by_verb(says: str) -> Iterator[list[str]]:
     """The saying with each of its first words: verbs have forms, other words stand in the text as they are."""
-    first, *others = (word.split("|") for word in says.split())
+    first, *others = (each(word) for word in says.split())
     yield from ([word, *(those[0] for those in others)] for word in first)
 
 
@@ -287,7 +292,7 @@ def test_what_happens_elsewhere_has_a_reason_not_to_be_acted(text: str) -> None:
     [
         ("sits at the dining table near the sofa", ["dining table", "sofa"]),
         ("looks at the tv", ["tv stand"]),
-        ("hangs a picture, a clock and a mirror", []),
+        ("hangs a picture, a clock and a mirror", ["mirror"]),
         ("holds her chest", []),
         ("", []),
     ],

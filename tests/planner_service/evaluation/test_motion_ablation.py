@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 import torch
 from torch import Tensor
+from typer.testing import CliRunner
 
 from motion_backend.diffusion.conditions import Conditions
 from motion_backend.diffusion.denoiser import Denoiser, DenoiserSizes
 from motion_backend.diffusion.motion_features import FEATURES, HISTORY
 from motion_backend.diffusion.sampler import Sampler, Scale
+from planner_service.cli import app
 from planner_service.evaluation.motion_ablation import ABLATIONS, AblatedSampler, Ablation
 
 
@@ -49,3 +51,8 @@ def test_what_is_left_out_is_not_told_and_nothing_else_changes(
 
 def test_every_ablation_has_a_name_of_its_own() -> None:
     assert len({one.name for one in ABLATIONS}) == len(ABLATIONS)
+
+
+def test_weights_are_judged_by_people_alone() -> None:
+    found = CliRunner().invoke(app, ["evaluate", "motion", "--weights", "own/step000100"])
+    assert "give --clips FILE too" in str(found.exception)

@@ -35,6 +35,14 @@ def test_any_bytes_are_read_or_refused_with_their_name(data: bytes) -> None:
         assert all(letter.isprintable() or letter in "\n\t" or letter.isspace() for letter in text if letter < "\x80")
 
 
+def test_a_letter_in_a_hundred_and_a_few_more_may_be_hidden_and_bytes_with_others_are_no_text() -> None:
+    words = "Anna sits. " * 100
+    hidden = len(words) // 99 + 8
+    assert read_text((words + "\x01" * hidden).encode(), "a")[0].count("Anna") == 100
+    with pytest.raises(ExtractionError, match="control characters"):
+        read_text((words + "\x01" * (hidden + 2)).encode(), "a")
+
+
 @given(st.text(max_size=400))
 def test_any_text_has_scenes_in_which_every_line_says_something(text: str) -> None:
     for scene in scenes_of_text(text):

@@ -8,9 +8,16 @@ import numpy as np
 import pytest
 from for_each import for_each
 
-from motion_backend.motion import Skill
+from motion_backend.motion import Action, Emotion, Skill
 from motion_backend.scene import scene_of
-from planner_service.grounding.keyframes_to_actions import Place, UnreachableError, act, can_stand, height_of
+from planner_service.grounding.keyframes_to_actions import (
+    Place,
+    UnreachableError,
+    act,
+    can_stand,
+    heading_after,
+    height_of,
+)
 from planner_service.scripts.script import Keyframe
 from scene_graphs.affordances.affordances import spots
 from scene_graphs.home import Home, Room, home_from_layouts
@@ -113,6 +120,14 @@ def test_the_floor_can_be_sat_and_lain_on_where_there_is_room(skill: str) -> Non
     assert action.spot is not None
     assert action.spot.point[1] == 0
     assert WALKABLE.clearance((action.spot.point[0], action.spot.point[2])) > 0.3
+
+
+def test_a_body_looks_where_it_was_told_to_or_as_its_last_walk_came_in() -> None:
+    walk = Action(Skill.LOCO, "walk", Emotion.NEUTRAL, goal=(4.0, 3.5))
+    assert heading_after([(replace(walk, facing=0.7), (2.5, 2.0))], WALKABLE) == 0.7
+    assert heading_after([(walk, (2.5, 2.0))], WALKABLE) == pytest.approx(np.arctan2(1.5, 1.5), abs=0.2)
+    assert heading_after([(walk, (4.0, 2.0))], WALKABLE) == pytest.approx(0.0, abs=0.2)
+    assert heading_after([(walk, None)], WALKABLE) is None
 
 
 def test_nothing_can_be_touched_in_the_air() -> None:

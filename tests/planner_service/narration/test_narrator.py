@@ -290,6 +290,8 @@ def test_pronouns_are_those_of_the_storys_person(text: str, hero: str, voice: Vo
         ("in a good mood", f"{WAS} in a good mood"),
         ("am angry with my boss", f"{WAS} angry with her boss"),
         ("a heavy heart", None),
+        ("got the job", "got the job"),
+        ("lost every hope", "lost every hope"),
     ],
 )
 def test_a_feeling_is_told_in_the_past(text: str, told: str | None) -> None:

@@ -15,6 +15,8 @@ from planner_service.themes.sentence_parser import clauses_of_text
 @for_each(
     ("theme", "name", "pronouns"),
     [
+        ("Old Mr. Kim makes tea and sits down.", "Kim", "he"),
+        ("Ms. Kim reads.", "Kim", "she"),
         ("Anna comes home and sleeps.", "Anna", "she"),
         ("On Monday Zofia comes home with her cat.", "Zofia", "she"),
         ("Late at night Karim writes a letter.", "Karim", "they"),

@@ -1,0 +1,239 @@
+/** The script as a form: every moment's words and object can be changed, moments dropped, moved and put in, and played. */
+
+import { ApiError, getHome, postTake, type Skill, type Story } from "./api";
+import { fill, h, icon, type Icon } from "./dom";
+import { EMOTIONS } from "./emotions";
+import { announce } from "./live";
+import { added, changed, draftOf, dropped, firstChange, moved, placed, type Draft, type Script } from "./script-draft";
+import { Vocabulary, type Thing } from "./vocabulary";
+import { capital, SKILL_WORDS } from "./words";
+
+const SKILLS: readonly Skill[] = ["loco", "sitdown", "standup", "getup", "liedown", "touch"];
+const FLOOR = "";
+
+/** What is wanted: the script, and how it is staged. */
+interface Wanted {
+  readonly script: Script;
+  readonly seed: string;
+  readonly backend: string;
+}
+
+export class ScriptEditor {
+  readonly element: HTMLElement = h("div", { class: "editor", role: "group", "aria-label": "Change the script" });
+  readonly #story: Story;
+  readonly #words: Vocabulary;
+  readonly #things: readonly Thing[];
+  readonly #before: Wanted;
+  readonly #past: Wanted[] = [];
+  readonly #played: (take: Story, from: number) => void;
+  readonly #left: () => void;
+  readonly #list = h("ol", { class: "drafts" });
+  readonly #problem = h("p", { class: "wrong", role: "alert", hidden: true });
+  readonly #undo = h("button", { type: "button", class: "plain", onclick: () => this.#back() }, "Undo");
+  readonly #play = h("button", { type: "button", class: "primary", onclick: () => void this.#send() }, "Play this");
+  readonly #seed: HTMLInputElement;
+  readonly #backend: HTMLSelectElement;
+  #now: Wanted;
+  #key = newKey();
+
+  /** `played` is told of the take that was begun and of its first moment that is another; `left` when all stays as it is. */
+  static async open(story: Story, played: (take: Story, from: number) => void, left: () => void): Promise<ScriptEditor> {
+    const [words, home] = await Promise.all([Vocabulary.load(), getHome(story.id)]);
+    return new ScriptEditor(story, words, words.things(home), played, left);
+  }
+
+  private constructor(story: Story, words: Vocabulary, things: readonly Thing[], played: (take: Story, from: number) => void, left: () => void) {
+    [this.#story, this.#words, this.#things, this.#played, this.#left] = [story, words, things, played, left];
+    this.#now = this.#before = { script: draftOf(story.keyframes), seed: String(story.seed), backend: story.backend };
+    this.#seed = h("input", { id: "take-seed", type: "number", min: 0, step: 1, inputmode: "numeric", onchange: () => this.#stage({ seed: this.#seed.value }) });
+    this.#backend = h("select", { id: "take-backend", onchange: () => this.#stage({ backend: this.#backend.value }) }, ...words.backends.map((one) => h("option", { value: one.backend, title: one.about }, one.backend)));
+    const leave = h("button", { type: "button", class: "plain small", onclick: () => this.#left() }, "Leave it");
+    fill(
+      this.element,
+      h("div", { class: "row editor-head" }, h("h2", {}, "Change the script"), leave),
+      this.#list,
+      h("div", { class: "staging" }, h("label", { for: "take-seed" }, "Seed"), this.#seed, h("label", { for: "take-backend" }, "Moved by"), this.#backend),
+      h("div", { class: "editor-foot" }, this.#problem, h("div", { class: "row" }, this.#play, this.#undo)),
+    );
+    this.element.addEventListener("keydown", (event) => {
+      if (event.key !== "z" || !(event.ctrlKey || event.metaKey) || event.shiftKey || event.target === this.#seed) return;
+      event.preventDefault();
+      this.#back();
+    });
+    this.#show();
+  }
+
+  focus(): void {
+    this.#list.querySelector("select")?.focus();
+  }
+
+  /** Another script, said aloud; the place that has the focus keeps it. */
+  #do(script: Script, said: string, focus?: string): void {
+    if (firstChange(script, this.#now.script) === null) return;
+    this.#past.push(this.#now);
+    this.#now = { ...this.#now, script };
+    this.#show(focus);
+    announce(said);
+  }
+
+  #stage(change: Partial<Wanted>): void {
+    this.#past.push(this.#now);
+    this.#now = { ...this.#now, ...change };
+    this.#show();
+  }
+
+  #back(): void {
+    const before = this.#past.pop();
+    // What was changed before this take began is in the story that it is a take of.
+    if (!before && this.#story.derived_from) location.hash = `#/stories/${this.#story.derived_from}`;
+    if (!before) return;
+    this.#now = before;
+    this.#show();
+    announce("Undone");
+    if (!this.#past.length && document.activeElement === document.body) this.#play.focus();
+  }
+
+  #show(focus?: string): void {
+    const held = focus ?? (document.activeElement instanceof HTMLElement && this.#list.contains(document.activeElement) ? document.activeElement.dataset["at"] : undefined);
+    fill(this.#list, ...this.#now.script.map((draft, at) => this.#row(draft, at)));
+    this.#seed.value = this.#now.seed;
+    this.#backend.value = this.#now.backend;
+    const untouched = this.#from() === null;
+    this.#undo.disabled = this.#past.length === 0 && !this.#story.derived_from;
+    this.#play.disabled = untouched;
+    this.#problem.hidden = true;
+    this.#key = newKey();
+    if (held) this.#at(held)?.focus();
+  }
+
+  /** A control by its place and name, "3 caption". */
+  #at(name: string): HTMLElement | null {
+    const found = this.#list.querySelector<HTMLElement>(`[data-at="${name}"]`);
+    return found?.matches(":disabled") ? (found.closest("li")?.querySelector("select") ?? null) : found;
+  }
+
+  #row(draft: Draft, at: number): HTMLElement {
+    const { script } = this.#now;
+    const name = `Moment ${at + 1}`;
+    const other = firstChange([draft], this.#before.script.filter(({ index }) => index === draft.index)) !== null;
+    const choose = (field: string, words: string, options: readonly (readonly [string, string])[], value: string, act: (value: string) => void): HTMLElement => {
+      const known = options.some(([one]) => one === value) ? options : [[value, value] as const, ...options];
+      const select: HTMLSelectElement = h("select", { "data-at": `${at} ${field}`, "data-field": field, "aria-label": `${name}: ${words}`, onchange: () => act(select.value) }, ...known.map(([one, told]) => h("option", { value: one, selected: one === value }, told)));
+      return select;
+    };
+    const button = (field: string, words: string, picture: Icon, disabled: boolean, act: () => void): HTMLElement =>
+      h("button", { type: "button", class: "quiet round", "data-at": `${at} ${field}`, "aria-label": `${name}: ${words}`, title: capital(words), disabled, onclick: act }, icon(picture));
+    return h(
+      "li",
+      { class: other ? "draft other" : "draft", "data-emotion": this.#mood(draft) },
+      h("span", { class: "cue-number" }, String(at + 1)),
+      h(
+        "div",
+        { class: "draft-fields" },
+        choose("skill", "what is done", SKILLS.map((skill) => [skill, capital(SKILL_WORDS[skill])] as const), draft.skill, (value) => this.#reskill(at, value as Skill)),
+        choose("object_id", "where", this.#places(draft), draft.object_id ?? FLOOR, (value) => this.#do(placed(script, at, value || null), `${name}: ${this.#nameOf(value)}`)),
+        choose("caption", "how", this.#words.captions(draft.skill).map((caption) => [caption, caption] as const), draft.caption, (caption) => this.#do(changed(script, at, { caption }), `${name}: ${caption}`)),
+        choose("emotion", "in which mood", EMOTIONS.map((emotion) => [emotion, emotion] as const), draft.emotion, (emotion) => this.#do(changed(script, at, { emotion }), `${name}: ${emotion}`)),
+        h(
+          "div",
+          { class: "draft-moves" },
+          button("up", "earlier", "up", at === 0, () => this.#do(moved(script, at, -1), `${name} is now moment ${at}`, `${at - 1} up`)),
+          button("down", "later", "downward", at === script.length - 1, () => this.#do(moved(script, at, 1), `${name} is now moment ${at + 2}`, `${at + 1} down`)),
+          button("add", "put another behind it", "plus", false, () => this.#do(added(script, at, this.#fresh(draft)), `Moment ${at + 2} is new`, `${at + 1} skill`)),
+          button("drop", "leave it out", "trash", script.length === 1, () => this.#do(dropped(script, at), `${name} is left out`, `${Math.min(at, script.length - 2)} drop`)),
+        ),
+      ),
+      h("p", { class: "wrong", hidden: true }),
+    );
+  }
+
+  /** What its emotion means, where it is in words of its own. */
+  #mood({ index, emotion }: Draft): string {
+    const before = this.#story.keyframes.find((keyframe) => keyframe.index === index);
+    return before?.emotion === emotion ? before.mood : emotion;
+  }
+
+  /** A walk about, in the mood of the moment before. */
+  #fresh(behind: Draft): Draft {
+    return { index: null, skill: "loco", emotion: behind.emotion, caption: this.#words.usual("loco"), furniture: "floor", object_id: null };
+  }
+
+  /** Something else is done: as usual, and where that can be. */
+  #reskill(at: number, skill: Skill): void {
+    const { script } = this.#now;
+    const draft = script[at];
+    if (!draft) return;
+    const fits = this.#places({ ...draft, skill }).map(([id]) => id);
+    const object = fits.includes(draft.object_id ?? FLOOR) ? draft.object_id : fits.find(Boolean) ?? null;
+    const next = changed(script, at, { skill, caption: this.#words.usual(skill) });
+    this.#do(object === draft.object_id ? next : placed(next, at, object), `Moment ${at + 1}: ${SKILL_WORDS[skill]}`);
+  }
+
+  /** Where a moment may be: the objects that serve for what is done, and the floor for all but touching. */
+  #places(draft: Draft): (readonly [string, string])[] {
+    const needs = this.#words.needs(draft.skill);
+    const serve = this.#things.filter(({ id, affords }) => id === draft.object_id || needs === null || affords.includes(needs));
+    const several = new Set(this.#things.map(({ room }) => room)).size > 1;
+    const named = serve.map(({ id, name, room }) => [id, several ? `${name}, ${room}` : name] as const);
+    return needs === "touch" ? named : [[FLOOR, "the floor"], ...named];
+  }
+
+  #nameOf(id: string): string {
+    return this.#things.find((thing) => thing.id === id)?.name ?? "the floor";
+  }
+
+  /** The first moment that is another; 0 where the staging is; null where nothing is. */
+  #from(): number | null {
+    const staged = this.#now.seed !== this.#before.seed || this.#now.backend !== this.#before.backend;
+    return staged ? 0 : firstChange(this.#now.script, this.#before.script);
+  }
+
+  async #send(): Promise<void> {
+    const from = this.#from();
+    if (from === null) return;
+    this.#play.disabled = true;
+    try {
+      const { script, seed, backend } = this.#now;
+      const keyframes = script.map(({ index, object_id, ...words }) => ({ ...words, ...(index === null ? {} : { index }), ...(object_id === null ? {} : { object_id }) }));
+      const take = await postTake(this.#story.id, { keyframes, seed: Number(seed || 0), backend }, this.#key);
+      this.#played(take, Math.min(from, script.length - 1));
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this.#explain(error);
+    }
+    this.#play.disabled = false;
+  }
+
+  /** What is wrong is said at its field, with what would be right. */
+  #explain(error: ApiError): void {
+    let first: HTMLElement | null = null;
+    const left: string[] = [];
+    for (const { pointer, detail } of error.errors) {
+      const [, at, field] = /^\/keyframes\/(\d+)\/(\w+)$/.exec(pointer) ?? [];
+      const row = at === undefined ? undefined : this.#list.children[Number(at)];
+      const control = row?.querySelector<HTMLElement>(`[data-field="${field === "furniture" ? "object_id" : field}"]`) ?? row?.querySelector("select");
+      const place = row?.querySelector<HTMLElement>(".wrong");
+      if (!control || !place) {
+        left.push(detail);
+        continue;
+      }
+      place.id = `draft-${at}-wrong`;
+      place.hidden = false;
+      place.textContent = `${place.textContent ? `${place.textContent} ` : ""}${capital(detail)}.`;
+      control.setAttribute("aria-invalid", "true");
+      control.setAttribute("aria-describedby", place.id);
+      first ??= control;
+    }
+    if (!error.errors.length || left.length) {
+      this.#problem.hidden = false;
+      this.#problem.textContent = left.length ? left.map(capital).join(". ") : capital(error.detail || error.title);
+    }
+    first?.focus();
+    announce(error.detail);
+  }
+}
+
+/** Makes a post that is tried again the same post. */
+function newKey(): string {
+  return Array.from(crypto.getRandomValues(new Uint8Array(16)), (byte) => byte.toString(16).padStart(2, "0")).join("");
+}
