@@ -48,11 +48,6 @@ _GOAL: Final = re.compile(r"\b(?:over|on|onto|into|in|inside|under|against|behin
 _LOW: Final = ("touch low height with the right hand", "touch low height")
 _ON_TOP: Final = re.compile(r"\bon (?:the|a|his|her|their) (?:\w+ )?(?:table|desk|counter)")
 _UNDER: Final = re.compile(r"\b(?:under|beneath|underneath|behind|beside|next to)\b")
-_INTO: Final = re.compile(
-    r"^\w+ (?:(?:him|her|my|them)sel\w+ |down |back |up )*(into|onto|out of|from|off) "
-    r"(?:the|his|her|their|my|an?) ((?:\w+ ?)+)"
-)
-"""A way into furniture or out of it, of the body itself and of no thing."""
 _STATES: Final = frozenset(("be", "have", "become", "need", "like", "love", "hate", "know", "miss", "own", "do", "let"))
 _EXPRESSED: Final = frozenset(EXPRESSIONS)
 _MAX_FRAGMENT: Final = 4
@@ -69,24 +64,8 @@ _FEWEST_SAID: Final = 2
 _THROUGH: Final = frozenset(("through", "in", "around", "round", "up", "down", "out", "over", "across"))
 """Words between a deed and the room that it is done to: "searches through the kitchen"."""
 _LISTED: Final = re.compile(r",(?: and| then| or| even)*|\b(?:and|or)(?: then| even)*\b")
-_PLACED: Final = frozenset(
-    (
-        "in",
-        "on",
-        "under",
-        "behind",
-        "beneath",
-        "below",
-        "inside",
-        "at",
-        "above",
-        "beside",
-        "between",
-        "into",
-        "onto",
-        "with",
-    )
-)
+_PLACED: Final = frozenset(("in", "on", "under", "behind", "beneath", "below", "inside", "at", "above", "beside",
+                             "between", "into", "onto", "with"))  # fmt: skip
 """Words that each place of a list begins with."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
 _ANYWHERE: Final = ("table", "kitchen counter", "desk", "cabinet")
@@ -194,28 +173,34 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
     if need is None:
         pieces = [piece for piece in named if furniture.affordances(piece)]
         return Deed(found, skill, tuple(pieces), bool(pieces))
-    if skill is Skill.TOUCH:  # "drapes lights | over the wardrobe"
-        goals = [piece for place in _GOAL.findall(clause.text) for piece in pieces_in(place)]
-        named.sort(key=lambda piece: "," not in clause.text and piece not in goals)
+    if skill is Skill.TOUCH:
+        return _touched(clause, about, found, named)
     fitting = [piece for piece in named if affords(piece, need)]
     if skill is Skill.SITDOWN and not (found.skill is skill and _ON_TOP.search(clause.text)):
         seats = [seat for piece in named for seat in deed_table().seats_at.get(piece, ())]
         fitting = seats or fitting
     under = need == "lie" and bool(named) and not fitting and bool(_UNDER.search(clause.text))
-    if under or (need in ("sit", "lie") and _FLOOR.search(clause.text)):
+    if under or _FLOOR.search(clause.text):
         fitting = ["floor"]
-    low = _UNDER_IT if named else _GROUND
-    if skill is Skill.TOUCH and low.search(clause.text):
-        found = replace(found, captions=_LOW)
-    if skill is Skill.TOUCH and (several := listed_places(clause) or ([] if fitting else typical_of(clause.text))):
-        fitting = [several[0], *fitting, *found.at]
+    return Deed(found, skill, tuple(fitting or dict.fromkeys(found.at)), bool(fitting))
+
+
+def _touched(clause: Clause, about: str, row: DeedRow, named: list[str]) -> Deed | None:
+    """What hands do: where something is put, at what is named, where the thing is, else where it usually is done."""
+    goals = [piece for place in _GOAL.findall(clause.text) for piece in pieces_in(place)]
+    named = sorted(named, key=lambda piece: "," not in clause.text and piece not in goals)
+    fitting = [piece for piece in named if affords(piece, "touch")]
+    if (_UNDER_IT if named else _GROUND).search(clause.text):
+        row = replace(row, captions=_LOW)
+    if several := listed_places(clause) or ([] if fitting else typical_of(clause.text)):
+        fitting = [several[0], *fitting, *row.at]
     if fitting:
-        return Deed(found, skill, tuple(fitting), True)
-    kept = [piece for piece in _kept(clause, about) if affords(piece, need)] if skill is Skill.TOUCH else []
-    if skill is Skill.TOUCH and not (kept or found.at):  # hands do it to what no list has
-        return Deed(replace(found, stands=True), skill, _ANYWHERE, False) if _may_be_touched(clause) else None
-    order = (*kept, *found.at) if found.things else (*found.at, *kept)
-    return Deed(found, skill, tuple(dict.fromkeys(order)), False)
+        return Deed(row, Skill.TOUCH, tuple(fitting), True)
+    kept = [piece for piece in _kept(clause, about) if affords(piece, "touch")]
+    if not (kept or row.at):  # hands do it to what no list has
+        return Deed(replace(row, stands=True), Skill.TOUCH, _ANYWHERE, False) if _may_be_touched(clause) else None
+    order = (*kept, *row.at) if row.things else (*row.at, *kept)
+    return Deed(row, Skill.TOUCH, tuple(dict.fromkeys(order)), False)
 
 
 def listed_places(clause: Clause) -> list[str]:
@@ -333,8 +318,6 @@ def _named(clause: Clause, about: str) -> list[str]:
 
 def row_of(clause: Clause, about: str) -> DeedRow | None:
     """The row that a clause's words say, else by its things."""
-    if clause.verb and re.search(r"^\w+ \w+sel(?:f|ves)\b", clause.text) and (row := _moved(clause)):
-        return row
     return said_row(_spelt_out(clause, about)) or _by_things(clause, about)
 
 
@@ -397,8 +380,6 @@ def _by_things(clause: Clause, about: str) -> DeedRow | None:
     """What is done with things by a verb nobody foresaw: a hand is laid on them; or a way is gone."""
     if clause.verb in _EXPRESSED:
         return None
-    if clause.verb and (row := _moved(clause)):
-        return row
     if not clause.verb or clause.verb in _STATES or _says_how(clause):
         return None
     named = _named(clause, "" if "them" in clause.lemmas else about)
@@ -412,19 +393,6 @@ def _says_how(clause: Clause) -> bool:
     after = next((token.low for token in tokens_of(clause.text)[1:] if token.low not in grammar().adverbs), "")
     so = (after.endswith("ed") and bool(verb_of(after))) or (is_adjective(after) and not is_noun(after))
     return clause.verb in theme_words()["state_verbs"] | {"feel"} and so
-
-
-def _moved(clause: Clause) -> DeedRow | None:
-    """Whoever moves into a seat sits, onto a bed lies, and out of either rises, by whatever verb: "falls into the
-    armchair", "heaves himself out of the chair"."""
-    found = _INTO.search(clause.text)
-    piece = next(iter(pieces_in(found[2])), "") if found else ""
-    if found is None or not affords(piece, "sit"):
-        return None
-    lies = affords(piece, "lie")
-    if found[1] in ("out of", "from", "off"):
-        return DeedRow((clause.verb,), Skill.GETUP if lies else Skill.STANDUP)
-    return DeedRow((clause.verb,), Skill.LIEDOWN if lies else Skill.SITDOWN)
 
 
 def _kept(clause: Clause, about: str) -> tuple[str, ...]:

@@ -36,7 +36,9 @@ _LOUDER: Final = {"stressed": ("drunk", "angry", "sad", "hurried"), "relaxed": (
 """Moods that a mere hint of another one does not end within a sentence: who is angry paces with anger."""
 _MEANWHILE: Final = frozenset(("after", "once", "when", "until", "as"))
 """Joints after which what had been done belongs to the story: "once he had paid, he sat down"."""
-_RECEIVERS: Final = frozenset(("phone", "telephone", "receiver", "headset", "handset", "mouthpiece", "intercom", "mobile"))
+_RECEIVERS: Final = frozenset(
+    ("phone", "telephone", "receiver", "headset", "handset", "mouthpiece", "intercom", "mobile")
+)
 """What is said into these is seen."""
 _BY_THEN: Final = re.compile(r"\bby (?:noon|midnight|dawn|dusk|evening|night|now|then|\d+|one|two|three|four|five|six|"
                                 r"seven|eight|nine|ten|eleven|twelve)\b", re.IGNORECASE)  # fmt: skip

@@ -55,7 +55,9 @@ def cast_by(theme: str, character: Character) -> Character:
     hero = hero_of(clauses)
     told = called(clauses, hero if name in hero else name) if name else pronouns_of(f"the {head_of(hero)}")
     titled = pronouns_of(hero) if name and name in hero else ""
-    pronouns = titled or _pronouns_of_names().get(name.lower()) or told or _pronouns_in(theme, bool(name)) or default.pronouns
+    pronouns = (
+        titled or _pronouns_of_names().get(name.lower()) or told or _pronouns_in(theme, bool(name)) or default.pronouns
+    )
     return replace(character, name=name or default.name, pronouns=pronouns)
 
 

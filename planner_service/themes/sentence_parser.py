@@ -43,7 +43,22 @@ _IDLE: Final = frozenset(("do", "be", "have", "lose", "waste", "take", "make", "
 _FEWEST_DENYING: Final = 2
 _PARTICLES: Final = frozenset(("on", "off", "down", "up", "around", "there", "back"))
 _BULLET: Final = re.compile(r"(?:^\s*(?:\d{1,2}[.)]|[-*•])|(?<=[.!?;:] )\d{1,2}[.)])\s+", re.MULTILINE)
-_DAYTIMES: Final = frozenset("dusk dawn night midnight evening morning noon daylight twilight winter summer spring autumn".split())
+_DAYTIMES: Final = frozenset(
+    (
+        "dusk",
+        "dawn",
+        "night",
+        "midnight",
+        "evening",
+        "morning",
+        "noon",
+        "daylight",
+        "twilight",
+        "winter",
+        "summer",
+        "spring",
+    )
+)
 """What falls, breaks or comes, and is nobody."""
 
 
@@ -256,7 +271,9 @@ def _does_none(words: Sequence[Token]) -> bool:
         return False
     rest = [token.low for token in words[1:]]
     none = rest[0] in ("nothing", "nobody", "none", "neither") or rest[:2] == ["no", "one"]
-    return (none and rest[1:2] != ["but"] and rest[1:3] != ["in", "particular"]) or (rest[0] == "no" and rest[1:2] != ["longer"])
+    return (none and rest[1:2] != ["but"] and rest[1:3] != ["in", "particular"]) or (
+        rest[0] == "no" and rest[1:2] != ["longer"]
+    )
 
 
 def _is_hindered(joint: str, lead: Sequence[Token], verb: Token) -> bool:

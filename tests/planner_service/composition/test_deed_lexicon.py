@@ -231,6 +231,14 @@ def test_captions_show_what_is_done(text: str, caption: str) -> None:
         ("He throws open the door", Skill.TOUCH, "rotate with the right hand"),
         ("She slides to the floor", Skill.SITDOWN, ""),
         ("She walks into the kitchen", Skill.LOCO, ""),
+        ("She samples the punch", Skill.SITDOWN, "drinking from a cup in the right hand"),
+        ("He heaves himself out of the armchair", Skill.STANDUP, ""),
+        ("She flattened herself against the floorboards", Skill.LIEDOWN, ""),
+        ("He hops twice", Skill.LOCO, "skip steps running"),
+        ("She scrapes the icing off the rug", Skill.TOUCH, "touch low height"),
+        ("He stares at the wall", Skill.LOCO, "stand still"),
+        ("She slips on her headphones", Skill.SITDOWN, "listening to music, both hands at the ears"),
+        ("She brushes the fluff off her knees", Skill.TOUCH, "touch low height"),
     ],
 )
 def test_everyday_english_is_shown_as_a_fair_viewer_would_expect(text: str, skill: Skill, caption: str) -> None:
@@ -238,6 +246,30 @@ def test_everyday_english_is_shown_as_a_fair_viewer_would_expect(text: str, skil
     assert found is not None
     assert found.skill is skill
     assert not caption or caption in found.row.captions
+
+
+@for_each("text", ["pokes the contraption", "nudges the obelisk", "opens the casket"])
+def test_what_hands_do_to_a_thing_nobody_knows_is_done_at_a_table_and_only_stood_for(text: str) -> None:
+    found = deed(text)
+    assert (found.skill, found.pieces[0], found.row.stands, found.named) == (Skill.TOUCH, "table", True, False)
+
+
+@for_each(
+    ("text", "piece"),
+    [
+        ("drapes fairy lights over the wardrobe", "wardrobe"),
+        ("lights a candle", "table"),
+        ("unblocks the plughole", "kitchen sink"),
+        ("changes the mattress", "bed"),
+        ("Kettle on", "kitchen counter"),
+        ("shoes off", "wardrobe"),
+    ],
+)
+def test_things_are_put_where_it_is_said_and_used_where_they_are(text: str, piece: str) -> None:
+    said = clauses_of_text(f"She {text}." if text[0].islower() and " off" not in text else f"Home. {text}.")[-1]
+    found = deed_of(said)
+    assert found is not None
+    assert found.pieces[0] == piece
 
 
 @for_each("text", ["has lost her reading glasses", "sees a mouse", "owns a piano"])

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from functools import cache
 
+import pytest
 from examples import tries
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -14,6 +15,8 @@ from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Character
 from planner_service.composition.compose import compose
 from planner_service.composition.request import Request
+from planner_service.evaluation.beat_judgement import Judgement
+from planner_service.evaluation.labels import labelled_themes
 from planner_service.narration.narrator import narrate
 from planner_service.scripts.acted_beats import planned_beats
 from planner_service.scripts.built_in_scripts import built_in
@@ -102,3 +105,13 @@ def test_what_no_body_can_show_is_named_and_no_event_of_the_story(theme: Told) -
     for stretch in theme.strange:
         assert words_of(stretch) <= named, (theme.text, stretch, [one.beat.text for one in outcomes])
         assert not words_of(stretch.split()[-1]) & told, (theme.text, stretch)
+
+
+@pytest.mark.sweep
+def test_no_story_of_a_labelled_theme_tells_as_done_what_is_neither_acted_nor_named() -> None:
+    for label in labelled_themes():
+        script = planned(label.theme) if label.split == "tune" and not label.refuse else None
+        if script is not None:
+            judged = Judgement(label, script)
+            told = judged.told_as_done(narrate(script, Character()).events)
+            assert not told, (label.id, [label.beats[index].text for index in told])

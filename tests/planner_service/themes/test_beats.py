@@ -64,6 +64,8 @@ def test_what_is_denied_is_undone_what_others_do_is_theirs_and_all_else_is_a_dee
         ("He cannot decide where to put it.", ["deed"]),
         ("“Part B goes into part D”, he reads. “Good”, he says.", ["deed", "speech"]),
         ("He goes from room to room.", ["deed"]),
+        ("She telephones nobody. She bows to nobody in particular.", ["undone", "deed"]),
+        ("Dusk thickened. She sat down.", ["other", "deed"]),
         ("She makes herself a sandwich.", ["deed"]),
     ],
 )
@@ -99,6 +101,8 @@ def test_whatever_is_denied_as_a_participle_is_not_done(deed: str, other: str, j
         ("A dog sleeps. It wakes.", ["A dog", "It"]),
         ("reads a book and sleeps", ["", ""]),
         ("When the children are asleep he reads.", ["the children", ""]),
+        ("He burps the baby, who was sick.", ["", "the baby"]),
+        ("She thinks of the ferry, of his mother crying on the quay.", ["", "his mother"]),
         ("Before he eats, the baby wakes, so he gets up.", ["the baby", "", ""]),
     ],
 )

@@ -107,6 +107,16 @@ def test_no_word_of_any_text_is_read_twice(text: str) -> None:
         # verbs in their base forms
         ("You wake up, stretch and stare at the ceiling.", ["wake up", "stretch", "stare at the ceiling"]),
         ("They eat on the floor and fall asleep there.", ["eat on the floor", "fall asleep there"]),
+        ("Load the plates, wipe the table and feed the cat.", ["Load the plates", "wipe the table", "feed the cat"]),
+        ("Welcome Anna, fetch her coat.", ["Welcome Anna", "fetch her coat"]),
+        ("1. Wipe the worktop. 2. Load dirty plates.", ["Wipe the worktop", "Load dirty plates"]),
+        # what is told the other way about
+        ("Hardly had she sat down when the phone rang.", ["the phone rang", "sat down"]),
+        ("No sooner had he sat down than it rang.", ["it rang", "sat down"]),
+        ("Dinner had to be cooked, so Anna left.", ["cooked Dinner", "left"]),
+        ("She strode up and down the hall.", ["strode up and down the hall"]),
+        # notes of things
+        ("Shoes. Keys? Kettle on, coat off.", ["Shoes", "Keys", "Kettle on", "coat off"]),
         # slang
         ("cant sleep so she gets up n makes tea", ["can not sleep", "gets up", "makes tea"]),
         ("He wanna sleep but he doesnt lie down.", ["want to sleep", "does not lie down"]),
