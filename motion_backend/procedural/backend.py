@@ -118,7 +118,10 @@ def _to_motion(body: Body, part: Part) -> Motion:
     if part.kind is not PartKind.REACH and posture is not Posture.LYING:
         pose = head_clear(pose, around.solid, body.skeleton)
     pose = hips_within(balanced(pose, body.phases, body.skeleton), body.skeleton)
-    pose = arms_clear(pose, start, around, body.skeleton)
+    wanted, pose = pose.arms[-1], arms_clear(pose, start, around, body.skeleton)
+    if body.stride is not None and len(pose) > 1 and (pose.arms[-1] != wanted).any():
+        # Arms that are on a detour go on from that.
+        body.stride = replace(body.stride, arms_onward=pose.arms[-1] - pose.arms[-2])
     body.pose = pose.at(len(pose) - 1)
     root, local = solve(pose, body.skeleton)
     whole = Motion(

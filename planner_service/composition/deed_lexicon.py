@@ -61,6 +61,11 @@ _NOT_NOW: Final = frozenset(("before", "after", "until", "since", "during", "wit
 """Words before what is not done, or not yet."""
 _LIGHT_VERBS: Final = ("do", "have", "take", "play", "watch")
 """Verbs that a noun alone stands for: "dinner", "a nap", "yoga"."""
+_PUT_VERBS: Final = ("put", "take", "turn", "lay")
+_PUT: Final = frozenset(("on", "off", "up", "down", "out", "away", "in"))
+"""Words that tell what is done to what stands before them: "kettle on"."""
+_FEWEST_SAID: Final = 2
+"""Words that a saying must have of them: the verb, the thing and the last."""
 _THROUGH: Final = frozenset(("through", "in", "around", "round", "up", "down", "out", "over", "across"))
 """Words between a deed and the room that it is done to: "searches through the kitchen"."""
 _LISTED: Final = re.compile(r",(?: and| then| or| even)*|\b(?:and|or)(?: then| even)*\b")
@@ -191,7 +196,7 @@ def deed_of(clause: Clause, about: str = "") -> Deed | None:
         return Deed(found, skill, tuple(pieces), bool(pieces))
     if skill is Skill.TOUCH:  # "drapes lights | over the wardrobe"
         goals = [piece for place in _GOAL.findall(clause.text) for piece in pieces_in(place)]
-        named.sort(key=lambda piece: piece not in goals)
+        named.sort(key=lambda piece: "," not in clause.text and piece not in goals)
     fitting = [piece for piece in named if affords(piece, need)]
     if skill is Skill.SITDOWN and not (found.skill is skill and _ON_TOP.search(clause.text)):
         seats = [seat for piece in named for seat in deed_table().seats_at.get(piece, ())]
@@ -260,9 +265,10 @@ def object_of(clause: Clause) -> str:
 def _is_of_body(clause: Clause, row: DeedRow) -> bool:
     """Whether only a part of the body does it, or has it done to it: "his heart raced", "opens one eye"."""
     body = theme_words()["body"]
-    parts = _lemmas(clause.subject)[-1:]
-    folded = says(row.says, (clause.verb, *parts, *clause.lemmas[1:]))  # "arms folded"
-    races = row.skill is Skill.LOCO and not (row.mood or folded) and bool(body & set(parts))
+    parts = [lemma_of(head_of(clause.subject))]
+    rest = clause.lemmas[1:]  # "arms folded", but not "elbows wobbling"
+    folded = says(row.says, (clause.verb, *parts, *rest)) and not says(row.says, (clause.verb, "thing", *rest))
+    races = row.skill in (Skill.LOCO, Skill.TOUCH) and not (row.mood or folded) and bool(body & set(parts))
     noun = object_of(clause)
     return races or (row.skill is Skill.TOUCH and row.things and noun in body and noun not in things())
 
@@ -282,7 +288,13 @@ def _deed_of_fragment(clause: Clause) -> Deed | None:
     words = [token.low for token in tokens_of(clause.text) if token.text[:1].isalpha()]
     told = [word for word in words if word not in grammar().adverbs | grammar().joints]
     alone = clause.joint in ("", "then", ",") and 0 < len(told) <= _MAX_FRAGMENT and words[0] not in _NOT_NOW
-    if not alone or told[0] in theme_words()["body"]:
+    if not alone or told[0] in ("out", "away"):
+        return None
+    for light in _PUT_VERBS if len(told) > 1 and told[-1] in _PUT else ():  # "kettle on, shoes off, feet up"
+        verb = replace(clause, verb=light, lemmas=(light, *map(lemma_of, told)))
+        if (found := _said(verb)) and found[0] > _FEWEST_SAID - (light == "turn"):
+            return deed_of(verb)
+    if told[0] in theme_words()["body"]:
         return None
     if verb_of(told[0]) == told[0]:
         verb = replace(clause, verb=told[0], lemmas=tuple(map(lemma_of, told)))
@@ -479,7 +491,7 @@ def pieces_in(text: str) -> list[str]:
     at = 0
     while at < len(words):
         size = next((size for size in (3, 2, 1) if _names(words[at : at + size], size)), 0)
-        if size and words[at] not in others and not (at == 0 and _is_a_deed(words)):
+        if size and not (size == 1 and words[at] in others) and not (at == 0 and _is_a_deed(words)):
             name = " ".join(words[at : at + size])
             piece = deed_table().stands_on.get(name) or furniture.canonical(name).replace("_", " ")
             found.append(deed_table().stands_on.get(piece, piece))
@@ -489,7 +501,8 @@ def pieces_in(text: str) -> list[str]:
 
 def _is_a_deed(words: Sequence[str]) -> bool:
     """Whether a furniture word is a verb: "sinks onto the bottom stair"."""
-    led = len(words) > 1 and words[1] in ("into", "onto", "down", "to", "back", "on")
+    ways = {"into", "onto", "down", "to", "back", "on"}
+    led = len(words) > 1 and words[1] in ways | (grammar().marks - {"of"})
     return led and bool(verb_of(words[0]))
 
 

@@ -12,7 +12,9 @@ from planner_service.narration.story_words import story_words
 from planner_service.narration.tense import bases, form_of, in_past, says_how
 from planner_service.scripts.script import Beat
 from planner_service.themes.beats import EXPRESSIONS
-from planner_service.themes.lexicon import grammar, is_adjective, is_noun, past
+from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, past
+from planner_service.themes.things import things
+from scene_graphs.furniture import is_known
 
 WAS: Final = "\ue000"
 """Stands for was or were until the subject is known; no theme has it."""
@@ -49,7 +51,7 @@ def event(beat: Beat, hero: str, voice: Voice) -> Predicate | None:
     words = _own_clause(_QUOTE.sub(_SAID, beat.text))
     at = next((at for at, word in enumerate(words) if not _is_adverb(word)), 0)
     listed = beat.kind == "feeling" and "," in beat.text
-    told = None if listed else _head(words[at:], beat.kind == "feeling")
+    told = None if listed or _is_thing(words) else _head(words[at:], beat.kind == "feeling")
     if told is None or (beat.kind == "feeling" and hero in ("he", "she") and _is_bare_noun(words[at:])):
         return None
     verb, rest, ing = told
@@ -103,6 +105,13 @@ def _head(words: Sequence[str], feeling: bool) -> tuple[str, Sequence[str], bool
         return WAS, words, False
     told = in_past(first)
     return (told, rest, form_of(first) == "ing") if told else None
+
+
+def _is_thing(words: Sequence[str]) -> bool:
+    """Whether words only name a thing, and where it goes: "keys", "shoes off", "lights out"."""
+    first, rest = _bare(words[0]) if words else "", [*map(_bare, words[1:])]
+    known = lemma_of(first) in things() or is_known(first)
+    return known and len(rest) < 2 and {*rest} <= _of("adverbs") | {"on", "off", "up", "down", "out", "in", "away"}
 
 
 def _is_bare_noun(words: Sequence[str]) -> bool:

@@ -36,7 +36,7 @@ _LOUDER: Final = {"stressed": ("drunk", "angry", "sad", "hurried"), "relaxed": (
 """Moods that a mere hint of another one does not end within a sentence: who is angry paces with anger."""
 _MEANWHILE: Final = frozenset(("after", "once", "when", "until", "as"))
 """Joints after which what had been done belongs to the story: "once he had paid, he sat down"."""
-_RECEIVERS: Final = frozenset(("phone", "telephone", "receiver"))
+_RECEIVERS: Final = frozenset(("phone", "telephone", "receiver", "headset", "handset", "mouthpiece", "intercom", "mobile"))
 """What is said into these is seen."""
 _BY_THEN: Final = re.compile(r"\bby (?:noon|midnight|dawn|dusk|evening|night|now|then|\d+|one|two|three|four|five|six|"
                                 r"seven|eight|nine|ten|eleven|twelve)\b", re.IGNORECASE)  # fmt: skip
@@ -45,6 +45,8 @@ _ASKED: Final = re.compile(r"(?i)(?:please|(?:can|could|would|will) you|tell me|
 _QUESTION: Final = re.compile(r"(?i)(?:what|which|how|where|why|is|are|does|do|can|should)\b[^.!?]*\?")
 _ASKING: Final = frozenset(("", "it", "you", "i", "me", "please"))
 """Who does things in a request, and is nobody whose story it is."""
+_SETTLING: Final = frozenset(("sleep", "down", "warm", "comfortable"))
+"""What somebody who cannot get it is seen trying to get to: "cannot get to sleep"."""
 _QUOTED: Final = re.compile(r"«\d+»")
 EXPRESSIONS: Final = {
     verb: mood
@@ -176,7 +178,7 @@ def _kind(clause: Clause, who: str) -> BeatKind:
     if who or (clause.aside and (clause.verb or not is_feeling(clause))):
         return "other"
     staggers = clause.verb in words["falling_verbs"] and clause.text.split()[0].lower() in NEARLY
-    tries = clause.unable and (clause.verb in words["unable_verbs"] or "sleep" in clause.lemmas)
+    tries = clause.unable and (clause.verb in words["unable_verbs"] or not _SETTLING.isdisjoint(clause.lemmas))
     if clause.denied and not (staggers or tries):
         return "undone"
     before = clause.perfect and clause.joint not in _MEANWHILE and not _BY_THEN.search(clause.text)

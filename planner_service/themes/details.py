@@ -73,11 +73,12 @@ def _starts(tokens: Sequence[Token], at: int) -> bool:
     if low == "at" and any(token.low in _SENSED for token in tokens[at + 1 : at + 3]):
         return True
     beside = low.endswith("ing") and bool(verb_of(low)) and not is_noun(low) and is_noun(before.low)
+    amid = low == "between" and after not in grammar().marks  # "between two calls"
     absolute = before.text == "," and _is_absolute(tokens[at:])
     pair = at > 1 and tokens[at - 2].low in grammar().prepositions  # "up and down the hall"
     linked = before.low in _LINKS and low in grammar().prepositions and not pair
     beside = beside and not is_adjective(before.low) and before.low not in grammar().prepositions
-    return linked or absolute or low in _LEADS or beside
+    return linked or absolute or amid or low in _LEADS or beside
 
 
 def _is_absolute(tokens: Sequence[Token]) -> bool:

@@ -219,6 +219,8 @@ def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
     was about."""
     if not subject or subject.lower() == hero.lower():
         return True
+    if subject.lower().endswith(("both of them", "all of them", "two of them", "both of us")):
+        return True
     low, main = subject.split()[-1].lower(), hero.split()[-1].lower() if hero else ""
     if main == "i" and low in _SUBJECTS - {"who"}:
         return low == pronoun

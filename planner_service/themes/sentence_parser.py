@@ -120,8 +120,7 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
 def _told_last(told: Sequence[Sequence[Clause]]) -> str:
     """Somebody else whom the clause before ends with: "burps the baby, | who was sick"."""
     last = _main(told[-1]).text.rsplit(" ", 1)[-1] if told else ""
-    others = theme_words()["people"] | theme_words()["no_heroes"]
-    return f"the {last}" if lemma_of(last) in others else ""
+    return f"the {last}" if is_noun(last) and " " in _main(told[-1]).text else ""
 
 
 def _main(parts: Sequence[Clause]) -> Clause:
@@ -257,7 +256,7 @@ def _does_none(words: Sequence[Token]) -> bool:
         return False
     rest = [token.low for token in words[1:]]
     none = rest[0] in ("nothing", "nobody", "none", "neither") or rest[:2] == ["no", "one"]
-    return (none and rest[1:2] != ["but"]) or (rest[0] == "no" and rest[1:2] != ["longer"])
+    return (none and rest[1:2] != ["but"] and rest[1:3] != ["in", "particular"]) or (rest[0] == "no" and rest[1:2] != ["longer"])
 
 
 def _is_hindered(joint: str, lead: Sequence[Token], verb: Token) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from planner_service.themes.asides import THAT
-from planner_service.themes.lexicon import grammar, is_adjective, is_noun, past, verb_of
+from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, past, verb_of
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import Token, is_adverb, plain, tokens_of, verb_place
@@ -18,6 +18,11 @@ _PLAIN_SUBJECTS: Final = frozenset(("i", "you", "we", "they"))
 _LATER_JOINTS: Final = frozenset(("before", "until", "while"))
 _NO_JOINTS: Final = {"once": ("at", "for", "more", "all"), "while": ("a", "long", "little", "short")}
 """What joining words stand after where they join nothing: "at once", "for a while"."""
+_PAIRS: Final = frozenset(
+    (("up", "down"), ("down", "up"), ("back", "forth"), ("to", "fro"), ("round", "round"), ("over", "over"),
+     ("on", "on"), ("in", "out"), ("again", "again"), ("off", "on"), ("on", "off"))
+)  # fmt: skip
+"""Words that "and" makes one: "up and down"."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +65,8 @@ def pieces_of(sentence: str) -> list[Piece]:
             current.append(token)
     if current:
         cut.append(Piece(joint, tuple(current), source))
+    if len(tokens) == 1 and lemma_of(tokens[0].low) in things():  # "Shoes. Keys?"
+        return [replace(cut[0], verbless=True)]
     return _whole(cut)
 
 
@@ -76,6 +83,8 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
     if place and tokens[place - 1].low in _NO_JOINTS.get(low, ()):
         return False
     ahead = rest[0].low if rest else ""
+    if low == "and" and place and (tokens[place - 1].low, ahead) in _PAIRS:
+        return False
     if low in ("though", "if") and place and tokens[place - 1].low == "as":
         return False
     if low == "as" and ahead in ("though", "if"):

@@ -28,7 +28,7 @@ _SHORT: Final = {"ca": "can not", "wo": "will not", "sha": "shall not"}
 _ENDS: Final = (("'ll", " will"), ("'ve", " have"), ("'re", " are"), ("'m", " am"))
 _SLANG: Final = {
     "n": "and", "n'": "and", "'n'": "and", "cant": "can not", "wont": "will not", "gonna": "going to", "&": "and",
-    "wanna": "want to", "gotta": "have to", "cuz": "because", "bc": "because", "w/": "with",
+    "w/o": "without", "em": "them", "wanna": "want to", "gotta": "have to", "cuz": "because", "bc": "because", "w/": "with",
 }  # fmt: skip
 _LONG: Final = (
     ("by the time", "when"), ("rather than", "instead of"), ("(?<!the )till", "until"), ("which is to say", "and"),
@@ -42,7 +42,7 @@ _LONG: Final = (
     (r"no sooner had (.{3,60}?),? than", r"\1 when"),
     (r"(?:hardly|barely|scarcely) had (?=.{3,80} (?:when|before)\b)", ""),
     (r"had (?:hardly|barely|scarcely|only just|just) (?=.{3,80} when\b)", ""),
-    (r"((?:the|an?|his|her|their|my) (?:\w+ )?\w+) (?:(?:still )?(?:had|has|needs|needed) to|must) be (\w+ed)", r"they \2 \1"),
+    (r"(?!he|she|they|it|i|we|you)((?:(?:the|an?|his|her|their|my) (?:\w+ )?)?\w{3,}) (?:(?:still )?(?:had|has|needs|needed) to|must) be (\w+ed)", r"they \2 \1"),
     ("after (?:this|that)(?=,| (?:i|he|she|they|we|it|the|his|her|my|all)\\b)", "then"),
 )  # fmt: skip
 """Joints of several words, and those that say the same."""
@@ -166,9 +166,9 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
     if at < 0 or tokens[at].text == ",":
         if at >= 0 and word == base != past(base):
             return False  # nobody is told to do things
-        alone = {token.low for token in tokens[place + 1 :]} <= grammar().adverbs | {"everywhere"}
-        if not place and tokens[1:] and alone and is_third_person(word) and lemma_of(word) in things():
-            return False  # "Boxes everywhere."
+        alone = {token.low for token in tokens[1:]} <= grammar().adverbs | _PARTICLES | {"everywhere", "on", "in"}
+        if not place and tokens[1:] and alone and not word.endswith(("ed", "ing")) and lemma_of(word) in things():
+            return False  # "Boxes everywhere.", "kettle on, shoes off"
         return _orders(tokens, place) or _opens(word, base, tokens[place + 1].low if place + 1 < len(tokens) else "")
     before = tokens[at].low
     if before.startswith("«") and word != base:
@@ -193,7 +193,7 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
 def _orders(tokens: Sequence[Token], place: int) -> bool:
     """Whether a word that opens a sentence tells what to do, to what follows it: "load dirty plates", "welcome Anna"."""
     word, after = tokens[place].low, tokens[place + 1] if place + 1 < len(tokens) else None
-    if place or after is None or verb_of(word) != word or word in theme_words()["people"] or word in things():
+    if place or after is None or verb_of(word) != word or word in theme_words()["people"] | {"miss", *things()}:
         return False
     told = after.text[:1].isupper() or is_adjective(after.low) or (is_noun(after.low) and lemma_of(after.low) in things())
     return told and not any(
@@ -212,7 +212,8 @@ def _opens(word: str, base: str, after: str) -> bool:
     if is_third_person(word) or word != base:
         names = is_noun(word) and bool(verb_of(after)) and not (is_noun(after) or after.endswith("ing"))
         return not names or is_adjective(after)
-    return not is_noun(word) or (_goes_on(after) and bool(after))
+    lies_there = word in things() and word not in theme_words()["body"] and after in grammar().prepositions  # "Bag on the bed."
+    return not is_noun(word) or (_goes_on(after) and bool(after) and not lies_there)
 
 
 def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:

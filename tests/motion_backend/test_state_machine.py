@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import cache
 from itertools import product
 
+import numpy as np
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
@@ -19,7 +20,9 @@ from motion_backend.formats.npz import npz_bytes, read_npz
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import Action, Character, Emotion, Motion, Note, PhaseKind, Posture, Skill, join
 from motion_backend.procedural.backend import ProceduralBackend
-from motion_backend.state_machine import DONE, ENDS, ENTERING, parts_of, shortfall, time_limit
+from motion_backend.skeleton import build_skeleton
+from motion_backend.state_machine import DONE, ENDS, ENTERING, alongside, parts_of, shortfall, time_limit
+from scene_graphs.affordances.affordances import spots
 
 HOME = small_home()
 SIT = contact(HOME, Skill.SITDOWN, "chair", "crossing arms")
@@ -65,6 +68,36 @@ def test_every_skill_follows_every_posture_and_nobody_walks_before_standing(post
     upright = [] if posture is Posture.STANDING else [PartKind.RISE]
     assert kinds == [*upright, *ENTERING[skill]]
     assert all(part.action is ACTIONS[skill] for part in parts_of(ACTIONS[skill], posture))
+
+
+ON_BED = contact(HOME, Skill.SITDOWN, "bed", "sitting still")
+BESIDE = next(spot for spot in spots(HOME.object("0/bed"), "lie") if alongside(ON_BED.spot, spot))
+
+
+def test_who_sits_on_a_bed_lies_down_there_and_sits_up_again_without_standing() -> None:
+    lie = replace(LIE, spot=BESIDE)
+    for posture, action, rest in ((Posture.SEATED, lie, ON_BED.spot), (Posture.LYING, ON_BED, BESIDE)):
+        kinds = [part.kind for part in parts_of(action, posture, rest=rest)]
+        assert kinds == [kind for kind in ENTERING[action.skill] if kind is not PartKind.WALK]
+        assert parts_of(action, posture, rest=SIT.spot)[0].kind is PartKind.RISE
+    _, state = BACKEND.act(HOME, ON_BED, BACKEND.begin(HOME, Character(), 3))
+    standing = 0.8 * build_skeleton().standing_height
+    for action, came in ((lie, [PhaseKind.LIEDOWN]), (ON_BED, [PhaseKind.GETUP, PhaseKind.SITDOWN])):
+        motion, state = BACKEND.act(HOME, action, state)
+        assert motion.completed, motion.reason
+        assert [phase.kind for phase in motion.phases] == came
+        assert motion.root_positions[:, 1].max() < standing
+        assert state.posture is ENDS[action.skill]
+
+
+def test_nobody_lies_down_from_a_seat_that_is_elsewhere() -> None:
+    there = ON_BED.spot
+    assert there is not None
+    assert not alongside(there, replace(BESIDE, object_id="0/sofa"))
+    assert not alongside(there, replace(BESIDE, approach=BESIDE.approach + np.pi))
+    x, y, z = BESIDE.point
+    assert not alongside(there, replace(BESIDE, point=(x, y, z + 1.5)))
+    assert not alongside(None, BESIDE)
 
 
 def test_who_is_there_already_only_turns() -> None:

@@ -11,7 +11,8 @@ from typing import Literal
 
 import numpy as np
 
-from motion_backend.procedural.lie.lie_own import DRAWN, LieOwn, timed
+from motion_backend.procedural.lie.lie_own import LieOwn, timed
+from motion_backend.procedural.own_way import DRAWN
 from scene_graphs.data_tables import read_table, table
 
 Vector = tuple[float, float, float]
@@ -444,7 +445,7 @@ def lie_keys() -> LieKeys:
 def paced(keys: LieKeys, rng: np.random.Generator) -> LieKeys:
     """The tables with the times of this time: over an edge each pose takes its own; on the floor, where feet step in
     time with them, all are quicker or slower."""
-    spread = keys.own.spread.wait_share
+    spread = keys.own.spread["wait_share"]
 
     def drawn() -> float:
         return float(np.exp(spread * np.clip(rng.normal(), -DRAWN, DRAWN)))

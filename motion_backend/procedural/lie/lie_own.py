@@ -1,7 +1,4 @@
-"""Nobody lies as somebody else does, nor twice alike: what is drawn for one time of lying down.
-
-A part of it is a character's own, and lasts the whole story (data/transitions/lie_own.toml).
-"""
+"""What is drawn for one time of lying (own_way.py): data/transitions/lie_own.toml."""
 
 from __future__ import annotations
 
@@ -14,33 +11,8 @@ import numpy as np
 from motion_backend.rotations import Array
 from scene_graphs.data_tables import table
 
-DRAWN: Final = 2.0
-"""Nothing is drawn beyond so many standard deviations."""
 CHARACTER: Final = 0x11E
 """Sets what is drawn for a character apart from what else is drawn from its seed."""
-SIZES: Final = (("askew", ()), ("curve", ()), ("head_turn", ()), ("head_tilt", ()), ("ankle_aside", (2,)),
-                ("ankle_along", (2,)), ("foot_out", (2,)), ("knee_out", (2,)), ("side_hip", ()), ("side_knee", ()),
-                ("hand_along", (2,)), ("hand_across", (2,)))  # fmt: skip
-"""What is drawn of a pose, once or for left and right."""
-
-
-@table
-class LyingSpread:
-    """How far people lie otherwise: standard deviations."""
-
-    askew_rad: float
-    curve_rad: float
-    head_turn_rad: float
-    head_tilt_rad: float
-    ankle_aside_m: float
-    ankle_along_m: float
-    foot_out_rad: float
-    knee_out_ratio: float
-    side_hip_deg: float
-    side_knee_deg: float
-    hand_along_m: float
-    hand_across_m: float
-    wait_share: float
 
 
 @table
@@ -55,7 +27,8 @@ class RestingArms:
 class LieOwn:
     """How people lie otherwise than one another."""
 
-    spread: LyingSpread
+    spread: dict[str, float]
+    """Standard deviations, by what is drawn."""
     usual_arms_share: float
     """How often a character's arms lie where they usually do."""
     back_arms: tuple[RestingArms, ...]
@@ -92,16 +65,6 @@ class OwnWay:
 
 NOBODY: Final = OwnWay()
 """Who lies as the tables say."""
-
-
-def drawn_way(own: LieOwn, seed: int, rng: np.random.Generator) -> OwnWay:
-    """What one time of lying has of its own, of the character of that seed."""
-    spread = {name.rpartition("_")[0]: value for name, value in vars(own.spread).items()}
-    always, drawn = np.random.default_rng([seed, CHARACTER]), {}
-    for name, size in SIZES:
-        one = (always.normal(size=size) + rng.normal(size=size)) / np.sqrt(2)
-        drawn[name] = spread[name] * np.clip(one, -DRAWN, DRAWN)
-    return OwnWay(**drawn)
 
 
 def drawn_arms(rows: Sequence[RestingArms], usual: float, seed: int, rng: np.random.Generator) -> RestingArms:

@@ -104,7 +104,7 @@ def get_up(body: Body, bearing: Bearing) -> None:
     """From lying to the edge of the bed, or from the floor to the knees."""
     spot = spot_under(body)
     if _on_floor(spot):
-        body.add(rise_to_knees(body.pose, Mat(Bed.of(spot, body.skeleton.scale), body.skeleton), bearing, paced(lie_keys(), body.rng)))
+        body.add(rise_to_knees(body.pose, _mat(body, spot), bearing, paced(lie_keys(), body.rng)))
     else:
         sit_up(body, bearing, _edge_of(body, spot))
 
@@ -115,7 +115,11 @@ def leave_bed(body: Body, bearing: Bearing) -> None:
     if not _on_floor(spot):
         leave_seat(body, _edge_of(body, spot), bearing)
         return
-    body.add(kneel_up(body.pose, Mat(Bed.of(spot, body.skeleton.scale), body.skeleton), bearing, paced(lie_keys(), body.rng).floor_up))
+    body.add(kneel_up(body.pose, _mat(body, spot), bearing, paced(lie_keys(), body.rng).floor_up))
+
+
+def _mat(body: Body, spot: Spot) -> Mat:
+    return Mat(Bed.of(spot, body.skeleton.scale), body.skeleton)
 
 
 def _on_floor(spot: Spot) -> bool:

@@ -8,7 +8,8 @@ import numpy as np
 
 from motion_backend.motion import Emotion
 from motion_backend.procedural.emotion_style import AT_EASE, Bearing, bearing_of
-from motion_backend.procedural.lie.lie_own import NOBODY, LieOwn, OwnWay, drawn_arms, drawn_way
+from motion_backend.procedural.lie.lie_own import CHARACTER, NOBODY, LieOwn, OwnWay, drawn_arms
+from motion_backend.procedural.own_way import drawn_way
 from motion_backend.procedural.style_sheet import Radians, read_style_sheet
 
 
@@ -48,7 +49,7 @@ def own_way(style: Lying, own: LieOwn, seed: int, rng: np.random.Generator) -> L
     """The way of lying as it is this time, of the character of that seed."""
     rows = own.back_arms if style.side == "back" else own.side_arms
     arms = drawn_arms(rows, own.usual_arms_share, seed, rng)
-    style = replace(style, own=drawn_way(own, seed, rng))
+    style = replace(style, own=drawn_way(NOBODY, own.spread, (seed, CHARACTER), rng))
     if style.arms != Lying().arms or style.propped:
         return style
     pair = (arms.left, arms.right)

@@ -231,25 +231,6 @@ class StandUp:
     """In place of the last three, from the floor."""
 
 
-@table
-class SitSpread:
-    """How far people sit otherwise, standard deviations; `sit_own.toml` says of what."""
-
-    lean_share: float
-    time_share: float
-    recline_deg: float
-    upright_recline_deg: float
-    turn_rad: float
-    side_rad: float
-    head_forward_rad: float
-    head_turn_rad: float
-    foot_ahead_m: float
-    foot_out_m: float
-    palm_along_m: float
-    palm_out_m: float
-    elbow_out_ratio: float
-
-
 @dataclass(frozen=True)
 class SitKeys:
     """The tables of sitting, for those who vary them."""
@@ -257,7 +238,8 @@ class SitKeys:
     pose: SitPose
     down: SitDown
     up: StandUp
-    spread: SitSpread
+    spread: dict[str, float]
+    """How far people sit otherwise, standard deviations; `sit_own.toml` says of what."""
 
 
 def sit_keys() -> SitKeys:
@@ -266,5 +248,5 @@ def sit_keys() -> SitKeys:
         read_table("motion_backend", "transitions/sit_pose.toml", SitPose),
         read_table("motion_backend", "transitions/sit_down.toml", SitDown),
         read_table("motion_backend", "transitions/stand_up.toml", StandUp),
-        read_table("motion_backend", "transitions/sit_own.toml", SitSpread),
+        read_table("motion_backend", "transitions/sit_own.toml", dict[str, float]),
     )

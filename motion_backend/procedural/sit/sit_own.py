@@ -1,21 +1,18 @@
-"""Nobody sits down, sits and rises as somebody else does, nor twice alike: what is drawn for one time of it.
-
-A part of it is a character's own, and lasts the whole story (data/transitions/sit_own.toml).
-"""
+"""What is drawn for one time of sitting down, sitting and rising (own_way.py): data/transitions/sit_own.toml."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
 
-from motion_backend.procedural.sit.sit_keys import SitKeys, SitSpread
+from motion_backend.procedural.own_way import drawn_way
+from motion_backend.procedural.sit.sit_keys import SitKeys
 from motion_backend.procedural.touch.hand_rests import Hold
 from motion_backend.rotations import Array
 
-DRAWN: Final = 2.0
-"""Nothing is drawn beyond so many standard deviations."""
 ON_TOP, TO_KNEE = 0.02, -0.02
 """How far a palm is from a thigh's middle line that lies on top of it, and goes towards the knee (metres)."""
 CHARACTER: Final = 0x517
@@ -61,20 +58,11 @@ class OwnSeat:
 
 NOBODY: Final = OwnSeat()
 """Who sits as the tables say."""
-SIZES: Final = {"foot_ahead": 2, "foot_out": 2, "palm_along": 2, "palm_out": 2, "elbow_out": 2}
-"""What is drawn for the left and the right."""
 
 
-def own_seat(spread: SitSpread, seed: int, rng: np.random.Generator) -> OwnSeat:
+def own_seat(spread: Mapping[str, float], seed: int, rng: np.random.Generator) -> OwnSeat:
     """What this time of sitting has of its own, of the character of that seed."""
-    always = np.random.default_rng([seed, CHARACTER])
-    drawn = {}
-    for column, deviation in vars(spread).items():
-        name = column.rpartition("_")[0]
-        size = SIZES.get(name)
-        one = (always.normal(size=size) + rng.normal(size=size)) / np.sqrt(2)
-        drawn[name] = deviation * np.clip(one, -DRAWN, DRAWN)
-    return OwnSeat(**drawn)
+    return drawn_way(NOBODY, spread, (seed, CHARACTER), rng)
 
 
 def in_own_way(keys: SitKeys, own: OwnSeat, low: bool) -> SitKeys:

@@ -148,9 +148,7 @@ ABOUT = 1.4
 """A table in reach is within this distance of the pelvis (metres)."""
 
 
-def seat_for(
-    found: Sequence[Spot], emotion: Emotion, caption: str, obstacles: Obstacles, scale: float = 1.0
-) -> Spot:
+def seat_for(found: Sequence[Spot], emotion: Emotion, caption: str, obstacles: Obstacles, scale: float = 1.0) -> Spot:
     """The first of the sit spots, and the place on it, where the most hands have what they are to lie on.
 
     Who is smaller (`scale`) sits nearer to its front, for knees to bend over the edge.

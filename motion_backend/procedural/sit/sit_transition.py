@@ -297,16 +297,10 @@ def _first_foot(before: Pose, after: Pose) -> tuple[int, int]:
     return (0, 1) if left else (1, 0)
 
 
-def stand_up(
-    start: Pose, seat: Seat, bearing: Bearing, push: Holds, skeleton: Skeleton, keys: StandUp, drawn: float = 0.0
-) -> Pose:
-    """From a seat to standing before it: feet under, lean forward, push off with the hands, rise over the feet.
-
-    Feet are so much farther back than under upright shins (`drawn`, metres): the less the weight has to go ahead.
-    """
+def stand_up(start: Pose, seat: Seat, bearing: Bearing, push: Holds, skeleton: Skeleton, keys: StandUp) -> Pose:
+    """From a seat to standing before it: feet under, lean forward, push off with the hands, rise over the feet."""
     low, pace, seat = seat.is_low(skeleton.scale), 1 / bearing.tempo, at_front(seat, skeleton.scale)
-    place = seat.standing_point(skeleton.scale) - drawn * np.array([np.sin(seat.yaw), np.cos(seat.yaw)])
-    end = standing((float(place[0]), float(place[1])), seat.yaw, bearing, skeleton)
+    end = standing(seat.standing_point(skeleton.scale), seat.yaw, bearing, skeleton)
     depth = _depth(end, seat, skeleton.scale)
     lean = keys.rise.lean_rad + keys.rise.lean_per_depth_rad * depth
     ready, rows = keys.pose[0], keys.low_pose if low else keys.pose[1:]
@@ -326,7 +320,8 @@ def stand_up(
         **_lean(seat, lean, fold, ready),
     )
     over_feet = lean * (keys.rise.low_lean_ratio if low else 1.0)
-    risen = [_in_reach(_risen(row, replace(over, ankles=end.ankles, planted=end.planted), end, seat, over_feet), skeleton) for row in rows]
+    stands = replace(over, ankles=end.ankles, planted=end.planted)
+    risen = [_in_reach(_risen(row, stands, end, seat, over_feet), skeleton) for row in rows]
     up = interpolate([0.0, *times], [over, leant, *risen, replace(end, reach=over.reach, palms=over.palms)], FPS)
     up = follow(replace(up, knees=knees_over_feet(up)), over, push, skeleton)
     return concatenate([gather, up])

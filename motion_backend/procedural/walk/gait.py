@@ -1,8 +1,8 @@
 """Walking: footsteps planned along a route, stance feet that do not move, and a body carried over them.
 
 The route comes first (root_path.py), then the feet (footsteps.py, foot_trajectory.py); here is what rides on them:
-pelvis over its support, hips and chest turning against each other, gaze (numbers in data/gait/carriage.toml). How high
-the pelvis is, is in pelvis_height.py, arms are in arm_swing.py.
+pelvis over its support, hips and chest turning against each other, gaze (numbers in carriage.py). How high the pelvis
+is, is in pelvis_height.py, arms are in arm_swing.py.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from motion_backend.motion import FPS
 from motion_backend.procedural.pose import Pose, settle_from, smooth
 from motion_backend.procedural.walk.arm_swing import arm_spread, swing_arms
 from motion_backend.procedural.walk.cadence import plan_phase
+from motion_backend.procedural.walk.carriage import carriage
 from motion_backend.procedural.walk.footsteps import Room, Steps, drift, plan_steps, yaw_of
 from motion_backend.procedural.walk.pelvis_height import landing, lifted
 from motion_backend.procedural.walk.root_path import SPACING, Route, evenly, plan_route, resample
@@ -23,7 +24,6 @@ from motion_backend.procedural.walk.stride import BEATS, Stride
 from motion_backend.procedural.walk.walk_styles import Walk
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
-from scene_graphs.data_tables import read_table, table
 
 FEET_CHANGE = 0.6
 """So much of a step later, at most, a walk goes over into the next."""
@@ -31,175 +31,6 @@ NEAR = 0.2
 """Who has gone so far along a way is no farther than this from there (metres)."""
 REJOINS = 0.8
 """Who is beside a way has come back to it after so much of it (metres)."""
-
-
-@table
-class GaitWay:
-    """How a way is gone."""
-
-    pace_spread_share: float
-    """Two walks of one style differ in speed by about this."""
-    pace_spread_max_sigmas: float
-    spin_rad_per_s: float
-    spin_eases_s: float
-    """How much longer a spin takes."""
-    stagger_aside_m: float
-    """Of a drunk body of unit size."""
-    stagger_aside_hz: float
-    stagger_room_m: float
-    """Who has less than this beside the way staggers the less."""
-    stagger_turn_deg: float
-    stagger_turn_hz: float
-    stagger_ease_frames: float
-    same_arms: float
-    """A walk that goes on takes arms up as they swing that are no farther off than this (arm lengths),"""
-    same_arms_s: float
-    """over so long."""
-
-
-@table
-class Sway:
-    """Over each foot that bears."""
-
-    late_share: float
-    """Of a step, later than half-way through a stance, the body is farthest over the foot,"""
-    drops_late_share: float
-    """and the other side of the pelvis lowest."""
-    standing_ratio: float
-    """Of the style's sway, the less the faster."""
-    less_per_mps: float
-    min_ratio: float
-    max_ratio: float
-    shoulders_ratio: float
-    """How far the shoulders tip with the pelvis, and"""
-    shoulders_late_share: float
-    """how much later."""
-    last_steps: float
-    """All that swings fades over the last of this many steps."""
-
-
-@table
-class Surge:
-    """Ahead of the mean way after each heel strike, behind before it."""
-
-    ahead_m: float
-    at_phase: float
-    """Phase at which it is farthest ahead (share of a step)."""
-    brisk_max_mps: float
-    """Surge, lean and jolts grow with the speed up to here."""
-
-
-@table
-class Lean:
-    """Trunk and pelvis, bent forwards and turned."""
-
-    walking_rad: float
-    """How much further forward the trunk is carried in walking than in standing,"""
-    fast_rad_per_mps: float
-    """and how much more in walking faster than"""
-    fast_from_mps: float
-    fast_within_mps: float
-    straightens_share: float
-    """A bowed body straightens up so much where it arrives."""
-    straightens_frames: float
-    bowed_from_deg: float
-    hips_share: float
-    spine_share: float
-    hips_wave_rad: float
-    hips_wave_at_phase: float
-    jolt_rad: float
-    """Of the chest, as a heel comes down."""
-    jolt_at_phase: float
-    stamp_rad_per_m: float
-    looks_share: float
-    """Of the gaze's turn to where a way curves."""
-    hips_late_share: float
-    """Of a step, later than its lift hips are turned farthest to a foot that swings,"""
-    counter_early_share: float
-    """and so much earlier the chest is against them."""
-    counter_ratio: float
-    """Of the hips' turn, that the chest turns against it."""
-
-
-@table
-class Wander:
-    """Nobody is as even as a clock."""
-
-    hz: float
-    trunk_deg: float
-    arms_deg: float
-    head_deg: float
-    trembles_hz: float
-    trunk_trembles_deg: float
-    arms_tremble_deg: float
-    head_trembles_deg: float
-
-
-@table
-class Drunk:
-    """A stagger of unit size."""
-
-    hz: float
-    aside_m: float
-    lean_rad: float
-    side_rad: float
-    nod_rad: float
-    tilt_rad: float
-
-
-@table
-class Gaze:
-    """The head."""
-
-    ahead_frames: int
-    """It turns to where the body will head so much later."""
-    turn_max_rad: float
-    counter_ratio: float
-    """Of the hips' turn, that the head turns back."""
-    start_frames: float
-    end_frames: float
-    glance_hz: float
-    nod_hz: float
-    veer_start_s: float
-    veer_end_s: float
-    level_share: float
-    """Of the walking lean, that the head is kept level against."""
-    fast_rad_per_mps: float
-    fast_from_mps: float
-    fast_within_mps: float
-    jolt_share: float
-
-
-@table
-class Knees:
-    """Where knees point."""
-
-    foot_ratio: float
-    """As the foot does, so much more than as the pelvis does."""
-    foot_max_rad: float
-    """But not as a foot that is turned further from the pelvis,"""
-    inwards_rad: float
-    """and so much further in: shins are twisted."""
-
-
-@table
-class Carriage:
-    """data/gait/carriage.toml: metres at 1.70 m."""
-
-    way: GaitWay
-    sway: Sway
-    surge: Surge
-    lean: Lean
-    wander: Wander
-    drunk: Drunk
-    gaze: Gaze
-    knees: Knees
-
-
-def carriage() -> Carriage:
-    """How a walking body is carried over its feet."""
-    rows: Carriage = read_table("motion_backend", "gait/carriage.toml", Carriage)
-    return rows
 
 
 def walk(
@@ -364,27 +195,8 @@ def _carry(
     unsteady = style.wobble * drift(frames, row.drunk.hz, FPS, rng)
     brisk = np.clip(route.speed, 0.0, row.surge.brisk_max_mps) * moving * np.cos(np.radians(style.aside))
     ground = _support(route, steps, style, (moving, brisk, unsteady))
-    own, wander = style.character, _wander(frames, rng)
-    hip_turn, counter = (
-        np.radians(style.twist) * steps.first * np.cos(np.pi * (steps.phase - late)) * moving
-        for late in (row.lean.hips_late_share, -row.lean.counter_early_share)
-    )
-    roll, shoulders = _rolls(steps, style, moving)
-    lean, walking = _leaning(route, style, brisk)
-    nods = own.nod_ratio * brisk
-    tilt = (
-        row.lean.hips_share * lean + walking + row.lean.hips_wave_rad * nods * steps.wave(row.lean.hips_wave_at_phase)
-    )
-    hips = rotations.compose(
-        rotations.yaw_to_quat(route.heading + hip_turn + np.radians(own.hips_turn_deg) * moving),
-        rotations.rotvec_to_quat(np.stack([tilt, np.zeros(frames), roll], axis=1)),
-    )
-    jolt = row.lean.jolt_rad * nods * steps.wave(row.lean.jolt_at_phase)
-    jolt = jolt + row.lean.stamp_rad_per_m * style.stamp * landing(steps)
-    forward = row.lean.spine_share * lean + row.drunk.lean_rad * unsteady + jolt
-    turned = row.lean.looks_share * np.radians(style.veer) * moving
-    turned = turned + np.radians(own.shoulder_turn_deg) * moving - row.lean.counter_ratio * own.counter_ratio * counter
-    spine = np.stack([forward, turned, shoulders - roll + row.drunk.side_rad * unsteady], axis=1)
+    wander = _wander(frames, rng)
+    hips, spine, hip_turn, jolt = _trunk(route, steps, style, (moving, brisk, unsteady))
     spine = spine + moving[:, None] * wander[:, :3]
     arms, elbows = swing_arms(style, steps, route.speed, spread, wander[:, 3:7].reshape(-1, 2, 2))
     pose = Pose(
@@ -405,6 +217,35 @@ def _carry(
         planted=steps.planted,
     )
     return replace(pose, pelvis=lifted(pose, route, steps, style, skeleton, in_stride))
+
+
+def _trunk(
+    route: Route, steps: Steps, style: Walk, moved: tuple[Array, Array, Array]
+) -> tuple[Array, Array, Array, Array]:
+    """Hips (T, 4) and spine (T, 3) that turn and tip against each other; of these how far the hips turn with the steps,
+    and the jolts of the chest. (T,) each; `moved` as in `_support`."""
+    (moving, brisk, unsteady), row, own = moved, carriage(), style.character
+    hip_turn, counter = (
+        np.radians(style.twist) * steps.first * np.cos(np.pi * (steps.phase - late)) * moving
+        for late in (row.lean.hips_late_share, -row.lean.counter_early_share)
+    )
+    roll, shoulders = _rolls(steps, style, moving)
+    lean, walking = _leaning(route, style, brisk)
+    nods = own.nod_ratio * brisk
+    tilt = (
+        row.lean.hips_share * lean + walking + row.lean.hips_wave_rad * nods * steps.wave(row.lean.hips_wave_at_phase)
+    )
+    hips = rotations.compose(
+        rotations.yaw_to_quat(route.heading + hip_turn + np.radians(own.hips_turn_deg) * moving),
+        rotations.rotvec_to_quat(np.stack([tilt, np.zeros_like(tilt), roll], axis=1)),
+    )
+    jolt = row.lean.jolt_rad * nods * steps.wave(row.lean.jolt_at_phase)
+    jolt = jolt + row.lean.stamp_rad_per_m * style.stamp * landing(steps)
+    forward = row.lean.spine_share * lean + row.drunk.lean_rad * unsteady + jolt
+    turned = row.lean.looks_share * np.radians(style.veer) * moving
+    turned = turned + np.radians(own.shoulder_turn_deg) * moving - row.lean.counter_ratio * own.counter_ratio * counter
+    spine = np.stack([forward, turned, shoulders - roll + row.drunk.side_rad * unsteady], axis=1)
+    return hips, spine, hip_turn, jolt
 
 
 def _rolls(steps: Steps, style: Walk, moving: Array) -> tuple[Array, Array]:

@@ -22,61 +22,17 @@ MILLIMETRES = 1000
 
 
 @table
-class CharacterSpread:
-    """How people differ; what is meant is told at the fields of `GaitCharacter`."""
-
-    stride_ratio: Spread
-    width_ratio: Spread
-    sway_ratio: Spread
-    hips_ratio: Spread
-    twist_ratio: Spread
-    counter_ratio: Spread
-    bounce_ratio: Spread
-    clearance_ratio: Spread
-    clearance_sides_ratio: Spread
-    roll_ratio: Spread
-    strike_ratio: Spread
-    double_share: Spread
-    crouch_m: Spread
-    nod_ratio: Spread
-    lean_deg: Spread
-    head_deg: Spread
-    toes_deg: Spread
-    toes_sides_deg: Spread
-    toes_swing_ratio: Spread
-    toes_swing_sides_ratio: Spread
-    heel_deg: Spread
-    heel_sides_deg: Spread
-    step_sides_m: Spread
-    beat_sides_share: Spread
-    width_sides_m: Spread
-    hips_roll_deg: Spread
-    hips_turn_deg: Spread
-    shoulder_roll_deg: Spread
-    shoulder_turn_deg: Spread
-    shoulder_swing_ratio: Spread
-    swing_ratio: Spread
-    swing_sides_ratio: Spread
-    hang_deg: Spread
-    hang_sides_deg: Spread
-    splay_arms: Spread
-    splay_sides_arms: Spread
-    elbow_deg: Spread
-    elbow_sides_deg: Spread
-    folds_ratio: Spread
-    lag_phase: Spread
-    lag_sides_phase: Spread
-    inwards_arms: Spread
-    inwards_sides_arms: Spread
-
-
-@table
 class CharacterTable:
     """data/gait/character.toml."""
 
     max_sigmas: float
     """Nobody is farther from the mean."""
-    spread: CharacterSpread
+    spread: dict[str, Spread]
+    """How people differ in every field of `GaitCharacter`."""
+
+    def __post_init__(self) -> None:
+        if list(self.spread) != [field.name for field in fields(GaitCharacter)]:
+            raise ValueError("spread: its rows are the traits of a character, in their order")
 
 
 def character_table() -> CharacterTable:
@@ -170,8 +126,7 @@ def gait_character(seed: int, height: float = 1.70) -> GaitCharacter:
     """The character that a story's seed gives a body of that height (metres)."""
     rng, rows = np.random.default_rng([seed, round(height * MILLIMETRES), DRAWN_FOR]), character_table()
     drawn = {}
-    for field in fields(CharacterSpread):
-        mean, deviation = getattr(rows.spread, field.name)
+    for name, (mean, deviation) in rows.spread.items():
         luck = deviation * float(np.clip(rng.standard_normal(), -rows.max_sigmas, rows.max_sigmas))
-        drawn[field.name] = mean * float(np.exp(luck)) if field.name.endswith("_ratio") else mean + luck
+        drawn[name] = mean * float(np.exp(luck)) if name.endswith("_ratio") else mean + luck
     return GaitCharacter(**drawn)

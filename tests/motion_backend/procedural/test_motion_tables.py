@@ -26,9 +26,9 @@ from motion_backend.procedural.touch.reach import Manner, touch
 from motion_backend.procedural.touch.touch_keys import TouchKeys, TouchTable, touch_keys
 from motion_backend.procedural.walk.arm_swing import arm_table
 from motion_backend.procedural.walk.cadence import cadence
+from motion_backend.procedural.walk.carriage import carriage
 from motion_backend.procedural.walk.foot_trajectory import foot_table
 from motion_backend.procedural.walk.footsteps import footstep_table
-from motion_backend.procedural.walk.gait import carriage
 from motion_backend.procedural.walk.gait_character import character_table
 from motion_backend.procedural.walk.pelvis_height import pelvis_table
 from motion_backend.procedural.walk.root_path import root_path_table
@@ -66,7 +66,7 @@ def numbers(rows: Any, where: str) -> Iterator[tuple[str, str, float]]:
                 if is_dataclass(each):
                     yield from numbers(each, f"{inside}.{name}")
                 elif isinstance(each, float):
-                    yield f"{inside}.{name}", field.name, each
+                    yield f"{inside}.{name}", name if field.name == "spread" else field.name, each
         elif isinstance(value, tuple) and value and is_dataclass(value[0]):
             for index, row in enumerate(value):
                 yield from numbers(row, f"{inside}[{getattr(row, 'name', index)}]")

@@ -13,7 +13,8 @@ from motion_backend.body.self_collision import self_penetration
 from motion_backend.metrics.joint_speed import MOST, fastest_joint
 from motion_backend.motion import FPS, PhaseKind
 from motion_backend.procedural.lie.lie_keys import lie_keys
-from motion_backend.procedural.lie.lie_own import drawn_way
+from motion_backend.procedural.lie.lie_own import CHARACTER, NOBODY
+from motion_backend.procedural.own_way import drawn_way
 from motion_backend.skeleton import HAND_REST, LYING_REST
 
 BACK = ("hands on belly", "lying down, legs straight", "lying on the back, arms spread wide", "lying still")
@@ -183,10 +184,10 @@ def test_nobody_lies_twice_alike() -> None:
 
 def test_how_one_lies_is_partly_a_characters_own() -> None:
     own = lie_keys().own
-    spread = {name.rpartition("_")[0]: deviation for name, deviation in vars(own.spread).items()}
+    spread = {name.rpartition("_")[0]: deviation for name, deviation in own.spread.items()}
 
     def drawn(seed: int, time: int) -> np.ndarray:
-        way = drawn_way(own, seed, np.random.default_rng(1000 + time))
+        way = drawn_way(NOBODY, own.spread, (seed, CHARACTER), np.random.default_rng(1000 + time))
         return np.concatenate([np.atleast_1d(value) / spread[name] for name, value in vars(way).items()])
 
     ways = np.array([[drawn(seed, 2 * seed + time) for time in (0, 1)] for seed in range(40)])

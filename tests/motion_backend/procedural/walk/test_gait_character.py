@@ -6,7 +6,7 @@ from dataclasses import fields
 
 import numpy as np
 
-from motion_backend.procedural.walk.gait_character import NOBODY, CharacterSpread, GaitCharacter, gait_character
+from motion_backend.procedural.walk.gait_character import NOBODY, GaitCharacter, character_table, gait_character
 
 
 def values(character: GaitCharacter) -> np.ndarray:
@@ -20,7 +20,7 @@ def test_a_seed_and_a_height_give_one_character_and_others_another() -> None:
 
 
 def test_every_trait_of_a_character_is_drawn() -> None:
-    assert {field.name for field in fields(CharacterSpread)} == {field.name for field in fields(GaitCharacter)}
+    assert set(character_table().spread) == {field.name for field in fields(GaitCharacter)}
     crowd = np.array([values(gait_character(seed)) for seed in range(60)])
     assert (crowd.std(axis=0) > 0).all()
 
