@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
+from motion_backend.body.joint_limits import within
 from motion_backend.inverse_kinematics import Limb, arm_rotations, two_bone
 from motion_backend.procedural.pose import Pose
 from motion_backend.rotations import Array
@@ -121,7 +122,9 @@ class Arm(NamedTuple):
             f"{self.name}_collar": self.collar,
             f"{self.name}_shoulder": rotations.compose(rotations.inverse(self.clavicle), upper),
             f"{self.name}_elbow": rotations.compose(rotations.inverse(upper), lower),
-            f"{self.name}_wrist": wrist_rotations(lower, self.palm, self.pressing, self.side)
+            f"{self.name}_wrist": within(
+                f"{self.name}_wrist", wrist_rotations(lower, self.palm, self.pressing, self.side)
+            )
             if self.pressing.any()
             else np.tile(rotations.IDENTITY, (len(lower), 1)),
         }

@@ -149,9 +149,9 @@ export function around(points, margin, bounds) {
 /** How far the page sticks out to the right, pixels. */
 export const overhang = (page) => page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 
-/** What axe holds against the page, as it is: rule, and the first place. */
-export async function complaints(page) {
+/** What axe holds against the page, or a part of it, as it is: rule, and the first place. */
+export async function complaints(page, part = "html") {
   await page.evaluate(AXE);
-  const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
+  const { violations } = await page.evaluate((chosen) => window.axe.run(chosen, { resultTypes: ["violations"] }), part);
   return violations.filter(({ impact }) => impact === "serious" || impact === "critical").map(({ id, nodes }) => `${id}: ${nodes[0].html.slice(0, 160)}`);
 }

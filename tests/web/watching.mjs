@@ -85,16 +85,19 @@ async function pictures(page, one, later) {
   return { first, second, still: changed[0], moved: changed[1], clip };
 }
 
-/** The pose in which a keyframe ends, and its picture: the next one begins with it. */
-async function ending(page, keyframe) {
+/** The pose in which a keyframe ends, and a picture of where the body is: the next keyframe begins with it. */
+async function ending(page, keyframe, place = null) {
   const there = await moment(page, keyframe + 1);
-  return { ...there, picture: await shoot(page, await page.locator(".picture").boundingBox()) };
+  const clip = place ?? around(there.pixels, 6, await page.locator(".picture").boundingBox());
+  return { ...there, clip, picture: await shoot(page, clip) };
 }
 
 /** How one sits is changed with the form beside the film, with what else it can do, and played from there. */
 async function changed(page) {
   const { links, keyframes } = await (await fetch(`${service}/v1/stories/${(await state(page)).storyId}`)).json();
   const at = keyframes.findIndex(({ skill }) => skill === "sitdown");
+  // From above the camera stands still.
+  await page.keyboard.press("f");
   const before = await ending(page, at);
   await page.getByRole("button", { name: "Change the script" }).click();
   const rows = page.locator(".draft");
@@ -111,7 +114,7 @@ async function changed(page) {
   const carried = await page.evaluate(() => document.activeElement.getAttribute("aria-label"));
   await page.keyboard.press("Control+z");
   counts.push(await rows.count());
-  const wrong = await complaints(page);
+  const wrong = await complaints(page, ".editor");
   const sideways = await overhang(page);
   const captions = await on("how").locator("option").evaluateAll((all) => all.map((option) => option.value));
   const caption = captions.find((one) => /legs|knees|cross/.test(one) && one !== keyframes[at].caption);
@@ -125,7 +128,7 @@ async function changed(page) {
   await until(page, (seen) => !seen.playing);
   while (!(await (await fetch(`${service}/v1/stories/${storyId}`)).json()).keyframes[at + 1].start) await page.waitForTimeout(50);
   await page.locator(".blocks .made").nth(at + 1).waitFor();
-  const after = await ending(page, at);
+  const after = await ending(page, at, before.clip);
   const { changed: apart } = await compare(page, before.picture, after.picture);
   const pose = ({ joints }) => ({ joints });
   return { at, take: storyId, keyframe, counts, carried, wrong, sideways, caption, origin, milliseconds, apart: apart[0], before: pose(before), after: { ...pose(after), frame: after.frame } };

@@ -64,7 +64,7 @@ FREE_ASIDE: Final = ("straight", "drawn", "ahead")
 """Rows of legs that may be farther out or in."""
 APART: Final = 0.08
 """An ankle nearer than this to the middle is to stand beside the other one (metres at 1.70 m)."""
-BEFORE_SEAT, LEAST_OUTWARDS = 0.03, 0.045
+BEFORE_SEAT, LEAST_OUTWARDS = 0.065, 0.045
 """An ankle is so far before the seat at least, and so far from the middle (metres at 1.70 m)."""
 STRAIGHT: Final = ("straight", "over", "under")
 """Rows of legs that are straight."""

@@ -27,6 +27,8 @@ from motion_backend.skeleton import Skeleton
 
 FEET_CHANGE = 0.6
 """So much of a step later, at most, a walk goes over into the next."""
+ABOUT = 5
+"""Frames about such a frame in which feet are slow."""
 NEAR = 0.2
 """Who has gone so far along a way is no farther than this from there (metres)."""
 REJOINS = 0.8
@@ -88,11 +90,13 @@ def walk_on(
 
 
 def _as_feet_change(steps: Steps, frame: int) -> int:
-    """The frame from that one on, within a good half of a step, at which feet are slowest: nobody changes his walk in
-    mid-swing."""
+    """The frame from that one on, within a good half of a step, about which feet are slowest: nobody changes his walk
+    in mid-swing, nor as a foot comes down."""
+    from scipy.ndimage import maximum_filter1d
+
     within = min(int(np.searchsorted(steps.phase, steps.phase[frame] + FEET_CHANGE)), len(steps.phase) - 1)
     pace = np.linalg.norm(np.diff(steps.ankles[frame : within + 1], axis=0), axis=-1).max(axis=1)
-    return frame + int(np.argmin(pace)) if len(pace) else frame
+    return frame + int(np.argmin(maximum_filter1d(pace, ABOUT, mode="nearest"))) if len(pace) else frame
 
 
 def _taken_up(start: Pose, pose: Pose, stride: Stride, fps: int) -> Pose:

@@ -197,6 +197,10 @@ async def test_another_seed_home_or_character_begins_anew_with_the_same_script(a
         study = app.state.parts.shelves.rooms()["living-room-0017"]
         other = await posted(client, "/v1/motions", MOTION | {"layout_id": study.id})
         grounded(other["id"], maker)
+        maker.move(other["id"], 0)
+        early = await posted(client, other["links"]["takes"], {})
+        grounded(early["id"], maker)
+        assert (await look(client, early))["reused"] == 1, "of a story still being made, what is there"
         home = (await client.get(other["links"]["home"])).json()
         for ask, reused in (
             ({"seed": 5}, 0), ({"home": home}, 0), ({"character": {"height": 1.5}}, 0),
