@@ -116,6 +116,7 @@ def distilled(folder: Path, source: Iterator[Episode], rounds: int = 2) -> Train
     return DistilRun(PolicyName.WALK, source, folder, config).run()
 
 
+@pytest.mark.sweep
 def test_distilling_goes_on_where_it_was_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = distilled(tmp_path / "whole", repeat(episode(4)))
     distilled(tmp_path / "parts", repeat(episode(4)), 1)

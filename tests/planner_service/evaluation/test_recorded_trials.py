@@ -16,7 +16,6 @@ ROOM: Final = "living-room-0022"
 CAPTIONS: Final = (
     (Skill.LOCO, "steadily walking forward"),
     (Skill.LOCO, "walking drunkenly"),
-    (Skill.LOCO, "skip steps"),
     (Skill.LOCO, "dancing steps"),
     (Skill.SITDOWN, "typing, both hands on the keyboard"),
     (Skill.SITDOWN, "resting hands on the armrests, legs spread apart"),
@@ -25,7 +24,6 @@ CAPTIONS: Final = (
     (Skill.GETUP, "get up slowly"),
     (Skill.TOUCH, "touch low height with the right hand"),
     (Skill.TOUCH, "An act of reaching high with the left hand"),
-    (Skill.TOUCH, "pick up with the right hand"),
 )
 SEEN: Final = [INDEX[name] for name in ("pelvis", "head", "left_wrist", "right_wrist", "left_foot", "right_foot")]
 MOMENTS: Final = 5

@@ -188,6 +188,7 @@ async def test_one_key_makes_one_take_though_its_story_is_gone(app: FastAPI) -> 
         assert (await client.post(first["links"]["cancel"])).json()["state"] == "cancelled"
 
 
+@pytest.mark.sweep
 async def test_another_seed_home_or_character_begins_anew_with_the_same_script(app: FastAPI) -> None:
     maker = desk(app)
     async with calling(app) as client:
