@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import torch
+from for_each import for_each
 
-from motion_backend.motion import Skill
-from motion_backend.physics.policies import POLICY_OF, WITH_TEXT, PolicyName, five_policies
+from motion_backend.backend_protocol import Part, PartKind
+from motion_backend.motion import Action, Emotion, Skill
+from motion_backend.physics.policies import POLICY_OF, WITH_TEXT, PolicyConfig, PolicyName, five_policies
+from motion_backend.physics.policy_view import policy_of
 
 SIZES = (217 + 30, 625, 60, 64)
 ACTIONS = 30
@@ -43,3 +46,24 @@ def test_the_same_seed_gives_the_same_policies() -> None:
 def test_all_five_together_are_small() -> None:
     numbers = sum(one.numel() for policy in five_policies(ACTIONS, 0).values() for one in policy.parameters())
     assert 2 * numbers < 8e6, "bytes in half precision"
+
+
+@for_each(
+    ("kind", "skill", "name"),
+    [
+        (PartKind.WALK, Skill.SITDOWN, PolicyName.WALK),
+        (PartKind.TURN, Skill.TOUCH, PolicyName.WALK),
+        (PartKind.RISE, Skill.STANDUP, PolicyName.GETUP),
+        (PartKind.RISE, Skill.LOCO, PolicyName.GETUP),
+        (PartKind.SIT, Skill.SITDOWN, PolicyName.SIT),
+        (PartKind.HOLD, Skill.LIEDOWN, PolicyName.LIE),
+        (PartKind.REACH, Skill.TOUCH, PolicyName.REACH),
+        (PartKind.HOLD, Skill.LOCO, None),
+    ],
+)
+def test_every_part_but_standing_is_one_policys(kind: PartKind, skill: Skill, name: PolicyName | None) -> None:
+    assert policy_of(Part(kind, Action(skill, "x", Emotion.NEUTRAL))) is name
+
+
+def test_a_policy_has_the_papers_two_layers() -> None:
+    assert PolicyConfig.of(PolicyName.WALK, 3).hidden == (512, 256)
