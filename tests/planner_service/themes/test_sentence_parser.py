@@ -25,6 +25,19 @@ def said(text: str) -> list[str]:
     return [clause.text for clause in clauses_of_text(text)]
 
 
+@for_each(
+    ("theme", "verb"),
+    [
+        ("He lets himself sink onto the sofa.", "sink"),
+        ("She forces herself to eat an apple.", "eat"),
+        ("He makes himself stand up.", "stand"),
+        ("She used to dance.", "dance"),
+    ],
+)
+def test_verbs_that_only_lead_to_a_deed_leave_it_the_word(theme: str, verb: str) -> None:
+    assert [clause.verb for clause in clauses_of_text(theme)] == [verb]
+
+
 @tries(200)
 @given(themes())
 def test_a_theme_built_of_clauses_is_read_back_as_those_clauses_in_the_order_of_time(theme: BuiltTheme) -> None:
