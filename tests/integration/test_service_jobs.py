@@ -149,7 +149,7 @@ def test_a_story_deleted_while_it_is_made_is_gone_and_the_next_one_is_made(clien
 def test_a_theme_that_is_not_understood_fails_with_the_reason(client: httpx.Client) -> None:
     story = finished(client, post(client, theme="Interest rates rose sharply in March.").json()["id"])
     assert story["state"] == "failed"
-    assert "none of the" in story["error"]["detail"]
+    assert "nothing in it can be acted" in story["error"]["detail"]
     assert story["error"]["title"]
 
 

@@ -126,7 +126,10 @@ async function changed(page) {
   const origin = await page.locator(".origin").textContent();
   await page.keyboard.press("Space");
   await until(page, (seen) => !seen.playing);
-  while (!(await (await fetch(`${service}/v1/stories/${storyId}`)).json()).keyframes[at + 1].start) await page.waitForTimeout(50);
+  // While it is made a film may stop to wait and go on by itself, and what comes may change the picture.
+  while ((await (await fetch(`${service}/v1/stories/${storyId}`)).json()).state !== "succeeded") await page.waitForTimeout(100);
+  if ((await state(page)).playing) await page.keyboard.press("Space");
+  await until(page, (seen) => !seen.playing);
   await page.locator(".blocks .made").nth(at + 1).waitFor();
   const after = await ending(page, at, before.clip);
   const { changed: apart } = await compare(page, before.picture, after.picture);
