@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import islice
+from typing import cast
 
 import pytest
 
@@ -17,9 +18,8 @@ from planner_service.scripts.captions import captions
 def test_what_is_learned_and_what_is_judged_is_drawn_in_rooms_apart(
     unseen: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    drawn: list[Trial] = []
-    monkeypatch.setattr(skill_episodes, "episode_of", lambda trial: drawn.append(trial) or trial)
-    list(islice(skill_episodes.episodes(Skill.SITDOWN, 3, unseen), 40))
+    monkeypatch.setattr(skill_episodes, "episode_of", lambda trial: trial)
+    drawn = cast("list[Trial]", list(islice(skill_episodes.episodes(Skill.SITDOWN, 3, unseen), 40)))
     assert {is_for_training(trial.room) for trial in drawn} == {not unseen}
     assert {trial.caption for trial in drawn} <= set(captions()[Skill.SITDOWN])
     assert len({trial.seed for trial in drawn}) == 40
