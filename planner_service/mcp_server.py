@@ -40,7 +40,7 @@ class Tools:
         script = await self._asked(self.client.long_script(theme, method=method, seed=seed))
         return {
             "planner": script["planner"],
-            "beats": [{"text": one["text"], "why_not": one["why"]} for one in script["beats"]],
+            "beats": [_beat(one) for one in script["beats"]],
             "keyframes": [
                 {name: one[name] for name in ("skill", "caption", "emotion", "furniture", "room")}
                 for one in script["keyframes"]
@@ -72,7 +72,7 @@ class Tools:
         first asked for, which takes about as long as it plays)."""
         story = await self._asked(self.client.story(story_id))
         data = await self._asked(self._bytes(story, file))
-        folder = self.out / f"{_slug(story.title or 'story')}-{story.id[-8:]}"
+        folder = self.out / f"{_slug(story.title or 'story')}-{_slug(story.id)[-8:]}"
         folder.mkdir(parents=True, exist_ok=True)
         path = folder / file
         path.write_bytes(data)
@@ -118,7 +118,7 @@ def _told(story: Story) -> Json:
     row = story.data
     told = {name: row[name] for name in ("id", "state", "stage", "progress", "title", "text", "derived_from")}
     told |= {"seconds": story.duration, "error": story.error or None}
-    told["beats"] = [{"text": one["text"], "acted": one["acted"], "why_not": one["why"]} for one in row["beats"]]
+    told["beats"] = [_beat(one) | {"acted": one["acted"] and not _stood_for(one)} for one in row["beats"]]
     told["keyframes"] = [
         {name: one[name] for name in ("index", "skill", "caption", "mood", "object_id", "start", "end", "reached")}
         for one in story.keyframes
@@ -126,6 +126,16 @@ def _told(story: Story) -> Json:
     report = story.report
     told["figures"] = None if report is None else report["motion"]
     return told
+
+
+def _beat(row: Json) -> Json:
+    """A beat, why no keyframe shows it, whether one only stands for it, and what of its words is not shown."""
+    left = [words for words in row["unshown"] if words != row["text"]]
+    return {"text": row["text"], "why_not": row["why"], "stood_for": _stood_for(row), "not_shown": left}
+
+
+def _stood_for(row: Json) -> bool:
+    return not row["why"] and row["text"] in row["unshown"]
 
 
 def _slug(text: str) -> str:
