@@ -192,6 +192,8 @@ class OverEdge:
     above_wrist_ratio: Vector
     above_elbow_direction: Vector
     planted: bool = False
+    feet_up_m: float = 0.0
+    """How far over the floor feet are that do not stand any more, or not yet."""
 
 
 @table

@@ -241,7 +241,8 @@ def _hanging(row: OverEdge, sat: Pose, edge: Edge) -> Pose:
     local = sat.ankles - edge.seat.pelvis
     middle = local.mean(axis=0)
     ankles = sat.pelvis + rotations.rotate(swing, middle + row.feet_apart_share * (local - middle))
-    ankles[:, 1] = np.maximum(ankles[:, 1], edge.skeleton.ankle_height + CLEAR)
+    lowest = edge.skeleton.ankle_height + max(CLEAR, row.feet_up_m * edge.skeleton.scale)
+    ankles[:, 1] = np.maximum(ankles[:, 1], lowest)
     pitch = rotations.rotvec_to_quat(np.array([row.foot_pitch_rad, 0.0, 0.0]))
     return replace(
         sat,

@@ -57,6 +57,8 @@ class Manner:
     """What the hand does there, see `hand_captions.Handled`."""
     prone: bool = False
     """Whether one kneels down and bends forwards to it."""
+    feet: tuple[int, ...] = (0, 1)
+    """Those that may step up to it: 0 left, 1 right."""
 
 
 def touch(
@@ -76,11 +78,8 @@ def touch(
         pace *= row.kneeling_ratio
     else:
         raised = float(laid.wrist[1]) > keys.reach.hand.raised_from_m * skeleton.scale
-        step = (
-            step
-            if raised
-            else step_before(start, _feet(laid, skeleton, keys.reach), skeleton, depth, keys.reach.step, rng)
-        )
+        feet = () if raised else _feet(laid, manner, skeleton, keys.reach)
+        step = step_before(start, feet, skeleton, depth, keys.reach.step, rng) if feet else step
         bent = _reaching(shifted(start, step, keys.reach.step), laid, skeleton, depth, keys.reach)
         bent = _varied(bent, laid, yaw, skeleton, keys.reach, rng)
         # A hand on a thigh lies where the foot's step has taken it.
@@ -111,10 +110,10 @@ def touch(
     return settle_from(start, replace(whole, knees=knees), FPS, seconds=row.settle_s)
 
 
-def _feet(laid: Laid, skeleton: Skeleton, keys: ReachTable) -> tuple[int, ...]:
+def _feet(laid: Laid, manner: Manner, skeleton: Skeleton, keys: ReachTable) -> tuple[int, ...]:
     """The feet that may step up to the thing: down low not the one whose knee would be in the hand's way."""
     low = float(laid.wrist[1]) < keys.hand.low_m * skeleton.scale
-    return (1 - laid.hands[0][0],) if low else (0, 1)
+    return tuple(foot for foot in manner.feet if not (low and foot == laid.hands[0][0]))
 
 
 def _folded(lead: Pose, above: Pose, laid: Laid, row: Approach) -> Pose:

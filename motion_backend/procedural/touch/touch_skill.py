@@ -72,11 +72,20 @@ def reach(body: Body, part: Part) -> None:
     laid = Laid(goal, palm, normal, action.hand, other)
     laid = replace(laid, stroke=free_stroke(obstacles, spot, laid))
     hold = max(part.hold, MIN_HOLD)
-    manner = Manner(bearing, hold, doing, prone)
+    manner = Manner(bearing, hold, doing, prone, _free_feet(body))
     touched = touch(
         body.pose, laid, manner, body.skeleton, body.scene.depth_about(spot.object_id), touch_keys(), body.rng
     )
     body.add(alive(touched, CALM * bearing.restless, body.rng, FPS))
+
+
+def _free_feet(body: Body) -> tuple[int, ...]:
+    """The feet that may step: while the part before is still being done only one that steps in it anyway, the other one
+    standing."""
+    if body.tail is None:
+        return (0, 1)
+    moving = [foot for foot in (0, 1) if not body.tail.planted[:, foot].all()]
+    return tuple(moving) if len(moving) < 2 else ()
 
 
 def _knelt_at(body: Body, action: Action) -> Spot | None:
