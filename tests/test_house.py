@@ -23,8 +23,10 @@ PACKAGES = {
     "planner_service": {"prompts", "scene_graphs", "motion_backend"},
 }
 HOMES = {
-    "torch": {f"motion_backend/{room}" for room in ("embedding", "physics", "diffusion")},
-    "safetensors": {f"motion_backend/{room}" for room in ("language", "embedding", "physics", "diffusion")},
+    "torch": {f"motion_backend/{room}" for room in ("embedding", "physics", "diffusion")}
+    | {"planner_service/composition"},
+    "safetensors": {f"motion_backend/{room}" for room in ("language", "embedding", "physics", "diffusion")}
+    | {"planner_service/composition"},
     "mujoco": {"motion_backend/physics"},
     "networkx": {"scene_graphs"},
     "numba": {"scene_graphs"},

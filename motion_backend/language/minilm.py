@@ -8,7 +8,8 @@ import json
 import os
 import tempfile
 import unicodedata
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from copy import copy
 from pathlib import Path
 
 import numpy as np
@@ -158,34 +159,55 @@ class MiniLM:
         self._weights: dict[str, Floats] = load_file(folder / "model.safetensors")
         self._tokens = WordPiece((folder / "vocab.txt").read_text(encoding="utf-8").split("\n"))
 
+    def adapted(self, changes: Mapping[str, Floats]) -> MiniLM:
+        """An encoder that has learned something else besides: `changes` are added to the weights of those names, the
+        others are shared."""
+        unknown = [name for name, change in changes.items() if np.shape(self._weights.get(name)) != change.shape]
+        if unknown:
+            raise WeightsError(f"the encoder has no weights of that name and size: {', '.join(unknown[:3])}")
+        other = copy(self)
+        other._weights = self._weights | {name: self._weights[name] + change for name, change in changes.items()}
+        return other
+
     def encode(self, texts: Sequence[str]) -> Floats:
         """One unit row a text, of at most 256 tokens. (N, 384) float32."""
-        ids = [self._tokens.encode(text) for text in texts]
+        rows = self.means(texts)
+        unit: Floats = rows / np.linalg.norm(rows, axis=1, keepdims=True)
+        return unit
+
+    def means(self, texts: Sequence[str], longest: int = MAX_TOKENS, about: Sequence[str] = ()) -> Floats:
+        """The mean over its tokens, of which there are `longest` at most, a text. (N, 384) float32.
+
+        A text may be read with another one that it is `about`, BERT's second of a pair.
+        """
+        first = [self._tokens.encode(text, longest) for text in texts]
+        second = [self._tokens.encode(text, longest)[1:] if text else [] for text in about] or [[]] * len(first)
+        ids = [[*one, *other] for one, other in zip(first, second, strict=True)]
         rows = np.zeros((len(ids), WIDTH), dtype=np.float32)
         # Last digits change with the number of threads; on busy cores several take many times as long as one.
         with self._threads.limit(limits=1, user_api="blas"):
             for batch in _batches([len(row) for row in ids]):
-                rows[batch] = self._forward([ids[index] for index in batch])
+                rows[batch] = self._forward([ids[index] for index in batch], [len(first[index]) for index in batch])
         return rows
 
-    def _forward(self, batch: list[list[int]]) -> Floats:
-        lengths = np.array([len(row) for row in batch])
+    def _forward(self, batch: list[list[int]], first: list[int]) -> Floats:
+        """Means over the tokens of the first text of each pair."""
+        lengths, own = np.array([len(row) for row in batch]), np.array(first)
         length = lengths.max()
         ids = np.array([row + [0] * (length - len(row)) for row in batch])  # (B, L)
-        real = np.arange(length) < lengths[:, None]  # (B, L)
+        real, ours = np.arange(length) < lengths[:, None], np.arange(length) < own[:, None]  # (B, L)
         words, places, kind = (
             self._weights[f"embeddings.{name}_embeddings.weight"] for name in ("word", "position", "token_type")
         )
-        x = self._norm("embeddings.LayerNorm", words[ids] + places[:length] + kind[0])  # (B, L, 384)
+        x = self._norm("embeddings.LayerNorm", words[ids] + places[:length] + kind[1 - ours])  # (B, L, 384)
         for index in range(LAYERS):
             layer = f"encoder.layer.{index}"
             seen = self._linear(f"{layer}.attention.output.dense", self._attention(f"{layer}.attention.self", x, real))
             x = self._norm(f"{layer}.attention.output.LayerNorm", x + seen)
             inner = _gelu(self._linear(f"{layer}.intermediate.dense", x))
             x = self._norm(f"{layer}.output.LayerNorm", x + self._linear(f"{layer}.output.dense", inner))
-        mean = (x * real[..., None]).sum(axis=1) / lengths[:, None].astype(np.float32)
-        unit: Floats = mean / np.linalg.norm(mean, axis=1, keepdims=True)  # (B, 384)
-        return unit
+        mean: Floats = (x * ours[..., None]).sum(axis=1) / own[:, None].astype(np.float32)  # (B, 384)
+        return mean
 
     def _attention(self, name: str, x: Floats, real: NDArray[np.bool_]) -> Floats:
         q, k, v = (

@@ -1,4 +1,4 @@
-"""`sims train diffusion|scheduler|act`: weights of the learned body, and motion of our own to learn from."""
+"""`sims train …`: weights of the learned body, and motion of our own to learn from."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Final
 import typer
 from rich.console import Console
 
+from planner_service.cli.train_beats import beats
 from planner_service.cli.train_embedding import embedding
 from planner_service.cli.train_physics import physics
 from planner_service.output.story_export import check_writable
@@ -22,7 +23,10 @@ if TYPE_CHECKING:
     from motion_backend.diffusion.windows import WindowBank, Windows
     from motion_backend.mocap.dataset_file import Dataset
 
-app = typer.Typer(no_args_is_help=True, help="Train the networks that move a body, and make motion to train them on.")
+app = typer.Typer(
+    no_args_is_help=True,
+    help="Train the networks that read themes and move a body, and make motion to train them on.",
+)
 DATASETS = typer.Argument(help="Files of `sims clips build` and `sims train act`.")
 OUT = typer.Option(help="Folder for checkpoints, the curve and sample sheets; a run that is in it is gone on with.")
 
@@ -36,13 +40,14 @@ class Learned(StrEnum):
     ALL = "all"
 
 
+app.command()(beats)
 app.command()(embedding)
 app.command()(physics)
 
 
 @app.callback()
 def train() -> None:
-    """Train the networks that move a body, and make motion to train them on."""
+    """Train the networks that read themes and move a body, and make motion to train them on."""
 
 
 @app.command()

@@ -13,11 +13,10 @@ from typing import Final
 import numpy as np
 
 from motion_backend.motion import Emotion, Skill
-from planner_service.composition.caption_senses import is_shown
-from planner_service.composition.deed_lexicon import Deed, deed_of, unshown
-from planner_service.composition.keyframe_writer import EXPRESSED, TOUCHES, UNSHOWN, KeyframeWriter, Part
+from planner_service.composition.deed_lexicon import Deed, unshown
+from planner_service.composition.deed_reader import DeedReader, classifier_of, shown_by
+from planner_service.composition.keyframe_writer import EXPRESSED, UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
-from planner_service.composition.mood_captions import captions_of
 from planner_service.composition.request import RULES, Record, Request
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts.acted_beats import connects
@@ -44,8 +43,10 @@ def serve_beats(
     """The long script of a theme, beat by beat. ThemeError when nothing of it can be acted."""
     planned = _by_model(theme, library, request, model, record)
     read = _read_anew(planned) if planned else beats_of(theme)
-    parts = {} if request.method == "direct" else PartFinder(library, request.rooms).all_of(read)
-    writer = KeyframeWriter(request.seed, request.furniture, parts.get)
+    reader = _reader(read, library, request)
+    read = read if planned else tuple(map(reader.heard, read))
+    parts = {} if request.method == "direct" else PartFinder(library, reader, request.rooms).all_of(read)
+    writer = KeyframeWriter(request.seed, request.furniture, reader, parts.get)
     if planned is None or any(one.keyframes is None for one in planned.beats):
         record.planners.append(RULES)
     writer.avoid(read)
@@ -75,6 +76,18 @@ def serve_beats(
         encoder="" if request.method == "direct" else library.encoder.name,
         seed=request.seed,
     )
+
+
+def _reader(read: Sequence[ReadBeat], library: ScriptLibrary, request: Request) -> DeedReader:
+    """The reader of a theme's deeds: by the table alone where that knows nothing of it, not even who is there; the
+    classifier has an opinion of nonsense too."""
+    by_table = KeyframeWriter(request.seed)
+    for index in range(len(read)):
+        by_table.write(index, read)
+    by_table.appear(read)
+    reader = DeedReader(classifier_of(library.encoder) if by_table.keyframes and request.method != "direct" else None)
+    reader.hear([one.clause for one in read])
+    return reader
 
 
 def _by_model(
@@ -138,7 +151,7 @@ def _besides(
     deed = writer.deeds.get(index)
     own = [one for one in keyframes if index in (one.beat, *one.also)]
     own = [one for one in own if not connects(one)] or own
-    if deed is not None and not is_shown(read.clause, deed, own):
+    if deed is not None and not writer.reader.is_shown(read.clause, deed, own):
         return (read.text,)
     return unshown(read.clause, {one.piece[0] for one in own}) if read.beat.kind == "deed" else ()
 
@@ -148,6 +161,7 @@ class PartFinder:
     """Finds parts of short scripts that do beats' deeds as the beats say."""
 
     library: ScriptLibrary
+    reader: DeedReader = field(default_factory=DeedReader)
     rooms: Sequence[str] = ()
     _used: set[int] = field(default_factory=set)
 
@@ -169,10 +183,10 @@ class PartFinder:
 
     def _parts(self, read: ReadBeat) -> dict[int, Sequence[Keyframe]]:
         """The keyframes that do a beat's deed in its mood, by the places of the scripts that play where it may."""
-        deed = deed_of(read.clause) if read.beat.kind == "deed" else None
+        deed = self.reader.deed(read.clause) if read.beat.kind == "deed" else None
         if deed is None or deed.skill is Skill.LOCO:  # a walk alone is no part of a script
             return {}
-        shown = [(read.beat.emotion, deed.skill, one) for one in _captions_of(deed, read.beat.emotion)]
+        shown = [(read.beat.emotion, deed.skill, one) for one in shown_by(deed, read.beat.emotion)]
         rooms = (read.room,) if read.room else tuple(map(canonical_room, self.rooms))
         scripts = {place: self.library.scripts[place] for key in shown for place in self.library.captions.get(key, ())}
         return {
@@ -199,10 +213,4 @@ def agrees(keyframe: Keyframe, deed: Deed) -> bool:
     kinds = furniture.categories_of(keyframe.piece[0])
     pieces = [one for one in deed.pieces[: 1 if deed.named else _LIKELY] if one != "floor"]
     there = any(not kinds.isdisjoint(furniture.categories_of(one)) for one in pieces)
-    return keyframe.caption in _captions_of(deed, keyframe.mood) and (there or not deed.pieces)
-
-
-def _captions_of(deed: Deed, mood: Emotion) -> Sequence[str]:
-    """The captions that show a deed, else those of its skill that show nothing but a mood."""
-    own = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
-    return own or (TOUCHES if deed.skill is Skill.TOUCH else captions_of(deed.skill, mood))
+    return keyframe.caption in shown_by(deed, keyframe.mood) and (there or not deed.pieces)

@@ -148,15 +148,15 @@ class Deed:
     """Whether the beat itself names the furniture."""
 
 
-def deed_of(clause: Clause, about: str = "") -> Deed | None:
+def deed_of(clause: Clause, about: str = "", row: DeedRow | None = None) -> Deed | None:
     """The deed of a clause; None where nothing in its words is anything that a body does at home.
 
-    `about` are the words that "it" and "there" may mean furniture of.
+    `about` are the words that "it" and "there" may mean furniture of; `row` is what it does where that is known.
     """
-    if not clause.verb and (fragment := _deed_of_fragment(clause)):
+    if row is None and not clause.verb and (fragment := _deed_of_fragment(clause)):
         return fragment
-    found = row_of(clause, about)
-    if found is None or _is_of_body(clause, found):
+    found = row or row_of(clause, about)
+    if found is None or (row is None and _is_of_body(clause, found)):
         return None
     named = _named(clause, about)
     skill = found.skill

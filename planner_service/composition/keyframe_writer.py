@@ -19,7 +19,6 @@ from planner_service.composition.caption_senses import shows
 from planner_service.composition.deed_lexicon import (
     Deed,
     DeedRow,
-    deed_of,
     deed_table,
     listed_places,
     names_things,
@@ -27,6 +26,7 @@ from planner_service.composition.deed_lexicon import (
     typical_of,
     where,
 )
+from planner_service.composition.deed_reader import TOUCHES, DeedReader
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
@@ -47,12 +47,6 @@ NOT_ACTED: Final = {
 """Why beats of these kinds are not acted."""
 SPOKEN_OF: Final = "it is only spoken of"
 UNSHOWN: Final = "none of the captions shows it"
-TOUCHES: Final = (
-    "touch medium height with the right hand",
-    "touch medium height",
-    "touch medium height with the left hand",
-)
-"""Captions of a hand that is laid on something, whatever it does there."""
 EXPRESSED: Final = (Emotion.HAPPY, Emotion.ANGRY, Emotion.SAD)
 """Moods whose laughing, shouting and sighing a body's bearing shows; it does not sweat or yawn."""
 _AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside", "below"))
@@ -88,6 +82,7 @@ class KeyframeWriter:
     seed: int = 0
     home: Mapping[str, Collection[str]] | None = None
     """Categories of furniture that there will be, by room type; None: any."""
+    reader: DeedReader = field(default_factory=DeedReader)
     part_of: Callable[[int], Part | None] = lambda _index: None
     """The part of a short script that may be taken for a beat, by the beat's place."""
     keyframes: list[PlannedKeyframe] = field(default_factory=list)
@@ -135,7 +130,7 @@ class KeyframeWriter:
         if (again or _GOES_ON.match(clause.text)) and self.deeds:
             done = list(self.deeds.values())
             return self._tried or next((deed for deed in reversed(done) if deed.row.rests), done[0])
-        return deed_of(clause, self._about)
+        return self.reader.deed(clause, self._about)
 
     def take(self, index: int, keyframes: Sequence[Keyframe], why: str, part: Part | None) -> None:
         """Keyframes that somebody else planned for a beat, of a short script where they are of one."""
@@ -171,7 +166,8 @@ class KeyframeWriter:
     def avoid(self, beats: Sequence[ReadBeat]) -> None:
         """Neither sit nor lie for other deeds where the theme says that this is not done."""
         for one in beats:
-            if one.beat.kind == "undone" and (deed := deed_of(one.clause)) is not None and not deed.row.captions:
+            deed = self.reader.deed(one.clause) if one.beat.kind == "undone" else None
+            if deed is not None and not deed.row.captions:
                 self._avoided |= {deed.skill} & {Skill.SITDOWN, Skill.LIEDOWN}
 
     def _do(self, index: int, read: ReadBeat, deed: Deed) -> None:
@@ -304,7 +300,7 @@ class KeyframeWriter:
         for later in range(index + 1, len(beats)):
             if beats[later].beat.emotion is not mood or beats[later].clause.sentence > beats[index].clause.sentence + 1:
                 break
-            if beats[later].beat.kind == "deed" and deed_of(beats[later].clause) is not None:
+            if beats[later].beat.kind == "deed" and self.reader.deed(beats[later].clause) is not None:
                 return
         last = self.keyframes[-1] if self.keyframes else None
         if last is not None and last.mood is mood:
@@ -426,7 +422,8 @@ class KeyframeWriter:
             self._resting = self.keyframes[-1]
 
     def _one_of(self, captions: Sequence[str], mood: Emotion, index: int, skill: Skill) -> str:
-        """One caption by the seed, of those that the library uses in the mood if there are some."""
+        """One caption by the seed, of those that are likeliest to show it and that the library uses in the mood."""
+        captions = self.reader.likeliest(self._clause, skill, captions) if self._clause else captions
         told = [one for one in captions if self._clause is not None and shows(skill, one, self._clause)]
         options = fitting(told or captions, skill, mood)
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 from importlib import resources
+from pathlib import Path
 from typing import Annotated, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -11,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from motion_backend.motion import Emotion, Skill
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_words import is_floor
+from scene_graphs.errors import UserError
 from scene_graphs.furniture import categories_of
 
 Split = Literal["tune", "held_out"]
@@ -130,6 +133,26 @@ def labelled_themes() -> tuple[LabelledTheme, ...]:
         for split in SPLITS
         for line in _lines(f"beats_{split}.jsonl")
     )
+
+
+def training_themes() -> tuple[tuple[LabelledTheme, ...], tuple[LabelledTheme, ...]]:
+    """The labelled themes that the beat classifier learned from, and every fifth one, which was kept back."""
+    with resources.files("planner_service").joinpath("data", "evaluation", "beats_learned.jsonl.gz").open("rb") as file:
+        lines = gzip.decompress(file.read()).decode("utf-8").splitlines()
+    themes = tuple(LabelledTheme.model_validate({**json.loads(line), "split": "tune"}, strict=False) for line in lines)
+    return tuple(one for place, one in enumerate(themes) if (place + 1) % 5), themes[4::5]
+
+
+def read_labels(path: Path) -> tuple[LabelledTheme, ...]:
+    """Labelled themes of a file, one JSON object a line; UserError names the line that is none."""
+    found = []
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        if line.strip():
+            try:
+                found.append(LabelledTheme.model_validate({**json.loads(line), "split": "tune"}, strict=False))
+            except (ValueError, TypeError) as error:
+                raise UserError(f"{path}: line {number} is no labelled theme: {error}", at="labels") from error
+    return tuple(found)
 
 
 def _lines(name: str) -> list[str]:

@@ -13,7 +13,7 @@ import shapely
 from numpy.typing import NDArray
 
 from scene_graphs.affordances.affordances import Spot, spots
-from scene_graphs.furniture import AFFORDANCES, affordances, group_of
+from scene_graphs.furniture import AFFORDANCES, affordances, class_of, group_of
 from scene_graphs.furniture_shapes import parts_of
 from scene_graphs.layout import Array, Layout, Opening, Placed, Point2
 from scene_graphs.navigation.clearance import BODY_RADIUS, Footing, Rectangles, find_footing, obstacles, part_outline
@@ -116,12 +116,14 @@ class RoomCheck:
         return [*self._outside(), *self._overlaps(), *self._blocked_doors(), *self._unreachable()]
 
     def unreachable(self) -> list[tuple[str, str]]:
-        """(object id, affordance) of everything a body should be able to use and cannot."""
+        """(object id, affordance) of everything a body should be able to use and cannot; what decorates a wall or stands
+        on something may hang over a bed."""
         return [
             (placed.id, affordance)
             for placed in self.layout.objects
             if placed.position[1] < OUT_OF_REACH
             and (placed.parent is None or group_of(placed.category) in ("light", "media"))
+            and not (class_of(placed.category) == "decor" and placed.position[1] > 0)
             for affordance in AFFORDANCES
             if affordance in affordances(placed.category)
             and (candidates := spots(placed, affordance))

@@ -207,4 +207,6 @@ def test_a_head_that_an_arm_supports_is_off_the_mattress_on_that_hand() -> None:
 @pytest.mark.parametrize("where", ["bed", "sofa"])
 def test_feet_are_lifted_off_the_floor_before_they_swing_onto_what_is_lain_on(where: str) -> None:
     assert support_slip(lain(where, "lying still").kinematics) < 3.0
-    assert support_slip(got_up(where, "lying still").kinematics) < 4.0, "and are over where they will stand before they come down"
+    assert support_slip(got_up(where, "lying still").kinematics) < 4.0, (
+        "and are over where they will stand before they come down"
+    )

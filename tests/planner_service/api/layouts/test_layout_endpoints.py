@@ -406,11 +406,11 @@ async def test_a_room_may_say_of_which_boxes_a_piece_is_made(app: FastAPI) -> No
 
 
 @pytest.mark.anyio
-async def test_a_side_table_is_no_seat_and_a_vase_nothing_to_touch(app: FastAPI) -> None:
+async def test_a_side_table_is_no_seat_and_a_book_nothing_to_touch(app: FastAPI) -> None:
     pieces = [
         ("side_table", [-1, 0, -1], [0.5, 0.42, 0.5]),
         ("stool", [1, 0, -1], [0.4, 0.42, 0.4]),
-        ("vase", [-1, 0, 1], [0.2, 0.9, 0.2]),
+        ("book", [-1, 0, 1], [0.2, 0.9, 0.2]),
     ]
     rows = [{"id": word, "category": word, "position": at, "size": size} for word, at, size in pieces]
     answer = await ask(app, "/v1/layouts", "POST", json=EXAMPLE | {"id": "house/tables", "objects": rows})

@@ -1,0 +1,186 @@
+"""What a body does for each clause of a theme: by the table of deeds, and by what has been learned of beats.
+
+The table is exact where its rows speak of a clause; the classifier has an opinion of every clause. Where they differ,
+the surer one is taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+from motion_backend.language.minilm import MiniLM
+from motion_backend.language.sentence_encoder import SentenceEncoder
+from motion_backend.motion import Emotion, Skill
+from planner_service.composition.beat_classifier import BeatClassifier, Likely, shipped
+from planner_service.composition.caption_senses import is_shown
+from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, pieces_in
+from planner_service.composition.mood_captions import captions_of
+from planner_service.scripts.captions import captions
+from planner_service.scripts.script import Keyframe
+from planner_service.scripts.script_embeddings import ByHeart
+from planner_service.scripts.script_words import affords
+from planner_service.themes.beats import ReadBeat
+from planner_service.themes.protagonist import is_person
+from planner_service.themes.sentence_parser import Clause
+from scene_graphs.furniture import categories_of
+
+SURER: Final = 0.4
+"""A learned caption is taken in place of the table's where it is so much likelier,"""
+SURER_OF_THE_SAME: Final = 0.2
+"""or by so much if it is of the same skill."""
+SHOWN: Final = 0.5
+"""Where it is less likely that anything shows it, nothing does."""
+LIKELY: Final = 0.5
+"""One that is so likely is taken where the table has none."""
+UNLIKELY: Final = 0.15
+"""What the table has is left undone where nothing is likelier to show it than this."""
+AS_LIKELY: Final = 0.6
+"""Captions that are so nearly as likely as the likeliest show it as well."""
+ANY: Final = 0.5
+"""Where such a share of a skill's captions shows it, it is any of them."""
+SURE: Final = 0.7
+"""What is likelier than this to show a clause shows it; what is less likely only stands for it."""
+SURELY: Final = 0.95
+"""What the table of deeds does not take for shown is if it is so likely."""
+MOODY: Final = 0.4
+"""A mood that shows a clause so likely is its mood."""
+BEFORE: Final = 2
+"""A clause is read with so many of those before it."""
+PLACES: Final = 3
+"""Pieces of furniture that hands may do it at."""
+TOUCHES: Final = (
+    "touch medium height with the right hand",
+    "touch medium height",
+    "touch medium height with the left hand",
+)
+"""Captions of a hand that is laid on something, whatever it does there."""
+
+
+def classifier_of(encoder: SentenceEncoder) -> BeatClassifier | None:
+    """What has been learned of beats, where the sentence encoder is the one that it was learned with."""
+    inside = encoder.encoder if isinstance(encoder, ByHeart) else encoder
+    return shipped(inside) if isinstance(inside, MiniLM) else None
+
+
+@dataclass
+class DeedReader:
+    """Reads the deeds of clauses, of which `heard` have been thought about together."""
+
+    classifier: BeatClassifier | None = None
+    _known: dict[str, Likely] = field(default_factory=dict)
+
+    def hear(self, clauses: Sequence[Clause]) -> None:
+        """Think about clauses as they follow each other, all at once."""
+        told = [one.text for one in clauses]
+        before = [". ".join(told[max(place - BEFORE, 0) : place]) for place in range(len(told))]
+        new = {text: (text, about) for text, about in zip(told, before, strict=True) if text not in self._known}
+        if self.classifier is not None and new:
+            self._known.update(zip(new, self.classifier.likely(*zip(*new.values(), strict=True)), strict=True))
+
+    def likely(self, clause: Clause) -> Likely | None:
+        """What a clause is likely shown by; None without a classifier."""
+        self.hear([clause])
+        return self._known.get(clause.text)
+
+    def deed(self, clause: Clause, about: str = "") -> Deed | None:
+        """The deed of a clause, see `deed_of`; None where nothing that a body does shows it."""
+        found, likely = self._deed(clause, about), self.likely(clause)
+        if found is None or likely is None or found.named or found.skill is not Skill.TOUCH:
+            return found
+        pieces = (*found.pieces, *likeliest_pieces(likely))
+        return replace(found, pieces=tuple(sorted(dict.fromkeys(pieces), key=lambda one: -at(likely, one))))
+
+    def _deed(self, clause: Clause, about: str) -> Deed | None:
+        told, likely = deed_of(clause, about), self.likely(clause)
+        if likely is None or (told is not None and told.row.why):
+            return told
+        skill, best = likely.best
+        most = likely.captions[skill, best]
+        known = likely.of(told.skill, shown_by(told, Emotion.NEUTRAL)) if told is not None else 0.0
+        if likely.shown < SHOWN or not (clause.verb or min(most, likely.shown) > SURE):
+            return None
+        if told is not None and most - known < (SURER_OF_THE_SAME if skill is told.skill else SURER):
+            return told
+        if most < LIKELY:
+            return told if told is not None and known > UNLIKELY else None
+        return deed_of(clause, about, learned_row(clause, likely)) or told
+
+    def heard(self, one: ReadBeat) -> ReadBeat:
+        """A beat with what the rules of reading have not understood of it: that it is done, or a mood it shows."""
+        likely = self.likely(one.clause) if one.beat.kind in ("deed", "feeling", "other") else None
+        if likely is None:
+            return one
+        most = likely.captions[likely.best]
+        if one.beat.kind == "other":
+            ours = not (one.clause.aside or is_person(one.beat.who)) and min(most, likely.shown) > SURE
+            return replace(one, beat=one.beat.model_copy(update={"kind": "deed", "who": ""})) if ours else one
+        mood = max(likely.moods, key=lambda mood: likely.moods[mood])
+        if likely.moods[mood] < MOODY or one.felt is mood or mood is Emotion.NEUTRAL:
+            return one
+        return one.in_mood(mood)
+
+    def is_shown(self, clause: Clause, deed: Deed, keyframes: Sequence[Keyframe]) -> bool:
+        """Whether some keyframe shows a clause's deed, or they only stand for it."""
+        by_table, likely = is_shown(clause, deed, keyframes), self.likely(clause)
+        if likely is None or not keyframes:
+            return by_table
+        return max(shown(likely, clause, one) for one in keyframes) > (SURE if by_table else SURELY)
+
+    def likeliest(self, clause: Clause, skill: Skill, some: Sequence[str]) -> Sequence[str]:
+        """Those of some captions that are as likely to show a clause as the likeliest of them; all where none is."""
+        likely = self.likely(clause)
+        most = likely.of(skill, some) if likely is not None else 0.0
+        if likely is None or most < UNLIKELY:
+            return some
+        return [one for one in some if likely.of(skill, (one,)) >= AS_LIKELY * most]
+
+
+def shown(likely: Likely, clause: Clause, keyframe: Keyframe) -> float:
+    """How likely a fair viewer takes a keyframe for what a clause tells."""
+    there = 1.0
+    if keyframe.skill is Skill.TOUCH and not pieces_in(clause.text):
+        there = at(likely, keyframe.piece[0]) / max(likely.pieces.values())
+    felt = 0.0 if keyframe.mood is Emotion.NEUTRAL else likely.moods.get(keyframe.mood, 0.0)
+    return min(max(there * likely.captions.get((keyframe.skill, keyframe.caption), 0.0), felt), likely.shown)
+
+
+def at(likely: Likely, word: str) -> float:
+    """How likely hands do it at a piece of furniture."""
+    kinds = categories_of(word)
+    return max((share for piece, share in likely.pieces.items() if piece in kinds), default=0.0)
+
+
+def likeliest_pieces(likely: Likely) -> tuple[str, ...]:
+    """Furniture where hands likeliest do it."""
+    able = [one for one in likely.pieces if one != "floor" and affords(one, "touch")]
+    found = sorted(able, key=lambda one: -likely.pieces[one])[:PLACES]
+    return tuple(one.replace("_", " ") for one in found)
+
+
+def shown_by(deed: Deed, mood: Emotion) -> tuple[str, ...]:
+    """The captions that show a deed, else those of its skill that show nothing but a mood."""
+    own = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
+    return tuple(own or (TOUCHES if deed.skill is Skill.TOUCH else captions_of(deed.skill, mood)))
+
+
+def learned_row(clause: Clause, likely: Likely) -> DeedRow:
+    """What the table of deeds would have for a clause, if it had what was learned."""
+    skill, best = likely.best
+    least = AS_LIKELY * likely.captions[skill, best]
+
+    def of(other: Skill) -> tuple[str, ...]:
+        return tuple(one for (kind, one), share in likely.captions.items() if kind is other and share >= least)
+
+    some = of(skill)
+    everything = len(some) > ANY * len(captions()[skill.value])
+    return DeedRow(
+        (clause.verb or clause.text,),
+        skill,
+        at=likeliest_pieces(likely) if skill is Skill.TOUCH else (),
+        captions=() if everything else some,
+        lying=of(Skill.LIEDOWN) if skill is Skill.SITDOWN else (),
+        seated=of(Skill.SITDOWN) if skill is Skill.LOCO else (),
+        rests=skill in (Skill.SITDOWN, Skill.LIEDOWN),
+    )

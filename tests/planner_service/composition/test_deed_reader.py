@@ -1,0 +1,134 @@
+"""Where the table of deeds and what has been learned differ the surer one is taken; alone, the table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import cast
+
+import pytest
+
+from motion_backend.motion import Emotion, Skill
+from planner_service.composition.beat_classifier import BeatClassifier, Likely
+from planner_service.composition.deed_lexicon import deed_of
+from planner_service.composition.deed_reader import DeedReader, learned_row
+from planner_service.scripts.captions import captions
+from planner_service.scripts.script import Keyframe
+from planner_service.themes.beats import beats_of
+from planner_service.themes.sentence_parser import Clause, clauses_of_text
+from scene_graphs import furniture
+
+CLAUSES = ("She opens the fridge", "He sits down", "She lies down on the bed", "He waters the plants", "It rains")
+
+
+def clause(text: str) -> Clause:
+    return clauses_of_text(f"{text}.")[0]
+
+
+def likely(
+    shown: float = 0.9, moods: dict[Emotion, float] | None = None, pieces: dict[str, float] | None = None, **some: float
+) -> Likely:
+    """What is likely: captions of which a part is a keyword of `some`, underscores for spaces."""
+    every = {(Skill(skill), one): 0.01 for skill, those in captions().items() for one in those}
+    for part, share in some.items():
+        every |= {known: share for known in every if part.replace("_", " ") in known[1].lower()}
+    places = dict.fromkeys(furniture.catalogue().categories, 0.02) | (pieces or {})
+    return Likely(every, dict.fromkeys(Emotion, 0.01) | (moods or {}), places, shown)
+
+
+class Scripted:
+    """Thinks of every clause the same, and remembers what it was asked."""
+
+    def __init__(self, answer: Likely) -> None:
+        self.answer = answer
+        self.asked: list[tuple[str, str]] = []
+
+    def likely(self, clauses: Sequence[str], before: Sequence[str]) -> list[Likely]:
+        self.asked += list(zip(clauses, before, strict=True))
+        return [self.answer] * len(clauses)
+
+
+def reader(answer: Likely) -> DeedReader:
+    return DeedReader(cast(BeatClassifier, Scripted(answer)))
+
+
+@pytest.mark.parametrize("text", CLAUSES)
+def test_without_a_classifier_there_is_the_table_alone(text: str) -> None:
+    assert DeedReader().deed(clause(text)) == deed_of(clause(text))
+
+
+def test_what_is_much_likelier_is_taken_in_place_of_the_tables() -> None:
+    told = clause("She opens the fridge")
+    table = deed_of(told)
+    assert table is not None
+    assert table.skill is Skill.TOUCH
+    assert (found := reader(likely(pacing=0.95)).deed(told)) is not None
+    assert found.skill is Skill.LOCO
+    assert found.row.captions == ("pacing back and forth",)
+    assert (found := reader(likely(pacing=0.3)).deed(told)) is not None
+    assert found.skill is Skill.TOUCH
+
+
+def test_nothing_is_done_where_nothing_is_likely_to_show_it() -> None:
+    assert reader(likely(shown=0.05, pacing=0.9)).deed(clause("She opens the fridge")) is None
+    assert reader(likely(pacing=0.2)).deed(clause("She frobnicates")) is None
+
+
+def test_words_without_a_verb_are_done_only_where_that_is_sure() -> None:
+    (told,) = (one for one in clauses_of_text("Feet on the ottoman.") if not one.verb)
+    assert reader(likely(legs_extended=0.45)).deed(told) is None
+    assert (found := reader(likely(legs_extended=0.9)).deed(told)) is not None
+    assert found.skill is Skill.SITDOWN
+
+
+def test_hands_do_it_at_the_likeliest_furniture_unless_some_is_named() -> None:
+    at = reader(likely(touch_medium=0.9, pieces={"washing_machine": 0.9, "mirror": 0.5}))
+    assert (found := at.deed(clause("She frobnicates the gizmo"))) is not None
+    assert found.pieces[:2] == ("washing machine", "mirror")
+    assert (found := at.deed(clause("She wipes the desk"))) is not None
+    assert found.pieces[0] == "desk"
+
+
+def test_any_caption_of_a_skill_will_do_where_most_of_them_are_accepted() -> None:
+    none = likely()
+    every = replace(none, captions={one: 0.9 if one[0] is Skill.SITDOWN else 0.01 for one in none.captions})
+    assert (row := learned_row(clause("He settles"), every)).skill is Skill.SITDOWN
+    assert row.captions == ()
+    assert learned_row(clause("He settles"), likely(reading=0.9)).captions == ("reading, book held in both hands",)
+    assert learned_row(clause("He settles"), likely(reading=0.9)).lying == (
+        "reading on the back, book held above the chest",
+    )
+
+
+def test_a_beat_that_a_mood_shows_is_in_that_mood_and_what_nobody_else_does_is_done() -> None:
+    (funk,) = beats_of("She is in a funk.")
+    assert reader(likely(moods={Emotion.SAD: 0.9})).heard(funk).beat.emotion is Emotion.SAD
+    (kettle,) = beats_of("The kettle goes on.")
+    assert kettle.beat.kind == "other"
+    assert reader(likely(turn_on=0.9)).heard(kettle).beat.kind == "deed"
+    assert reader(likely(turn_on=0.2)).heard(kettle).beat.kind == "other"
+    mother = next(one for one in beats_of("She sits down. Her mother opens the fridge.") if one.beat.kind == "other")
+    assert reader(likely(turn_on=0.9)).heard(mother).beat.kind == "other"
+
+
+def test_a_keyframe_shows_what_it_likely_shows_and_only_stands_for_the_rest() -> None:
+    told = clause("She frobnicates the gizmo")
+    keyframe = Keyframe(skill=Skill.TOUCH, emotion="neutral", caption="turn on with the right hand", furniture="mirror")
+
+    def is_shown(share: float, there: float = 0.9) -> bool:
+        heard = reader(likely(turn_on=share, pieces={"mirror": there, "desk": 0.9}))
+        deed = heard.deed(told)
+        return deed is not None and heard.is_shown(told, deed, [keyframe])
+
+    assert is_shown(0.99)
+    assert not is_shown(0.45)
+    assert not is_shown(0.99, there=0.1), "it is done elsewhere"
+
+
+def test_a_clause_is_read_once_with_those_before_it() -> None:
+    model = Scripted(likely(pacing=0.9))
+    heard = DeedReader(cast(BeatClassifier, model))
+    told = clauses_of_text("She comes in. She paces. She frets. She sighs.")
+    heard.hear(told)
+    heard.hear(told)
+    assert [before for _, before in model.asked] == ["", "comes in", "comes in. paces", "paces. frets"]
