@@ -123,6 +123,11 @@ export class Film {
     this.#stage?.cut();
   }
 
+  /** How many pictures were drawn. */
+  get pictures(): number {
+    return this.#stage?.pictures ?? 0;
+  }
+
   /** World positions of the joints, as drawn; from the skeleton alone where nothing is drawn. */
   joints(): Point3[] {
     if (this.#stage?.hasBody) return this.#stage.joints();

@@ -40,6 +40,8 @@ export class Stage {
   asleep = false;
   /** Set to have the next picture drawn. */
   dirty = true;
+  /** How many were drawn. */
+  pictures = 0;
   readonly #renderer = lend();
   readonly #scene = new Scene();
   readonly #lighting = new Lighting(this.#scene);
@@ -188,6 +190,7 @@ export class Stage {
   }
 
   #draw(): void {
+    this.pictures++;
     this.dirty = false;
     this.#lighting.aim(this.#chest);
     this.#renderer.render(this.#scene, this.cameraMan.camera);
