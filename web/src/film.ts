@@ -169,7 +169,6 @@ export class Film {
       this.#withoutPicture(error);
       return null;
     }
-    this.#stage.cameraMan.calm = isStill();
     const watch = new ResizeObserver(() => this.#stage?.resize(this.#holder.clientWidth, this.#holder.clientHeight));
     watch.observe(this.#holder);
     this.#ends.push(() => watch.disconnect());
@@ -267,6 +266,7 @@ export class Film {
     if (this.#opened) {
       this.player.advance(seconds);
       this.#tick();
+      if (this.#stage) this.#stage.cameraMan.calm = isStill();
       if (this.#visible) this.#stage?.render(seconds, this.player.state === "playing");
     }
     requestAnimationFrame((time) => this.#loop(time));

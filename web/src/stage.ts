@@ -182,7 +182,7 @@ export class Stage {
     const pace = this.cameraMan.calm ? 1 : step;
     if (this.#cutaway?.update(eye, this.#chest, pace)) this.dirty = true;
     if (this.#fading?.update(eye, this.#body, pace)) this.dirty = true;
-    if (this.#lighting.drift(step)) this.dirty = true;
+    if (this.#lighting.drift(this.cameraMan.calm ? Infinity : step)) this.dirty = true;
     if (this.#face?.update(playing ? step : 0, this.emotion, this.asleep, this.cameraMan.calm || !playing)) this.dirty = true;
     if (!this.dirty) return;
     this.#draw();

@@ -168,10 +168,23 @@ def test_what_set_up_compiles_is_what_films_and_pictures_are_drawn_with():
 def test_every_sentence_is_shown_while_what_it_tells_is_done():
     text = "It was late. She came home. She thought of him, and sat down. Then she slept."
     spans = [Span(text.index(word), text.index(word) + 4, (k,)) for k, word in enumerate(("came", "sat ", "slept"))]
-    shown = subtitles(Told("Late", text, tuple(spans)), [(0, 60), (60, 200), (200, 300)])
+    shown = subtitles(Told("Late", text, tuple(spans)), [(0, 60), (60, 200), (200, 300)], 30)
     assert " ".join(line.text.replace("\n", " ") for line in shown) == text
     assert [(line.start, line.stop) for line in shown] == [(0, 60), (60, 200), (200, 300)]
 
 
 def test_keyframes_without_a_story_have_no_words():
-    assert subtitles(Told("", "", ()), [(0, 60)]) == []
+    assert subtitles(Told("", "", ()), [(0, 60)], 30) == []
+
+
+def test_a_sentence_that_tells_of_two_keyframes_is_shown_in_two_parts_and_none_stands_for_long():
+    text = "He sat down, and read a book. He slept."
+    spans = [Span(text.index(word), text.index(word) + len(word), (k,)) for k, word in enumerate(("sat down", "read"))]
+    spans.append(Span(text.index("slept"), text.index("slept") + 5, (2,)))
+    told = Told("", text, tuple(spans))
+    shown = subtitles(told, [(0, 90), (90, 600), (600, 1500)], 30)
+    assert [line.text for line in shown] == ["He sat down,", "and read a book.", "He slept."]
+    assert [line.start for line in shown] == [0, 90, 600]
+    assert max(line.stop - line.start for line in shown) <= 7 * 30
+    together = subtitles(told, [(0, 20), (20, 600), (600, 1500)], 30)
+    assert [line.text for line in together] == ["He sat down, and read a book.", "He slept."]
