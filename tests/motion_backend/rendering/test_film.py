@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from acted import SMALL, sat, walked
 from numba.core.registry import CPUDispatcher
+from PIL import Image
 
 from motion_backend.formats.mp4 import write_mp4
 from motion_backend.motion import Motion, join
@@ -17,6 +18,7 @@ from motion_backend.rendering import depth_buffer, film_kernel, surface_light
 from motion_backend.rendering.camera import SEEN
 from motion_backend.rendering.film_backdrop import Backdrop
 from motion_backend.rendering.film_frames import compile_film, film_frames
+from motion_backend.rendering.film_loop import moment, write_loop
 from motion_backend.rendering.film_picture import lay_words, split, to_rgb
 from motion_backend.rendering.film_shots import LONGEST, SHORTEST, FilmShot, film_shots
 from motion_backend.rendering.film_sight import Appearances
@@ -188,3 +190,12 @@ def test_a_sentence_that_tells_of_two_keyframes_is_shown_in_two_parts_and_none_s
     assert max(line.stop - line.start for line in shown) <= 7 * 30
     together = subtitles(told, [(0, 20), (20, 600), (600, 1500)], 30)
     assert [line.text for line in together] == ["He sat down, and read a book.", "He slept."]
+
+
+def test_a_loop_has_every_third_frame_of_its_moments_once_and_begins_anew(tmp_path: Path):
+    moments = [moment((0, 40), 1.0, 30), moment((50, 59), 1.0, 30)]
+    assert moments == [range(5, 35), range(50, 59)], "as far as a segment has them"
+    path = write_loop(SMALL, acted(), [(0, 40), (40, 80)], moments, tmp_path / "loop.webp", SIZE)
+    with Image.open(path) as picture:
+        assert (picture.size, picture.info["loop"]) == (SIZE, 0)
+        assert getattr(picture, "n_frames", 1) == 13
