@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from itertools import pairwise, zip_longest
 from pathlib import Path
@@ -115,32 +115,46 @@ def write_film(
 
 
 def subtitles(told: Told, segments: Sequence[tuple[int, int]], fps: int) -> list[Subtitle]:
-    """The told words, each from the first frame of what it tells, until the next begins or they are read twice.
+    """The told words, each half of the time that it is read in before its last keyframe, where what it tells is reached.
 
     What tells no keyframe is shown with what follows, and what is done at nearly the same time together. `segments` are
     frames of keyframes.
     """
-    begun: list[tuple[int, str]] = []
+    begun: list[_Line] = []
     waiting = ""
     for text, keyframes in _pieces(told):
-        start = segments[min(keyframes)][0] if keyframes else None
-        if start is None:
-            waiting += text
-        elif begun and start - begun[-1][0] < SHORTEST * fps:
-            begun[-1] = (begun[-1][0], begun[-1][1] + waiting + text)
-            waiting = ""
+        waiting += text
+        if not keyframes:
+            continue
+        start, aim = segments[min(keyframes)][0], segments[max(keyframes)][0]
+        if begun and start - begun[-1].start < SHORTEST * fps:
+            begun[-1] = _Line(begun[-1].start, aim, begun[-1].text + waiting)
         else:
-            begun.append((start, waiting + text))
-            waiting = ""
+            begun.append(_Line(start, aim, waiting))
+        waiting = ""
     if waiting and begun:
-        begun[-1] = (begun[-1][0], begun[-1][1] + waiting)
-    stops = [*(start for start, _ in begun[1:]), segments[-1][1]]
+        begun[-1] = replace(begun[-1], text=begun[-1].text + waiting)
+    starts = [max(line.start, line.aim - round(line.seconds / 2 * fps)) for line in begun]
     return [
         Subtitle(page.start, min(page.stop, page.start + round(_read(page.text) * fps)), page.text)
-        for (start, text), stop in zip(begun, stops, strict=False)
+        for line, start, stop in zip(begun, starts, [*starts[1:], segments[-1][1]], strict=False)
         if stop > start
-        for page in _pages(start, stop, text)
+        for page in _pages(start, stop, line.text)
     ]
+
+
+@dataclass(frozen=True)
+class _Line:
+    """Words, the frame where what they tell begins, and that where the last of it does."""
+
+    start: int
+    aim: int
+    text: str
+
+    @property
+    def seconds(self) -> float:
+        """That all of its pages are read in."""
+        return sum(_read(page.text) for page in _pages(0, 0, self.text))
 
 
 def _pieces(told: Told) -> Iterator[tuple[str, list[int]]]:

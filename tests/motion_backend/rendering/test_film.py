@@ -192,6 +192,14 @@ def test_a_sentence_that_tells_of_two_keyframes_is_shown_in_two_parts_and_none_s
     assert [line.text for line in together] == ["He sat down, and read a book.", "He slept."]
 
 
+def test_words_are_there_when_one_has_come_to_where_they_are_done():
+    told = Told("", "She slept.", (Span(0, 9, (0, 1)),))
+    (line,) = subtitles(told, [(0, 900), (900, 1500)], 30)
+    assert 900 - 3.5 * 30 <= line.start < 900 < line.stop
+    (soon,) = subtitles(told, [(0, 30), (30, 1500)], 30)
+    assert soon.start == 0
+
+
 def test_a_loop_has_every_third_frame_of_its_moments_once_and_begins_anew(tmp_path: Path):
     moments = [moment((0, 40), 1.0, 30), moment((50, 59), 1.0, 30)]
     assert moments == [range(5, 35), range(50, 59)], "as far as a segment has them"
