@@ -115,7 +115,7 @@ def write_film(
 
 
 def subtitles(told: Told, segments: Sequence[tuple[int, int]], fps: int) -> list[Subtitle]:
-    """The told words, each half of the time that it is read in before its last keyframe, where what it tells is reached.
+    """The told words, each half of its reading time before its last keyframe: there what it tells is reached.
 
     What tells no keyframe is shown with what follows, and what is done at nearly the same time together. `segments` are
     frames of keyframes.
