@@ -75,16 +75,21 @@ EXAMPLES = (
     Example(
         "the-guests", "Lisa cleans the house in a hurry because guests are coming, lays the table and welcomes them.", 7
     ),
-    Example("the-exam", "Tom studies all night for an exam, falls asleep at the desk and oversleeps.", 8),
+    Example("the-exam", "Tom studies all night for an exam, falls asleep at the desk and oversleeps.", 18),
     Example(
         "the-keys", "A woman searches for her keys, misses the bus, gets angry and then calms down with a book.", 9
     ),
 )
 
 
+def request(example: Example) -> StoryRequest:
+    """What is asked for."""
+    return StoryRequest(example.theme, seed=example.seed, character=example.character)
+
+
 def told(example: Example, pipeline: Pipeline) -> Planned:
     """The story of an example, planned and told."""
-    return pipeline.plan(StoryRequest(example.theme, seed=example.seed, character=example.character))
+    return pipeline.plan(request(example))
 
 
 def page(example: Example, planned: Planned) -> str:
@@ -94,6 +99,8 @@ def page(example: Example, planned: Planned) -> str:
         f"# {planned.told.title}",
         "",
         *(f"> {line}" for line in wrapped(example.theme)),
+        "",
+        f"![{planned.told.title}, acted]({example.file}.webp)",
         "",
         planned.told.text,
         "",
@@ -134,15 +141,22 @@ def wrapped(text: str) -> Iterator[str]:
 
 def index() -> str:
     """The text of README.md in the folder."""
-    rows = [f"- [{example.file.replace('-', ' ')}]({example.file}.md): {example.theme}" for example in EXAMPLES]
+    rows = [
+        f"| [![{name}]({example.file}.webp)]({example.file}.md) | **[{name}]({example.file}.md)**<br>{example.theme} |"
+        for example in EXAMPLES
+        for name in [example.file.replace("-", " ")]
+    ]
     return "\n".join(
         [
             "# Ten stories",
             "",
-            "Told without a language model: planned beat by beat and worded by rules. Each page has",
-            "the theme, the story, and the command that makes it with its home and its film. `python docs/stories.py`",
-            "writes the pages anew (the sentence encoder has to be installed); two of them are made again by a test.",
+            "Told without a language model: planned beat by beat and worded by rules. Each page has the theme, moments",
+            "of the film, the story, and the command that makes it with its home and its film.",
+            "`python docs/stories.py` writes the pages anew (the sentence encoder has to be installed),",
+            "`python docs/gallery.py` films them; two of them are made again by a test.",
             "",
+            "| moments | theme |",
+            "|---|---|",
             *rows,
             "",
         ]

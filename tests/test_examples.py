@@ -8,12 +8,15 @@ from types import SimpleNamespace
 
 import pytest
 from encoded import encoded
+from PIL import Image
 
 from planner_service.library.library import Shelves
 from planner_service.pipeline import Pipeline
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs"
 stories = SimpleNamespace(**runpy.run_path(str(FOLDER / "stories.py")))
+SMALL = 300_000
+"""Bytes."""
 names = [example.file for example in stories.EXAMPLES]
 
 
@@ -37,3 +40,11 @@ def test_there_are_ten_examples_and_a_page_for_each() -> None:
     assert len(names) == 10
     assert pages == set(names)
     assert (FOLDER / "examples" / "README.md").read_text(encoding="utf-8") == stories.index()
+
+
+def test_every_example_has_a_small_picture_that_moves() -> None:
+    for name in names:
+        path = FOLDER / "examples" / f"{name}.webp"
+        with Image.open(path) as picture:
+            assert getattr(picture, "n_frames", 1) >= 30, name
+        assert path.stat().st_size <= SMALL, name

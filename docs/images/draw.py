@@ -11,9 +11,7 @@ from PIL import Image
 
 from motion_backend.motion import Skill
 from motion_backend.rendering.contact_sheet import sheet
-from motion_backend.rendering.film_frames import film_frames
-from motion_backend.rendering.film_picture import to_rgb
-from motion_backend.rendering.film_shots import film_shots
+from motion_backend.rendering.film_loop import moment, write_loop
 from planner_service.cli.layouts import graph_of_words
 from planner_service.evaluation.trials import Trial, perform
 from planner_service.output.cast_sheet import cast_sheet
@@ -30,8 +28,8 @@ SHOWN = (1, 3, 5, 6)
 """Keyframes cut out of the storyboard, two in a row."""
 MOMENTS = ((1, 2.4), (3, 1.8), (5, 2.4), (6, 4.0))
 """Keyframes of the moving picture, and how many seconds around their middles it shows."""
-LOOP, EVERY = (480, 270), 3
-"""Its size in pixels, and which of the film's frames it has: ten a second."""
+LOOP = (480, 270)
+"""Its size in pixels."""
 PLAN_OF = "living-room-0016"
 ASKED = ("sofa:lie", "coffee-table", "tv-stand,", "bench:sit", "bookshelf", "wardrobe,", "piano")
 """The query of the match view, as `sims layouts find` takes it."""
@@ -54,7 +52,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         story = pipeline.make(demo())
         board = draw_board(story, Path(folder, "board.png"))
-        draw_loop(story, HERE / "film.webp")
+        moments = [moment(story.segments[number], seconds, story.motion.fps) for number, seconds in MOMENTS]
+        write_loop(story.planned.home, story.motion, story.segments, moments, HERE / "film.webp", LOOP, story.role)
         picture(index.layout(PLAN_OF), Shown(), Path(folder, "plan.png"))
         draw_found(index, Path(folder, "match.png"))
         save(cut(board, SHOWN), HERE / "storyboard.png")
@@ -77,25 +76,6 @@ def draw_board(story: Story, path: Path) -> np.ndarray:
     planned, targets = story.planned, [action.object_id for action in story.actions]
     storyboard(planned.home, story.motion, planned.script.keyframes, path, planned.told.title, targets, story.role)
     return np.asarray(Image.open(path).convert("RGB"))
-
-
-def draw_loop(story: Story, path: Path) -> None:
-    """Moments of the story's film, a few seconds each, as a moving picture that begins anew."""
-    motion, home = story.motion, story.planned.home
-    shots = film_shots(home, motion, [start for start, _ in story.segments], LOOP[0] / LOOP[1])
-    wanted = {
-        frame
-        for number, seconds in MOMENTS
-        for middle in [sum(story.segments[number]) // 2]
-        for frame in range(middle - round(seconds * motion.fps / 2), middle + round(seconds * motion.fps / 2), EVERY)
-    }
-    pictures = [
-        Image.fromarray(to_rgb(picture))
-        for frame, picture in enumerate(film_frames(motion, shots, LOOP, role=story.role))
-        if frame in wanted
-    ]
-    pause = round(1000 * EVERY / motion.fps)
-    pictures[0].save(path, save_all=True, append_images=pictures[1:], duration=pause, loop=0, quality=60, method=4)
 
 
 def draw_acted() -> np.ndarray:

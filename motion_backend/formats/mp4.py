@@ -10,8 +10,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-QUALITY: Final = {"preset": "veryfast", "crf": "23"}
-"""As x264 names them: a minute of a still camera at 1280 x 720 takes some 3 MB."""
+QUALITY: Final = {"preset": "veryfast", "crf": "23", "x264-params": "me=dia:subme=1"}
+"""As x264 names them: a minute of a still camera at 1280 x 720 takes some 3 MB. What moves is looked for less far than
+that preset does, which is a third faster and a fifteenth larger."""
 BT709, LIMITED = 1, 1
 """FFmpeg's numbers for the colours that high-definition films have, and for brightness from 16 to 235."""
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from motion_backend.rendering.rasterizer import Ints, Real
 from motion_backend.rotations import Array
-from scene_graphs.jit import filling
+from scene_graphs.jit import filling, inlined
 
 
 @filling
@@ -51,7 +51,7 @@ def draw(screen: Real, quarters: Ints, first: int, nearest: Ints, best: Array) -
 
 
 @filling
-def draw_body(points: Real, faces: NDArray[np.integer], nearest: Ints, best: Array) -> None:
+def draw_body(points: Real, faces: NDArray[np.integer], nearest: NDArray[np.int32], best: Real) -> None:
     """The same for a closed body: faces (F, 3) of points (V, 3), those that show their outside; numbers from 0."""
     height, width = best.shape
     for face in range(len(faces)):
@@ -60,20 +60,32 @@ def draw_body(points: Real, faces: NDArray[np.integer], nearest: Ints, best: Arr
         area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0)
         if area > -1e-9:
             continue
-        left, right = max(int(np.ceil(min(x0, x1, x2) - 0.5)), 0), min(int(np.ceil(max(x0, x1, x2) - 0.5)), width)
         top, bottom = max(int(np.ceil(min(y0, y1, y2) - 0.5)), 0), min(int(np.ceil(max(y0, y1, y2) - 0.5)), height)
-        if left >= right or top >= bottom:
+        if top >= bottom or np.ceil(min(x0, x1, x2) - 0.5) == np.ceil(max(x0, x1, x2) - 0.5):
             continue
         n0, n1, n2 = points[a, 2], points[b, 2], points[c, 2]
+        by_x = ((n1 - n0) * (y2 - y0) - (n2 - n0) * (y1 - y0)) / area
+        by_y = ((n2 - n0) * (x1 - x0) - (n1 - n0) * (x2 - x0)) / area
+        lean0, lean1, lean2 = _lean(x0, y0, x1, y1), _lean(x1, y1, x2, y2), _lean(x2, y2, x0, y0)
         for row in range(top, bottom):
             y = row + 0.5
-            for column in range(left, right):
-                x = column + 0.5
-                # Twice the areas of the three parts that a point cuts the triangle into: all negative inside.
-                p, q = (x1 - x) * (y2 - y) - (y1 - y) * (x2 - x), (x2 - x) * (y0 - y) - (y2 - y) * (x0 - x)
-                r = area - p - q
-                if p <= 0 and q <= 0 and r <= 0:
-                    near = (p * n0 + q * n1 + r * n2) / area
-                    if near >= best[row, column]:
-                        best[row, column] = near
-                        nearest[row, column] = face
+            left, right = 0.0, float(width)
+            # Seen from outside, edges that go down are on the left.
+            for xa, ya, yb, lean in ((x0, y0, y1, lean0), (x1, y1, y2, lean1), (x2, y2, y0, lean2)):
+                if yb > ya:
+                    left = max(left, xa + lean * (y - ya))
+                elif yb < ya:
+                    right = min(right, xa + lean * (y - ya))
+            start = int(np.ceil(left - 0.5))
+            near = n0 + by_x * (start + 0.5 - x0) + by_y * (y - y0)
+            for column in range(start, int(np.ceil(right - 0.5))):
+                if near >= best[row, column]:
+                    best[row, column] = near
+                    nearest[row, column] = face
+                near += by_x
+
+
+@inlined
+def _lean(xa: float, ya: float, xb: float, yb: float) -> float:
+    """How far across an edge goes for a step down."""
+    return (xb - xa) / (yb - ya) if ya != yb else 0.0

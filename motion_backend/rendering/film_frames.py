@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Final
 
@@ -30,7 +30,7 @@ SMALL: Final = (64, 36)
 
 def film_frames(
     motion: Motion,
-    shots: Sequence[FilmShot],
+    shots: Iterable[FilmShot],
     size: tuple[int, int],
     dressed: Callable[[int, Planes], Planes] = lambda _, picture: picture,
     role: Role = PLAIN,

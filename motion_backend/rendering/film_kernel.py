@@ -21,26 +21,53 @@ from scene_graphs.jit import compiled, filling, inlined
 
 TILE: Final = 16
 """Pixels across and down; even, as colours are halved."""
-RED, GREEN, BLUE = 0.2126, 0.7152, 0.0722
+LIGHT, BY_SUN, BY_SKY, IN_SUN, IN_SKY = 0, 3, 6, 9, 12
+"""Where in a tile what lies; three numbers each, as in `Lit`."""
+OFF_SUN, OFF_SKY = 3, 4
+"""The same in the part that is drawn."""
+RED, GREEN, BLUE = np.float32(0.2126), np.float32(0.7152), np.float32(0.0722)
 """What each adds to brightness (BT.709)."""
-BRIGHT: Final = (WHITE - BLACK) / 255
-TO_BLUE, TO_RED = 224 / 255 / 1.8556, 224 / 255 / 1.5748
+BIAS: Final = np.float32(SHADOW_BIAS)
+BRIGHT: Final = np.float32((WHITE - BLACK) / 255)
+TO_BLUE, TO_RED = np.float32(224 / 255 / 1.8556), np.float32(224 / 255 / 1.5748)
 
 
 @compiled
-def tile_bounds(places: Real) -> Real:
-    """Between which x and y of a lamp's map each tile lies: low x, high x, low y, high y. (rows, columns, 4)."""
-    height, width = places.shape[0], places.shape[1]
-    bounds = np.empty(((height + TILE - 1) // TILE, (width + TILE - 1) // TILE, 4), dtype=np.float32)
-    bounds[..., 0] = bounds[..., 2] = np.inf
-    bounds[..., 1] = bounds[..., 3] = -np.inf
+def to_tiles(lit: Lit) -> Real:
+    """A still picture's arrays side by side and tile by tile, since a body's way through them is from tile to tile.
+
+    (rows, columns, 15, TILE, TILE): light, what comes from the sun and from the sky, and the place in either's map.
+    """
+    height, width = lit.color.shape[0], lit.color.shape[1]
+    tiles = np.empty(((height + TILE - 1) // TILE, (width + TILE - 1) // TILE, 15, TILE, TILE), dtype=np.float32)
+    # The last may reach over the picture's edges, where nothing is.
+    tiles[-1], tiles[:, -1] = -np.inf, -np.inf
     for row in range(height):
         for column in range(width):
-            x, y = places[row, column, 0], places[row, column, 1]
-            if x > -np.inf:
-                tile = bounds[row // TILE, column // TILE]
-                tile[0], tile[1] = min(tile[0], x), max(tile[1], x)
-                tile[2], tile[3] = min(tile[2], y), max(tile[3], y)
+            tile, i, j = tiles[row // TILE, column // TILE], row % TILE, column % TILE
+            for k in range(3):
+                tile[LIGHT + k, i, j] = lit.color[row, column, k]
+                tile[BY_SUN + k, i, j] = lit.by_sun[row, column, k]
+                tile[BY_SKY + k, i, j] = lit.by_sky[row, column, k]
+                tile[IN_SUN + k, i, j] = lit.in_sun[row, column, k]
+                tile[IN_SKY + k, i, j] = lit.in_sky[row, column, k]
+    return tiles
+
+
+@compiled
+def tile_bounds(tiles: Real, lamp: int) -> Real:
+    """Between which x and y of a lamp's map each tile lies: low x, high x, low y, high y. (rows, columns, 4)."""
+    bounds = np.empty((*tiles.shape[:2], 4), dtype=np.float32)
+    bounds[..., 0] = bounds[..., 2] = np.inf
+    bounds[..., 1] = bounds[..., 3] = -np.inf
+    for row in range(tiles.shape[0]):
+        for column in range(tiles.shape[1]):
+            edge, xs, ys = bounds[row, column], tiles[row, column, lamp], tiles[row, column, lamp + 1]
+            for i in range(TILE):
+                for j in range(TILE):
+                    if xs[i, j] > -np.inf:
+                        edge[0], edge[1] = min(edge[0], xs[i, j]), max(edge[1], xs[i, j])
+                        edge[2], edge[3] = min(edge[2], ys[i, j]), max(edge[3], ys[i, j])
     return bounds
 
 
@@ -65,80 +92,127 @@ def body_light(
 
 
 @filling
+def light_planes(screen: Real, faces: NDArray[np.integer], light: Real, out: Array) -> None:
+    """The light on every face that shows its outside as a plane over samples x and y, out[0] + x out[1] + y out[2].
+
+    Into `out` (F, 3); all else stays.
+    """
+    for face in range(len(faces)):
+        one, two, three = faces[face, 0], faces[face, 1], faces[face, 2]
+        x, y, first = screen[one, 0], screen[one, 1], light[one]
+        bx, by, cx, cy = screen[two, 0] - x, screen[two, 1] - y, screen[three, 0] - x, screen[three, 1] - y
+        area = bx * cy - by * cx
+        if area < 0:
+            across = ((light[two] - first) * cy - (light[three] - first) * by) / area
+            down = ((light[three] - first) * bx - (light[two] - first) * cx) / area
+            out[face, 0], out[face, 1], out[face, 2] = first - x * across - y * down, across, down
+
+
+@filling
 def put_body(
-    planes: tuple[Planes, Planes, Planes], lit: Lit, bounds: tuple[Real, Real], cuttings: tuple[Cutting, Cutting],
+    planes: tuple[Planes, Planes, Planes], tiles: Real, bounds: tuple[Real, Real], cuttings: tuple[Cutting, Cutting],
     drawn: Drawn, table: Real, part: Real,
 ) -> None:  # fmt: skip
     """Draw a body and its shadows into a picture's planes; `table` has sRGB, 0 to 255, for linear light.
 
-    `part` (TILE, TILE, 3) float32 is written on.
+    `part` (5, TILE, TILE) float32 is written on: a tile's light, and the shares of the lamps' that the body keeps off.
     """
-    height, width = lit.color.shape[0], lit.color.shape[1]
-    for tile_row in range(bounds[0].shape[0]):
-        for tile_column in range(bounds[0].shape[1]):
-            top, left = TILE * tile_row, TILE * tile_column
+    height, width = planes[0].shape
+    near, far = drawn.corner, drawn.nearest.shape
+    for row in range(tiles.shape[0]):
+        for column in range(tiles.shape[1]):
+            top, left = TILE * row, TILE * column
             bottom, right = min(top + TILE, height), min(left + TILE, width)
-            sunny = _meets(bounds[0], tile_row, tile_column, cuttings[0])
-            open_ = _meets(bounds[1], tile_row, tile_column, cuttings[1])
-            near, far = drawn.corner, drawn.nearest.shape
             covered = left < near[0] + far[1] // 2 and right > near[0]
             covered = covered and top < near[1] + far[0] // 2 and bottom > near[1]
-            if not (sunny or open_ or covered):
+            if covered and _fills(drawn, top, left, bottom, right):
+                _blend(part, drawn, top, left, bottom, right)
+                to_planes(part, table, planes, top, left, bottom, right)
                 continue
-            for row in range(top, bottom):
-                for column in range(left, right):
-                    for k in range(3):
-                        part[row - top, column - left, k] = lit.color[row, column, k]
-            changed = False
-            if sunny and _cast(part, lit.by_sun, lit.in_sun, cuttings[0], top, left):
-                changed = True
-            if open_ and _cast(part, lit.by_sky, lit.in_sky, cuttings[1], top, left):
-                changed = True
-            if covered and _blend(part, drawn, top, left, bottom, right):
-                changed = True
-            if changed:
+            sunless = _keep_off(part, OFF_SUN, tiles, IN_SUN, row, column, bounds[0], cuttings[0])
+            skyless = _keep_off(part, OFF_SKY, tiles, IN_SKY, row, column, bounds[1], cuttings[1])
+            if not (sunless or skyless or covered):
+                continue
+            for k in range(3):
+                for i in range(TILE):
+                    for j in range(TILE):
+                        part[k, i, j] = tiles[row, column, LIGHT + k, i, j]
+            if sunless:
+                _darken(part, OFF_SUN, tiles, BY_SUN, row, column)
+            if skyless:
+                _darken(part, OFF_SKY, tiles, BY_SKY, row, column)
+            if (covered and _blend(part, drawn, top, left, bottom, right)) or sunless or skyless:
                 to_planes(part, table, planes, top, left, bottom, right)
 
 
 @inlined
-def _meets(bounds: Real, row: int, column: int, cutting: Cutting) -> bool:
-    """Whether a tile has places in a cutting."""
+def _keep_off(
+    part: Real, off: int, tiles: Real, place: int, row: int, column: int, bounds: Real, cutting: Cutting
+) -> bool:
+    """Which share of a lamp's light a body keeps off every pixel of a tile; whether any of it."""
     height, width = cutting.depth.shape
     left, top = cutting.corner[0], cutting.corner[1]
-    across = bounds[row, column, 1] >= left and bounds[row, column, 0] < left + width
-    return bool(across and bounds[row, column, 3] >= top and bounds[row, column, 2] < top + height)
+    found = bounds[row, column, 1] >= left and bounds[row, column, 0] < left + width
+    if found and bounds[row, column, 3] >= top and bounds[row, column, 2] < top + height:
+        found = False
+        for i in range(TILE):
+            for j in range(TILE):
+                x = tiles[row, column, place, i, j] - np.float32(left)
+                y = tiles[row, column, place + 1, i, j] - np.float32(top)
+                dark = np.float32(0)
+                if 0 <= x < width and 0 <= y < height:
+                    dark = _dark(x, y, tiles[row, column, place + 2, i, j] + BIAS, 2 * (i & 1) + (j & 1), cutting)
+                part[off, i, j] = dark
+                found = found or dark > 0
+    else:
+        found = False
+    return bool(found)
 
 
-@filling
-def _cast(part: Real, added: Real, places: Real, cutting: Cutting, top: int, left: int) -> bool:
-    """Take away the light of a lamp from a tile wherever a body stands in it; whether there is such a place."""
+@inlined
+def _dark(x: float, y: float, near: float, turn: int, cutting: Cutting) -> np.float32:
+    """The share of taps around a place in a cutting that the body is nearer to the lamp at."""
     height, width = cutting.depth.shape
-    found, taps, depth, reach = False, cutting.taps, cutting.depth, cutting.most
-    left_of, above = cutting.corner[0], cutting.corner[1]
-    for row in range(top, min(top + TILE, places.shape[0])):
-        for column in range(left, min(left + TILE, places.shape[1])):
-            x, y = places[row, column, 0] - left_of, places[row, column, 1] - above
-            if not (0 <= x < width and 0 <= y < height):
-                continue
-            near, dark = places[row, column, 2] + SHADOW_BIAS, 0
-            if reach[int(y), int(x)] < near:
-                continue
-            for tap in range(len(taps)):
-                u, v = taps[tap, 0], taps[tap, 1]
-                # Taps are turned by quarters from pixel to pixel, so that edges are dithered and not banded.
-                if column & 1:
-                    u, v = -v, u
-                if row & 1:
-                    u, v = -u, -v
-                i, j = int(y + v), int(x + u)
-                if 0 <= i < height and 0 <= j < width and depth[i, j] >= near:
-                    dark += 1
-            if dark:
-                found = True
-                share = dark / len(taps)
-                for k in range(3):
-                    part[row - top, column - left, k] -= share * added[row, column, k]
-    return found
+    across, down = np.uint32(x), np.uint32(y)
+    dark = np.float32(0)
+    # Where all around is nearer than the place, or nothing is, the taps need not be read.
+    if cutting.least[down, across] >= near:
+        dark = np.float32(1)
+    elif cutting.most[down, across] >= near:
+        taps = cutting.taps
+        for tap in range(taps.shape[1]):
+            # What is left of a cutting or above it becomes a large number.
+            across, down = np.uint32(np.int32(x + taps[turn, tap, 0])), np.uint32(np.int32(y + taps[turn, tap, 1]))
+            if across < width and down < height and cutting.depth[down, across] >= near:
+                dark += np.float32(1)
+        dark /= np.float32(taps.shape[1])
+    return dark
+
+
+@inlined
+def _darken(part: Real, off: int, tiles: Real, lamp: int, row: int, column: int) -> None:
+    """Take from a tile's light what is kept off of a lamp's."""
+    for k in range(3):
+        for i in range(TILE):
+            for j in range(TILE):
+                part[k, i, j] -= part[off, i, j] * tiles[row, column, lamp + k, i, j]
+
+
+@inlined
+def _fills(drawn: Drawn, top: int, left: int, bottom: int, right: int) -> bool:
+    """Whether a body leaves nothing to be seen of a tile."""
+    y, x = 2 * (top - drawn.corner[1]), 2 * (left - drawn.corner[0])
+    high, wide = 2 * (bottom - top), 2 * (right - left)
+    filled = y >= 0 and x >= 0 and y + high <= drawn.nearest.shape[0] and x + wide <= drawn.nearest.shape[1]
+    if filled:
+        for i in range(y, y + high):
+            for j in range(x, x + wide):
+                if drawn.nearest[i, j] < 0:
+                    filled = False
+                    break
+            if not filled:
+                break
+    return bool(filled)
 
 
 @filling
@@ -156,9 +230,9 @@ def _blend(part: Real, drawn: Drawn, top: int, left: int, bottom: int, right: in
             if face == nearest[y, x + 1] and face == nearest[y + 1, x] and face == nearest[y + 1, x + 1]:
                 if face >= 0:
                     found = True
-                    light = _light_at(face, x + 1.0, y + 1.0, drawn.screen, drawn.faces, drawn.light)
+                    light = _light_at(face, x + 1.0, y + 1.0, drawn.light)
                     for k in range(3):
-                        part[i, j, k] = light * drawn.colors[face, k]
+                        part[k, i, j] = light * drawn.colors[face, k]
                 continue
             found = True
             red = green = blue = 0.0
@@ -168,27 +242,20 @@ def _blend(part: Real, drawn: Drawn, top: int, left: int, bottom: int, right: in
                 if face >= 0:
                     rest -= 1
                     across, down = x + sample % 2 + 0.5, y + sample // 2 + 0.5
-                    light = _light_at(face, across, down, drawn.screen, drawn.faces, drawn.light)
+                    light = _light_at(face, across, down, drawn.light)
                     red += light * drawn.colors[face, 0]
                     green += light * drawn.colors[face, 1]
                     blue += light * drawn.colors[face, 2]
-            part[i, j, 0] = (rest * part[i, j, 0] + red) / 4
-            part[i, j, 1] = (rest * part[i, j, 1] + green) / 4
-            part[i, j, 2] = (rest * part[i, j, 2] + blue) / 4
+            part[0, i, j] = (rest * part[0, i, j] + red) / 4
+            part[1, i, j] = (rest * part[1, i, j] + green) / 4
+            part[2, i, j] = (rest * part[2, i, j] + blue) / 4
     return found
 
 
 @inlined
-def _light_at(face: int, x: float, y: float, screen: Real, faces: NDArray[np.integer], light: Real) -> float:
-    """The light on a face at a sample, from that on its corners."""
-    one, two, three = faces[face, 0], faces[face, 1], faces[face, 2]
-    ax, ay = screen[one, 0], screen[one, 1]
-    bx, by = screen[two, 0] - ax, screen[two, 1] - ay
-    cx, cy = screen[three, 0] - ax, screen[three, 1] - ay
-    area = bx * cy - by * cx
-    b = ((x - ax) * cy - (y - ay) * cx) / area
-    c = (bx * (y - ay) - by * (x - ax)) / area
-    return float((1 - b - c) * light[one] + b * light[two] + c * light[three])
+def _light_at(face: int, x: float, y: float, light: Array) -> float:
+    """The light on a face at a sample."""
+    return float(light[face, 0] + x * light[face, 1] + y * light[face, 2])
 
 
 @filling
@@ -196,18 +263,19 @@ def to_planes(
     part: Real, table: Real, planes: tuple[Planes, Planes, Planes], top: int, left: int, bottom: int, right: int
 ) -> None:
     """Linear light of a part of a picture, all of its sides even, into planes; see `put_body`."""
-    last = len(table) - 1
+    last, half, none, all_ = np.float32(len(table) - 1), np.float32(0.5), np.float32(0), np.float32(1)
+    quarter, black, grey = np.float32(0.25), np.float32(BLACK + 0.5), np.float32(GREY + 0.5)
     bright, blues, reds = planes
     for row in range(top, bottom, 2):
         for column in range(left, right, 2):
-            red = green = blue = 0.0
+            red = green = blue = none
             for sample in range(4):
                 i, j = row + sample // 2, column + sample % 2
-                r = table[int(min(max(part[i - top, j - left, 0], 0.0), 1.0) * last + 0.5)]
-                g = table[int(min(max(part[i - top, j - left, 1], 0.0), 1.0) * last + 0.5)]
-                b = table[int(min(max(part[i - top, j - left, 2], 0.0), 1.0) * last + 0.5)]
-                bright[i, j] = int(BLACK + 0.5 + BRIGHT * (RED * r + GREEN * g + BLUE * b))
-                red, green, blue = red + r / 4, green + g / 4, blue + b / 4
-            grey = RED * red + GREEN * green + BLUE * blue
-            blues[row // 2, column // 2] = int(GREY + 0.5 + TO_BLUE * (blue - grey))
-            reds[row // 2, column // 2] = int(GREY + 0.5 + TO_RED * (red - grey))
+                r = table[np.uint32(min(max(part[0, i - top, j - left], none), all_) * last + half)]
+                g = table[np.uint32(min(max(part[1, i - top, j - left], none), all_) * last + half)]
+                b = table[np.uint32(min(max(part[2, i - top, j - left], none), all_) * last + half)]
+                bright[i, j] = np.uint8(black + BRIGHT * (RED * r + GREEN * g + BLUE * b))
+                red, green, blue = red + r, green + g, blue + b
+            level = RED * red + GREEN * green + BLUE * blue
+            blues[row // 2, column // 2] = np.uint8(grey + TO_BLUE * quarter * (blue - level))
+            reds[row // 2, column // 2] = np.uint8(grey + TO_RED * quarter * (red - level))

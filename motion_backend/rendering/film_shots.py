@@ -64,13 +64,17 @@ class FilmShot:
     """What it sees of the home."""
 
 
-def film_shots(home: Home, motion: Motion, starts: Sequence[int], aspect: float) -> list[FilmShot]:
-    """The shots of a whole motion whose actions begin at these frames; pictures are `aspect` times as wide as high."""
+def film_shots(home: Home, motion: Motion, starts: Sequence[int], aspect: float) -> Iterator[FilmShot]:
+    """The shots of a whole motion whose actions begin at these frames; pictures are `aspect` times as wide as high.
+
+    Each is chosen when it is asked for, while the one before is being drawn.
+    """
     director = _Director(home, motion, motion.joint_positions().astype(np.float64), tuple(home_props(home)), aspect)
-    shots: list[FilmShot] = []
+    before = None
     for start, stop in _windows(motion, starts):
-        shots.append(director.shot(start, stop, shots[-1].camera if shots else None))
-    return shots
+        shot = director.shot(start, stop, before)
+        yield shot
+        before = shot.camera
 
 
 def _windows(motion: Motion, starts: Sequence[int]) -> Iterator[tuple[int, int]]:

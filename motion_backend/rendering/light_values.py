@@ -31,11 +31,11 @@ class Shading(NamedTuple):
 
     matrix: Array
     """A point p in the map is matrix @ (p, 1): x, y and nearness. (3, 4)."""
-    depth: Array
-    """The nearness of what the lamp meets first. (pixels, pixels)."""
-    most: Array
-    least: Array
-    """The greatest and the least of it around each pixel, as far as its taps reach. (pixels, pixels) each."""
+    depth: Real
+    """The nearness of what the lamp meets first. (pixels, pixels) float32."""
+    most: Real
+    least: Real
+    """The greatest and the least of it around each pixel, as far as its taps reach. (pixels, pixels) float32 each."""
     taps: Real
     """Where the map is read around a place, in pixels. (K, 2) float32."""
     direction: Array
@@ -82,26 +82,23 @@ class Cutting(NamedTuple):
 
     corner: Ints
     """Its upper left pixel, x and y."""
-    depth: Array
-    """(h, w)."""
-    most: Array
-    """The greatest depth around each pixel, as far as its taps reach. (h, w)."""
+    depth: Real
+    """(h, w) float32."""
+    most: Real
+    least: Real
+    """The greatest and the least depth around each pixel, as far as its taps reach. (h, w) float32 each."""
     taps: Real
-    """Where it is read around a place. (K, 2) float32."""
+    """Where it is read around a place, for each of four pixels in a square. (4, K, 2) float32."""
 
 
 class Drawn(NamedTuple):
     """A body in the picture."""
 
-    nearest: Ints
+    nearest: NDArray[np.int32]
     """Its faces where they are nearest, else -1; four samples a pixel. (2 h, 2 w)."""
     corner: Ints
     """The pixel in their upper left, x and y."""
-    screen: Real
-    """Where its vertices are, in samples from that corner, and how near. (V, 3)."""
-    faces: NDArray[np.integer]
-    """(F, 3)."""
-    light: Real
-    """On its vertices. (V,) float32."""
+    light: Array
+    """On its faces as planes over samples from that corner; see `film_kernel.light_planes`. (F, 3)."""
     colors: Real
     """Of its faces, linear. (F, 3) float32."""

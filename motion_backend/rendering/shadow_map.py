@@ -51,8 +51,8 @@ class ShadowMap:
     lamp: Lamp
     view: Camera
     """A parallel view from the light."""
-    depth: Array
-    """The nearness of what it meets in every pixel. (pixels, pixels)."""
+    depth: Real
+    """The nearness of what it meets in every pixel. (pixels, pixels) float32."""
 
     @staticmethod
     def of(lamp: Lamp, corners: Array, camera: Camera) -> ShadowMap:
@@ -66,12 +66,12 @@ class ShadowMap:
         draw(view.project(view.view(corners), depth.shape), np.full(len(corners), 4), 0, nearest, depth)
         # Nothing casts a shadow on what lies beyond the map: points there read its border.
         depth[[0, -1]] = depth[:, [0, -1]] = -np.inf
-        return ShadowMap(lamp, view, depth)
+        return ShadowMap(lamp, view, depth.astype(np.float32))
 
     @staticmethod
     def empty(lamp: Lamp, camera: Camera) -> ShadowMap:
         """Of nothing: all is lit."""
-        return ShadowMap(lamp, Camera(camera.eye, camera.target, span=1.0), np.full((1, 1), -np.inf))
+        return ShadowMap(lamp, Camera(camera.eye, camera.target, span=1.0), np.full((1, 1), -np.inf, dtype=np.float32))
 
     @cached_property
     def matrix(self) -> Array:
@@ -92,17 +92,24 @@ class ShadowMap:
         assert self.view.span is not None
         return (self.lamp.taps * (self.lamp.blur * self.lamp.pixels / self.view.span)).astype(np.float32)
 
+    @cached_property
+    def dithered_taps(self) -> Real:
+        """The same, turned by quarters for each of four pixels in a square, so that edges are dithered and not banded.
+        (4, K, 2)."""
+        quarter = np.array([[0, 1], [-1, 0]], dtype=np.float32)
+        return np.stack([self.taps, self.taps @ quarter, -self.taps, -self.taps @ quarter])
+
     @property
     def margin(self) -> int:
         """Pixels around a place that its taps reach."""
-        return int(np.ceil(np.hypot(*self.taps.T).max())) + 1
+        return int(np.ceil(np.hypot(*self.taps.T).max()))
 
     @cached_property
     def shading(self) -> Shading:
         """The same for compiled code."""
         return self.shading_of(self.depth, self.matrix)
 
-    def shading_of(self, depth: Array, matrix: Array) -> Shading:
+    def shading_of(self, depth: Real, matrix: Array) -> Shading:
         """The same for another map of the lamp: a part of it, with more in it."""
         from motion_backend.rendering.surface_light import extremes
 

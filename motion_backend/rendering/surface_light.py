@@ -167,7 +167,7 @@ def _grid(x: float, z: float, distance: float, step: float) -> float:
 
 
 @compiled
-def extremes(depth: Array, margin: int) -> tuple[Array, Array]:
+def extremes(depth: Real, margin: int) -> tuple[Real, Real]:
     """The greatest and the least value of a map within so many pixels, across and down, of every one."""
     height, width = depth.shape
     over, under = np.empty_like(depth), np.empty_like(depth)

@@ -104,15 +104,24 @@ def act(keyframes: Sequence[Json], **options: Unpack[MotionOptions]) -> Call[Sto
 
 
 def take(
-    story_id: str, keyframes: Sequence[Json] | None = None, home: Json | None = None, **options: Unpack[Options]
+    story_id: str,
+    keyframes: Sequence[Json] | None = None,
+    home: Json | None = None,
+    layouts: Sequence[str] = (),
+    **options: Unpack[Options],
 ) -> Call[Story]:
     """Derive a story from a story: with another script, home, seed, backend or character; all else stays as it was.
 
     `keyframes` is the whole script as it is to be: those of the story by their `index`, changed or not, and new ones.
+    Instead of a whole `home`, `layouts` names rooms of the library.
     ApiError 409 before the story has its home.
     """
     script = None if keyframes is None else list(keyframes)
-    return _made(_at("stories", story_id, "takes"), _given(keyframes=script, home=home), dict(options))
+    return _made(
+        _at("stories", story_id, "takes"),
+        _given(keyframes=script, home=home, layouts=list(layouts) or None),
+        dict(options),
+    )
 
 
 def _made(path: str, body: Json, options: Json) -> Call[Story]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -40,6 +40,12 @@ WORDS_END, TITLE_END = 0.94, 0.58
 """Where in the picture's height they end."""
 SHADE: Final = 0.62
 """How much of a picture's light stays under its words."""
+READ: Final = (3.0, 2.0, 7.0)
+"""Seconds that words are shown at least and at most, and besides those that their letters ask for."""
+LETTERS: Final = 10.0
+"""Read in a second."""
+SHORTEST: Final = 1.5
+"""Seconds between two that follow each other."""
 SENTENCE: Final = re.compile(r"[^.!?…]+[.!?…]*[\"”’']*\s*")
 
 
@@ -88,7 +94,7 @@ def write_film(
     check_film()
     motion, told = filmed.motion, filmed.told
     shots = film_shots(filmed.home, motion, [start for start, _ in filmed.segments], size[0] / size[1])
-    words = [(line, _lettered(line.text, size, TEXT_HEIGHT)) for line in subtitles(told, filmed.segments)]
+    words = [(line, _lettered(line.text, size, TEXT_HEIGHT)) for line in subtitles(told, filmed.segments, motion.fps)]
     title = _lettered(told.title, size, TITLE_HEIGHT)
     titled = round(TITLE_SECONDS * motion.fps)
 
@@ -108,30 +114,68 @@ def write_film(
     return write_mp4(counted(), path, motion.fps)
 
 
-def subtitles(told: Told, segments: Sequence[tuple[int, int]]) -> list[Subtitle]:
-    """The told sentences, each from the first frame of what it tells until the next one begins.
+def subtitles(told: Told, segments: Sequence[tuple[int, int]], fps: int) -> list[Subtitle]:
+    """The told words, each half of its reading time before its last keyframe: there what it tells is reached.
 
-    Sentences that tell no keyframe are shown with the one that follows. `segments` are frames of keyframes.
+    What tells no keyframe is shown with what follows, and what is done at nearly the same time together. `segments` are
+    frames of keyframes.
     """
-    begun: list[tuple[int, str]] = []
+    begun: list[_Line] = []
     waiting = ""
-    for sentence in SENTENCE.finditer(told.text):
-        waiting += sentence.group()
-        shown = [k for span in told.spans if sentence.start() <= span.start < sentence.end() for k in span.keyframes]
-        if shown:
-            begun.append((segments[min(shown)][0], waiting))
-            waiting = ""
+    for text, keyframes in _pieces(told):
+        waiting += text
+        if not keyframes:
+            continue
+        start, aim = segments[min(keyframes)][0], segments[max(keyframes)][0]
+        if begun and start - begun[-1].start < SHORTEST * fps:
+            begun[-1] = _Line(begun[-1].start, aim, begun[-1].text + waiting)
+        else:
+            begun.append(_Line(start, aim, waiting))
+        waiting = ""
     if waiting and begun:
-        begun[-1] = (begun[-1][0], begun[-1][1] + waiting)
-    if not begun:
-        return []
-    stops = [*(start for start, _ in begun[1:]), segments[-1][1]]
+        begun[-1] = replace(begun[-1], text=begun[-1].text + waiting)
+    starts = [max(line.start, line.aim - round(line.seconds / 2 * fps)) for line in begun]
     return [
-        piece
-        for (start, text), stop in zip(begun, stops, strict=True)
+        Subtitle(page.start, min(page.stop, page.start + round(_read(page.text) * fps)), page.text)
+        for line, start, stop in zip(begun, starts, [*starts[1:], segments[-1][1]], strict=False)
         if stop > start
-        for piece in _pages(start, stop, text)
+        for page in _pages(start, stop, line.text)
     ]
+
+
+@dataclass(frozen=True)
+class _Line:
+    """Words, the frame where what they tell begins, and that where the last of it does."""
+
+    start: int
+    aim: int
+    text: str
+
+    @property
+    def seconds(self) -> float:
+        """That all of its pages are read in."""
+        return sum(_read(page.text) for page in _pages(0, 0, self.text))
+
+
+def _pieces(told: Told) -> Iterator[tuple[str, list[int]]]:
+    """The told text sentence by sentence, and in one that tells of several keyframes what tells of each; with these."""
+    for sentence in SENTENCE.finditer(told.text):
+        spans = [span for span in told.spans if sentence.start() <= span.start < sentence.end()]
+        start = sentence.start()
+        for span, following in zip_longest(spans, spans[1:]):
+            stop = sentence.end()
+            if following is not None:
+                # A comma stays with what is before it, an "and" goes with what follows.
+                stop = max(told.text.find(" ", span.end, following.start), span.end)
+            yield told.text[start:stop], list(span.keyframes)
+            start = stop
+        if not spans:
+            yield sentence.group(), []
+
+
+def _read(text: str) -> float:
+    """Seconds in which words are read at ease, once more where one looked away."""
+    return min(max(READ[0], READ[1] + len(text) / LETTERS), READ[2])
 
 
 def _pages(start: int, stop: int, text: str) -> Iterator[Subtitle]:

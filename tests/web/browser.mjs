@@ -97,16 +97,19 @@ export async function holding(worker, act) {
 /** A rectangle of the window as a PNG in base64. */
 export const shoot = async (page, clip) => (await page.screenshot({ clip })).toString("base64");
 
-/** Wait until the picture no longer changes by itself: walls have sunk, the camera has come to rest. */
+/** Wait until nothing is drawn any more; walls, light and camera go there at once, as for who wants it still. */
 export async function settle(page) {
-  const deadline = performance.now() + PATIENCE;
-  const clip = await page.locator(".picture").boundingBox();
-  let [before, now] = [null, await shoot(page, clip)];
-  while (now !== before) {
-    if (performance.now() > deadline) throw new Error("the picture does not come to rest");
-    await page.waitForTimeout(300);
-    [before, now] = [now, await shoot(page, clip)];
-  }
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await page.evaluate(async (patience) => {
+    const deadline = performance.now() + patience;
+    for (let [last, still] = [-1, 0]; still < 5; ) {
+      if (performance.now() > deadline) throw new Error("the picture does not come to rest");
+      await new Promise(requestAnimationFrame);
+      const { pictures } = window.sims.state();
+      [last, still] = [pictures, pictures === last ? still + 1 : 0];
+    }
+  }, PATIENCE);
+  await page.emulateMedia({ reducedMotion: "no-preference" });
 }
 
 /** Of pictures of one size: the colours of the first, to 32 steps a channel, and the share of pixels in which each differs from it. */

@@ -96,6 +96,13 @@ def story(watched: dict[str, Any], client: httpx.Client) -> dict[str, Any]:
     return finished(client, watched["story"])
 
 
+@pytest.fixture(scope="module")
+def brief(visit: Visit, client: httpx.Client) -> dict[str, Any]:
+    """A short story, made."""
+    assert visit
+    return finished(client, client.post("/v1/stories", json={"theme": BRIEF}).raise_for_status().json()["id"])
+
+
 def words(text: str) -> str:
     """Text without regard to how it is broken into lines."""
     return " ".join(text.split())
@@ -326,11 +333,32 @@ def _looked_at(told: dict[str, Any], room_id: str, client: httpx.Client) -> None
     assert [f"/{address}" for address in told["files"]] == [*drawings, links["scene"], links["self"]]
 
 
+def test_a_home_is_brought_in_beside_the_script_and_both_films_play_side_by_side(
+    visit: Visit, brief: dict[str, Any], client: httpx.Client
+) -> None:
+    refused = ("422 /v1/layouts", f"422 /v1/stories/{brief['id']}/takes")
+    told = visit("elsewhere", brief["id"], refused=refused)
+    moved = told["moved"]
+    assert "there is no such room" in moved["unknown"].lower()
+    assert "/floor_polygon: " in moved["spoiled"]["words"], "which field is wrong"
+    assert "page-den is in the library" in moved["own"]["words"]
+    assert (moved["own"]["rooms"], moved["layouts"]) == ("page-den", ["page-den"])
+    assert (moved["wrong"], moved["sideways"]) == ([], 0)
+    take = finished(client, moved["take"])
+    assert (take["state"], take["derived_from"]) == ("succeeded", brief["id"])
+    assert [room["layout_id"] for room in take["home"]["rooms"]] == ["page-den"]
+    both = told["both"]
+    assert [head.split(" ")[1] for head in both["heads"]] == ["story", "take"]
+    assert "What differs" in both["differs"]
+    assert both["sideways"] <= 0
+    client.delete("/v1/layouts/page-den").raise_for_status()
+
+
 def test_a_story_is_filmed_at_a_click_and_shows_the_body_moving(
-    visit: Visit, client: httpx.Client, tmp_path: Path
+    visit: Visit, brief: dict[str, Any], tmp_path: Path
 ) -> None:
     av = pytest.importorskip("av")
-    story = finished(client, client.post("/v1/stories", json={"theme": BRIEF}).raise_for_status().json()["id"])
+    story = brief
     done = visit("filming", story["id"], str(tmp_path))
     assert done["name"].endswith(".mp4")
     assert done["seen"] == sorted(done["seen"]), "it never goes back"

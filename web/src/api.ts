@@ -253,6 +253,8 @@ export interface NewTake {
   keyframes: readonly { index?: number; skill: Skill; emotion: string; caption: string; furniture: string; object_id?: string }[];
   seed: number;
   backend: string;
+  /** Rooms of the library to play in instead. */
+  layouts?: readonly string[];
 }
 
 /** Derive a story from a story. The same key posted again makes no second one. */

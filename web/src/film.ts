@@ -123,6 +123,11 @@ export class Film {
     this.#stage?.cut();
   }
 
+  /** How many pictures were drawn. */
+  get pictures(): number {
+    return this.#stage?.pictures ?? 0;
+  }
+
   /** World positions of the joints, as drawn; from the skeleton alone where nothing is drawn. */
   joints(): Point3[] {
     if (this.#stage?.hasBody) return this.#stage.joints();
@@ -164,7 +169,6 @@ export class Film {
       this.#withoutPicture(error);
       return null;
     }
-    this.#stage.cameraMan.calm = isStill();
     const watch = new ResizeObserver(() => this.#stage?.resize(this.#holder.clientWidth, this.#holder.clientHeight));
     watch.observe(this.#holder);
     this.#ends.push(() => watch.disconnect());
@@ -262,6 +266,7 @@ export class Film {
     if (this.#opened) {
       this.player.advance(seconds);
       this.#tick();
+      if (this.#stage) this.#stage.cameraMan.calm = isStill();
       if (this.#visible) this.#stage?.render(seconds, this.player.state === "playing");
     }
     requestAnimationFrame((time) => this.#loop(time));

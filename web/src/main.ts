@@ -117,6 +117,8 @@ interface Seen {
   readyFrames: number;
   framesTotal: number;
   keyframe: number | null;
+  /** How many pictures were drawn: it stands still while nothing moves. */
+  pictures: number;
   joints(): Point3[];
   pixels(): Point2[];
   camera: { mode: string; position: Point3 | null } | null;
@@ -133,6 +135,7 @@ function seen(): Seen {
     readyFrames: film?.reel.track.ready ?? 0,
     framesTotal: view?.story?.motion.frames ?? 0,
     keyframe: film?.keyframe ?? null,
+    pictures: film?.pictures ?? 0,
     joints: () => film?.joints() ?? [],
     pixels: () => film?.pixels() ?? [],
     camera: film?.camera ?? null,

@@ -95,6 +95,17 @@ export function listRooms(type: string, cursor: string | null, signal: AbortSign
   return json(`v1/layouts?${query}`, { signal });
 }
 
+/** The ids of all rooms. */
+export async function allRooms(): Promise<readonly string[]> {
+  const ids: string[] = [];
+  for (let next: string | null = ""; next !== null; ) {
+    const page: { items: RoomSummary[]; next: string | null } = await json(`v1/layouts?limit=100${next ? `&cursor=${encodeURIComponent(next)}` : ""}`);
+    ids.push(...page.items.map(({ id }) => id));
+    next = page.next;
+  }
+  return ids;
+}
+
 export const getRoom = (id: string, signal?: AbortSignal): Promise<Room> => json(roomUrl(id), signal ? { signal } : {});
 
 export async function findRooms(graph: Query, rooms: readonly string[], most: number, signal: AbortSignal): Promise<readonly Match[]> {

@@ -1,6 +1,6 @@
 /** A story's script while it is being changed: plain values, and every change a new list. */
 
-import type { Keyframe, Skill } from "./api";
+import type { Keyframe, NewTake, Skill } from "./api";
 
 /** A keyframe as somebody wants it. */
 export interface Draft {
@@ -12,6 +12,9 @@ export interface Draft {
   readonly furniture: string;
   readonly object_id: string | null;
 }
+
+/** The same as the service is told it. */
+export type Wanted = NewTake["keyframes"][number];
 
 export type Script = readonly Draft[];
 
@@ -50,6 +53,17 @@ export function moved(script: Script, at: number, by: -1 | 1): Script {
 
 /** With a new keyframe behind a place. */
 export const added = (script: Script, behind: number, draft: Draft): Script => [...script.slice(0, behind + 1), draft, ...script.slice(behind + 1)];
+
+/** The rooms that a line of text names. */
+export const roomsNamed = (line: string): readonly string[] => line.split(/[\s,]+/).filter(Boolean);
+
+/** What a keyframe is sent as: in another home (`elsewhere`) by words alone, since no object is there; `nameOf` has them. */
+export function sent({ index, object_id, furniture, ...words }: Draft, elsewhere: boolean, nameOf: (id: string) => string): Wanted {
+  const there = object_id === null || elsewhere ? {} : { object_id };
+  // What was put at another object has no word yet.
+  const named = elsewhere && object_id !== null && furniture === "floor" ? nameOf(object_id) : furniture;
+  return { ...words, furniture: named, ...(index === null ? {} : { index }), ...there };
+}
 
 /** The first place at which two scripts differ; null where they are the same. */
 export function firstChange(script: Script, before: Script): number | null {

@@ -4,7 +4,9 @@ import { ApiError, getHome, postTake, type Skill, type Story } from "./api";
 import { fill, h, icon, type Icon } from "./dom";
 import { EMOTIONS } from "./emotions";
 import { announce } from "./live";
-import { added, changed, draftOf, dropped, firstChange, moved, placed, type Draft, type Script } from "./script-draft";
+import { allRooms } from "./room-api";
+import { added, changed, draftOf, dropped, firstChange, moved, placed, roomsNamed, sent, type Draft, type Script } from "./script-draft";
+import { Upload } from "./upload";
 import { Vocabulary, type Thing } from "./vocabulary";
 import { capital, SKILL_WORDS } from "./words";
 
@@ -16,7 +18,12 @@ interface Wanted {
   readonly script: Script;
   readonly seed: string;
   readonly backend: string;
+  /** Rooms of the library to play in, as they are written; empty: the home that it has. */
+  readonly rooms: string;
 }
+
+/** What comes of it: the take, its first moment that is another, and whether it plays in another home. */
+type Played = (take: Story, from: number, elsewhere: boolean) => void;
 
 export class ScriptEditor {
   readonly element: HTMLElement = h("div", { class: "editor", role: "group", "aria-label": "Change the script" });
@@ -25,7 +32,7 @@ export class ScriptEditor {
   readonly #things: readonly Thing[];
   readonly #before: Wanted;
   readonly #past: Wanted[] = [];
-  readonly #played: (take: Story, from: number) => void;
+  readonly #played: Played;
   readonly #left: () => void;
   readonly #list = h("ol", { class: "drafts" });
   readonly #problem = h("p", { class: "wrong", role: "alert", hidden: true });
@@ -33,30 +40,35 @@ export class ScriptEditor {
   readonly #play = h("button", { type: "button", class: "primary", onclick: () => void this.#send() }, "Play this");
   readonly #seed: HTMLInputElement;
   readonly #backend: HTMLSelectElement;
+  readonly #rooms: HTMLInputElement;
+  readonly #known = h("datalist", { id: "take-rooms" });
   #now: Wanted;
   #key = newKey();
 
-  /** `played` is told of the take that was begun and of its first moment that is another; `left` when all stays as it is. */
-  static async open(story: Story, played: (take: Story, from: number) => void, left: () => void): Promise<ScriptEditor> {
+  /** `played` is told of the take that was begun; `left` when all stays as it is. */
+  static async open(story: Story, played: Played, left: () => void): Promise<ScriptEditor> {
     const [words, home] = await Promise.all([Vocabulary.load(), getHome(story.id)]);
     return new ScriptEditor(story, words, words.things(home), played, left);
   }
 
-  private constructor(story: Story, words: Vocabulary, things: readonly Thing[], played: (take: Story, from: number) => void, left: () => void) {
+  private constructor(story: Story, words: Vocabulary, things: readonly Thing[], played: Played, left: () => void) {
     [this.#story, this.#words, this.#things, this.#played, this.#left] = [story, words, things, played, left];
-    this.#now = this.#before = { script: draftOf(story.keyframes), seed: String(story.seed), backend: story.backend };
+    this.#now = this.#before = { script: draftOf(story.keyframes), seed: String(story.seed), backend: story.backend, rooms: "" };
     this.#seed = h("input", { id: "take-seed", type: "number", min: 0, step: 1, inputmode: "numeric", onchange: () => this.#stage({ seed: this.#seed.value }) });
     this.#backend = h("select", { id: "take-backend", onchange: () => this.#stage({ backend: this.#backend.value }) }, ...words.backends.map((one) => h("option", { value: one.backend, title: one.about }, one.backend)));
+    this.#rooms = h("input", { id: "take-home", class: "home", list: "take-rooms", placeholder: "the home it has", autocomplete: "off", spellcheck: false, onfocus: () => void this.#name(), oninput: () => (this.#play.disabled = false), onchange: () => this.#stage({ rooms: this.#rooms.value.trim() }) });
+    const upload = new Upload((ids) => this.#stage({ rooms: ids.join(", ") }));
     const leave = h("button", { type: "button", class: "plain small", onclick: () => this.#left() }, "Leave it");
     fill(
       this.element,
       h("div", { class: "row editor-head" }, h("h2", {}, "Change the script"), leave),
       this.#list,
-      h("div", { class: "staging" }, h("label", { for: "take-seed" }, "Seed"), this.#seed, h("label", { for: "take-backend" }, "Moved by"), this.#backend),
+      h("div", { class: "staging" }, h("label", { for: "take-seed" }, "Seed"), this.#seed, h("label", { for: "take-backend" }, "Moved by"), this.#backend, h("label", { for: "take-home" }, "Played in"), this.#rooms, this.#known),
+      upload.element,
       h("div", { class: "editor-foot" }, this.#problem, h("div", { class: "row" }, this.#play, this.#undo)),
     );
     this.element.addEventListener("keydown", (event) => {
-      if (event.key !== "z" || !(event.ctrlKey || event.metaKey) || event.shiftKey || event.target === this.#seed) return;
+      if (event.key !== "z" || !(event.ctrlKey || event.metaKey) || event.shiftKey || event.target === this.#seed || event.target === this.#rooms) return;
       event.preventDefault();
       this.#back();
     });
@@ -65,6 +77,12 @@ export class ScriptEditor {
 
   focus(): void {
     this.#list.querySelector("select")?.focus();
+  }
+
+  /** Offer the rooms there are. */
+  async #name(): Promise<void> {
+    if (this.#known.childElementCount) return;
+    fill(this.#known, ...(await allRooms()).map((id) => h("option", { value: id })));
   }
 
   /** Another script, said aloud; the place that has the focus keeps it. */
@@ -98,6 +116,7 @@ export class ScriptEditor {
     fill(this.#list, ...this.#now.script.map((draft, at) => this.#row(draft, at)));
     this.#seed.value = this.#now.seed;
     this.#backend.value = this.#now.backend;
+    this.#rooms.value = this.#now.rooms;
     const untouched = this.#from() === null;
     this.#undo.disabled = this.#past.length === 0 && !this.#story.derived_from;
     this.#play.disabled = untouched;
@@ -184,7 +203,7 @@ export class ScriptEditor {
 
   /** The first moment that is another; 0 where the staging is; null where nothing is. */
   #from(): number | null {
-    const staged = this.#now.seed !== this.#before.seed || this.#now.backend !== this.#before.backend;
+    const staged = this.#now.seed !== this.#before.seed || this.#now.backend !== this.#before.backend || this.#now.rooms !== "";
     return staged ? 0 : firstChange(this.#now.script, this.#before.script);
   }
 
@@ -194,9 +213,10 @@ export class ScriptEditor {
     this.#play.disabled = true;
     try {
       const { script, seed, backend } = this.#now;
-      const keyframes = script.map(({ index, object_id, ...words }) => ({ ...words, ...(index === null ? {} : { index }), ...(object_id === null ? {} : { object_id }) }));
-      const take = await postTake(this.#story.id, { keyframes, seed: Number(seed || 0), backend }, this.#key);
-      this.#played(take, Math.min(from, script.length - 1));
+      const layouts = roomsNamed(this.#now.rooms);
+      const keyframes = script.map((draft) => sent(draft, layouts.length > 0, (id) => this.#nameOf(id)));
+      const take = await postTake(this.#story.id, { keyframes, seed: Number(seed || 0), backend, ...(layouts.length ? { layouts } : {}) }, this.#key);
+      this.#played(take, Math.min(from, script.length - 1), layouts.length > 0);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this.#explain(error);
@@ -208,7 +228,12 @@ export class ScriptEditor {
   #explain(error: ApiError): void {
     let first: HTMLElement | null = null;
     const left: string[] = [];
+    this.#rooms.removeAttribute("aria-invalid");
     for (const { pointer, detail } of error.errors) {
+      if (pointer.startsWith("/layouts")) {
+        this.#rooms.setAttribute("aria-invalid", "true");
+        first ??= this.#rooms;
+      }
       const [, at, field] = /^\/keyframes\/(\d+)\/(\w+)$/.exec(pointer) ?? [];
       const row = at === undefined ? undefined : this.#list.children[Number(at)];
       const control = row?.querySelector<HTMLElement>(`[data-field="${field === "furniture" ? "object_id" : field}"]`) ?? row?.querySelector("select");

@@ -40,6 +40,8 @@ export class Stage {
   asleep = false;
   /** Set to have the next picture drawn. */
   dirty = true;
+  /** How many were drawn. */
+  pictures = 0;
   readonly #renderer = lend();
   readonly #scene = new Scene();
   readonly #lighting = new Lighting(this.#scene);
@@ -180,7 +182,7 @@ export class Stage {
     const pace = this.cameraMan.calm ? 1 : step;
     if (this.#cutaway?.update(eye, this.#chest, pace)) this.dirty = true;
     if (this.#fading?.update(eye, this.#body, pace)) this.dirty = true;
-    if (this.#lighting.drift(step)) this.dirty = true;
+    if (this.#lighting.drift(this.cameraMan.calm ? Infinity : step)) this.dirty = true;
     if (this.#face?.update(playing ? step : 0, this.emotion, this.asleep, this.cameraMan.calm || !playing)) this.dirty = true;
     if (!this.dirty) return;
     this.#draw();
@@ -188,6 +190,7 @@ export class Stage {
   }
 
   #draw(): void {
+    this.pictures++;
     this.dirty = false;
     this.#lighting.aim(this.#chest);
     this.#renderer.render(this.#scene, this.cameraMan.camera);

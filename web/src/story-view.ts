@@ -155,7 +155,7 @@ export class StoryView {
         this.#change.disabled = false;
         this.#change.focus();
       };
-      const editor = await ScriptEditor.open(this.#story, (take, from) => this.#goOn(take.id, from), close);
+      const editor = await ScriptEditor.open(this.#story, (take, from, elsewhere) => this.#goOn(take.id, from, elsewhere), close);
       if (!this.#live) return;
       this.element.classList.add("editing");
       fill(this.#book, editor.element);
@@ -168,8 +168,8 @@ export class StoryView {
     }
   }
 
-  #goOn(id: string, from: number): void {
-    this.#near.add(id);
+  #goOn(id: string, from: number, elsewhere: boolean): void {
+    if (!elsewhere) this.#near.add(id);
     location.hash = `#/stories/${id}?from=${from}`;
   }
 

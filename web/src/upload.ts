@@ -1,5 +1,6 @@
 /** A room of one's own: a file and its format go to the service, and what it made of them is told. */
 
+import "./style/upload.css";
 import { ApiError } from "./api";
 import { fill, h } from "./dom";
 import { listing } from "./furniture-words";
@@ -24,7 +25,7 @@ const GLANCE = 1 << 16;
 
 export class Upload {
   readonly element: HTMLDetailsElement;
-  readonly #added: () => void;
+  readonly #added: (ids: readonly string[]) => void;
   readonly #file = h("input", { id: "scene", name: "scene", type: "file", required: true, accept: ".json,.jsonl,.gz,.glb,.obj" });
   readonly #format = h("select", { id: "format", name: "format" }, ...FORMATS.map(([value, words]) => h("option", { value }, words)));
   readonly #axes: HTMLElement;
@@ -32,8 +33,8 @@ export class Upload {
   readonly #answer = h("div", { class: "import-answer", role: "status" });
   readonly #form: HTMLFormElement;
 
-  /** `added` is called when the library has become larger. */
-  constructor(added: () => void) {
+  /** `added` is told which rooms are new in the library. */
+  constructor(added: (ids: readonly string[]) => void) {
     this.#added = added;
     const choose = (name: string, words: string, options: readonly (readonly [string, string])[]): HTMLElement =>
       h("div", { class: "field" }, h("label", { for: `scene-${name}` }, words), h("select", { id: `scene-${name}`, name }, ...options.map(([value, said]) => h("option", { value }, said))));
@@ -92,7 +93,7 @@ export class Upload {
       const answer = await postRooms(file, format, { ...name, ...(Object.fromEntries(said) as Record<string, string>) });
       fill(this.#answer, ...("items" in answer ? report(answer) : welcome(answer)));
       announce("It is in the library");
-      this.#added();
+      this.#added("items" in answer ? answer.items.map(({ id }) => id) : [answer.id]);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.status === 401) window.dispatchEvent(new Event("sims-login"));

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import uuid
+from collections.abc import Sequence
 from typing import Annotated, Final, Literal
 
 from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
@@ -80,7 +81,7 @@ def _wanted(ask: StoryAsk, parts: Parts) -> StoryRequest:
     return StoryRequest(
         theme=clean(ask.theme),
         rooms=tuple(ask.rooms),
-        layouts=tuple(layout_named(parts, name, f"/layouts/{i}") for i, name in enumerate(ask.layouts)),
+        layouts=layouts_named(parts, ask.layouts),
         home=home_given(ask.home),
         short_scripts=ask.short_scripts,
         method=ask.method,
@@ -88,6 +89,11 @@ def _wanted(ask: StoryAsk, parts: Parts) -> StoryRequest:
         seed=ask.seed,
         character=character_of(ask.character),
     )
+
+
+def layouts_named(parts: Parts, names: Sequence[str]) -> tuple[Layout, ...]:
+    """The rooms of these ids."""
+    return tuple(layout_named(parts, name, f"/layouts/{number}") for number, name in enumerate(names))
 
 
 def layout_named(parts: Parts, name: str, pointer: str) -> Layout:

@@ -171,6 +171,9 @@ class TakeAsk(Ask):
         None, min_length=1, max_length=MAX_TAKEN, description="The whole script as it is to be, in order."
     )
     home: Json | None = Field(None, description="Another home, as GET /v1/stories/{id}/home gives it.")
+    layouts: list[LayoutId] = Field(
+        [], max_length=MAX_ROOMS, description="Rooms of the library to play in instead, joined to one home, by id."
+    )
     seed: Seed | None = Field(None, description="Another staging of the same script; null: as it was.")
     backend: BackendName | None = Field(None, description="What moves the body; null: what did.")
     character: CharacterAsk | None = Field(None, description="Who acts; null: who did.")

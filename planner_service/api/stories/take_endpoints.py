@@ -9,11 +9,20 @@ from fastapi import APIRouter, Request, Response
 from fastapi.exceptions import RequestValidationError
 
 from planner_service.api.dependencies import PartsDep
-from planner_service.api.errors import Conflict
+from planner_service.api.errors import Conflict, Unprocessable
 from planner_service.api.idempotent_submission import accept_take, repeated
-from planner_service.api.stories.endpoints import Key, StoriesDep, StoryId, character_of, home_given, record_of
+from planner_service.api.stories.endpoints import (
+    Key,
+    StoriesDep,
+    StoryId,
+    character_of,
+    home_given,
+    layouts_named,
+    record_of,
+)
 from planner_service.api.stories.schemas import StoryShown, TakeAsk
 from planner_service.api.stories.views import story_shown
+from planner_service.components import Parts
 from planner_service.grounding.furnish import Furnished
 from planner_service.grounding.script_revision import RevisionError, revised, rewritten
 from planner_service.jobs.serialization import furnished_from_dict
@@ -22,7 +31,7 @@ from planner_service.pipeline import StoryRequest
 from planner_service.scripts.script import Keyframe, LongScript
 from planner_service.store.story_store import Made, Record, Stories
 from planner_service.store.tables import state_of
-from scene_graphs.home import Home
+from scene_graphs.home import Home, HomeError, home_from_layouts
 from scene_graphs.json_fields import Json
 
 take_router = APIRouter(prefix="/v1/stories", tags=["stories"])
@@ -47,15 +56,26 @@ def take(
     record = repeated(parts, caller, "take", body, key)
     if record is None:
         origin = record_of(story_id, stories)
-        wanted, known = _derived(origin, ask, stories)
+        wanted, known = _derived(origin, ask, stories, _home_of(ask, stories.request(origin.id), parts))
         record = accept_take(parts, caller, wanted, origin.id, known, body, key)
     response.headers["Location"] = f"/v1/stories/{record.id}"
     return story_shown(record)
 
 
-def _derived(origin: Record, ask: TakeAsk, stories: Stories) -> tuple[StoryRequest, list[Made]]:
+def _home_of(ask: TakeAsk, asked: StoryRequest, parts: Parts) -> Home | None:
+    """The home that is another; None for that of the story. Unprocessable where rooms cannot be one home."""
+    if ask.home is not None and ask.layouts:
+        raise Unprocessable("/home", "give a whole home or layouts to join to one, not both")
+    layouts = layouts_named(parts, ask.layouts)
+    try:
+        return home_from_layouts(layouts, asked.seed) if layouts else home_given(ask.home)
+    except HomeError as error:
+        raise Unprocessable("/layouts", str(error)) from error
+
+
+def _derived(origin: Record, ask: TakeAsk, stories: Stories, home: Home | None) -> tuple[StoryRequest, list[Made]]:
     """What a take asks for, and what of it is known before it begins."""
-    asked, home = stories.request(origin.id), home_given(ask.home)
+    asked = stories.request(origin.id)
     script, stage = _so_far(origin, stories, needs_home=home is None)
     try:
         if home is not None:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from acted import SMALL, sat, walked
 from numba.core.registry import CPUDispatcher
+from PIL import Image
 
 from motion_backend.formats.mp4 import write_mp4
 from motion_backend.motion import Motion, join
@@ -17,6 +18,7 @@ from motion_backend.rendering import depth_buffer, film_kernel, surface_light
 from motion_backend.rendering.camera import SEEN
 from motion_backend.rendering.film_backdrop import Backdrop
 from motion_backend.rendering.film_frames import compile_film, film_frames
+from motion_backend.rendering.film_loop import moment, write_loop
 from motion_backend.rendering.film_picture import lay_words, split, to_rgb
 from motion_backend.rendering.film_shots import LONGEST, SHORTEST, FilmShot, film_shots
 from motion_backend.rendering.film_sight import Appearances
@@ -168,10 +170,40 @@ def test_what_set_up_compiles_is_what_films_and_pictures_are_drawn_with():
 def test_every_sentence_is_shown_while_what_it_tells_is_done():
     text = "It was late. She came home. She thought of him, and sat down. Then she slept."
     spans = [Span(text.index(word), text.index(word) + 4, (k,)) for k, word in enumerate(("came", "sat ", "slept"))]
-    shown = subtitles(Told("Late", text, tuple(spans)), [(0, 60), (60, 200), (200, 300)])
+    shown = subtitles(Told("Late", text, tuple(spans)), [(0, 60), (60, 200), (200, 300)], 30)
     assert " ".join(line.text.replace("\n", " ") for line in shown) == text
     assert [(line.start, line.stop) for line in shown] == [(0, 60), (60, 200), (200, 300)]
 
 
 def test_keyframes_without_a_story_have_no_words():
-    assert subtitles(Told("", "", ()), [(0, 60)]) == []
+    assert subtitles(Told("", "", ()), [(0, 60)], 30) == []
+
+
+def test_a_sentence_that_tells_of_two_keyframes_is_shown_in_two_parts_and_none_stands_for_long():
+    text = "He sat down, and read a book. He slept."
+    spans = [Span(text.index(word), text.index(word) + len(word), (k,)) for k, word in enumerate(("sat down", "read"))]
+    spans.append(Span(text.index("slept"), text.index("slept") + 5, (2,)))
+    told = Told("", text, tuple(spans))
+    shown = subtitles(told, [(0, 90), (90, 600), (600, 1500)], 30)
+    assert [line.text for line in shown] == ["He sat down,", "and read a book.", "He slept."]
+    assert [line.start for line in shown] == [0, 90, 600]
+    assert max(line.stop - line.start for line in shown) <= 7 * 30
+    together = subtitles(told, [(0, 20), (20, 600), (600, 1500)], 30)
+    assert [line.text for line in together] == ["He sat down, and read a book.", "He slept."]
+
+
+def test_words_are_there_when_one_has_come_to_where_they_are_done():
+    told = Told("", "She slept.", (Span(0, 9, (0, 1)),))
+    (line,) = subtitles(told, [(0, 900), (900, 1500)], 30)
+    assert 900 - 3.5 * 30 <= line.start < 900 < line.stop
+    (soon,) = subtitles(told, [(0, 30), (30, 1500)], 30)
+    assert soon.start == 0
+
+
+def test_a_loop_has_every_third_frame_of_its_moments_once_and_begins_anew(tmp_path: Path):
+    moments = [moment((0, 40), 1.0, 30), moment((50, 59), 1.0, 30)]
+    assert moments == [range(5, 35), range(50, 59)], "as far as a segment has them"
+    path = write_loop(SMALL, acted(), [(0, 40), (40, 80)], moments, tmp_path / "loop.webp", SIZE)
+    with Image.open(path) as picture:
+        assert (picture.size, picture.info["loop"]) == (SIZE, 0)
+        assert getattr(picture, "n_frames", 1) == 13

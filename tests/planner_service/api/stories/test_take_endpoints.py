@@ -156,6 +156,8 @@ async def test_everything_that_is_wrong_is_told_at_its_place_with_what_would_be_
             ({"keyframes": [{"skill": "standup", "caption": "stand up"}]}, "/keyframes/0/skill"),
             ({"backend": "magic"}, "/backend"),
             ({"home": {}}, "/home/rooms"),
+            ({"home": {}, "layouts": ["study-0000"]}, "/home"),
+            ({"layouts": ["nowhere"]}, "/layouts/0"),
             ({"theme": "He sleeps."}, "/theme"),
         ):
             refused = check_problem(await client.post(origin["links"]["takes"], json=body), 422)
@@ -204,7 +206,7 @@ async def test_another_seed_home_or_character_begins_anew_with_the_same_script(a
         assert (await look(client, early))["reused"] == 1, "of a story still being made, what is there"
         home = (await client.get(other["links"]["home"])).json()
         for ask, reused in (
-            ({"seed": 5}, 0), ({"home": home}, 0), ({"character": {"height": 1.5}}, 0),
+            ({"seed": 5}, 0), ({"home": home}, 0), ({"layouts": [study.id]}, 0), ({"character": {"height": 1.5}}, 0),
             ({"character": {"outfit": "nurse"}}, 5),
         ):  # fmt: skip
             take = await posted(client, origin["links"]["takes"], ask)
@@ -213,7 +215,9 @@ async def test_another_seed_home_or_character_begins_anew_with_the_same_script(a
             said = [(one["skill"], one["caption"]) for one in take["keyframes"]]
             assert said == [(one["skill"], one["caption"]) for one in origin["keyframes"]]
             assert take["reused"] == reused, ask
-            assert take["home"]["rooms"][0]["layout_id"] == (study.id if "home" in ask else MOTION["layout_id"])
+            assert take["home"]["rooms"][0]["layout_id"] == (
+                study.id if {"home", "layouts"} & set(ask) else MOTION["layout_id"]
+            )
 
 
 async def test_a_take_of_a_story_is_told_anew(tmp_path: Path) -> None:

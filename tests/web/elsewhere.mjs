@@ -1,0 +1,59 @@
+/** A story is played in a room that is brought in beside its script; as it was and as it is now play side by side. */
+
+import { complaints, overhang, scene, until } from "./browser.mjs";
+
+const ROOM = {
+  id: "page-den",
+  room_type: "living_room",
+  floor_polygon: [[-2, -2], [-2, 2], [2, 2], [2, -2]],
+  doors: [{ segment: [[-2, -0.4], [-2, 0.4]] }],
+  objects: [{ id: "sofa_1", category: "sofa", position: [0.8, 0, -1.4], size: [1.8, 0.8, 0.85], yaw: 0 }],
+};
+
+async function give(page, name, room) {
+  await page.getByLabel("File").setInputFiles({ name, mimeType: "application/json", buffer: Buffer.from(JSON.stringify(room)) });
+  await page.locator(".import-answer:empty").waitFor({ state: "attached" });
+  await page.getByRole("button", { name: "Bring it in" }).click();
+  await page.locator(".import-answer > *").first().waitFor();
+  return { words: await page.locator(".import-answer").innerText(), rooms: await page.getByLabel("Played in").inputValue() };
+}
+
+/** The library does not know the room; then it is brought in, first spoiled. */
+async function move(page, id) {
+  await page.goto(`/#/stories/${id}`);
+  await page.getByRole("button", { name: "Change the script" }).click();
+  await page.locator(".draft").first().waitFor();
+  await page.getByLabel("Played in").fill("nowhere");
+  await page.getByRole("button", { name: "Play this" }).click();
+  await page.locator("#take-home[aria-invalid]").waitFor();
+  const unknown = await page.locator(".editor-foot .wrong").innerText();
+  await page.locator(".editor .bring summary").click();
+  const spoiled = await give(page, "spoiled.json", { ...ROOM, floor_polygon: [[0, 0], [1, 1]] });
+  const own = await give(page, "den.json", ROOM);
+  const [wrong, sideways] = [await complaints(page, ".editor"), await overhang(page)];
+  const posted = page.waitForRequest((request) => request.method() === "POST" && request.url().endsWith("/takes"));
+  await page.getByRole("button", { name: "Play this" }).click();
+  const { layouts } = (await posted).postDataJSON();
+  const { storyId } = await until(page, (seen) => seen.storyId !== id && seen.playing);
+  return { unknown, spoiled, own, wrong, sideways, layouts, take: storyId };
+}
+
+/** Where both films are. */
+const places = (page) => page.locator(".side input[type=range]").evaluateAll((all) => all.map((slider) => Number(slider.value)));
+
+async function compareBoth(page) {
+  await page.getByRole("link", { name: "See both side by side" }).click();
+  await page.locator(".differs:not([hidden])").waitFor();
+  let [before, now] = [[0, 0], await places(page)];
+  // They wait for each other, then both go on.
+  while (now.length < 2 || now.some((place, side) => place <= (before[side] ?? 0))) {
+    await page.waitForTimeout(100);
+    [before, now] = [before.some(Boolean) ? before : now, await places(page)];
+  }
+  return { heads: await page.locator(".side h2").allInnerTexts(), differs: await page.locator(".differs").innerText(), sideways: await overhang(page) };
+}
+
+await scene(async (page, id) => {
+  const moved = await move(page, id);
+  return { moved, both: await compareBoth(page) };
+});
