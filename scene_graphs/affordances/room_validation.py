@@ -116,8 +116,7 @@ class RoomCheck:
         return [*self._outside(), *self._overlaps(), *self._blocked_doors(), *self._unreachable()]
 
     def unreachable(self) -> list[tuple[str, str]]:
-        """(object id, affordance) of everything a body should be able to use and cannot; what decorates a wall or stands
-        on something may hang over a bed."""
+        """(object id, affordance) of all that a body should be able to use and cannot; pictures may hang over beds."""
         return [
             (placed.id, affordance)
             for placed in self.layout.objects
