@@ -88,11 +88,12 @@ def test_figures_of_planning_are_as_recorded() -> None:
 
 
 def test_figures_of_scripts_are_as_recorded() -> None:
-    results = [
-        ScriptResult(ScriptTrial("bedroom-0000", seed, level), 2 + seed % 3, seed % 3, 1 + seed % 3, (0.01 * seed,) * n)
-        for n, level in enumerate(LEVELS)
-        for seed in range(7)
-    ]
+    results = []
+    for errors, level in enumerate(LEVELS):
+        for seed in range(7):
+            count, trial = 2 + seed % 3, ScriptTrial("bedroom-0000", seed, level)
+            done, done_any = min(seed, count), min(seed + 1, count)
+            results.append(ScriptResult(trial, count, done, done_any, (0.01 * seed,) * errors))
     figures = {f"{one.name}, {one.level}": plain(asdict(one)) for one in sum_up_scripts(results)}
     agrees("script_figures", figures)
 

@@ -61,6 +61,23 @@ SENTENCES: Final = (
     "He tries on three shirts, likes none of them, and throws them on the bed.",
     "She stood at the window for a long time, thinking of what he had said.",
     "As soon as the guests are gone, she sweeps the floor and loads the dishwasher.",
+    "She'd gone to bed early, though she'd like to talk; he'd rather sit alone.",
+    "Only when it was dark did he rise, and never does she sit still.",
+    "He nearly falls over the rug, catches himself and no longer runs.",
+    "She might have been sleeping, but her husband does not; he should be working.",
+    "He lets himself sink into the armchair and forces himself to smile.",
+    "She used to play the piano and had been practising all day before she collapsed.",
+    "He refuses to get up, fails to find his glasses and keeps complaining.",
+    "There she sits, there he stands, and out of the window flies the bird.",
+    "It's been a long day; it's time to lie down, so that's what I do.",
+    "We'd never been so happy as when we danced in our kitchen.",
+    "The bed is made, the lamp is lit, and the letter lies unopened on the desk.",
+    "Who could have known? Not he, who was sitting on the floor, his back against the wall.",
+    "She stops crying, starts laughing and ends up lying on the rug.",
+    "Let us rest, she thinks, and without taking off her boots she stretches out on the couch.",
+    "He would have called her if he had not lost his voice.",
+    "Too tired to cook, they order pizza, eat it in bed and watch a film.",
+    "The doctor told him to rest; he does, with a hot-water bottle on his belly.",
 )
 
 
