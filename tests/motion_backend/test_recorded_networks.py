@@ -5,6 +5,7 @@ A network that has learned nothing is as good as any: of the same seed it says t
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, replace
 from typing import Any, Final
 
@@ -48,7 +49,7 @@ from motion_backend.physics.train import DistilConfig, RewardConfig
 from motion_backend.scene import scene_of
 
 HOME: Final = small_home()
-SIZES: Final = {
+SIZES: Final[Mapping[str, Mapping[str, Any]]] = {
     "denoiser": PRESETS, "scheduler": SCHEDULER_PRESETS, "noise": {"usual": NoiseSchedule()},
     "losses": {"at furniture": CONTACT_LOSSES, "walks": WALK_LOSSES}, "training": {"usual": Diffusing(1000)},
     "embedding": {"sizes": AutoencoderConfig(), "training": Embedding()},

@@ -38,6 +38,7 @@ from planner_service.evaluation.walk_evaluation import (
     mood_walks,
     recorded_walks,
     spread,
+    walks_of,
 )
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.script_library import Features, ScriptLibrary
@@ -115,11 +116,10 @@ def test_figures_of_walks_are_as_recorded(monkeypatch: pytest.MonkeyPatch) -> No
 
     monkeypatch.setattr(walk_comparison, "told_apart", told_apart)
     takes: list[Take] = []
-    walks = walk_comparison.walks_of
 
     def kept(name: str, some: Any) -> Any:
         takes.extend(some)
-        return walks(name, some)
+        return walks_of(name, some)
 
     monkeypatch.setattr("planner_service.evaluation.walk_evaluation.walks_of", kept)
     ours = matched_walks(np.linspace(0.9, 1.5, 8), CAPTION, build_skeleton())
