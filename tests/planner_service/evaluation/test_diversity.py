@@ -45,10 +45,8 @@ def test_where_and_which_way_a_body_sits_makes_no_difference() -> None:
     turn = rotations.yaw_to_quat(1.3)
     local = motion.local_rotations.astype(np.float64)
     local[:, 0] = rotations.compose(turn, local[:, 0])
-    elsewhere = replace(
-        motion, local_rotations=local.astype(np.float32),
-        root_positions=(rotations.rotate(turn, motion.root_positions.astype(np.float64)) + np.array([3.0, 0.5, 1.0])).astype(np.float32),
-    )  # fmt: skip
+    roots = rotations.rotate(turn, motion.root_positions.astype(np.float64)) + np.array([3.0, 0.5, 1.0])
+    elsewhere = replace(motion, local_rotations=local.astype(np.float32), root_positions=roots.astype(np.float32))
     here, there = (local_positions(Kinematics.of(one), slice(3, 9)) for one in (motion, elsewhere))
     assert here.shape == (6, 22, 3)
     np.testing.assert_allclose(here, there, atol=1e-5)
