@@ -74,7 +74,8 @@ def test_figures_of_a_story_are_as_recorded() -> None:
     judged = [judge(motion, action, scene_of(HOME).obstacles) for action, motion in day()]
     agrees("story_figures", {
         **story_figures(whole, actions, spans).to_dict(),
-        "seams": [str(seam) for seam in seams(Kinematics.of(whole), actions, spans)],
+        "seams": [short(seam.frame, seam.walking, seam.stops, seam.speed, seam.slowest)
+                  for seam in seams(Kinematics.of(whole), actions, spans)],
         "all": summarise(judged),
     })  # fmt: skip
 
