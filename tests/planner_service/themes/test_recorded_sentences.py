@@ -11,7 +11,7 @@ from motion_backend.motion import Character
 from planner_service.composition.deed_lexicon import deed_of, object_of, room_of, unshown
 from planner_service.narration.beat_clause import event, purpose
 from planner_service.narration.narrative_voice import Voice
-from planner_service.themes.beats import ReadBeat, beats_of
+from planner_service.themes.beats import ReadBeat, ThemeError, beats_of
 from planner_service.themes.details import details_of
 from planner_service.themes.protagonist import cast_by, hero_of
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
@@ -77,8 +77,26 @@ SENTENCES: Final = (
     "Let us rest, she thinks, and without taking off her boots she stretches out on the couch.",
     "He would have called her if he had not lost his voice.",
     "Too tired to cook, they order pizza, eat it in bed and watch a film.",
+    "I lay the table, and my brother and I sit down; then we argue until he leaves.",
+    "My mother lay on the couch while I was laying out her clothes.",
     "The doctor told him to rest; he does, with a hot-water bottle on his belly.",
 )
+
+
+REFUSED: Final = (
+    "", " \n ", "123 !!", "x" * 9_000, "a bell \x07 rings", "Er setzt sich aufs Sofa und liest die Zeitung.",
+    "What time is it?", "Please write me a poem about cats.", "Elle s'assied sur le canapé et elle pleure.",
+)  # fmt: skip
+
+
+def test_what_is_no_theme_is_refused_as_recorded() -> None:
+    found = {}
+    for text in REFUSED:
+        try:
+            found[text[:20]] = str(len(beats_of(text)))
+        except ThemeError as error:
+            found[text[:20]] = f"{error}"
+    agrees("no_themes", found)
 
 
 def test_sentences_are_as_recorded() -> None:
