@@ -27,7 +27,6 @@ PEOPLE: Final = (
     Character(member="walter", outfit="doctor"),
     Character(member="mia"),
     Character(member="leo", outfit="pyjamas", hair="long"),
-    Character(member="bruno", hair="curly"),
 )
 """Of every build, with most hairstyles and garments."""
 
