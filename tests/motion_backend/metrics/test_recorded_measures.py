@@ -68,7 +68,7 @@ def test_verdicts_are_as_recorded() -> None:
 
 
 def test_figures_of_a_story_are_as_recorded() -> None:
-    actions, motions = zip(*day(), strict=True)
+    actions, motions = [action for action, _ in day()], [motion for _, motion in day()]
     whole, ends = join(motions), np.cumsum([len(motion) for motion in motions]).tolist()
     spans = list(zip([0, *ends[:-1]], ends, strict=True))
     judged = [judge(motion, action, scene_of(HOME).obstacles) for action, motion in day()]

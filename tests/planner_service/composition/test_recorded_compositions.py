@@ -25,8 +25,8 @@ THEMES: Final = (
     "Grandfather reads the newspaper in his armchair, falls asleep, and dreams of the sea.",
     "Two friends dance, laugh and sit on the floor until one of them wipes the shelf with his left hand.",
 )
-REQUESTS: Final = {
-    **{method: Request(seed=1, method=method) for method in METHODS},
+REQUESTS: Final[dict[str, Request]] = {
+    **{str(method): Request(seed=1, method=method) for method in METHODS},
     "few scripts": Request(short_scripts=2, method="matching", seed=2),
     "in the bedroom": Request(rooms=("bedroom",), seed=3),
     "in two rooms": Request(rooms=("dining room", "study"), method="matching", seed=4),
