@@ -12,6 +12,7 @@ from scene_graphs.affordances.room_validation import RoomCheck
 from scene_graphs.affordances.usable_furniture import count_uses, pulled_out
 from scene_graphs.geometry.egocentric_heightmap import SIMS, TOKENHSI, UNIHSI, SceneHeights
 from scene_graphs.geometry.occupancy_grid import LINGO, TRUMANS, occupancy, occupancy_pair
+from scene_graphs.graph.furniture_graph import graph_from_layout
 from scene_graphs.home import Home, home_from_layouts, home_to_dict
 from scene_graphs.layout import Layout
 from scene_graphs.layout_library import built_in_index
@@ -23,7 +24,10 @@ ROOMS: Final = ("living-room-0021", "bedroom-0007", "dining-room-0012")
 
 def test_a_home_is_as_recorded() -> None:
     home = home_from_layouts([built_in_index().layout(name) for name in ROOMS], 1)
-    agrees("home", {"rows": rows(home), "ways": ways(home), "heights": heights(home), "uses": uses(home)})
+    agrees(
+        "home",
+        {"rows": rows(home), "ways": ways(home), "heights": heights(home), "uses": uses(home), "graphs": graphs()},
+    )
 
 
 def rows(home: Home) -> dict[str, Any]:
@@ -31,6 +35,15 @@ def rows(home: Home) -> dict[str, Any]:
     told = home_to_dict(home)
     rooms = [{**room, "layout": room["layout"]["id"]} for room in told.pop("rooms")]
     return {**told, "rooms": rooms, "objects": [[*placed.position, placed.yaw] for placed in home.objects]}
+
+
+def graphs() -> dict[str, list[str]]:
+    """What is near what in every room."""
+    graphs = {name: graph_from_layout(built_in_index().layout(name)) for name in ROOMS}
+    return {
+        name: sorted(" - ".join(sorted(f"{node.category} {node.instance}" for node in edge)) for edge in graph.edges)
+        for name, graph in graphs.items()
+    }
 
 
 def ways(home: Home) -> dict[str, Any]:
