@@ -41,7 +41,7 @@ from motion_backend.motion import Action, Character, Emotion, Motion, PhaseKind,
 from motion_backend.skeleton import build_skeleton
 from motion_backend.walk_generator import Frames
 
-SIZES = {"layers": 1, "heads": 2, "width": 16, "hidden": 16, "norm_first": True}
+SIZES: dict[str, Any] = {"layers": 1, "heads": 2, "width": 16, "hidden": 16, "norm_first": True}
 SCALE = Scale(torch.zeros(FEATURES), torch.ones(FEATURES))
 
 

@@ -115,7 +115,7 @@ def test_strips_and_fans_are_triangles_and_points_without_order_come_three_by_th
     by_mode = {mode: triangles(glb(*changed(in_order, ((*PRIMITIVE, "mode"), mode)))) for mode in (4, 5, 6)}
     assert [len(by_mode[mode]) for mode in (4, 5, 6)] == [1, 2, 2]
     assert by_mode[6] == as_written, "a fan is what the order says"
-    sides = [np.linalg.norm(np.subtract(*by_mode[5][1][k : k + 2])) for k in (0, 1)]
+    sides = [np.linalg.norm(np.diff(by_mode[5][1][k : k + 2], axis=0)) for k in (0, 1)]
     assert sides == pytest.approx([np.linalg.norm(point[2] - point[1]), np.linalg.norm(point[3] - point[2])])
     lines = glb(*changed(((*PRIMITIVE, "mode"), 1)))
     assert not any(len(node.own.corners) for node in nodes(lines))
