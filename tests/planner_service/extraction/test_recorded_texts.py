@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+import pytest
 from recorded import agrees
 
+from motion_backend.motion import Skill
+from planner_service.extraction import llm_text
 from planner_service.extraction.screenplay import is_screenplay
+from planner_service.extraction.script_writer import in_present, summarise
 from planner_service.extraction.subtitles import SubtitleError, read_subtitles
 from planner_service.extraction.text_files import ExtractionError, decode, language_of, read_text
-from planner_service.extraction.text_scenes import TextScene, scenes_of_cues, scenes_of_text
+from planner_service.extraction.text_scenes import Line, TextScene, scenes_of_cues, scenes_of_text
+from planner_service.scripts.script import Keyframe
 
 SRT: Final = """1
 00:00:01,000 --> 00:00:03,500
@@ -132,6 +137,40 @@ def test_texts_are_as_recorded() -> None:
         "files": {name: opened(data, name) for name, data in FILES.items()},
         "languages": [language_of(text) for text in LANGUAGES],
     })  # fmt: skip
+
+
+CLAUSES: Final = (
+    "slumped onto the couch", "sat by her bed", "could not sleep", "Anna's mother calls her", "is tired, and yawns",
+    "<b>reads</b> the letter", "was reading my book", "the door opens", "", "goes to the window with you",
+    "lies down " + "and thinks of the sea, " * 12, "had been crying",
+)  # fmt: skip
+
+
+def test_summaries_are_as_recorded() -> None:
+    """What clauses become, one by one and several together; and what is told where none can be."""
+    rows = (("sitdown", "sofa"), ("loco", "floor"), ("touch", "lamp"), ("liedown", "bed"), ("standup", "bed"))
+    acted = [Keyframe(skill=Skill(skill), caption="x", furniture=piece, emotion="sad") for skill, piece in rows]
+    agrees("summaries", {
+        "present": {clause[:30]: in_present(clause, ["Anna"]) for clause in CLAUSES},
+        "summaries": [summarise(CLAUSES[start : start + 5], acted, mood, ["Anna"])
+                      for start, mood in ((0, "neutral"), (3, "tired"), (6, "angry"))],
+        "plainly": [summarise([], acted[:many], "sad") for many in (1, 2, 3, 5)],
+        "short": [len(summarise([f"reads {'a long, very long letter ' * 4}{n}" for n in range(8)], acted, "sad"))],
+    })  # fmt: skip
+
+
+def test_questions_hold_so_many_letters_and_no_word_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(llm_text, "MAX_PIECE_LENGTH", 200)
+    lines = (Line(f"He walks {n} steps to the window. Then he sits.", n % 3 == 0) for n in range(20))
+    long = TextScene(tuple(lines), "Hall")
+    cut, notes = llm_text.portions_of([long, TextScene((Line("She sleeps."),))])
+    assert all(len(llm_text.shown(scene)) <= 200 for scene in cut)
+    assert len(notes) == 1
+    assert " ".join(scene.told for scene in cut).split() == f"{long.told} She sleeps.".split()
+    assert " ".join(scene.spoken for scene in cut).split() == long.spoken.split()
+    assert len(cut) < 9, "as many lines together as one question holds"
+    assert list(llm_text.fitting("One two. Three four five", 12)) == ["One two.", "Three four", "five"]
+    assert list(llm_text.fitting("abcdefgh", 3)) == ["abc", "def", "gh"]
 
 
 def subtitles(text: str) -> dict[str, Any]:

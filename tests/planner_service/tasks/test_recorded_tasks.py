@@ -9,6 +9,7 @@ from recorded import agrees
 from planner_service.tasks.instruction import Order, orders_of
 from planner_service.tasks.surroundings import Surroundings
 from planner_service.tasks.task_actions import act_out
+from planner_service.tasks.task_llm import TaskStep, TaskSteps, problems_in
 from planner_service.tasks.task_plan import TaskError
 from planner_service.tasks.task_planner import plan_routine, plan_task
 from planner_service.tasks.task_rules import plan_by_rules
@@ -98,6 +99,30 @@ def planned(words: str, rooms: dict[str, Surroundings]) -> dict[str, Any]:
         acted = [f"{one.skill} {one.caption} | {one.furniture} | {one.emotion}" for one in keyframes]
         found[where] = [*(" ".join(map(str, step.model_dump().values())) for step in steps), *acted]
     return found
+
+
+ANSWERS = (
+    (1, "walk to the desk", "locomotion", None, None),
+    (3, "pick up the pen with the left hand", "grasp", "left", "pen"),
+    (3, "pick up the pen with the left hand", "grasp", "right", "pen"),
+    (4, "grab the cup", "grasp", "null", "cup"),
+    (5, "open the drawer", "interaction", None, "drawer"),
+    (6, "sit down", "interaction", "both", None),
+    (7, "wave", "gesture", "Third", "x, y"),
+    (8, "", "interaction", "right", "<b>"),
+    (9, "put it down, then go", "grasp", " Right ", "o" * 300),
+    (10, "do not sit down", "interaction", None, None),
+)
+
+
+def test_what_is_wrong_with_a_models_steps_is_as_recorded() -> None:
+    fields = ("step_id", "step", "category", "hand", "object")
+    steps = [TaskStep(**dict(zip(fields, row, strict=True))) for row in ANSWERS]
+    agrees("model_steps", {
+        "faults": problems_in(TaskSteps(steps=steps)),
+        "none": problems_in(TaskSteps(steps=[])),
+        "too many": problems_in(TaskSteps(steps=steps[:1] * 99)),
+    })  # fmt: skip
 
 
 def test_tasks_are_as_recorded() -> None:
