@@ -63,7 +63,11 @@ SIZES: Final[Mapping[str, Mapping[str, Any]]] = {
 
 
 def test_sizes_are_as_recorded() -> None:
-    agrees("sizes", {kind: {name: plain(asdict(one)) for name, one in some.items()} for kind, some in SIZES.items()})
+    found: dict[str, Any] = {
+        kind: {name: plain(asdict(one)) for name, one in some.items()} for kind, some in SIZES.items()
+    }
+    rates = [plain(Diffusing(1000).rate_at(step)) for step in (0, 10, 149, 150, 500, 999)]
+    agrees("sizes", found | {"rates": rates})
 
 
 def test_networks_are_as_recorded() -> None:

@@ -34,7 +34,9 @@ from scene_graphs.home import Home
 HOME: Final = small_home()
 ROOM: Final = "bedroom-0003"
 """Of the library: what stands around is taken from there."""
-SHARES: Final = {(MadeOf.PROCEDURAL, kind): 1.0 + 0.5 * number for number, kind in enumerate(PartKind)}
+SHARES: Final = {(MadeOf.PROCEDURAL, kind): 1.0 + 0.5 * number for number, kind in enumerate(PartKind)} | {
+    (MadeOf.RECORDED, PartKind.WALK): 2.0
+}
 
 
 class Heard(ProceduralBackend):
@@ -54,6 +56,7 @@ def day() -> tuple[list[Action], list[Motion], list[tuple[Part, Motion]]]:
     """A body walks, sits, rises, touches and lies."""
     chair = contact(HOME, Skill.SITDOWN, "chair", "hands on thighs")
     shelf = contact(HOME, Skill.TOUCH, "shelf", "touch medium height with the left hand")
+    shelf = replace(shelf, hand="left")
     bed = contact(HOME, Skill.LIEDOWN, "bed", "right leg bent")
     actions = [to(chair), chair, rise(chair), to(shelf), shelf, to(bed), bed]
     heard = Heard()
