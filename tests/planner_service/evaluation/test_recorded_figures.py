@@ -11,7 +11,8 @@ import pytest
 from recorded import agrees
 
 from motion_backend.language.sentence_encoder import HashingEncoder
-from motion_backend.metrics.walk_classifier import Told
+from motion_backend.metrics.kernel_mmd import Distance
+from motion_backend.metrics.walk_classifier import Told, Yardstick
 from motion_backend.mocap.dataset_file import Dataset, Entry
 from motion_backend.motion import Emotion, Motion
 from motion_backend.skeleton import build_skeleton
@@ -20,6 +21,7 @@ from planner_service.composition.request import Request
 from planner_service.evaluation import walk_comparison
 from planner_service.evaluation.acted_motion import act_for_training
 from planner_service.evaluation.labels import Alternative, LabelledBeat, LabelledTheme, Query
+from planner_service.evaluation.motion_ablation import ABLATIONS
 from planner_service.evaluation.planning_evaluation import (
     beat_figures,
     executable,
@@ -31,7 +33,10 @@ from planner_service.evaluation.script_evaluation import LEVELS, ScriptResult, S
 from planner_service.evaluation.walk_comparison import compare_walks
 from planner_service.evaluation.walk_evaluation import (
     CAPTION,
+    Compared,
     Take,
+    WalkReport,
+    Walks,
     apart,
     jerk_bins,
     matched_walks,
@@ -135,7 +140,21 @@ def test_figures_of_walks_are_as_recorded(monkeypatch: pytest.MonkeyPatch) -> No
         "jerk": [plain(asdict(one)) for one in jerk_bins(people, sad)],
         "compared": {f"{one.name} {one.place}": plain(one.to_dict()) for one in found},
         "asked": asked,
+        "report": plain(report_of(people, ours, sad).to_dict()),
     })  # fmt: skip
+
+
+def report_of(people: Walks, ours: Walks, sad: Walks) -> WalkReport:
+    """Of walks that are at hand, with a classifier's figures made up."""
+    far, told = Distance(0.3, 0.2, 0.4), Told(0.8, 0.7, 0.9, {"anna": 0.8})
+    return WalkReport(
+        people, far, (Compared(ours, far, told), Compared(sad, far, None)), jerk_bins(people, sad),
+        Yardstick(0.7, 0.65, 0.75, {"anna": 0.7}), {"legs": told}, (), CAPTION, "procedural",
+    )  # fmt: skip
+
+
+def test_what_is_left_out_to_see_what_it_is_worth_is_as_recorded() -> None:
+    agrees("ablations", {one.name: plain(asdict(one)) for one in ABLATIONS})
 
 
 def test_what_is_acted_to_be_learned_from_is_as_recorded() -> None:

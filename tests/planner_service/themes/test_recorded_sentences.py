@@ -79,6 +79,10 @@ SENTENCES: Final = (
     "Too tired to cook, they order pizza, eat it in bed and watch a film.",
     "I lay the table, and my brother and I sit down; then we argue until he leaves.",
     "My mother lay on the couch while I was laying out her clothes.",
+    "The baby cries until its mother lifts it out of the crib and walks to and fro with it.",
+    "A newborn sleeps on the sofa while Paula, who is exhausted, sits beside it and knits.",
+    "The infant laughs. Nora claps her hands and dances.",
+    "Stand up, open the window, sit down again.",
     "The doctor told him to rest; he does, with a hot-water bottle on his belly.",
 )
 
