@@ -80,7 +80,7 @@ test-all: $(READY_DEV) page $(NODE_TESTS)
 	@$(BIN)/python tests/run_layer.py test-all
 	@PYTHONPATH=tests $(BIN)/python -m mutants
 
-# A quarter of an hour a package, and once as long again to see which test runs which line; SEED chooses the bugs.
+# Two to four minutes a package, and once eight to see which test runs which line; SEED chooses the bugs.
 mutants: $(READY_DEV)
 	@PYTHONPATH=tests $(BIN)/python -m mutants --seed $(SEED)
 

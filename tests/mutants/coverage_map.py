@@ -118,9 +118,13 @@ def helpers(root: Path, name: str) -> set[str]:
 
 def _look(tree: ScratchTree, names: list[str], kept: Path) -> None:
     """Every file in a process of its own, forked from one that has imported the packages."""
+    if not names:
+        return
 
     def each() -> int:
         load_ours()
+        # What is compiled at the first use would count as the time of the test that comes first.
+        child(tree.folder, _compiled, tree.out, FILE_SECONDS, {})
         for name in names:
             code = child(tree.folder, partial(_watched, tree, name, _place(kept, name)), tree.out, FILE_SECONDS, CTRACE)
             if code:
@@ -128,8 +132,15 @@ def _look(tree: ScratchTree, names: list[str], kept: Path) -> None:
                 return 1
         return 0
 
-    if child(tree.folder, each, tree.out.with_suffix(".each"), FILE_SECONDS * len(names), {}):
+    if child(tree.folder, each, tree.out.with_suffix(".each"), FILE_SECONDS * (1 + len(names)), {}):
         raise RuntimeError(tree.out.with_suffix(".each").read_text(encoding="utf-8"))
+
+
+def _compiled() -> int:
+    import install
+
+    exec(install.COMPILE)
+    return 0
 
 
 def _watched(tree: ScratchTree, name: str, to: Path) -> int:
@@ -177,11 +188,13 @@ class Selection:
             return [replace(one, seconds=UNCOMPILED * one.seconds) for one in chosen if "compile" not in one.name]
         shown = [bug] if not bug.names else list(self._readers(bug.path, bug.names)) or [bug]
         near, direct, rest = [], [], []
+        readers = self._tests_that_read(bug)
         for watching in sorted(self._watchings, key=lambda one: (RECORDED not in one.file, one.seconds)):
             first = [test for test in watching.tests if any(watching.runs(test, one) for one in shown)]
-            if first or (bug in shown and watching.runs(Watched.IMPORTS, bug)):
+            imports = bug in shown and watching.runs(Watched.IMPORTS, bug)
+            if first or imports or watching.file in readers:
                 others = [test for test in watching.tests if test not in set(first)]
-                if RECORDED in watching.file or _mirrors(watching.file, bug.path):
+                if RECORDED in watching.file or _mirrors(watching.file, bug.path) or watching.file in readers:
                     near.append((watching, [*first, *others]))
                 else:
                     direct.append((watching, first))
@@ -201,16 +214,24 @@ class Selection:
         return chosen
 
     def _lines_that_read(self, path: str, names: tuple[str, ...]) -> list[Bug]:
-        """Inside functions of the package: where names of a module are read, as bugs that stand there."""
+        """Inside functions of its package and of those above it: where names of a module are read, as bugs there."""
         found = []
-        package = path.split("/")[0]
-        for module in sorted((self._root / package).rglob("*.py")):
-            here = module.relative_to(self._root).as_posix()
-            text = module.read_text(encoding="utf-8")
-            if here != path and not any(name in text for name in names):
-                continue
-            found += [Bug(here, 0, 0, "", line, line, "") for line in _readers(text, names)]
+        of_module = (self._root / path).read_text(encoding="utf-8")
+        names = _passed_on(of_module, names)
+        for package in PACKAGES[PACKAGES.index(path.split("/")[0]) :]:
+            for module in sorted((self._root / package).rglob("*.py")):
+                here = module.relative_to(self._root).as_posix()
+                text = of_module if here == path else module.read_text(encoding="utf-8")
+                if here == path or any(name in text for name in names):
+                    found += [Bug(here, 0, 0, "", line, line, "") for line in _readers(text, names)]
         return found
+
+    def _tests_that_read(self, bug: Bug) -> set[str]:
+        """Test files that import a name of its module which the bug gives another value."""
+        module = bug.path.removesuffix(".py").replace("/", ".")
+        named = re.compile(rf"from {re.escape(module)} import [^=]*?\b(?:{'|'.join(map(re.escape, bug.names))})\b")
+        files = (watching.file for watching in self._watchings)
+        return {file for file in files if bug.names and named.search((self._root / file).read_text(encoding="utf-8"))}
 
 
 def _sees_compiled(test: str, module: str) -> bool:
@@ -226,6 +247,18 @@ def is_compiled(root: Path, path: str) -> bool:
 def _mirrors(test: str, module: str) -> bool:
     """Whether a test file stands where a module does."""
     return Path(test).parent == Path("tests") / Path(module).parent
+
+
+def _passed_on(text: str, names: tuple[str, ...]) -> tuple[str, ...]:
+    """Names of a module, and those that are made of them outside all functions."""
+    found = set(names)
+    for node in ast.parse(text).body:
+        if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
+            read = {one.id for one in ast.walk(node.value) if isinstance(one, ast.Name)}
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            if read & found:
+                found |= {one.id for target in targets for one in ast.walk(target) if isinstance(one, ast.Name)}
+    return tuple(sorted(found))
 
 
 def _readers(text: str, names: tuple[str, ...]) -> set[int]:

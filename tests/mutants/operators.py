@@ -30,8 +30,12 @@ TWIN: Final = TWINS | {second: first for first, second in TWINS.items()} | {"ext
 """Functions that are easily mistaken for one another."""
 MESSAGES: Final = {"print", "warn", "warning", "info", "debug", "error", "exception", "log", "echo", "Field", "cast"}
 """Calls that only say something, or only concern types."""
-HELD: Final = {"strict", "frozen"}
-"""Arguments that only hold others to something."""
+HELD: Final = {"strict", "frozen", "repr"}
+"""Arguments that only hold others to something, or say how it is shown."""
+SEEDS: Final = {"seed"}
+"""Arguments of which one default is as good as another."""
+SHAPED: Final = {"reshape"}
+"""Calls to which every number below zero is a length to be found."""
 SAYING: Final = {"__repr__", "__str__", "__format__"}
 
 
@@ -89,7 +93,7 @@ class _Finder:
                 return
             case ast.FunctionDef() | ast.AsyncFunctionDef():
                 if node.name not in SAYING:
-                    for default in (*node.args.defaults, *(one for one in node.args.kw_defaults if one)):
+                    for default in _defaults(node.args):
                         yield from self._of_expression(default, lines, (node.name,))
                     yield from self._of_body(node.body, ())
                 return
@@ -147,6 +151,8 @@ class _Finder:
             yield from self._of_expression(node.value, lines, names)
             return
         for child in ast.iter_child_nodes(node):
+            if isinstance(child, ast.UnaryOp) and isinstance(node, ast.Call) and _called(node) in SHAPED:
+                continue
             if isinstance(child, ast.expr):
                 yield from self._of_expression(child, lines, names)
             elif isinstance(child, ast.comprehension):
@@ -200,6 +206,16 @@ def _another(number: float) -> str:
 def _called(call: ast.Call) -> str:
     """Name of the function or method."""
     return call.func.id if isinstance(call.func, ast.Name) else getattr(call.func, "attr", "")
+
+
+def _defaults(arguments: ast.arguments) -> Iterator[ast.expr]:
+    """Of a function's arguments, but for those of which any would do."""
+    named = [*arguments.posonlyargs, *arguments.args]
+    ended = zip(reversed(named), reversed(arguments.defaults), strict=False)
+    alone = zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True)
+    for argument, default in (*reversed(list(ended)), *alone):
+        if default is not None and argument.arg not in SEEDS:
+            yield default
 
 
 def _is_text(*operands: ast.expr) -> bool:

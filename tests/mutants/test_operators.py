@@ -47,6 +47,13 @@ def wrong(text: str) -> set[str]:
         ("x = a is None", {"x = a is not None"}),
         ("a.append(b)", {"pass", "a.extend(b)"}),
         ("x += 1", {"pass", "x += 2"}),
+        ("x = a.reshape(-1, 2)", {"x = a.reshape(-1, 3)"}),
+        ("x = field(repr=False, init=True)", {"x = field(repr=False, init=False)"}),
+        (
+            "def f(a, b=1, *, seed=0, c=2): ...",
+            {"def f(a, b=2, *, seed=0, c=2): ...", "def f(a, b=1, *, seed=0, c=3): ..."},
+        ),
+        ("def f(seed=0, b=1): ...", {"def f(seed=0, b=2): ..."}),
     ],
 )
 def test_every_sort_of_bug(right: str, others: set[str]) -> None:

@@ -11,6 +11,7 @@ import pytest
 from motion_backend.language.sentence_encoder import HashingEncoder, Vectors
 from planner_service.composition.request import METHODS
 from planner_service.evaluation import method_comparison
+from planner_service.evaluation.beat_judgement import Judgement
 from planner_service.evaluation.labels import Alternative, LabelledBeat, LabelledTheme
 from planner_service.evaluation.method_comparison import (
     QUESTIONS,
@@ -69,6 +70,18 @@ def test_rules_ask_no_model_and_the_same_seed_compares_the_same() -> None:
     assert (first.calls, first.tokens, first.forbidden) == (0, 0, 0)
     assert first.acted == 1
     assert 0 < first.alike <= 1
+
+
+def test_what_a_model_is_asked_is_a_mean_over_themes(monkeypatch: pytest.MonkeyPatch) -> None:
+    spent = iter([(2, 50, 1.0), (4, 150, 3.0)])
+
+    def plan(_: Method, label: LabelledTheme, _seed: int) -> method_comparison._Plan:
+        return method_comparison._Plan(Judgement(label, None), *next(spent))
+
+    monkeypatch.setattr(method_comparison, "_plan", plan)
+    found = compare(Method("auto", Pipeline(model=ScriptedModel([], "m"))), LABELS, HashingEncoder())
+    assert (found.calls, found.tokens, found.seconds) == (3, 100, 2)
+    assert (found.wrong, found.alike, found.deeds) == (2, 0, 0)
 
 
 def test_films_are_told_apart_by_the_key_alone_and_a_theme_that_one_cannot_make_is_passed_over(

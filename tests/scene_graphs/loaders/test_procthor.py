@@ -17,41 +17,11 @@ from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 from spoiling import spoiled
-from unity_houses import procthor_house, vector
+from unity_houses import ASSETS, HOUSE, MODELS, ROOM, procthor_house, vector
 
 from scene_graphs.json_fields import LayoutError
-from scene_graphs.layout import Layout, Opening, Placed, layout_from_dict, layout_to_dict
+from scene_graphs.layout import Layout, Placed, layout_from_dict, layout_to_dict
 from scene_graphs.loaders import Imported, Options, Source, read_scene
-
-ASSETS: dict[str, Any] = {
-    "Bed_13": ["Bed", [1.0, 0.9, 2.0]],
-    "Bed_2": ["Bed", [1.8, 0.9, 2.1]],
-    "Sofa_1": ["Sofa", [1.6, 0.8, 0.9]],
-    "Stool_3": ["Stool", [0.4, 0.7, 0.4]],
-    "Side_Table_1": ["SideTable", [0.5, 0.6, 0.4]],
-    "Side_Table_2": ["SideTable", [1.0, 0.6, 0.4]],
-    "RoboTHOR_office_chair_x": ["Chair", [0.6, 0.9, 0.6]],
-    "Chair_1": ["Chair", [0.5, 0.9, 0.5]],
-    "Dog_Bed_1": ["DogBed", [0.7, 0.2, 0.6]],
-    "pillow_1": ["Pillow", [0.5, 0.1, 0.3]],
-}
-ROOM = Layout(
-    "houses/0/2",
-    "bedroom",
-    ((-4.0, 0.0), (-4.0, 3.0), (0.0, 3.0), (0.0, 0.0)),
-    2.7,
-    (Opening(((-0.5, 0.0), (-1.4, 0.0)), 0.0, 2.1),),
-    (Opening(((0.0, 1.0), (0.0, 2.2)), 0.9, 2.0),),
-    (
-        Placed("2|0", "double_bed", (-3.0, 0.0, 1.8), (1.8, 0.9, 2.1), pi),
-        Placed("small|2|0", "pillow", (-3.0, 0.5, 2.6), (0.5, 0.1, 0.3), 0.4, "2|0"),
-        Placed("2|1", "nightstand", (-1.7, 0.0, 2.7), (0.5, 0.6, 0.4), pi),
-    ),
-    source="procthor",
-    licence="unknown",
-)
-MODELS = {"2|0": "Bed_2", "small|2|0": "pillow_1", "2|1": "Side_Table_1"}
-HOUSE = procthor_house(ROOM, MODELS)
 
 
 def read(*houses: Any, assets: Any = ASSETS, name: str = "houses.jsonl", scan: str | None = None) -> Imported:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 from contextlib import suppress
-from math import cos, sin
 from pathlib import Path
 from typing import Any
 
@@ -14,59 +12,13 @@ from examples import tries
 from for_each import for_each
 from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
-from scans import ROOM
+from scans import INFO, ply, scan, write
 from spoiling import spoiled
 
 from scene_graphs.json_fields import LayoutError
-from scene_graphs.layout import Array, Layout, layout_from_dict, layout_to_dict
+from scene_graphs.layout import Layout, layout_from_dict, layout_to_dict
 from scene_graphs.loaders import Options, Source, read_scene
 from scene_graphs.loaders.scannet import read_ply_vertices
-
-TURN = 0.5
-"""The scan is turned by this; its axisAlignment turns it back."""
-INFO = (
-    "axisAlignment = "
-    + " ".join(map(str, (cos(TURN), sin(TURN), 0, 0, -sin(TURN), cos(TURN), 0, 0)))
-    + " 0 0 1 0.7 0 0 0 1\nnumDepthFrames = 5\nsceneType = Bedroom / Hotel\n"
-)
-
-
-def scan() -> tuple[dict[str, Any], dict[str, Any], Array]:
-    """Aggregation, segments and points of the room; every piece is two segments, every fifth point is nobody's."""
-    groups, segments, points = [], [], []
-    for number, piece in enumerate(ROOM):
-        cloud = piece.points()
-        groups.append(
-            {"id": number, "objectId": number, "label": piece.label, "segments": [2 * number, 2 * number + 1]}
-        )
-        segments += [2 * number + (index >= 32) for index in range(len(cloud))]
-        points.append(cloud)
-    cloud = np.concatenate(points) - (0, 0, 0.7)
-    back = np.array([[cos(TURN), sin(TURN), 0], [-sin(TURN), cos(TURN), 0], [0, 0, 1]])
-    stray = np.array([[1.0, 1.0, 1.0]] * 9)
-    aggregation = {"sceneId": "scannet.scene1", "segGroups": groups, "segmentsFile": "x"}
-    return aggregation, {"segIndices": [*segments, *[999] * 9]}, np.concatenate([cloud @ back, stray])
-
-
-def ply(points: Array, kind: str = "binary_little_endian") -> bytes:
-    header = f"ply\nformat {kind} 1.0\ncomment invented\nelement vertex {len(points)}\n"
-    header += "property float x\nproperty float y\nproperty float z\nproperty uchar red\n"
-    header += "element face 0\nproperty list uchar int vertex_indices\nend_header\n"
-    if kind == "ascii":
-        return (header + "".join(f"{x} {y} {z} 7\n" for x, y, z in points)).encode()
-    order = "<" if "little" in kind else ">"
-    rows = np.zeros(len(points), dtype=[("p", f"{order}f4", 3), ("c", "u1")])
-    rows["p"] = points
-    return header.encode() + rows.tobytes()
-
-
-def write(folder: Path, aggregation: Any, segments: Any, mesh: bytes, info: str | None = INFO) -> Path:
-    (folder / "scene1.aggregation.json").write_text(json.dumps(aggregation))
-    (folder / "scene1_vh_clean_2.0.010000.segs.json").write_text(json.dumps(segments))
-    (folder / "scene1_vh_clean_2.ply").write_bytes(mesh)
-    if info is not None:
-        (folder / "scene1.txt").write_text(info)
-    return folder
 
 
 def read(folder: Path, **options: Any) -> Layout:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from contextlib import suppress
-from math import cos, pi, sin
+from math import pi
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ from examples import tries
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
-from scans import ROOM, Piece
+from scans import OBJECTS, RELATIONSHIPS, ROOM, Piece, semseg
 from spoiling import spoiled
 
 from scene_graphs.furniture import Furniture
@@ -24,53 +24,6 @@ from scene_graphs.loaders import Imported, Options, Source, read_scene
 from scene_graphs.loaders.threedssg import graph_from_3dssg
 
 Json = dict[str, Any]
-
-OBJECTS: Json = {
-    "scans": [
-        {
-            "scan": "s1",
-            "objects": [
-                {"id": "1", "label": "floor"},
-                {"id": "2", "label": "couch table"},
-                {"id": "10", "label": "sofa"},
-                {"id": "3", "label": "sofa chair"},
-                {"id": "4", "label": "cup"},
-                {"id": "5", "label": "wall"},
-                {"id": "6", "label": "sofa"},
-                {"id": "7", "label": "harp"},
-            ],
-        },
-        {"scan": "s2", "objects": [{"id": "1", "label": "bed"}]},
-    ]
-}
-RELATIONSHIPS: Json = {
-    "scans": [
-        {"scan": "s1", "split": 0, "relationships": [[2, 1, 14, "standing on"], [4, 2, 14, "standing on"]]},
-        {"scan": "s2", "relationships": [[1, 1, 5, "close by"]]},
-        {"scan": "s1", "split": 1, "relationships": [[2, 10, 5, "close by"], [10, 3, 2, "left"], [3, 10, 3, "right"]]},
-        {
-            "scan": "s1",
-            "split": 2,
-            "relationships": [[6, 10, 7, "same as"], [6, 3, 8, "bigger than"], [7, 1, 1, "none"]],
-        },
-    ]
-}
-
-
-def semseg(*pieces: Piece) -> Json:
-    """The boxes of a scan; the axes are given in another order every time, as scans do."""
-    groups = []
-    for number, piece in enumerate(pieces):
-        c, s = cos(piece.heading), sin(piece.heading)
-        axes = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
-        order = np.roll([0, 1, 2], number)
-        obb = {
-            "centroid": list(piece.middle),
-            "axesLengths": [piece.lengths[axis] for axis in order],
-            "normalizedAxes": (axes[order] * (1 if number % 2 else -1)).ravel().tolist(),
-        }
-        groups.append({"id": number, "objectId": number, "label": piece.label, "segments": [1], "obb": obb})
-    return {"scan_id": "s1", "segGroups": groups}
 
 
 def read(row: Any, **options: Any) -> Imported:

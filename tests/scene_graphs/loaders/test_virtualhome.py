@@ -16,6 +16,7 @@ from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
 from spoiling import spoiled
+from unity_houses import edge, flat, node
 
 from scene_graphs.json_fields import LayoutError
 from scene_graphs.layout import Layout, layout_from_dict, layout_to_dict, read_layouts
@@ -25,48 +26,6 @@ DATA = Path(os.environ.get("SIMS_TEST_DATA", ".")) / "layouts"
 FLAT = DATA / "extra" / "virtualhome_TestScene2_graph.json.gz"
 HANGING = {"ceiling_lamp", "coffee_maker", "coffee_pot", "toaster", "computer", "mouse", "radio"}
 """Things without a front that anybody could tell."""
-
-
-def node(
-    number: int, class_name: str, category: str, center: tuple[float, ...], size: tuple[float, ...], prefab: str = ""
-) -> dict[str, Any]:
-    box = {"center": list(center), "size": list(size)}
-    return {"id": number, "class_name": class_name, "category": category, "prefab_name": prefab, "bounding_box": box}
-
-
-def edge(start: int, relation: str, end: int) -> dict[str, Any]:
-    return {"from_id": start, "to_id": end, "relation_type": relation}
-
-
-def flat() -> dict[str, Any]:
-    """A bedroom of two tiles beside a living room of one, with a door between them. Unity's frame."""
-    furniture = [
-        node(10, "bed", "Furniture", (4.0, 0.14, 1.25), (2.0, 0.28, 1.4)),
-        node(11, "pillow", "Decor", (4.8, 0.5, 1.25), (0.4, 0.1, 0.5)),
-        node(12, "closet", "Furniture", (1.0, 1.0, 0.3), (1.5, 2.0, 0.6)),
-        node(13, "sink", "Furniture", (1.5, 0.9, 2.2), (0.6, 0.0, 0.4)),
-        node(14, "mug", "Props", (1.5, 0.9, 2.2), (0.1, 0.1, 0.1)),
-    ]
-    sofa = [node(20, "sofa", "Furniture", (-1.25, 0.43, 2.0), (1.9, 0.86, 0.9))]
-    inside = [edge(n["id"], "INSIDE", 1) for n in furniture] + [edge(20, "INSIDE", 2)]
-    tiles = [
-        *(node(3 + i, "floor", "Floor", (1.25 + 2.5 * i, 0.0, 1.25), (2.5, 0.0, 2.5)) for i in range(2)),
-        node(6, "floor", "Floor", (-1.25, 0.0, 1.25), (2.5, 0.0, 2.5)),
-    ]
-    rooms = [
-        node(1, "bedroom", "Rooms", (2.5, 1.25, 1.25), (5.5, 2.5, 3.0)),
-        node(2, "livingroom", "Rooms", (-1.25, 1.25, 1.25), (2.5, 2.5, 2.5)),
-    ]
-    jamb = node(7, "doorjamb", "Doors", (0.0, 1.03, 1.25), (0.12, 2.06, 0.93))
-    return {
-        "nodes": [*rooms, *tiles, jamb, *furniture, *sofa],
-        "edges": [
-            *inside,
-            *(edge(tile["id"], "INSIDE", 2 if tile["id"] == 6 else 1) for tile in tiles),
-            edge(7, "INSIDE", 1),
-            edge(11, "ON", 10),
-        ],
-    }
 
 
 def read(graph: Any) -> Imported:

@@ -12,6 +12,7 @@ import pytest
 from examples import tries
 from hypothesis import given
 from hypothesis import strategies as st
+from recorded import agrees
 from sample_motions import tumbling
 
 from motion_backend.formats.npz import write_npz
@@ -532,3 +533,36 @@ def test_parts_of_a_clip_are_checked_in_one_place():
             make_bones(names, parents, np.ones((len(names), 3)))
     with pytest.raises(ClipError, match=r"shape \(3, 2, 4\)"):
         make_clip("still", bones, np.zeros((3, 3)), still[:, :1], still[0], 30.0, "sims")
+
+
+# All of them
+
+
+def test_the_tiny_files_are_read_as_recorded(tmp_path):
+    """Bones, frames and notes of each format; joints in the second frame."""
+    rows = np.zeros((3, WIDTH))
+    rows[:, 1], rows[1:, 3:] = 17.0, 0.2 * np.cos(np.arange(WIDTH - 3))
+    bent = [deepmimic_row(), deepmimic_row(root=(1.0, 0.85, -0.5), turn=[HALF, 0.0, HALF, 0.0], knee=-1.0, elbow=0.7)]
+    found = {
+        "acclaim": acclaim(tmp_path),
+        "deepmimic": deepmimic(tmp_path, bent),
+        "expmap": expmap(tmp_path, rows),
+        "amass": read_clips(archive(tmp_path / "amass.npz", **amass()))[0],
+        "amass with hands": read_clips(archive(tmp_path / "hands.npz", **amass(joints=55)))[0],
+        "kimodo": read_clips(archive(tmp_path / "kimodo.npz", **kimodo()))[0],
+        "amp": read_clips(amp(tmp_path))[0],
+    }
+    agrees("clips_read", {name: told(clip) for name, clip in found.items()})
+
+
+def told(clip):
+    spread = clip.joint_positions()[1]
+    rest = clip.tpose_kinematics()[0]
+    rows = np.column_stack([clip.bones.parents, spread, rest])
+    return {
+        "is": [clip.name, clip.source, clip.fps, len(clip), *clip.notes],
+        "bones": {
+            name: [round(float(number), 3) + 0.0 for number in row]
+            for name, row in zip(clip.bones.names, rows, strict=True)
+        },
+    }
