@@ -17,7 +17,7 @@ from motion_backend.scene import scene_of
 from planner_service.grounding.keyframes_to_actions import NEEDS, Place, can_stand
 from planner_service.scripts.script import LongScript, PlannedKeyframe
 from scene_graphs.affordances.affordances import spots
-from scene_graphs.furniture import Furniture, canonical, display_name, group_of, is_known, is_minor
+from scene_graphs.furniture import Furniture, canonical, class_of, display_name, group_of, is_known, is_minor
 from scene_graphs.graph.furniture_graph import FurnitureGraph, needs_of, offers
 from scene_graphs.graph.script_objects import Grounding, Offers, ground_script
 from scene_graphs.home import Home
@@ -128,8 +128,11 @@ def place_in(object_id: str) -> Place:
     return Place(int(object_id.partition("/")[0]), object_id)
 
 
-def usable_offers(home: Home) -> dict[str, frozenset[str]]:
-    """What each object of a home can be used for by a body that walks there: object id to sit, lie, touch."""
+def usable_offers(home: Home, checked: bool = False) -> dict[str, frozenset[str]]:
+    """What each object of a home can be used for by a body that walks there: object id to sit, lie, touch.
+
+    Of rooms that were `checked` as they were made only what decorates them is looked at: a picture may hang over a bed.
+    """
     walkable = scene_of(home).walkable
     start = walkable.random_point(np.random.default_rng(0), 0)
     return {
@@ -137,4 +140,5 @@ def usable_offers(home: Home) -> dict[str, frozenset[str]]:
             need for need in offers(placed) if any(can_stand(walkable, start, spot) for spot in spots(placed, need))
         )
         for placed in home.objects
+        if not checked or class_of(placed.category) == "decor"
     }
