@@ -162,7 +162,8 @@ class MiniLM:
     def adapted(self, changes: Mapping[str, Floats]) -> MiniLM:
         """An encoder that has learned something else besides: `changes` are added to the weights of those names, the
         others are shared."""
-        unknown = [name for name, change in changes.items() if np.shape(self._weights.get(name)) != change.shape]
+        known = {name: weight.shape for name, weight in self._weights.items()}
+        unknown = [name for name, change in changes.items() if known.get(name) != change.shape]
         if unknown:
             raise WeightsError(f"the encoder has no weights of that name and size: {', '.join(unknown[:3])}")
         other = copy(self)

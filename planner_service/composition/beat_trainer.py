@@ -123,7 +123,7 @@ def _accepts(one: Alternative, skill: Skill, caption: str) -> bool:
     return fits and (not one.skill or skill in one.skill)
 
 
-class Adapted(nn.Module):
+class Adapted(nn.Module):  # type: ignore[misc]
     """A linear layer that stays as it is, with a learned one of low rank beside it."""
 
     def __init__(self, weight: Tensor, bias: Tensor, rank: int, dropout: float) -> None:
@@ -140,7 +140,7 @@ class Adapted(nn.Module):
         return functional.linear(x, self.get_buffer("weight"), self.get_buffer("bias")) + 2 * beside
 
 
-class BeatNetwork(nn.Module):
+class BeatNetwork(nn.Module):  # type: ignore[misc]
     """The encoder of `motion_backend.language.minilm` in torch, with adapters and the last layer."""
 
     def __init__(self, weights: Mapping[str, Tensor], known: Vocabulary, training: BeatTraining) -> None:
@@ -260,7 +260,7 @@ def learn(
             given = batch_of(some, tokens, lambda: rng.random() < training.without_before)
             loss = loss_of(net(*given), some)
             optimizer.zero_grad()
-            loss.backward()  # type: ignore[no-untyped-call]
+            loss.backward()
             nn.utils.clip_grad_norm_(net.parameters(), 1.0)
             optimizer.step()
             schedule.step()
@@ -269,7 +269,8 @@ def learn(
         if not np.isfinite(mean):
             raise FloatingPointError(f"the loss of epoch {epoch} is {mean}: a smaller --rate may help")
         tell(epoch, mean)
-    return net.eval()
+    net.eval()
+    return net
 
 
 def _batches(rows: Sequence[Row], size: int, rng: random.Random) -> Iterator[list[Row]]:

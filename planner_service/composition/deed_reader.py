@@ -40,7 +40,7 @@ AS_LIKELY: Final = 0.6
 """Captions that are so nearly as likely as the likeliest show it as well."""
 ANY: Final = 0.5
 """Where such a share of a skill's captions shows it, it is any of them."""
-SURE: Final = 0.7
+SURE: Final = 0.6
 """What is likelier than this to show a clause shows it; what is less likely only stands for it."""
 SURELY: Final = 0.95
 """What the table of deeds does not take for shown is if it is so likely."""
@@ -99,6 +99,8 @@ class DeedReader:
         skill, best = likely.best
         most = likely.captions[skill, best]
         known = likely.of(told.skill, shown_by(told, Emotion.NEUTRAL)) if told is not None else 0.0
+        if told is not None and told.row.captions and likely.shown < SHOWN:
+            return told  # what the table says in so many words
         if likely.shown < SHOWN or not (clause.verb or min(most, likely.shown) > SURE):
             return None
         if told is not None and most - known < (SURER_OF_THE_SAME if skill is told.skill else SURER):
@@ -124,7 +126,7 @@ class DeedReader:
     def is_shown(self, clause: Clause, deed: Deed, keyframes: Sequence[Keyframe]) -> bool:
         """Whether some keyframe shows a clause's deed, or they only stand for it."""
         by_table, likely = is_shown(clause, deed, keyframes), self.likely(clause)
-        if likely is None or not keyframes:
+        if likely is None or not keyframes or deed.row.stands:
             return by_table
         return max(shown(likely, clause, one) for one in keyframes) > (SURE if by_table else SURELY)
 
@@ -141,7 +143,7 @@ def shown(likely: Likely, clause: Clause, keyframe: Keyframe) -> float:
     """How likely a fair viewer takes a keyframe for what a clause tells."""
     there = 1.0
     if keyframe.skill is Skill.TOUCH and not pieces_in(clause.text):
-        there = at(likely, keyframe.piece[0]) / max(likely.pieces.values())
+        there = min(2 * at(likely, keyframe.piece[0]) / max(likely.pieces.values()), 1.0)
     felt = 0.0 if keyframe.mood is Emotion.NEUTRAL else likely.moods.get(keyframe.mood, 0.0)
     return min(max(there * likely.captions.get((keyframe.skill, keyframe.caption), 0.0), felt), likely.shown)
 

@@ -148,8 +148,8 @@ def read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, Call
         ("sit_down", "felt_share = 0.7\n", "", r"pose\.1\.felt_share"),
         ("sit_pose", 'foot = "heel"', 'foot = "heels"', r"legs\.pose\.3\.foot"),
         ("stand_up", 'name = "ready"', 'name = "lift"', r"pose\.0\.name"),
-        ("lie_down", "spine_side_rad = 0.12", "spine_side_rad = inf", r"pose\.2\.spine_side_rad"),
-        ("lie_down", "[-0.30, -0.50, 0.45]", "[-0.30, -0.50]", r"pose\.2\.above_wrist_ratio"),
+        ("lie_down", "spine_side_rad = 0.12", "spine_side_rad = inf", r"pose\.3\.spine_side_rad"),
+        ("lie_down", "[-0.30, -0.50, 0.45]", "[-0.30, -0.50]", r"pose\.3\.above_wrist_ratio"),
         ("rise_to_edge", 'name = "rolled"', 'name = "sitting"', r"side\.name"),
     ],
 )
@@ -205,9 +205,9 @@ def lain(keys: LieKeys) -> Pose:
 
 
 def test_a_bed_is_lain_on_as_its_rows_say() -> None:
-    look, hand, elbow, legs = LIE.down.pose
+    look, hand, lifted, elbow, legs = LIE.down.pose
     high = replace(elbow, pelvis_up_m=elbow.pelvis_up_m + 0.1)
-    plain, varied = lain(LIE), lain(replace(LIE, down=replace(LIE.down, pose=(look, hand, high, legs))))
+    plain, varied = lain(LIE), lain(replace(LIE, down=replace(LIE.down, pose=(look, hand, lifted, high, legs))))
     assert (varied.pelvis - plain.pelvis)[:, 1].max() == pytest.approx(0.1, abs=0.01)
     np.testing.assert_allclose(varied.ankles[-1], plain.ankles[-1], atol=1e-9)
     longer = replace(LIE, down=replace(LIE.down, settle=replace(LIE.down.settle, bent_wait_s=1.75)))

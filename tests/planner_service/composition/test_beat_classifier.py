@@ -33,7 +33,7 @@ def encoder() -> MiniLM:
         ("buries her nose in a paperback", "", Skill.SITDOWN, "reading"),
         ("hammers away at the keyboard", "", Skill.SITDOWN, "typing"),
         ("tiptoes past the nursery", "", Skill.LOCO, "tiptoes"),
-        ("dozes off on the couch", "", Skill.LIEDOWN, ""),
+        ("collapses into bed, fast asleep", "", Skill.LIEDOWN, ""),
         ("rummages in the wardrobe", "", Skill.TOUCH, ""),
     ],
 )
@@ -77,7 +77,8 @@ def test_changes_are_added_to_the_encoders_own_weights(encoder: MiniLM) -> None:
     texts = ["a chair", "somebody sits down on a chair by the window"]
     assert np.array_equal(same.encode(texts), encoder.encode(texts))
     assert np.allclose(np.linalg.norm(encoder.encode(texts), axis=1), 1.0, atol=1e-6)
-    other = encoder.adapted({name: np.ones((384, 1536), dtype=np.float32)})
+    noise = np.random.default_rng(0).normal(size=(384, 1536)).astype(np.float32)
+    other = encoder.adapted({name: noise})
     assert not np.allclose(other.encode(texts), encoder.encode(texts), atol=1e-2)
     with pytest.raises(WeightsError, match="no weights of that name and size"):
         encoder.adapted({name: np.zeros((2, 2), dtype=np.float32)})

@@ -116,7 +116,7 @@ def test_a_keyframe_shows_what_it_likely_shows_and_only_stands_for_the_rest() ->
     keyframe = Keyframe(skill=Skill.TOUCH, emotion="neutral", caption="turn on with the right hand", furniture="mirror")
 
     def is_shown(share: float, there: float = 0.9) -> bool:
-        heard = reader(likely(turn_on=share, pieces={"mirror": there, "desk": 0.9}))
+        heard = reader(likely(shown=0.99, turn_on=share, pieces={"mirror": there, "desk": 0.9}))
         deed = heard.deed(told)
         return deed is not None and heard.is_shown(told, deed, [keyframe])
 
