@@ -11,7 +11,7 @@ const DEEP = 0.08;
 /** Who planned it: rules are not called a language model. */
 export function plannerWords(planner: string | null): string {
   if (planner === null || planner === "given") return "The keyframes were given; nothing was planned.";
-  if (planner === "rules") return "Planned by rules, no language model.";
+  if (planner === "rules") return "Planned without a language model: by rules, and by a classifier where the sentence encoder is installed.";
   return `Planned by a language model, ${planner.replace(/^llm:/, "")}.`;
 }
 
