@@ -125,16 +125,20 @@ def planning(
     held_out: Annotated[
         bool, typer.Option("--show-held-out", help="List what is missed of the held-out half too; never tune on it.")
     ] = False,
+    labels: Annotated[
+        Path | None, typer.Option(help="Labelled themes of your own instead of ours, held out: one JSON object a line.")
+    ] = None,
 ) -> None:
     """Find scripts for labelled queries and plan labelled themes, without a language model: how much of what was asked
     is found and acted, and how much is acted that was not.
 
     Your own scripts have no part in it, since nobody has labelled them. Exit code 1 when a limit is missed.
     """
+    from planner_service.evaluation.labels import read_labels
     from planner_service.evaluation.planning_evaluation import evaluate_planning
 
     shelves = _as_shipped(read_settings())
-    found = evaluate_planning(shelves.scripts(), shelves.layouts())
+    found = evaluate_planning(shelves.scripts(), shelves.layouts(), read_labels(labels) if labels else None)
     misses = [miss for miss in found.misses if held_out or miss.split == "tune"]
     console = Console(markup=False, highlight=False)
     if as_json:
@@ -142,7 +146,7 @@ def planning(
         told = {"figures": figures, "misses": list(map(asdict, misses))}
         console.print_json(json.dumps({**told, "encoder": found.encoder, "scripts": found.scripts}))
     else:
-        console.print(_planning_table(found.figures))
+        console.print(_planning_table(found.figures, ("all",) if labels else ("all", "tune", "held_out")))
         console.print(f"{found.scripts} scripts, encoder {found.encoder}; a limit is for the column marked *")
         for miss in misses:
             console.print(f"{miss.split} {miss.id}: {miss.text}", soft_wrap=True)
@@ -159,11 +163,11 @@ def _as_shipped(settings: Settings) -> Shelves:
     return Shelves(cache=settings.cache_dir)
 
 
-def _planning_table(figures: Sequence[Figure]) -> Table:
-    numbers = ("all", "tune", "held out", "limit")
+def _planning_table(figures: Sequence[Figure], shown: Sequence[str]) -> Table:
+    numbers = (*(part.replace("_", " ") for part in shown), "limit")
     table = plain_table("figure", *numbers, "", right=numbers)
     for figure in figures:
-        parts = {"all": figure.all, "tune": figure.tune, "held_out": figure.held_out}
+        parts = {part: getattr(figure, part) for part in shown}
         judged = figure.judged if figure.limit is not None else ""
         cells = [f"{'*' if part == judged else ''}{_measured(value, figure)}" for part, value in parts.items()]
         sense = {"least": "≥", "below": "<", "most": "≤"}[figure.sense]

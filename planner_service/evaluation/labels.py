@@ -144,12 +144,12 @@ def training_themes() -> tuple[tuple[LabelledTheme, ...], tuple[LabelledTheme, .
 
 
 def read_labels(path: Path) -> tuple[LabelledTheme, ...]:
-    """Labelled themes of a file, one JSON object a line; UserError names the line that is none."""
+    """Labelled themes of a file, held out, one JSON object a line; UserError names the line that is none."""
     found = []
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         if line.strip():
             try:
-                found.append(LabelledTheme.model_validate({**json.loads(line), "split": "tune"}, strict=False))
+                found.append(LabelledTheme.model_validate({**json.loads(line), "split": "held_out"}, strict=False))
             except (ValueError, TypeError) as error:
                 raise UserError(f"{path}: line {number} is no labelled theme: {error}", at="labels") from error
     return tuple(found)

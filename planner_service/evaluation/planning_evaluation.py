@@ -141,8 +141,16 @@ class Evaluation:
     """Size of the library."""
 
 
-def evaluate_planning(library: ScriptLibrary, rooms: LayoutIndex) -> Evaluation:
-    """The shipped labels against a library that holds our short scripts; no language model has a part in it."""
+def evaluate_planning(
+    library: ScriptLibrary, rooms: LayoutIndex, fresh: Sequence[LabelledTheme] | None = None
+) -> Evaluation:
+    """The shipped labels against a library that holds our short scripts, or `fresh` themes alone; no language model has
+    a part in it."""
+    if fresh is not None:
+        themes = judged_themes(fresh, lambda theme: compose(theme, library, Request()))
+        made = (*beat_figures(themes), executable(themes, rooms))
+        figures = tuple(replace(one, judged="all") for one in made)
+        return Evaluation(figures, tuple(theme_misses(themes)), library.encoder.name, len(library))
     found, missed = search_figures(labelled_queries(), library)
     themes = judged_themes(labelled_themes(), lambda theme: compose(theme, library, Request()))
     figures = (*found, *beat_figures(themes), executable(themes, rooms))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -169,3 +170,21 @@ def test_the_command_ends_with_one_where_a_limit_is_missed_and_keeps_held_out_mi
         planning_evaluation, "evaluate_planning", lambda *_: replace(found, figures=(replace(kept, limit=0.95),))
     )
     assert CliRunner().invoke(app, ["evaluate", "planning"]).exit_code == 1
+
+
+def test_labels_of_ones_own_are_judged_as_held_out_and_what_is_none_is_named(tmp_path: Path) -> None:
+    beat = {"text": "sits down on the sofa", "actable": True, "shown_by": [{"skill": ["sitdown"]}]}
+    missed = {"text": "sails round the world", "actable": True, "shown_by": [{"skill": ["liedown"]}]}
+    rows = [{"id": "mine", "theme": "She sits down on the sofa. She sails round the world.", "beats": [beat, missed]}]
+    labels = tmp_path / "labels.jsonl"
+    labels.write_text("".join(f"{json.dumps(row)}\n" for row in rows), encoding="utf-8")
+    told = CliRunner().invoke(app, ["evaluate", "planning", "--labels", str(labels), "--json"])
+    answer = json.loads(told.output)
+    acted = next(one for one in answer["figures"] if one["name"] == "beats: actable, acted in order")
+    assert (acted["all"], acted["missed"], told.exit_code, answer["misses"]) == (0.5, True, 1, [])
+    shown = CliRunner().invoke(app, ["evaluate", "planning", "--labels", str(labels), "--show-held-out"])
+    assert "sails round the world" in shown.output
+    assert "tune" not in shown.output
+    labels.write_text('{"id": "mine", "theme": "x"}\n', encoding="utf-8")
+    refused = CliRunner().invoke(app, ["evaluate", "planning", "--labels", str(labels)])
+    assert "line 1 is no labelled theme" in str(refused.exception) + refused.output
