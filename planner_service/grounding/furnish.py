@@ -132,7 +132,7 @@ def furnish(
     checked = {layout.id: layout for layout in built_in_layouts()}
     are_ours = not layouts and all(checked.get(layout.id) is layout for layout in unique)
     where = [_room_of(keyframe, wanted) for keyframe in script.keyframes]
-    placing = Placing(home, uses, number, usable_offers(home, checked=are_ours))
+    placing = Placing(home, uses, number, usable_offers(home, checked=are_ours and len(home.rooms) == 1))
     seating = seat(placing, script, where) if are_ours else seat_with_pulls(placing, script, where)
     if seating.missing:
         raise FurnishError(seating.missing)

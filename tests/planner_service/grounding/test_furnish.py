@@ -12,9 +12,13 @@ import pytest
 from motion_backend.motion import Skill
 from planner_service.api.stories.schemas import HomeShown
 from planner_service.grounding.furnish import FurnishError, furnish
+from planner_service.grounding.object_assignment import usable_offers
 from planner_service.jobs import serialization
 from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe
 from scene_graphs.affordances.room_validation import validate
+from scene_graphs.furniture import class_of
+from scene_graphs.graph.furniture_graph import offers
+from scene_graphs.home import home_from_layouts
 from scene_graphs.layout import Layout, Placed
 from scene_graphs.layout_library import built_in_layouts
 from scene_graphs.retrieval.layout_index import LayoutIndex
@@ -176,3 +180,15 @@ def test_a_script_on_the_floor_alone_still_gets_a_room() -> None:
     found = furnish(script(("loco", "floor", "study")), index())
     assert len(found.home.rooms) == 1
     assert found.places[0].object_id is None
+
+
+def test_what_joined_rooms_cut_off_is_left_aside() -> None:
+    layouts = [one for one in built_in_layouts() if one.id in ("study-0003", "living-room-0070", "dining-room-0023")]
+    home = home_from_layouts(
+        sorted(layouts, key=lambda one: ["study", "living_room", "dining_room"].index(one.room_type)), 3
+    )
+    whole = usable_offers(home)
+    assert any("lie" in offers(home.object(name)) and "lie" not in found for name, found in whole.items())
+    decor = usable_offers(home, checked=True)
+    assert decor == {name: found for name, found in whole.items() if name in decor}
+    assert {class_of(home.object(name).category) for name in decor} == {"decor"}
