@@ -131,8 +131,8 @@ def place_in(object_id: str) -> Place:
 def usable_offers(home: Home, checked: bool = False) -> dict[str, frozenset[str]]:
     """What each object of a home can be used for by a body that walks there: object id to sit, lie, touch.
 
-    Of a room that was `checked` as it was made only what decorates it is looked at: a picture may hang over a bed. Rooms
-    that are joined may close a way round that was there in each.
+    Of a room that was `checked` as it was made only what decorates it is looked at: a picture may hang over a bed.
+    Rooms that are joined may close a way round that was there in each.
     """
     walkable = scene_of(home).walkable
     start = walkable.random_point(np.random.default_rng(0), 0)
