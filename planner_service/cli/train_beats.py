@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Final
+from typing import Annotated
 
 import typer
 from rich.console import Console
@@ -11,8 +11,6 @@ from rich.console import Console
 from planner_service.cli.console import plain_table
 from planner_service.output.story_export import check_writable
 from scene_graphs.errors import UserError
-
-WEIGHTS: Final = "beat_classifier.safetensors"
 
 
 def beats(
@@ -28,7 +26,7 @@ def beats(
     Every fifth labelled theme is kept back for that.
     """
     from motion_backend.language import minilm
-    from planner_service.composition.beat_classifier import BeatClassifier
+    from planner_service.composition.beat_classifier import SHIPPED, BeatClassifier
     from planner_service.composition.beat_trainer import (
         BeatTraining,
         learn,
@@ -40,7 +38,7 @@ def beats(
     from planner_service.evaluation.labels import labelled_themes, read_labels, training_themes
 
     console = Console(markup=False, highlight=False)
-    check_writable(out, (WEIGHTS,))
+    check_writable(out, (SHIPPED,))
     folder = minilm.weights_folder()
     if folder is None:
         raise UserError("the sentence encoder is not installed, which this learns upon: make demo installs it")
@@ -53,9 +51,9 @@ def beats(
     net = learn(rows, known, folder, BeatTraining(epochs=epochs, seed=seed),
                 lambda epoch, loss: console.print(f"epoch {epoch + 1} of {epochs}  loss {loss:.3f}"))  # fmt: skip
     out.mkdir(parents=True, exist_ok=True)
-    save(net, known, out / WEIGHTS)
-    found = recognised(BeatClassifier(minilm.MiniLM(folder), out / WEIGHTS), kept)
+    save(net, known, out / SHIPPED)
+    found = recognised(BeatClassifier(minilm.MiniLM(folder), out / SHIPPED), kept)
     table = plain_table("kept back", "beats", "first caption accepted", "shown or not", "first furniture accepted")
     table.add_row("", str(found.beats), *(f"{share:.1%}" for share in (found.first, found.shown, found.placed)))
     console.print(table)
-    console.print(f"weights in {out / WEIGHTS}", soft_wrap=True)
+    console.print(f"weights in {out / SHIPPED}", soft_wrap=True)

@@ -144,9 +144,14 @@ def training_themes() -> tuple[tuple[LabelledTheme, ...], tuple[LabelledTheme, .
 
 
 def read_labels(path: Path) -> tuple[LabelledTheme, ...]:
-    """Labelled themes of a file, held out, one JSON object a line; UserError names the line that is none."""
+    """Labelled themes of a file, held out, one JSON object a line; UserError where it is no text, and names the line
+    that is none."""
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise UserError(f"{path} cannot be read as text: {error}", at="labels") from error
     found = []
-    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+    for number, line in enumerate(lines, 1):
         if line.strip():
             try:
                 found.append(LabelledTheme.model_validate({**json.loads(line), "split": "held_out"}, strict=False))

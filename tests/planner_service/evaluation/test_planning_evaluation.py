@@ -188,3 +188,6 @@ def test_labels_of_ones_own_are_judged_as_held_out_and_what_is_none_is_named(tmp
     labels.write_text('{"id": "mine", "theme": "x"}\n', encoding="utf-8")
     refused = CliRunner().invoke(app, ["evaluate", "planning", "--labels", str(labels)])
     assert "line 1 is no labelled theme" in str(refused.exception) + refused.output
+    for path in (tmp_path / "none.jsonl", tmp_path):
+        refused = CliRunner().invoke(app, ["evaluate", "planning", "--labels", str(path)])
+        assert "cannot be read as text" in str(refused.exception) + refused.output
