@@ -59,8 +59,12 @@ class Director:
         """A backend by its name, with the default one behind it. UnknownBackendError, BrokenBackendError."""
         return Director(load_backend(name), load_backend(DEFAULT_BACKEND) if name != DEFAULT_BACKEND else None)
 
-    def begin(self, home: Home, character: Character, seed: int) -> BodyState:
-        """The body standing in the home, before its first action."""
+    def begin(self, home: Home, character: Character, seed: int, first: Action | None = None) -> BodyState:
+        """The body in the home before its first action: standing, or resting where that has it rest already."""
+        state = self._standing(home, character, seed)
+        return _at_rest(home, first, state) if first is not None and first.already else state
+
+    def _standing(self, home: Home, character: Character, seed: int) -> BodyState:
         try:
             return self.backend.begin(home, character, seed)
         except Exception:
@@ -161,6 +165,17 @@ class Director:
             raise ValueError(f"{why}, and no backend stands behind it")
         motion, state = yield from _windows(self.fallback, asked)
         return _labelled(motion, asked.part, self.fallback, why, fault(motion, asked)), state
+
+
+def _at_rest(home: Home, first: Action, standing: BodyState) -> BodyState:
+    """As the default backend has settled there, which nobody sees; standing still where it cannot."""
+    backend, state = load_backend(DEFAULT_BACKEND), standing
+    parts = parts_of(first, Posture.STANDING)
+    for index, part in enumerate(parts[:-1]):
+        motion, state = _advance(backend, Request(home, part, parts[index + 1 :], state))
+        if not motion.completed:
+            return standing
+    return state
 
 
 def _made(step: Step) -> Step:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -148,6 +149,10 @@ class Character:
     outfit: str = ""
 
 
+RISINGS: Final = (Skill.STANDUP, Skill.GETUP)
+"""Skills of which nothing is left to do once the body stands."""
+
+
 @dataclass(frozen=True)
 class Action:
     """One thing to do, grounded in the home: what a backend gets for one keyframe (SIMS 3.4, Eq. 6)."""
@@ -174,6 +179,8 @@ class Action:
     """What is in the hands during it, in words ("cup, book"); no backend draws it."""
     interaction: str | None = None
     """What is done in the pose, in words ("watch TV"): LINGO's interaction steps."""
+    already: bool = False
+    """Whether the body sits or lies there before the first frame; so only of the first action."""
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from motion_backend.metrics.contact_error import (
     risen,
 )
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Action, Posture, Skill
+from motion_backend.motion import RISINGS, Action, Posture, Skill
 from scene_graphs.affordances.affordances import Spot
 
 ENTERING: Final[dict[Skill, tuple[PartKind, ...]]] = {
@@ -46,8 +46,6 @@ ON_THE_PIECE: Final = {Posture.SEATED: Skill.LIEDOWN, Posture.LYING: Skill.SITDO
 """What is done without rising first by who rests on the same piece, beside the place for it."""
 BESIDE, TURNED = 0.65, 0.2
 """A place to sit is beside one to lie that is no farther along the edge (metres) and looks over it (radians)."""
-RISINGS: Final = (Skill.STANDUP, Skill.GETUP)
-"""Skills of which nothing is left to do once the body stands."""
 ENDS: Final[dict[Skill, Posture]] = {
     Skill.LOCO: Posture.STANDING,
     Skill.SITDOWN: Posture.SEATED,
@@ -88,8 +86,12 @@ def parts_of(
     action: Action, posture: Posture, place: tuple[float, float] | None = None, rest: Spot | None = None
 ) -> tuple[Part, ...]:
     """All that a body in a posture does for an action, in order (Eq. 6); `place` is where it stands, where known, and
-    `rest` what it sits or lies on: from sitting one lies down there, and sits up from lying."""
-    if ON_THE_PIECE.get(posture) is action.skill and alongside(rest, action.spot):
+    `rest` what it sits or lies on: from sitting one lies down there or sits otherwise, and sits up from lying."""
+    if action.already and rest is not None and rest == action.spot:
+        return (_part(PartKind.HOLD, action, place),)
+    if goes_on_sitting(posture, action, rest) or (
+        ON_THE_PIECE.get(posture) is action.skill and alongside(rest, action.spot)
+    ):
         return tuple(_part(kind, action, place) for kind in ENTERING[action.skill] if kind is not PartKind.WALK)
     rising = () if posture is Posture.STANDING else (Part(PartKind.RISE, action),)
     if action.skill is Skill.LOCO and action.goal is None:
@@ -97,6 +99,11 @@ def parts_of(
     if action.skill in RISINGS:
         return (*rising, Part(PartKind.HOLD, action, hold=STOOD if rising else STOOD_ALREADY))
     return (*rising, *(_part(kind, action, place) for kind in ENTERING[action.skill]))
+
+
+def goes_on_sitting(posture: Posture, action: Action, rest: Spot | None) -> bool:
+    """Whether who sits does so in another way on the same seat."""
+    return posture is Posture.SEATED and action.skill is Skill.SITDOWN and rest is not None and rest == action.spot
 
 
 def alongside(one: Spot | None, other: Spot | None) -> bool:

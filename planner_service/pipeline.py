@@ -329,7 +329,7 @@ def types_of(layouts: Sequence[Layout]) -> tuple[str, ...]:
 
 def move(director: Director, planned: Planned, actions: Sequence[Action], progress: Progress) -> list[Motion]:
     """One segment an action, each from the state the one before left."""
-    state = director.begin(planned.home, planned.character, planned.request.seed)
+    state = director.begin(planned.home, planned.character, planned.request.seed, next(iter(actions), None))
     motions = []
     progress("move", 0.0)
     for motion, _ in director.play(planned.home, actions, state):

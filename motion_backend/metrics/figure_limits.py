@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from motion_backend.metrics.joint_speed import MOST as FASTEST_JOINT
-from motion_backend.motion import Skill
+from motion_backend.motion import RISINGS, Skill
 
 CONTACTS: Final = (Skill.SITDOWN, Skill.LIEDOWN, Skill.TOUCH)
 UPRIGHT: Final = (Skill.LOCO, Skill.TOUCH)
-RISING: Final = (Skill.STANDUP, Skill.GETUP)
 
 
 @dataclass(frozen=True)
@@ -46,7 +45,7 @@ LIMITS: Final = (
     Limit("joint_speed", most=FASTEST_JOINT),
     Limit("frozen_share", most=0.01),
     Limit("zmp_upright", most=0.015, skills=UPRIGHT),
-    Limit("zmp_rising", most=0.04, skills=RISING),
+    Limit("zmp_rising", most=0.04, skills=RISINGS),
     Limit("jerk_against_real", least=0.5, most=1.5, skills=(Skill.LOCO,)),
 )
 """Over trials of all captions; `judge` (story_metrics.py) says what each figure is."""

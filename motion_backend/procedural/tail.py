@@ -17,10 +17,9 @@ from motion_backend import rotations
 from motion_backend.backend_protocol import Part, PartKind
 from motion_backend.metrics.contact_error import RISEN, risen
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import FPS, Motion
+from motion_backend.motion import FPS, RISINGS, Motion
 from motion_backend.procedural.pose import Pose, concatenate
 from motion_backend.rotations import Array
-from motion_backend.state_machine import RISINGS
 
 TAILS: Final[dict[tuple[PartKind, PartKind], float]] = {
     (PartKind.WALK, PartKind.SIT): 0.7,

@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from motion_backend.motion import Emotion, Skill
+from motion_backend.motion import RISINGS, Emotion, Skill
 from planner_service.composition.caption_senses import shows
 from planner_service.composition.deed_lexicon import (
     Deed,
@@ -118,7 +118,7 @@ class KeyframeWriter:
         elif deed is not None:
             self.deeds[index] = deed
             self._tried = deed if lemma_of(read.text.split()[0]) in _AGAIN_VERBS else self._tried
-            self._do(index, read, deed)
+            self._do(index, read, deed, self._rises_later(index, beats))
         elif beat.kind == "feeling" or (read.felt is not None and read.sure):
             self._feel(index, beats)
         else:
@@ -170,13 +170,23 @@ class KeyframeWriter:
             if deed is not None and not deed.row.captions:
                 self._avoided |= {deed.skill} & {Skill.SITDOWN, Skill.LIEDOWN}
 
-    def _do(self, index: int, read: ReadBeat, deed: Deed) -> None:
+    def _rises_later(self, index: int, beats: Sequence[ReadBeat]) -> bool:
+        """Whether somebody gets up next: who wakes before that stays in bed."""
+        deeds = (self.reader.deed(one.clause) for one in beats[index + 1 :] if one.beat.kind == "deed")
+        following = next((deed for deed in deeds if deed is not None), None)
+        return following is not None and following.skill in RISINGS
+
+    def _do(self, index: int, read: ReadBeat, deed: Deed, rises_later: bool = False) -> None:
         deed = self._on_feet(read, deed)
         mood = read.beat.emotion
         self._clause = read.clause
         if deed.row.mood and mood is Emotion.NEUTRAL:
             mood = Emotion(deed.row.mood)
         match deed.skill:
+            case Skill.STANDUP | Skill.GETUP if not self.keyframes:
+                self._begin(index, deed, mood)
+                if not rises_later and self._resting is not None:
+                    self._rise(index, deed, mood)
             case Skill.STANDUP | Skill.GETUP:
                 self._rise(index, deed, mood)
             case Skill.LOCO if self._goes_on(read, deed):
@@ -257,20 +267,26 @@ class KeyframeWriter:
         )
         return (same or not deed.named) and affords(resting.furniture, NEEDS[skill])
 
+    def _begin(self, index: int, deed: Deed, mood: Emotion) -> None:
+        """Lie or sit: who gets up has done so before."""
+        skill, usually = (Skill.LIEDOWN, "bed") if deed.skill is Skill.GETUP else (Skill.SITDOWN, "chair")
+        need, already = NEEDS[skill], not self.keyframes
+        piece = next((one for one in (*deed.pieces, usually, "bed") if affords(one, need) and self._has(one)), "")
+        if not piece:
+            self.why[index] = "there is nothing to get up from"
+            return
+        self._put(index, skill, mood, self._one_of(captions_of(skill, mood), mood, index, skill), piece, None)
+        self.keyframes[-1] = self._resting = self.keyframes[-1].model_copy(update={"already": already})
+
     def _rise(self, index: int, deed: Deed, mood: Emotion) -> None:
-        """Get up; who does so first of all was lying or sitting before."""
+        """Get up."""
+        if self._resting is None and self.keyframes[-1].skill in RISINGS:
+            self._show(index)
+            return
         if self._resting is None:
-            if self.keyframes and self.keyframes[-1].skill in (Skill.STANDUP, Skill.GETUP):
-                self._show(index)
-                return
-            skill, usually = (Skill.LIEDOWN, "bed") if deed.skill is Skill.GETUP else (Skill.SITDOWN, "chair")
-            need = NEEDS[skill]
-            piece = next((one for one in (*deed.pieces, usually, "bed") if affords(one, need) and self._has(one)), "")
-            if not piece:
-                self.why[index] = "there is nothing to get up from"
-                return
-            self._put(index, skill, mood, self._one_of(captions_of(skill, mood), mood, index, skill), piece, None)
-            self._resting = self.keyframes[-1]
+            self._begin(index, deed, mood)
+        if self._resting is None:
+            return
         resting = self._resting
         skill = Skill.GETUP if resting.skill is Skill.LIEDOWN else Skill.STANDUP
         pace = {"hurried": "quickly", "angry": "quickly", "tired": "slowly", "sad": "slowly", "drunk": "slowly"}.get(

@@ -18,7 +18,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
 
 import prompts
 from motion_backend.emotion_words import emotion_of
-from motion_backend.motion import Emotion, Skill
+from motion_backend.motion import RISINGS, Emotion, Skill
 from planner_service.composition.beat_schema import SERVES, BeatsAnswer, answer_type
 from planner_service.llm.protocol import LanguageModel
 from planner_service.llm.structured_output import ask
@@ -78,7 +78,6 @@ _SENTENCE: Final = re.compile(r"(?<=[.!?;])\s+")
 _COMMON_WORDS: Final = """and are but for from had has have her him his into its not out she that the their them then
 they this was were what when who with very"""
 _COMMON: Final = frozenset(_COMMON_WORDS.split())
-_RISES: Final = (Skill.STANDUP, Skill.GETUP)
 
 
 @dataclass(frozen=True)
@@ -411,7 +410,7 @@ def _leads(keyframes: Sequence[Keyframe], index: int) -> bool:
 
 def _shorter(keyframes: Sequence[Keyframe]) -> tuple[Keyframe, ...]:
     """Without what is missed least: a rising at the end, else the last walk about, else the last keyframe."""
-    if keyframes[-1].skill in _RISES:
+    if keyframes[-1].skill in RISINGS:
         return tuple(keyframes[:-1])
     strolls = [index for index, one in enumerate(keyframes) if one.skill is Skill.LOCO and not _leads(keyframes, index)]
     out = strolls[-1] if strolls else len(keyframes) - 1

@@ -16,7 +16,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from motion_backend.motion import Action, Emotion, Skill
+from motion_backend.motion import RISINGS, Action, Emotion, Skill
 from motion_backend.procedural.lie.lie_pose import place_to_lie
 from motion_backend.procedural.sit.sit_skill import seat_for
 from motion_backend.procedural.touch.hand_contacts import suits
@@ -188,9 +188,10 @@ class _Stage:
                 self.resting = spot
             self.on = None if keyframe.skill is Skill.TOUCH else spot
             self.at = spot.standing
-            return replace(action, object_id=spot.object_id, spot=spot, hand=hand, hold=HOLDS[keyframe.skill])
+            hold, already = HOLDS[keyframe.skill], getattr(keyframe, "already", False)
+            return replace(action, object_id=spot.object_id, spot=spot, hand=hand, hold=hold, already=already)
         self.on = None
-        if keyframe.skill in (Skill.STANDUP, Skill.GETUP) and self.resting is not None:
+        if keyframe.skill in RISINGS and self.resting is not None:
             return replace(action, object_id=self.resting.object_id, spot=self.resting)
         return action
 
@@ -204,6 +205,8 @@ class _Stage:
 
     def _spot(self, index: int, keyframe: Keyframe, mood: Emotion, place: Place) -> Spot:
         need = NEEDS[keyframe.skill]
+        if self.on is not None and need == self.on.affordance == "sit" and self._is_on(place):
+            return self.on  # who sits there sits otherwise
         if place.object_id is None:
             if keyframe.skill is Skill.TOUCH:
                 raise UnreachableError(f"keyframe {index}: nothing to touch, {keyframe.furniture!r} is not in the home")
@@ -222,6 +225,13 @@ class _Stage:
         if need == "sit":
             return seat_for(found, mood, keyframe.caption, self._elbows.solid, self.scale)
         return place_to_lie(found, keyframe.caption)
+
+    def _is_on(self, place: Place) -> bool:
+        """Whether what the body rests on still is that place."""
+        if self.on is None or place.object_id is not None:
+            return self.on is not None and self.on.object_id == place.object_id
+        x, _, z = self.on.point
+        return self.on.object_id == "floor" and self.home.room_at((x, z)) == place.room
 
     def _to_touch(self, found: list[Spot], caption: str) -> Spot:
         """One of the spots of a piece of the wanted height, with room for arms, on which nothing lies."""

@@ -13,7 +13,7 @@ from typing import Final
 from pydantic import Field
 
 from motion_backend.emotion_words import emotion_of
-from motion_backend.motion import Skill
+from motion_backend.motion import RISINGS
 from motion_backend.procedural.caption_coverage import understands
 from planner_service.grounding.furnish import Furnished, furnished_again
 from planner_service.grounding.keyframes_to_actions import NEEDS
@@ -137,6 +137,7 @@ class _Reader:
             also=old.also if old else (),
             room=self._room(chosen, old),
             object_id=chosen,
+            already=old.already if old else False,
         )
 
     def _note(self, number: int, field: str, said: str) -> None:
@@ -158,7 +159,7 @@ class _Reader:
         need = NEEDS.get(one.skill)
         if one.object_id is not None:
             return self._named_object(number, one.object_id, need)
-        if one.on_floor or one.skill in (Skill.STANDUP, Skill.GETUP):
+        if one.on_floor or one.skill in RISINGS:
             if need == "touch":
                 self._note(number, "furniture", f"nobody touches the floor; {self._there_is(need)}")
             return None if old is None or one.on_floor else old.object_id

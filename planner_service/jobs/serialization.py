@@ -139,6 +139,7 @@ def _keyframes(script: LongScript) -> list[Json]:
             "furniture": keyframe.furniture,
             "object_id": None,
             "room": keyframe.room,
+            "already": keyframe.already,
             "short_script_id": None if keyframe.short_script is None else ids[keyframe.short_script],
         }
         for index, keyframe in enumerate(script.keyframes)

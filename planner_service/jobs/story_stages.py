@@ -215,7 +215,7 @@ class Maker:
         if self.store.has(story_id, position):  # taken over from another story
             return
         if index == 0:
-            state = director.begin(home, actor(story.request, story.stage.script), story.request.seed)
+            state = director.begin(home, actor(story.request, story.stage.script), story.request.seed, action)
         else:
             state = BodyState.from_dict(self.store.segment(story_id, position - 1)[1])
             first = self._end_of(story_id, position - 1)

@@ -9,19 +9,16 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from difflib import SequenceMatcher
-from typing import Final, Protocol
+from typing import Protocol
 
 from motion_backend.backend_protocol import BodyState
 from motion_backend.director import Director
-from motion_backend.motion import Action, Skill
+from motion_backend.motion import RISINGS, Action, Skill
 from planner_service.grounding.furnish import Furnished
 from planner_service.grounding.keyframes_to_actions import Kept, action_to_dict
 from planner_service.pipeline import StoryRequest, actor
 from planner_service.store.story_store import Made, StoryGone
 from scene_graphs.json_fields import Json
-
-RISES: Final = (Skill.STANDUP, Skill.GETUP)
-"""They go on from what the body rests on, which may be another place of the same thing."""
 
 
 class Grounded(Protocol):
@@ -74,7 +71,7 @@ def _setting(story: Grounded) -> tuple[object, ...]:
 def _said(stage: Furnished) -> list[tuple[object, ...]]:
     """What of each keyframe grounding goes by."""
     return [
-        (keyframe.skill, keyframe.mood, keyframe.caption, keyframe.furniture, place)
+        (keyframe.skill, keyframe.mood, keyframe.caption, keyframe.furniture, keyframe.already, place)
         for keyframe, place in zip(stage.script.keyframes, stage.places, strict=True)
     ]
 
@@ -85,8 +82,8 @@ def _depends(index: int, one: Kept, found: Sequence[Kept | None], skills: Sequen
     came_first = index == 0 and one.action.keyframe == 0
     after_the_same = before is not None and before.action.keyframe + 1 == one.action.keyframe
     if one.action.skill is Skill.LOCO or came_first or after_the_same:
-        return one.action.skill in RISES
-    return one.action.skill in (*RISES, Skill.TOUCH) or skills[index - 1] is not Skill.LOCO
+        return one.action.skill in RISINGS
+    return one.action.skill in (*RISINGS, Skill.TOUCH) or skills[index - 1] is not Skill.LOCO
 
 
 def reused_segments(take: Grounded, origin: Grounded | None, rows: Sequence[Json], director: Director) -> list[Made]:

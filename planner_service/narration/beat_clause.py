@@ -29,6 +29,8 @@ _PERSON: Final = {
 _FIRST: Final = {"i": "they", "me": "them", "my": "their", "mine": "theirs", "myself": "themself"}
 _OBJECT: Final = re.compile(r"\s+(?:and|to|in|on|at|with|from|for)\b|\W*$")
 """What follows "her" where it does not own what follows."""
+_MOVES: Final = re.compile(r" (?:up|out of)\b")
+"""Who "gets" so moves, and is not in a state."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +44,7 @@ class Predicate:
     @property
     def is_state(self) -> bool:
         """Whether it says how somebody is, not what is done."""
-        return self.text.startswith(WAS) or (bool(self.verbs & _of("states")) and " up" not in self.text)
+        return self.text.startswith(WAS) or (bool(self.verbs & _of("states")) and not _MOVES.search(self.text))
 
 
 def event(beat: Beat, hero: str, voice: Voice) -> Predicate | None:

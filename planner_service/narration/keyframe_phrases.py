@@ -11,7 +11,7 @@ from typing import Final, Literal
 
 import numpy as np
 
-from motion_backend.motion import Skill
+from motion_backend.motion import RISINGS, Skill
 from planner_service.narration.narrative_voice import Voice, require_blanks
 from planner_service.narration.tense import bases
 from planner_service.scripts.script import Keyframe, PlannedKeyframe
@@ -59,6 +59,10 @@ class Phrases:
     lies: dict[str, tuple[str, ...]]
     rests_again: tuple[str, ...]
     """Where the body has just rested."""
+    rests_already: dict[Skill, tuple[str, ...]]
+    """Where the body rests when the story begins."""
+    sits_on: tuple[str, ...]
+    """In another way, where the body sits already."""
     rises: dict[Literal["neutral", "slow", "fast"], tuple[str, ...]]
     """By pace."""
     touches: dict[str, tuple[str, ...]]
@@ -90,7 +94,6 @@ _DEEP: Final = (*_IN, "chair")
 _VERB: Final = re.compile(r"(?:^|~)(\w+)")
 _SEATED: Final = re.compile(r"\b(?:down|out|back|seat|comfortably)\b")
 """After such a word no furniture need be named that just was."""
-RISES: Final = (Skill.STANDUP, Skill.GETUP)
 RESTS: Final = (Skill.SITDOWN, Skill.LIEDOWN)
 
 
@@ -131,7 +134,7 @@ class Phrase:
     @property
     def rises(self) -> bool:
         """Whether the body stands up."""
-        return self.skill in RISES
+        return self.skill in RISINGS
 
 
 class Variety:
@@ -173,18 +176,21 @@ class Wording:
             goal = _goal(keyframe, [row[1] for row in rows[at + 1 :]])
             leads = keyframe.skill == Skill.LOCO and goal is not None
             rests = goal is not None and goal.skill in RESTS
-            stays = stays or (keyframe.skill in RISES and rests)
+            stays = stays or (keyframe.skill in RISINGS and rests)
             if (rests and stays) or (leads and rests and self._goes_without_saying(keyframe)):
                 untold = (*untold, index)
                 continue
-            told.append(self._phrase((*untold, index), keyframe, leads, stays))
+            on = at > 0 and _sits_on(rows[at - 1][1], keyframe)
+            told.append(self._phrase((*untold, index), keyframe, leads, stays or on, on))
             untold, stays = (), False
         return told
 
     def _goes_without_saying(self, walk: Keyframe) -> bool:
         return walk.caption in templates().neutral_walks and self.variety.chance(0.5)
 
-    def _phrase(self, indices: tuple[int, ...], keyframe: PlannedKeyframe, leads: bool, stays: bool) -> Phrase:
+    def _phrase(
+        self, indices: tuple[int, ...], keyframe: PlannedKeyframe, leads: bool, stays: bool, on: bool
+    ) -> Phrase:
         index, mood, known = indices[-1], keyframe.mood, templates()
         manners: tuple[str, ...] = ()
         walks, sits = keyframe.skill == Skill.LOCO, keyframe.skill == Skill.SITDOWN
@@ -192,7 +198,9 @@ class Wording:
             walk = known.walks.get(keyframe.caption, known.walks_in_mood[mood])
             ways = walk.about if keyframe.on_floor else walk.to
         elif keyframe.skill in RESTS:
-            ways = known.rests_again if stays else (known.sits_in_mood if sits else known.lies_in_mood)[mood]
+            ways = (known.sits_in_mood if sits else known.lies_in_mood)[mood]
+            ways = known.sits_on if on else known.rests_again if stays else ways
+            ways = known.rests_already[keyframe.skill] if keyframe.already else ways
             manners = (known.sits if sits else known.lies).get(keyframe.caption, ())
         elif keyframe.skill == Skill.TOUCH:
             ways = touches(keyframe)
@@ -202,7 +210,7 @@ class Wording:
         base = " ".join(self._fill(self.variety.pick(ways), the, self.room(index, keyframe)).split())
         self._wandering = walks and keyframe.on_floor
         self._named = the if leads else ""
-        goes = walks or keyframe.skill in RISES
+        goes = walks or keyframe.skill in RISINGS
         manner = _VERB.sub(lambda verb: past(verb[1]), self._manner(manners))
         return Phrase(
             text=_VERB.sub(lambda verb: past(verb[1]), base),
@@ -216,7 +224,7 @@ class Wording:
             deeds=frozenset(base for word in re.findall(r"\w+ing\b", keyframe.caption) for base in bases(word)),
             leads=leads,
             stays=stays,
-            begins=keyframe.skill in RISES,
+            begins=keyframe.skill in RISINGS,
         )
 
     def _manner(self, ways: Sequence[str]) -> str:
@@ -277,6 +285,11 @@ def _goal(keyframe: Keyframe, later: Sequence[Keyframe]) -> Keyframe | None:
         if one.skill != Skill.LOCO:
             return one
     return None
+
+
+def _sits_on(before: Keyframe, keyframe: Keyframe) -> bool:
+    """Whether who sits there sits otherwise."""
+    return before.skill == keyframe.skill == Skill.SITDOWN and before.piece == keyframe.piece
 
 
 def _pace(caption: str) -> Literal["neutral", "slow", "fast"]:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
 from typing import Final
 
-from motion_backend.motion import Character, Skill
+from motion_backend.motion import RISINGS, Character, Skill
 from planner_service.narration.beat_clause import WAS, Predicate, event, of_voice, purpose
 from planner_service.narration.keyframe_phrases import RESTS, Phrase, Places, Variety, Wording
 from planner_service.narration.narrative_voice import Voice
@@ -138,7 +138,7 @@ class _Teller:
         What is danced or walked in place of a deed is for nothing: of that the deed is left out.
         """
         *before, last = phrases
-        if last.skill is Skill.LOCO or not purpose:
+        if last.skill in (Skill.LOCO, *RISINGS) or not purpose:
             return phrases
         if last.skill is Skill.TOUCH and before and before[-1].leads:
             last = replace(before[-1], keyframes=(*before.pop().keyframes, *last.keyframes), leads=False)

@@ -6,13 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from motion_backend.motion import Emotion, Skill
+from motion_backend.motion import RISINGS, Emotion, Skill
 from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe
 from planner_service.scripts.script_words import is_floor
 from scene_graphs.json_fields import Json
 
 UNDONE: Final = "left undone, as the theme asks"
-_RISINGS: Final = (Skill.STANDUP, Skill.GETUP)
 
 
 def connects(keyframe: Keyframe) -> bool:
@@ -22,7 +21,7 @@ def connects(keyframe: Keyframe) -> bool:
 
 def leads(skill: Skill, furniture: str) -> bool:
     """The same of a keyframe's words."""
-    return skill in _RISINGS or (skill is Skill.LOCO and not is_floor(furniture))
+    return skill in RISINGS or (skill is Skill.LOCO and not is_floor(furniture))
 
 
 @dataclass(frozen=True)

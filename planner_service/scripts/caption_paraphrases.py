@@ -13,7 +13,7 @@ from typing import Final
 from pydantic import BaseModel, ConfigDict
 
 import prompts
-from motion_backend.motion import Skill
+from motion_backend.motion import RISINGS, Skill
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.llm.structured_output import ask
 from planner_service.scripts.captions import sides, synonyms
@@ -37,8 +37,6 @@ _MOTIONS: Final = {
     Skill.LIEDOWN: r"lies?\b|lying",
     Skill.GETUP: r"get(?:s|ting)? up",
 }
-_RISINGS: Final = (Skill.STANDUP, Skill.GETUP)
-"""Words for these tell what the body rises from."""
 
 
 class Phrases(BaseModel):
@@ -109,7 +107,7 @@ def fault_of(phrase: str, caption: str, skill: str) -> str | None:
         return f"it names {_told(phrase)}, the caption {_told(caption)}"
     for other, words in _MOTIONS.items():
         said = re.compile(rf"\b(?:{words})", re.IGNORECASE)
-        may = other == skill or (skill in _RISINGS and other is not Skill.LOCO)
+        may = other == skill or (skill in RISINGS and other is not Skill.LOCO)
         if not may and said.search(phrase) and not said.search(caption):
             return f"it tells of {other}"
     return None

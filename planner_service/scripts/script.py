@@ -142,6 +142,8 @@ class PlannedKeyframe(Keyframe):
     room: Room | None = None
     object_id: str | None = Field(None, max_length=200)
     """The object of the home that somebody chose for it; None: one is found."""
+    already: bool = False
+    """Whether the body sits or lies there when the story begins; so only of the first keyframe."""
 
 
 class Retrieved(BaseModel):

@@ -9,7 +9,7 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any, Final, Generic, TypeVar
 
-from motion_backend.motion import Emotion, Posture, Skill
+from motion_backend.motion import RISINGS, Emotion, Posture, Skill
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.captions import Vocabulary, sides
 from planner_service.scripts.script import Keyframe, LongScript, ShortScript
@@ -26,6 +26,8 @@ from planner_service.scripts.script_words import (
 )
 
 K = TypeVar("K", bound=Keyframe)
+STAYS: Final = {Posture.SEATED: (Skill.SITDOWN, Skill.LIEDOWN), Posture.LYING: (Skill.SITDOWN,)}
+"""What is done on a piece that one rests on without rising first."""
 RISES: Final = {Posture.SEATED: (Skill.STANDUP, "stand up"), Posture.LYING: (Skill.GETUP, "get up")}
 NO_WAY_TO_GO: Final = re.compile(r"\b(spin|danc|pacing|sidestep|tap |still|wav|to the front)", re.IGNORECASE)
 
@@ -57,7 +59,9 @@ class Mending(Generic[K]):
             self._note(index, "skill", f"{_told(keyframe)} is there twice", "kept once")
         elif keyframe.skill is Skill.TOUCH and not self._can_touch(keyframe.piece[0]):
             self._note(index, "furniture", f"the home has nothing to touch, no {keyframe.furniture}", "left out")
-        elif keyframe.skill in (Skill.STANDUP, Skill.GETUP):
+        elif getattr(keyframe, "already", False):
+            self._begin(index, keyframe)
+        elif keyframe.skill in RISINGS:
             self._rise(index, keyframe)
         elif keyframe.skill is Skill.LOCO:
             self._be_standing(index, keyframe)
@@ -65,6 +69,14 @@ class Mending(Generic[K]):
             self.kept.append(keyframe)
         else:
             self._use(index, keyframe)
+
+    def _begin(self, index: int, keyframe: K) -> None:
+        """Who rests when the story begins has not come there in it."""
+        if self.kept or keyframe.skill not in (Skill.SITDOWN, Skill.LIEDOWN):
+            self._note(index, "already", f"{_told(keyframe)} is not how the story begins", "done there")
+            self._take(index, keyframe.model_copy(update={"already": False}))
+        else:
+            self._rest(keyframe)
 
     def _rise(self, index: int, keyframe: K) -> None:
         """Rising starts from rest, from the object rested on; the paper's tables write "floor" there."""
@@ -99,19 +111,24 @@ class Mending(Generic[K]):
         self._stand(self._resting.model_copy(update=fields(keyframe, update)))
 
     def _use(self, index: int, keyframe: K) -> None:
-        """Sit, lie or touch: on one's feet and beside the object, or from sitting to lying and back on the same one."""
+        """Sit, lie or touch: on one's feet and beside the object, or without leaving the one that is rested on."""
         place = place_of(keyframe)
-        stays = {Posture.SEATED: Skill.LIEDOWN, Posture.LYING: Skill.SITDOWN}.get(self.posture) is keyframe.skill
+        stays = keyframe.skill in STAYS.get(self.posture, ())
         if not (stays and self._resting is not None and place_of(self._resting) == place):
             self._be_standing(index, keyframe)
             if self._at != place and not is_floor(keyframe.piece[0]):
                 self._note(index, "skill", f"{_told(keyframe)} without a walk to it", "loco put in")
                 self.kept.append(self._walk(keyframe))
                 self._at = place
-        self.kept.append(self._with_a_free_hand(index, keyframe))
-        if keyframe.skill is not Skill.TOUCH:
-            self.posture = Posture.SEATED if keyframe.skill is Skill.SITDOWN else Posture.LYING
-            self._resting = keyframe
+        if keyframe.skill is Skill.TOUCH:
+            self.kept.append(self._with_a_free_hand(index, keyframe))
+        else:
+            self._rest(keyframe)
+
+    def _rest(self, keyframe: K) -> None:
+        self.kept.append(keyframe)
+        self.posture = Posture.SEATED if keyframe.skill is Skill.SITDOWN else Posture.LYING
+        self._resting = keyframe
 
     def _can_touch(self, word: str) -> bool:
         return affords(word, "touch") and self._fitting.has(word)

@@ -57,19 +57,19 @@ def before_seat(body: Body, action: Action) -> tuple[Point, float]:
 
 
 def sit(body: Body, part: Part) -> None:
-    """From standing: down onto the seat, and into the way of sitting; or only into it, for who has sat up there."""
+    """From standing: down onto the seat, and into the way of sitting; or only into it, for who sits there."""
     action = part.action
     own = own_seat(sit_keys().spread, body.seed, body.rng)
     style = replace(sit_style(action.emotion, action.caption), own=own)
     seat = Seat.of(spot_of(action))
     keys = in_own_way(sit_keys(), own, seat.is_low(body.skeleton.scale))
-    if body.posture is not Posture.LYING:
+    if body.posture is Posture.STANDING:
         body.enter(PhaseKind.WALK)
         go(body, *before_seat(body, action), action)
     body.enter(PhaseKind.SITDOWN)
     around = handholds(seat, body.scene.obstacles, body.skeleton.scale)
     place = Place(seat, around, leg_room(body.scene.obstacles, seat, body.skeleton.scale))
-    if body.posture is Posture.LYING:
+    if body.posture is not Posture.STANDING:
         down, body.holds = settle_in(body.pose, place, style, body.skeleton, keys)
     else:
         under = around.behind if seat.is_low(body.skeleton.scale) else around.beside

@@ -228,6 +228,7 @@ class KeyframeShown(BaseModel):
     reached: bool | None
     segments: list[SegmentShown] = Field([], description="Who made its frames, in order; known once they are there.")
     reused: bool = Field(False, description="Whether its frames are those of the story that this one derives from.")
+    already: bool = Field(False, description="Whether the body rests there when the story begins.")
     asleep: bool = Field(False, description="Whether the eyes are shut; known once it can be acted.")
 
 
