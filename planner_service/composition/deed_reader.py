@@ -6,6 +6,7 @@ the surer one is taken.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
@@ -38,6 +39,8 @@ UNLIKELY: Final = 0.15
 """What the table has is left undone where nothing is likelier to show it than this."""
 AS_LIKELY: Final = 0.6
 """Captions that are so nearly as likely as the likeliest show it as well."""
+SEATED: Final = 0.15
+"""Who sits already goes on sitting for what may be done so, if that is so likely."""
 ANY: Final = 0.5
 """Where such a share of a skill's captions shows it, it is any of them."""
 SURE: Final = 0.6
@@ -58,6 +61,12 @@ TOUCHES: Final = (
 """Captions of a hand that is laid on something, whatever it does there."""
 
 
+_THINGS: Final = re.compile(
+    r"(?:the|an?|his|her|its|their|my|our|your|every|each|this|that|it|some\w*|no\w+|who\w*|one) ", re.IGNORECASE
+)
+"""What begins so is done by a thing, or by nobody: "the latch clicks"."""
+
+
 def classifier_of(encoder: SentenceEncoder) -> BeatClassifier | None:
     """What has been learned of beats, where the sentence encoder is the one that it was learned with."""
     inside = encoder.encoder if isinstance(encoder, ByHeart) else encoder
@@ -71,17 +80,17 @@ class DeedReader:
     classifier: BeatClassifier | None = None
     _known: dict[str, Likely] = field(default_factory=dict)
 
-    def hear(self, clauses: Sequence[Clause]) -> None:
-        """Think about clauses as they follow each other, all at once."""
-        told = [one.text for one in clauses]
+    def hear(self, clauses: Sequence[Clause], told: Sequence[str]) -> None:
+        """Think about clauses as they follow each other, all at once; `told` are their words with whose deeds they
+        are."""
         before = [". ".join(told[max(place - BEFORE, 0) : place]) for place in range(len(told))]
-        new = {text: (text, about) for text, about in zip(told, before, strict=True) if text not in self._known}
+        new = {one.text: pair for one, *pair in zip(clauses, told, before, strict=True) if one.text not in self._known}
         if self.classifier is not None and new:
             self._known.update(zip(new, self.classifier.likely(*zip(*new.values(), strict=True)), strict=True))
 
     def likely(self, clause: Clause) -> Likely | None:
         """What a clause is likely shown by; None without a classifier."""
-        self.hear([clause])
+        self.hear([clause], [clause.text])
         return self._known.get(clause.text)
 
     def deed(self, clause: Clause, about: str = "") -> Deed | None:
@@ -116,12 +125,16 @@ class DeedReader:
             return one
         most = likely.captions[likely.best]
         if one.beat.kind == "other":
-            ours = not (one.clause.aside or is_person(one.beat.who)) and min(most, likely.shown) > SURE
+            theirs = one.clause.aside or is_person(one.beat.who) or _THINGS.match(one.text)
+            ours = not theirs and min(most, likely.shown) > SURE
             return replace(one, beat=one.beat.model_copy(update={"kind": "deed", "who": ""})) if ours else one
         mood = max(likely.moods, key=lambda mood: likely.moods[mood])
-        if likely.moods[mood] < MOODY or one.felt is mood or mood is Emotion.NEUTRAL:
+        if likely.moods[mood] < MOODY or mood is Emotion.NEUTRAL:
             return one
-        return one.in_mood(mood)
+        one = one if one.felt is mood else one.in_mood(mood)
+        if " " not in one.text and likely.moods[mood] > most:  # "stressed"
+            return replace(one, beat=one.beat.model_copy(update={"kind": "feeling"}), sure=True)
+        return one
 
     def is_shown(self, clause: Clause, deed: Deed, keyframes: Sequence[Keyframe]) -> bool:
         """Whether some keyframe shows a clause's deed, or they only stand for it."""
@@ -146,6 +159,13 @@ def shown(likely: Likely, clause: Clause, keyframe: Keyframe) -> float:
         there = min(2 * at(likely, keyframe.piece[0]) / max(likely.pieces.values()), 1.0)
     felt = 0.0 if keyframe.mood is Emotion.NEUTRAL else likely.moods.get(keyframe.mood, 0.0)
     return min(max(there * likely.captions.get((keyframe.skill, keyframe.caption), 0.0), felt), likely.shown)
+
+
+def seated_as_well(likely: Likely) -> tuple[str, ...]:
+    """Ways of sitting that may show what is usually done lying: "nods off"."""
+    seated = {one: share for (skill, one), share in likely.captions.items() if skill is Skill.SITDOWN}
+    most = max(seated.values())
+    return tuple(one for one, share in seated.items() if share >= max(AS_LIKELY * most, SEATED))
 
 
 def at(likely: Likely, word: str) -> float:

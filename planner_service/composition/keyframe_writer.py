@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -26,7 +26,7 @@ from planner_service.composition.deed_lexicon import (
     typical_of,
     where,
 )
-from planner_service.composition.deed_reader import TOUCHES, DeedReader
+from planner_service.composition.deed_reader import TOUCHES, DeedReader, seated_as_well
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
@@ -201,6 +201,8 @@ class KeyframeWriter:
                 for piece in (deed, *_further(read.clause, deed)):
                     if self._add(index, read, piece, mood, Skill.TOUCH, deed.row.captions or TOUCHES):
                         self._resting = None
+            case Skill.LIEDOWN if not deed.named and (seated := self._dozes(read)):
+                self._rest(index, read, replace(deed, pieces=()), mood, Skill.SITDOWN, seated)
             case Skill.SITDOWN if self._lies() and deed.row.lying and not deed.named:
                 self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)
             case _:
@@ -229,6 +231,13 @@ class KeyframeWriter:
         )
         rests = self._resting is not None and not deed.named and not deed.row.seated
         return rests and (stands_in or (_is_beside(read) and deed.row.captions == _STANDING.captions))
+
+    def _dozes(self, read: ReadBeat) -> Sequence[str]:
+        """Ways of sitting on what cannot be lain on that show what is else done lying."""
+        resting, likely = self._resting, self.reader.likely(read.clause)
+        if resting is None or likely is None or resting.skill is not Skill.SITDOWN or affords(resting.furniture, "lie"):
+            return ()
+        return seated_as_well(likely)
 
     def _lies(self) -> bool:
         return self._resting is not None and self._resting.skill is Skill.LIEDOWN
