@@ -86,10 +86,10 @@ def parts_of(
     action: Action, posture: Posture, place: tuple[float, float] | None = None, rest: Spot | None = None
 ) -> tuple[Part, ...]:
     """All that a body in a posture does for an action, in order (Eq. 6); `place` is where it stands, where known, and
-    `rest` what it sits or lies on: from sitting one lies down there or sits otherwise, and sits up from lying."""
+    `rest` what it sits or lies on: one lies down there from sitting, sits up from lying, or rests in another way."""
     if action.already and rest is not None and rest == action.spot:
         return (_part(PartKind.HOLD, action, place),)
-    if goes_on_sitting(posture, action, rest) or (
+    if goes_on_resting(posture, action, rest) or (
         ON_THE_PIECE.get(posture) is action.skill and alongside(rest, action.spot)
     ):
         return tuple(_part(kind, action, place) for kind in ENTERING[action.skill] if kind is not PartKind.WALK)
@@ -101,9 +101,11 @@ def parts_of(
     return (*rising, *(_part(kind, action, place) for kind in ENTERING[action.skill]))
 
 
-def goes_on_sitting(posture: Posture, action: Action, rest: Spot | None) -> bool:
-    """Whether who sits does so in another way on the same seat."""
-    return posture is Posture.SEATED and action.skill is Skill.SITDOWN and rest is not None and rest == action.spot
+def goes_on_resting(posture: Posture, action: Action, rest: Spot | None) -> bool:
+    """Whether who sits or lies does so in another way on the same place."""
+    return (
+        posture is not Posture.STANDING and ENDS[action.skill] is posture and rest is not None and rest == action.spot
+    )
 
 
 def alongside(one: Spot | None, other: Spot | None) -> bool:

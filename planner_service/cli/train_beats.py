@@ -18,7 +18,7 @@ def beats(
     labels: Annotated[
         list[Path] | None, typer.Option(help="Labelled themes to learn from besides ours, one JSON object a line.")
     ] = None,
-    epochs: Annotated[int, typer.Option(min=1, max=100, help="Times that every beat is seen.")] = 6,
+    epochs: Annotated[int, typer.Option(min=1, max=100, help="Times that every beat is seen.")] = 5,
     seed: Annotated[int, typer.Option(min=0, help="The same seed learns the same.")] = 0,
 ) -> None:
     """Learn which captions show what is told, and say how often the first is right for themes that are kept back.

@@ -6,7 +6,7 @@ Only what is added is learned: the encoder's own weights stay as they are, and a
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import ceil
 from pathlib import Path
@@ -17,6 +17,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 from torch.nn import functional
+from torch.optim.swa_utils import AveragedModel
 
 from motion_backend.language.minilm import HEADS, LAYERS, WIDTH, WordPiece
 from motion_backend.motion import Emotion, Skill
@@ -45,15 +46,19 @@ SELDOM: Final = -2.5
 class BeatTraining:
     """How it is learned."""
 
-    epochs: int = 6
+    epochs: int = 5
     batch: int = 32
+    chunk: int = 512
+    """Of so many rows those that are about as long come together."""
     rank: int = 16
     rate: float = 1.5e-3
     """Of the adapters; twice as much for the last layer."""
     warm_up: int = 60
     least_rate: float = 0.02
     decay: float = 0.05
-    dropout: float = 0.1
+    dropout: float = 0.2
+    memory: float = 0.998
+    """What the weights that are shipped keep of themselves a step: they are a running mean of those that learn."""
     without_before: float = 0.25
     """How often a clause is read without what was told before it."""
     seed: int = 0
@@ -235,7 +240,8 @@ def learn(
     training: BeatTraining | None = None,
     tell: Callable[[int, float], None] = lambda _epoch, _loss: None,
 ) -> BeatNetwork:
-    """A network that has learned the rows, upon the encoder of a folder; the same bytes for the same seed.
+    """A network that has learned the rows, upon the encoder of a folder; the same bytes for the same seed. Its weights
+    are a running mean: those are righter, and less sure of what is wrong, than the last ones.
 
     `tell` hears of every epoch and its mean loss. FloatingPointError when that is no number any more.
     """
@@ -247,6 +253,7 @@ def learn(
     rng = random.Random(training.seed)
     tokens = WordPiece((folder / "vocab.txt").read_text(encoding="utf-8").split("\n"))
     net = BeatNetwork(load_file(folder / "model.safetensors"), known, training)
+    mean_net = AveragedModel(net, avg_fn=_mean_of(training.memory))
     slow = [*net.adapters.parameters(), net.pair]
     groups = [{"params": list(net.head.parameters()), "lr": 2 * training.rate}, {"params": slow, "lr": training.rate}]
     optimizer = torch.optim.AdamW(groups, weight_decay=training.decay)
@@ -256,7 +263,7 @@ def learn(
     )
     for epoch in range(training.epochs):
         losses = []
-        for some in _batches(rows, training.batch, rng):
+        for some in _batches(rows, tokens, training, rng):
             given = batch_of(some, tokens, lambda: rng.random() < training.without_before)
             loss = loss_of(net(*given), some)
             optimizer.zero_grad()
@@ -264,20 +271,36 @@ def learn(
             nn.utils.clip_grad_norm_(net.parameters(), 1.0)
             optimizer.step()
             schedule.step()
+            mean_net.update_parameters(net)
             losses.append(float(loss.detach()))
         mean = float(np.mean(losses))
         if not np.isfinite(mean):
             raise FloatingPointError(f"the loss of epoch {epoch} is {mean}: a smaller --rate may help")
         tell(epoch, mean)
-    net.eval()
-    return net
+    learned: BeatNetwork = mean_net.module.eval()
+    return learned
 
 
-def _batches(rows: Sequence[Row], size: int, rng: random.Random) -> Iterator[list[Row]]:
-    order = list(rows)
+def _mean_of(memory: float) -> Callable[[Tensor, Tensor, Tensor | int], Tensor]:
+    """How the mean follows the weights: closely at first, then slowly."""
+
+    def followed(mean: Tensor, weights: Tensor, steps: Tensor | int) -> Tensor:
+        known = int(steps)
+        return mean + (weights - mean) * (1 - min(memory, (1 + known) / (10 + known)))
+
+    return followed
+
+
+def _batches(rows: Sequence[Row], tokens: WordPiece, training: BeatTraining, rng: random.Random) -> list[list[Row]]:
+    """All rows once, by chance, in batches of about the same length: little is padded."""
+    order = [(row, len(tokens.encode(plain(row.clause), TOKENS))) for row in rows]
     rng.shuffle(order)
-    for start in range(0, len(order), size):
-        yield order[start : start + size]
+    batches = []
+    for start in range(0, len(order), training.chunk):
+        some = sorted(order[start : start + training.chunk], key=lambda one: one[1])
+        batches += [[row for row, _ in some[at : at + training.batch]] for at in range(0, len(some), training.batch)]
+    rng.shuffle(batches)
+    return batches
 
 
 def save(net: BeatNetwork, known: Vocabulary, path: Path) -> None:

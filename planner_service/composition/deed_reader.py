@@ -45,12 +45,16 @@ ANY: Final = 0.5
 """Where such a share of a skill's captions shows it, it is any of them."""
 SURE: Final = 0.6
 """What is likelier than this to show a clause shows it; what is less likely only stands for it."""
+HARDLY: Final = 0.6
+"""Who rests does not get up for what is less likely to show a clause."""
 SURELY: Final = 0.95
 """What the table of deeds does not take for shown is if it is so likely."""
 MOODY: Final = 0.4
 """A mood that shows a clause so likely is its mood."""
 BEFORE: Final = 2
 """A clause is read with so many of those before it."""
+PLACED: Final = 0.15
+"""Where hands do it hardly likelier than this it is done anywhere."""
 PLACES: Final = 3
 """Pieces of furniture that hands may do it at."""
 TOUCHES: Final = (
@@ -143,6 +147,18 @@ class DeedReader:
             return by_table
         return max(shown(likely, clause, one) for one in keyframes) > (SURE if by_table else SURELY)
 
+    def hardly_shows(self, clause: Clause, deed: Deed, mood: Emotion) -> bool:
+        """Whether a deed's captions are hardly taken for what a clause tells."""
+        likely = self.likely(clause)
+        return likely is not None and min(likely.of(deed.skill, shown_by(deed, mood)), likely.shown) < HARDLY
+
+    def may_be_at(self, clause: Clause, skill: Skill, word: str) -> bool:
+        """Whether hands may as well do it at a piece of furniture as where they likeliest do."""
+        likely = self.likely(clause)
+        if likely is None or skill is not Skill.TOUCH:
+            return False
+        return at(likely, word) >= AS_LIKELY * max(likely.pieces.values())
+
     def likeliest(self, clause: Clause, skill: Skill, some: Sequence[str]) -> Sequence[str]:
         """Those of some captions that are as likely to show a clause as the likeliest of them; all where none is."""
         likely = self.likely(clause)
@@ -177,7 +193,7 @@ def at(likely: Likely, word: str) -> float:
 def likeliest_pieces(likely: Likely) -> tuple[str, ...]:
     """Furniture where hands likeliest do it."""
     able = [one for one in likely.pieces if one != "floor" and affords(one, "touch")]
-    found = sorted(able, key=lambda one: -likely.pieces[one])[:PLACES]
+    found = [one for one in sorted(able, key=lambda one: -likely.pieces[one])[:PLACES] if likely.pieces[one] > PLACED]
     return tuple(one.replace("_", " ") for one in found)
 
 

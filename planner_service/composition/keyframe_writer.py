@@ -182,6 +182,9 @@ class KeyframeWriter:
         self._clause = read.clause
         if deed.row.mood and mood is Emotion.NEUTRAL:
             mood = Emotion(deed.row.mood)
+        if self._resting is not None and self._only_stands_for(read, deed):
+            self._show(index)  # nobody gets up for what would show no more
+            return
         match deed.skill:
             case Skill.STANDUP | Skill.GETUP if not self.keyframes:
                 self._begin(index, deed, mood)
@@ -239,6 +242,12 @@ class KeyframeWriter:
             return ()
         return seated_as_well(likely)
 
+    def _only_stands_for(self, read: ReadBeat, deed: Deed) -> bool:
+        """Whether what would be done is hardly taken for what is told; where it is done at a certain thing, that is
+        gone to all the same."""
+        known = deed.named or deed.row.rests or deed.skill in RISINGS
+        return not known and self.reader.hardly_shows(read.clause, deed, read.beat.emotion)
+
     def _lies(self) -> bool:
         return self._resting is not None and self._resting.skill is Skill.LIEDOWN
 
@@ -263,8 +272,7 @@ class KeyframeWriter:
                     self._plain = False
                 self._show(index)
                 return
-        lies_back = skill is Skill.LIEDOWN and resting is not None and resting.skill is Skill.SITDOWN
-        if resting is not None and here and (lies_back or not deed.named):
+        if resting is not None and here:
             deed = Deed(deed.row, skill, (resting.furniture,), True)
         if self._add(index, read, deed, mood, skill, shown):
             self._resting, self._plain = self.keyframes[-1], not (deed.row.rests or captions)
@@ -356,12 +364,7 @@ class KeyframeWriter:
             and same
             and all(self._has(one.piece[0], read.room or part.script.room) for one in part.keyframes)
         ):
-            self.parts.append((index, part))
-            leads = len(part.keyframes) > 1
-            there = leads and self._is_there(part.keyframes[0].furniture, read.room or part.script.room)
-            for keyframe in part.keyframes[there:]:
-                update = {"beat": index, "short_script": len(self.parts) - 1, "room": read.room or part.script.room}
-                self.keyframes.append(keyframe.model_copy(update=update))
+            self._take_part(index, part, read.room or part.script.room)
             return True
         room, piece = self._piece(read, deed, skill)
         if not piece:
@@ -379,6 +382,24 @@ class KeyframeWriter:
         self._put(index, skill, mood, caption, piece, room)
         return True
 
+    def _take_part(self, index: int, part: Part, room: str | None) -> None:
+        """The keyframes of a part of a script, without a walk to where one is."""
+        self.parts.append((index, part))
+        *leading, done = part.keyframes
+        if self._stays(done, room):
+            leading, room = [], self.keyframes[-1].room
+        elif leading and self._is_there(leading[0].furniture, room):
+            leading = []
+        for keyframe in (*leading, done):
+            update = {"beat": index, "short_script": len(self.parts) - 1, "room": room}
+            self.keyframes.append(keyframe.model_copy(update=update))
+
+    def _stays(self, keyframe: PlannedKeyframe, room: str | None) -> bool:
+        """Whether what a keyframe is done at is what the body sits on, or has just touched."""
+        last = self.keyframes[-1] if self.keyframes else None
+        there = last is not None and last.furniture == keyframe.furniture and last.room in (None, room)
+        return last is not None and there and last.skill is keyframe.skill is not Skill.LIEDOWN
+
     def _is_there(self, piece: str, room: str | None) -> bool:
         """Whether the body has just walked to a piece; a walk to it in no certain room is then one in `room`."""
         last = self.keyframes[-1] if self.keyframes else None
@@ -393,7 +414,8 @@ class KeyframeWriter:
         here = next((keyframe.room for keyframe in reversed(self.keyframes) if keyframe.room), None)
         asked = dict.fromkeys((read.room, room_of(read.clause), here))
         rooms = [room for room in asked if room is not None and room in self._rooms]
-        last = [k.furniture for k in self.keyframes[:-3:-1] if k.furniture in deed.pieces and not deed.named]
+        near = [k.furniture for k in self.keyframes[:-3:-1] if not (deed.named or k.on_floor)]
+        last = [one for one in near if one in deed.pieces or self.reader.may_be_at(read.clause, skill, one)]
         last = [*last, *self._there(deed)]
         if deed.named:  # what is named and not there has a stand-in, which the story says
             wanted = [piece for piece in deed.pieces if affords(piece, need)]

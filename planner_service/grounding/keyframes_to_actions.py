@@ -205,8 +205,8 @@ class _Stage:
 
     def _spot(self, index: int, keyframe: Keyframe, mood: Emotion, place: Place) -> Spot:
         need = NEEDS[keyframe.skill]
-        if self.on is not None and need == self.on.affordance == "sit" and self._is_on(place):
-            return self.on  # who sits there sits otherwise
+        if self.on is not None and self.on.affordance == need and self._is_on(place):
+            return self.on  # who rests there rests otherwise
         if place.object_id is None:
             if keyframe.skill is Skill.TOUCH:
                 raise UnreachableError(f"keyframe {index}: nothing to touch, {keyframe.furniture!r} is not in the home")

@@ -61,8 +61,8 @@ class Phrases:
     """Where the body has just rested."""
     rests_already: dict[Skill, tuple[str, ...]]
     """Where the body rests when the story begins."""
-    sits_on: tuple[str, ...]
-    """In another way, where the body sits already."""
+    rests_on: dict[Skill, tuple[str, ...]]
+    """In another way, where the body sits or lies already."""
     rises: dict[Literal["neutral", "slow", "fast"], tuple[str, ...]]
     """By pace."""
     touches: dict[str, tuple[str, ...]]
@@ -166,6 +166,7 @@ class Wording:
         self.places = places
         self._named = ""  # what "it" stands for
         self._wandering = False
+        self._last: PlannedKeyframe | None = None
 
     def phrases(self, rows: Sequence[tuple[int, PlannedKeyframe]]) -> list[Phrase]:
         """Keyframes in order as phrases; every index is in exactly one of them."""
@@ -178,9 +179,9 @@ class Wording:
             rests = goal is not None and goal.skill in RESTS
             stays = stays or (keyframe.skill in RISINGS and rests)
             if (rests and stays) or (leads and rests and self._goes_without_saying(keyframe)):
-                untold = (*untold, index)
+                untold, self._last = (*untold, index), keyframe
                 continue
-            on = at > 0 and _sits_on(rows[at - 1][1], keyframe)
+            on, self._last = _rests_on(self._last, keyframe), keyframe
             told.append(self._phrase((*untold, index), keyframe, leads, stays or on, on))
             untold, stays = (), False
         return told
@@ -199,7 +200,7 @@ class Wording:
             ways = walk.about if keyframe.on_floor else walk.to
         elif keyframe.skill in RESTS:
             ways = (known.sits_in_mood if sits else known.lies_in_mood)[mood]
-            ways = known.sits_on if on else known.rests_again if stays else ways
+            ways = known.rests_on[keyframe.skill] if on else known.rests_again if stays else ways
             ways = known.rests_already[keyframe.skill] if keyframe.already else ways
             manners = (known.sits if sits else known.lies).get(keyframe.caption, ())
         elif keyframe.skill == Skill.TOUCH:
@@ -287,9 +288,9 @@ def _goal(keyframe: Keyframe, later: Sequence[Keyframe]) -> Keyframe | None:
     return None
 
 
-def _sits_on(before: Keyframe, keyframe: Keyframe) -> bool:
-    """Whether who sits there sits otherwise."""
-    return before.skill == keyframe.skill == Skill.SITDOWN and before.piece == keyframe.piece
+def _rests_on(before: Keyframe | None, keyframe: Keyframe) -> bool:
+    """Whether who sits or lies there does so otherwise."""
+    return before is not None and before.skill == keyframe.skill in RESTS and before.piece == keyframe.piece
 
 
 def _pace(caption: str) -> Literal["neutral", "slow", "fast"]:

@@ -26,8 +26,6 @@ from planner_service.scripts.script_words import (
 )
 
 K = TypeVar("K", bound=Keyframe)
-STAYS: Final = {Posture.SEATED: (Skill.SITDOWN, Skill.LIEDOWN), Posture.LYING: (Skill.SITDOWN,)}
-"""What is done on a piece that one rests on without rising first."""
 RISES: Final = {Posture.SEATED: (Skill.STANDUP, "stand up"), Posture.LYING: (Skill.GETUP, "get up")}
 NO_WAY_TO_GO: Final = re.compile(r"\b(spin|danc|pacing|sidestep|tap |still|wav|to the front)", re.IGNORECASE)
 
@@ -113,7 +111,7 @@ class Mending(Generic[K]):
     def _use(self, index: int, keyframe: K) -> None:
         """Sit, lie or touch: on one's feet and beside the object, or without leaving the one that is rested on."""
         place = place_of(keyframe)
-        stays = keyframe.skill in STAYS.get(self.posture, ())
+        stays = keyframe.skill is not Skill.TOUCH and self.posture is not Posture.STANDING
         if not (stays and self._resting is not None and place_of(self._resting) == place):
             self._be_standing(index, keyframe)
             if self._at != place and not is_floor(keyframe.piece[0]):

@@ -16,7 +16,7 @@ from motion_backend.procedural.lie.lie_keys import lie_keys, paced
 from motion_backend.procedural.lie.lie_on_floor import Mat, kneel_down, kneel_up, lie_down_from_knees, rise_to_knees
 from motion_backend.procedural.lie.lie_pose import Bed, lacking
 from motion_backend.procedural.lie.lie_styles import lie_style, own_way
-from motion_backend.procedural.lie.lie_transition import edge_seat, lie_down, on_the_edge, rise_to_edge
+from motion_backend.procedural.lie.lie_transition import edge_seat, lie_down, on_the_edge, rise_to_edge, turn_over
 from motion_backend.procedural.sit.sit_keys import sit_keys
 from motion_backend.procedural.sit.sit_legs import at_front
 from motion_backend.procedural.sit.sit_skill import leave_seat
@@ -58,13 +58,17 @@ def before_bed(body: Body, action: Action) -> tuple[Point, float]:
 
 def lie(body: Body, part: Part) -> None:
     """From standing: onto the edge of the bed, or onto the knees on the floor; down, and into the pose; or from where
-    the body sits."""
+    the body sits, or lies already."""
     action = part.action
     keys = paced(lie_keys(), body.rng)
     style = own_way(lie_style(action.emotion, action.caption), keys.own, body.seed, body.rng)
     spot = spot_of(action)
     made = _made(body, spot)
     body.note(*lacking(style, made, body.skeleton, keys.pose))
+    if body.posture is Posture.LYING:
+        body.enter(PhaseKind.LIEDOWN)
+        body.add(turn_over(body.pose, made, style, body.skeleton, keys))
+        return
     if body.posture is Posture.SEATED:
         body.enter(PhaseKind.LIEDOWN)
         seat = at_front(Seat.of(spot_under(body)), body.skeleton.scale)

@@ -147,6 +147,31 @@ def lie_down(landed: Pose, seat: Seat, bed: Bed, style: Lying, skeleton: Skeleto
     return _through(poses, waits, style.bearing)
 
 
+def turn_over(start: Pose, bed: Bed, style: Lying, skeleton: Skeleton, keys: LieKeys) -> Pose:
+    """From one way of lying into another: knees up, over the back where the side changes, and into it."""
+    settle = keys.down.settle
+    end = lying(start, bed, style, skeleton, keys.pose)
+    lifted, leaving = freed(end, bed), freed(start, bed)
+    poses, waits = [start, *leaving], [keys.up.leave.lifted_wait_s] * len(leaving)
+    over = "back" if side_of(start, bed) != style.side else style.side
+    for side in dict.fromkeys((over, style.side)):
+        poses.append(_unpressed(lying(start, bed, gathered(replace(style, side=side)), skeleton, keys.pose), end))
+        waits.append(settle.back_wait_s if side == "back" else settle.bent_wait_s)
+    poses += [*lifted, end]
+    waits += [settle.lifted_wait_s] * len(lifted)
+    waits.append(settle.end_after_lifted_wait_s if lifted else settle.end_wait_s)
+    return _through(poses, waits, style.bearing)
+
+
+def side_of(pose: Pose, bed: Bed) -> str:
+    """The side that somebody lies on: back, left or right."""
+    front = rotations.rotate(pose.hips, np.array([0.0, 0.0, 1.0]))
+    if front[1] > FACING_UP:
+        return "back"
+    left = np.array([np.cos(bed.head_yaw), 0.0, -np.sin(bed.head_yaw)])
+    return "left" if front @ left < 0 else "right"
+
+
 def rise_to_edge(start: Pose, seat: Seat, bed: Bed, bearing: Bearing, skeleton: Skeleton, keys: LieKeys) -> Pose:
     """From lying to sitting on the edge: knees up, onto the side, legs over the edge as elbow and hands push."""
     edge, rows, leave = Edge(seat, bed, skeleton), keys.up.pose, keys.up.leave
