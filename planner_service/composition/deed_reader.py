@@ -27,9 +27,9 @@ from planner_service.themes.protagonist import is_person
 from planner_service.themes.sentence_parser import Clause
 from scene_graphs.furniture import categories_of
 
-SURER: Final = 0.4
+SURER: Final = 0.6
 """A learned caption is taken in place of the table's where it is so much likelier,"""
-SURER_OF_THE_SAME: Final = 0.2
+SURER_OF_THE_SAME: Final = 0.3
 """or by so much if it is of the same skill."""
 SHOWN: Final = 0.5
 """Where it is less likely that anything shows it, nothing does."""
