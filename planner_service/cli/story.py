@@ -74,7 +74,9 @@ def story(
     clips: Annotated[
         Path | None, typer.Option(help="Collection whose walks the backend matching is made of (SIMS_CLIPS).")
     ] = None,
-    name: Annotated[str, typer.Option(help="The character's name; left out: the theme's own, else Sam.")] = "Sam",
+    name: Annotated[
+        str, typer.Option(help="The character's name; left out: as the theme calls them, else Sam.")
+    ] = "Sam",
     pronouns: Annotated[str, typer.Option(help="he, she or they; left out: as in the theme.")] = "they",
     height: Annotated[
         float, typer.Option(help="Metres, 1.1 to 2.2; left at 1.7, a child is as tall as children are.")

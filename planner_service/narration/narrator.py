@@ -280,9 +280,10 @@ class _Writer:
         """The text of all sentences in paragraphs as long as each other."""
         count = -(-len(sentences) // MAX_SENTENCES)
         starts = {round(number * len(sentences) / count) for number in range(count)} if count else set()
+        own = {*self.voice.name.lower().split()}
         for at, phrases in enumerate(sentences):
             self.text += "" if not at else "\n\n" if at in starts else " "
-            before = {*re.findall(r"[a-z]+", self.text.rpartition(". ")[2].lower())}
+            before = {*re.findall(r"[a-z]+", self.text.rpartition(". ")[2].lower())} - own
             self._named = "" if at in starts else self._named
             self._sentence(
                 [self._again(one) for one in phrases], at in starts or bool(theme_words()["people"] & before)
@@ -310,7 +311,7 @@ class _Writer:
             if at:
                 link = ", " if crowded or at < len(phrases) - 1 else " "
                 self._say(link + "and " * (at == len(phrases) - 1))
-            self._say(phrase.whole.replace(WAS, "were" if who == "they" else "was"), phrase.keyframes)
+            self._say(phrase.whole.replace(WAS, self.voice.was(who)), phrase.keyframes)
             if phrase.purpose:
                 self.thoughts.append(Span(len(self.text) - len(phrase.purpose), len(self.text), ()))
         self.text = f"{self.text[:start]}{self.text[start:][:1].upper()}{self.text[start + 1 :]}."

@@ -40,7 +40,8 @@ from planner_service.themes.lexicon import gerund, past, third_person
 from planner_service.themes.protagonist import cast_by
 from scene_graphs.furniture import display_name
 
-SAM, EMILY, JAMES = PEOPLE = (Character("Sam", "they"), Character("Emily", "she"), Character("James", "he"))
+SAM, EMILY, JAMES = Character("Sam", "they"), Character("Emily", "she"), Character("James", "he")
+PEOPLE = (SAM, EMILY, JAMES, Character("the old man", "he"), Character("my sister", "she"), Character("the twins"))
 SHE, HE, THEY = Voice("Ana", "she"), Voice("Tom", "he"), Voice("Sam", "they")
 SLIPS = {
     "two spaces": r"  ",
@@ -48,7 +49,8 @@ SLIPS = {
     "two marks": r"[.,;:!?][.,;:]",
     "a doubled word": r"(?i)\b(\w+) \1\b",
     "they with a singular verb": r"\b[Tt]hey (?:was|has|is)\b",
-    "one person with a plural verb": r"\b(?:[Hh]e|[Ss]he|Sam|Emily|James) (?:were|are|have)\b",
+    "one person with a plural verb": r"\b(?:[Hh]e|[Ss]he|Sam|Emily|James|man|sister) (?:were|are|have)\b",
+    "several with a singular verb": r"\btwins (?:was|has|is)\b",
     "an unresolved mention": r"(?i)\b(?:the|a) character\b",
     "a blank": r"[{}~_\ue000]",
     "a sentence without a capital": r"(?:^|[.!?] |\n)[a-z]",
@@ -86,7 +88,7 @@ def as_cast(script: LongScript, seed: int = 0) -> str:
 def test_no_story_has_a_slip_of_grammar(script: LongScript, person: Character, seed: int) -> None:
     told = narrate(script, person, seed)
     assert slips(told.text) == [], told.text
-    assert person.name in told.text
+    assert person.name in told.text[:1].lower() + told.text[1:] or person.name in told.text
 
 
 @for_each(
