@@ -209,14 +209,12 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
     for line in beats_of(made).lines():
         console.print(line, highlight=False, soft_wrap=True)
     movers = _movers(made.report["made_by"], made.planned.request.backend)
-    console.print(
-        f"planner: {made.planned.script.planner} · motion: {movers} · encoder: {made.planned.script.encoder}",
-        highlight=False,
-    )
+    encoder = f" · encoder: {made.planned.script.encoder}" if made.planned.script.encoder else ""
+    console.print(f"planner: {made.planned.script.planner} · motion: {movers}{encoder}", highlight=False)
     if made.planned.spent is not None:
         console.print(f"language model: {made.planned.spent}", highlight=False)
     for note in made.motion.notes:
-        console.print(f"done otherwise: keyframe {note.keyframe}: {note.words}", highlight=False)
+        console.print(f"done otherwise than its caption says: keyframe {note.keyframe}: {note.words}", highlight=False)
     console.print(f"\nwritten to {files[0].parent}/: {', '.join(file.name for file in files)}", highlight=False)
 
 
