@@ -32,7 +32,8 @@ _ARRIVING: Final = re.compile(
 TEENS: Final = 15
 """Years of a teenager whose age is not told."""
 _TEENAGE: Final = re.compile(
-    r"(?:^|;)(?:(?!\b(?:of|with|for|to|and|whose)\b)[^;])*\bteen(?:age[dr]?)?\b", re.IGNORECASE
+    r"(?:^|;)(?:(?!\b(?:of|with|for|to|and|whose)\b)[^;])*\b(?:teen(?:age[dr]?)?|adolescent|high[- ]schooler)\b",
+    re.IGNORECASE,
 )
 _RETIRED: Final = re.compile(r"\b(?:retired|former|ex)\b", re.IGNORECASE)
 """Whose work is over wears nothing for it."""

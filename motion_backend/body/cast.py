@@ -17,7 +17,7 @@ from motion_backend.motion import Character, Emotion
 from scene_graphs.data_tables import read_table, require_known, table
 
 Color = tuple[float, float, float]
-Age = Literal["child", "adult", "old"]
+Age = Literal["child", "teen", "adult", "old"]
 Build = Literal["slim", "average", "heavy"]
 Hair = Literal["bald", "balding", "short", "swept", "curly", "bob", "long", "ponytail", "bun"]
 Top = Literal["tee", "shirt", "tunic"]
@@ -158,7 +158,7 @@ class Look:
     age: str = "adult"
     build: str = "average"
     figure: str = "straight"
-    """Breadths that differ by sex: straight, curved, or small for a child's."""
+    """Breadths that differ by sex: straight, curved, or those of the young and small."""
     skin: str = "fair"
     hair: str = "short"
     hair_color: str = "brown"
@@ -181,7 +181,7 @@ class Look:
             skin=character.skin or member.skin,
             hair=character.hair or member.hair,
             hair_color=character.hair_color or member.hair_color,
-            beard=member.beard and age != "child",
+            beard=member.beard and age not in ("child", "teen"),
             glasses=member.glasses,
             outfit=character.outfit or member.outfit,
         )

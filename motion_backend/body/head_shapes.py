@@ -27,7 +27,7 @@ from motion_backend.rotations import Array
 if TYPE_CHECKING:
     from motion_backend.body.cast import Look
 
-JAWS: Final = {"straight": 1.0, "curved": 0.88, "small": 0.94}
+JAWS: Final = {"straight": 1.0, "curved": 0.88, "young": 0.90, "small": 0.94}
 """Breadth of the chin, by figure."""
 _CAP: Final = ellipsoid((0, 0.705, -0.012), (0.085, 0.102, 0.101))
 _HAIRLINE: Final = half_space((0, 0.748, 0.085), (0, -1.0, 0.74))

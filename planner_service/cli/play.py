@@ -25,6 +25,8 @@ from scene_graphs.furniture import catalogue, display_name, is_known
 
 MAX_BYTES: Final = 1 << 20
 """Of a script's file."""
+MAX_FAULTS: Final = 20
+"""That are told of one file."""
 KEYS: Final = ("script", "keyframes")
 """Under which a story.json, a long or a short script has its keyframes."""
 
@@ -75,7 +77,9 @@ def read_keyframes(path: Path) -> list[Keyframe]:
     faults: list[str] = []
     keyframes = [_keyframe(row, f"keyframes.{number}", faults) for number, row in enumerate(rows)]
     if faults:
-        raise RequestError(f"{path.name}: {'; '.join(faults)}", at="script")
+        more = [f"and {len(faults) - MAX_FAULTS} more"] if len(faults) > MAX_FAULTS else []
+        told = " · ".join([*faults[:MAX_FAULTS], *more])
+        raise RequestError(f"{path.name}: {told}", at="script")
     return [keyframe for keyframe in keyframes if keyframe is not None]
 
 
@@ -96,16 +100,31 @@ def _rows(path: Path) -> Any:
 
 def _keyframe(row: Any, where: str, faults: list[str]) -> Keyframe | None:
     """A keyframe at known furniture; else what is wrong with it is added to the faults."""
+    keyframe = None
     try:
         keyframe = PlannedKeyframe.model_validate(row)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        faults.append(f"{'.'.join([where, *map(str, first['loc'])])}: {first['msg']}")
-        return None
-    if not keyframe.on_floor and not is_known(keyframe.piece[0]):
+        faults += [_fault(where, one["loc"], one["type"], one["msg"]) for one in error.errors(include_url=False)]
+    furniture = Keyframe.model_construct(furniture=_furniture_of(row))
+    if not furniture.on_floor and not is_known(furniture.piece[0]):
         words = sorted(map(display_name, catalogue().class_of))
-        faults.append(f"{where}.furniture: {keyframe.furniture!r} is not known{_nearest(keyframe.piece[0], words)}")
+        near = _nearest(furniture.piece[0], words) or '; "floor" needs none'
+        faults.append(f"{where}.furniture: {furniture.furniture!r:.80} is not known{near}")
+        return None
     return keyframe
+
+
+def _fault(where: str, loc: Sequence[int | str], kind: str, said: str) -> str:
+    """Where a keyframe is wrong, and what would be right."""
+    has = ", ".join(PlannedKeyframe.model_fields)
+    remedy = f"; leave it out, a keyframe has {has}" if kind == "extra_forbidden" else ""
+    return f"{'.'.join([where, *map(str, loc)])}: {said}{remedy}"
+
+
+def _furniture_of(row: Any) -> str:
+    """The furniture that a row names, as far as it is text; else the floor."""
+    found = row.get("furniture", row.get("furnitures")) if isinstance(row, dict) else None
+    return found if isinstance(found, str) else "floor"
 
 
 def unknown_captions(keyframes: Sequence[Keyframe]) -> list[str]:

@@ -74,7 +74,9 @@ def story(
     clips: Annotated[
         Path | None, typer.Option(help="Collection whose walks the backend matching is made of (SIMS_CLIPS).")
     ] = None,
-    name: Annotated[str, typer.Option(help="The character's name; left out: the theme's own, else Sam.")] = "Sam",
+    name: Annotated[
+        str, typer.Option(help="The character's name; left out: as the theme calls them, else Sam.")
+    ] = "Sam",
     pronouns: Annotated[str, typer.Option(help="he, she or they; left out: as in the theme.")] = "they",
     height: Annotated[
         float, typer.Option(help="Metres, 1.1 to 2.2; left at 1.7, a child is as tall as children are.")
@@ -207,14 +209,12 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
     for line in beats_of(made).lines():
         console.print(line, highlight=False, soft_wrap=True)
     movers = _movers(made.report["made_by"], made.planned.request.backend)
-    console.print(
-        f"planner: {made.planned.script.planner} · motion: {movers} · encoder: {made.planned.script.encoder}",
-        highlight=False,
-    )
+    encoder = f" · encoder: {made.planned.script.encoder}" if made.planned.script.encoder else ""
+    console.print(f"planner: {made.planned.script.planner} · motion: {movers}{encoder}", highlight=False)
     if made.planned.spent is not None:
         console.print(f"language model: {made.planned.spent}", highlight=False)
     for note in made.motion.notes:
-        console.print(f"done otherwise: keyframe {note.keyframe}: {note.words}", highlight=False)
+        console.print(f"done otherwise than its caption says: keyframe {note.keyframe}: {note.words}", highlight=False)
     console.print(f"\nwritten to {files[0].parent}/: {', '.join(file.name for file in files)}", highlight=False)
 
 

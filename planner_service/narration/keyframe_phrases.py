@@ -43,11 +43,15 @@ class Phrases:
 
     neutral_walks: tuple[str, ...]
     """Captions of the walks that a walk to furniture is usually done in."""
+    still: tuple[str, ...]
+    """Captions that tell nothing beside what is done meanwhile."""
     to: tuple[str, ...]
     about: tuple[str, ...]
     back: tuple[str, ...]
     further: tuple[str, ...]
-    """Where a walk with no goal goes after another one."""
+    """Where a walk with no goal goes in the room of the one before."""
+    further_back: tuple[str, ...]
+    """The same of a walk up and down."""
     walks: dict[str, Walk]
     """By caption."""
     walks_in_mood: dict[str, Walk]
@@ -63,6 +67,8 @@ class Phrases:
     """Where the body rests when the story begins."""
     rests_on: dict[Skill, tuple[str, ...]]
     """In another way, where the body sits or lies already."""
+    turns: dict[str, tuple[str, ...]]
+    """By skill, where it sits or lies and does the other next."""
     rises: dict[Literal["neutral", "slow", "fast"], tuple[str, ...]]
     """By pace."""
     touches: dict[str, tuple[str, ...]]
@@ -75,6 +81,8 @@ class Phrases:
     def __post_init__(self) -> None:
         require_blanks("", vars(self), _BLANKS)
         require_known("neutral_walks", self.neutral_walks, self.walks)
+        require_known("still", self.still, self.walks)
+        require_known("turns", self.turns, RESTS)
         for class_, heights in self.touches_at.items():
             require_known(f"touches_at.{class_}", heights, self.touches)
 
@@ -120,7 +128,7 @@ class Phrase:
     leads: bool = False
     """Whether the next phrase is what it is done for."""
     stays: bool = False
-    """Whether the body rests there already."""
+    """Whether the body rests or stands there already."""
     begins: bool = False
     """Whether a sentence should begin with it."""
     purpose: str = ""
@@ -165,33 +173,35 @@ class Wording:
         self.variety = variety
         self.places = places
         self._named = ""  # what "it" stands for
-        self._wandering = False
-        self._last: PlannedKeyframe | None = None
+        self._room = ""  # where a walk had no goal last
+        self._rests: PlannedKeyframe | None = None  # as what the body sits or lies
 
     def phrases(self, rows: Sequence[tuple[int, PlannedKeyframe]]) -> list[Phrase]:
         """Keyframes in order as phrases; every index is in exactly one of them."""
         told: list[Phrase] = []
         untold: tuple[int, ...] = ()
-        self._named, self._wandering, stays = "", False, False
+        self._named, stays = "", False
         for at, (index, keyframe) in enumerate(rows):
             goal = _goal(keyframe, [row[1] for row in rows[at + 1 :]])
             leads = keyframe.skill == Skill.LOCO and goal is not None
             rests = goal is not None and goal.skill in RESTS
-            stays = stays or (keyframe.skill in RISINGS and rests)
+            stays = stays or (keyframe.skill in RISINGS and rests) or self._goes_on(keyframe)
             if (rests and stays) or (leads and rests and self._goes_without_saying(keyframe)):
-                untold, self._last = (*untold, index), keyframe
+                untold = (*untold, index)
                 continue
-            on, self._last = _rests_on(self._last, keyframe), keyframe
-            told.append(self._phrase((*untold, index), keyframe, leads, stays or on, on))
+            told.append(self._phrase((*untold, index), keyframe, leads, stays))
             untold, stays = (), False
         return told
+
+    def _goes_on(self, keyframe: Keyframe) -> bool:
+        """Whether the body sits or lies there already, as it is to."""
+        before = self._rests
+        return before is not None and (before.skill, before.piece) == (keyframe.skill, keyframe.piece)
 
     def _goes_without_saying(self, walk: Keyframe) -> bool:
         return walk.caption in templates().neutral_walks and self.variety.chance(0.5)
 
-    def _phrase(
-        self, indices: tuple[int, ...], keyframe: PlannedKeyframe, leads: bool, stays: bool, on: bool
-    ) -> Phrase:
+    def _phrase(self, indices: tuple[int, ...], keyframe: PlannedKeyframe, leads: bool, stays: bool) -> Phrase:
         index, mood, known = indices[-1], keyframe.mood, templates()
         manners: tuple[str, ...] = ()
         walks, sits = keyframe.skill == Skill.LOCO, keyframe.skill == Skill.SITDOWN
@@ -199,17 +209,19 @@ class Wording:
             walk = known.walks.get(keyframe.caption, known.walks_in_mood[mood])
             ways = walk.about if keyframe.on_floor else walk.to
         elif keyframe.skill in RESTS:
-            ways = (known.sits_in_mood if sits else known.lies_in_mood)[mood]
-            ways = known.rests_on[keyframe.skill] if on else known.rests_again if stays else ways
+            usual = (known.sits_in_mood if sits else known.lies_in_mood)[mood]
+            turns = self._rests is not None and self._rests.piece == keyframe.piece
+            ways = known.rests_again if stays else known.turns[keyframe.skill] if turns else usual
+            ways = known.rests_on[keyframe.skill] if self._goes_on(keyframe) else ways
             ways = known.rests_already[keyframe.skill] if keyframe.already else ways
             manners = (known.sits if sits else known.lies).get(keyframe.caption, ())
         elif keyframe.skill == Skill.TOUCH:
             ways = touches(keyframe)
         else:
             ways = known.rises[_pace(keyframe.caption)]
+        self._rests = keyframe if keyframe.skill in RESTS else None
         the = self.the(index, keyframe)
         base = " ".join(self._fill(self.variety.pick(ways), the, self.room(index, keyframe)).split())
-        self._wandering = walks and keyframe.on_floor
         self._named = the if leads else ""
         goes = walks or keyframe.skill in RISINGS
         manner = _VERB.sub(lambda verb: past(verb[1]), self._manner(manners))
@@ -224,7 +236,7 @@ class Wording:
             word="" if keyframe.on_floor else keyframe.piece[0],
             deeds=frozenset(base for word in re.findall(r"\w+ing\b", keyframe.caption) for base in bases(word)),
             leads=leads,
-            stays=stays,
+            stays=stays or keyframe.caption in known.still,
             begins=keyframe.skill in RISINGS,
         )
 
@@ -244,8 +256,10 @@ class Wording:
         if here:
             template = re.sub(r"the (\w+(?: \w+)?) of \{the\}", r"its \1", template)
         name = "it" if here else the
-        known = templates()
-        blanks = {"to": known.to, "about": known.further if self._wandering else known.about, "back": known.back}
+        known, again = templates(), room == self._room
+        about, back = (known.further, known.further_back) if again else (known.about, known.back)
+        blanks = {"to": known.to, "about": about, "back": back}
+        self._room = room if "{about}" in template or "{back}" in template else self._room
         ways = {blank: self.variety.pick(way) for blank, way in blanks.items() if f"{{{blank}}}" in template}
         return self.voice.fill(
             template,
@@ -286,11 +300,6 @@ def _goal(keyframe: Keyframe, later: Sequence[Keyframe]) -> Keyframe | None:
         if one.skill != Skill.LOCO:
             return one
     return None
-
-
-def _rests_on(before: Keyframe | None, keyframe: Keyframe) -> bool:
-    """Whether who sits or lies there does so otherwise."""
-    return before is not None and before.skill == keyframe.skill in RESTS and before.piece == keyframe.piece
 
 
 def _pace(caption: str) -> Literal["neutral", "slow", "fast"]:

@@ -84,7 +84,7 @@ def _whole(beat: Beat) -> str:
 def _problems(text: str, voice: Voice, moments: Sequence[_Moment], said: str) -> list[str]:
     """What is unfaithful in a story, each with what would be right; `said` is what may be spoken of besides."""
     found: list[str] = []
-    if not re.search(rf"\b{re.escape(voice.name)}\b", text):
+    if not re.search(rf"\b{re.escape(voice.name)}(?!\w)", text, 0 if voice.name[:1].isupper() else re.IGNORECASE):
         found.append(f"text: the name {voice.name} is nowhere in it; tell of {voice.name}")
     used = {m.furniture: m.asked for m in moments if m.skill in _USED and m.furniture.lower() != "floor"}
     plain = list(used.values())  # what several pieces are called tells none of them apart

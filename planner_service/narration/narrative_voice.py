@@ -10,6 +10,7 @@ from typing import Final
 
 from motion_backend.motion import Character
 from planner_service.narration.tense import form_of
+from planner_service.themes.verb_finder import is_plural
 
 _BLANKS: Final = ("they", "them", "their", "theirs", "themself")
 _FORMS: Final = {
@@ -32,6 +33,11 @@ class Voice:
         """The voice of a character; unknown pronouns are they."""
         word = character.pronouns.strip().lower().split("/")[0]
         return cls(character.name.strip() or "Sam", word if word in _FORMS else "they")
+
+    def was(self, subject: str) -> str:
+        """Was or were, for its name or its pronoun: "the twins were", "the old couple was"."""
+        several = subject == "they" or (subject == self.name and subject.islower() and is_plural(subject.split()[-1]))
+        return "were" if several else "was"
 
     def __getitem__(self, blank: str) -> str:
         return _FORMS[self.pronouns][blank]

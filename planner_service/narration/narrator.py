@@ -1,7 +1,6 @@
 """A long script told as a story: its beats in the theme's own words beside what the keyframes show, and no more.
 
-What no keyframe shows is not told, but that others are not to be seen; a deed that something else stands for is told as
-what that is done for.
+What no keyframe shows is not told; a deed that something else stands for is told as what that is done for.
 """
 
 from __future__ import annotations
@@ -14,14 +13,16 @@ from itertools import groupby, pairwise
 from typing import Final
 
 from motion_backend.motion import RISINGS, Character, Skill
-from planner_service.narration.beat_clause import WAS, Predicate, event, of_voice, purpose
+from planner_service.narration.beat_clause import WAS, Predicate, event, purpose
 from planner_service.narration.keyframe_phrases import RESTS, Phrase, Places, Variety, Wording
 from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.story_words import story_words, title_of
 from planner_service.scripts.script import LongScript, PlannedKeyframe
 from planner_service.themes.details import core_of
-from planner_service.themes.protagonist import cast_by, is_name, is_person
+from planner_service.themes.lexicon import grammar, is_noun, past
+from planner_service.themes.protagonist import cast_by
 from planner_service.themes.theme_words import theme_words
+from planner_service.themes.verb_finder import is_plural
 from scene_graphs.furniture import class_of, display_name, is_known
 
 __all__ = ["Places", "Span", "Told", "narrate"]
@@ -57,7 +58,7 @@ class Told:
     text: str
     spans: tuple[Span, ...]
     thoughts: tuple[Span, ...] = ()
-    """What is told and no keyframe shows: what something is done for, or that others are not to be seen."""
+    """What is told and no keyframe shows: what something is done for."""
 
     @property
     def events(self) -> str:
@@ -74,11 +75,8 @@ def narrate(script: LongScript, character: Character, seed: int = 0, places: Pla
     hero = cast_by(script.theme, Character()).pronouns
     writer = _Writer(voice, variety)
     writer.write(_sentences(_Teller(script, hero, voice, variety, places or {}).phrases(), variety))
-    others = _others(script, hero, voice, variety)
-    text = " ".join(filter(None, (writer.text, others)))
-    thoughts = (*writer.thoughts, *([Span(len(text) - len(others), len(text), ())] if others else []))
     title = title_of(script.theme, script.beats[-1].emotion if script.beats else "neutral")
-    return Told(title, text, tuple(writer.spans), thoughts)
+    return Told(title, writer.text, tuple(writer.spans), tuple(writer.thoughts))
 
 
 class _Teller:
@@ -126,7 +124,9 @@ class _Teller:
         if number is not None and number < len(self.script.beats):
             beat = self.script.beats[number]
             if beat.stood_for:
-                phrases = self._standing_in(purpose(beat, self.hero, self.voice), phrases)
+                told = event(beat, self.hero, self.voice)
+                same = told is not None and any(_moves(told, phrase) for phrase in phrases)
+                phrases = self._standing_in("" if same else purpose(beat, self.hero, self.voice), phrases)
             elif told := self._event(number):
                 phrases = self._with_event(told, phrases)
         return [replace(phrases[0], begins=True), *phrases[1:]]
@@ -135,7 +135,8 @@ class _Teller:
     def _standing_in(purpose: str, phrases: list[Phrase]) -> list[Phrase]:
         """What the body does in place of a deed, and that it is for it; a way there needs no hand laid on anything.
 
-        What is danced or walked in place of a deed is for nothing: of that the deed is left out.
+        What is danced or walked in place of a deed is for nothing: of that the deed is left out. So is one that a
+        phrase names by itself: nobody rises to jump up.
         """
         *before, last = phrases
         if last.skill in (Skill.LOCO, *RISINGS) or not purpose:
@@ -143,6 +144,8 @@ class _Teller:
         if last.skill is Skill.TOUCH and before and before[-1].leads:
             last = replace(before[-1], keyframes=(*before.pop().keyframes, *last.keyframes), leads=False)
         text = last.text.partition(",")[0]
+        if text.split()[0] in map(past, purpose.split()[1:2]):  # "crossed to the desk to cross it out"
+            return phrases
         if last.at and last.at in text:
             purpose = re.sub(rf"\b{re.escape(last.at)}\b", "it", purpose)
         return [*before, replace(last, text=text, purpose=purpose, manner="")]
@@ -152,6 +155,8 @@ class _Teller:
         plain = Phrase(told.text)
         if told.is_state:
             return [plain, *phrases]
+        if _names_all(told.text, phrases):
+            return [replace(plain, keyframes=tuple(index for phrase in phrases for index in phrase.keyframes))]
         alike = [_likeness(told, phrase) for phrase in phrases]
         if any(alike):
             return self._once(told.text, phrases, alike.index(max(alike)))
@@ -162,7 +167,8 @@ class _Teller:
         at = len(phrases) - 1 if at is None else at
         before, last, after = phrases[:at], phrases[at], phrases[at + 1 :]
         if last.skill == Skill.LOCO:
-            return [*before, plain, last, *after]
+            still = replace(plain, keyframes=last.keyframes, mood=last.mood)
+            return [*before, *([still] if last.stays else [plain, last]), *after]
         if last.skill == Skill.TOUCH or last.stays:
             known = last.stays or _PLACE.search(told.text) or (before and before[-1].leads) or last.at == self.here
             text = told.text if known else f"{told.text} at {last.at}"
@@ -186,10 +192,21 @@ def _likeness(told: Predicate, phrase: Phrase) -> int:
     """How well a deed says what a phrase does: in its verb, in its furniture; 0 where it says something else."""
     if phrase.leads or (phrase.rises and "get" in told.verbs and not re.search(r" up\b| out of bed\b", told.text)):
         return 0
-    moves = not told.verbs.isdisjoint(story_words().deeds.get(phrase.skill or "", "").split())
+    moves = _moves(told, phrase)
     named = not phrase.rises and bool(_furniture_in(told.text, phrase.word))
     does = not told.verbs.isdisjoint(phrase.deeds)
     return (moves or named) * (1 + 2 * moves + 2 * does)
+
+
+def _moves(told: Predicate, phrase: Phrase) -> bool:
+    """Whether a deed's verb says what a phrase's skill does."""
+    return not told.verbs.isdisjoint(story_words().deeds.get(phrase.skill or "", "").split())
+
+
+def _names_all(text: str, phrases: Sequence[Phrase]) -> bool:
+    """Whether a deed names every one of several pieces of furniture: "searched the desk and the shelf"."""
+    words = [phrase.word for phrase in phrases if phrase.word and not phrase.leads]
+    return len({*words}) > 1 and all(_furniture_in(text, word) for word in words)
 
 
 def _furniture_in(text: str, word: str) -> str:
@@ -199,6 +216,20 @@ def _furniture_in(text: str, word: str) -> str:
     two = map(" ".join, pairwise(words))
     alike = (one for one in (*two, *words) if one in names or (is_known(one) and class_of(one) == class_of(word)))
     return next(alike, "") if word else ""
+
+
+def _said_again(phrase: Phrase) -> str:
+    """The text of a phrase at a place that has just been told."""
+    if re.search(r"\bit\b", phrase.whole):  # which stands for something else
+        return re.sub(rf"(?<=down|seat) (?:on|in) {re.escape(phrase.at)}$", "", phrase.text)
+    return phrase.text.replace(phrase.at, "it", 1)
+
+
+def _names_a_thing(text: str) -> bool:
+    """Whether "it" may stand for something in a text."""
+    small = grammar().prepositions | grammar().adverbs | grammar().marks
+    words = (word for word in re.findall(r"[a-z]+", text.lower()) if word not in small and not word.endswith("ing"))
+    return any(word == "it" or (is_noun(word) and not is_plural(word)) for word in words)
 
 
 def _place_of(phrase: Phrase) -> str:
@@ -223,7 +254,8 @@ def _sentences(phrases: Sequence[Phrase], variety: Variety) -> list[list[Phrase]
     for phrase in phrases:
         last = told[-1] if told else []
         words = sum(len(one.whole.split()) for one in (*last, phrase))
-        full = len(last) == _MAX_PHRASES or words > _MAX_WORDS or any(re.search(r",| and ", one.whole) for one in last)
+        joined = any(re.search(r",| and ", one.whole) for one in last) or (last and " and " in phrase.whole)
+        full = len(last) == _MAX_PHRASES or words > _MAX_WORDS or joined
         short = len(last) == 1 and words <= _SHORT
         apart = full or (phrase.begins and not (short and variety.chance(_TOGETHER)))
         if last and (last[-1].leads or not apart):
@@ -242,15 +274,29 @@ class _Writer:
         self.text = ""
         self.spans: list[Span] = []
         self.thoughts: list[Span] = []
+        self._named = ""  # the furniture that is told last, with no other thing after it
 
     def write(self, sentences: Sequence[Sequence[Phrase]]) -> None:
         """The text of all sentences in paragraphs as long as each other."""
         count = -(-len(sentences) // MAX_SENTENCES)
         starts = {round(number * len(sentences) / count) for number in range(count)} if count else set()
+        own = {*self.voice.name.lower().split()}
         for at, phrases in enumerate(sentences):
             self.text += "" if not at else "\n\n" if at in starts else " "
-            before = {*re.findall(r"[a-z]+", self.text.rpartition(". ")[2].lower())}
-            self._sentence(phrases, at in starts or bool(theme_words()["people"] & before))
+            before = {*re.findall(r"[a-z]+", self.text.rpartition(". ")[2].lower())} - own
+            self._named = "" if at in starts else self._named
+            self._sentence(
+                [self._again(one) for one in phrases], at in starts or bool(theme_words()["people"] & before)
+            )
+
+    def _again(self, phrase: Phrase) -> Phrase:
+        """A phrase that calls it "it" at which the one before has the body already, or does not say again where."""
+        known = bool(phrase.at) and phrase.at == self._named and phrase.skill is not Skill.LOCO
+        again = replace(phrase, text=_said_again(phrase)) if known else phrase
+        there = phrase.at if phrase.at and phrase.at in again.text else self._named
+        told = again.whole if not phrase.at else again.whole.partition(there)[2] if there else ""
+        self._named = "" if _names_a_thing(told) else there
+        return again
 
     def _sentence(self, phrases: Sequence[Phrase], named: bool) -> None:
         start, opening = len(self.text), ""
@@ -265,7 +311,7 @@ class _Writer:
             if at:
                 link = ", " if crowded or at < len(phrases) - 1 else " "
                 self._say(link + "and " * (at == len(phrases) - 1))
-            self._say(phrase.whole.replace(WAS, "were" if who == "they" else "was"), phrase.keyframes)
+            self._say(phrase.whole.replace(WAS, self.voice.was(who)), phrase.keyframes)
             if phrase.purpose:
                 self.thoughts.append(Span(len(self.text) - len(phrase.purpose), len(self.text), ()))
         self.text = f"{self.text[:start]}{self.text[start:][:1].upper()}{self.text[start + 1 :]}."
@@ -274,12 +320,3 @@ class _Writer:
         if keyframes:
             self.spans.append(Span(len(self.text), len(self.text) + len(words), keyframes))
         self.text += words
-
-
-def _others(script: LongScript, hero: str, voice: Voice, variety: Variety) -> str:
-    """A sentence about the people whose deeds the theme has and nobody shows."""
-    theirs = [beat.who for beat in script.beats if " " in beat.who or is_name(beat.who)]
-    who = [re.sub(r"^(?:The|An?|His|Her|Their|My) ", lambda one: one[0].lower(), one) for one in theirs]
-    *most, last = list(dict.fromkeys(one for one in who if is_person(one) and one != voice.name))[:3] or [""]
-    others = of_voice(" and ".join(filter(None, (", ".join(most), last))), hero, voice)
-    return voice.fill(variety.pick(story_words().others), others=others) if others else ""

@@ -26,8 +26,6 @@ class Said:
 class StoryWords:
     """data/story_words.toml."""
 
-    others: tuple[str, ...]
-    """A sentence about those whose deeds nobody shows, {others}."""
     states: str
     """Verbs for how somebody is, apart by spaces; so the next."""
     alone: str
@@ -50,7 +48,6 @@ class StoryWords:
     titles: tuple[Said, ...]
 
     def __post_init__(self) -> None:
-        require_blanks("others", self.others, ("others",))
         require_blanks("mood_titles", self.mood_titles, ("time",))
         require_blanks("helpers", self.helpers, ("was",))
         require_known("deeds", self.deeds, tuple(Skill))

@@ -171,8 +171,9 @@ def story_to_markdown(story: Story) -> str:
 
 def _makers(planned: Planned) -> str:
     script = planned.script
+    encoder = f"encoder: {script.encoder} · " if script.encoder else ""
     return (
-        f"Planner: {script.planner} · method: {script.method} · encoder: {script.encoder} · "
+        f"Planner: {script.planner} · method: {script.method} · {encoder}"
         f"motion: {planned.request.backend} · seed: {planned.request.seed}"
     )
 

@@ -12,6 +12,11 @@ from planner_service.scripts.script_words import is_floor
 from scene_graphs.json_fields import Json
 
 UNDONE: Final = "left undone, as the theme asks"
+LEGEND: Final = (
+    "acted: the body is seen doing it; something stands for it: the body is seen doing something else in its place; "
+    "not shown: words that the body does not show; left undone: the theme says it is not done"
+)
+"""What is meant by the words of `ActedBeats.lines`."""
 
 
 def connects(keyframe: Keyframe) -> bool:
@@ -51,8 +56,13 @@ class Outcome:
 
     @property
     def acted(self) -> bool:
-        """Whether the film shows it, or something that stands for it (`Beat.stood_for`)."""
+        """Whether the film shows it, or something that stands for it."""
         return not self.why
+
+    @property
+    def stood_for(self) -> bool:
+        """Whether the film shows only something that stands for it."""
+        return self.acted and self.beat.stood_for
 
     def to_dict(self) -> Json:
         """Plain values for JSON."""
@@ -81,7 +91,7 @@ class ActedBeats:
     @property
     def stood_for(self) -> int:
         """How many of the acted ones are so only by what stands for them."""
-        return sum(one.acted and one.beat.stood_for for one in self.outcomes)
+        return sum(one.stood_for for one in self.outcomes)
 
     @property
     def missing(self) -> tuple[Outcome, ...]:
@@ -94,11 +104,13 @@ class ActedBeats:
         return tuple(one for one in self.outcomes if not one.beat.asked)
 
     def lines(self) -> list[str]:
-        """In words: how many are acted, the missing ones and why, and what is left undone; none without beats."""
+        """In words: how many are acted, the missing ones and why, what is left undone, and what these words mean where
+        something is not acted; none without beats."""
         if not self.outcomes:
             return []
         share = f"{self.spare_share:.0%} of the screen time serves none of them"
         acted = [one.beat for one in self.outcomes if one.acted]
+        plain = all(one.acted and not one.beat.unshown for one in self.outcomes)
         more = f", something stands for {self.stood_for} more" if self.stood_for else ""
         return [
             f"{self.acted - self.stood_for} of {self.asked} beats of your theme are acted{more}; {share}",
@@ -110,6 +122,7 @@ class ActedBeats:
                 if beat.unshown and not beat.stood_for
             ),
             *(f"left undone, as asked: {one.beat.text}" for one in self.undone),
+            *([] if plain else [LEGEND]),
         ]
 
     def to_dict(self) -> Json:

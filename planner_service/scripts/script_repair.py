@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Final, Generic, TypeVar
 
 from motion_backend.motion import RISINGS, Emotion, Posture, Skill
@@ -27,6 +28,7 @@ from planner_service.scripts.script_words import (
 
 K = TypeVar("K", bound=Keyframe)
 RISES: Final = {Posture.SEATED: (Skill.STANDUP, "stand up"), Posture.LYING: (Skill.GETUP, "get up")}
+_LEFT_OUT: Final = "left out"
 NO_WAY_TO_GO: Final = re.compile(r"\b(spin|danc|pacing|sidestep|tap |still|wav|to the front)", re.IGNORECASE)
 
 
@@ -41,12 +43,15 @@ class Mending(Generic[K]):
     ) -> None:
         self.kept: list[K] = []
         self.problems: list[Problem] = []
+        self.places: list[int] = []
+        """Of every keyframe that was read, where it stands in `kept`; left out: the one before, or -1."""
         self.posture = Posture.STANDING
         self._resting: K | None = None
         self._at: Place | None = None
         self._fitting = Fitting[K](self._note, vocabulary, furniture)
         for index, keyframe in enumerate(self._fitting.fit(keyframes)):
             self._take(index, keyframe)
+            self.places.append(len(self.kept) - 1)
         self.problems.sort(key=lambda problem: problem.keyframe)
 
     def _note(self, index: int, field: str, fault: str, remedy: str) -> None:
@@ -56,7 +61,7 @@ class Mending(Generic[K]):
         if self.kept and _alike(self.kept[-1], keyframe):
             self._note(index, "skill", f"{_told(keyframe)} is there twice", "kept once")
         elif keyframe.skill is Skill.TOUCH and not self._can_touch(keyframe.piece[0]):
-            self._note(index, "furniture", f"the home has nothing to touch, no {keyframe.furniture}", "left out")
+            self._note(index, "furniture", f"the home has nothing to touch, no {keyframe.furniture}", _LEFT_OUT)
         elif getattr(keyframe, "already", False):
             self._begin(index, keyframe)
         elif keyframe.skill in RISINGS:
@@ -79,7 +84,7 @@ class Mending(Generic[K]):
     def _rise(self, index: int, keyframe: K) -> None:
         """Rising starts from rest, from the object rested on; the paper's tables write "floor" there."""
         if self._resting is None:
-            self._note(index, "skill", f"{_told(keyframe)} while already standing", "left out")
+            self._note(index, "skill", f"{_told(keyframe)} while already standing", _LEFT_OUT)
             return
         if self.posture is Posture.LYING and keyframe.skill is Skill.STANDUP:
             self._note(index, "skill", "standup from lying", "getup instead")
@@ -199,14 +204,22 @@ def check(
 def repair(
     keyframes: Sequence[K], vocabulary: Vocabulary | None = None, furniture: Collection[str] | None = None
 ) -> tuple[tuple[K, ...], tuple[str, ...]]:
-    """Keyframes that pass `check` with the same arguments, and what was changed and why, one sentence a change.
+    """Keyframes that pass `check` with the same arguments, and what was changed and why, one sentence a change, with
+    the numbers of the keyframes as they are then.
 
     Unknown or unfit furniture is replaced, and with a `vocabulary` unknown captions by the nearest known ones; walks
     and risings that are missing are put in; a touch leaves the hand alone that holds a phone; what cannot happen
     (rising while standing, the same keyframe twice) is left out. What passes is returned unchanged.
     """
     mending = Mending(keyframes, vocabulary, furniture)
-    return tuple(mending.kept), tuple(map(str, mending.problems))
+    return tuple(mending.kept), tuple(_renumbered(problem, mending.places) for problem in mending.problems)
+
+
+def _renumbered(problem: Problem, places: Sequence[int]) -> str:
+    """What was repaired, at the keyframe that is now there."""
+    number = places[problem.keyframe]
+    told = str(replace(problem, keyframe=max(number, 0)))
+    return f"{'before' if number < 0 else 'after'} {told}" if problem.remedy == _LEFT_OUT else told
 
 
 def skill_of(word: str) -> Skill:

@@ -13,7 +13,7 @@ from planner_service.themes.verb_finder import Token, next_verb, verb_place
 THAT: Final = frozenset(("that", "how", "what", "why", "if", "whether", "which", "who"))
 """What joins a clause that is an object: "finds that he won"."""
 RELATIVES: Final = frozenset(("that", "which", "who"))
-_TELLING: Final = RELATIVES | {"whom", "whose"}
+TELLING: Final = RELATIVES | {"whom", "whose"}
 MANNER: Final = frozenset(("way", "time", "moment", "minute", "day", "night", "morning", "year"))
 """Nouns that say no more than how or when what is told of them was: "the way he was taught"."""
 ARTICLES: Final = frozenset(("the", "a", "an"))
@@ -64,7 +64,7 @@ def without_asides(words: list[Token], main: int) -> tuple[list[Token], list[lis
 def without_relative(tokens: list[Token]) -> tuple[list[Token], list[Token]]:
     """The words of a clause, and those that tell of its subject with a verb of their own: "a man | who lives alone |
     reads"."""
-    start = next((at for at, token in enumerate(tokens) if at and token.low in _TELLING), 0)
+    start = next((at for at, token in enumerate(tokens) if at and token.low in TELLING), 0)
     if not start or verb_place(tokens[:start]) is not None:
         return tokens, []
     verb = verb_place(tokens[start + 1 :])

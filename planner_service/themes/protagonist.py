@@ -7,10 +7,12 @@ from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 from functools import cache, lru_cache
+from itertools import groupby, takewhile
 from typing import Final
 
 from motion_backend.motion import Character
-from planner_service.themes.asides import OWNERS
+from planner_service.scripts.script import MAX_NAME_LENGTH
+from planner_service.themes.asides import ARTICLES, OWNERS
 from planner_service.themes.lexicon import grammar, is_third_person, is_verb, kinds_of, lemma_of
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.theme_words import theme_words
@@ -50,27 +52,66 @@ def cast_by(theme: str, character: Character) -> Character:
     default = Character()
     if (character.name, character.pronouns) != (default.name, default.pronouns):
         return character
-    name = name_in(theme) or _name_of_hero(theme)
     clauses = clauses_of_text(theme)
     hero = hero_of(clauses)
-    told = called(clauses, hero if name in hero else name) if name else pronouns_of(f"the {head_of(hero)}")
-    titled = pronouns_of(hero) if name and name in hero else ""
-    pronouns = (
-        titled or _pronouns_of_names().get(name.lower()) or told or _pronouns_in(theme, bool(name)) or default.pronouns
-    )
+    told = called(clauses, hero)
+    mine = hero.lower() in _FIRST_PERSON
+    name = _called_as(hero, told) or ("" if mine else _named_beside(theme, clauses, told))
+    own = pronouns_of(hero) or pronouns_of(f"the {head_of(hero)}") or _pronouns_of_names().get(name.lower()) or told
+    beside = "" if mine else _pronouns_in(theme, is_name(name))
+    pronouns = own or beside or default.pronouns
     return replace(character, name=name or default.name, pronouns=pronouns)
 
 
-def _name_of_hero(theme: str) -> str:
-    """The name in whom a theme is about, where it stands beside no verb: "thinks Paloma", "Elspeth, tired, …"."""
-    hero = hero_of(clauses_of_text(theme))
-    return next((token.text for token in tokens_of(hero) if is_name(token.text) and "." not in token.text), "")
+def _called_as(hero: str, pronoun: str) -> str:
+    """What to call whom a theme is about: by name ("Mr. Brown", "Aunt Rosa"), else as the theme does ("the old man",
+    "my sister"); "" for "she", "I" and "a person"."""
+    words = [token.text for token in tokens_of(hero)]
+    several = [list(part) for is_and, part in groupby(words, lambda word: word in ("and", ",")) if not is_and]
+    one = next((part for part in several if pronoun and pronouns_of(" ".join(part)) == pronoun), [*several, []][0])
+    name = _name_among(one) or ("" if _is_pronoun(hero) else _noun_as_told(one))
+    return name if len(name) <= MAX_NAME_LENGTH else f"the {head_of(hero)}"[:MAX_NAME_LENGTH]
 
 
-def name_in(theme: str) -> str:
-    """The first name that does something, or ""."""
-    doing = (one["name"] for one in _CAPITALISED.finditer(theme) if is_verb(one["verb"]))
-    return next((name for name in doing if is_name(name)), "")
+def _name_among(words: Sequence[str]) -> str:
+    """The name among the words of a subject, with its title: "Mrs. Hill" of "old Mrs. Hill"."""
+    for at, word in enumerate(words[:-1]):
+        if _is_title(word) and words[at + 1][:1].isupper():
+            return " ".join([word, *takewhile(lambda one: one[:1].isupper(), words[at + 1 :])])
+    names = [word for word in words if is_name(word) and word.lower() not in OWNERS]
+    return " ".join(word for word in names if not word.endswith(("'s", "’s")))
+
+
+def _noun_as_told(words: Sequence[str]) -> str:
+    """What a subject calls somebody who has no name: "the boy" for "a boy of six"; "" for "a person"."""
+    noun = _noun_in(words)
+    if not noun or noun[-1].lower() in _ANYBODY:
+        return ""
+    first, *rest = noun[0].lower(), *noun[1:]
+    if first in ("my", "our"):
+        return " ".join([first, *rest])
+    if first in ARTICLES | OWNERS | {"one", "some", "this", "that"}:
+        return " ".join(["the", *rest])
+    is_called = not rest and pronouns_of(first)  # "Grandma knits"
+    return first.capitalize() if is_called else " ".join(["the", first, *rest])
+
+
+def _noun_in(words: Sequence[str]) -> list[str]:
+    """The words of a subject up to its noun: "a boy" of "a boy of six"."""
+    head = head_of(" ".join(words))
+    return list(words[: words.index(head) + 1]) if head in words else []
+
+
+def _is_title(word: str) -> bool:
+    return word[:1].isupper() and (word.lower().rstrip(".") in _TITLES or word.lower() in theme_words()["people"])
+
+
+def _named_beside(theme: str, clauses: Sequence[Clause], pronoun: str) -> str:
+    """The first name that does something, or whose it is that does, and may be whom a pronoun stands for; or ""."""
+    doing = [one["name"] for one in _CAPITALISED.finditer(theme) if is_verb(one["verb"])]
+    owning = [re.sub(r"['’]s$", "", one.subject.split()[0]) for one in clauses if re.match(r"\w+['’]s\s", one.subject)]
+    fitting = (name for name in doing + owning if is_name(name))
+    return next((name for name in fitting if not pronoun or pronouns_of(name) in ("", pronoun)), "")
 
 
 def is_name(word: str) -> bool:
@@ -88,7 +129,27 @@ def pronouns_of(subject: str) -> str:
     return told if told in ("he", "she") else ""
 
 
-_TITLES: Final = {"mr": "he", "sir": "he", "mrs": "she", "miss": "she", "ms": "she", "madame": "she"}
+_TITLES: Final = {
+    "mr": "he", "sir": "he", "mrs": "she", "miss": "she", "ms": "she", "madame": "she", "dr": "", "prof": "",
+    "tante": "she", "oma": "she", "mama": "she", "nonna": "she",
+    "onkel": "he", "opa": "he", "papa": "he", "nonno": "he",
+}  # fmt: skip
+_ANYBODY: Final = frozenset(
+    (
+        "person",
+        "character",
+        "someone",
+        "somebody",
+        "anyone",
+        "anybody",
+        "nobody",
+        "everyone",
+        "everybody",
+        "one",
+        "human",
+    )
+)
+"""Words for people that call nobody anything."""
 _CAPITALS: Final = """
 english french german christmas easter halloween monday tuesday wednesday thursday friday saturday sunday january
 february april june july august september october november december everyone everybody everything although though
@@ -126,13 +187,13 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     people = [clause for clause in told if is_person(clause.subject)]
     pronoun = _told_most(clauses)
     deeds = Counter(one.doer for one in clauses if not (one.aside or (one.denied and not one.unable)))
-    first = min(((one.sentence, one.place) for one in people if _is_pronoun(one.subject)), default=(len(clauses), 0))
-    nouns = [one for one in people if not _is_pronoun(one.subject)
+    first = min(((one.sentence, one.place) for one in people if _stands_for(one.subject)), default=(len(clauses), 0))
+    nouns = [one for one in people if not _stands_for(one.subject)
              and ((one.sentence, one.place) < first or is_name(one.subject.split()[0]))]  # fmt: skip
     nouns = [one for one in nouns if pronouns_of(one.subject) in ("", pronoun or pronouns_of(one.subject))] or nouns
     nouns = [] if pronoun and all(_is_plural(one.subject) and one.joint in _ASIDE for one in nouns) else nouns
     if nouns:
-        return max(nouns, key=lambda one: _heroic(one, pronoun) + min(deeds[one.subject], 4) / 8).subject
+        return max(nouns, key=lambda one: _heroic(one, pronoun) + min(deeds[one.subject], 4)).subject
     opening = ("a ", "an ", "one ", "my ", "our ", "the ")
     called = not people and " " not in "".join(mains[:1]) and is_name("".join(mains[:1]))  # "Rose", "Wen"
     sooner = [(one.sentence, one.place) < first for one in told if one.joint in _MAIN_JOINTS][:1] == [True]
@@ -167,7 +228,7 @@ def _heroic(clause: Clause, pronoun: str) -> float:
     own, first = pronouns_of(clause.subject), clause.subject.split()[0].lower()
     fits = 4 * bool(pronoun and own == pronoun)
     several = _is_plural(clause.subject)
-    small = head_of(clause.subject).lower() in ("baby", "infant", "newborn")
+    small = head_of(clause.subject).lower() in {"baby", "infant", "newborn", *_ANYBODY - {"person", "character"}}
     return fits - small - 2 * (first in OWNERS) - (1 + bool(pronoun)) * several / 2 - (clause.joint in _ASIDE)
 
 
@@ -176,6 +237,11 @@ def _may_live(subject: str) -> bool:
     head = head_of(subject)
     lifeless = theme_words()["no_heroes"] | theme_words()["body"] | frozenset(things()) | grammar().subjects
     return not is_known(head) and lifeless.isdisjoint((head.lower(), lemma_of(head)))
+
+
+def _stands_for(subject: str) -> bool:
+    """Whether a subject stands for somebody: "she", not "someone"."""
+    return _is_pronoun(subject) and subject.lower() not in _ANYBODY
 
 
 def _is_pronoun(subject: str) -> bool:
@@ -191,6 +257,8 @@ def is_person(subject: str) -> bool:
     words = [token.text for token in tokens_of(subject)]
     if not words:
         return False
+    if head_of(subject)[:1].islower():  # "Carla's dog"
+        words = [word for word in words if not word.endswith(("'s", "’s"))]
     if words[-1].lower() in _SUBJECTS or words[-1].lower() in _FIRST_PERSON:
         return True
     people = theme_words()["people"]
@@ -199,7 +267,7 @@ def is_person(subject: str) -> bool:
     head = head_of(subject)
     if head.lower() in people or lemma_of(head) in people:
         return True
-    if any(is_name(word) for word in words) and words[0].lower() not in ("the", "a", "an"):
+    if words and any(is_name(word) for word in words) and words[0].lower() not in ("the", "a", "an"):
         return True
     made = is_known(head) or lemma_of(head) in things()
     if len(head) > 4 and head.endswith(("er", "or")) and not made:  # a "baker" is one who bakes
@@ -240,7 +308,7 @@ def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
     if main in _FIRST_PERSON:
         return False
     mine, theirs = head_of(subject).lower(), head_of(hero).lower()
-    return mine == theirs or hero.lower() in subject.lower()
+    return mine == theirs or re.search(rf"\b{re.escape(hero)}(?!['’\w])", subject, re.IGNORECASE) is not None
 
 
 def head_of(subject: str) -> str:

@@ -145,7 +145,7 @@ def _main(parts: Sequence[Clause]) -> Clause:
 
 def _sharing(before: Clause, parts: list[Clause]) -> list[Clause]:
     """A clause that shares the denial of the one before, whose verb is in its base form too: "does not eat | or drink",
-    "wants to sit | and rest"."""
+    "wants to sit | and rest"; or after "nor", in any form: "neither eats | nor sleeps"."""
     unshared, first = parts, _main(parts)
     word = first.text.split(" ", 1)[0].lower()
     if not first.verb and verb_of(word) == word:  # "does not smoke, | drink or dance"
@@ -155,7 +155,10 @@ def _sharing(before: Clause, parts: list[Clause]) -> list[Clause]:
     done = first.verb and not first.subject and first.joint in ("and", ",") and participle(first.verb)
     if shared and done == first.text.split(" ", 1)[0].lower():  # "had polished the spoons | and ironed the napkins"
         return [replace(part, perfect=True) if part is first else part for part in parts]
-    shares = before.denied and first.verb and not first.subject and first.joint in ("or", "nor", "and", ",")
+    listed = first.joint == "," and not first.subject and "neither" in before.text.split()
+    if before.denied and (first.joint == "nor" or listed):
+        return [replace(part, denied=True, unable=before.unable) if part is first else part for part in parts]
+    shares = before.denied and first.verb and not first.subject and first.joint in ("or", "and", ",")
     bare = first.text.split(" ", 1)[0].lower() == first.verb and re.search(
         rf"\b{re.escape(before.verb)}\b", before.text
     )
@@ -189,6 +192,7 @@ def _segmenter() -> Any:
 def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
     """The clauses of a piece: what is told before its subject, its own, second deeds without a joint, and asides."""
     tokens, relative = without_relative(_without_opening(piece.tokens))
+    relative = list(piece.told) or relative
     place = 0 if piece.bare else None if piece.verbless else verb_place(tokens)
     if place is None:
         told = _quotes(tokens, quotes)
@@ -261,7 +265,10 @@ def _denials(lead: Sequence[Token], subject: str) -> list[Token]:
     denials = (
         (known.denials | NEARLY) - known.subjects - (known.with_gerund if subject else frozenset())
     )  # "without a word she"
-    denying = [token for token in lead if token.low in denials]
+    last = max((at for at, token in enumerate(lead) if token.text in subject.split()), default=0)
+    commas = [at for at, token in enumerate(lead[:last]) if token.text == "," and lead[at - 1].low not in denials]
+    apart = max(commas, default=0)  # "Not hungry, | Anna", but "never, she does sit still"
+    denying = [token for token in lead[apart:] if token.low in denials]
     return denying if subject else list(lead) if any(token.low in known.denials | NEARLY for token in lead) else []
 
 
@@ -369,6 +376,8 @@ def _subject(tokens: Sequence[Token]) -> str:
     while words and (words[-1].lower() in grammar().adverbs or (words[-1].islower() and words[-1].endswith("ly"))):
         words.pop()
     if len(words) > 1 and words[-1].lower() in FLOATING and words[-2].lower() in grammar().subjects:
+        words.pop()
+    if len(words) > 1 and words[-1].lower() == "neither":  # "the widow | neither eats"
         words.pop()
     if words and words[-1].lower() in grammar().subjects:
         return words[-1]

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
 
-from planner_service.themes.asides import THAT
+from planner_service.themes.asides import TELLING, THAT
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, past, verb_of
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
@@ -36,6 +36,8 @@ class Piece:
     """Whether its first word is a verb in its base form, as the one before has it: "you wake up, | stretch"."""
     verbless: bool = False
     """Whether what looks like its verb says how somebody is: "Bored stiff, | the nurse tries"."""
+    told: tuple[Token, ...] = ()
+    """What tells of its subject between commas: "Anna, | who lives alone, | reads"."""
 
     @property
     def text(self) -> str:
@@ -67,7 +69,7 @@ def pieces_of(sentence: str) -> list[Piece]:
         cut.append(Piece(joint, tuple(current), source))
     if len(tokens) == 1 and lemma_of(tokens[0].low) in things():  # "Shoes. Keys?"
         return [replace(cut[0], verbless=True)]
-    return _whole(cut)
+    return _without_relatives(_whole(cut))
 
 
 def is_led(joint: str, current: Sequence[Token]) -> bool:
@@ -159,6 +161,22 @@ def _whole(pieces: list[Piece]) -> list[Piece]:
         else:
             waiting = piece
     return [*whole, waiting] if waiting is not None else whole
+
+
+def _without_relatives(pieces: list[Piece]) -> list[Piece]:
+    """Pieces whose subject is told of between commas made one, and that told of it apart."""
+    for at, piece in enumerate(pieces):
+        comma = next((place for place, token in enumerate(piece.tokens) if token.text == ","), 0)
+        own, told = piece.tokens[:comma], piece.tokens[comma + 1 :]
+        if not (own and told and told[0].low in TELLING and verb_place(own) is None):
+            continue
+        after = (place for place in range(at + 1, len(pieces)) if pieces[place].joint in ("", ","))
+        main = next(after, None)
+        if main is not None and verb_place(pieces[main].tokens) == 0:
+            told += tuple(token for one in pieces[at + 1 : main] for token in one.tokens)
+            whole = replace(piece, tokens=own + pieces[main].tokens, told=told)
+            return [*pieces[:at], whole, *_without_relatives(pieces[main + 1 :])]
+    return pieces
 
 
 def _is_bare(before: Piece, piece: Piece) -> bool:

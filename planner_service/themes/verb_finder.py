@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 from typing import Final
 
@@ -61,6 +62,8 @@ _SEVERAL: Final = frozenset(("couple", "family", "pair", "people", "police", "te
 FLOATING: Final = frozenset(("all", "both", "each"))
 """Words between several people and their verb."""
 _PARTICLES: Final = frozenset(("up", "down", "out", "off", "away", "back"))
+_FEWEST_SAYING: Final = 2
+"""Words of a name and what its bearer does."""
 _ARTICLES: Final = frozenset(("the", "a", "an"))
 _OBJECTS: Final = frozenset(("him", "them", "me", "himself", "herself", "back", "home", "and"))
 
@@ -122,10 +125,25 @@ def _would(found: re.Match[str]) -> str:
 
 def verb_place(tokens: Sequence[Token]) -> int | None:
     """Where the first verb or auxiliary of a clause stands; None where it has none."""
+    if _opens_with_name(tokens):
+        return 1
     for place, token in enumerate(tokens):
         if token.low in grammar().auxiliaries or _acts(tokens, place):
             return place
     return None
+
+
+def _opens_with_name(tokens: Sequence[Token]) -> bool:
+    """Whether a name opens the words before what its bearer does, though it may be a verb too: "Peter stands up"."""
+    if len(tokens) < _FEWEST_SAYING or not tokens[0].text[:1].isupper() or tokens[0].low not in _names():
+        return False
+    return is_third_person(tokens[1].low)
+
+
+@cache
+def _names() -> frozenset[str]:
+    words = theme_words()
+    return words["names_she"] | words["names_he"] | words["names_they"]
 
 
 def next_verb(tokens: Sequence[Token], before: int) -> int | None:

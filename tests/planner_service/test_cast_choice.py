@@ -31,7 +31,9 @@ def seen(theme: str, seed: int = 0, **given: Any) -> Character:
         ("A girl of six plays in the living room.", {"age": "child", "pronouns": "she", "height": 1.17}),
         ("A six-year-old boy jumps around.", {"age": "child", "pronouns": "he", "height": 1.17}),
         ("Lena, aged nine, does her homework.", {"age": "child", "height": 1.33}),
-        ("A teenage boy plays a game.", {"age": "adult", "pronouns": "he", "height": 1.7}),
+        ("A teenage boy plays a game.", {"age": "teen", "pronouns": "he", "height": 1.7, "member": "finn"}),
+        ("A sixteen-year-old girl does her homework.", {"age": "teen", "pronouns": "she", "member": "zoe"}),
+        ("The teenager practises the guitar.", {"age": "teen"}),
         ("The grandmother of a teenager knits on the sofa.", {"age": "old", "pronouns": "she"}),
         ("She is 80 years old and looks for her book.", {"age": "old", "pronouns": "she"}),
         ("A thirty-year-old man reads.", {"age": "adult", "pronouns": "he"}),
@@ -64,6 +66,13 @@ def test_pronouns_agree_with_who_plays_for_every_seed() -> None:
 
 def test_the_same_theme_and_seed_choose_the_same() -> None:
     assert seen("She reads a book.", 3) == seen("She reads a book.", 3)
+
+
+def test_no_teenager_has_a_beard_whoever_plays() -> None:
+    for member in (one.name for one in cast().member if one.age != "child"):
+        look, grown = (Look.of(Character(member=member, age=age)) for age in ("teen", "adult"))
+        assert not look.beard
+        assert look.proportions.girth < grown.proportions.girth
 
 
 def test_what_is_given_wins_over_what_is_read() -> None:

@@ -5,7 +5,15 @@ from __future__ import annotations
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, GetJsonSchemaHandler, StringConstraints
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    GetJsonSchemaHandler,
+    StringConstraints,
+    computed_field,
+)
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticKnownError
 
@@ -235,7 +243,13 @@ class KeyframeShown(BaseModel):
 class BeatShown(Beat):
     """One thing that the theme says, and what became of it; as planned while nothing has been moved."""
 
-    acted: bool = Field(description="Whether keyframes show it, or only stand for it: then `unshown` has its text.")
+    acted: bool = Field(description="Whether keyframes show it, or something else that stands for it: `stood_for`.")
+
+    @computed_field(description="Whether keyframes show only something else in its place.")  # type: ignore[prop-decorator]
+    @property
+    def stood_for(self) -> bool:
+        """Whether keyframes show only something else in its place."""
+        return self.acted and self.text in self.unshown
 
 
 class ShortScriptChosen(BaseModel):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from planner_service.cli.play import read_keyframes, unknown_captions
+from planner_service.cli.play import MAX_FAULTS, read_keyframes, unknown_captions
 from planner_service.cli.story import new_folder
 from planner_service.pipeline import RequestError
 from planner_service.tasks.task_plan import MAX_KEYFRAMES
@@ -48,6 +48,20 @@ def test_what_cannot_be_acted_is_shown_where_it_stands(tmp_path: Path, value: ob
     with pytest.raises(RequestError) as refused:
         read_keyframes(written(tmp_path, value))
     assert said in str(refused.value)
+
+
+def test_all_that_is_wrong_is_told_at_once_and_within_bounds(tmp_path: Path) -> None:
+    bad = {"skill": "fly", "furniture": "soffa", "colour": "red"}
+    with pytest.raises(RequestError) as refused:
+        read_keyframes(written(tmp_path, [WALK, bad, SIT, bad]))
+    for number in (1, 3):
+        for field in ("skill", "caption", "colour", "furniture"):
+            assert str(refused.value).count(f"keyframes.{number}.{field}: ") == 1
+    assert "keyframes.0" not in str(refused.value)
+    with pytest.raises(RequestError) as refused:
+        read_keyframes(written(tmp_path, [bad] * MAX_KEYFRAMES))
+    assert str(refused.value).count("keyframes.") == MAX_FAULTS
+    assert str(refused.value).endswith(f"and {4 * MAX_KEYFRAMES - MAX_FAULTS} more")
 
 
 def test_captions_that_the_body_does_not_know_are_shown_with_those_it_does(tmp_path: Path) -> None:

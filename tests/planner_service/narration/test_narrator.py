@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -32,14 +33,15 @@ from planner_service.narration.keyframe_phrases import Variety, templates, touch
 from planner_service.narration.llm_narrator import narrate_with_model
 from planner_service.narration.narrative_voice import Voice, tells_of_one
 from planner_service.narration.narrator import Told, narrate
-from planner_service.narration.story_words import story_words, title_of
+from planner_service.narration.story_words import title_of
 from planner_service.narration.tense import bases, in_past
 from planner_service.scripts.script import BeatKind, Keyframe, LongScript, PlannedKeyframe
 from planner_service.themes.lexicon import gerund, past, third_person
 from planner_service.themes.protagonist import cast_by
 from scene_graphs.furniture import display_name
 
-SAM, EMILY, JAMES = PEOPLE = (Character("Sam", "they"), Character("Emily", "she"), Character("James", "he"))
+SAM, EMILY, JAMES = Character("Sam", "they"), Character("Emily", "she"), Character("James", "he")
+PEOPLE = (SAM, EMILY, JAMES, Character("the old man", "he"), Character("my sister", "she"), Character("the twins"))
 SHE, HE, THEY = Voice("Ana", "she"), Voice("Tom", "he"), Voice("Sam", "they")
 SLIPS = {
     "two spaces": r"  ",
@@ -47,7 +49,8 @@ SLIPS = {
     "two marks": r"[.,;:!?][.,;:]",
     "a doubled word": r"(?i)\b(\w+) \1\b",
     "they with a singular verb": r"\b[Tt]hey (?:was|has|is)\b",
-    "one person with a plural verb": r"\b(?:[Hh]e|[Ss]he|Sam|Emily|James) (?:were|are|have)\b",
+    "one person with a plural verb": r"\b(?:[Hh]e|[Ss]he|Sam|Emily|James|man|sister) (?:were|are|have)\b",
+    "several with a singular verb": r"\btwins (?:was|has|is)\b",
     "an unresolved mention": r"(?i)\b(?:the|a) character\b",
     "a blank": r"[{}~_\ue000]",
     "a sentence without a capital": r"(?:^|[.!?] |\n)[a-z]",
@@ -85,7 +88,7 @@ def as_cast(script: LongScript, seed: int = 0) -> str:
 def test_no_story_has_a_slip_of_grammar(script: LongScript, person: Character, seed: int) -> None:
     told = narrate(script, person, seed)
     assert slips(told.text) == [], told.text
-    assert person.name in told.text
+    assert person.name in told.text[:1].lower() + told.text[1:] or person.name in told.text
 
 
 @for_each(
@@ -129,7 +132,7 @@ def strings_in(tables: object) -> str:
 
 
 GRAMMAR = "a an and around at but did had he him his her i in into it its not of on other over she the them they up was"
-TABLES = stems(strings_in(vars(templates())).replace("~", " ")) | stems(" ".join((*story_words().others, GRAMMAR)))
+TABLES = stems(strings_in(vars(templates())).replace("~", " ")) | stems(GRAMMAR)
 
 
 @tries(60)
@@ -180,13 +183,74 @@ def test_a_body_that_goes_on_sitting_is_not_told_to_rise(seed: int) -> None:
 
 
 @for_each("seed", range(5))
+def test_a_body_that_lies_where_it_sat_is_not_told_to_come_there_again(seed: int) -> None:
+    script = made(
+        "He reads on the sofa, yawns and wonders.",
+        [beat("reads on the sofa"), beat("yawns"), beat("wonders")],
+        [
+            frame("sitdown", "reading, book held in both hands", "sofa", 0),
+            frame("sitdown", "leaning forward, elbows on knees", "sofa", 1),
+            frame("liedown", "left leg bent", "sofa", 2),
+        ],
+    )
+    told = narrate(script, JAMES, seed)
+    assert spoken(told) == [0, 1, 2]
+    assert told.text.count("sofa") == 1, told.text
+    assert "lay back" in told.text
+    assert not re.search(r"\b(?:sank|slumped|sat down|settled|collapsed)\b", told.text), told.text
+
+
+@for_each("seed", range(5))
+def test_a_deed_that_names_all_the_furniture_is_told_once_for_all_of_it(seed: int) -> None:
+    pieces = ("desk", "shelf", "sofa")
+    frames = [
+        frame(skill, caption, piece, 0)
+        for piece in pieces
+        for skill, caption in (("loco", "smoothly forward walk"), ("touch", "touch medium height"))
+    ]
+    told = narrate(made("He searches.", [beat("searches the desk, the shelf and the sofa")], frames), JAMES, seed)
+    assert told.text == "James searched the desk, the shelf and the sofa."
+    assert spoken(told) == list(range(6))
+
+
+@for_each("seed", range(5))
+@for_each("deed", ["jumps up from his chair", "gets up from the chair", "rises"])
+def test_nobody_is_told_to_rise_in_order_to_rise(seed: int, deed: str) -> None:
+    rises = beat(deed).model_copy(update={"unshown": (deed,)})
+    told = narrate(made("He rises.", [rises], [frame("standup", "stand up", "chair", 0)]), JAMES, seed)
+    assert not re.search(r"\bto (?:jump|get|rise)\b", told.text), told.text
+    assert told.thoughts == ()
+
+
+@tries(60)
+@given(stories, people, seeds)
+def test_no_walk_without_a_goal_names_the_room_of_the_one_before(
+    script: LongScript, person: Character, seed: int
+) -> None:
+    told = narrate(script.model_copy(update={"beats": ()}), person, seed)
+    named = r"\b(?:around|about|through|down in|forth in) the ((?:living |dining )?\w+)"
+    rooms = re.findall(named, told.text)
+    assert all(before != after for before, after in pairwise(rooms)), told.text
+
+
+@for_each("seed", range(5))
+def test_what_the_body_is_at_already_is_it(seed: int) -> None:
+    frames = [
+        frame("liedown", "lying still", "bed", 0),
+        frame("getup", "get up", "bed", 0),
+        frame("touch", "touch low height", "bed", 0),
+    ]
+    text = narrate(made("He lies.", [], frames), JAMES, seed).text
+    assert text.count("bed") == 1, text
+    assert re.search(r"(?:under|beneath) it", text), text
+
+
+@for_each("seed", range(5))
 def test_what_is_not_acted_is_not_told(seed: int) -> None:
     assert "sit down" not in as_cast(NEGATION, seed)
     assert "bus" not in as_cast(MEMORY, seed)
     others = as_cast(OTHERS, seed)
-    assert not re.search(r"rang|flowers|left", others)
-    assert "this was the story of anna" in others.lower()
-    assert "her husband and the guests" in others
+    assert not re.search(r"rang|flowers|left|husband|guests|nothing", others)
 
 
 @for_each("seed", range(5))

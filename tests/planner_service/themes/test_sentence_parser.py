@@ -11,8 +11,9 @@ from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planner_service.themes.lexicon import grammar
+from planner_service.themes.lexicon import grammar, is_adjective
 from planner_service.themes.sentence_parser import clauses_of_text
+from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import plain
 
 
@@ -58,6 +59,40 @@ def test_every_word_of_a_theme_is_in_one_clause_or_is_a_subject_or_a_joint(theme
     lost = words_of(plain(theme.text)) - found
     assert not {word for word in lost if word not in grammar().joints | grammar().adverbs}
     assert found <= words_of(plain(theme.text))
+
+
+SUBJECTS = st.sampled_from(["She", "Anna", "The old man", "My sister", "The widow"])
+DEEDS = st.sampled_from(["eats", "sleeps", "answers the phone", "opens the curtains", "reads a book on the sofa"])
+
+
+@tries(40)
+@given(SUBJECTS, st.lists(DEEDS, min_size=2, max_size=3, unique=True), DEEDS)
+def test_of_neither_and_nor_all_is_denied_and_nothing_after_them(who: str, deeds: list[str], done: str) -> None:
+    *most, last = deeds
+    read = clauses_of_text(f"{who} neither {', '.join(most)} nor {last}, but {done}.")
+    assert [clause.denied for clause in read] == [True] * len(deeds) + [False]
+    assert [clause.text for clause in read] == [f"neither {deeds[0]}", *deeds[1:], done]
+    assert {clause.doer for clause in read} == {who}
+
+
+@tries(40)
+@given(SUBJECTS, st.sampled_from(["who lives alone", "whose house is cold", "who neither smokes nor drinks"]), DEEDS)
+def test_what_is_told_of_somebody_between_commas_leaves_them_their_deeds(who: str, told: str, deed: str) -> None:
+    plainly = clauses_of_text(f"{who} {deed} and dances.")
+    beside = clauses_of_text(f"{who}, {told}, {deed} and dances.")
+    assert [clause for clause in beside if not clause.aside] == list(plainly)
+    assert [clause.text for clause in beside if clause.aside] == [told]
+
+
+NAMES = sorted(
+    name for kind in ("names_she", "names_he", "names_they") for name in theme_words()[kind] if not is_adjective(name)
+)
+
+
+@for_each("deed", ["sits down and reads.", "watches a film.", "stands up straight, nods and sits down."])
+def test_whoever_bears_a_known_name_does_what_follows_it(deed: str) -> None:
+    doers = {name: clauses_of_text(f"{name.capitalize()} {deed}")[0].doer for name in NAMES}
+    assert {name for name, doer in doers.items() if doer != name.capitalize()} == set()
 
 
 SOUP = """he she Anna reads a book and but before after until when without eating the sofa sleeps not never sits reading
@@ -188,6 +223,10 @@ def test_what_is_denied_refused_or_wished_for_is_not_done(text: str, verb: str) 
         ("Without a word she packed and left the key.", [False, False]),
         ("He was going to cook but instead he sleeps.", [True, False]),
         ("She cannot stop laughing.", [False]),
+        ("He can neither sit nor stand still and paces.", [True, True, False]),
+        ("My uncle does not eat, nor does he drink; he sits.", [True, True, False]),
+        ("Not hungry, Anna sits down.", [False, False]),
+        ("Never does she sit still.", [True]),
     ],
 )
 def test_one_clause_that_is_denied_denies_no_other(text: str, denied: list[bool]) -> None:
