@@ -145,7 +145,7 @@ def _both(usual: float, mood: float, words: float, gently: bool) -> float:
     """A number that a mood and words change alike goes as far as either has it; where they change it against each
     other, the mood changes what the words say, or only `gently`: half as much."""
     if (mood - usual) * (words - usual) < 0 < usual:
-        return words * (mood / usual) ** (0.5 if gently else 1.0)
+        return float(words * (mood / usual) ** (0.5 if gently else 1.0))
     return _farther(usual, mood, words)
 
 
