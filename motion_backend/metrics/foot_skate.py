@@ -17,8 +17,8 @@ GMD has it, for one size of body. Children's toes pass the floor so much nearer 
 
 
 def skate_ratio(body: Kinematics) -> float:
-    """GMD's foot skating ratio, heights from the toe joints' rest height, its 0.25 s window at our frame rate, and its 5 cm
-    as the body is tall."""
+    """GMD's foot skating ratio, heights from the toe joints' rest height, its 0.25 s window at our frame rate, its
+    5 cm as the body is tall."""
     motion = body.motion
     toes = body.positions[:, [INDEX["left_foot"], INDEX["right_foot"]]]
     if len(toes) < 3:
