@@ -17,6 +17,7 @@ from motion_backend.body.scene_collision import Obstacles
 from motion_backend.director import Director
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.contact_error import risen
+from motion_backend.metrics.foot_skate import support_slip
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.smoothness import seam_jump
 from motion_backend.motion import FPS, Action, Character, Emotion, Motion, Posture, Skill, join
@@ -242,3 +243,10 @@ def test_a_story_that_ends_on_its_feet_ends_in_a_pose_of_its_mood_that_lives(emo
     assert np.linalg.norm(places[-1] - places[len(stops) - 1], axis=1).max() > 0.1, "a hand has gone where it rests"
     last = np.linalg.norm(np.diff(stays.joint_positions()[-10:], axis=0), axis=-1).max(axis=1) * FPS
     assert 0.005 < last.max() < 0.5
+
+
+@for_each("caption", ["hands behind head, legs straight", "sitting with legs crossed"])
+def test_one_foot_stands_while_a_sitter_takes_the_other_one_back_from_afar(caption: str) -> None:
+    sit = contact(HOME, Skill.SITDOWN, "sofa", caption)
+    motion, _ = DIRECTOR.act(HOME, rise(sit), after(HOME, sit))
+    assert support_slip(Kinematics.of(motion.part(0, FPS))) < 2.0
