@@ -250,3 +250,14 @@ def test_one_foot_stands_while_a_sitter_takes_the_other_one_back_from_afar(capti
     sit = contact(HOME, Skill.SITDOWN, "sofa", caption)
     motion, _ = DIRECTOR.act(HOME, rise(sit), after(HOME, sit))
     assert support_slip(Kinematics.of(motion.part(0, FPS))) < 2.0
+
+
+@for_each("seed", [0, 1, 2, 3, 4, 5])
+def test_who_has_stepped_up_to_a_thing_has_stepped_back_when_the_walk_begins(seed: int) -> None:
+    """Else both feet are in the air at once, the one on its way back and the walk's first."""
+    touch = contact(HOME, Skill.TOUCH, "table", "touch medium height")
+    walk = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=(3.2, 3.0))
+    touched, state = DIRECTOR.act(HOME, touch, after(HOME, to(touch), seed=seed), walk)
+    motion = join([touched, DIRECTOR.act(HOME, walk, state)[0]])
+    seam = len(touched)
+    assert support_slip(Kinematics.of(motion.part(seam - 24, seam + 24))) < 1.0
