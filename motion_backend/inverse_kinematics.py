@@ -12,6 +12,9 @@ from motion_backend.rotations import Array
 STRAIGHTEST = 0.999
 """Share of a limb's length that is used at most: a limb pulled quite straight snaps its hinge."""
 
+FOLDED = 0.45
+"""No limb folds up further than to this angle between its bones (radians): 154 degrees of elbow and knee."""
+
 
 class Limb(NamedTuple):
     """A solved limb: unit directions of both bones and of the hinge between them. Each (..., 3)."""
@@ -22,7 +25,8 @@ class Limb(NamedTuple):
 
 
 def two_bone(root: Array, target: Array, pole: Array, lengths: tuple[float, float]) -> Limb:
-    """Bend a limb so that its end comes to `target`, its middle joint towards `pole`; out of reach it points there.
+    """Bend a limb so that its end comes to `target`, its middle joint towards `pole`; out of reach, or nearer to its
+    root than it folds, it points there.
 
     root, target: (..., 3) world positions; pole: (..., 3) direction, need not be unit or perpendicular.
     """
@@ -31,8 +35,8 @@ def two_bone(root: Array, target: Array, pole: Array, lengths: tuple[float, floa
     distance = rotations.length(reach)
     along = reach / np.maximum(distance, 1e-9)
     longest = STRAIGHTEST * (upper_length + lower_length)
-    shortest = abs(upper_length - lower_length) + 0.12 * min(lengths)
-    distance = np.clip(distance, shortest, longest)
+    squares, product = upper_length**2 + lower_length**2, 2 * upper_length * lower_length
+    distance = np.clip(distance, np.sqrt(squares - product * np.cos(FOLDED)), longest)
     aside = _aside(pole, along)
     cosine = (upper_length**2 + distance**2 - lower_length**2) / (2 * upper_length * distance)
     sine = np.sqrt(np.maximum(1 - cosine**2, 0.0))

@@ -173,6 +173,8 @@ class Action:
     """The hand that touches: left or right."""
     hold: float = 1.5
     """Seconds to stay in the reached pose."""
+    stands: float = 0.0
+    """Seconds to stand about afterwards, on the feet one has come to: at the end of a story."""
     keyframe: int = 0
     """Index of the keyframe it serves."""
     holds: str | None = None

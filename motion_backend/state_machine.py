@@ -96,9 +96,10 @@ def parts_of(
     rising = () if posture is Posture.STANDING else (Part(PartKind.RISE, action),)
     if action.skill is Skill.LOCO and action.goal is None:
         return (*rising, Part(PartKind.HOLD, action, hold=action.hold))
+    stands = (Part(PartKind.HOLD, action, hold=action.stands),) if action.stands > 0 else ()
     if action.skill in RISINGS:
-        return (*rising, Part(PartKind.HOLD, action, hold=STOOD if rising else STOOD_ALREADY))
-    return (*rising, *(_part(kind, action, place) for kind in ENTERING[action.skill]))
+        return (*rising, *(stands or (Part(PartKind.HOLD, action, hold=STOOD if rising else STOOD_ALREADY),)))
+    return (*rising, *(_part(kind, action, place) for kind in ENTERING[action.skill]), *stands)
 
 
 def goes_on_resting(posture: Posture, action: Action, rest: Spot | None) -> bool:

@@ -11,18 +11,20 @@ from motion_backend.skeleton import INDEX
 
 REACH_UP = 0.10
 """A surface holds up what is at most this far below its top (metres): bodies sink into cushions."""
-STANDS_ON = 0.05
-"""A point of a sole lower than this (metres) may be what the body stands on: as GMD has it for toes."""
+LOW = 0.05
+"""Toes, and points of a sole, that are lower than this (metres for a body of 1.70 m) may be what the body stands on: as
+GMD has it, for one size of body. Children's toes pass the floor so much nearer as they are smaller."""
 
 
 def skate_ratio(body: Kinematics) -> float:
-    """GMD's foot skating ratio, heights from the toe joints' rest height, its 0.25 s window at our frame rate."""
+    """GMD's foot skating ratio, heights from the toe joints' rest height, its 0.25 s window at our frame rate, its
+    5 cm as the body is tall."""
     motion = body.motion
     toes = body.positions[:, [INDEX["left_foot"], INDEX["right_foot"]]]
     if len(toes) < 3:
         return 0.0
     rest = motion.skeleton.ankle_height + motion.skeleton.offsets[INDEX["left_foot"], 1]
-    low = toes[..., 1] - rest < 0.05
+    low = toes[..., 1] - rest < LOW * motion.skeleton.scale
     speed = np.linalg.norm(np.diff(toes[..., [0, 2]], axis=0), axis=-1) * motion.fps
     window = max(round(0.25 * motion.fps) // 2 * 2 - 1, 1)
     from scipy.ndimage import uniform_filter1d
@@ -45,7 +47,7 @@ def support_slip(body: Kinematics) -> float:
     frames the one that moves least. Toes that swing low are not taken for a foot that slides; recorded walkers have 3.
     """
     soles = body.soles.reshape(len(body.soles), -1, 3)
-    low = soles[..., 1] < STANDS_ON
+    low = soles[..., 1] < LOW * body.motion.skeleton.scale
     speed = np.linalg.norm(np.diff(soles[..., [0, 2]], axis=0), axis=-1) * body.motion.fps * 100
     least = np.where(low[1:] & low[:-1], speed, np.inf).min(axis=1)
     stands = np.isfinite(least)

@@ -113,8 +113,9 @@ def holds(body: Kinematics, actions: Sequence[Action], spans: Sequence[Span]) ->
             held = np.flatnonzero(_at_its_place(body, action, (start, stop)))
             if len(held):
                 found[start + held[0] : start + held[-1] + 1] = True
-    if actions and actions[-1].hold > 0:
-        found[-round(actions[-1].hold * body.motion.fps) :] = True
+    last = (actions[-1].stands or actions[-1].hold) if actions else 0.0
+    if last > 0:
+        found[-round(last * body.motion.fps) :] = True
     return found
 
 

@@ -75,6 +75,8 @@ class Bearing:
     restless: Ratio = 1.0
     """Size of idle movement."""
     arms: tuple[str, str] = ("hang", "hang")
+    waits: tuple[str, str] = ("hips", "hang")
+    """How arms are held by who stands about with nothing to do."""
 
 
 AT_EASE = Bearing()

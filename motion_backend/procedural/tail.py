@@ -38,12 +38,16 @@ _SHARES: Final = ("reaching", "pressing")
 
 
 def frames_kept_back(part: Part, upcoming: tuple[Part, ...], made: Motion) -> int:
-    """How many of the frames made for a part are done together with the next one's; who rises stands first."""
+    """How many of the frames made for a part are done together with the next one's; who rises stands first, and who has
+    stepped up to a thing and walks off has stepped back."""
     later = next((one for one in upcoming if not only_stands(one)), None)
     if later is None:
         return 0
     own, following = (PartKind.WALK if one.kind is PartKind.TURN else one.kind for one in (part, later))
     kept = min(round(TAILS.get((own, following), 0.0) * FPS), len(made) - 1)
+    if (own, following) == (PartKind.REACH, PartKind.WALK):
+        stands = made.contacts.min(axis=1)[::-1] > 0
+        kept = min(kept, len(stands) if stands.all() else int(np.argmin(stands)))
     if part.kind is PartKind.RISE and kept > 0:
         up = risen(Kinematics.of(made.part(max(len(made) - FPS, 0), len(made))))[::-1]
         stood = len(up) if up.all() else int(np.argmin(up))

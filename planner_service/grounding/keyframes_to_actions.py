@@ -16,12 +16,12 @@ from typing import Any, Final
 
 import numpy as np
 
-from motion_backend.motion import RISINGS, Action, Emotion, Skill
+from motion_backend.motion import RISINGS, Action, Emotion, Posture, Skill
 from motion_backend.procedural.lie.lie_pose import place_to_lie
 from motion_backend.procedural.sit.sit_skill import seat_for
 from motion_backend.procedural.touch.hand_contacts import suits
 from motion_backend.scene import scene_of
-from motion_backend.state_machine import alongside
+from motion_backend.state_machine import ENDS, alongside
 from planner_service.grounding.touch_stance import LEG_ROOM, ElbowRoom
 from planner_service.scripts.caption_actions import Hands, done_in, look_of
 from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
@@ -319,8 +319,9 @@ class _Stage:
             if action.skill is Skill.LOCO and not aimed[index]:
                 following = drafts[index + 1] if index + 1 < len(drafts) else None
                 action = self._aimed(action, following, places[index], at, done)
-            last = index == len(drafts) - 1
-            done.append((replace(action, hold=action.hold + LAST_HOLD) if last else action, at))
+            if index == len(drafts) - 1:
+                action = _last(action)
+            done.append((action, at))
             at = action.goal or (action.spot.standing if action.spot else at)
         return [action for action, _ in done]
 
@@ -403,6 +404,13 @@ def _scoots(spot: Spot) -> float:
     """How far along a bed one moves between sitting down on its edge and lying (metres)."""
     (x, _, z), (stand_x, stand_z) = spot.point, spot.standing
     return round(abs((stand_x - x) * sin(spot.facing) + (stand_z - z) * cos(spot.facing)), 1)
+
+
+def _last(action: Action) -> Action:
+    """The last of a story: one stays in it, or where one stands after it."""
+    if ENDS[action.skill] is Posture.STANDING and (action.skill is not Skill.LOCO or action.goal is not None):
+        return replace(action, stands=LAST_HOLD)
+    return replace(action, hold=action.hold + LAST_HOLD)
 
 
 def height_of(caption: str) -> str:

@@ -19,7 +19,7 @@ FEW = tries(80)
 
 
 @FEW
-@given(DIRECTION, st.floats(0.12, 0.745), DIRECTION)
+@given(DIRECTION, st.floats(0.18, 0.745), DIRECTION)
 def test_a_limb_reaches_every_target_within_its_length(way: np.ndarray, distance: float, pole: np.ndarray) -> None:
     target = rotations.normalize(way) * distance
     limb = two_bone(np.zeros(3), target, pole, LENGTHS)
@@ -34,6 +34,18 @@ def test_a_limb_points_at_what_is_too_far(way: np.ndarray, distance: float, pole
     end = LENGTHS[0] * limb.upper + LENGTHS[1] * limb.lower
     assert np.linalg.norm(end) == pytest.approx(0.999 * sum(LENGTHS), abs=1e-6)
     np.testing.assert_allclose(rotations.normalize(end), rotations.normalize(way), atol=1e-6)
+
+
+@FEW
+@given(DIRECTION, st.floats(0.01, 0.17), DIRECTION, st.sampled_from([1, -1]))
+def test_no_limb_folds_up_further_than_flesh_lets_it(
+    way: np.ndarray, distance: float, pole: np.ndarray, side: int
+) -> None:
+    target = (rotations.normalize(way) * distance)[None]
+    limb = two_bone(np.zeros((1, 3)), target, pole[None], LENGTHS)
+    for upper, lower in (arm_rotations(limb, side), leg_rotations(limb)):
+        bend = rotations.quat_to_rotvec(rotations.compose(rotations.inverse(upper), lower))[0]
+        assert 150 <= np.degrees(np.linalg.norm(bend)) <= 155
 
 
 def test_a_bent_knee_points_forward_and_turns_about_its_hinge_alone() -> None:

@@ -40,6 +40,7 @@ class HangingFeet:
     """What becomes of feet that do not come down to the floor."""
 
     below_seat_m: float
+    ahead_m: float
     knee_up_ratio: float
 
 

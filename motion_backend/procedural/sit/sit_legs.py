@@ -121,7 +121,8 @@ def seated_legs(
             leg = leg._replace(outwards=room[index].aside, knee_out=share * leg.knee_out)
         if hung and leg.foot != "free":
             up = seat.pelvis[1] - keys.hanging.below_seat_m * skeleton.scale
-            leg = leg._replace(up=up, foot="free", knee_up=keys.hanging.knee_up_ratio)
+            ahead = max(leg.ahead, keys.hanging.ahead_m * skeleton.scale)
+            leg = leg._replace(up=up, ahead=ahead, foot="free", knee_up=keys.hanging.knee_up_ratio)
         solved.append(_placed(leg, index, seat, skeleton, solved))
     ankles, feet, knees, planted = (np.stack(values) for values in zip(*solved, strict=True))
     return Legs(ankles, feet, knees, planted)

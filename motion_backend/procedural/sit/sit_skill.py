@@ -17,7 +17,8 @@ from motion_backend.procedural.body_state import Body, Point, spot_of
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import SHIN_REACH, Seat, idle
 from motion_backend.procedural.sit.sit_keys import sit_keys
-from motion_backend.procedural.sit.sit_legs import Room, at_front, is_to_be_straight, perch, straight_reach
+from motion_backend.procedural.sit.sit_legs import THIGH as THIGH_LONG
+from motion_backend.procedural.sit.sit_legs import Room, at_front, feet_hang, is_to_be_straight, perch, straight_reach
 from motion_backend.procedural.sit.sit_own import in_own_way, own_seat
 from motion_backend.procedural.sit.sit_pose import LEANS_BACK, ON_TABLE, Place, back_for, lacking
 from motion_backend.procedural.sit.sit_styles import Seated, sit_style
@@ -140,6 +141,8 @@ def _before(places: Array, depth: Array, clear: float) -> float:
     return float(places[np.argmax(hit)] - clear) if hit.any() else float(places[-1])
 
 
+HOLLOW = 0.035
+"""From the hollow of a knee that is bent over an edge to the middle of the knee (metres)."""
 MIN_EDGE = 0.07
 """Thighs rest on so much of a seat at least (metres)."""
 AT_EASE = 0.42
@@ -155,7 +158,7 @@ def seat_for(found: Sequence[Spot], emotion: Emotion, caption: str, obstacles: O
     Chairs stand so far from their tables that a body can get between: at a table one sits on the front of the seat.
     """
     style = sit_style(emotion, caption)
-    found = [_slid(spot, spot.edge - EDGE * scale) for spot in found] if scale < 1.0 else found
+    found = [_slid(spot, spot.edge - _edge_for(spot, scale)) for spot in found] if scale < 1.0 else found
     if set(ON_TABLE) & set(style.arms):
         return next((near for spot in found if (near := _drawn_up(spot, obstacles))), found[0])
     if any(is_to_be_straight(style.legs)):
@@ -164,6 +167,12 @@ def seat_for(found: Sequence[Spot], emotion: Emotion, caption: str, obstacles: O
         return _slid(found[0], _slouch(found[0], style))
     # The first of those that are as good as any.
     return max(found, key=lambda spot: _armrests(spot, obstacles))
+
+
+def _edge_for(spot: Spot, scale: float) -> float:
+    """How far behind a seat's front edge a small body sits: whose feet hang with the hollows of its knees at the edge,
+    as far back as its thighs are long."""
+    return THIGH_LONG * scale - HOLLOW if feet_hang(Seat.of(spot), scale) else EDGE * scale
 
 
 def _slouch(spot: Spot, style: Seated) -> float:

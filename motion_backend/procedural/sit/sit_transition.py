@@ -47,7 +47,7 @@ MAX_LIFT, LIFT = 0.08, 0.28
 """How high a foot is lifted in a step at most (metres), and for how long a step."""
 STEP = 1.8
 """Seconds a foot takes for a metre, where that is longer than a small step."""
-WAITS, WAITS_TO_STAND = 0.5, 0.9
+WAITS, WAITS_TO_STAND = 0.75, 0.9
 """Shares of a step after which the other foot leaves: a foot that leaves the floor waits until the other stands."""
 STRAIGHT, SLOWLY = (0.93, 0.10), 0.5
 """A leg longer than such a share of its length is near straight, and the straighter the more slowly its foot sets out,
@@ -250,14 +250,15 @@ def knees_over_feet(pose: Pose) -> Array:
 def place_feet(pose: Pose, before: Pose, after: Pose, move: Move, skeleton: Skeleton) -> Pose:
     """Move the feet one after the other in small lifted steps from where they were to where they go."""
     ankles, feet, planted, knees = pose.ankles.copy(), pose.feet.copy(), pose.planted.copy(), pose.knees.copy()
-    time, each = np.arange(1, len(pose) + 1) / FPS, move.foot_time_s
-    wait = (WAITS if after.planted.all() else WAITS_TO_STAND) * each
+    time, first, second = np.arange(1, len(pose) + 1) / FPS, *_first_foot(before, after)
+    takes = np.maximum(move.foot_time_s, STEP * np.linalg.norm(after.ankles - before.ankles, axis=1))
+    wait = (WAITS if after.planted.all() else WAITS_TO_STAND) * float(takes[first])
     if float(np.linalg.norm(after.pelvis - before.pelvis)) > SLIDES:
         # Who slides back on a seat that is too high for the feet takes both along.
         wait = 0.0
-    for order, index in enumerate(_first_foot(before, after)):
+    for index, begins in ((first, move.first_foot_s), (second, move.first_foot_s + wait)):
         gap = float(np.linalg.norm(after.ankles[index] - before.ankles[index]))
-        share = np.clip((time - move.first_foot_s - order * wait) / max(each, STEP * gap), 0.0, 1.0)
+        share = np.clip((time - begins) / takes[index], 0.0, 1.0)
         begun = smooth(share) ** (1 + _straight(before, index, skeleton))
         way = 1 - (1 - begun[:, None]) ** (1 + _straight(after, index, skeleton))
         ankles[:, index] = before.ankles[index] + way * (after.ankles[index] - before.ankles[index])
@@ -268,8 +269,7 @@ def place_feet(pose: Pose, before: Pose, after: Pose, move: Move, skeleton: Skel
         knees[:, index] = before.knees[index] + way * (after.knees[index] - before.knees[index])
         stands = np.where(share <= 0, before.planted[index], np.where(share >= 1, after.planted[index], 0.0))
         planted[:, index] = stands
-    far = float(np.linalg.norm(after.ankles - before.ankles, axis=1).max())
-    short = max(ceil((move.first_foot_s + wait + max(each, STEP * far)) * FPS) - len(pose), 0)
+    short = max(ceil((move.first_foot_s + max(takes[first], wait + takes[second])) * FPS) - len(pose), 0)
     if short:
         # The feet take longer than the trunk: hold the trunk until both are placed.
         held = pose.at(slice(len(pose) - 1, len(pose)))

@@ -15,7 +15,7 @@ from motion_backend.backend_protocol import Part
 from motion_backend.motion import FPS, Action, PhaseKind, Skill
 from motion_backend.procedural.body_state import Body, Point
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays, bearing_of
-from motion_backend.procedural.held_poses import SPINE_LEAN, bend, idle
+from motion_backend.procedural.held_poses import SPINE_LEAN, UP, bend, idle
 from motion_backend.procedural.pose import interpolate, settle_from
 from motion_backend.procedural.touch.gestures import gesture
 from motion_backend.procedural.touch.hand_captions import arms_on_the_way
@@ -87,6 +87,9 @@ NARROW = 0.2
 """The share of a way that may have less."""
 STAYING = 0.7
 """How long arms take into the pose they are held in where the body stays, and out of it (seconds)."""
+ONE_LEG_ASIDE, ONE_LEG_LOWER, ONE_LEG_ROLL, OFTEN_LEFT = 0.035, 0.012, 0.06, 0.5
+"""How far the pelvis is over one leg of who stands about, and lower (metres at 1.70 m), how far it is tipped (radians),
+and how often that is the left leg (share)."""
 QUICK, RUNS = 1.7, 2.0
 """Who is to be faster (m/s) walks quickly, and runs."""
 OFTEN, NEARLY = 0.9, 0.9
@@ -238,7 +241,11 @@ def _turning_place(body: Body, path: Array, goal: Point, facing: float | None) -
 def stay(body: Body, part: Part) -> None:
     """Stand where the body is: for loco with the arms as the caption has them, and let them hang again."""
     action = part.action
-    restless = bearing_of(action.emotion, action.caption).restless
+    bearing = bearing_of(action.emotion, action.caption)
+    restless = bearing.restless
+    if action.stands:
+        _stand_about(body, part.hold, bearing)
+        return
     if action.skill is not Skill.LOCO or action.goal is not None:
         body.add(settle_from(body.pose, idle(body.pose, part.hold, restless, body.rng, FPS), FPS))
         return
@@ -250,6 +257,25 @@ def stay(body: Body, part: Part) -> None:
     body.add(gesture(idle(body.pose, part.hold, restless, body.rng, FPS), style.doing))
     if style.bearing.arms != ("hang", "hang"):
         body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, at_ease], FPS))
+
+
+def _stand_about(body: Body, seconds: float, bearing: Bearing) -> None:
+    """Stand as who has nothing more to do: the weight on one leg, arms as the mood has them."""
+    arms, left = arms_on_the_way(body.pose, bearing.waits), bool(body.rng.random() < OFTEN_LEFT)
+    aside = rotations.rotate(rotations.yaw_to_quat(body.yaw), np.array([1.0 if left else -1.0, 0.0, 0.0]))
+    rolled = ONE_LEG_ROLL * (1.0 if left else -1.0)
+    held = replace(body.pose, **_carriage(replace(bearing, arms=arms)))
+    held = replace(
+        held,
+        pelvis=held.pelvis + body.skeleton.scale * (ONE_LEG_ASIDE * aside - ONE_LEG_LOWER * UP),
+        hips=rotations.compose(held.hips, rotations.axis_to_quat("z", np.asarray(rolled))),
+        spine=held.spine - np.array([0.0, 0.0, rolled]),
+        reaching=np.zeros(2),
+        pressing=np.zeros(2),
+    )
+    comes = round(min(STAYING / bearing.tempo, seconds / 2) * FPS) / FPS
+    body.add(interpolate([0.0, comes], [body.pose, held], FPS))
+    body.add(idle(held, seconds - comes, bearing.restless, body.rng, FPS))
 
 
 def _carriage(bearing: Bearing) -> dict[str, Array]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Final
 
 from motion_backend.motion import Emotion
 from motion_backend.procedural.emotion_style import Bearing, bearings, carried
@@ -21,6 +22,8 @@ from motion_backend.procedural.walk.gait_character import NOBODY, GaitCharacter
 
 MIN_DOUBLE = 0.05
 """Share of a step on both feet that whoever does not run has at least."""
+CARRIAGE: Final = frozenset({"lean", "head"})
+"""What of a bearing words and moods both change."""
 
 
 @dataclass(frozen=True)
@@ -122,8 +125,31 @@ def _sheet() -> StyleSheet:
 
 
 def walk_style(emotion: Emotion, caption: str) -> Walk:
-    """The gait of an emotion, changed by what the caption says."""
-    sheet = _sheet()
-    said = {**sheet.emotions[Emotion.NEUTRAL], **sheet.emotions[emotion], **sheet.of_caption(caption)}
-    bearing, gait = carried(bearings()[emotion], said, Walk)
+    """The gait that a caption says, in the mood of an emotion."""
+    sheet, mood = _sheet(), bearings()[emotion]
+    usual, words = sheet.emotions[Emotion.NEUTRAL], sheet.of_caption(caption)
+    # A flight through the air needs its speed: who runs does so in any mood.
+    kept = ("speed", "stride", "bounce") if words.get("double", 1.0) < 0 else ()
+    moods = {name: value for name, value in sheet.emotions[emotion].items() if name not in kept}
+    said = {**usual, **moods, **words}
+    for name in sorted(name for name in moods.keys() & words.keys() if isinstance(moods[name], float)):
+        said[name] = _both(usual[name], moods[name], words[name], gently=name == "speed")
+    for name in CARRIAGE & words.keys():
+        usually = getattr(bearings()[Emotion.NEUTRAL], name)
+        said[name] = _farther(usually, getattr(mood, name), words[name])
+    bearing, gait = carried(mood, said, Walk)
     return Walk(bearing=bearing, **gait)
+
+
+def _both(usual: float, mood: float, words: float, gently: bool) -> float:
+    """A number that a mood and words change alike goes as far as either has it; where they change it against each
+    other, the mood changes what the words say, or only `gently`: half as much."""
+    if (mood - usual) * (words - usual) < 0 < usual:
+        return float(words * (mood / usual) ** (0.5 if gently else 1.0))
+    return _farther(usual, mood, words)
+
+
+def _farther(usual: float, mood: float, words: float) -> float:
+    """The one of two numbers that is farther from what is usual; the words' where they go the other way."""
+    same = (mood - usual) * (words - usual) > 0
+    return mood if same and abs(mood - usual) > abs(words - usual) else words

@@ -27,11 +27,11 @@ WITHIN = {Skill.SITDOWN: 0.20, Skill.LIEDOWN: 0.30, Skill.TOUCH: 0.20}
 """What the paper says is near enough (metres)."""
 
 
-def gliding(speed: float, height: float = 0.0, frames: int = 60) -> Kinematics:
-    """A body that slides over the floor, or that far above it (m/s, metres)."""
+def gliding(speed: float, height: float = 0.0, frames: int = 60, tall: float = 1.70) -> Kinematics:
+    """A body of some size that slides over the floor, or that far above it (m/s, metres)."""
     root = np.outer(np.arange(frames) / FPS, [speed, 0.0, 0.0])
     root[:, 1] = height
-    return Kinematics.of(standing_still(root=root))
+    return Kinematics.of(standing_still(root=root, height=tall))
 
 
 def with_foot(offsets: np.ndarray, side: str = "left") -> Kinematics:
@@ -73,6 +73,13 @@ def test_only_a_change_of_pace_at_a_seam_is_one_of_the_seam(late: int, counts: b
 @pytest.mark.parametrize(("height", "ratio"), [(0.0, 1.0), (0.048, 1.0), (0.052, 0.0)])
 def test_a_toe_skates_lower_than_five_centimetres(height: float, ratio: float) -> None:
     assert foot_skate.skate_ratio(gliding(1.2, height)) == ratio
+
+
+@pytest.mark.parametrize(("height", "share"), [(1.19, 0.7), (1.36, 0.8)])
+def test_what_is_low_for_a_toe_is_told_in_the_size_of_its_body(height: float, share: float) -> None:
+    """Else a child, whose steps are an adult's in small, skates all the way."""
+    for up, ratio in ((0.048 * share, 1.0), (0.052 * share, 0.0)):
+        assert foot_skate.skate_ratio(gliding(1.2, up, tall=height)) == ratio
 
 
 @pytest.mark.parametrize(("speed", "ratio"), [(0.48, 0.0), (0.52, 1.0)])

@@ -12,6 +12,7 @@ from small_home import DIRECTOR, after, contact, rise, small_home
 
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.penetration import penetration
+from motion_backend.metrics.skin_penetration import THIN, skin_penetration
 from motion_backend.motion import Action, Motion, Posture, Skill, join
 from motion_backend.procedural.held_poses import Seat
 from motion_backend.procedural.sit.sit_legs import at_front, feet_hang
@@ -19,6 +20,7 @@ from motion_backend.procedural.sit.sit_skill import seat_for
 from motion_backend.scene import scene_of
 from motion_backend.skeleton import INDEX, MAX_HEIGHT, MIN_HEIGHT, REFERENCE_HEIGHT
 from scene_graphs.affordances.affordances import spots
+from scene_graphs.meshes.convex_shapes import convex_shapes
 
 HOME = small_home()
 HEIGHTS = (MIN_HEIGHT, 1.17, 1.4, 2.1)
@@ -71,6 +73,20 @@ def test_feet_hang_exactly_where_legs_are_too_short_for_the_seat(height: float) 
     assert feet_hang(seat, scale) == (scale < 1)
     assert bool((ankles > 0.1).all()) == (scale < 1)
     assert motion.contacts[-1].any() == (scale >= 1)
+
+
+@for_each(("piece", "height"), [("chair", 1.1), ("sofa", 1.1), ("chair", 1.3), ("sofa", 1.3)])
+def test_who_is_small_sits_back_with_the_knees_over_the_edge_and_calves_before_it(piece: str, height: float) -> None:
+    sit, scale = sitting(piece, height), height / REFERENCE_HEIGHT
+    assert sit.spot is not None
+    motion, _ = DIRECTOR.act(HOME, sit, after(HOME, height=height))
+    seat, last = Seat.of(sit.spot), motion.part(len(motion) - 10, len(motion))
+    ahead = np.array([np.sin(seat.yaw), 0.0, np.cos(seat.yaw)])
+    places = last.joint_positions()[-1]
+    over = (places[[INDEX["left_knee"], INDEX["right_knee"]]] - seat.pelvis) @ ahead - seat.edge
+    assert (over > 0).all()
+    assert (over < 0.1 * scale).all()
+    assert skin_penetration(last, sit, convex_shapes(HOME, THIN)).most < 0.01
 
 
 def test_the_front_of_a_seat_is_where_it_was_for_those_who_need_no_other() -> None:

@@ -10,16 +10,17 @@ import numpy as np
 import pytest
 from for_each import for_each
 from layers import sampled
-from small_home import contact, rise, small_home, to
+from small_home import DIRECTOR, after, contact, rise, small_home, to
 
 from motion_backend.backend_protocol import BodyState
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.director import Director
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.contact_error import risen
+from motion_backend.metrics.foot_skate import support_slip
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.smoothness import seam_jump
-from motion_backend.motion import Action, Character, Emotion, Motion, Posture, Skill, join
+from motion_backend.motion import FPS, Action, Character, Emotion, Motion, Posture, Skill, join
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.sit.sit_styles import sit_style
@@ -228,3 +229,35 @@ def test_captions_change_what_is_seen() -> None:
 def test_a_home_is_not_changed_by_acting_in_it() -> None:
     before: Home = small_home()
     assert before == HOME
+
+
+@for_each("emotion", list(Emotion))
+def test_a_story_that_ends_on_its_feet_ends_in_a_pose_of_its_mood_that_lives(emotion: Emotion) -> None:
+    """Not as soon as the feet have come to a stand, with arms that still hang from the walk."""
+    walk = Action(Skill.LOCO, "smoothly forward walk", emotion, goal=(3.2, 3.4))
+    stops, stays = (DIRECTOR.act(HOME, action, after(HOME))[0] for action in (walk, replace(walk, stands=1.5)))
+    assert len(stays) == len(stops) + round(1.5 * FPS)
+    np.testing.assert_array_equal(stays.root_positions[: len(stops)], stops.root_positions)
+    assert stays.contacts[len(stops) :].all()
+    places = stays.joint_positions()[:, [INDEX["left_wrist"], INDEX["right_wrist"]]]
+    assert np.linalg.norm(places[-1] - places[len(stops) - 1], axis=1).max() > 0.1, "a hand has gone where it rests"
+    last = np.linalg.norm(np.diff(stays.joint_positions()[-10:], axis=0), axis=-1).max(axis=1) * FPS
+    assert 0.005 < last.max() < 0.5
+
+
+@for_each("caption", ["hands behind head, legs straight", "sitting with legs crossed"])
+def test_one_foot_stands_while_a_sitter_takes_the_other_one_back_from_afar(caption: str) -> None:
+    sit = contact(HOME, Skill.SITDOWN, "sofa", caption)
+    motion, _ = DIRECTOR.act(HOME, rise(sit), after(HOME, sit))
+    assert support_slip(Kinematics.of(motion.part(0, FPS))) < 2.0
+
+
+@for_each("seed", [0, 1, 2, 3, 4, 5])
+def test_who_has_stepped_up_to_a_thing_has_stepped_back_when_the_walk_begins(seed: int) -> None:
+    """Else both feet are in the air at once, the one on its way back and the walk's first."""
+    touch = contact(HOME, Skill.TOUCH, "table", "touch medium height")
+    walk = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=(3.2, 3.0))
+    touched, state = DIRECTOR.act(HOME, touch, after(HOME, to(touch), seed=seed), walk)
+    motion = join([touched, DIRECTOR.act(HOME, walk, state)[0]])
+    seam = len(touched)
+    assert support_slip(Kinematics.of(motion.part(seam - 24, seam + 24))) < 1.0

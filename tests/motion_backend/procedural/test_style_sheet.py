@@ -85,6 +85,32 @@ def test_an_emotion_walks_as_its_rows_say_and_a_caption_says_more() -> None:
     assert sit_style(Emotion.SAD, "sit upright").bearing.lean == 0
 
 
+PLAIN = "smoothly forward walk"
+
+
+def test_a_plain_walk_is_walked_in_ones_mood() -> None:
+    """The words of a caption that say nothing of a mood do not drown it: tempo, arms and head show it."""
+    usual = walk_style(Emotion.NEUTRAL, PLAIN)
+    for emotion in set(Emotion) - {Emotion.NEUTRAL}:
+        style = walk_style(emotion, PLAIN)
+        assert abs(style.speed / usual.speed - 1) > 0.1, emotion
+        assert style.bearing.head == bearings()[emotion].head != usual.bearing.head
+        if emotion is not Emotion.RELAXED:
+            assert (style.bearing.arms, style.swing, style.elbow) != (usual.bearing.arms, usual.swing, usual.elbow)
+    speeds = [walk_style(one, PLAIN).speed for one in (Emotion.SAD, Emotion.RELAXED, Emotion.HAPPY, Emotion.HURRIED)]
+    assert speeds == sorted(speeds)
+
+
+def test_what_a_caption_asks_for_is_done_in_a_mood_that_pulls_against_it() -> None:
+    """Slowly is slower than usual and quickly quicker, whoever does it, but not alike for everybody."""
+    for emotion in Emotion:
+        slow, plain, quick = (walk_style(emotion, words).speed for words in ("walk slowly", "walk", "walk quickly"))
+        assert slow <= min(plain, 0.8)
+        assert quick >= max(plain, 1.3)
+    assert walk_style(Emotion.SAD, "run").speed == walk_style(Emotion.NEUTRAL, "run").speed
+    assert walk_style(Emotion.STRESSED, "stroll").speed > walk_style(Emotion.SAD, "stroll").speed
+
+
 def test_the_pace_of_a_caption_bounds_that_of_the_emotion() -> None:
     for emotion in Emotion:
         usual = bearing_of(emotion)
