@@ -12,7 +12,7 @@ import typer
 from pydantic import ValidationError
 from rich.console import Console
 
-from motion_backend.motion import Character
+from motion_backend.motion import Character, Skill
 from planner_service.cli.cast_command import CharacterOption, character_given
 from planner_service.cli.story import check_output, produce
 from planner_service.library.library import open_shelves
@@ -105,7 +105,7 @@ def _keyframe(row: Any, where: str, faults: list[str]) -> Keyframe | None:
         keyframe = PlannedKeyframe.model_validate(row)
     except ValidationError as error:
         faults += [_fault(where, one["loc"], one["type"], one["msg"]) for one in error.errors(include_url=False)]
-    furniture = Keyframe.model_construct(furniture=_furniture_of(row))
+    furniture = Keyframe.model_construct(skill=Skill.LOCO, caption="", furniture=_furniture_of(row))
     if not furniture.on_floor and not is_known(furniture.piece[0]):
         words = sorted(map(display_name, catalogue().class_of))
         near = _nearest(furniture.piece[0], words) or '; "floor" needs none'

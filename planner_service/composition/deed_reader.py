@@ -13,7 +13,7 @@ from typing import Final
 
 from motion_backend.language.minilm import MiniLM
 from motion_backend.language.sentence_encoder import SentenceEncoder
-from motion_backend.motion import Emotion, Skill
+from motion_backend.motion import RISINGS, Emotion, Skill
 from planner_service.composition.beat_classifier import BeatClassifier, Likely, shipped
 from planner_service.composition.caption_senses import is_shown
 from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, pieces_in
@@ -143,6 +143,8 @@ class DeedReader:
     def is_shown(self, clause: Clause, deed: Deed, keyframes: Sequence[Keyframe]) -> bool:
         """Whether some keyframe shows a clause's deed, or they only stand for it."""
         by_table, likely = is_shown(clause, deed, keyframes), self.likely(clause)
+        if deed.skill in RISINGS and any(one.skill in RISINGS or getattr(one, "already", False) for one in keyframes):
+            return True  # who gets up or wakes is seen to
         if likely is None or not keyframes or deed.row.stands:
             return by_table
         return max(shown(likely, clause, one) for one in keyframes) > (SURE if by_table else SURELY)
@@ -150,7 +152,10 @@ class DeedReader:
     def hardly_shows(self, clause: Clause, deed: Deed, mood: Emotion) -> bool:
         """Whether a deed's captions are hardly taken for what a clause tells."""
         likely = self.likely(clause)
-        return likely is not None and min(likely.of(deed.skill, shown_by(deed, mood)), likely.shown) < HARDLY
+        if likely is None:
+            return False
+        at_rest = max(likely.of(Skill.SITDOWN, deed.row.seated), likely.of(Skill.LIEDOWN, deed.row.lying))
+        return min(max(likely.of(deed.skill, shown_by(deed, mood)), at_rest), likely.shown) < HARDLY
 
     def may_be_at(self, clause: Clause, skill: Skill, word: str) -> bool:
         """Whether hands may as well do it at a piece of furniture as where they likeliest do."""

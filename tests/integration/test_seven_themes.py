@@ -70,8 +70,8 @@ def test_the_body_stays_out_of_the_furniture(stories: dict[str, Story]) -> None:
 
 
 def test_feet_that_walk_do_not_skate(stories: dict[str, Story]) -> None:
-    """One seed is one person: of the recorded walkers this figure has 28 % of the frames, between 13 and 47."""
-    assert total(stories, "skate_ratio", (Skill.LOCO,)) <= 0.28
+    """One seed is one person, and one of them swings the feet low: of recorded walkers it is 28 %, 13 to 47."""
+    assert total(stories, "skate_ratio", (Skill.LOCO,)) <= 0.22
 
 
 def test_no_joint_jumps_between_two_segments(stories: dict[str, Story]) -> None:

@@ -69,8 +69,8 @@ def lower_onto(start, *others, **more):
     Mistake(
         "skating is counted below 3 cm instead of 5",
         "motion_backend/metrics/foot_skate.py",
-        "- rest < 0.05",
-        "- rest < 0.03",
+        "LOW = 0.05",
+        "LOW = 0.03",
     ),
     Mistake(
         "a contact need be held for half a second only",

@@ -103,12 +103,20 @@ def test_any_caption_of_a_skill_will_do_where_most_of_them_are_accepted() -> Non
 def test_a_beat_that_a_mood_shows_is_in_that_mood_and_what_nobody_else_does_is_done() -> None:
     (funk,) = beats_of("She is in a funk.")
     assert reader(likely(moods={Emotion.SAD: 0.9})).heard(funk).beat.emotion is Emotion.SAD
+    (curtains,) = beats_of("Curtains drawn.")
+    assert curtains.beat.kind == "other"
+    assert reader(likely(turn_on=0.9)).heard(curtains).beat.kind == "deed"
+    assert reader(likely(turn_on=0.2)).heard(curtains).beat.kind == "other"
     (kettle,) = beats_of("The kettle goes on.")
-    assert kettle.beat.kind == "other"
-    assert reader(likely(turn_on=0.9)).heard(kettle).beat.kind == "deed"
-    assert reader(likely(turn_on=0.2)).heard(kettle).beat.kind == "other"
+    assert reader(likely(turn_on=0.9)).heard(kettle).beat.kind == "other", "a thing does it"
     mother = next(one for one in beats_of("She sits down. Her mother opens the fridge.") if one.beat.kind == "other")
     assert reader(likely(turn_on=0.9)).heard(mother).beat.kind == "other"
+
+
+def test_a_word_for_a_mood_is_felt_and_not_done() -> None:
+    stressed = next(one for one in beats_of("Stressed, she paces.") if "tressed" in one.text)
+    heard = reader(likely(moods={Emotion.STRESSED: 0.9}, pacing=0.2)).heard(stressed)
+    assert (heard.beat.kind, heard.beat.emotion) == ("feeling", Emotion.STRESSED)
 
 
 def test_a_keyframe_shows_what_it_likely_shows_and_only_stands_for_the_rest() -> None:
@@ -129,6 +137,7 @@ def test_a_clause_is_read_once_with_those_before_it() -> None:
     model = Scripted(likely(pacing=0.9))
     heard = DeedReader(cast(BeatClassifier, model))
     told = clauses_of_text("She comes in. She paces. She frets. She sighs.")
-    heard.hear(told)
-    heard.hear(told)
+    words = [one.text for one in told]
+    heard.hear(told, words)
+    heard.hear(told, words)
     assert [before for _, before in model.asked] == ["", "comes in", "comes in. paces", "paces. frets"]

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from motion_backend.motion import Emotion, Skill
-from planner_service.scripts.acted_beats import Shot, acted_beats, connects, planned_beats
+from planner_service.scripts.acted_beats import LEGEND, Shot, acted_beats, connects, planned_beats
 from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe
 
 SITS, READS, NO_SUPPER = Beat(text="sits down"), Beat(text="reads"), Beat(text="eats no supper", kind="undone")
@@ -87,6 +87,7 @@ def test_the_words_name_what_is_missing_and_apart_from_it_what_is_left_undone() 
         "1 of 2 beats of your theme are acted; 25% of the screen time serves none of them",
         "not acted: reads (no keyframe is left that shows it)",
         "left undone, as asked: eats no supper",
+        LEGEND,
     ]
     told = found.to_dict()
     assert (told["beats_asked"], told["beats_acted"], told["screen_time_without_beat"]) == (2, 1, 0.25)

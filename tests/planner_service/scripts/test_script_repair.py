@@ -262,3 +262,26 @@ def test_a_word_for_no_skill_is_refused_with_the_skills_there_are() -> None:
 def test_the_hand_is_read_off_the_caption(caption: str, hand: str) -> None:
     assert hand_of(caption) == hand
     assert hand_of("reaching", default="left") == "left"
+
+
+@for_each(("posture", "skill"), list(itertools.product(("sitdown", "liedown"), repeat=2)))
+def test_who_rests_on_a_piece_rests_there_otherwise_without_rising(posture: str, skill: str) -> None:
+    acted, repairs = repair(
+        script("loco bed", f"{posture} bed, neutral, one way", f"{skill} bed, neutral, another way")
+    )
+    assert [keyframe.skill.value for keyframe in acted] == ["loco", posture, skill]
+    assert repairs == ()
+    elsewhere, _ = repair(script("loco bed", f"{posture} bed", f"{skill} sofa"))
+    assert len(elsewhere) == 5
+
+
+def test_only_the_first_keyframe_can_be_there_already_and_needs_no_walk() -> None:
+    lies, walks = (PlannedKeyframe.model_validate(one.model_dump()) for one in script("liedown bed", "loco floor"))
+    already = lies.model_copy(update={"already": True})
+    acted, _ = repair([already, walks])
+    assert [(keyframe.skill, keyframe.already) for keyframe in acted] == [
+        (Skill.LIEDOWN, True), (Skill.GETUP, False), (Skill.LOCO, False),
+    ]  # fmt: skip
+    later, _ = repair([walks, already])
+    assert not any(keyframe.already for keyframe in later)
+    assert [keyframe.skill for keyframe in later] == [Skill.LOCO, Skill.LOCO, Skill.LIEDOWN]
