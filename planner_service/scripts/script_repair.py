@@ -109,8 +109,8 @@ class Mending(Generic[K]):
         skill, caption = RISES[self.posture]
         furniture_word = self._resting.furniture
         self._note(index, "skill", f"{_told(keyframe)} while {self.posture} on the {furniture_word}", f"{skill} put in")
-        update = {"skill": skill, "caption": caption, "emotion": keyframe.emotion, "short_script": None, "also": ()}
-        update |= {"beat": getattr(keyframe, "beat", None), "already": False}  # rising leads to what comes next
+        update: dict[str, Any] = {"already": False} | {"skill": skill, "caption": caption, "emotion": keyframe.emotion, "short_script": None, "also": ()}
+        update |= {"beat": getattr(keyframe, "beat", None)}  # rising leads to what comes next
         self._stand(self._resting.model_copy(update=fields(keyframe, update)))
 
     def _use(self, index: int, keyframe: K) -> None:
