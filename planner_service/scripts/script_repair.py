@@ -109,7 +109,8 @@ class Mending(Generic[K]):
         skill, caption = RISES[self.posture]
         furniture_word = self._resting.furniture
         self._note(index, "skill", f"{_told(keyframe)} while {self.posture} on the {furniture_word}", f"{skill} put in")
-        update: dict[str, Any] = {"already": False} | {"skill": skill, "caption": caption, "emotion": keyframe.emotion, "short_script": None, "also": ()}
+        update: dict[str, Any] = {"skill": skill, "caption": caption, "emotion": keyframe.emotion, "also": ()}
+        update |= {"short_script": None, "already": False}
         update |= {"beat": getattr(keyframe, "beat", None)}  # rising leads to what comes next
         self._stand(self._resting.model_copy(update=fields(keyframe, update)))
 
