@@ -171,10 +171,10 @@ class KeyframeWriter:
                 self._avoided |= {deed.skill} & {Skill.SITDOWN, Skill.LIEDOWN}
 
     def _rises_later(self, index: int, beats: Sequence[ReadBeat]) -> bool:
-        """Whether somebody gets up next: who wakes before that stays in bed."""
-        deeds = (self.reader.deed(one.clause) for one in beats[index + 1 :] if one.beat.kind == "deed")
-        following = next((deed for deed in deeds if deed is not None), None)
-        return following is not None and following.skill in RISINGS
+        """Whether somebody gets or sits up next: who wakes before that stays in bed."""
+        deeds = ((one, self.reader.deed(one.clause)) for one in beats[index + 1 :] if one.beat.kind == "deed")
+        later, deed = next(((one, deed) for one, deed in deeds if deed is not None), (None, None))
+        return later is not None and deed is not None and (deed.skill in RISINGS or _sits_up(later, deed))
 
     def _do(self, index: int, read: ReadBeat, deed: Deed, rises_later: bool = False) -> None:
         deed = self._on_feet(read, deed)
@@ -206,6 +206,9 @@ class KeyframeWriter:
                         self._resting = None
             case Skill.LIEDOWN if not deed.named and (seated := self._dozes(read)):
                 self._rest(index, read, replace(deed, pieces=()), mood, Skill.SITDOWN, seated)
+            case Skill.SITDOWN if self._resting is not None and self._lies() and _sits_up(read, deed):
+                deed = replace(deed, pieces=(self._resting.furniture,))
+                self._rest(index, read, deed, mood, Skill.SITDOWN, deed.row.captions)
             case Skill.SITDOWN if self._lies() and deed.row.lying and not deed.named:
                 self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)
             case _:
@@ -258,6 +261,8 @@ class KeyframeWriter:
         resting = self._resting
         here = resting is not None and self._same_place(resting, deed, skill)
         shown = captions or captions_of(skill, mood)
+        if here:  # where one sits already there need be no table
+            shown = [one for one in shown if "table" not in one] or shown
         if resting is not None and here and resting.skill is skill:
             generic = deed.row.rests or deed.row.captions
             stands_in = (deed.row.stands or _is_beside(read)) and not any(
@@ -488,6 +493,11 @@ def _further(clause: Clause, deed: Deed) -> list[Deed]:
     found = [*(piece for some in places for piece in some[:1]), *listed[: _MOST_PLACES + 1]]
     found = [piece for piece in found if affords(piece, "touch") and piece != deed.pieces[0]]
     return [Deed(deed.row, deed.skill, (piece,), True) for piece in dict.fromkeys(found)]
+
+
+def _sits_up(read: ReadBeat, deed: Deed) -> bool:
+    """Whether who lies sits there now: "sits up in bed"."""
+    return deed.skill is Skill.SITDOWN and read.clause.verb == "sit" and bool(re.search(r"\bup\b", read.text))
 
 
 def _is_beside(read: ReadBeat) -> bool:

@@ -198,6 +198,7 @@ def test_parts_of_scripts_do_the_beats_deed_in_its_mood_with_a_caption_that_show
         ("She wakes up.", ["liedown bed", "getup bed"]),
         ("She wakes up. She gets out of bed.", ["liedown bed", "getup bed"]),
         ("He sits on the sofa. He thinks. He reads.", ["loco sofa", "sitdown sofa", "sitdown sofa"]),
+        ("She wakes up. She sits up. She gets out of bed.", ["liedown bed", "sitdown bed", "standup bed"]),
         ("He is sad.", ["loco floor"]),
         ("She sits on the sofa. She is sad.", ["loco sofa", "sitdown sofa"]),
         ("He dances.", ["loco floor"]),
