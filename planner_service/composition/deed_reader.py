@@ -143,10 +143,11 @@ class DeedReader:
     def is_shown(self, clause: Clause, deed: Deed, keyframes: Sequence[Keyframe]) -> bool:
         """Whether some keyframe shows a clause's deed, or they only stand for it."""
         by_table, likely = is_shown(clause, deed, keyframes), self.likely(clause)
-        if deed.skill in RISINGS and any(one.skill in RISINGS or getattr(one, "already", False) for one in keyframes):
-            return True  # who gets up or wakes is seen to
         if likely is None or not keyframes or deed.row.stands:
             return by_table
+        if deed.skill in RISINGS and any(one.skill in RISINGS or getattr(one, "already", False) for one in keyframes):
+            rises = max(share for (skill, _), share in likely.captions.items() if skill in RISINGS)
+            return min(rises, likely.shown) > SURE  # from whatever: a bed or a chair
         return max(shown(likely, clause, one) for one in keyframes) > (SURE if by_table else SURELY)
 
     def hardly_shows(self, clause: Clause, deed: Deed, mood: Emotion) -> bool:

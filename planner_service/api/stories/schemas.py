@@ -249,7 +249,7 @@ class BeatShown(Beat):
     @property
     def stood_for(self) -> bool:
         """Whether keyframes show only something else in its place."""
-        return self.acted and self.text in self.unshown
+        return self.acted and super().stood_for
 
 
 class ShortScriptChosen(BaseModel):
