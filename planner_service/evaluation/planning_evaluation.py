@@ -19,6 +19,7 @@ from planner_service.composition.compose import compose
 from planner_service.composition.request import Request
 from planner_service.evaluation.beat_judgement import Judgement
 from planner_service.evaluation.labels import SPLITS, LabelledTheme, Query, Split, labelled_queries, labelled_themes
+from planner_service.evaluation.second_labellers import judged_labellers
 from planner_service.grounding.furnish import FurnishError, furnish
 from planner_service.grounding.keyframes_to_actions import UnreachableError, act
 from planner_service.narration.narrator import narrate
@@ -148,12 +149,13 @@ def evaluate_planning(
     a part in it."""
     if fresh is not None:
         themes = judged_themes(fresh, lambda theme: compose(theme, library, Request()))
-        made = (*beat_figures(themes), executable(themes, rooms))
+        made = (*beat_figures(themes), *labeller_figures(fresh), executable(themes, rooms))
         figures = tuple(replace(one, judged="all") for one in made)
         return Evaluation(figures, tuple(theme_misses(themes)), library.encoder.name, len(library))
     found, missed = search_figures(labelled_queries(), library)
     themes = judged_themes(labelled_themes(), lambda theme: compose(theme, library, Request()))
-    figures = (*found, *beat_figures(themes), executable(themes, rooms))
+    agreed = labeller_figures(labelled_themes())
+    figures = (*found, *beat_figures(themes), *agreed, executable(themes, rooms))
     return Evaluation(figures, (*missed, *theme_misses(themes)), library.encoder.name, len(library))
 
 
@@ -231,6 +233,21 @@ def beat_figures(themes: Sequence[Judgement]) -> list[Figure]:
         ),
         share("other themes: refused", sound),
     ]
+
+
+def labeller_figures(labels: Sequence[LabelledTheme]) -> list[Figure]:
+    """What two further labellers reach by these labels, handed the beats: as far as fair people agree."""
+    figures = []
+    for reader, themes in judged_labellers(labels).items():
+        if not themes:
+            continue
+        read = [one.label for one in themes]
+        for name, parts in (
+            ("in order", [(len(one.acted), len(one.actable)) for one in themes]),
+            ("not acted, named", [(len(one.named), len(one.missing)) for one in themes]),
+        ):
+            figures.append(figure(f"labeller {reader}, handed the beats: {name}", read, parts, ratio))
+    return figures
 
 
 def executable(themes: Sequence[Judgement], rooms: LayoutIndex) -> Figure:
