@@ -18,6 +18,9 @@ def beats(
     labels: Annotated[
         list[Path] | None, typer.Option(help="Labelled themes to learn from besides ours, one JSON object a line.")
     ] = None,
+    start: Annotated[
+        Path | None, typer.Option(help="Weights to go on from, as this command writes them; anew without.")
+    ] = None,
     epochs: Annotated[int, typer.Option(min=1, max=100, help="Times that every beat is seen.")] = 5,
     seed: Annotated[int, typer.Option(min=0, help="The same seed learns the same.")] = 0,
 ) -> None:
@@ -48,8 +51,11 @@ def beats(
     more = [theme for path in labels or () for theme in read_labels(path)]
     rows = rows_of([*learned, *tuned, *more], known)
     console.print(f"{len(rows)} clauses of {len(learned) + len(tuned) + len(more)} themes; {len(kept)} are kept back")
-    net = learn(rows, known, folder, BeatTraining(epochs=epochs, seed=seed),
-                lambda epoch, loss: console.print(f"epoch {epoch + 1} of {epochs}  loss {loss:.3f}"))  # fmt: skip
+
+    def tell(epoch: int, loss: float) -> None:
+        console.print(f"epoch {epoch + 1} of {epochs}  loss {loss:.3f}")
+
+    net = learn(rows, known, folder, BeatTraining(epochs=epochs, seed=seed), tell, start)
     out.mkdir(parents=True, exist_ok=True)
     save(net, known, out / SHIPPED)
     found = recognised(BeatClassifier(minilm.MiniLM(folder), out / SHIPPED), kept)

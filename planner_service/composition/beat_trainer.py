@@ -28,6 +28,7 @@ from planner_service.evaluation.labels import Alternative, LabelledBeat, Labelle
 from planner_service.scripts.captions import captions
 from planner_service.themes.beats import ThemeError, beats_of
 from scene_graphs import furniture
+from scene_graphs.errors import UserError
 
 LINEAR: Final = (
     "attention.self.query",
@@ -189,6 +190,16 @@ class BeatNetwork(nn.Module):  # type: ignore[misc]
     def _norm(self, name: str, x: Tensor) -> Tensor:
         return functional.layer_norm(x, (WIDTH,), self.plain[f"{name}.weight"], self.plain[f"{name}.bias"], 1e-12)
 
+    def begin_with(self, weights: Mapping[str, Tensor]) -> None:
+        """Go on from weights as `learned` gives them; KeyError or RuntimeError where they are of another network."""
+        with torch.no_grad():
+            self.head.weight.copy_(weights["head.weight"])
+            self.head.bias.copy_(weights["head.bias"])
+            self.pair.copy_(weights[PAIR])
+            for name, layer in self.adapted.items():
+                layer.down.copy_(weights[f"{name}.A"])
+                layer.up.copy_(weights[f"{name}.B"] / 2)
+
     def learned(self) -> dict[str, Tensor]:
         """What is shipped: half precision."""
         found = {"head.weight": self.head.weight, "head.bias": self.head.bias, PAIR: self.pair}
@@ -239,12 +250,15 @@ def learn(
     folder: Path,
     training: BeatTraining | None = None,
     tell: Callable[[int, float], None] = lambda _epoch, _loss: None,
+    start: Path | None = None,
 ) -> BeatNetwork:
     """A network that has learned the rows, upon the encoder of a folder; the same bytes for the same seed. Its weights
     are a running mean: those are righter, and less sure of what is wrong, than the last ones.
 
-    `tell` hears of every epoch and its mean loss. FloatingPointError when that is no number any more.
+    It goes on from the weights in `start` where those are named. `tell` hears of every epoch and its mean loss.
+    FloatingPointError when that is no number any more, UserError where `start` holds no weights of this network.
     """
+    from safetensors import SafetensorError
     from safetensors.torch import load_file
 
     training = training or BeatTraining()
@@ -253,6 +267,11 @@ def learn(
     rng = random.Random(training.seed)
     tokens = WordPiece((folder / "vocab.txt").read_text(encoding="utf-8").split("\n"))
     net = BeatNetwork(load_file(folder / "model.safetensors"), known, training)
+    if start is not None:
+        try:
+            net.begin_with(load_file(start))
+        except (OSError, SafetensorError, KeyError, RuntimeError) as error:
+            raise UserError(f"{start} holds no beat classifier to go on from: {error}", at="start") from error
     mean_net = AveragedModel(net, avg_fn=_mean_of(training.memory))
     slow = [*net.adapters.parameters(), net.pair]
     groups = [{"params": list(net.head.parameters()), "lr": 2 * training.rate}, {"params": slow, "lr": training.rate}]

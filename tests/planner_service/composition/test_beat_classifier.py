@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +13,9 @@ from layers import sampled
 from motion_backend.language import minilm
 from motion_backend.language.minilm import MiniLM, WeightsError
 from motion_backend.motion import Skill
-from planner_service.composition.beat_classifier import BeatClassifier, Vocabulary, shipped
+from planner_service.composition.beat_classifier import SHIPPED, BeatClassifier, Vocabulary, shipped
 from planner_service.evaluation.labels import LabelledTheme, training_themes
+from scene_graphs.errors import UserError
 
 FOLDER = minilm.weights_folder()
 pytestmark = pytest.mark.skipif(FOLDER is None, reason="the sentence encoder is not installed: make test installs it")
@@ -167,3 +169,25 @@ def test_what_was_learned_in_torch_is_told_in_numpy(whole: bool, encoder: MiniLM
         save(learn(rows, known, FOLDER, replace(training, epochs=1)), known, tmp_path / "two")
         save(learn(rows, known, FOLDER, replace(training, epochs=1)), known, tmp_path / "three")
         assert (tmp_path / "two").read_bytes() == (tmp_path / "three").read_bytes()
+
+
+def test_learning_goes_on_from_weights_and_refuses_others(encoder: MiniLM, tmp_path: Path) -> None:
+    import torch
+    from safetensors.numpy import save_file
+
+    from planner_service.composition.beat_trainer import BeatTraining, learn, rows_of, save, vocabulary
+
+    assert FOLDER is not None
+    known = vocabulary()
+    rows = rows_of(training_themes()[0][:1], known, ours=False)
+    shipped_weights = Path(str(files("planner_service").joinpath("data", SHIPPED)))
+    hardly = BeatTraining(epochs=1, warm_up=1, rate=1e-9, dropout=0.0)
+    save(learn(rows, known, FOLDER, hardly, start=shipped_weights), known, tmp_path / "on")
+    told, before = ["opens the fridge"], ["comes home"]
+    (on,), (was,) = BeatClassifier(encoder, tmp_path / "on").likely(told, before), shipped(encoder).likely(told, before)
+    assert on.captions == pytest.approx(was.captions, abs=5e-3), "who goes on without a step knows what was known"
+    save_file({"head.weight": np.zeros((2, 2), np.float32)}, tmp_path / "other")
+    for other in (tmp_path / "other", tmp_path / "none"):
+        with pytest.raises(UserError, match="no beat classifier to go on from"):
+            learn(rows, known, FOLDER, hardly, start=other)
+    assert torch.is_grad_enabled()
