@@ -23,6 +23,8 @@ FARTHEST: Final = 3.2
 """Metres the body goes in one shot: who goes farther is followed by another camera."""
 CLOSE_SECONDS: Final = 2.2
 """What is looked at from near."""
+AGAIN: Final = 6.0
+"""Seconds before a face whose mood stays is looked at from near again."""
 LENGTHENED: Final = 1.8
 """How many times as long a look from near may be where it is all of a shot."""
 STILL: Final = 0.3
@@ -72,11 +74,13 @@ def film_cuts(motion: Motion, joints: Array, starts: Sequence[int], role: Role =
     for start, stop in _windows(motion, starts):
         mood = finder.mood((start + stop) // 2)
         close = finder.close_up(start, stop, mood is not seen)
-        # Two in a row would leave no one know where all this is.
-        if close is not None and before is not None and before.stop == close.start:
-            close = None
+        if close is not None and before is not None:
+            # Two in a row would leave no one know where all this is; what the head does is a matter of now and then.
+            rest = (close.start - before.stop) / motion.fps
+            if rest <= 0 or (close.subject is Subject.FACE and mood is seen and rest < AGAIN):
+                close = None
         yield Cut(start, stop, close)
-        before = close
+        before = close or before
         seen = mood if close is not None and close.subject is Subject.FACE else seen
 
 

@@ -179,6 +179,8 @@ class _Director:
                 if sight.blocked(camera):
                     continue
                 towards = -camera.axes[2]
+                if close.subject is Subject.FACE and float(np.mean(_turns(ahead, towards))) > WIDEST:
+                    continue
                 score = sight.score(camera, poses) + FROM_INSIDE * sight.indoors(camera) - 0.3 * pitch
                 score += _faces(ahead, towards) * (1.0 if close.subject is Subject.FACE else 0.4)
                 if close.subject is Subject.HANDS:
@@ -233,8 +235,13 @@ def _directions(poses: Array, hands: Sequence[int]) -> list[Array]:
 
 def _faces(ahead: Array, towards: Array) -> float:
     """How well a face that looks `ahead` (P, 3) is seen from where `towards` (3,) points to."""
-    turn = np.arccos(np.clip(ahead @ towards, -1.0, 1.0))
+    turn = _turns(ahead, towards)
     return FACED * float(np.mean(np.where(turn < WIDEST, np.cos(turn - 0.5), -1.0)))
+
+
+def _turns(ahead: Array, towards: Array) -> Array:
+    """The angles between where a face looks in some frames and one direction, radians. (P,)."""
+    return np.asarray(np.arccos(np.clip(ahead @ towards, -1.0, 1.0)))
 
 
 def _fitted(yaw: float, pitch: float, points: Array, aspect: float, nearest: float) -> Camera:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -24,7 +26,7 @@ from motion_backend.rendering.film_picture import lay_words, split, to_rgb
 from motion_backend.rendering.film_shots import FilmShot, film_shots
 from motion_backend.rendering.film_sight import Appearances
 from motion_backend.rendering.motion_figures import body_solids, home_props
-from motion_backend.rendering.rasterizer import orbit
+from motion_backend.rendering.rasterizer import Camera, orbit
 from motion_backend.rendering.renderer import STUDIO, Solid, Still, to_srgb_bytes
 from planner_service.narration.narrator import Span, Told
 from planner_service.output.film import subtitles
@@ -158,6 +160,21 @@ def test_a_film_has_all_frames_and_the_same_bytes_again(tmp_path: Path):
     assert len(shown) == 20
     drawn = next(iter(film_frames(motion, few, SIZE)))
     assert np.abs(shown[0].astype(int) - drawn).mean() < 4
+
+
+def test_a_shot_that_goes_on_behind_a_look_from_near_is_not_drawn_anew(monkeypatch: pytest.MonkeyPatch):
+    drawn = []
+    real = Backdrop.of
+
+    def counted(solids: Sequence[Solid], camera: Camera, size: tuple[int, int]) -> Backdrop:
+        drawn.append(camera)
+        return real(solids, camera, size)
+
+    monkeypatch.setattr(Backdrop, "of", counted)
+    whole, near = shots()[0], orbit((1.0, 1.0, 1.0), 1.3, 0.4, 0.1)
+    few = [replace(whole, start=0, stop=4), FilmShot(4, 8, near, list(whole.scene)), replace(whole, start=8, stop=12)]
+    assert len(list(film_frames(acted().part(0, 12), few, SIZE))) == 12
+    assert drawn == [whole.camera, near]
 
 
 def test_what_set_up_compiles_is_what_films_and_pictures_are_drawn_with():
