@@ -50,6 +50,7 @@ HOMES = {
     "anthropic": {"planner_service/llm"},
     "httpx2": {"planner_service/llm"},
     "av": {"planner_service/extraction", "motion_backend/formats"},
+    "pxr": {"motion_backend/formats"},
     "faster_whisper": {"planner_service/extraction"},
     "mcp": {"planner_service"},
 }

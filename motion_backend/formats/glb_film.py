@@ -59,13 +59,13 @@ def body_glb(motion: Motion, role: Role = PLAIN) -> bytes:
 
 def scene_glb(home: Home) -> bytes:
     """The home alone, standing still."""
-    return meshes_to_glb(_home_meshes(home))
+    return meshes_to_glb(home_meshes_of(home))
 
 
 def film_glb(home: Home, motion: Motion, role: Role = PLAIN) -> bytes:
     """The home and the character acting in it, in one file."""
     document = Document()
-    return document.to_glb([*_add_meshes(document, _home_meshes(home)), *_add_body(document, motion, role)])
+    return document.to_glb([*_add_meshes(document, home_meshes_of(home)), *_add_body(document, motion, role)])
 
 
 def meshes_to_glb(meshes: Iterable[StaticMesh]) -> bytes:
@@ -74,7 +74,8 @@ def meshes_to_glb(meshes: Iterable[StaticMesh]) -> bytes:
     return document.to_glb(_add_meshes(document, meshes))
 
 
-def _home_meshes(home: Home) -> Sequence[StaticMesh]:
+def home_meshes_of(home: Home) -> Sequence[StaticMesh]:
+    """All that stands still in a film."""
     from scene_graphs.meshes.furniture_mesh import home_meshes
 
     return home_meshes(home)
@@ -82,15 +83,11 @@ def _home_meshes(home: Home) -> Sequence[StaticMesh]:
 
 def _add_meshes(document: Document, meshes: Iterable[StaticMesh]) -> list[int]:
     """Merge meshes by group and look, a node a group; few draw calls, and walls can be hidden at once."""
-    groups: dict[str, dict[tuple[tuple[float, ...], float], list[StaticMesh]]] = {}
-    for mesh in meshes:
-        group = next((g for g in GROUPS if mesh.name.startswith(g)), "furniture")
-        groups.setdefault(group, {}).setdefault((tuple(mesh.color), mesh.roughness), []).append(mesh)
     nodes = []
-    for group, looks in groups.items():
+    for group, looks in groups_of(meshes).items():
         primitives = []
         for (color, roughness), members in looks.items():
-            vertices, faces = _merged(members)
+            vertices, faces = merged(members)
             primitives.append(
                 {
                     # Without normals a viewer shades flat, which suits boxes and keeps the file small.
@@ -104,7 +101,17 @@ def _add_meshes(document: Document, meshes: Iterable[StaticMesh]) -> list[int]:
     return nodes
 
 
-def _merged(meshes: Sequence[StaticMesh]) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+def groups_of(meshes: Iterable[StaticMesh]) -> dict[str, dict[tuple[tuple[float, ...], float], list[StaticMesh]]]:
+    """Meshes by group, and in each by colour and roughness."""
+    groups: dict[str, dict[tuple[tuple[float, ...], float], list[StaticMesh]]] = {}
+    for mesh in meshes:
+        group = next((g for g in GROUPS if mesh.name.startswith(g)), "furniture")
+        groups.setdefault(group, {}).setdefault((tuple(mesh.color), mesh.roughness), []).append(mesh)
+    return groups
+
+
+def merged(meshes: Sequence[StaticMesh]) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+    """Several as one: vertices (V, 3) and triangles (F, 3)."""
     starts = np.cumsum([0, *(len(m.vertices) for m in meshes[:-1])])
     vertices = np.concatenate([np.asarray(m.vertices, dtype=np.float32) for m in meshes])
     return vertices, np.concatenate([m.faces + start for m, start in zip(meshes, starts, strict=True)])

@@ -126,10 +126,18 @@ class Sight:
     def score(self, camera: Camera, poses: Array) -> float:
         """How well a camera shows poses (P, 22, 3), whichever side of them it sees."""
         eye = np.asarray(camera.eye)
-        blocked = bool(self.near.hide(eye, eye[None] + CLOSE * camera.axes[2:]).any())
-        indoors = self.room is not None and self.home.room_at((camera.eye[0], camera.eye[2])) == self.room
         seen = 1.0 - float(self.near.hide(eye, poses[:, SEEN + HANDS].reshape(-1, 3)).mean())
-        return HIDDEN * seen + INDOORS * indoors - BLOCKED * blocked - AT_WINDOW * self._at_a_window(eye)
+        score = HIDDEN * seen + INDOORS * self.indoors(camera) - BLOCKED * self.blocked(camera)
+        return score - AT_WINDOW * self._at_a_window(eye)
+
+    def blocked(self, camera: Camera) -> bool:
+        """Whether the eye is within furniture, or right before some."""
+        eye = np.asarray(camera.eye)
+        return bool(self.near.hide(eye, eye[None] + CLOSE * camera.axes[2:]).any())
+
+    def indoors(self, camera: Camera) -> bool:
+        """Whether the eye is in the room of the place."""
+        return self.room is not None and self.home.room_at((camera.eye[0], camera.eye[2])) == self.room
 
     def _at_a_window(self, eye: Array) -> bool:
         """Whether it is so near to a wall, on its room's side, that curtains may hang before it."""

@@ -11,7 +11,7 @@ import numpy as np
 from motion_backend.rendering.film_picture import Planes, split
 from motion_backend.rendering.light_values import Cutting, Drawn, Shading
 from motion_backend.rendering.rasterizer import Camera, Real
-from motion_backend.rendering.renderer import PALETTE, Solid, Still, to_linear, to_srgb
+from motion_backend.rendering.renderer import PALETTE, STUDIO, Solid, Still, to_linear, to_srgb
 from motion_backend.rendering.shadow_map import ShadowMap
 
 SHADES = 8192
@@ -38,10 +38,10 @@ class Backdrop:
 
     @staticmethod
     def of(solids: Sequence[Solid], camera: Camera, size: tuple[int, int]) -> Backdrop:
-        """The picture (width, height, both even) of solids that stay where they are."""
+        """The picture (width, height, both even) of solids that stay where they are, under a studio's sky."""
         from motion_backend.rendering.film_kernel import IN_SKY, IN_SUN, tile_bounds, to_planes, to_tiles
 
-        still = Still.of(solids, camera, size)
+        still = Still.of(solids, camera, size, ground=None, light=STUDIO)
         planes = np.empty((size[1] * 3 // 2, size[0]), dtype=np.uint8)
         light = np.ascontiguousarray(np.moveaxis(still.lit.color, -1, 0))
         to_planes(light, _bytes_of_light(), split(planes), 0, 0, size[1], size[0])

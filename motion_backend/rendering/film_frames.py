@@ -47,8 +47,12 @@ def film_frames(
 
     with ThreadPoolExecutor(WORKERS) as pool:
         waiting: deque[Future[list[Planes]]] = deque()
+        before: list[tuple[FilmShot, Future[Backdrop]]] = []
         for shot in shots:
-            scene = pool.submit(Backdrop.of, shot.scene, shot.camera, size)
+            # Behind a close-up the shot that it stands in goes on.
+            same = next((drawn for one, drawn in before if one.scene is shot.scene), None)
+            scene = same or pool.submit(Backdrop.of, shot.scene, shot.camera, size)
+            before = [*before[-1:], (shot, scene)]
             for start in range(shot.start, shot.stop, BATCH):
                 waiting.append(pool.submit(batch, scene, range(start, min(start + BATCH, shot.stop))))
                 while len(waiting) > AHEAD:

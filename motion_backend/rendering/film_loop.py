@@ -40,7 +40,7 @@ def write_loop(
     """The moments one after the other, as the film shows them; `segments` are frames of all keyframes."""
     from PIL import Image
 
-    shots = film_shots(home, motion, [start for start, _ in segments], size[0] / size[1])
+    shots = film_shots(home, motion, [start for start, _ in segments], size[0] / size[1], role)
     wanted = [
         replace(shot, start=max(shot.start, one.start), stop=min(shot.stop, one.stop))
         for shot in shots

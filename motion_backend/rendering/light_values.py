@@ -56,12 +56,16 @@ class Palette(NamedTuple):
     bias: float
     """Metres towards the light at which it is looked up."""
     grid: float
-    """Metres between the floor's lines."""
+    """Metres between the floor's lines; 0 for none."""
     haze_start: float
     haze_depth: float
     """Metres around the target that are clear, and over which all fades behind them."""
     horizon: Real
     """Linear. (3,)."""
+    zenith: Real
+    """What the sky becomes where one looks up. Linear. (3,)."""
+    rise: float
+    """The sine of the angle over the horizon at which it is that."""
 
 
 class Lit(NamedTuple):

@@ -67,6 +67,8 @@ class Prop:
     """The room its middle lies in, or that its wall bounds."""
     side: Side | None = None
     """The wall it is part of."""
+    stump: Solid | None = None
+    """What is left of a wall where it would stand in the way."""
 
     def stands_before(self, camera: Camera, points: NDArray[np.floating], room: int | None) -> bool:
         """Whether a camera leaves it away to see points (N, 3) in a room, as a doll's house is open in front."""
@@ -82,7 +84,12 @@ class Prop:
 def home_props(home: Home) -> list[Prop]:
     """Everything of a home that can be drawn; walls, what hangs on them and lamps under the ceiling cast no shadow."""
     from scene_graphs.meshes.furniture_mesh import home_meshes
+    from scene_graphs.meshes.interior_mesh import stump_meshes
 
+    stumps = {
+        mesh.name.replace("stump", "wall"): Solid(mesh.vertices, mesh.faces, mesh.color, casts=False)
+        for mesh in stump_meshes(home)
+    }
     sides = [side for wall in home.walls if (side := Side.of(wall, home)) is not None]
     props = []
     for mesh in home_meshes(home):
@@ -93,7 +100,9 @@ def home_props(home: Home) -> list[Prop]:
         opacity = 0.25 if mesh.color[3] < 1 else 1.0
         casts = not mesh.name.startswith(SHADOWLESS)
         solid = Solid(mesh.vertices, mesh.faces, mesh.color, opacity=opacity, casts=casts)
-        props.append(Prop(mesh.name, solid, low, high, side.room if side else home.room_at(middle), side))
+        props.append(
+            Prop(mesh.name, solid, low, high, side.room if side else home.room_at(middle), side, stumps.get(mesh.name))
+        )
     return props
 
 
@@ -104,13 +113,18 @@ def around(
     room: int | None = None,
     reach: float = 4.5,
 ) -> list[Solid]:
-    """What is within reach of the camera's target, without what stands before the points (N, 3) of a body in a room."""
+    """What is within reach of the camera's target, without what stands before the points (N, 3) of a body in a room:
+    of a wall the foot is left."""
     target = np.asarray(camera.target)
     shown = []
     for prop in props:
         gap = np.maximum(np.maximum(prop.low - target, target - prop.high), 0.0)
-        if np.hypot(gap[0], gap[2]) <= reach and not prop.stands_before(camera, points, room):
+        if np.hypot(gap[0], gap[2]) > reach:
+            continue
+        if not prop.stands_before(camera, points, room):
             shown.append(prop.solid)
+        elif prop.stump is not None:
+            shown.append(prop.stump)
     return shown
 
 

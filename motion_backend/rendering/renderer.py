@@ -24,6 +24,8 @@ SUN_LIGHT, SKY_LIGHT, BOUNCE_LIGHT, CAMERA_LIGHT = 0.70, 0.45, 0.24, 0.12
 GRID = 0.5
 """Metres between the floor's lines."""
 HORIZON = np.array([0.90, 0.91, 0.92])
+STUDIO_HORIZON, STUDIO_ZENITH, STUDIO_RISE = np.array([0.89, 0.89, 0.88]), np.array([0.62, 0.70, 0.78]), 0.42
+"""Of films: their sky, and the sine of the angle over the horizon from which it is one colour."""
 HAZE_START, HAZE_DEPTH = 5.0, 4.0
 """Metres around the target that are clear, and over which all fades behind them."""
 SHADOW_OFFSET = 0.02
@@ -82,8 +84,9 @@ class Still:
         size: tuple[int, int],
         ground: float | None = 0.0,
         shadows: bool = True,
+        light: Palette | None = None,
     ) -> Still:
-        """The picture (width, height); see `render`."""
+        """The picture (width, height), in `PALETTE` unless told; see `render`."""
         from motion_backend.rendering.surface_light import shade_picture
 
         if ground is not None:
@@ -96,7 +99,9 @@ class Still:
         ]
         lit = Lit(*(np.empty((size[1], size[0], 3), dtype=np.float32) for _ in Lit._fields))
         lens, (sun, sky) = camera.lens(large), (found.shading for found in maps)
-        shade_picture(nearest, nearness, scene.surfaces, lens, sun, sky, PALETTE, lit, np.empty(15), np.empty(15))
+        shade_picture(
+            nearest, nearness, scene.surfaces, lens, sun, sky, light or PALETTE, lit, np.empty(15), np.empty(15)
+        )
         return Still(camera, nearness, lit, (maps[0], maps[1]))
 
 
@@ -188,5 +193,11 @@ def to_srgb_bytes(light: Real) -> Image:
 
 PALETTE: Final = Palette(
     SUN_LIGHT, SKY_LIGHT, BOUNCE_LIGHT, CAMERA_LIGHT, OPEN_SKY,
-    SHADOW_OFFSET, SHADOW_BIAS, GRID, HAZE_START, HAZE_DEPTH, to_linear(HORIZON).astype(np.float32),
+    SHADOW_OFFSET, SHADOW_BIAS, GRID, HAZE_START, HAZE_DEPTH,
+    to_linear(HORIZON).astype(np.float32), to_linear(HORIZON).astype(np.float32), 1.0,
 )  # fmt: skip
+STUDIO: Final = PALETTE._replace(
+    grid=0.0, horizon=to_linear(STUDIO_HORIZON).astype(np.float32),
+    zenith=to_linear(STUDIO_ZENITH).astype(np.float32), rise=STUDIO_RISE,
+)  # fmt: skip
+"""No lines on floors, and a sky."""

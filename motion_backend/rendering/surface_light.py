@@ -45,8 +45,9 @@ def shade_picture(
                         near = nearness[i, j]
                         _shade(nearest[i, j], j + 0.5, i + 0.5, near, sample, surfaces, lens, sun, sky, light, found)
                     else:
+                        up = _rise(j + 0.5, i + 0.5, lens, light)
                         for k in range(3):
-                            found[k] = light.horizon[k]
+                            found[k] = light.horizon[k] + up * (light.zenith[k] - light.horizon[k])
                             found[3 + k] = found[6 + k] = 0.0
                             found[9 + k] = found[12 + k] = -np.inf
                     for k in range(15):
@@ -94,7 +95,7 @@ def _shade(
     shaded = (1 - light.open_sky) * around
     shaded *= share_of(ox, oy, oz, turn, sky, light.bias)
     lines = 1.0
-    if abs(py) < 0.006 and ny > 0.99:
+    if light.grid > 0 and abs(py) < 0.006 and ny > 0.99:
         lines = _grid(px, pz, distance, light.grid)
     away = np.sqrt((px - lens.target[0]) ** 2 + (pz - lens.target[2]) ** 2)
     haze = min(max((away - light.haze_start) / light.haze_depth, 0.0), 1.0)
@@ -105,6 +106,16 @@ def _shade(
         out[k] = rest + out[3 + k] + out[6 + k] + haze * light.horizon[k]
         out[9 + k] = _place(px, py, pz, sun.matrix, k)
         out[12 + k] = _place(px, py, pz, sky.matrix, k)
+
+
+@inlined
+def _rise(x: float, y: float, lens: Lens, light: Palette) -> float:
+    """How far from the horizon to where the sky is quite another colour one looks in a sample, 0 to 1."""
+    axes, rise = lens.axes, lens.axes[2, 1]
+    if not lens.parallel:
+        right, up = (x - lens.middle[0]) * lens.scale, (lens.middle[1] - y) * lens.scale
+        rise = (rise + right * axes[0, 1] + up * axes[1, 1]) / np.sqrt(1.0 + right * right + up * up)
+    return float(min(max(rise / light.rise, 0.0), 1.0))
 
 
 @inlined

@@ -14,7 +14,7 @@ from rich.console import Console
 
 from motion_backend.motion import Character, Skill
 from planner_service.cli.cast_command import CharacterOption, character_given
-from planner_service.cli.story import check_output, produce
+from planner_service.cli.story import Extra, check_output, produce
 from planner_service.library.library import open_shelves
 from planner_service.pipeline import Pipeline, RequestError, StoryRequest
 from planner_service.scripts.captions import captions, synonyms
@@ -45,13 +45,15 @@ def play(
     ] = 1.70,
     character: CharacterOption = "",
     film: Annotated[bool, typer.Option("--film", help="Write film.mp4 too, in a minute or two.")] = False,
+    usd: Annotated[bool, typer.Option("--usd", help="Write film.usd too, for engines that read USD.")] = False,
 ) -> None:
     """Act out a script of your own: nothing is planned, a home is found for it unless one is given."""
     from planner_service.cli.layouts import chosen_layouts
 
     settings = read_settings()
     keyframes = read_keyframes(script)
-    check_output(out, film)
+    extra = Extra(film, usd)
+    check_output(out, extra)
     console = Console(markup=False)
     for line in unknown_captions(keyframes):
         console.print(line, highlight=False, soft_wrap=True)
@@ -64,7 +66,7 @@ def play(
         backend=backend or settings.backend,
         character=character_given(character, Character(height=height)),
     )
-    produce(pipeline, request, out, film, console)
+    produce(pipeline, request, out, extra, console)
 
 
 def read_keyframes(path: Path) -> list[Keyframe]:

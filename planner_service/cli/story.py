@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from itertools import chain, count
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import typer
 from rich.console import Console
@@ -83,6 +83,7 @@ def story(
     ] = 1.70,
     character: CharacterOption = "",
     film: Annotated[bool, typer.Option("--film", help="Write film.mp4 too, in a minute or two.")] = False,
+    usd: Annotated[bool, typer.Option("--usd", help="Write film.usd too, for engines that read USD.")] = False,
     model: ModelOption = None,
 ) -> None:
     """Turn a story theme into a script, a home, a told story and an animated film."""
@@ -90,7 +91,8 @@ def story(
 
     settings = read_settings(llm_model=model, clips=clips)
     give_backends(settings)
-    check_output(out, film)
+    extra = Extra(film, usd)
+    check_output(out, extra)
     pipeline = Pipeline(open_shelves(settings), load_model(settings), settings.llm_on_failure == "error")
     request = StoryRequest(
         theme=clean(read_theme(theme)),
@@ -103,20 +105,30 @@ def story(
     console = Console(markup=False)
     if not settings.llm_model and (line := hint(ollama_models(settings.ollama_url))):
         console.print(line, highlight=False, soft_wrap=True)
-    produce(pipeline, request, out, film, console)
+    produce(pipeline, request, out, extra, console)
 
 
-def check_output(out: Path | None, film: bool) -> None:
-    """Fail before the work, not after it. OutputError, FilmUnavailableError."""
+class Extra(NamedTuple):
+    """Files that are written where they are asked for."""
+
+    film: bool
+    usd: bool
+
+
+def check_output(out: Path | None, extra: Extra) -> None:
+    """Fail before the work, not after it. OutputError, FilmUnavailableError, UsdUnavailableError."""
+    from motion_backend.formats.usd_film import check_usd
     from planner_service.output.film import check_film
-    from planner_service.output.story_export import FILES, FILM, check_writable
+    from planner_service.output.story_export import FILES, FILM, USD, check_writable
 
-    if film:
+    if extra.film:
         check_film()
-    check_writable(out or OUT, [*FILES, FILM] if film else FILES)
+    if extra.usd:
+        check_usd()
+    check_writable(out or OUT, [*FILES, *extra.film * (FILM,), *extra.usd * (USD,)])
 
 
-def produce(pipeline: Pipeline, request: StoryRequest, out: Path | None, film: bool, console: Console) -> None:
+def produce(pipeline: Pipeline, request: StoryRequest, out: Path | None, extra: Extra, console: Console) -> None:
     """Make a story, write its files and say how it went, with a bar while it takes."""
     from planner_service.output.story_export import write_story
 
@@ -125,14 +137,14 @@ def produce(pipeline: Pipeline, request: StoryRequest, out: Path | None, film: b
 
         def show(stage: str, share: float) -> None:
             # A film takes as long again as all the rest.
-            stages, part = [*STAGES, "write", "film"], 1 - 0.5 * film
+            stages, part = [*STAGES, "write", "film"], 1 - 0.5 * extra.film
             before = sum(SHARES[s] for s in stages[: stages.index(stage)])
             bar.update(task, completed=part * (before + share * SHARES[stage]), description=TOLD[stage])
 
         made = pipeline.make(request, show)
         show("write", 0.0)
         folder = out or new_folder(OUT, made.planned.told.title)
-        files = write_story(made, folder, film, lambda share: show("film", share))
+        files = write_story(made, folder, extra.film, lambda share: show("film", share), extra.usd)
         bar.update(task, completed=1.0, description="done")
     _close(console, made, files)
 

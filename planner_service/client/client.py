@@ -63,6 +63,7 @@ class Methods:
     motion = Method(requests.motion)
     motion_file = Method(requests.motion_file)
     film = Method(requests.film)
+    film_usd = Method(requests.film_usd)
     make_film = Method(requests.make_film)
     film_state = Method(requests.film_state)
     film_mp4 = Method(requests.film_mp4)

@@ -165,6 +165,11 @@ def film(story_id: str) -> Call[bytes]:
     return Call("GET", _at("stories", story_id, "film.glb"), _bytes)
 
 
+def film_usd(story_id: str) -> Call[bytes]:
+    """The same as USD. ApiError 501 where the service has no usd-core."""
+    return Call("GET", _at("stories", story_id, "film.usd"), _bytes)
+
+
 def make_film(story_id: str) -> Call[Film]:
     """Have a story filmed as MP4; `wait_film` waits for it. ApiError 409 before it has succeeded,
     501 where the service cannot film."""

@@ -93,7 +93,7 @@ def write_film(
     """Film a story; `show` is told which share is done, and what it raises ends the film. FilmUnavailableError."""
     check_film()
     motion, told = filmed.motion, filmed.told
-    shots = film_shots(filmed.home, motion, [start for start, _ in filmed.segments], size[0] / size[1])
+    shots = film_shots(filmed.home, motion, [start for start, _ in filmed.segments], size[0] / size[1], filmed.role)
     words = [(line, _lettered(line.text, size, TEXT_HEIGHT)) for line in subtitles(told, filmed.segments, motion.fps)]
     title = _lettered(told.title, size, TITLE_HEIGHT)
     titled = round(TITLE_SECONDS * motion.fps)

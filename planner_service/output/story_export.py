@@ -14,6 +14,7 @@ from motion_backend.formats.bvh import write_bvh
 from motion_backend.formats.glb_film import film_glb
 from motion_backend.formats.motion_json import phase_to_dict
 from motion_backend.formats.npz import write_npz
+from motion_backend.formats.usd_film import film_usd
 from motion_backend.metrics.figure_limits import held_against
 from planner_service.cast_choice import told_look
 from planner_service.grounding.keyframes_to_actions import action_to_dict
@@ -27,6 +28,7 @@ from scene_graphs.home import home_to_dict
 
 Writer = Callable[[Path], object]
 FILM = "film.mp4"
+USD = "film.usd"
 FILES = ("story.md", "story.json", "report.json", "motion.npz", "motion.bvh", "film.glb", "storyboard.png")
 
 
@@ -35,11 +37,16 @@ class OutputError(UserError):
 
 
 def write_story(
-    story: Story, folder: Path, film: bool = False, show: Callable[[float], None] = lambda _: None
+    story: Story,
+    folder: Path,
+    film: bool = False,
+    show: Callable[[float], None] = lambda _: None,
+    usd: bool = False,
 ) -> list[Path]:
     """All files of a story in `folder`: story.md, story.json, report.json, motion.npz, motion.bvh, film.glb,
-    storyboard.png, and where it is asked for film.mp4, of which `show` is told which share is done. A file of that
-    name from an earlier story is replaced; OutputError and FilmUnavailableError leave everything as it was.
+    storyboard.png, and where they are asked for film.usd and film.mp4, of which `show` is told which share is done. A
+    file of that name from an earlier story is replaced; OutputError, FilmUnavailableError and UsdUnavailableError leave
+    everything as it was.
     """
     writers: dict[str, Writer] = {
         "story.md": lambda path: path.write_text(story_to_markdown(story), encoding="utf-8"),
@@ -50,6 +57,8 @@ def write_story(
         "film.glb": lambda path: path.write_bytes(film_glb(story.planned.home, story.motion, story.role)),
         "storyboard.png": lambda path: _write_storyboard(story, path),
     }
+    if usd:
+        writers[USD] = lambda path: path.write_bytes(film_usd(story.planned.home, story.motion, story.role))
     if film:
         writers[FILM] = lambda path: write_film(Filmed.of(story), path, show=show)
     return write_files(folder, writers)

@@ -16,6 +16,10 @@ from scene_graphs.meshes.mesh_primitives import Mesh, Shape, block, flat, merge
 
 THICKNESS = 0.06
 """Of a wall, outwards from the room's outline: two rooms' walls fill the gap between them."""
+STUMP = 0.10
+"""Metres that are left of a wall which is cut to be looked over: less than hides a foot."""
+BASE_BEYOND, BASE_HEIGHT, BASE_TOP = 0.14, 0.16, -0.008
+"""Metres that what a home stands on reaches beyond its rooms, how high it is, and where its top is."""
 PLANK, PLANK_LENGTH, TILE = 0.19, 1.7, 0.6
 _FLOORS: dict[str, tuple[Material, ...]] = {
     "bedroom": tuple(
@@ -38,6 +42,8 @@ _PAINTS = (
     Material("wall paint", (0.90, 0.91, 0.94, 1.0), 0.95),
     Material("wall paint", (0.95, 0.91, 0.88, 1.0), 0.95),
 )
+_CUT = Material("cut wall", (0.36, 0.34, 0.33, 1.0), 0.9)
+_BASE = Material("base", (0.80, 0.78, 0.75, 1.0), 0.9)
 _FRAME = Material("door frame", (0.97, 0.96, 0.94, 1.0), 0.6)
 _LEAF = Material("door leaf", (0.80, 0.66, 0.50, 1.0), 0.6)
 _CURTAINS = tuple(m.FABRICS[index] for index in (4, 0, 2))
@@ -75,6 +81,34 @@ def wall_meshes(home: Home) -> Iterator[Mesh]:
             yield from _fill(home, side, opening, f"{number}.{count}", room)
 
 
+def stump_meshes(home: Home) -> Iterator[Mesh]:
+    """What is left of every wall, in their order, where it is cut near the floor to be looked over; doorways stay."""
+    outlines = [shapely.Polygon(home.room_polygon(index)) for index in range(len(home.rooms))]
+    for number, wall in enumerate(home.walls):
+        middle = shapely.Point(np.mean(np.asarray(wall.segment, dtype=float), axis=0))
+        outline = min(outlines, key=lambda one: one.exterior.distance(middle))
+        yield _mesh(f"stump {number}", _CUT, list(_Side(wall, outline).slabs(STUMP)))
+
+
+def base_mesh(home: Home) -> Mesh:
+    """What a home stands on: a slab under all rooms that reaches a little beyond the walls, its top a hair below
+    floors."""
+    outlines = [shapely.Polygon(home.room_polygon(index)) for index in range(len(home.rooms))]
+    whole = shapely.union_all([one.buffer(BASE_BEYOND, join_style="mitre") for one in outlines])
+    shapes: list[Shape] = []
+    for part in shapely.get_parts(whole):
+        ring = np.asarray(part.exterior.coords)
+        shapes.append(flat(ring[:-1], BASE_TOP))
+        shapes += [_upright(start, end, -BASE_HEIGHT, BASE_TOP) for start, end in pairwise(ring)]
+    return _mesh("base", _BASE, shapes)
+
+
+def _upright(start: Array, end: Array, low: float, high: float) -> Shape:
+    """A rectangle that stands on a line [x, z]."""
+    corners = [(*start, low), (*end, low), (*end, high), (*start, high)]
+    return np.array([(x, y, z) for x, z, y in corners]), np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
+
+
 class _Side:
     """A wall seen from its room: boxes are given along it, in height, and outwards."""
 
@@ -101,18 +135,19 @@ class _Side:
         places = sorted(float((np.asarray(point) - self.start) @ self.along) for point in opening.segment)
         return (max(places[0], 0.0), min(places[1], self.length))
 
-    def slabs(self) -> Iterator[Shape]:
-        """The wall with holes where its openings are; its ends reach round the corners."""
+    def slabs(self, height: float = np.inf) -> Iterator[Shape]:
+        """The wall, up to a height, with holes where its openings are; its ends reach round the corners."""
+        top = min(self.wall.height, height)
         spans = sorted((self.span(opening), opening) for opening in self.wall.openings)
         stops = [-THICKNESS, *(place for span, _ in spans for place in span), self.length + THICKNESS]
         for left, right in list(pairwise(stops))[::2]:
             if right - left > 1e-6:
-                yield self.box((left, right), (0.0, self.wall.height), (0.0, THICKNESS))
+                yield self.box((left, right), (0.0, top), (0.0, THICKNESS))
         for span, opening in spans:
             if opening.bottom > 0.01:
-                yield self.box(span, (0.0, opening.bottom), (0.0, THICKNESS))
-            if self.wall.height - opening.top > 0.01:
-                yield self.box(span, (opening.top, self.wall.height), (0.0, THICKNESS))
+                yield self.box(span, (0.0, min(opening.bottom, top)), (0.0, THICKNESS))
+            if top - opening.top > 0.01:
+                yield self.box(span, (opening.top, top), (0.0, THICKNESS))
 
 
 def _fill(home: Home, side: _Side, opening: Opening, name: str, room: int) -> Iterator[Mesh]:

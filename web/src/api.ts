@@ -64,6 +64,8 @@ export interface Beat {
   readonly acted: boolean;
   /** Why it is not acted. */
   readonly why: string;
+  /** Whether keyframes show only something else in its place. */
+  readonly stood_for: boolean;
   /** What of it no keyframe shows; its whole text where something only stands for it. */
   readonly unshown: readonly string[];
 }
@@ -94,6 +96,8 @@ export interface KeyframeFigures {
   readonly pen_max: number;
   /** What was done otherwise than the caption says; stories made by earlier versions have none. */
   readonly notes?: readonly string[];
+  /** The known caption that was acted where the body knows no word of its own. */
+  readonly performed_as?: string | null;
 }
 
 export interface Report {

@@ -3,6 +3,7 @@
 import type { Beat, FoundRoom, FoundScript, Story } from "./api";
 import { fill, h } from "./dom";
 import { drawGraph } from "./graph";
+import { badge, lacking, outcomeOf } from "./outcomes";
 import { beatsWords, capital, noteWords, plain } from "./words";
 
 /** Fill a section; false while nothing is known. */
@@ -43,7 +44,7 @@ function told(beat: Beat, scripts: readonly FoundScript[]): HTMLElement {
     "li",
     { "data-emotion": beat.emotion },
     h("p", { class: "beat" }, h("i", {}), `“${beat.text}”`),
-    beat.acted ? null : h("p", { class: "missing" }, h("b", {}, "Not acted: "), beat.why),
+    h("p", { class: "became" }, badge(outcomeOf(beat)), lacking(beat) ? ` ${lacking(beat)}` : null),
     ...scripts.map(found),
   );
 }

@@ -1,7 +1,8 @@
 /** How well the story was acted, in plain words, and honest labels of what made it. */
 
-import type { Keyframe, KeyframeFigures, Story } from "./api";
+import type { Beat, Keyframe, KeyframeFigures, Story } from "./api";
 import { fill, h } from "./dom";
+import { badge, isOtherwise, lacking, legend, outcomeOf } from "./outcomes";
 import { beatsWords, capital, centimetres, percent, placeWords, SKILL_WORDS } from "./words";
 
 /** From these on a moment is worth a remark, metres. */
@@ -18,7 +19,7 @@ export function plannerWords(planner: string | null): string {
 export function encoderWords(encoder: string | null): string {
   if (!encoder) return "No short scripts were looked up.";
   if (encoder === "hashing") return "Scripts found by their words (hashing), the stand-in where no sentence encoder is.";
-  return `Scripts found by meaning with the sentence encoder ${encoder}, the only learned part.`;
+  return `Scripts found by meaning with the sentence encoder ${encoder}. It and the classifier of clauses are all that is learned here.`;
 }
 
 export function backendWords(backend: string): string {
@@ -32,7 +33,6 @@ export function showReport(section: HTMLElement, story: Story, seek: (keyframe: 
   if (!report) return false;
   const { motion } = report;
   const spare = report.screen_time_without_beat;
-  const missing = story.beats.filter((beat) => beat.kind !== "undone" && !beat.acted);
   const figures: [string, string][] = [
     ...(spare === null ? [] : ([[percent(spare), "of the film serves no beat of your theme"]] as [string, string][])),
     [`${motion.reached} of ${motion.keyframes}`, "moments reached their goal"],
@@ -46,7 +46,8 @@ export function showReport(section: HTMLElement, story: Story, seek: (keyframe: 
     section,
     h("h2", {}, "How well it went"),
     story.beats.length ? h("p", { class: "acted" }, h("b", {}, beatsWords(story.beats))) : null,
-    missing.length ? h("ul", { class: "remarks missing" }, ...missing.map((beat) => h("li", {}, `“${beat.text}” is not acted: ${beat.why}.`))) : null,
+    story.beats.length ? h("ul", { class: "outcomes", "aria-label": "What became of the beats of your theme" }, ...story.beats.map(became)) : null,
+    legend(story.beats, report.keyframes),
     h("dl", { class: "figures" }, ...figures.flatMap(([value, words]) => [h("dt", {}, value), h("dd", {}, words)])),
     remarks.length ? h("ul", { class: "remarks" }, ...remarks) : h("p", { class: "fine" }, "Nothing stands out: every moment came out as it was meant to."),
     h("ul", { class: "labels" }, h("li", {}, plannerWords(report.planner)), h("li", {}, encoderWords(report.encoder)), h("li", {}, backendWords(report.backend))),
@@ -54,14 +55,21 @@ export function showReport(section: HTMLElement, story: Story, seek: (keyframe: 
   return true;
 }
 
+function became(beat: Beat): HTMLElement {
+  const lacks = lacking(beat);
+  return h("li", {}, badge(outcomeOf(beat)), h("span", {}, `“${beat.text}”`, lacks ? h("small", {}, ` ${lacks}`) : null));
+}
+
 function remark(figure: KeyframeFigures, keyframe: Keyframe | undefined, seek: (keyframe: number) => void): HTMLElement[] {
   const said: string[] = [];
   if (!figure.reached) said.push(`not reached${figure.reason ? `: ${figure.reason}` : ""}`);
   if (figure.contact_error !== null && figure.contact_error > WIDE_CONTACT) said.push(`${centimetres(figure.contact_error)} from its place`);
   if (figure.pen_max > DEEP) said.push(`up to ${centimetres(figure.pen_max)} inside furniture`);
+  if (figure.performed_as) said.push(`done as “${figure.performed_as}”, which the body knows`);
   said.push(...(figure.notes ?? []));
   if (!said.length) return [];
   const place = keyframe ? ` at the ${placeWords(keyframe)}` : "";
   const name = `Moment ${figure.keyframe + 1}, ${SKILL_WORDS[figure.skill]}${place}`;
-  return [h("li", {}, h("button", { type: "button", class: "link", onclick: () => seek(figure.keyframe) }, capital(name)), ` – ${said.join(", ")}.`)];
+  const go = h("button", { type: "button", class: "link", onclick: () => seek(figure.keyframe) }, capital(name));
+  return [h("li", {}, ...(isOtherwise(figure) ? [badge("otherwise"), " "] : []), go, ` – ${said.join(", ")}.`)];
 }

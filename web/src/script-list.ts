@@ -2,6 +2,7 @@
 
 import type { Keyframe } from "./api";
 import { h } from "./dom";
+import { badge, type Outcome } from "./outcomes";
 import { clock } from "./timing";
 import { placeWords, SKILL_WORDS } from "./words";
 
@@ -15,12 +16,13 @@ export class ScriptList {
     this.#seek = seek;
   }
 
-  update(keyframes: readonly Keyframe[], fps: number, written: boolean): void {
+  /** `marks` has the moments that show something else than was asked for, as far as that is known. */
+  update(keyframes: readonly Keyframe[], fps: number, written: boolean, marks: ReadonlyMap<number, Outcome>): void {
     while (this.#rows.length > keyframes.length) this.#rows.pop()?.item.remove();
     const fresh = this.#rows.length;
     for (const [index, keyframe] of keyframes.entries()) {
       if (!this.#rows[index]) this.#add(index, written ? (index - fresh) * 45 : 0);
-      this.#show(index, keyframe, fps);
+      this.#show(index, keyframe, fps, marks.get(index));
     }
   }
 
@@ -33,7 +35,7 @@ export class ScriptList {
     this.element.append(item);
   }
 
-  #show(index: number, keyframe: Keyframe, fps: number): void {
+  #show(index: number, keyframe: Keyframe, fps: number, mark: Outcome | undefined): void {
     const { item, button, words, time } = this.#rows[index]!;
     const made = keyframe.start !== null;
     button.disabled = !made;
@@ -43,6 +45,7 @@ export class ScriptList {
     words.replaceChildren(
       h("b", {}, keyframe.caption),
       h("small", {}, `${SKILL_WORDS[keyframe.skill]} · ${placeWords(keyframe)} · ${keyframe.emotion}${missed}`),
+      ...(mark ? [badge(mark)] : []),
     );
     time.textContent = made ? clock(keyframe.start / fps) : "";
   }

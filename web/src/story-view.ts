@@ -8,6 +8,7 @@ import { Film } from "./film";
 import { confirmRemoval } from "./gallery";
 import { announce } from "./live";
 import { showMaking } from "./making";
+import { marks } from "./outcomes";
 import { showReport } from "./report";
 import { ScriptList } from "./script-list";
 import { Steps } from "./steps";
@@ -118,7 +119,7 @@ export class StoryView {
     this.element.classList.toggle("without-text", !story.text && !making);
     this.#steps.update(story);
     this.#telling.update(story);
-    this.#script.update(story.keyframes, story.motion.fps, before !== null);
+    this.#script.update(story.keyframes, story.motion.fps, before !== null, marks(story));
     this.film.update(story);
     const seek = (keyframe: number): void => this.film.seekKeyframe(keyframe);
     this.#showOrigin(story);

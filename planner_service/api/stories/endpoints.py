@@ -14,9 +14,10 @@ from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
 
 from motion_backend.formats import FORMATS, encode
 from motion_backend.formats.glb_film import body_glb, scene_glb
+from motion_backend.formats.usd_film import UsdUnavailableError, check_usd, film_usd
 from motion_backend.motion import Character
 from planner_service.api.dependencies import PartsDep
-from planner_service.api.errors import Conflict, NotFound, NotReady, Unprocessable
+from planner_service.api.errors import Conflict, NotFound, NotProvided, NotReady, Unprocessable
 from planner_service.api.idempotent_submission import accept, repeated
 from planner_service.api.layouts import views
 from planner_service.api.stories.schemas import CharacterAsk, MotionAsk, StoryAsk, StoryPage, StoryShown
@@ -29,6 +30,7 @@ from planner_service.store.film_store import film_of
 from planner_service.store.story_store import STORIES, Record, Stories, StoryGone
 from planner_service.store.tables import state_of
 from planner_service.themes.beats import clean
+from planner_service.user_errors import explain
 from scene_graphs.home import Home, home_from_dict
 from scene_graphs.json_fields import Json
 from scene_graphs.layout import Layout
@@ -43,6 +45,7 @@ Key = Annotated[
     ),
 ]  # fmt: skip
 GLB: Final = "model/gltf-binary"
+USD: Final = "model/vnd.usd"
 
 
 async def stories_of(parts: PartsDep) -> Stories:
@@ -202,6 +205,25 @@ def film(record: RecordDep, request: Request, stories: StoriesDep) -> Response:
     etag = _made(record, "film")
     position = record.artifacts[-1].position
     return unchanging(request, etag, lambda: stories.data(record.id, position), GLB, _named(record, ".glb"))
+
+
+@stories_router.get("/{story_id}/film.usd", response_class=Response, responses={200: {"content": {USD: {}}}, 501: {}})
+def film_as_usd(record: RecordDep, request: Request, stories: StoriesDep) -> Response:
+    """The same as USD, where the service has usd-core: Y up, metres, 30 time codes a second."""
+    _made(record, "home")
+    footage = Footage(record)
+    if not footage.complete:
+        raise NotReady(f"not ready yet: {footage.ready} frames are; follow links.events")
+    try:
+        check_usd()
+    except UsdUnavailableError as error:
+        raise NotProvided(explain(error)) from error
+
+    def make() -> bytes:
+        moved = footage.motion(stories, 0, footage.ready)
+        return film_usd(home_from_dict(_home_row(stories, record)), moved, role_in(record))
+
+    return unchanging(request, f"{footage.etag(0, footage.ready)}-usd", make, USD, _named(record, ".usd"))
 
 
 @stories_router.get(

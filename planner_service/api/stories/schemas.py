@@ -346,6 +346,7 @@ class Links(BaseModel):
     takes: str = Field(description="POST here derives a story from this one.")
     motion: str
     film: str
+    usd: str = Field(description="The same as USD, where usd-core is installed.")
     mp4: str = Field(description="The story filmed, for any player; POST to `self`/film makes it.")
     scene: str
     home: str

@@ -138,7 +138,8 @@ def role_in(record: Record) -> Role:
 def _links(story_id: str) -> dict[str, str]:
     here = f"/v1/stories/{story_id}"
     parts = {name: f"{here}/{name}" for name in ("events", "cancel", "takes", "motion", "home")}
-    return {"self": here, **parts, "film": f"{here}/film.glb", "mp4": f"{here}/film.mp4", "scene": f"{here}/scene.glb"}
+    files = {"film": f"{here}/film.glb", "usd": f"{here}/film.usd", "mp4": f"{here}/film.mp4"}
+    return {"self": here, **parts, **files, "scene": f"{here}/scene.glb"}
 
 
 def events_of(record: Record) -> Iterator[StoryEvent]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -17,14 +19,15 @@ from motion_backend.motion import Motion, join
 from motion_backend.rendering import depth_buffer, film_kernel, surface_light
 from motion_backend.rendering.camera import SEEN
 from motion_backend.rendering.film_backdrop import Backdrop
+from motion_backend.rendering.film_cuts import LONGEST, SHORTEST, Framing, Subject
 from motion_backend.rendering.film_frames import compile_film, film_frames
 from motion_backend.rendering.film_loop import moment, write_loop
 from motion_backend.rendering.film_picture import lay_words, split, to_rgb
-from motion_backend.rendering.film_shots import LONGEST, SHORTEST, FilmShot, film_shots
+from motion_backend.rendering.film_shots import FilmShot, film_shots
 from motion_backend.rendering.film_sight import Appearances
 from motion_backend.rendering.motion_figures import body_solids, home_props
-from motion_backend.rendering.rasterizer import orbit
-from motion_backend.rendering.renderer import Solid, render
+from motion_backend.rendering.rasterizer import Camera, orbit
+from motion_backend.rendering.renderer import STUDIO, Solid, Still, to_srgb_bytes
 from planner_service.narration.narrator import Span, Told
 from planner_service.output.film import subtitles
 
@@ -52,7 +55,7 @@ def test_shots_follow_each_other_without_a_gap():
 
 def test_the_body_is_in_the_picture_all_the_time():
     joints = acted().joint_positions()[:, SEEN].astype(np.float64)
-    for shot in shots():
+    for shot in (one for one in shots() if one.subject is Subject.BODY):
         for frame in range(shot.start, shot.stop):
             x, y, _ = np.moveaxis(shot.camera.project(shot.camera.view(joints[frame]), (160, 90)), -1, 0)
             assert ((x > 0) & (x < 160) & (y > 0) & (y < 90)).mean() > 0.9, (shot, frame)
@@ -60,7 +63,11 @@ def test_the_body_is_in_the_picture_all_the_time():
 
 def test_nothing_hides_the_body_for_more_than_a_moment():
     shares = np.concatenate(
-        [Appearances.of(acted(), one.start, one.stop, 16 / 9).shares(one.scene, one.camera) for one in shots()]
+        [
+            Appearances.of(acted(), Framing(one.start, one.stop), 16 / 9).shares(one.scene, one.camera)
+            for one in shots()
+            if one.subject is Subject.BODY
+        ]
     )
     assert np.mean((shares >= 0.4).all(axis=1)) >= 0.95
 
@@ -98,8 +105,9 @@ def test_a_body_that_is_not_in_the_picture_leaves_it_as_it_was():
 def test_a_still_picture_keeps_its_brightness_and_its_colours_at_half_the_size():
     body = body_solids(acted(), [40])[0]
     camera = orbit((0.0, 0.9, 0.0), 6.0, 0.7, 0.3)
-    whole = render([prop.solid for prop in home_props(SMALL)] + [body], camera, SIZE).astype(float)
-    planes = Backdrop.of([prop.solid for prop in home_props(SMALL)] + [body], camera, SIZE).planes
+    solids = [*(prop.solid for prop in home_props(SMALL)), body]
+    whole = to_srgb_bytes(Still.of(solids, camera, SIZE, ground=None, light=STUDIO).lit.color).astype(float)
+    planes = Backdrop.of(solids, camera, SIZE).planes
     bright = 16 + 219 / 255 * whole @ [0.2126, 0.7152, 0.0722]
     assert np.abs(split(planes)[0] - bright).max() < 1.5
     blocks = whole.reshape(SIZE[1] // 2, 2, SIZE[0] // 2, 2, 3).mean(axis=(1, 3))
@@ -122,7 +130,7 @@ def test_words_are_white_on_a_darker_band_and_elsewhere_nothing_changes():
 def test_what_stands_between_a_camera_and_a_body_is_seen_to_hide_it_or_its_head():
     motion = walked("walk").motion.part(40, 41)
     x, _, z = motion.joint_positions()[0, 0].tolist()
-    bodies = Appearances.of(motion, 0, 1, 16 / 9)
+    bodies = Appearances.of(motion, Framing(0, 1), 16 / 9)
     camera = orbit((x, 0.9, z), 3.0, 0.7, 0.2)
     middle, (right, up, _) = 0.25 * np.array(camera.eye) + 0.75 * np.array([x, 0.9, z]), camera.axes
 
@@ -152,6 +160,21 @@ def test_a_film_has_all_frames_and_the_same_bytes_again(tmp_path: Path):
     assert len(shown) == 20
     drawn = next(iter(film_frames(motion, few, SIZE)))
     assert np.abs(shown[0].astype(int) - drawn).mean() < 4
+
+
+def test_a_shot_that_goes_on_behind_a_look_from_near_is_not_drawn_anew(monkeypatch: pytest.MonkeyPatch):
+    drawn = []
+    real = Backdrop.of
+
+    def counted(solids: Sequence[Solid], camera: Camera, size: tuple[int, int]) -> Backdrop:
+        drawn.append(camera)
+        return real(solids, camera, size)
+
+    monkeypatch.setattr(Backdrop, "of", counted)
+    whole, near = shots()[0], orbit((1.0, 1.0, 1.0), 1.3, 0.4, 0.1)
+    few = [replace(whole, start=0, stop=4), FilmShot(4, 8, near, list(whole.scene)), replace(whole, start=8, stop=12)]
+    assert len(list(film_frames(acted().part(0, 12), few, SIZE))) == 12
+    assert drawn == [whole.camera, near]
 
 
 def test_what_set_up_compiles_is_what_films_and_pictures_are_drawn_with():

@@ -13,6 +13,7 @@ from fastapi import FastAPI
 from service_app import app_on, calling, check_problem
 from sqlalchemy import update
 
+from motion_backend.formats import usd_film
 from planner_service.jobs import film_stages
 from planner_service.jobs.film_stages import Filmer
 from planner_service.jobs.story_stages import Maker
@@ -104,6 +105,35 @@ async def test_a_film_is_made_once_kept_and_gone_with_its_story(app: FastAPI) ->
         assert (await client.delete(here)).status_code == 204
         with pytest.raises(StoryGone):
             Stories(app.state.parts.engine).get(film["id"])
+
+
+async def test_a_film_is_had_as_usd_once_the_body_has_moved(app: FastAPI, tmp_path: Path) -> None:
+    usd = pytest.importorskip("pxr.Usd")
+    async with calling(app) as client:
+        fresh = (await client.post("/v1/motions", json=MOTION)).json()
+        assert check_problem(await client.get(fresh["links"]["usd"]), 404)["type"] == "urn:sims:problem:not-ready"
+        story = await made(app, client)
+        file = await client.get(story["links"]["usd"])
+        assert (file.status_code, file.headers["content-type"]) == (200, "model/vnd.usd")
+        assert ".usd" in file.headers["content-disposition"]
+        again = await client.get(story["links"]["usd"], headers={"If-None-Match": file.headers["etag"]})
+        assert again.status_code == 304
+    path = tmp_path / "film.usd"
+    path.write_bytes(file.content)
+    stage = usd.Stage.Open(str(path))
+    assert stage.GetEndTimeCode() > 60
+    assert stage.GetPrimAtPath("/Film/Body/Skeleton/Motion")
+    assert stage.GetPrimAtPath("/Film/Home/furniture")
+
+
+async def test_without_the_library_usd_is_not_provided_and_the_remedy_is_told(
+    app: FastAPI, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(usd_film, "find_spec", lambda _: None)
+    async with calling(app) as client:
+        story = await made(app, client)
+        problem = check_problem(await client.get(story["links"]["usd"]), 501)
+    assert "sims-stories[usd]" in problem["detail"]
 
 
 async def test_a_film_that_nobody_wants_any_more_is_left(app: FastAPI, monkeypatch: pytest.MonkeyPatch) -> None:

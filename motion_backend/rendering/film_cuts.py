@@ -1,0 +1,174 @@
+"""Where a film is cut: at actions and where one shot would be too long or go too far; and what is looked at from near,
+a face whose mood changes or that is done something with, a hand that touches.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+
+from motion_backend.body.cast import PLAIN, Role
+from motion_backend.motion import Emotion, Motion, PhaseKind
+from motion_backend.rotations import Array
+from motion_backend.skeleton import INDEX
+
+SHORTEST, LONGEST = 1.6, 7.0
+"""Seconds a shot lasts."""
+FARTHEST: Final = 3.2
+"""Metres the body goes in one shot: who goes farther is followed by another camera."""
+CLOSE_SECONDS: Final = 2.2
+"""What is looked at from near."""
+AGAIN: Final = 6.0
+"""Seconds before a face whose mood stays is looked at from near again."""
+LENGTHENED: Final = 1.8
+"""How many times as long a look from near may be where it is all of a shot."""
+STILL: Final = 0.3
+"""Metres that a face moves in that while: a camera that stands still would lose it."""
+HELD: Final = 0.5
+"""The same of a hand that touches."""
+TO_HEAD: Final = 0.30
+"""Metres between a wrist and the head of who telephones, drinks or eats."""
+HANDS: Final = (INDEX["left_wrist"], INDEX["right_wrist"])
+_SHOULDERS: Final = (INDEX["left_shoulder"], INDEX["right_shoulder"])
+_HEAD: Final = INDEX["head"]
+
+
+class Subject(StrEnum):
+    """What a camera looks at."""
+
+    BODY = "body"
+    FACE = "face"
+    HANDS = "hands"
+
+
+@dataclass(frozen=True)
+class Framing:
+    """Frames start to stop (exclusive), and what of them is looked at."""
+
+    start: int
+    stop: int
+    subject: Subject = Subject.BODY
+    hands: tuple[int, ...] = ()
+    """The wrists that have a part in it."""
+
+
+@dataclass(frozen=True)
+class Cut:
+    """Frames start to stop (exclusive) between two cuts, and what in them is worth looking at from near."""
+
+    start: int
+    stop: int
+    close: Framing | None = None
+
+
+def film_cuts(motion: Motion, joints: Array, starts: Sequence[int], role: Role = PLAIN) -> Iterator[Cut]:
+    """All of a motion, whose joints are (T, 22, 3) in the world and whose actions begin at `starts`."""
+    finder = _Finder(motion, joints, role.emotions, role.asleep)
+    seen: Emotion | None = None
+    before: Framing | None = None
+    for start, stop in _windows(motion, starts):
+        mood = finder.mood((start + stop) // 2)
+        close = finder.close_up(start, stop, mood is not seen)
+        if close is not None and before is not None:
+            # Two in a row would leave no one know where all this is; what the head does is a matter of now and then.
+            rest = (close.start - before.stop) / motion.fps
+            if rest <= 0 or (close.subject is Subject.FACE and mood is seen and rest < AGAIN):
+                close = None
+        yield Cut(start, stop, close)
+        before = close or before
+        seen = mood if close is not None and close.subject is Subject.FACE else seen
+
+
+def _windows(motion: Motion, starts: Sequence[int]) -> Iterator[tuple[int, int]]:
+    """Frames between cuts: at every action, where walking ends, and where one shot would be too long or go too far."""
+    shortest = round(SHORTEST * motion.fps)
+    walks = [p for p in motion.phases if p.kind is PhaseKind.WALK]
+    edges = sorted({0, len(motion), *starts, *(p.start for p in walks), *(p.stop for p in walks)})
+    cuts = [0]
+    for edge in edges[1:-1]:
+        if min(edge - cuts[-1], len(motion) - edge) >= shortest:
+            cuts.append(edge)
+    for start, stop in pairwise([*cuts, len(motion)]):
+        pieces = np.linspace(start, stop, _pieces(motion, start, stop) + 1).round().astype(int)
+        yield from pairwise(pieces.tolist())
+
+
+def _pieces(motion: Motion, start: int, stop: int) -> int:
+    steps = np.linalg.norm(np.diff(motion.root_positions[start:stop, [0, 2]], axis=0), axis=1)
+    wanted = max((stop - start) / motion.fps / LONGEST, float(steps.sum()) / FARTHEST)
+    return max(1, min(int(np.ceil(wanted)), int((stop - start) / motion.fps / SHORTEST)))
+
+
+@dataclass(frozen=True)
+class _Finder:
+    """What close-ups are found in."""
+
+    motion: Motion
+    joints: Array
+    emotions: Mapping[int, Emotion]
+    asleep: frozenset[int]
+
+    def mood(self, frame: int) -> Emotion:
+        """That of the keyframe a frame serves."""
+        return self.emotions.get(int(self.motion.actions[frame]), Emotion.NEUTRAL)
+
+    def close_up(self, start: int, stop: int, changed: bool) -> Framing | None:
+        """The hand where something is touched, else the face where the mood is another or the head is what matters."""
+        return self._touch(start, stop) or self._face(start, stop, changed)
+
+    def _touch(self, start: int, stop: int) -> Framing | None:
+        touches = [p for p in self.motion.phases if p.kind is PhaseKind.TOUCH and p.start < stop and p.stop > start]
+        if not touches:
+            return None
+        first, last = max(start, touches[0].start), min(stop, touches[-1].stop)
+        reach = np.linalg.norm(self.joints[first:last, HANDS] - self.joints[first:last, _SHOULDERS], axis=-1)
+        level = np.linalg.norm((self.joints[first:last, HANDS] - self.joints[first:last, :1])[..., [0, 2]], axis=-1)
+        far = reach + 2.0 * level  # (frames, 2)
+        hand = int(far.max(axis=0).argmax())
+        there = np.flatnonzero(far[:, hand] > far[:, hand].max() - 0.08)
+        hands = HANDS if far[there].min(axis=1).mean() > far.max() - 0.3 else (HANDS[hand],)
+        return self._around(start, stop, first + int(there[0] + there[-1]) // 2, Subject.HANDS, hands, HELD)
+
+    def _face(self, start: int, stop: int, changed: bool) -> Framing | None:
+        near = np.linalg.norm(self.joints[start:stop, HANDS] - self.joints[start:stop, [_HEAD]], axis=-1) < TO_HEAD
+        busy = near.mean(axis=0) > 0.4
+        asleep = int(self.motion.actions[(start + stop) // 2]) in self.asleep
+        if not (changed or busy.any() or asleep):
+            return None
+        long = round(CLOSE_SECONDS * self.motion.fps)
+        if stop - start < long:
+            return None
+        moved = [np.ptp(self.joints[at : at + long, _HEAD], axis=0).max() for at in range(start, stop - long + 1, 5)]
+        middle = start + 5 * int(np.argmin(moved)) + long // 2
+        hands = tuple(np.asarray(HANDS)[busy].tolist())
+        return self._around(start, stop, middle, Subject.FACE, hands, STILL)
+
+    def _around(
+        self, start: int, stop: int, middle: int, subject: Subject, hands: tuple[int, ...], most: float
+    ) -> Framing | None:
+        """A close-up about a frame that leaves no splinter of the shot around it; None where what it shows moves."""
+        window = _splinterless(start, stop, middle, self.motion.fps)
+        if window is None:
+            return None
+        first, last = window
+        watched = self.joints[first:last, [_HEAD] if subject is Subject.FACE else list(hands)]
+        if np.ptp(watched, axis=0).max() > most:
+            return None
+        return Framing(first, last, subject, hands)
+
+
+def _splinterless(start: int, stop: int, middle: int, fps: int) -> tuple[int, int] | None:
+    """Frames about one, or from the beginning or to the end of a shot, that leave nothing of it too short to be seen;
+    None where there are none."""
+    long, shortest = round(CLOSE_SECONDS * fps), round(SHORTEST * fps)
+    for first in (middle - long // 2, stop - long, start):
+        last = first + long
+        rests = (first - start, stop - last)
+        if first <= middle < last and all(rest == 0 or rest >= shortest for rest in rests):
+            return first, last
+    return (start, stop) if long <= stop - start <= LENGTHENED * long else None

@@ -1,0 +1,122 @@
+"""Where films are cut, and what they look at from near: what keeps still, without splinters, and not all the time."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+from acted import SMALL, sat, touched, walked
+from for_each import for_each
+
+from motion_backend.body.cast import Role
+from motion_backend.motion import Emotion, Motion, PhaseKind, join
+from motion_backend.rendering.film_cuts import SHORTEST, Cut, Framing, Subject, film_cuts
+from motion_backend.rendering.film_shots import ALIKE, FilmShot, film_shots
+from motion_backend.rendering.film_sight import Appearances
+from motion_backend.rendering.rasterizer import orbit
+from motion_backend.rotations import wrap
+from motion_backend.skeleton import INDEX
+
+ASPECT = 16 / 9
+SAD = Role(emotions={0: Emotion.HAPPY, 1: Emotion.SAD, 2: Emotion.SAD})
+
+
+@cache
+def story() -> tuple[Motion, tuple[int, ...]]:
+    """Somebody walks, sits down and touches the shelf, and where each of that begins."""
+    parts = [walked("walk").motion, sat("sofa", "sit").motion, touched("shelf", "medium", "touch").motion]
+    actions = np.repeat(np.arange(len(parts), dtype=np.int32), list(map(len, parts)))
+    return replace(join(parts), actions=actions), tuple(np.cumsum([0, *map(len, parts)])[:-1].tolist())
+
+
+def cuts(role: Role = SAD) -> list[Cut]:
+    motion, starts = story()
+    return list(film_cuts(motion, motion.joint_positions().astype(np.float64), starts, role))
+
+
+@cache
+def shots() -> tuple[FilmShot, ...]:
+    motion, starts = story()
+    return tuple(film_shots(SMALL, motion, starts, ASPECT, SAD))
+
+
+def close_ups() -> list[FilmShot]:
+    return [shot for shot in shots() if shot.subject is not Subject.BODY]
+
+
+def test_cuts_follow_each_other_and_what_is_seen_from_near_leaves_no_splinter_of_a_shot():
+    motion, _ = story()
+    assert [cuts()[0].start, cuts()[-1].stop] == [0, len(motion)]
+    assert all(one.stop == other.start for one, other in pairwise(cuts()))
+    for cut in cuts():
+        if cut.close is not None:
+            assert cut.start <= cut.close.start < cut.close.stop <= cut.stop
+            for left in (cut.close.start - cut.start, cut.stop - cut.close.stop):
+                assert left == 0 or left >= SHORTEST * motion.fps
+
+
+def test_a_hand_that_touches_is_seen_from_near_at_the_moment_it_does():
+    motion, _ = story()
+    close = next(cut.close for cut in cuts() if cut.close is not None and cut.close.subject is Subject.HANDS)
+    phases = [phase for phase in motion.phases if phase.kind is PhaseKind.TOUCH]
+    assert INDEX["right_wrist"] in close.hands
+    assert any(phase.start < (close.start + close.stop) / 2 < phase.stop for phase in phases)
+
+
+def test_a_face_is_seen_from_near_where_the_mood_is_another_and_not_where_it_stays():
+    faces = [cut.close for cut in cuts() if cut.close is not None and cut.close.subject is Subject.FACE]
+    assert faces
+    shown = [SAD.emotions[int(story()[0].actions[one.start])] for one in faces]
+    assert len(set(shown)) == len(shown), "each mood once"
+    assert Emotion.SAD in shown
+
+
+def test_no_two_shots_in_a_row_are_seen_from_near():
+    assert close_ups(), "something is seen from near"
+    for one, other in pairwise(shots()):
+        assert Subject.BODY in (one.subject, other.subject)
+
+
+@for_each("name", ["head", "hands"])
+def test_what_is_looked_at_from_near_is_in_the_picture_all_the_time(name: str):
+    motion, _ = story()
+    joints = motion.joint_positions().astype(np.float64)
+    wanted = Subject.FACE if name == "head" else Subject.HANDS
+    for shot in (one for one in close_ups() if one.subject is wanted):
+        for frame in range(shot.start, shot.stop):
+            points = joints[frame, [INDEX["head"]] if name == "head" else [INDEX["right_wrist"]]]
+            x, y, _ = np.moveaxis(shot.camera.project(shot.camera.view(points), (160, 90)), -1, 0)
+            assert ((x > 0) & (x < 160) & (y > 0) & (y < 90)).all(), (shot, frame)
+
+
+def test_a_camera_from_near_is_nearer_and_neither_furniture_nor_the_body_itself_hides_what_it_is_about():
+    motion, _ = story()
+    framings = {cut.close.start: cut.close for cut in cuts() if cut.close is not None}
+    for shot in close_ups():
+        bodies = Appearances.of(motion, framings[shot.start], ASPECT)
+        assert bodies.shown(shot.scene, shot.camera) >= 0.9
+        assert np.linalg.norm(np.subtract(shot.camera.eye, shot.camera.target)) < 2.2
+
+
+def test_cuts_between_shots_of_the_whole_body_mostly_change_the_view():
+    wholes = [shot for shot in shots() if shot.subject is Subject.BODY]
+    views = [np.arctan2(*np.subtract(shot.camera.eye, shot.camera.target)[[0, 2]]) for shot in wholes]
+    jumps = [
+        abs(float(wrap(np.array(one - other)))) < ALIKE
+        for (one, first), (other, second) in pairwise(zip(views, wholes, strict=True))
+        if first.camera != second.camera
+    ]
+    assert np.mean(jumps) < 0.34
+
+
+def test_a_body_hides_its_own_hand_from_a_camera_behind_its_back():
+    motion = touched("shelf", "medium", "touch").motion
+    joints, middle = motion.joint_positions().astype(np.float64), len(motion) // 2
+    hand, chest = joints[middle, INDEX["right_wrist"]], joints[middle, INDEX["spine3"]]
+    bodies = Appearances.of(motion, Framing(middle, middle + 1, Subject.HANDS, (INDEX["right_wrist"],)), ASPECT)
+    x, y, z = hand.tolist()
+    behind = float(np.arctan2(*(chest - hand)[[0, 2]]))
+    shown = [bodies.shares([], orbit((x, y, z), 1.6, behind + turn, 0.05))[0, 1] for turn in (0.0, np.pi / 2, np.pi)]
+    assert shown[0] < 0.4 < min(shown[1:])
