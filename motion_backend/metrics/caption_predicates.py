@@ -32,6 +32,8 @@ STARTS: Final = 0.6
 """Seconds at both ends of a walk that belong to starting and stopping."""
 AFTERWARDS, BEFOREHAND = r"\bpick|\bturn on", r"\bput"
 """Words of touches that show after the hand was there, and before."""
+FROM_CHAIR: Final = 0.36
+"""How far a pelvis rises from a chair (metres at 1.70 m)."""
 NEAREST: Final = 0.03
 """A hand that touches is so near to where it comes nearest to its goal (metres)."""
 
@@ -266,6 +268,12 @@ def _slope(values: Array, fps: int) -> Array:
     return np.asarray(np.gradient(values) * fps) if len(values) > 1 else np.zeros(len(values))
 
 
+def _as_from_chair(body: Kinematics) -> float:
+    """How many times farther a body would rise from a chair than it does, 1 where it rises from lower."""
+    rise, chair = float(np.ptp(body.positions[:, INDEX["pelvis"], 1])), FROM_CHAIR * body.motion.skeleton.scale
+    return chair / min(max(rise, NEAREST), chair)
+
+
 def _trunk_aside(body: Kinematics) -> Array:
     """Degrees that the trunk leans to the left. (T,)."""
     ahead, trunk = _heading(body), _trunk(body)
@@ -373,6 +381,8 @@ MEASURES: Final[dict[str, Callable[[Kinematics], Array]]] = {
     "knee_height": lambda body: _high(_both(body, "knee")),
     "pelvis_height": lambda body: _high(body.positions[:, INDEX["pelvis"]]),
     "pelvis_rise": lambda body: _slope(_high(body.positions[:, INDEX["pelvis"]]), body.motion.fps),
+    # The same as if the body rose as far as from a chair: from a high stool one comes up in the same time.
+    "rise_pace": lambda body: _slope(_high(body.positions[:, INDEX["pelvis"]]), body.motion.fps) * _as_from_chair(body),
     "neck_speed": lambda body: _speeds(body, body.positions[:, INDEX["neck"]]),
     "pelvis_speed": lambda body: _speeds(body, body.positions[:, INDEX["pelvis"]] * [1.0, 0.0, 1.0]),
 }  # fmt: skip

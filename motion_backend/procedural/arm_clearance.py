@@ -4,7 +4,8 @@ What arms want is in the handles of a pose. One solve over the whole segment fin
 goes elsewhere, and how far its elbow swings about the line from the shoulder, frame by frame. It is a Gauss-Newton
 solve: in each of a few rounds the places that are in something (arm_collision.py) are to come out along their ways,
 with the least change of the detour (Levenberg 1944) and the least of its second differences, which make one banded
-system of equations over all frames.
+system of equations over all frames. A round that leaves the arms deeper than they were is taken back, and the frames
+that are to blame are damped (Marquardt 1963).
 """
 
 from __future__ import annotations
@@ -31,6 +32,9 @@ from motion_backend.skeleton import Skeleton
 
 ROUNDS: Final = 6
 """So often it is looked again what a moved arm is in."""
+HARDER, EASIER = 10.0, 3.0
+"""How much more a frame's detour is damped after a round that left its arms deeper in something, and how much less
+after one that did not."""
 NOWHERE: Final = 1e-9
 """A way out shorter than this has no direction (metres)."""
 SEEN, OUT = 0.003, 0.005
@@ -153,6 +157,16 @@ class _Arms(NamedTuple):
             elbows[:, index] = _about(axis, detours[index, :, 3:], elbows[:, index])
         return replace(self.pose, **handles)
 
+    def on(self, detours: Array) -> _Tried:
+        """The arms on detours (2, T, 4)."""
+        pose = self.moved(detours)
+        arms = _both(pose, self)
+        hands = _hands(arms)
+        first, second = (_rows(arm, self.contacts(arms, hands, index)) for index, arm in enumerate(arms))
+        frames, wanted = (np.concatenate(pair) for pair in zip(first[::2], second[::2], strict=True))
+        missing = np.bincount(frames, wanted, len(pose)).astype(np.float64)
+        return _Tried(detours, pose, (first, second), missing, float(wanted.max(initial=0.0)))
+
     def contacts(self, arms: tuple[Arm, Arm], hands: tuple[Array, Array], index: int) -> Contacts:
         """What one of the arms is in."""
         arm, hand, other = arms[index], hands[index], 1 - index
@@ -164,6 +178,8 @@ class _Arms(NamedTuple):
 
 def _out(pose: Pose, around: Around, skeleton: Skeleton) -> Pose:
     """A segment of T frames with both arms out of what they are in."""
+    from scipy.ndimage import uniform_filter1d
+
     whole = _Arms.of(pose, around, skeleton)
     seen, hands = np.zeros(len(pose), dtype=bool), _hands(whole.wanted)
     for index, arm in enumerate(whole.wanted):
@@ -172,27 +188,30 @@ def _out(pose: Pose, around: Around, skeleton: Skeleton) -> Pose:
     if not seen.any():
         return pose
     at, near = whole.about(seen)
-    free, detours, moved = bool(at[-1] == len(pose) - 1), np.zeros((2, len(at), 4)), near.pose
-    least, best = np.inf, near.pose
-    # The last round only looks what came of the one before; the best of all is taken.
-    for _ in range(ROUNDS + 1):
-        arms = _both(moved, near)
-        hands = _hands(arms)
-        rows = [_rows(arm, near.contacts(arms, hands, index)) for index, arm in enumerate(arms)]
-        missing = sum(float(one.wanted.sum()) for one in rows)
-        if missing < least:
-            least, best = missing, moved
-        if max(float(one.wanted.max(initial=0.0)) for one in rows) < OUT:
+    free, damped = bool(at[-1] == len(pose) - 1), np.ones(len(at))
+    best = near.on(np.zeros((2, len(at), 4)))
+    for _ in range(ROUNDS):
+        if best.deepest < OUT:
             break
-        for index, one in enumerate(rows):
-            firm = FIRM * near.edges[:, None] + near.firm * near.laid[:, index, None] * WRIST
-            detours[index] += _solved(one, firm, detours[index], free)
-        moved = near.moved(detours)
+        tried = near.on(best.detours + _step(near, best, damped, free))
+        worse = uniform_filter1d(tried.missing - best.missing, 2 * round(SPREAD) + 1, mode="nearest") > 0
+        damped = np.where(worse, damped * HARDER, np.maximum(damped / EASIER, 1.0))
+        if tried.missing.sum() < best.missing.sum():
+            best = tried
     handles = {}
     for name in HANDLES:
         handles[name] = getattr(pose, name).copy()
-        handles[name][at] = getattr(best, name)
+        handles[name][at] = getattr(best.pose, name)
     return replace(pose, **handles)
+
+
+def _step(arms: _Arms, best: _Tried, damped: Array, free: bool) -> Array:
+    """What is added to both detours (2, T, 4), the less the more a frame is damped (T,)."""
+    found = []
+    for index, rows in enumerate(best.rows):
+        firm = FIRM * arms.edges[:, None] + arms.firm * arms.laid[:, index, None] * WRIST
+        found.append(_solved(rows, damped[:, None] * (1 + firm), best.detours[index], free))
+    return np.stack(found)
 
 
 def _laid(pose: Pose) -> Array:
@@ -219,6 +238,18 @@ def _strain(arm: Arm, limb: Limb) -> Array:
 def _about(axes: Array, angles: Array, vectors: Array) -> Array:
     """Vectors turned about unit axes by angles (..., 1)."""
     return rotations.rotate(rotations.rotvec_to_quat(angles * axes), vectors)
+
+
+class _Tried(NamedTuple):
+    """Both arms of T frames on detours (2, T, 4), and what they are in then."""
+
+    detours: Array
+    pose: Pose
+    rows: tuple[_Rows, _Rows]
+    missing: Array
+    """The ways out of all that they are in, added up. (T,) metres."""
+    deepest: float
+    """The longest of them (metres)."""
 
 
 class _Rows(NamedTuple):
@@ -267,14 +298,14 @@ def _derivatives(arm: Arm) -> tuple[Array, Array]:
 
 def _solved(rows: _Rows, firm: Array, detour: Array, free: bool) -> Array:
     """What is added to a detour (T, 4) that begins from none, and does not go back to it where its end is `free`;
-    `firm` (T, 4) is where it is not to be changed."""
+    `firm` (T, 4) is how much less than a free arm it is to be changed, 1 or more."""
     from scipy.linalg import solveh_banded
 
     frames, rough = len(detour), STIFF * SPREAD**4
     blocks, wanted = np.zeros((frames, 4, 4)), np.zeros((frames, 4))
     np.add.at(blocks, rows.frames, rows.gone[:, :, None] * rows.gone[:, None])
     np.add.at(wanted, rows.frames, rows.wanted[:, None] * rows.gone)
-    blocks[:, range(4), range(4)] += STIFF * (1 + firm)
+    blocks[:, range(4), range(4)] += STIFF * firm
     bands = np.zeros((9, frames, 4))
     for below in range(4):
         bands[below, :, : 4 - below] = blocks[:, range(below, 4), range(4 - below)]

@@ -49,6 +49,8 @@ FLOOR_TRIES: Final = 120
 """Places on the floor that are looked at: half of them anywhere in the room, the others beside the best of those."""
 BESIDE_BEST, TURNED_ASIDE = 0.15, 0.3
 """Deviations of those from it: metres to each side, radians."""
+A_STEP: Final = 0.9
+"""A place to stand so near to where the body stands is not walked round a thing for (metres)."""
 
 
 def stays(caption: str) -> bool:
@@ -170,6 +172,8 @@ class _Stage:
     ) -> None:
         self.home, self.walkable, self.rng, self.words, self.scale = home, walkable, rng, words, scale
         self.at: Point | None = None
+        self.walks_on = False
+        """Whether it has walked on from there."""
         self.resting: Spot | None = None
         self.on: Spot | None = None
         """What it sits or lies on still."""
@@ -187,10 +191,11 @@ class _Stage:
             else:
                 self.resting = spot
             self.on = None if keyframe.skill is Skill.TOUCH else spot
-            self.at = spot.standing
+            self.at, self.walks_on = spot.standing, False
             hold, already = HOLDS[keyframe.skill], getattr(keyframe, "already", False)
             return replace(action, object_id=spot.object_id, spot=spot, hand=hand, hold=hold, already=already)
         self.on = None
+        self.walks_on |= keyframe.skill is Skill.LOCO
         if keyframe.skill in RISINGS and self.resting is not None:
             return replace(action, object_id=self.resting.object_id, spot=self.resting)
         return action
@@ -201,6 +206,7 @@ class _Stage:
         self.on = action.spot if action.skill in (Skill.SITDOWN, Skill.LIEDOWN) else None
         self.resting = self.on or self.resting
         self.at = action.spot.standing if action.spot is not None else self.at
+        self.walks_on = action.skill is Skill.LOCO or (self.walks_on and action.spot is None)
         return replace(action, keyframe=index, hold=HOLDS.get(action.skill, Action.hold))
 
     def _spot(self, index: int, keyframe: Keyframe, mood: Emotion, place: Place) -> Spot:
@@ -246,11 +252,18 @@ class _Stage:
             found = self._elbows.roomiest(found)
             found.sort(key=lambda s: -s.point[1])
             found = [s for s in found if s.point[1] > found[0].point[1] - 0.1]
+        found = [s for s in found if self._is_here(s)] or found
         least = min(self._cluttered(s) for s in found)
         found = [s for s in found if self._cluttered(s) == least]
         # The body may come back to a piece: it need not touch the very same place again.
         found = self._elbows.roomiest(found)
         return found[int(self.rng.integers(min(len(found), 3)))]
+
+    def _is_here(self, spot: Spot) -> bool:
+        """Whether the body is there, or a step aside: nobody walks round a thing to touch it again."""
+        if self.at is None or self.walks_on:
+            return False
+        return bool(np.hypot(spot.standing[0] - self.at[0], spot.standing[1] - self.at[1]) < A_STEP)
 
     @cached_property
     def _elbows(self) -> ElbowRoom:

@@ -25,9 +25,9 @@ from motion_backend.procedural.walk.walk_styles import Walk
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
 
-FEET_CHANGE = 0.6
-"""So much of a step later, at most, a walk goes over into the next."""
-ABOUT = 5
+FEET_CHANGE = 1.0
+"""So many steps later, at most, a walk goes over into the next: in one step there is a moment for it."""
+ABOUT = 3
 """Frames about such a frame in which feet are slow."""
 NEAR = 0.2
 """Who has gone so far along a way is no farther than this from there (metres)."""
@@ -90,13 +90,17 @@ def walk_on(
 
 
 def _as_feet_change(steps: Steps, frame: int) -> int:
-    """The frame from that one on, within a good half of a step, about which feet are slowest: nobody changes his walk
-    in mid-swing, nor as a foot comes down."""
+    """The frame from that one on, within a step, about which feet are slowest and change their pace least:
+    nobody changes his walk in mid-swing, nor as a foot comes down."""
     from scipy.ndimage import maximum_filter1d
 
     within = min(int(np.searchsorted(steps.phase, steps.phase[frame] + FEET_CHANGE)), len(steps.phase) - 1)
-    pace = np.linalg.norm(np.diff(steps.ankles[frame : within + 1], axis=0), axis=-1).max(axis=1)
-    return frame + int(np.argmin(maximum_filter1d(pace, ABOUT, mode="nearest"))) if len(pace) else frame
+    if within <= frame:
+        return frame
+    # What comes just before and after these frames counts as well.
+    gone = np.diff(steps.ankles, axis=0)
+    rough = rotations.length(gone) + rotations.length(np.diff(gone, axis=0, prepend=gone[:1]))
+    return frame + int(np.argmin(maximum_filter1d(rough[..., 0].max(axis=1), ABOUT, mode="nearest")[frame:within]))
 
 
 def _taken_up(start: Pose, pose: Pose, stride: Stride, fps: int) -> Pose:

@@ -10,6 +10,7 @@ from for_each import for_each
 
 from motion_backend import rotations
 from motion_backend.backend_protocol import Part, PartKind
+from motion_backend.body.joint_limits import limits_share
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.body.self_collision import self_penetration
 from motion_backend.motion import FPS, Action, Emotion, Posture, Skill
@@ -20,6 +21,7 @@ from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose import Pose, concatenate, interpolate
 from motion_backend.procedural.pose_solver import solve
 from motion_backend.skeleton import INDEX, build_skeleton
+from planner_service.evaluation.trials import Trial, act_trial
 
 SKELETON = build_skeleton()
 ARMS = [INDEX[f"{side}_{joint}"] for side in ("left", "right") for joint in ("shoulder", "elbow", "wrist")]
@@ -166,3 +168,9 @@ def test_a_hand_that_lies_on_something_stays_there_while_its_elbow_is_slowed() -
     assert fastest(laid.at(0), slowed) < 20.0
     after = SKELETON.forward_kinematics(*solve(slowed, SKELETON))[0].astype(np.float64)
     np.testing.assert_allclose(after[:, [INDEX["left_wrist"], INDEX["right_wrist"]]], wrists, atol=2e-3)
+
+
+def test_a_detour_that_leads_deeper_is_taken_back() -> None:
+    """Round a bookshelf that is reached up into, full steps turned this shoulder 70 degrees out of its range."""
+    _, _, motions = act_trial(Trial(Skill.TOUCH, "An act of reaching high", "study-0088", 1))
+    assert limits_share(motions[-1].local_rotations) == 0.0

@@ -11,6 +11,7 @@ from for_each import for_each
 from motion_backend.motion import Action, Emotion, Skill
 from motion_backend.scene import scene_of
 from planner_service.grounding.keyframes_to_actions import (
+    Kept,
     Place,
     UnreachableError,
     act,
@@ -213,3 +214,18 @@ def test_the_free_hand_touches_while_the_other_holds_the_phone() -> None:
     phone = "walk while talking on the phone with the right hand"
     _, touch = grounded(("loco", phone, "shelf"), ("touch", "touch medium height", "shelf"))
     assert touch.hand == "left"
+
+
+@for_each(("between", "stays"), [((), True), ((("loco", "walk", None),), False)])
+def test_nobody_walks_round_a_thing_to_touch_it_again(between: tuple[tuple[str, str, None], ...], stays: bool) -> None:
+    """The first touch is made to be on the side that has less room; who has walked on may come to the other."""
+    table = Placed("table", "dining_table", (2.2, 0.0, 2.5), (1.4, 0.75, 1.4), 0.0)
+    home = home_from_layouts([replace(ROOM, objects=(table,))], 0)
+    rows = [("touch", "touch medium height", "table"), *between, ("touch", "touch medium height", "table")]
+    keyframes = [keyframe(skill, caption, object_id or "floor") for skill, caption, object_id in rows]
+    places = [Place(0, f"0/{object_id}" if object_id else None) for _, _, object_id in rows]
+    narrow = min(spots(home.object("0/table"), "touch"), key=lambda spot: spot.standing[0])
+    first = replace(act(keyframes[:1], places[:1], home, 0)[0], spot=narrow)
+    last = act(keyframes, places, home, 0, kept=[Kept(first), *[None] * (len(rows) - 1)])[-1]
+    assert last.spot is not None
+    assert (np.hypot(*np.subtract(last.spot.standing, narrow.standing)) < 1.0) == stays
