@@ -7,7 +7,7 @@ in furniture than may be, is made again from other noise, and else is left to th
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -89,6 +89,8 @@ class PlanFollower:
     seen_as: Scale
     """What the scheduler sees of features."""
     name: str = "diffusion"
+    watch: Callable[[Missed], None] | None = None
+    """Told of each passage that is the model's."""
 
     def follow(
         self, passages: Sequence[PlannedPassage], notes: tuple[Note, ...], state: BodyState, arms: str = ""
@@ -104,6 +106,8 @@ class PlanFollower:
             try:
                 motion, away = self._tried(passage, past, [state.seed, state.index, index], arms)
                 missed.append(Missed(passage.kind, away))
+                if self.watch is not None:
+                    self.watch(missed[-1])
             except RefusedError as error:
                 motion = by_rules(passage.plan, f"{self.name}: {error}")
                 if missed:
