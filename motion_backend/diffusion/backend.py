@@ -64,7 +64,8 @@ def walking_by(path: Path) -> Sampler:
     gaits = int(weights.config.get("gaits", 0))
     paces = np.array(weights.config["paces"]) if "paces" in weights.config else None
     network = cast(Denoiser, weights.network)
-    return Sampler(network, weights.scale, schedule, gaits=gaits, strides=strides, paces=paces)
+    people = tuple(weights.config.get("learned_from", ()))
+    return Sampler(network, weights.scale, schedule, gaits=gaits, strides=strides, paces=paces, learned_from=people)
 
 
 @lru_cache(maxsize=2)

@@ -286,24 +286,30 @@ def _laid(frames: Frames, passage: PlannedPassage, arms: str, number: int) -> tu
 
 
 def _settled(past: Frames, frames: Frames, passage: PlannedPassage, phase: Phase) -> Motion:
-    """Frames as motion, with standing feet held where they stand; who sits or lies there has them where they rest."""
-    whole, skeleton = past.then(frames), passage.plan.skeleton
+    """Frames as motion that goes on from the past, with standing feet held where they stand.
+
+    What the two were apart dies away before feet are held: it would drag them along. Who sits or lies there has them
+    where they rest.
+    """
+    skeleton, count = passage.plan.skeleton, len(frames)
+    begun = joined(_known(past), _motion(frames, np.zeros((count, 4)), passage, phase))
     if passage.since:
-        at = np.minimum(np.arange(len(frames)), len(passage.plan) - 1)
-        resting = np.concatenate([np.zeros((len(past), 4)), passage.plan.contacts[at]])
-        root, local, contacts = whole.root, rotations.continuous(whole.local), resting
-    else:
-        root, local, contacts = held(whole.root, whole.local, skeleton, len(past))
-    new = slice(len(past), None)
-    motion = Motion(
-        root_positions=root[new].astype(np.float32),
-        local_rotations=local[new].astype(np.float32),
-        contacts=contacts[new].astype(np.float32),
-        skeleton=skeleton,
+        at = np.minimum(np.arange(count), len(passage.plan) - 1)
+        return replace(begun, contacts=passage.plan.contacts[at])
+    whole, new = past.then(_frames(begun)), slice(len(past), None)
+    root, local, contacts = held(whole.root, whole.local, skeleton, len(past))
+    return _motion(Frames(root[new], local[new]), contacts[new], passage, phase)
+
+
+def _motion(frames: Frames, contacts: Array, passage: PlannedPassage, phase: Phase) -> Motion:
+    return Motion(
+        root_positions=frames.root.astype(np.float32),
+        local_rotations=frames.local.astype(np.float32),
+        contacts=contacts.astype(np.float32),
+        skeleton=passage.plan.skeleton,
         actions=np.full(len(frames), passage.part.action.keyframe, dtype=np.int32),
         phases=(phase,),
     )
-    return joined(_known(past), motion)
 
 
 def _known(past: Frames) -> History:

@@ -6,13 +6,13 @@ people themselves, as one body, are what all of them are read against: nobody is
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
 
-from motion_backend.backends import DEFAULT_BACKEND, MATCHING, load_backend
+from motion_backend.backends import DEFAULT_BACKEND, DIFFUSION, MATCHING, load_backend
 from motion_backend.director import Director, shares
 from motion_backend.metrics.foot_skate import support_slip
 from motion_backend.metrics.gait_features import UNITS
@@ -82,6 +82,10 @@ def compare_walks(
     dataset: Dataset, names: Sequence[str], caption: str, rooms: int, seeds: int, walks_a_room: int = WALKS_A_ROOM
 ) -> list[Judged]:
     """People meant for training, then every backend in the hall and in rooms. ClipError for too few people."""
+    if DIFFUSION in names:
+        from motion_backend.diffusion.backend import walking
+
+        dataset = with_sides(dataset, walking().learned_from)
     everybody = recorded_walks(dataset)
     strangers = recorded_walks(_side(dataset, TEST))
     own = recorded_walks(_side(dataset, TRAIN))
@@ -94,6 +98,18 @@ def compare_walks(
             walks = walks_of(name, made)
             found.append(_judged(name, place, walks, (strangers, everybody), made, reached))
     return found
+
+
+def with_sides(dataset: Dataset, learned_from: Collection[str]) -> Dataset:
+    """A collection whose test side is everybody that was not learned from; as it is where nobody is named.
+
+    Who is dealt to which side hangs on all clips that were accepted, and may differ from build to build.
+    """
+    if not learned_from:
+        return dataset
+    sides = [TRAIN if entry.subject in learned_from else TEST for entry in dataset.entries]
+    rows = zip(dataset.entries, sides, strict=True)
+    return replace(dataset, entries=tuple(replace(entry, split=side) for entry, side in rows))
 
 
 def _side(dataset: Dataset, split: str) -> Dataset:

@@ -143,10 +143,8 @@ def test_history_is_never_diffused_in_training() -> None:
     windows = bank.windows({WALK: 1.0})
     batch = bank.batch(*windows.drawn(64, np.random.default_rng(0)), np.zeros(64, dtype=np.bool_))
     for noise in (0.0, 0.05):
-        learner, seen = (
-            denoiser_learner(DenoiserSizes(1, 2, 16, 16, True, None), TrainConfig(1, history_noise=noise)),
-            [],
-        )
+        learner = denoiser_learner(TINY, TrainConfig(1, history_noise=noise))
+        seen: list[tuple[torch.Tensor, ...]] = []
         learner.network.register_forward_pre_hook(lambda _module, given, seen=seen: seen.append(given[:2]))
         scale = Scale(torch.zeros(202), torch.ones(202))
         learner.loss(Run(learner.network, {}, scale, Adam([])), batch, np.random.default_rng(1))
