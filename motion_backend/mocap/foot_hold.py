@@ -6,7 +6,7 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.mocap.foot_contacts import ANKLES, BALLS, Feet, above_floor, bend_legs
-from motion_backend.mocap.foot_lock import locked, standing
+from motion_backend.mocap.foot_lock import from_nothing, locked, standing
 from motion_backend.mocap.rest_pose import world_to_local
 from motion_backend.motion import FPS
 from motion_backend.rotations import Array
@@ -40,8 +40,7 @@ def _once(root: Array, local: Array, skeleton: Skeleton, fixed: int) -> tuple[Ar
     root = root + carried
     world = bend_legs(skeleton, positions + carried[:, None], world, feet.ankles + shift)
     feet, world, positions = _feet(root, world_to_local(world), skeleton)
-    rise = above_floor(feet)
-    rise[:fixed] = 0.0
+    rise = from_nothing(above_floor(feet), fixed, FPS)
     if rise.any():
         world = bend_legs(skeleton, positions, world, feet.ankles + rise)
     turned = rotations.continuous(world_to_local(world))

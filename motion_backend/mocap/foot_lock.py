@@ -24,6 +24,8 @@ PASSED = 8.0
 """Hz above which nothing of the shift is kept."""
 CARRIED = 3.0
 """Likewise of what the pelvis comes along with a standing foot."""
+SETS_OUT = 20.0
+"""A second: how fast a shift comes to where it should be from frames that are not shifted."""
 
 
 def standing(feet: Feet, pelvis: Array, grounded: bool = False) -> tuple[Flags, Flags]:
@@ -74,9 +76,20 @@ def locked(
     shift *= np.minimum(1.0, MAX_FOOT_SHIFT / np.maximum(length, 1e-9))
     carried = np.zeros_like(pelvis)
     carried[:, 1] = np.average(shift[..., 1], axis=1, weights=(heels | balls) + 1e-3)
-    if len(shift) <= 8:
-        return shift, carried
-    return low_pass(shift, feet.fps, PASSED), low_pass(carried, feet.fps, CARRIED)
+    if len(shift) > 8:
+        shift, carried = low_pass(shift, feet.fps, PASSED), low_pass(carried, feet.fps, CARRIED)
+    return from_nothing(shift, fixed, feet.fps), from_nothing(carried, fixed, feet.fps)
+
+
+def from_nothing(shift: Array, fixed: int, fps: float) -> Array:
+    """A shift (T, …) that is none in the first `fixed` frames, and sets out from there in place and in speed."""
+    if not 0 < fixed < len(shift):
+        return shift
+    begins, pace = shift[fixed - 1], (shift[fixed] - shift[fixed - 1]) * fps
+    seconds = np.arange(1, len(shift) - fixed + 1).reshape(-1, *([1] * (shift.ndim - 1))) / fps
+    found = np.zeros_like(shift)
+    found[fixed:] = shift[fixed:] - np.exp(-SETS_OUT * seconds) * (begins + seconds * (pace + SETS_OUT * begins))
+    return found
 
 
 def _rate(points: Array, fps: float) -> Array:
