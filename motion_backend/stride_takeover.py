@@ -24,8 +24,6 @@ from motion_backend.skeleton import INDEX, Skeleton
 
 HALF_LIFE: Final = 0.09
 """Seconds in which what is left between two bodies is half gone: nothing of it is seen after 0.3 s."""
-DAMPING: Final = 2 * np.log(2) / HALF_LIFE
-"""Of the critically damped spring that takes it away, a second."""
 STEP_ON: Final = 1.5
 """Steps from where a body is, as a foot of it comes down, to where the other one will."""
 WIDEST: Final = 0.09
@@ -145,22 +143,26 @@ def _ahead(pelvis: Array) -> Array:
     return rotations.normalize(steps)
 
 
-def joined(history: History, motion: Motion) -> Motion:
-    """A motion that begins as the frames before it ended, in place and in speed; what it is off dies away."""
+def joined(history: History, motion: Motion, half_life: float = HALF_LIFE) -> Motion:
+    """A motion that begins as the frames before it ended, in place and in speed; what it is off dies away.
+
+    In `half_life` seconds half of it is gone.
+    """
     roots, local = history.root_positions[-2:], history.local_rotations[-2:]
     to, turned = motion.root_positions[:2].astype(np.float64), motion.local_rotations[:2].astype(np.float64)
     if len(roots) < 2 or len(to) < 2:
         return motion
     seconds = np.arange(1, len(motion) + 1) / FPS
-    fade, at = np.exp(-DAMPING * seconds), seconds
+    damping = 2 * np.log(2) / half_life  # of the critically damped spring that takes it away, a second
+    fade, at = np.exp(-damping * seconds), seconds
     pace = to[1] - to[0]
     off, drift = roots[1] - (to[0] - pace), FPS * (roots[1] - roots[0] - pace)
-    root = motion.root_positions + (fade[:, None] * (off + np.multiply.outer(at, drift + DAMPING * off)))
+    root = motion.root_positions + (fade[:, None] * (off + np.multiply.outer(at, drift + damping * off)))
     spin = rotations.quat_to_rotvec(rotations.compose(turned[1], rotations.inverse(turned[0])))
     before = rotations.compose(rotations.rotvec_to_quat(-spin), turned[0])
     apart = rotations.quat_to_rotvec(rotations.compose(local[1], rotations.inverse(before)))
     spun = rotations.quat_to_rotvec(rotations.compose(local[1], rotations.inverse(local[0])))
-    whirl = FPS * (spun - spin) + DAMPING * apart
+    whirl = FPS * (spun - spin) + damping * apart
     turns = fade[:, None, None] * (apart + at[:, None, None] * whirl)
     eased = rotations.compose(rotations.rotvec_to_quat(turns), motion.local_rotations.astype(np.float64))
     return replace(

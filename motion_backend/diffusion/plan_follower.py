@@ -26,7 +26,7 @@ from motion_backend.diffusion.goal_cleanup import (
     with_carriage_of,
     wrist_brought,
 )
-from motion_backend.diffusion.guidance import Guide, along, both, posed, reaching, towards
+from motion_backend.diffusion.guidance import HOLD, Guide, along, both, posed, reaching, towards
 from motion_backend.diffusion.learned_walker import known_poses, spline
 from motion_backend.diffusion.motion_features import HISTORY, STRIDE, WINDOW, to_features
 from motion_backend.diffusion.passage_checks import LOST, RefusedError, check, refuse_beyond
@@ -39,7 +39,7 @@ from motion_backend.mocap.foot_hold import held
 from motion_backend.motion import FPS, Motion, Note, Phase, PhaseKind, Skill, join
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, Skeleton
-from motion_backend.stride_takeover import joined
+from motion_backend.stride_takeover import HALF_LIFE, joined
 from motion_backend.walk_driver import by_rules
 from motion_backend.walk_generator import LOOK, Frames
 
@@ -49,10 +49,14 @@ with the plan's arms; a walk takes the plan's carriage from its third try on."""
 LAID_OVER: Final = "the arms are the rules', laid over it"
 OTHER: Final = 2
 """Which try of a walk is made by the other weights."""
+CLOSELY: Final = (HOLD, 4)
+"""How a walk is pulled to its way from that try on: bends are narrow where furniture stands."""
 CARRIAGE: Final = "the carriage is the rules', laid over it"
 CARRIED: Final = "the arms and the carriage are the rules', laid over it"
 LATER: Final = 2
 """Windows after the plan's end in which what is done may still come to its end."""
+SOFTENED: Final = 0.15
+"""Seconds in which half of what a walk is off at its beginning is gone; arms that swing are off by much."""
 KEPT: Final = 10
 """Frames before a passage that it goes on from."""
 
@@ -118,19 +122,26 @@ class PlanFollower:
         return Followed(replace(join(made), notes=notes), tuple(missed), last)
 
     def _tried(self, passage: PlannedPassage, past: Frames, seed: list[int], arms: str) -> tuple[Motion, float]:
-        """A passage, and how far it was from its goal. RefusedError where none of the tries can stand."""
-        why = RefusedError("")
+        """A passage, and how far it was from its goal; of tries that can stand the one that is least in furniture.
+
+        RefusedError where none can.
+        """
+        why, best = RefusedError(""), list[tuple[int, Motion, float]]()
         for number in range(TRIES):
             try:
                 body = _Body(number, self, passage.plan.skeleton, past)
                 frames, laid = _laid(body.through(passage, [*seed, number]), passage, arms, number)
                 frames, away = body.brought(passage, frames)
                 motion = _settled(past, frames, passage, Phase(passage.phase, 0, len(frames), self.name, laid))
-                check(motion, passage, past)
-                return motion, away
+                deeper = check(motion, passage, past)
+                best = sorted([*best, (deeper, motion, away)], key=lambda one: one[0])
+                if not deeper:
+                    break
             except RefusedError as error:
                 why = error
-        raise why
+        if not best:
+            raise why
+        return best[0][1:]
 
     def sampler(self, passage: PlannedPassage, number: int) -> Sampler:
         """Whose weights make a try: both know our own body's walks, one better in stride, one from other poses."""
@@ -205,7 +216,7 @@ class _Body:
         frame = body.frame
         if passage.is_periodic:
             way = frame.inward(passage.way(done))[None, :, [0, 2]]
-            return along(torch.from_numpy(way.astype(np.float32)))
+            return along(torch.from_numpy(way.astype(np.float32)), *(CLOSELY if self.number >= OTHER else ()))
         if passage.hand is not None:
             goal, left = passage.hand
             return reaching(frame.inward(goal[None])[0], left, passage.held(done))
@@ -292,7 +303,8 @@ def _settled(past: Frames, frames: Frames, passage: PlannedPassage, phase: Phase
     where they rest.
     """
     skeleton, count = passage.plan.skeleton, len(frames)
-    begun = joined(_known(past), _motion(frames, np.zeros((count, 4)), passage, phase))
+    half_life = SOFTENED if passage.is_periodic else HALF_LIFE
+    begun = joined(_known(past), _motion(frames, np.zeros((count, 4)), passage, phase), half_life)
     if passage.since:
         at = np.minimum(np.arange(count), len(passage.plan) - 1)
         return replace(begun, contacts=passage.plan.contacts[at])
