@@ -131,12 +131,17 @@ def summed(acted: Sequence[Acted], backend: str) -> dict[str, float]:
 
 def left_to_others(one: Acted, backend: str) -> dict[str, float]:
     """Seconds of a story that another backend made, or had a part in, by kind of phase and reason."""
+    return left_to_others_of(one.story.motion, backend)
+
+
+def left_to_others_of(motion: Motion, backend: str) -> dict[str, float]:
+    """The same of any motion."""
     found = Counter[str]()
-    for phase in one.story.motion.phases:
+    for phase in motion.phases:
         if phase.fallback:
             who = "" if phase.backend == backend else f"{phase.backend}: "
             found[f"{phase.kind}, {who}{phase.fallback}"] += phase.stop - phase.start
-    return {why: round(count / one.story.motion.fps, 1) for why, count in found.most_common()}
+    return {why: round(count / motion.fps, 1) for why, count in found.most_common()}
 
 
 def seams_of(motion: Motion) -> Seams:

@@ -61,17 +61,20 @@ def ends(
 
 
 def summed_ends(found: Sequence[Ended]) -> dict[str, dict[str, float]]:
-    """Shares ended in the right window and within one of it, by skill and over all, each skill counted alike."""
-    rows = {}
-    for skill in sorted({one.skill for one in found}, key=list(Skill).index):
-        late = np.array([one.found - one.right for one in found if one.skill is skill])
-        rows[skill.value] = {
-            "right": float((late == 0).mean()), "within_one": float((np.abs(late) <= 1).mean()),
-            "early": float((late < 0).mean()), "passages": float(len(late)),
-        }  # fmt: skip
+    """Shares ended in the right window and within one of it: by skill, over all, and the mean of the skills."""
+    skills = sorted({one.skill for one in found}, key=list(Skill).index)
+    rows = {skill.value: _shares([one for one in found if one.skill is skill]) for skill in skills}
     names = ("right", "within_one", "early")
-    whole = {name: float(np.mean([row[name] for row in rows.values()])) for name in names}
-    return {**rows, "all": whole | {"passages": float(len(found))}}
+    mean = {name: float(np.mean([row[name] for row in rows.values()])) for name in names}
+    return {**rows, "all": _shares(found), "mean of skills": mean}
+
+
+def _shares(found: Sequence[Ended]) -> dict[str, float]:
+    late = np.array([one.found - one.right for one in found])
+    return {
+        "right": float((late == 0).mean()), "within_one": float((np.abs(late) <= 1).mean()),
+        "early": float((late < 0).mean()), "passages": float(len(late)),
+    }  # fmt: skip
 
 
 def _skill(stretch: Stretch, frame: int, kind: PartKind) -> Skill:
