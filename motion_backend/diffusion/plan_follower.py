@@ -39,7 +39,7 @@ from motion_backend.mocap.foot_hold import held
 from motion_backend.motion import FPS, Motion, Note, Phase, PhaseKind, Skill, join
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, Skeleton
-from motion_backend.stride_takeover import HALF_LIFE, joined
+from motion_backend.stride_takeover import ARMS_HALF_LIFE, HALF_LIFE, joined
 from motion_backend.walk_driver import by_rules
 from motion_backend.walk_generator import LOOK, Frames
 
@@ -115,7 +115,7 @@ class PlanFollower:
             except RefusedError as error:
                 motion = by_rules(passage.plan, f"{self.name}: {error}")
                 if missed:
-                    motion = joined(_known(past), motion)
+                    motion = joined(_known(past), motion, of_arms=ARMS_HALF_LIFE)
             past = past.then(_frames(motion))[-KEPT:]
             made.append(motion)
         last = passages[-1].since + len(made[-1])
@@ -304,7 +304,7 @@ def _settled(past: Frames, frames: Frames, passage: PlannedPassage, phase: Phase
     """
     skeleton, count = passage.plan.skeleton, len(frames)
     half_life = SOFTENED if passage.is_periodic else HALF_LIFE
-    begun = joined(_known(past), _motion(frames, np.zeros((count, 4)), passage, phase), half_life)
+    begun = joined(_known(past), _motion(frames, np.zeros((count, 4)), passage, phase), half_life, ARMS_HALF_LIFE)
     if passage.since:
         at = np.minimum(np.arange(count), len(passage.plan) - 1)
         return replace(begun, contacts=passage.plan.contacts[at])
