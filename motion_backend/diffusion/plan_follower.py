@@ -16,7 +16,7 @@ import torch
 
 from motion_backend import rotations
 from motion_backend.backend_protocol import BodyState, History, PartKind
-from motion_backend.diffusion.completion_scheduler import DONE, CompletionScheduler
+from motion_backend.diffusion.completion_scheduler import CompletionScheduler
 from motion_backend.diffusion.goal_cleanup import (
     OVER,
     eased,
@@ -206,10 +206,8 @@ class _Body:
             return found, False
         told = conditions(wish, body.frame)
         features = to_features(after.poses.frames(slice(-WINDOW, None)), body.frame, self.skeleton)
-        with torch.inference_mode():
-            window = self.follower.seen_as.encode(torch.from_numpy(features.astype(np.float32)))
-            completion = float(self.follower.scheduler(window, told.text, told.frame)[0])
-        return found, completion > DONE
+        window = self.follower.seen_as.encode(torch.from_numpy(features.astype(np.float32)))
+        return found, bool(self.follower.scheduler.over(window, told.text, told.frame)[0])
 
     def _guide(self, passage: PlannedPassage, done: int, body: Rollout) -> Guide | None:
         """Walks are pulled to their way, hands to their goal, and pelvises to their seat in the last windows."""

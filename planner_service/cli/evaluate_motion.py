@@ -115,8 +115,7 @@ def _stories(names: Sequence[str], seed: int, console: Console | None) -> dict[s
 def _ends(minutes: float, seed: int) -> dict[str, dict[str, float]]:
     from motion_backend.diffusion.backend import acting
     from motion_backend.language.sentence_encoder import load_encoder
-    from planner_service.evaluation.acted_motion import act_for_training
-    from planner_service.evaluation.scheduler_ends import ends, summed_ends
+    from planner_service.evaluation.acted_motion import act_for_training, ends, summed_ends
 
     follower, stretches = acting(), list(act_for_training(minutes, seed, unseen=True))
     return summed_ends(list(ends(follower.scheduler, follower.seen_as, stretches, load_encoder().encode)))

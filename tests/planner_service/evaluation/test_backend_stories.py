@@ -13,8 +13,8 @@ from motion_backend.mocap.dataset_file import Dataset, Entry
 from motion_backend.motion import Motion, Phase, PhaseKind, Skill
 from motion_backend.skeleton import build_skeleton
 from planner_service.cli import app
+from planner_service.evaluation.acted_motion import Ended, summed_ends
 from planner_service.evaluation.backend_stories import left_to_others_of, seams_of, seven_themes
-from planner_service.evaluation.scheduler_ends import Ended, summed_ends
 from planner_service.evaluation.walk_comparison import with_sides
 
 AT = 40
