@@ -13,6 +13,7 @@ from benchmarks.clips import clip_figures
 from benchmarks.demo import measure_demo
 from benchmarks.film import film_figures
 from benchmarks.geometry import geometry_figures
+from benchmarks.learned import learned_figures
 from benchmarks.moving import skill_figures
 from benchmarks.reading import reading_figures
 from benchmarks.retrieval import retrieval_figures
@@ -37,6 +38,7 @@ def main() -> int:
         figures += speed_figures(made)
         figures += skill_figures(made)
         figures += physics_figures()
+        figures += learned_figures()
         figures += clip_figures(Path(folder))
         figures += weaving_figures()
         figures += retrieval_figures()

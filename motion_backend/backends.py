@@ -28,7 +28,7 @@ _OURS: Final = {
 _ABOUT: Final = {
     "procedural": "kinematic, not learned",
     MATCHING: "recorded walks of your clips by motion matching, nothing else",
-    DIFFUSION: "walks learned from recorded people, nothing else",
+    DIFFUSION: "walks learned from recorded people, all else from our own body",
     "physics": "simulated (MuJoCo, tracked by model-predictive control, no root force)",
 }
 """What a reader of figures must know of them."""

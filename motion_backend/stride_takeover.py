@@ -24,13 +24,14 @@ from motion_backend.skeleton import INDEX, Skeleton
 
 HALF_LIFE: Final = 0.09
 """Seconds in which what is left between two bodies is half gone: nothing of it is seen after 0.3 s."""
-DAMPING: Final = 2 * np.log(2) / HALF_LIFE
-"""Of the critically damped spring that takes it away, a second."""
+ARMS_HALF_LIFE: Final = 0.2
+"""The same of arms, where those of two bodies may be half a metre apart: in less they are flung."""
 STEP_ON: Final = 1.5
 """Steps from where a body is, as a foot of it comes down, to where the other one will."""
 WIDEST: Final = 0.09
 """Metres that a foot lands beside the way at most."""
 _SIDES: Final = ("left", "right")
+_ARMS: Final = [INDEX[f"{side}_{joint}"] for side in _SIDES for joint in ("shoulder", "elbow", "wrist")]
 
 
 def strides_landing(positions: Array) -> NDArray[np.int64]:
@@ -145,26 +146,35 @@ def _ahead(pelvis: Array) -> Array:
     return rotations.normalize(steps)
 
 
-def joined(history: History, motion: Motion) -> Motion:
-    """A motion that begins as the frames before it ended, in place and in speed; what it is off dies away."""
+def joined(history: History, motion: Motion, half_life: float = HALF_LIFE, of_arms: float | None = None) -> Motion:
+    """A motion that begins as the frames before it ended, in place and in speed; what it is off dies away.
+
+    In `half_life` seconds half of it is gone; of arms, which hang free and may be off by much, in `of_arms`.
+    """
     roots, local = history.root_positions[-2:], history.local_rotations[-2:]
     to, turned = motion.root_positions[:2].astype(np.float64), motion.local_rotations[:2].astype(np.float64)
     if len(roots) < 2 or len(to) < 2:
         return motion
-    seconds = np.arange(1, len(motion) + 1) / FPS
-    fade, at = np.exp(-DAMPING * seconds), seconds
+    seconds = np.arange(1, len(motion) + 1)[:, None] / FPS
     pace = to[1] - to[0]
     off, drift = roots[1] - (to[0] - pace), FPS * (roots[1] - roots[0] - pace)
-    root = motion.root_positions + (fade[:, None] * (off + np.multiply.outer(at, drift + DAMPING * off)))
+    root = motion.root_positions + _dying_away(off, drift, half_life, seconds)
     spin = rotations.quat_to_rotvec(rotations.compose(turned[1], rotations.inverse(turned[0])))
     before = rotations.compose(rotations.rotvec_to_quat(-spin), turned[0])
     apart = rotations.quat_to_rotvec(rotations.compose(local[1], rotations.inverse(before)))
     spun = rotations.quat_to_rotvec(rotations.compose(local[1], rotations.inverse(local[0])))
-    whirl = FPS * (spun - spin) + DAMPING * apart
-    turns = fade[:, None, None] * (apart + at[:, None, None] * whirl)
+    lives = np.full((len(apart), 1), half_life)
+    lives[_ARMS] = half_life if of_arms is None else of_arms
+    turns = _dying_away(apart, FPS * (spun - spin), lives, seconds[..., None])
     eased = rotations.compose(rotations.rotvec_to_quat(turns), motion.local_rotations.astype(np.float64))
     return replace(
         motion,
         root_positions=root.astype(np.float32),
         local_rotations=rotations.continuous(eased).astype(np.float32),
     )
+
+
+def _dying_away(off: Array, drift: Array, half_life: Array | float, seconds: Array) -> Array:
+    """What is off, and drifts, taken away by a critically damped spring."""
+    damping = 2 * np.log(2) / half_life
+    return np.asarray(np.exp(-damping * seconds) * (off + seconds * (drift + damping * off)))

@@ -28,7 +28,7 @@ from motion_backend.procedural.walk.walk_styles import Walk, walk_style
 from motion_backend.rotations import Array
 from motion_backend.scene import scene_of
 from motion_backend.skeleton import INDEX
-from motion_backend.stride_takeover import joined, stride_of, strides_landing
+from motion_backend.stride_takeover import ARMS_HALF_LIFE, joined, stride_of, strides_landing
 from motion_backend.walk_generator import Frames, WalkGenerator, Way, windows, yaw_of
 from scene_graphs.home import Home
 
@@ -252,7 +252,7 @@ def ruled(home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) ->
     """A part as the procedural body does it from here on, whoever moved the body before."""
     motion, after = ProceduralBackend().advance(home, part, upcoming, state)
     if state.memory.get(BORROWED) and len(motion):
-        motion = joined(state.history, motion)
+        motion = joined(state.history, motion, of_arms=ARMS_HALF_LIFE)
         after = replace(after, history=state.history.followed_by(motion))
     return motion, after
 

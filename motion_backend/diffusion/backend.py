@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Final, cast
@@ -16,7 +17,7 @@ from motion_backend.diffusion.completion_scheduler import CompletionScheduler
 from motion_backend.diffusion.denoiser import Denoiser
 from motion_backend.diffusion.learned_parts import LearnedParts
 from motion_backend.diffusion.learned_walker import LearnedGait
-from motion_backend.diffusion.plan_follower import PlanFollower
+from motion_backend.diffusion.plan_follower import Missed, PlanFollower
 from motion_backend.diffusion.sampler import Sampler
 from motion_backend.motion import Character, Motion
 from motion_backend.walk_driver import WalkDriver
@@ -31,10 +32,10 @@ class DiffusionBackend:
 
     name = DIFFUSION
 
-    def __init__(self, folder: Path | None = None) -> None:
-        """CheckpointError where weights are missing or broken."""
+    def __init__(self, folder: Path | None = None, watch: Callable[[Missed], None] | None = None) -> None:
+        """`watch` is told what passages were off their goals. CheckpointError where weights are missing or broken."""
         self._sampler = walking() if folder is None else walking(folder)
-        self._parts = LearnedParts(acting() if folder is None else acting(folder))
+        self._parts = LearnedParts(replace(acting() if folder is None else acting(folder), watch=watch))
 
     def begin(self, home: Home, character: Character, seed: int) -> BodyState:
         """Standing in the first room, on a free place that the seed chooses."""
@@ -63,7 +64,8 @@ def walking_by(path: Path) -> Sampler:
     gaits = int(weights.config.get("gaits", 0))
     paces = np.array(weights.config["paces"]) if "paces" in weights.config else None
     network = cast(Denoiser, weights.network)
-    return Sampler(network, weights.scale, schedule, gaits=gaits, strides=strides, paces=paces)
+    people = tuple(weights.config.get("learned_from", ()))
+    return Sampler(network, weights.scale, schedule, gaits=gaits, strides=strides, paces=paces, learned_from=people)
 
 
 @lru_cache(maxsize=2)

@@ -10,7 +10,9 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, Final
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from motion_backend.diffusion.conditions import FramedText
@@ -67,3 +69,8 @@ class CompletionScheduler(nn.Module):  # type: ignore[misc]
     def forward(self, windows: Tensor, text: Tensor, frame: Tensor) -> Tensor:
         """Completion from 0 to 1. (B,)."""
         return self.logits(windows, text, frame).sigmoid()
+
+    def over(self, windows: Tensor, text: Tensor, frame: Tensor) -> NDArray[np.bool_]:
+        """Whether what is done is over with each window. (B,)."""
+        with torch.inference_mode():
+            return np.asarray((self(windows, text, frame) > DONE).numpy())

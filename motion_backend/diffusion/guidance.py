@@ -58,13 +58,14 @@ def towards(goal: Tensor, axes: tuple[int, ...], pull: float = PULL) -> Guide:
     return guide
 
 
-def along(way: Tensor, pull: float = PULL) -> Guide:
+def along(way: Tensor, pull: float = PULL, order: int = 2) -> Guide:
     """Guidance of a walk along a way (B, 14, 2) of the root, [x, z] in the heading frame.
 
-    What it is off on the whole is taken away, a parabola from where it begins; its sway is its own.
+    What it is off on the whole is taken away, a polynomial of that order from where it begins: with a parabola its sway
+    is its own, with more it follows bends.
     """
     share = torch.linspace(1 / way.shape[1], 1.0, way.shape[1])
-    curves = torch.stack([share, share.square()], dim=1)
+    curves = torch.stack([share**power for power in range(1, order + 1)], dim=1)
     fitted = curves @ torch.linalg.pinv(curves)  # (14, 14)
 
     def guide(guess: Tensor) -> Tensor:

@@ -47,20 +47,22 @@ def refuse_beyond(metres: float, most: float, passage: PlannedPassage) -> None:
         raise RefusedError(f"the {passage.phase} ended {metres:.2f} m from its goal")
 
 
-def check(made: Motion, passage: PlannedPassage, past: Frames) -> None:
+def check(made: Motion, passage: PlannedPassage, past: Frames) -> int:
     """RefusedError for a body that jumps, goes through furniture, floats or slides, or that its caption is not of.
 
-    The plan's is the measure: it may do that `WORSE` times as much. Past are the frames before it.
+    The plan's is the measure: it may do that `WORSE` times as much. Past are the frames before it. What comes back are
+    the frames in which it is in furniture beyond that and which are overlooked.
     """
     _check_jumps(made, passage, past)
-    _check_furniture(made, passage)
+    deeper = _check_furniture(made, passage)
     _check_feet(made, passage)
     action, part = passage.part.action, passage.part
     if HELD.get(action.skill) is not part.kind or (passage.is_periodic and _is_plain(passage)):
-        return
+        return deeper
     own, planned = (judge_caption(motion, action) for motion in (made, passage.plan))
     if own is not None and planned is not None and len(own.missed) > len(planned.missed):
         raise RefusedError(f"it did not look like {action.caption!r:.40}")
+    return deeper
 
 
 def _is_plain(passage: PlannedPassage) -> bool:
@@ -85,12 +87,13 @@ def _jolt(motion: Motion, past: Frames) -> float:
     return float(np.linalg.norm(np.diff(places, 2, axis=0), axis=-1).max()) * FPS
 
 
-def _check_furniture(made: Motion, passage: PlannedPassage) -> None:
+def _check_furniture(made: Motion, passage: PlannedPassage) -> int:
     obstacles, action = scene_of(passage.home).obstacles, passage.part.action
     own, planned = (penetration(Kinematics.of(motion), obstacles, action) for motion in (made, passage.plan))
     frames, most = int((own > CLEARLY_IN).sum()), WORSE * float((planned > CLEARLY_IN).sum())
     if frames > most + SOME * (own.max() < DEEP):
         raise RefusedError(f"the {passage.phase} was up to {own.max():.2f} m deep in furniture")
+    return max(frames - int(most), 0)
 
 
 def _check_feet(made: Motion, passage: PlannedPassage) -> None:

@@ -7,7 +7,7 @@ in furniture than may be, is made again from other noise, and else is left to th
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -16,7 +16,7 @@ import torch
 
 from motion_backend import rotations
 from motion_backend.backend_protocol import BodyState, History, PartKind
-from motion_backend.diffusion.completion_scheduler import DONE, CompletionScheduler
+from motion_backend.diffusion.completion_scheduler import CompletionScheduler
 from motion_backend.diffusion.goal_cleanup import (
     OVER,
     eased,
@@ -26,7 +26,7 @@ from motion_backend.diffusion.goal_cleanup import (
     with_carriage_of,
     wrist_brought,
 )
-from motion_backend.diffusion.guidance import Guide, along, both, posed, reaching, towards
+from motion_backend.diffusion.guidance import HOLD, Guide, along, both, posed, reaching, towards
 from motion_backend.diffusion.learned_walker import known_poses, spline
 from motion_backend.diffusion.motion_features import HISTORY, STRIDE, WINDOW, to_features
 from motion_backend.diffusion.passage_checks import LOST, RefusedError, check, refuse_beyond
@@ -39,7 +39,7 @@ from motion_backend.mocap.foot_hold import held
 from motion_backend.motion import FPS, Motion, Note, Phase, PhaseKind, Skill, join
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, Skeleton
-from motion_backend.stride_takeover import joined
+from motion_backend.stride_takeover import ARMS_HALF_LIFE, HALF_LIFE, joined
 from motion_backend.walk_driver import by_rules
 from motion_backend.walk_generator import LOOK, Frames
 
@@ -49,10 +49,14 @@ with the plan's arms; a walk takes the plan's carriage from its third try on."""
 LAID_OVER: Final = "the arms are the rules', laid over it"
 OTHER: Final = 2
 """Which try of a walk is made by the other weights."""
+CLOSELY: Final = (HOLD, 4)
+"""How a walk is pulled to its way from that try on: bends are narrow where furniture stands."""
 CARRIAGE: Final = "the carriage is the rules', laid over it"
 CARRIED: Final = "the arms and the carriage are the rules', laid over it"
 LATER: Final = 2
 """Windows after the plan's end in which what is done may still come to its end."""
+SOFTENED: Final = 0.15
+"""Seconds in which half of what a walk is off at its beginning is gone; arms that swing are off by much."""
 KEPT: Final = 10
 """Frames before a passage that it goes on from."""
 
@@ -89,6 +93,8 @@ class PlanFollower:
     seen_as: Scale
     """What the scheduler sees of features."""
     name: str = "diffusion"
+    watch: Callable[[Missed], None] | None = None
+    """Told of each passage that is the model's."""
 
     def follow(
         self, passages: Sequence[PlannedPassage], notes: tuple[Note, ...], state: BodyState, arms: str = ""
@@ -104,29 +110,38 @@ class PlanFollower:
             try:
                 motion, away = self._tried(passage, past, [state.seed, state.index, index], arms)
                 missed.append(Missed(passage.kind, away))
+                if self.watch is not None:
+                    self.watch(missed[-1])
             except RefusedError as error:
                 motion = by_rules(passage.plan, f"{self.name}: {error}")
                 if missed:
-                    motion = joined(_known(past), motion)
+                    motion = joined(_known(past), motion, of_arms=ARMS_HALF_LIFE)
             past = past.then(_frames(motion))[-KEPT:]
             made.append(motion)
         last = passages[-1].since + len(made[-1])
         return Followed(replace(join(made), notes=notes), tuple(missed), last)
 
     def _tried(self, passage: PlannedPassage, past: Frames, seed: list[int], arms: str) -> tuple[Motion, float]:
-        """A passage, and how far it was from its goal. RefusedError where none of the tries can stand."""
-        why = RefusedError("")
+        """A passage, and how far it was from its goal; of tries that can stand the one that is least in furniture.
+
+        RefusedError where none can.
+        """
+        why, best = RefusedError(""), list[tuple[int, Motion, float]]()
         for number in range(TRIES):
             try:
                 body = _Body(number, self, passage.plan.skeleton, past)
                 frames, laid = _laid(body.through(passage, [*seed, number]), passage, arms, number)
                 frames, away = body.brought(passage, frames)
                 motion = _settled(past, frames, passage, Phase(passage.phase, 0, len(frames), self.name, laid))
-                check(motion, passage, past)
-                return motion, away
+                deeper = check(motion, passage, past)
+                best = sorted([*best, (deeper, motion, away)], key=lambda one: one[0])
+                if not deeper:
+                    break
             except RefusedError as error:
                 why = error
-        raise why
+        if not best:
+            raise why
+        return best[0][1:]
 
     def sampler(self, passage: PlannedPassage, number: int) -> Sampler:
         """Whose weights make a try: both know our own body's walks, one better in stride, one from other poses."""
@@ -191,17 +206,15 @@ class _Body:
             return found, False
         told = conditions(wish, body.frame)
         features = to_features(after.poses.frames(slice(-WINDOW, None)), body.frame, self.skeleton)
-        with torch.inference_mode():
-            window = self.follower.seen_as.encode(torch.from_numpy(features.astype(np.float32)))
-            completion = float(self.follower.scheduler(window, told.text, told.frame)[0])
-        return found, completion > DONE
+        window = self.follower.seen_as.encode(torch.from_numpy(features.astype(np.float32)))
+        return found, bool(self.follower.scheduler.over(window, told.text, told.frame)[0])
 
     def _guide(self, passage: PlannedPassage, done: int, body: Rollout) -> Guide | None:
         """Walks are pulled to their way, hands to their goal, and pelvises to their seat in the last windows."""
         frame = body.frame
         if passage.is_periodic:
             way = frame.inward(passage.way(done))[None, :, [0, 2]]
-            return along(torch.from_numpy(way.astype(np.float32)))
+            return along(torch.from_numpy(way.astype(np.float32)), *(CLOSELY if self.number >= OTHER else ()))
         if passage.hand is not None:
             goal, left = passage.hand
             return reaching(frame.inward(goal[None])[0], left, passage.held(done))
@@ -282,24 +295,31 @@ def _laid(frames: Frames, passage: PlannedPassage, arms: str, number: int) -> tu
 
 
 def _settled(past: Frames, frames: Frames, passage: PlannedPassage, phase: Phase) -> Motion:
-    """Frames as motion, with standing feet held where they stand; who sits or lies there has them where they rest."""
-    whole, skeleton = past.then(frames), passage.plan.skeleton
+    """Frames as motion that goes on from the past, with standing feet held where they stand.
+
+    What the two were apart dies away before feet are held: it would drag them along. Who sits or lies there has them
+    where they rest.
+    """
+    skeleton, count = passage.plan.skeleton, len(frames)
+    half_life = SOFTENED if passage.is_periodic else HALF_LIFE
+    begun = joined(_known(past), _motion(frames, np.zeros((count, 4)), passage, phase), half_life, ARMS_HALF_LIFE)
     if passage.since:
-        at = np.minimum(np.arange(len(frames)), len(passage.plan) - 1)
-        resting = np.concatenate([np.zeros((len(past), 4)), passage.plan.contacts[at]])
-        root, local, contacts = whole.root, rotations.continuous(whole.local), resting
-    else:
-        root, local, contacts = held(whole.root, whole.local, skeleton, len(past))
-    new = slice(len(past), None)
-    motion = Motion(
-        root_positions=root[new].astype(np.float32),
-        local_rotations=local[new].astype(np.float32),
-        contacts=contacts[new].astype(np.float32),
-        skeleton=skeleton,
+        at = np.minimum(np.arange(count), len(passage.plan) - 1)
+        return replace(begun, contacts=passage.plan.contacts[at])
+    whole, new = past.then(_frames(begun)), slice(len(past), None)
+    root, local, contacts = held(whole.root, whole.local, skeleton, len(past))
+    return _motion(Frames(root[new], local[new]), contacts[new], passage, phase)
+
+
+def _motion(frames: Frames, contacts: Array, passage: PlannedPassage, phase: Phase) -> Motion:
+    return Motion(
+        root_positions=frames.root.astype(np.float32),
+        local_rotations=frames.local.astype(np.float32),
+        contacts=contacts.astype(np.float32),
+        skeleton=passage.plan.skeleton,
         actions=np.full(len(frames), passage.part.action.keyframe, dtype=np.int32),
         phases=(phase,),
     )
-    return joined(_known(past), motion)
 
 
 def _known(past: Frames) -> History:

@@ -61,6 +61,8 @@ class Sampler:
     """(gaits, N, 2, 202) histories of each, of the model's own walking."""
     paces: Array | None = None
     """(gaits,) metres a second at which each was recorded."""
+    learned_from: tuple[str, ...] = ()
+    """Everybody who was recorded in what it has learned: they are no judges of it."""
 
     def gait_of(self, seed: int) -> int:
         """Whose walk a body of that seed has; 0 where none are told apart."""

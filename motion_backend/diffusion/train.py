@@ -146,6 +146,8 @@ class Run:
     curve: list[dict[str, float]] = field(default_factory=list)
     gaits: int = 0
     """Of how many people's walks are told apart."""
+    learned_from: tuple[str, ...] = ()
+    """Everybody who was recorded in what is learned from: they are no judges of it."""
     told: dict[str, Any] = field(default_factory=dict)
     """What it was begun with, and must be gone on with."""
 
@@ -312,7 +314,7 @@ def averaged(learner: Learner, run: Run, config: TrainConfig) -> Weights:
     scale = Scale(run.scale.mean.cpu(), run.scale.deviation.cpu())
     told = {
         "kind": learner.kind, "sizes": dict(learner.sizes), "noise": asdict(config.noise),
-        "gaits": run.gaits,
+        "gaits": run.gaits, "learned_from": list(run.learned_from),
         "training": {**config.to_dict(), "steps_done": run.step},
     }  # fmt: skip
     return Weights(network.eval().requires_grad_(False), scale, told)
@@ -325,6 +327,7 @@ def _begun(
     device = next(learner.network.parameters()).device
     optimizer = Adam(list(learner.network.parameters()))
     told = _told(learner, bank, windows, config, start)
+    people: dict[str, Any] = {"gaits": len(bank.gaits), "learned_from": bank.learned_from}
     state = folder / "run.json"
     if not state.exists():
         if start is not None:
@@ -332,7 +335,7 @@ def _begun(
         scale = start.scale if start is not None else measured_scale(bank, windows, config.seed)
         scale = Scale(scale.mean.to(device), scale.deviation.to(device))
         average = {name: tensor.detach().clone() for name, tensor in learner.network.state_dict().items()}
-        return Run(learner.network, average, scale, optimizer, gaits=len(bank.gaits), told=told)
+        return Run(learner.network, average, scale, optimizer, told=told, **people)
     row = json.loads(state.read_text(encoding="utf-8"))
     if row["told"] != told:
         why = f"{folder} holds a run of another config, of other data or from another start"
@@ -347,7 +350,7 @@ def _begun(
     step = int(tensors[STEP])
     done = (step, row["seconds"], [one for one in row["curve"] if one["step"] <= step])
     average = _under("average.", tensors)
-    return Run(learner.network, average, scale, optimizer, *done, gaits=len(bank.gaits), told=told)
+    return Run(learner.network, average, scale, optimizer, *done, told=told, **people)
 
 
 def _told(

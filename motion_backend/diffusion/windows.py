@@ -151,6 +151,12 @@ class WindowBank:
             found = zlib.crc32(tensor.numpy().tobytes(), found)
         return found
 
+    @property
+    def learned_from(self) -> tuple[str, ...]:
+        """Everybody who was recorded in it, himself or in what recordings were put together to."""
+        made = (MadeOf.RECORDED, MadeOf.MATCHED)
+        return tuple(sorted({walker(one) for one in self.stretches if one.made_of in made}))
+
     def windows(self, shares: Mapping[tuple[MadeOf, PartKind], float], every: int = STRIDE) -> Windows:
         """All windows of passages that have a share, a window beginning `every` frames.
 

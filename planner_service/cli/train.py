@@ -193,7 +193,9 @@ def _train(
             from motion_backend.diffusion.sampler import Sampler
             from planner_service.evaluation.learned_walks import judged
 
-            sampler = Sampler(weights.network, weights.scale, NoiseSchedule(), gaits=run.gaits)
+            sampler = Sampler(
+                weights.network, weights.scale, NoiseSchedule(), gaits=run.gaits, learned_from=run.learned_from
+            )
             told = judged(sampler, people)
         figures = {**(run.curve[-1] if run.curve else {}), **told}
         console.print(f"step {run.step}: " + ", ".join(f"{k} {v:.4g}" for k, v in figures.items()), soft_wrap=True)

@@ -26,7 +26,7 @@ from motion_backend.procedural.walk.walk_styles import walk_style
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
 from motion_backend.walk_generator import LOOK, Ahead, Frames
-from planner_service.evaluation.walk_comparison import MAX_SECONDS
+from planner_service.evaluation.walk_comparison import MAX_SECONDS, with_sides
 from planner_service.evaluation.walk_evaluation import CAPTION, Take, Walks, recorded_walks, spread, walks_of
 
 WINDOWS: Final = 4
@@ -72,7 +72,11 @@ def walked(sampler: Sampler, speeds: Array, skeleton: Skeleton, seed: int = 0) -
 
 
 def judged(sampler: Sampler, dataset: Dataset, people: int = 48, seed: int = 0) -> Mapping[str, float]:
-    """How a model walks beside recorded people of the dataset's test side, of whom it has seen nothing."""
+    """How a model walks beside recorded people of whom it has seen nothing.
+
+    Where it does not say whom it has seen these are the people of the dataset's test side.
+    """
+    dataset = with_sides(dataset, sampler.learned_from)
     unseen = recorded_walks(replace(dataset, entries=tuple(e for e in dataset.entries if e.split == "test")))
     everybody = recorded_walks(dataset)
     speeds = np.random.default_rng(seed).choice(everybody.of("speed"), people)

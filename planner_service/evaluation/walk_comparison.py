@@ -6,19 +6,19 @@ people themselves, as one body, are what all of them are read against: nobody is
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
 
-from motion_backend.backends import DEFAULT_BACKEND, MATCHING, load_backend
+from motion_backend.backends import DEFAULT_BACKEND, DIFFUSION, MATCHING, load_backend
 from motion_backend.director import Director, shares
 from motion_backend.metrics.foot_skate import support_slip
 from motion_backend.metrics.gait_features import UNITS
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.kernel_mmd import Distance, discrepancy
-from motion_backend.metrics.walk_classifier import MIN_WINDOWS, told_apart
+from motion_backend.metrics.walk_classifier import MIN_WINDOWS, Told, told_apart
 from motion_backend.metrics.walk_seconds import LIMBS
 from motion_backend.mocap.dataset_file import Dataset
 from motion_backend.mocap.plain_walks import recorded_walks as plain_walks
@@ -41,7 +41,7 @@ TRAIN, TEST = "train", "test"
 MAX_SECONDS: Final = 120
 """Windows of a body that the classifier is shown, spread over its takes."""
 WALKS_A_ROOM: Final = 4
-"""Places that are walked to, one after the other."""
+"""Places that are walked to, one after the other, where nothing else is asked for."""
 
 
 @dataclass(frozen=True)
@@ -53,8 +53,8 @@ class Judged:
     """in the hall, in rooms, or as recorded."""
     seconds: int
     """Windows of one second."""
-    auc: dict[str, float]
-    """How surely each limb is told from people; empty for too few windows."""
+    told: dict[str, Told]
+    """How surely each limb is told from people, with 95 % over them; empty for too few windows."""
     distance: Distance | None
     spread: float
     """Of the gait features over that of all people: the mean, more than theirs counted as theirs."""
@@ -67,13 +67,25 @@ class Judged:
     deviations: dict[str, float]
     """Standard deviations of recorded features by which the mean is above theirs."""
 
+    @property
+    def auc(self) -> dict[str, float]:
+        """The means alone."""
+        return {limb: told.auc for limb, told in self.told.items()}
+
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
-        return {**vars(self), "distance": self.distance and vars(self.distance)}
+        told = {limb: vars(told) for limb, told in self.told.items()}
+        return {**vars(self), "told": told, "auc": self.auc, "distance": self.distance and vars(self.distance)}
 
 
-def compare_walks(dataset: Dataset, names: Sequence[str], caption: str, rooms: int, seeds: int) -> list[Judged]:
+def compare_walks(
+    dataset: Dataset, names: Sequence[str], caption: str, rooms: int, seeds: int, walks_a_room: int = WALKS_A_ROOM
+) -> list[Judged]:
     """People meant for training, then every backend in the hall and in rooms. ClipError for too few people."""
+    if DIFFUSION in names:
+        from motion_backend.diffusion.backend import walking
+
+        dataset = with_sides(dataset, walking().learned_from)
     everybody = recorded_walks(dataset)
     strangers = recorded_walks(_side(dataset, TEST))
     own = recorded_walks(_side(dataset, TRAIN))
@@ -82,10 +94,22 @@ def compare_walks(dataset: Dataset, names: Sequence[str], caption: str, rooms: i
     for name in names:
         director = _director(name, dataset)
         for place, homes in (("in the hall", [hall()] * seeds), ("in rooms", _rooms(rooms))):
-            made, reached = _acted(director, homes, caption)
+            made, reached = _acted(director, homes, caption, walks_a_room)
             walks = walks_of(name, made)
             found.append(_judged(name, place, walks, (strangers, everybody), made, reached))
     return found
+
+
+def with_sides(dataset: Dataset, learned_from: Collection[str]) -> Dataset:
+    """A collection whose test side is everybody that was not learned from; as it is where nobody is named.
+
+    Who is dealt to which side hangs on all clips that were accepted, and may differ from build to build.
+    """
+    if not learned_from:
+        return dataset
+    sides = [TRAIN if entry.subject in learned_from else TEST for entry in dataset.entries]
+    rows = zip(dataset.entries, sides, strict=True)
+    return replace(dataset, entries=tuple(replace(entry, split=side) for entry, side in rows))
 
 
 def _side(dataset: Dataset, split: str) -> Dataset:
@@ -108,7 +132,7 @@ def _rooms(count: int) -> list[Home]:
     return [home_from_layouts([built_in_index().layout(layouts[index].id)], 0) for index in order]
 
 
-def _acted(director: Director, homes: Sequence[Home], caption: str) -> tuple[list[Take], float]:
+def _acted(director: Director, homes: Sequence[Home], caption: str, walks_a_room: int) -> tuple[list[Take], float]:
     """Walks in homes, and the share of them that got there."""
     takes, done = list[Take](), list[bool]()
     for number, home in enumerate(homes):
@@ -116,7 +140,7 @@ def _acted(director: Director, homes: Sequence[Home], caption: str) -> tuple[lis
         if home is hall():
             goals: list[tuple[float, float]] = [ENDS[index % 2] for index in range(2)]
         else:
-            goals = [scene_of(home).walkable.random_point(rng, 0) for _ in range(WALKS_A_ROOM)]
+            goals = [scene_of(home).walkable.random_point(rng, 0) for _ in range(walks_a_room)]
         actions = [
             Action(Skill.LOCO, caption, Emotion.NEUTRAL, goal=goal, keyframe=index) for index, goal in enumerate(goals)
         ]
@@ -133,7 +157,7 @@ def _judged(
     strangers, everybody = people
     seconds = walks.seconds.of_one(name).spread(MAX_SECONDS)
     enough = len(seconds) >= MIN_WINDOWS
-    told = {limb: told_apart(strangers.seconds, seconds, limb).auc for limb in LIMBS} if enough else {}
+    told = {limb: told_apart(strangers.seconds, seconds, limb) for limb in LIMBS} if enough else {}
     many = len(walks) > 1
     far = discrepancy(strangers.features, strangers.groups, walks.features, walks.groups) if many else None
     wide = float(np.minimum(spread(everybody, walks), 1.0).mean()) if many else 0.0
@@ -143,7 +167,7 @@ def _judged(
         name=name,
         place=place,
         seconds=len(walks.seconds),
-        auc=told,
+        told=told,
         distance=far,
         spread=wide,
         slip=float(np.mean(slips)),

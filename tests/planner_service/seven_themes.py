@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
 from typing import Final
 
-SEVEN: Final = {
-    "weekend": "A person relaxes at home during the weekend, drinks cokes, and reads books.",
-    "interview": "A person is happy at first, but he is told in the phone that he fails the job interview and becomes "
-    "very depressed.",
-    "afternoon": "A person enjoys a relaxed afternoon at home.",
-    "picnic": "A person is dressing up and feels excited about the picnic tomorrow.",
-    "lottery": "A character is sitting on the chair and becomes excited when he finds that he won a lottery, so he run "
-    "excitedly around the room. And he relaxes on the sofa.",
-    "jewellery": "A character is searching for the jewellery under the bed. He finds it and he becomes excited, run "
-    "around the house. He decided to drink a bottle of wine the celebrate and becomes drunken and rests on the sofa..",
-    "photograph": "The character ponders over an old photograph and reflects on memories in the living room. He then "
-    "remembers his dead wife and becomes sad. He then decides to drink a bottle of wine and becomes drunken and rests "
-    "on the sofa.",
-}
+import planner_service
+
+FILE: Final = Path(planner_service.__file__).parent / "data" / "evaluation" / "seven_themes.json"
+SEVEN: Final[dict[str, str]] = json.loads(FILE.read_text(encoding="utf-8"))
+"""By a name of ours."""

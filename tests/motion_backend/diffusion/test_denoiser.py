@@ -90,6 +90,17 @@ def test_masked_text_still_tells_the_frame_number() -> None:
     assert not torch.equal(masked, text(words, none, torch.tensor([60, 60])))
 
 
+def test_the_frame_number_is_told_in_the_text_token_alone() -> None:
+    """LINGO A.3: added to the sentence; zero in locomotion, which leaves the same token at every moment."""
+    net, given = network(), told()
+    later = net.encode(replace(given, frame=given.frame + 42))
+    changed = (later - net.encode(given)).detach().abs().amax(dim=2)
+    assert torch.equal(changed[:, [0, 2, 3]], torch.zeros(3, 3))
+    assert changed[:, 1].min() > 0
+    still = given.without("frame")
+    assert torch.equal(still.frame, torch.zeros_like(given.frame))
+
+
 def test_history_comes_out_as_it_went_in() -> None:
     net, noised = network(), torch.randn(3, WINDOW, FEATURES)
     found = net(noised, torch.zeros(3), net.encode(told()))

@@ -34,6 +34,14 @@ def test_a_walk_beside_its_way_comes_to_it_and_goes_on_swaying() -> None:
     assert torch.allclose(found[..., 2], guess[..., 2], atol=1e-4)
 
 
+def test_a_bend_is_followed_the_closer_the_higher_the_order() -> None:
+    """There and back again: a parabola's guess at that stays far from it."""
+    bend = torch.sin(torch.linspace(0.1, 1.0, 14) * 5.0) * 0.3
+    way, guess = torch.stack([bend, torch.linspace(0.1, 1.0, 14)], dim=1)[None], torch.zeros(1, 14, FEATURES)
+    off = [(along(way, 1.0, order)(guess)[0, :, 0] - bend).abs().mean() for order in (2, 4)]
+    assert off[1] < 0.3 * off[0]
+
+
 def stood() -> Array:
     """Features of a body that stands for 14 frames, (14, 202)."""
     history, skeleton = ProceduralBackend().begin(small_home(), Character(), 3).history, build_skeleton()

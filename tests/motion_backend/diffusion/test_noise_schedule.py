@@ -60,6 +60,25 @@ def test_a_ddim_step_keeps_the_noise_that_it_came_with() -> None:
     assert torch.equal(ddpm_step(SCHEDULE, x, clean, 0, noise), clean)
 
 
+@pytest.mark.parametrize("width", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize("stochastic", [True, False])
+def test_noise_becomes_the_data_where_the_guess_is_the_best_there_is(width: float, stochastic: bool) -> None:
+    """Of data from N(1, width²) the mean given x_t is known: with it as the guess, what is sampled is such data."""
+    made = torch.Generator().manual_seed(1)
+    x = torch.randn(20_000, generator=made, dtype=torch.float64)
+    steps = SCHEDULE.spaced(100)
+    for step, following in zip(steps, (*steps[1:], None), strict=True):
+        left = SCHEDULE.alpha_bars[step]
+        told = width**2 * np.sqrt(left) / (width**2 * left + 1 - left)
+        guess = 1.0 + told * (x - np.sqrt(left))
+        if stochastic:
+            x = ddpm_step(SCHEDULE, x, guess, step, torch.randn(len(x), generator=made, dtype=torch.float64))
+        else:
+            x = ddim_step(SCHEDULE, x, guess, step, following)
+    assert float(x.mean()) == pytest.approx(1.0, abs=0.05)
+    assert float(x.std()) == pytest.approx(width, rel=0.08)
+
+
 def test_sampling_goes_from_the_last_step_to_the_first() -> None:
     assert SCHEDULE.spaced(100) == tuple(range(99, -1, -1))
     for count in (1, 5, 10, 20):

@@ -27,6 +27,7 @@ from motion_backend.diffusion.sampler import Sampler, Scale
 from motion_backend.diffusion.train import (
     Adam,
     Learner,
+    Run,
     TrainConfig,
     TrainingError,
     denoiser_learner,
@@ -134,6 +135,25 @@ def test_conditions_are_dropped_about_as_often_as_is_said() -> None:
     for kept in (given.has_text, given.has_pelvis, given.made_of == MadeOf.RECORDED):
         assert float(kept.float().mean()) == pytest.approx(0.9, abs=0.03)
     assert float(given.pelvis[:, 6].mean()) == pytest.approx(0.5, abs=0.05)
+
+
+def test_history_is_never_diffused_in_training() -> None:
+    """Only disturbed, by as much as is said: the network sees at every step where a body comes from."""
+    bank = bank_of(two_people())
+    windows = bank.windows({WALK: 1.0})
+    batch = bank.batch(*windows.drawn(64, np.random.default_rng(0)), np.zeros(64, dtype=np.bool_))
+    for noise in (0.0, 0.05):
+        learner = denoiser_learner(TINY, TrainConfig(1, history_noise=noise))
+        seen: list[tuple[torch.Tensor, ...]] = []
+        learner.network.register_forward_pre_hook(lambda _module, given, seen=seen: seen.append(given[:2]))
+        scale = Scale(torch.zeros(202), torch.ones(202))
+        learner.loss(Run(learner.network, {}, scale, Adam([])), batch, np.random.default_rng(1))
+        shown, steps = seen[0]
+        assert steps.unique().numel() > 30
+        away = (shown - batch.windows).detach()
+        assert float(away[:, :HISTORY].abs().max()) <= 6 * noise
+        assert (float(away[:, :HISTORY].abs().max()) > 0) is (noise > 0)
+        assert float(away[:, HISTORY:].std()) > 0.3
 
 
 def test_bones_and_told_positions_agree_on_true_windows() -> None:

@@ -17,7 +17,7 @@ from motion_backend import rotations
 from motion_backend.director import Director
 from motion_backend.mocap.clip import ClipError, make_bones, make_clip
 from motion_backend.mocap.foot_contacts import ANKLES, BALLS, Feet, no_faster, runs, travel
-from motion_backend.mocap.foot_lock import locked
+from motion_backend.mocap.foot_lock import from_nothing, locked, standing
 from motion_backend.mocap.joint_map import FAMILIES, checked_map, find_map, read_map
 from motion_backend.mocap.readers import clip_of_motion, read_clips
 from motion_backend.mocap.resampling import low_pass, sample_rotations, sample_times
@@ -223,6 +223,30 @@ def test_a_hovering_foot_is_put_down_and_the_pelvis_comes_half_way_where_the_oth
     np.testing.assert_allclose(shift[:, 0, 1], -0.02, atol=1e-4)
     np.testing.assert_allclose(carried[:, 1], -0.01, atol=1e-4)
     assert not carried[:, [0, 2]].any()
+
+
+@for_each(
+    ("speed", "grounded", "stands"), [(0.2, False, True), (0.6, False, False), (0.6, True, True), (1.0, True, False)]
+)
+def test_who_is_grounded_stands_on_the_slowest_low_foot_unless_that_swings(
+    speed: float, grounded: bool, stands: bool
+) -> None:
+    """The left foot slides on the floor while the right one is up: people's would stand."""
+    feet, pelvis = standing_feet(slide=2 * speed)
+    feet.ankles[:, 1, 1] += 0.2
+    heels, balls = standing(feet, pelvis, grounded)
+    assert bool((heels | balls)[5:-5, 0].all()) == stands
+    assert bool((heels | balls)[5:-5, 0].any()) == stands
+    assert not (heels | balls)[:, 1].any()
+
+
+def test_a_shift_sets_out_from_frames_that_are_not_shifted_without_a_step() -> None:
+    shift = np.full((60, 2, 3), 0.03) + np.linspace(0, 0.02, 60)[:, None, None]
+    found = from_nothing(shift, 20, 30.0)
+    assert not found[:20].any()
+    assert np.abs(np.diff(found, 2, axis=0)).max() < 0.006  # a step would be 0.03
+    np.testing.assert_allclose(found[45:], shift[45:], atol=1e-3)
+    assert from_nothing(shift, 0, 30.0) is shift
 
 
 @for_each(
