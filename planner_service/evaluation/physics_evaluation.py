@@ -105,6 +105,7 @@ def _feet(motion: Motion, plan: Motion) -> dict[str, float]:
     away = np.linalg.norm(body.positions[:frames] - planned.positions[:frames], axis=-1).mean()
     return {
         "slip": support_slip(body),
+        "slip_planned": support_slip(planned),
         "skate": skate_speed(body),
         "skate_ratio": skate_ratio(body),
         "skate_ratio_planned": skate_ratio(planned),
@@ -162,6 +163,7 @@ def figures_of(rows: Sequence[Row]) -> dict[str, tuple[float, float, float]]:
         "reached",
         "contact_error",
         "slip",
+        "slip_planned",
         "skate",
         "skate_ratio",
         "skate_ratio_planned",
