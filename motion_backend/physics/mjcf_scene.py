@@ -47,7 +47,7 @@ class Models:
     fine: Any
     """mujoco.MjModel that is simulated."""
     coarse: Any
-    """The same with the longer step, to be linearised."""
+    """The same with the longer step and inverse dynamics of whole steps, to be linearised."""
 
 
 def near_way(joints: Array, boxes: Obstacles) -> Obstacles:
@@ -76,6 +76,7 @@ def models_of(height: float, boxes: Obstacles) -> Models:
 def _models(height: float, rows: tuple[tuple[float, ...], ...]) -> Models:
     fine = engine().MjModel.from_xml_string(_world(height, rows, STEP))
     coarse = engine().MjModel.from_xml_string(_world(height, rows, COARSE_STEP))
+    coarse.opt.enableflags |= engine().mjtEnableBit.mjENBL_INVDISCRETE
     return Models(fine, coarse)
 
 

@@ -233,7 +233,10 @@ class Controller:
             if planted[side].any():
                 mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_XBODY, foot, velocity, 0)
                 arms = self.contacts.sole @ data.xmat[foot].reshape(3, 3).T
-                moves = velocity[3:] + np.cross(velocity[:3], arms[np.repeat(planted[side], 2)])
+                x, y, z = velocity[:3]
+                # What turns a row r into ω × r.
+                turning = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
+                moves = velocity[3:] + arms[np.repeat(planted[side], 2)] @ turning
                 cost += SLIDING * float((moves * moves).sum())
         return cost
 
@@ -282,20 +285,20 @@ class Controller:
         value[:NX, :NX], slope[:NX] = self._stage(about.states[frames], at + frames, AT_THE_END)
         identity = np.eye(NU)
         for i in range(frames - 1, -1, -1):
-            onward, driven = np.zeros((NX + NU, NX + NU)), np.concatenate([models[i].b, identity])
-            onward[:NX, :NX], onward[:NX, NX:] = models[i].a, models[i].c
+            # Nothing but the control itself comes to be the last control: `onward` has rows for δx alone.
+            onward, driven = np.concatenate([models[i].a, models[i].c], axis=1), np.concatenate([models[i].b, identity])
             pushed, change = value @ driven, about.offsets[i] - before[i]
             own = driven.T @ pushed + (OFFSET + CHANGE + REGULAR) * identity
-            mixed = pushed.T @ onward
+            mixed = pushed[:NX].T @ onward
             mixed[:, NX:] -= CHANGE * identity
             steep = OFFSET * about.offsets[i] + CHANGE * change + driven.T @ slope
             solved = np.linalg.solve(own, np.column_stack([mixed, steep]))
             answer[i], add[i] = -solved[:, :-1], -solved[:, -1]
             hessian, gradient = self._stage(about.states[i], at + i, 1.0)
-            slope = onward.T @ slope + mixed.T @ add[i]
+            slope = onward.T @ slope[:NX] + mixed.T @ add[i]
             slope[:NX] += gradient
             slope[NX:] -= CHANGE * change
-            value = onward.T @ value @ onward + mixed.T @ answer[i]
+            value = onward.T @ (value[:NX, :NX] @ onward) + mixed.T @ answer[i]
             value[:NX, :NX] += hessian
             value[NX:, NX:] += CHANGE * identity
             value = (value + value.T) / 2

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from planner_service.evaluation.physics_evaluation import PhysicsTrial
 
 SHOWN = {
-    "reached": (100, "reached, %"), "contact_error": (100, "contact, cm"), "slip": (1, "slip, cm/s"),
+    "reached": (100, "reached, %"), "contact_error": (100, "contact, cm"),
+    "slip": (1, "slip, cm/s"), "slip_planned": (1, "plan's, cm/s"),
     "skate": (1, "skate, cm/s"), "skate_ratio": (100, "skate, %"),
     "skate_ratio_planned": (100, "plan's, %"), "floor_pen": (1000, "in floor, mm"),
     "jerk_ratio": (1, "jerk / plan's"), "away": (100, "off plan, cm"), "cpu": (1, "CPU-s / s"),
@@ -31,6 +32,7 @@ SHOWN = {
 def physics(
     trials: Annotated[int, typer.Option(min=0, max=10_000, help="Trials of each skill.")] = 4,
     skills: Annotated[list[Skill] | None, typer.Option("--skill", help="Only this skill; may be repeated.")] = None,
+    drawn: Annotated[int | None, typer.Option(min=0, help="Seed of captions, rooms and seeds of the trials.")] = None,
     stories: Annotated[
         str | None, typer.Option(help="So many stories on themes of ours, or a file with a theme a line.")
     ] = None,
@@ -46,19 +48,25 @@ def physics(
     A trial counts as reached where the action was done at the paper's thresholds, all of it simulated, and without a
     reset onto the plan. Exit code 1 when a limit is missed.
     """
-    from planner_service.evaluation.physics_evaluation import draw_trials, keep_row, kept_rows, run_story, run_trial
+    from planner_service.evaluation.physics_evaluation import (
+        DRAWN,
+        by_turns,
+        keep_row,
+        kept_rows,
+        run_story,
+        run_trial,
+    )
 
     give_backends(read_settings())
     rows = kept_rows(results)
     known = {(row.get("skill"), row.get("caption"), row.get("room"), row.get("theme"), row["seed"]) for row in rows}
-    for skill in skills or list(Skill):
-        for trial in draw_trials(skill, trials):
-            if (skill.value, trial.caption, trial.room, None, trial.seed) in known:
-                continue
-            if (done := run_trial(trial)) is not None:
-                rows.append(done.row)
-                keep_row(results, done.row)
-                _draw(done, out)
+    for trial in by_turns(skills or list(Skill), trials, DRAWN if drawn is None else drawn):
+        if (trial.skill.value, trial.caption, trial.room, None, trial.seed) in known:
+            continue
+        if (done := run_trial(trial)) is not None:
+            rows.append(done.row)
+            keep_row(results, done.row)
+            _draw(done, out)
     for story in read_stories(stories, 1) if stories else []:
         told = seed if not (stories or "").isdecimal() else story.seed
         if (None, None, None, story.theme, told) not in known:

@@ -51,9 +51,9 @@ class PhysicsTrial:
     """What was measured, for JSON."""
 
 
-def draw_trials(skill: Skill, count: int) -> list[Trial]:
-    """So many trials of a skill, each with its own caption, room and seed by chance."""
-    rng = np.random.default_rng([DRAWN, list(Skill).index(skill)])
+def draw_trials(skill: Skill, count: int, drawn: int = DRAWN) -> list[Trial]:
+    """So many trials of a skill, each with its own caption, room and seed by chance, from a seed of all."""
+    rng = np.random.default_rng([drawn, list(Skill).index(skill)])
     rooms = [layout.id for layout in built_in_index().layouts]
     known = captions()[skill.value]
     found: list[Trial] = []
@@ -64,6 +64,12 @@ def draw_trials(skill: Skill, count: int) -> list[Trial]:
         if places_for(skill, trial.caption, setting(trial.room)):
             found.append(trial)
     return found
+
+
+def by_turns(skills: Sequence[Skill], count: int, drawn: int = DRAWN) -> Iterator[Trial]:
+    """So many trials of each of some skills, one of each in turn: a run that is ended has as many of all."""
+    for turn in zip(*(draw_trials(skill, count, drawn) for skill in skills), strict=True):
+        yield from turn
 
 
 def run_trial(trial: Trial) -> PhysicsTrial | None:
@@ -99,6 +105,7 @@ def _feet(motion: Motion, plan: Motion) -> dict[str, float]:
     away = np.linalg.norm(body.positions[:frames] - planned.positions[:frames], axis=-1).mean()
     return {
         "slip": support_slip(body),
+        "slip_planned": support_slip(planned),
         "skate": skate_speed(body),
         "skate_ratio": skate_ratio(body),
         "skate_ratio_planned": skate_ratio(planned),
@@ -156,6 +163,7 @@ def figures_of(rows: Sequence[Row]) -> dict[str, tuple[float, float, float]]:
         "reached",
         "contact_error",
         "slip",
+        "slip_planned",
         "skate",
         "skate_ratio",
         "skate_ratio_planned",

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from acted import lain, sat, touched
+from acted import Body, lain, sat, touched
 from simulated import NOTHING, empty_room, walk
+from small_home import small_home
 
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.body.segment_masses import centres_of_mass
+from motion_backend.body.zero_moment import GRAVITY
 from motion_backend.motion import Motion
-from motion_backend.physics.contact_forces import root_force
+from motion_backend.physics.contact_forces import ContactReader, root_force
 from motion_backend.physics.engine import EngineError, engine, require_version
 from motion_backend.physics.generalized_coordinates import fold, unfold
 from motion_backend.physics.mjcf_character import NQ, NU, NV, SIMULATED, mass_of
 from motion_backend.physics.mjcf_scene import SLOTS, models_of, near_way
+from motion_backend.physics.mpc import Controller, moment_of
 from motion_backend.physics.reference import Reference
 from motion_backend.physics.task import plan_of
+from motion_backend.scene import scene_of
 from motion_backend.skeleton import INDEX
 
 FEET = [INDEX[f"{side}_{joint}"] for side in ("left", "right") for joint in ("ankle", "foot")]
@@ -140,3 +145,24 @@ def test_arms_that_swing_through_the_floor_are_led_over_it_and_others_left_alone
     assert turned.max() < 0.3, "an arm jumps"
     high = Reference.of(plan, skeleton)
     np.testing.assert_allclose(high.qpos[:, :3], plan.roots)
+
+
+@pytest.mark.parametrize(
+    ("rests", "caption", "under"), [(sat, "sitting still", "chair"), (lain, "lying still", "bed")], ids=["sits", "lies"]
+)
+def test_what_rests_presses_with_its_weight_on_what_is_under_it(
+    rests: Callable[[str, str], Body], caption: str, under: str
+) -> None:
+    resting = rests(under, caption)
+    # Its servos alone hold it as the plan ends.
+    frames, skeleton = 75, resting.motion.skeleton
+    plan = plan_of(resting.motion).last(frames + 1)
+    boxes = near_way(skeleton.forward_kinematics(plan.roots[:1], plan.local[:1])[0], scene_of(small_home()).obstacles)
+    models, reference = models_of(1.70, boxes), Reference.of(plan, skeleton)
+    reader = ContactReader.of(models.fine, skeleton.scale)
+    controller = Controller(models, engine().MjData(models.fine), reference, reader)
+    _, pressures = controller.play(moment_of(reference, 0), 0, np.zeros((frames, NU)))
+    things, floor = (sum(getattr(one, name) for one in pressures[-15:]) / 15 for name in ("things", "floor"))
+    weight = mass_of(1.70) * GRAVITY
+    assert (things + floor).sum() == pytest.approx(weight, rel=0.05)
+    assert things.sum() > 0.7 * weight
