@@ -15,7 +15,7 @@ from motion_backend.language.minilm import MiniLM
 from motion_backend.language.sentence_encoder import SentenceEncoder
 from motion_backend.motion import RISINGS, Emotion, Skill
 from planner_service.composition.beat_classifier import BeatClassifier, Likely, shipped
-from planner_service.composition.caption_senses import is_shown
+from planner_service.composition.caption_senses import is_shown, shows
 from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, pieces_in
 from planner_service.composition.mood_captions import captions_of
 from planner_service.scripts.captions import captions
@@ -41,10 +41,14 @@ AS_LIKELY: Final = 0.6
 """Captions that are so nearly as likely as the likeliest show it as well."""
 SEATED: Final = 0.15
 """Who sits already goes on sitting for what may be done so, if that is so likely."""
+KNOWN_THERE: Final = 0.5
+"""Hands stay where they are for what the table has done there, if that is so nearly as likely as elsewhere."""
 ANY: Final = 0.5
 """Where such a share of a skill's captions shows it, it is any of them."""
-SURE: Final = 0.6
+SURE: Final = 0.7
 """What is likelier than this to show a clause shows it; what is less likely only stands for it."""
+SAID: Final = 0.55
+"""Less will do where the clause says in so many words what a caption is."""
 HARDLY: Final = 0.6
 """Who rests does not get up for what is less likely to show a clause."""
 SURELY: Final = 0.95
@@ -148,7 +152,8 @@ class DeedReader:
         if likely.moods[mood] < MOODY or mood is Emotion.NEUTRAL:
             return one
         one = one if one.felt is mood else one.in_mood(mood)
-        if likely.moods[mood] > max(most, FELT if " " in one.text else 0.0):
+        alone = " " not in one.text  # "stressed"
+        if likely.moods[mood] > max(most, 0.0 if alone else FELT) and (alone or one.clause.verb):
             return replace(one, beat=one.beat.model_copy(update={"kind": "feeling"}), sure=True)
         return one
 
@@ -160,7 +165,9 @@ class DeedReader:
         if deed.skill in RISINGS and any(one.skill in RISINGS or getattr(one, "already", False) for one in keyframes):
             rises = max(share for (skill, _), share in likely.captions.items() if skill in RISINGS)
             return min(rises, likely.shown) > SURE  # from whatever: a bed or a chair
-        return max(shown(likely, clause, one) for one in keyframes) > (SURE if by_table else SURELY)
+        said = any(shows(one.skill, one.caption, clause) for one in keyframes)
+        least = SAID if said else SURE if by_table else SURELY
+        return max(shown(likely, clause, one) for one in keyframes) > least
 
     def hardly_shows(self, clause: Clause, deed: Deed, mood: Emotion, least: float = HARDLY) -> bool:
         """Whether a deed's captions are taken for what a clause tells less likely than `least`."""
@@ -170,12 +177,12 @@ class DeedReader:
         at_rest = max(likely.of(Skill.SITDOWN, deed.row.seated), likely.of(Skill.LIEDOWN, deed.row.lying))
         return min(max(likely.of(deed.skill, shown_by(deed, mood)), at_rest), likely.shown) < least
 
-    def may_be_at(self, clause: Clause, skill: Skill, word: str) -> bool:
-        """Whether hands may as well do it at a piece of furniture as where they likeliest do."""
+    def may_be_at(self, clause: Clause, skill: Skill, word: str, known: bool) -> bool:
+        """Whether it may as well be done at a piece of furniture as elsewhere; `known` is what the table says."""
         likely = self.likely(clause)
         if likely is None or skill is not Skill.TOUCH:
-            return False
-        return at(likely, word) >= AS_LIKELY * max(likely.pieces.values())
+            return known
+        return at(likely, word) >= (KNOWN_THERE if known else AS_LIKELY) * max(likely.pieces.values())
 
     def likeliest(self, clause: Clause, skill: Skill, some: Sequence[str]) -> Sequence[str]:
         """Those of some captions that are as likely to show a clause as the likeliest of them; all where none is."""

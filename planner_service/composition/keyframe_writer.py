@@ -28,7 +28,7 @@ from planner_service.composition.deed_lexicon import (
 )
 from planner_service.composition.deed_reader import TOUCHES, DeedReader
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
-from planner_service.composition.resting import dozing, is_beside, is_there, lies, only_stands_for, sits_up
+from planner_service.composition.rest_place import dozing, is_beside, is_there, lies, only_stands_for, sits_up
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
 from planner_service.scripts.script_words import NEEDS, affords
@@ -398,7 +398,7 @@ class KeyframeWriter:
         asked = dict.fromkeys((read.room, room_of(read.clause), here))
         rooms = [room for room in asked if room is not None and room in self._rooms]
         near = [k.furniture for k in self.keyframes[:-3:-1] if not (deed.named or k.on_floor)]
-        last = [one for one in near if one in deed.pieces or self.reader.may_be_at(read.clause, skill, one)]
+        last = [one for one in near if self.reader.may_be_at(read.clause, skill, one, one in deed.pieces)]
         last = [*last, *self._there(deed)]
         if deed.named:  # what is named and not there has a stand-in, which the story says
             wanted = [piece for piece in deed.pieces if affords(piece, need)]
