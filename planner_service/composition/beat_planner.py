@@ -86,7 +86,7 @@ def _reader(read: Sequence[ReadBeat], library: ScriptLibrary, request: Request) 
         by_table.write(index, read)
     by_table.appear(read)
     reader = DeedReader(classifier_of(library.encoder) if by_table.keyframes and request.method != "direct" else None)
-    reader.hear([one.clause for one in read], [one.text for one in read])
+    reader.hear(read)
     return reader
 
 

@@ -12,6 +12,7 @@ from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_table, 
 from planner_service.scripts.script import Keyframe
 from planner_service.themes.protagonist import is_person
 from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.theme_words import theme_words
 from scene_graphs.data_tables import read_table, table
 from scene_graphs.furniture import categories_of
 
@@ -19,6 +20,8 @@ _PLACE: Final = re.compile(
     r"\b(?:on|onto|into|at|under|behind|over|against) ((?:the|a|an|his|her|their|my|every|each) (?:\w+ ?){1,2})"
 )
 """Where a clause says that it is done."""
+_HANDS: Final = frozenset(("hand", "finger", "fingers", "arm", "arms", "palm", "palms", "thumb", "wrist", "elbow"))
+"""What of the body is laid on things."""
 _POSTURES: Final = (Skill.SITDOWN, Skill.LIEDOWN, Skill.STANDUP, Skill.GETUP)
 
 
@@ -51,11 +54,17 @@ def senses(skill: Skill, caption: str) -> tuple[str, ...]:
 
 
 def shows(skill: Skill, caption: str, clause: Clause) -> bool:
-    """Whether a caption shows what a clause tells of; hands do nothing of it to people."""
-    if skill is Skill.TOUCH and is_person(object_of(clause)):
+    """Whether a caption shows what a clause tells of; hands do nothing of it to people, nor to one's own body."""
+    if skill is Skill.TOUCH and not _is_touched(object_of(clause)):
         return False
     ways = senses(skill, caption)
     return any(says(ways, lemmas) for lemmas in readings(clause))
+
+
+def _is_touched(noun: str) -> bool:
+    """Whether hands that are laid on furniture do it to a thing, or are what does it: "bangs her fist", not "his
+    knee"."""
+    return not is_person(noun) and (noun not in theme_words()["body"] or noun in _HANDS)
 
 
 def is_shown(clause: Clause, deed: Deed, keyframes: Iterable[Keyframe]) -> bool:
@@ -85,5 +94,5 @@ def _is_own(keyframe: Keyframe, clause: Clause, row: DeedRow) -> bool:
     if row.stands or all(row.says is not one.says for one in deed_table().deed) or _is_elsewhere(keyframe, clause):
         return False
     if keyframe.skill is Skill.TOUCH:
-        return row.skill is Skill.TOUCH and not is_person(object_of(clause))
+        return row.skill is Skill.TOUCH and _is_touched(object_of(clause))
     return keyframe.skill in _POSTURES and keyframe.caption in (*row.captions, *row.seated, *row.lying)

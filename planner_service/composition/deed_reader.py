@@ -7,7 +7,7 @@ the surer one is taken.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
 
@@ -15,7 +15,7 @@ from motion_backend.language.minilm import MiniLM
 from motion_backend.language.sentence_encoder import SentenceEncoder
 from motion_backend.motion import RISINGS, Emotion, Skill
 from planner_service.composition.beat_classifier import BeatClassifier, Likely, shipped
-from planner_service.composition.caption_senses import is_shown
+from planner_service.composition.caption_senses import is_shown, shows
 from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, pieces_in
 from planner_service.composition.mood_captions import captions_of
 from planner_service.scripts.captions import captions
@@ -41,16 +41,26 @@ AS_LIKELY: Final = 0.6
 """Captions that are so nearly as likely as the likeliest show it as well."""
 SEATED: Final = 0.15
 """Who sits already goes on sitting for what may be done so, if that is so likely."""
+KNOWN_THERE: Final = 0.5
+"""Hands stay where they are for what the table has done there, if that is so nearly as likely as elsewhere."""
 ANY: Final = 0.5
 """Where such a share of a skill's captions shows it, it is any of them."""
-SURE: Final = 0.6
+SURE: Final = 0.7
 """What is likelier than this to show a clause shows it; what is less likely only stands for it."""
+SAID: Final = 0.55
+"""Less will do where the clause says in so many words what a caption is."""
 HARDLY: Final = 0.6
 """Who rests does not get up for what is less likely to show a clause."""
 SURELY: Final = 0.95
 """What the table of deeds does not take for shown is if it is so likely."""
 MOODY: Final = 0.4
 """A mood that shows a clause so likely is its mood."""
+FELT: Final = 0.6
+"""A mood that is so likely, and likelier than any caption, is all that a clause tells: "laughs himself silly"."""
+WORDS_ALONE: Final = 0.8
+"""Words without a verb are done where it is so likely that something shows them."""
+HARDLY_HERE: Final = 0.3
+"""Who rests does nothing else there for what is less likely to show a clause."""
 BEFORE: Final = 2
 """A clause is read with so many of those before it."""
 PLACED: Final = 0.15
@@ -84,22 +94,28 @@ class DeedReader:
     classifier: BeatClassifier | None = None
     _known: dict[str, Likely] = field(default_factory=dict)
 
-    def hear(self, clauses: Sequence[Clause], told: Sequence[str]) -> None:
-        """Think about clauses as they follow each other, all at once; `told` are their words with whose deeds they
-        are."""
-        before = [". ".join(told[max(place - BEFORE, 0) : place]) for place in range(len(told))]
-        new = {one.text: pair for one, *pair in zip(clauses, told, before, strict=True) if one.text not in self._known}
+    def hear(self, read: Sequence[ReadBeat]) -> None:
+        """Think about the clauses of beats as they follow each other, all at once."""
+        told = [one.text for one in read]  # with whose deeds they are
+        before = (". ".join(told[max(place - BEFORE, 0) : place]) for place in range(len(told)))
+        self._think({one.clause.text: pair for one, *pair in zip(read, told, before, strict=True)})
+
+    def _think(self, told: Mapping[str, Sequence[str]]) -> None:
+        """About what is told in a clause, and was before it, by the clause's text."""
+        new = {text: pair for text, pair in told.items() if text not in self._known}
         if self.classifier is not None and new:
             self._known.update(zip(new, self.classifier.likely(*zip(*new.values(), strict=True)), strict=True))
 
     def likely(self, clause: Clause) -> Likely | None:
         """What a clause is likely shown by; None without a classifier."""
-        self.hear([clause], [clause.text])
+        self._think({clause.text: (clause.text, "")})
         return self._known.get(clause.text)
 
     def deed(self, clause: Clause, about: str = "") -> Deed | None:
         """The deed of a clause, see `deed_of`; None where nothing that a body does shows it."""
         found, likely = self._deed(clause, about), self.likely(clause)
+        if found is not None and likely is not None and found.skill in RISINGS:
+            return replace(found, skill=_rising(found, likely))
         if found is None or likely is None or found.named or found.skill is not Skill.TOUCH:
             return found
         pieces = (*found.pieces, *likeliest_pieces(likely))
@@ -114,7 +130,7 @@ class DeedReader:
         known = likely.of(told.skill, shown_by(told, Emotion.NEUTRAL)) if told is not None else 0.0
         if told is not None and told.row.captions and likely.shown < SHOWN:
             return told  # what the table says in so many words
-        if likely.shown < SHOWN or not (clause.verb or min(most, likely.shown) > SURE):
+        if likely.shown < SHOWN or not (clause.verb or min(most, likely.shown) > WORDS_ALONE):
             return None
         if told is not None and most - known < (SURER_OF_THE_SAME if skill is told.skill else SURER):
             return told
@@ -136,7 +152,8 @@ class DeedReader:
         if likely.moods[mood] < MOODY or mood is Emotion.NEUTRAL:
             return one
         one = one if one.felt is mood else one.in_mood(mood)
-        if " " not in one.text and likely.moods[mood] > most:  # "stressed"
+        alone = " " not in one.text  # "stressed"
+        if likely.moods[mood] > max(most, 0.0 if alone else FELT) and (alone or one.clause.verb):
             return replace(one, beat=one.beat.model_copy(update={"kind": "feeling"}), sure=True)
         return one
 
@@ -148,22 +165,24 @@ class DeedReader:
         if deed.skill in RISINGS and any(one.skill in RISINGS or getattr(one, "already", False) for one in keyframes):
             rises = max(share for (skill, _), share in likely.captions.items() if skill in RISINGS)
             return min(rises, likely.shown) > SURE  # from whatever: a bed or a chair
-        return max(shown(likely, clause, one) for one in keyframes) > (SURE if by_table else SURELY)
+        said = any(shows(one.skill, one.caption, clause) for one in keyframes)
+        least = SAID if said else SURE if by_table else SURELY
+        return max(shown(likely, clause, one) for one in keyframes) > least
 
-    def hardly_shows(self, clause: Clause, deed: Deed, mood: Emotion) -> bool:
-        """Whether a deed's captions are hardly taken for what a clause tells."""
+    def hardly_shows(self, clause: Clause, deed: Deed, mood: Emotion, least: float = HARDLY) -> bool:
+        """Whether a deed's captions are taken for what a clause tells less likely than `least`."""
         likely = self.likely(clause)
         if likely is None:
             return False
         at_rest = max(likely.of(Skill.SITDOWN, deed.row.seated), likely.of(Skill.LIEDOWN, deed.row.lying))
-        return min(max(likely.of(deed.skill, shown_by(deed, mood)), at_rest), likely.shown) < HARDLY
+        return min(max(likely.of(deed.skill, shown_by(deed, mood)), at_rest), likely.shown) < least
 
-    def may_be_at(self, clause: Clause, skill: Skill, word: str) -> bool:
-        """Whether hands may as well do it at a piece of furniture as where they likeliest do."""
+    def may_be_at(self, clause: Clause, skill: Skill, word: str, known: bool) -> bool:
+        """Whether it may as well be done at a piece of furniture as elsewhere; `known` is what the table says."""
         likely = self.likely(clause)
         if likely is None or skill is not Skill.TOUCH:
-            return False
-        return at(likely, word) >= AS_LIKELY * max(likely.pieces.values())
+            return known
+        return at(likely, word) >= (KNOWN_THERE if known else AS_LIKELY) * max(likely.pieces.values())
 
     def likeliest(self, clause: Clause, skill: Skill, some: Sequence[str]) -> Sequence[str]:
         """Those of some captions that are as likely to show a clause as the likeliest of them; all where none is."""
@@ -181,6 +200,13 @@ def shown(likely: Likely, clause: Clause, keyframe: Keyframe) -> float:
         there = min(2 * at(likely, keyframe.piece[0]) / max(likely.pieces.values()), 1.0)
     felt = 0.0 if keyframe.mood is Emotion.NEUTRAL else likely.moods.get(keyframe.mood, 0.0)
     return min(max(there * likely.captions.get((keyframe.skill, keyframe.caption), 0.0), felt), likely.shown)
+
+
+def _rising(deed: Deed, likely: Likely) -> Skill:
+    """From a seat or a bed: as is named, else as is likelier: "rises with the lark"."""
+    if deed.named:
+        return deed.skill if any(affords(piece, "lie") for piece in deed.pieces) else Skill.STANDUP
+    return max(RISINGS, key=lambda one: likely.of(one, captions()[one.value]))
 
 
 def seated_as_well(likely: Likely) -> tuple[str, ...]:

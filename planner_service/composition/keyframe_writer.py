@@ -26,8 +26,9 @@ from planner_service.composition.deed_lexicon import (
     typical_of,
     where,
 )
-from planner_service.composition.deed_reader import TOUCHES, DeedReader, seated_as_well
+from planner_service.composition.deed_reader import TOUCHES, DeedReader
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
+from planner_service.composition.rest_place import dozing, is_beside, is_there, lies, only_stands_for, sits_up
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
 from planner_service.scripts.script_words import NEEDS, affords
@@ -174,7 +175,7 @@ class KeyframeWriter:
         """Whether somebody gets or sits up next: who wakes before that stays in bed."""
         deeds = ((one, self.reader.deed(one.clause)) for one in beats[index + 1 :] if one.beat.kind == "deed")
         later, deed = next(((one, deed) for one, deed in deeds if deed is not None), (None, None))
-        return later is not None and deed is not None and (deed.skill in RISINGS or _sits_up(later, deed))
+        return later is not None and deed is not None and (deed.skill in RISINGS or sits_up(later, deed))
 
     def _do(self, index: int, read: ReadBeat, deed: Deed, rises_later: bool = False) -> None:
         deed = self._on_feet(read, deed)
@@ -182,7 +183,7 @@ class KeyframeWriter:
         self._clause = read.clause
         if deed.row.mood and mood is Emotion.NEUTRAL:
             mood = Emotion(deed.row.mood)
-        if self._resting is not None and self._only_stands_for(read, deed):
+        if self._resting is not None and only_stands_for(self._resting, read, deed, self.reader):
             self._show(index)  # nobody gets up for what would show no more
             return
         match deed.skill:
@@ -196,7 +197,7 @@ class KeyframeWriter:
                 self._show(index)
             case Skill.LOCO if deed.row.seated and self._resting is not None and self._resting.skill is Skill.SITDOWN:
                 self._rest(index, read, deed, mood, Skill.SITDOWN, deed.row.seated)
-            case Skill.LOCO if deed.row.seated and self._lies() and not deed.named:
+            case Skill.LOCO if deed.row.seated and lies(self._resting) and not deed.named:
                 self._show(index)  # "lies there and stares at the wall"
             case Skill.LOCO:
                 self._walk(index, read, deed, mood)
@@ -204,12 +205,12 @@ class KeyframeWriter:
                 for piece in (deed, *_further(read.clause, deed)):
                     if self._add(index, read, piece, mood, Skill.TOUCH, deed.row.captions or TOUCHES):
                         self._resting = None
-            case Skill.LIEDOWN if not deed.named and (seated := self._dozes(read)):
+            case Skill.LIEDOWN if not deed.named and (seated := dozing(self._resting, read, self.reader)):
                 self._rest(index, read, replace(deed, pieces=()), mood, Skill.SITDOWN, seated)
-            case Skill.SITDOWN if self._resting is not None and self._lies() and _sits_up(read, deed):
+            case Skill.SITDOWN if self._resting is not None and lies(self._resting) and sits_up(read, deed):
                 deed = replace(deed, pieces=(self._resting.furniture,))
                 self._rest(index, read, deed, mood, Skill.SITDOWN, deed.row.captions)
-            case Skill.SITDOWN if self._lies() and deed.row.lying and not deed.named:
+            case Skill.SITDOWN if lies(self._resting) and deed.row.lying and not deed.named:
                 self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)
             case _:
                 shown = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
@@ -236,36 +237,20 @@ class KeyframeWriter:
             shows(Skill.LOCO, one, read.clause) for one in deed.row.captions
         )
         rests = self._resting is not None and not deed.named and not deed.row.seated
-        return rests and (stands_in or (_is_beside(read) and deed.row.captions == _STANDING.captions))
-
-    def _dozes(self, read: ReadBeat) -> Sequence[str]:
-        """Ways of sitting on what cannot be lain on that show what is else done lying."""
-        resting, likely = self._resting, self.reader.likely(read.clause)
-        if resting is None or likely is None or resting.skill is not Skill.SITDOWN or affords(resting.furniture, "lie"):
-            return ()
-        return seated_as_well(likely)
-
-    def _only_stands_for(self, read: ReadBeat, deed: Deed) -> bool:
-        """Whether what would be done is hardly taken for what is told; where it is done at a certain thing, that is
-        gone to all the same."""
-        known = deed.named or deed.row.rests or deed.skill in RISINGS
-        return not known and self.reader.hardly_shows(read.clause, deed, read.beat.emotion)
-
-    def _lies(self) -> bool:
-        return self._resting is not None and self._resting.skill is Skill.LIEDOWN
+        return rests and (stands_in or (is_beside(read) and deed.row.captions == _STANDING.captions))
 
     def _rest(
         self, index: int, read: ReadBeat, deed: Deed, mood: Emotion, skill: Skill, captions: Sequence[str]
     ) -> None:
         """Sit or lie: where one rests already if that does, with the caption of what is done there."""
         resting = self._resting
-        here = resting is not None and self._same_place(resting, deed, skill)
+        here = resting is not None and is_there(resting, deed, skill)
         shown = captions or captions_of(skill, mood)
         if here:  # where one sits already there need be no table
             shown = [one for one in shown if "table" not in one] or shown
         if resting is not None and here and resting.skill is skill:
             generic = deed.row.rests or deed.row.captions
-            stands_in = (deed.row.stands or _is_beside(read)) and not any(
+            stands_in = (deed.row.stands or is_beside(read)) and not any(
                 shows(skill, one, read.clause) for one in shown
             )
             told = self._plain and mood.value != resting.emotion and resting.mood in EXPRESSED
@@ -281,13 +266,6 @@ class KeyframeWriter:
             deed = Deed(deed.row, skill, (resting.furniture,), True)
         if self._add(index, read, deed, mood, skill, shown):
             self._resting, self._plain = self.keyframes[-1], not (deed.row.rests or captions)
-
-    def _same_place(self, resting: PlannedKeyframe, deed: Deed, skill: Skill) -> bool:
-        kinds = furniture.categories_of(resting.furniture)
-        same = resting.furniture in deed.pieces or any(
-            not kinds.isdisjoint(furniture.categories_of(piece)) for piece in deed.pieces if piece != "floor"
-        )
-        return (same or not deed.named) and affords(resting.furniture, NEEDS[skill])
 
     def _begin(self, index: int, deed: Deed, mood: Emotion) -> None:
         """Lie or sit: who gets up has done so before."""
@@ -420,7 +398,7 @@ class KeyframeWriter:
         asked = dict.fromkeys((read.room, room_of(read.clause), here))
         rooms = [room for room in asked if room is not None and room in self._rooms]
         near = [k.furniture for k in self.keyframes[:-3:-1] if not (deed.named or k.on_floor)]
-        last = [one for one in near if one in deed.pieces or self.reader.may_be_at(read.clause, skill, one)]
+        last = [one for one in near if self.reader.may_be_at(read.clause, skill, one, one in deed.pieces)]
         last = [*last, *self._there(deed)]
         if deed.named:  # what is named and not there has a stand-in, which the story says
             wanted = [piece for piece in deed.pieces if affords(piece, need)]
@@ -493,13 +471,3 @@ def _further(clause: Clause, deed: Deed) -> list[Deed]:
     found = [*(piece for some in places for piece in some[:1]), *listed[: _MOST_PLACES + 1]]
     found = [piece for piece in found if affords(piece, "touch") and piece != deed.pieces[0]]
     return [Deed(deed.row, deed.skill, (piece,), True) for piece in dict.fromkeys(found)]
-
-
-def _sits_up(read: ReadBeat, deed: Deed) -> bool:
-    """Whether who lies sits there now: "sits up in bed"."""
-    return deed.skill is Skill.SITDOWN and read.clause.verb == "sit" and bool(re.search(r"\bup\b", read.text))
-
-
-def _is_beside(read: ReadBeat) -> bool:
-    """Whether it is done while something else is: "sits in the dark, | listening"."""
-    return read.clause.joint in ("ing", ",", "while") and read.clause.text.split()[0].endswith("ing")

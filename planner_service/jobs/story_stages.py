@@ -232,6 +232,7 @@ class Maker:
             "end": first + len(motion),
             "reached": figures.reached,
             "reason": figures.reason,
+            "otherwise": bool(motion.notes),
             "segments": [asdict(segment) for segment in segments_of(motion)],
         }
         made = Made(

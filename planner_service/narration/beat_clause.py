@@ -102,7 +102,8 @@ def _head(words: Sequence[str], feeling: bool) -> tuple[str, Sequence[str], bool
         return _head(rest, feeling) if goes_on else (_helpers()[first], rest, False)
     does = form_of(first) in ("present", "ing") or not EXPRESSIONS.keys().isdisjoint(bases(first))
     plain = not does or is_adjective(first)  # "laughed" says what is done, "exhausted" how one is
-    adjective = plain and says_how(first) and after not in ("down", "up", "out", *grammar().marks)
+    adjective = plain and says_how(first) and first not in grammar().numbers
+    adjective = adjective and after not in ("down", "up", "out", *grammar().marks)
     if feeling and (adjective or (first in ("in", "at") and rest)):
         return WAS, words, False
     told = in_past(first)

@@ -44,6 +44,8 @@ class Shot:
     """Why it was not reached."""
     seconds: float = 0.0
     """How long it is on the screen."""
+    otherwise: bool = False
+    """Whether the body did otherwise than its caption says, since the place does not allow it."""
 
 
 @dataclass(frozen=True)
@@ -140,7 +142,7 @@ def acted_beats(beats: Sequence[Beat], shots: Sequence[Shot]) -> ActedBeats:
     """What became of the beats by the keyframes that there are, moved or still to be moved."""
     whole = sum(shot.seconds for shot in shots)
     spare = sum(shot.seconds for shot in shots if not shot.beats)
-    outcomes = (Outcome(beat, _why(beat, index, shots)) for index, beat in enumerate(beats))
+    outcomes = (Outcome(_seen(beat, index, shots), _why(beat, index, shots)) for index, beat in enumerate(beats))
     return ActedBeats(tuple(outcomes), spare / whole if whole else 0.0)
 
 
@@ -157,6 +159,13 @@ def shot_of(keyframe: PlannedKeyframe) -> Shot:
 def beats_in(beat: int | None, also: Sequence[int]) -> tuple[int, ...]:
     """All beats that a keyframe serves."""
     return (() if beat is None else (beat,)) + tuple(also)
+
+
+def _seen(beat: Beat, index: int, shots: Sequence[Shot]) -> Beat:
+    """A beat with what of it is not seen: all of it, where the body did otherwise in every keyframe that shows it."""
+    own = [shot for shot in shots if index in shot.beats and not shot.connects]
+    lost = bool(own) and all(shot.otherwise for shot in own)
+    return beat.model_copy(update={"unshown": (beat.text,)}) if lost else beat
 
 
 def _why(beat: Beat, index: int, shots: Sequence[Shot]) -> str:

@@ -199,7 +199,9 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     sooner = [(one.sentence, one.place) < first for one in told if one.joint in _MAIN_JOINTS][:1] == [True]
     living = [one for one in mains[:1] if sooner and (called or one.lower().startswith(opening)) and _may_live(one)]
     people.sort(key=lambda one: (bool(pronoun) and _is_plural(one.subject), one.sentence, one.place))
-    return next(iter([*living, *(one.subject for one in people)]), "")
+    # Whom no list knows does most: "Rex, soft as butter, comes home, kneels to tickle the puppy".
+    busy = [who for who, times in deeds.most_common() if times > 1 and who.istitle() and _may_live(who)]
+    return next(iter([*living, *(one.subject for one in people), *(who for who in busy if " " not in who)]), "")
 
 
 def _told_most(clauses: Sequence[Clause]) -> str:

@@ -100,6 +100,7 @@ def _keyframes(made: Json, segments: list[Json]) -> list[Json]:
 def _beats(made: Json, keyframes: list[Json], segments: list[Json]) -> list[Json]:
     """What became of the beats, as far as that is known."""
     reasons = {segment["keyframe"]: segment.get("reason", "") for segment in segments}
+    otherwise = {segment["keyframe"] for segment in segments if segment.get("otherwise")}
     shots = [
         Shot(
             beats_in(row["beat"], row["also"]),
@@ -107,6 +108,7 @@ def _beats(made: Json, keyframes: list[Json], segments: list[Json]) -> list[Json
             leads(Skill(row["skill"]), row["furniture"]),
             row["reached"],
             reasons.get(row["index"], ""),
+            otherwise=row["index"] in otherwise,
         )
         for row in keyframes
     ]

@@ -36,6 +36,10 @@ def test_every_part_of_the_table_is_part_of_a_caption_of_its_skill() -> None:
         ("She bakes a cake.", Skill.TOUCH, "touch medium height", False),
         ("She conducts an orchestra.", Skill.LOCO, "run and spin", False),
         ("She looks out.", Skill.LOCO, "stand still", True),
+        ("She bangs her fist.", Skill.TOUCH, "touch medium height", True),
+        ("She bangs her knee.", Skill.TOUCH, "touch medium height", False),
+        ("She answers the phone.", Skill.SITDOWN, "sitting upright, phone at the right ear", True),
+        ("She looks at her phone.", Skill.SITDOWN, "sitting upright, phone at the right ear", False),
     ],
 )
 def test_a_caption_shows_its_own_deed_and_stands_for_any_other(

@@ -76,9 +76,21 @@ def test_nothing_is_done_where_nothing_is_likely_to_show_it() -> None:
 
 def test_words_without_a_verb_are_done_only_where_that_is_sure() -> None:
     (told,) = (one for one in clauses_of_text("Feet on the ottoman.") if not one.verb)
-    assert reader(likely(legs_extended=0.45)).deed(told) is None
+    assert reader(likely(legs_extended=0.7)).deed(told) is None
     assert (found := reader(likely(legs_extended=0.9)).deed(told)) is not None
     assert found.skill is Skill.SITDOWN
+
+
+def test_who_rises_does_so_from_where_they_likeliest_are_unless_it_is_named() -> None:
+    rise = clause("She rises with the lark")
+    assert (table := deed_of(rise)) is not None
+    assert table.skill is Skill.STANDUP
+    assert (found := reader(likely(get_up=0.9)).deed(rise)) is not None
+    assert found.skill is Skill.GETUP
+    assert (found := reader(likely(stand_up=0.9)).deed(rise)) is not None
+    assert found.skill is Skill.STANDUP
+    assert (found := reader(likely(get_up=0.9)).deed(clause("She rises from her chair"))) is not None
+    assert found.skill is Skill.STANDUP
 
 
 def test_hands_do_it_at_the_likeliest_furniture_unless_some_is_named() -> None:
@@ -113,6 +125,12 @@ def test_a_beat_that_a_mood_shows_is_in_that_mood_and_what_nobody_else_does_is_d
     assert reader(likely(turn_on=0.9)).heard(mother).beat.kind == "other"
 
 
+def test_what_a_mood_shows_more_likely_than_any_caption_is_felt() -> None:
+    (laughs,) = beats_of("He laughs himself silly.")
+    assert reader(likely(moods={Emotion.HAPPY: 0.9}, skip=0.3)).heard(laughs).beat.kind == "feeling"
+    assert reader(likely(moods={Emotion.HAPPY: 0.9}, skip=0.95)).heard(laughs).beat.kind == "deed"
+
+
 def test_a_word_for_a_mood_is_felt_and_not_done() -> None:
     stressed = next(one for one in beats_of("Stressed, she paces.") if "tressed" in one.text)
     heard = reader(likely(moods={Emotion.STRESSED: 0.9}, pacing=0.2)).heard(stressed)
@@ -136,8 +154,7 @@ def test_a_keyframe_shows_what_it_likely_shows_and_only_stands_for_the_rest() ->
 def test_a_clause_is_read_once_with_those_before_it() -> None:
     model = Scripted(likely(pacing=0.9))
     heard = DeedReader(cast(BeatClassifier, model))
-    told = clauses_of_text("She comes in. She paces. She frets. She sighs.")
-    words = [one.text for one in told]
-    heard.hear(told, words)
-    heard.hear(told, words)
+    told = beats_of("She comes in. She paces. She frets. She sighs.")
+    heard.hear(told)
+    heard.hear(told)
     assert [before for _, before in model.asked] == ["", "comes in", "comes in. paces", "paces. frets"]

@@ -69,6 +69,12 @@ def test_a_beat_whose_deeds_the_body_did_not_reach_is_not_acted_and_says_so() ->
     assert acted_beats([Beat(text="walks to the window")], [walk]).acted == 1
 
 
+def test_what_the_body_did_otherwise_only_stands_for_its_beat() -> None:
+    assert acted_beats([READS], [shot(0, True, otherwise=True)]).stood_for == 1
+    assert acted_beats([READS], [shot(0, True, otherwise=True), shot(0, True)]).stood_for == 0
+    assert acted_beats([READS], [shot(0, True, connects=True, otherwise=True), shot(0, True)]).stood_for == 0
+
+
 def test_a_feeling_is_acted_by_the_mood_of_other_beats() -> None:
     cries = Beat(text="cries", emotion=Emotion.SAD, kind="feeling")
     assert acted_beats([SITS, cries], [shot(0, mood=Emotion.SAD)]).outcomes[1].acted

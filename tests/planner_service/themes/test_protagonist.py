@@ -76,3 +76,5 @@ def test_who_acts_is_whom_a_theme_is_about() -> None:
 
     assert hero("Once the last guest has gone, Teodor flings himself on the couch and kicks off his boots.") == "Teodor"
     assert hero("The bosun cannot sleep, so he rolls off the bed.") == "The bosun"
+    assert hero("Rex, soft as butter, comes home, kneels and pats the puppy.") == "Rex"
+    assert hero("Rain falls. Rain stops.") == hero("The kettle whistles and boils over.") == ""
