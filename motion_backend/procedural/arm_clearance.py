@@ -32,7 +32,7 @@ from motion_backend.skeleton import Skeleton
 
 ROUNDS: Final = 6
 """So often it is looked again what a moved arm is in."""
-HARDER, EASIER = 10.0, 3.0
+HARDER, EASIER = 4.0, 4.0
 """How much more a frame's detour is damped after a round that left its arms deeper in something, and how much less
 after one that did not."""
 NOWHERE: Final = 1e-9

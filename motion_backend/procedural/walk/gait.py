@@ -25,8 +25,8 @@ from motion_backend.procedural.walk.walk_styles import Walk
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
 
-FEET_CHANGE = 1.0
-"""So many steps later, at most, a walk goes over into the next: in one step there is a moment for it."""
+FEET_CHANGE = 0.6
+"""So much of a step later, at most, a walk goes over into the next."""
 ABOUT = 3
 """Frames about such a frame in which feet are slow."""
 NEAR = 0.2
@@ -90,7 +90,7 @@ def walk_on(
 
 
 def _as_feet_change(steps: Steps, frame: int) -> int:
-    """The frame from that one on, within a step, about which feet are slowest and change their pace least:
+    """The frame from that one on, within a good half of a step, about which feet are slowest and change their pace least:
     nobody changes his walk in mid-swing, nor as a foot comes down."""
     from scipy.ndimage import maximum_filter1d
 
