@@ -36,6 +36,8 @@ _ARMS: Final = [INDEX[f"{side}_{joint}"] for side in _SIDES for joint in ("shoul
 
 def strides_landing(positions: Array) -> NDArray[np.int64]:
     """Frames in which a heel comes down: the feet are farthest apart along the way. (T, 22, 3) to (N,)."""
+    if len(positions) < 3:
+        return np.zeros(0, dtype=np.int64)
     ahead = _ahead(positions[:, 0])
     apart = np.einsum("tc,tc->t", (_ankle(positions, "left") - _ankle(positions, "right"))[:, [0, 2]], ahead)
     wide = np.abs(apart)

@@ -28,6 +28,7 @@ from motion_backend.procedural.pose_solver import solve
 from motion_backend.procedural.walk.gait import walk
 from motion_backend.procedural.walk.walk_styles import walk_style
 from motion_backend.skeleton import build_skeleton
+from motion_backend.stride_takeover import strides_landing
 from motion_backend.walk_driver import STARTS_AND_STOPS, unlike_people
 from motion_backend.walk_generator import LOOK, Frames, Way, follow
 from scene_graphs.home import Home, home_from_layouts
@@ -76,6 +77,11 @@ def _entry(name: str, motion: Motion, split: str = "train", style: str = "neutra
 def database() -> WalkDatabase:
     """Of all of them."""
     return build_walk_database(clips())
+
+
+def test_nobody_lands_in_less_than_three_frames() -> None:
+    for count in range(3):
+        assert len(strides_landing(np.zeros((count, 22, 3)))) == 0
 
 
 def _standing() -> Frames:
