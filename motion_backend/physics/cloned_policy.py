@@ -12,10 +12,11 @@ import torch
 
 from motion_backend.datasets.normalization import Floats, Normalization
 from motion_backend.physics.mjcf_character import NU
-from motion_backend.physics.policies import Policy, PolicyConfig, PolicyName
-from motion_backend.physics.policy_view import CONTROL_FLOOR, floors
+from motion_backend.physics.policies import PLAN_SIZE, SOLES, Policy, PolicyConfig, PolicyName
+from motion_backend.physics.policy_view import OFFSET_FLOOR, floors
 from motion_backend.physics.trained_policy import LARGEST, TrainedPolicy
 from motion_backend.physics.training_fault import stop_if_not_finite
+from motion_backend.rotations import Array
 
 LAST_RATE: Final = 0.03
 """Of the full rate, at the end of its cosine."""
@@ -35,22 +36,36 @@ class CloningConfig:
 
 @dataclass(frozen=True)
 class Rows:
-    """What was seen (N, O) and what the teacher would do (N, 30)."""
+    """What was seen (N, O) and by what offsets the teacher would answer (N, 30)."""
 
     seen: Floats
     done: Floats
 
     def scales(self, name: PolicyName) -> tuple[Normalization, Normalization]:
         """Of both."""
-        return Normalization.of(self.seen, floors(name)), Normalization.of(self.done, CONTROL_FLOOR)
+        seen, state = Normalization.of(self.seen, floors(name)), PolicyConfig.of(name, NU).state
+        # What is planted is 1 and what is not -1, however often either is.
+        for one in (seen.mean, seen.spread):
+            one[state - SOLES : state] = 0.5
+        return seen, Normalization.of(self.done, OFFSET_FLOOR)
 
 
-def new_policy(name: PolicyName, rows: Rows, seed: int = 0) -> TrainedPolicy:
-    """One that has learned nothing, on the scale of some rows: it does their mean."""
+def new_policy(name: PolicyName, rows: Rows, seed: int = 0, answers: Array | None = None) -> TrainedPolicy:
+    """One on the scale of some rows: it does their mean, or what linear answers (`linear_answers`) say."""
     with torch.random.fork_rng():
         torch.manual_seed(seed)
         network = Policy(PolicyConfig.of(name, NU))
-    return TrainedPolicy(name, network.requires_grad_(False), *rows.scales(name))
+    policy = TrainedPolicy(name, network.requires_grad_(False), *rows.scales(name))
+    if answers is not None:
+        state = network.config.state
+        mean, spread = (
+            one[state - PLAN_SIZE : state].astype(np.float64) for one in (policy.seen.mean, policy.seen.spread)
+        )
+        told = answers.copy()
+        told[:, -1] += mean @ answers[:, :-1] - policy.done.mean
+        told[:, :-1] *= spread[:, None]
+        network.answer.copy_(torch.from_numpy((told / policy.done.spread).astype(np.float32)))
+    return policy
 
 
 def clone(policy: TrainedPolicy, rows: Rows, config: CloningConfig, folder: Path | None = None) -> Sequence[float]:

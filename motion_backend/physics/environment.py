@@ -56,7 +56,7 @@ class _Body:
 
 
 class SkillEnvironment:
-    """N bodies; actions are controls on the scale of the policy's."""
+    """N bodies; actions are offsets of controls on the scale of the policy's."""
 
     def __init__(
         self, episodes: Sequence[Episode], scale: Normalization, count: int, seed: int = 0, walking: bool = False
@@ -73,7 +73,7 @@ class SkillEnvironment:
 
     def step(self, actions: Floats) -> Outcome:
         """Do actions (N, 30); those that ended have begun anew when it returns."""
-        rows = [self._step(body, control) for body, control in zip(self.bodies, self.scale.undo(actions), strict=True)]
+        rows = [self._step(body, offset) for body, offset in zip(self.bodies, self.scale.undo(actions), strict=True)]
         for index, (_, _, terminated, truncated) in enumerate(rows):
             if terminated or truncated:
                 self.failed[self.bodies[index].episode] += terminated
@@ -89,10 +89,10 @@ class SkillEnvironment:
             now = moment_of(episode.view.task.reference, at)
         return _Body(index, PolicyPlayer.of(episode.view), now, at)
 
-    def _step(self, body: _Body, control: Array) -> tuple[float, Array, bool, bool]:
+    def _step(self, body: _Body, offset: Array) -> tuple[float, Array, bool, bool]:
         """Reward, what is seen after it, and whether it is over for good or in time."""
         before, view = body.now, body.player.view
-        body.now, pressure = body.player.step(before, body.at, control.astype(np.float64))
+        body.now, pressure = body.player.step(before, body.at, offset.astype(np.float64))
         body.at += 1
         if fallen(body.now, view.task.reference.qpos[body.at]) or pressure.total > HURTS:
             return 0.0, body.player.observe(before, body.at - 1)[0], True, False

@@ -149,7 +149,8 @@ def _moment(mujoco: Any, data: Any) -> Array:
 
 def _unlimited(model: Any, data: Any) -> Array:
     low, high = model.actuator_forcerange.T
-    return (data.actuator_force > low) & (data.actuator_force < high)
+    free: Array = (data.actuator_force > low) & (data.actuator_force < high)
+    return free
 
 
 def _integrated(qvel: Array, seconds: float) -> tuple[Array, Array]:

@@ -16,11 +16,18 @@ import torch
 from torch import Tensor, nn
 
 from motion_backend.motion import Skill
-from motion_backend.physics.mjcf_character import NU
+from motion_backend.physics.linear_model import NX
+from motion_backend.physics.mjcf_character import NU, NV
 from motion_backend.physics.observations import GOAL_SIZE, HEIGHTMAP, STATE_SIZE
 
 EMBEDDING_SIZE: Final = 64
 """Of z (SIMS 3.3)."""
+SOLES: Final = 8
+"""Numbers of planted soles: both heels and balls, next and some frames later."""
+PLAN_SIZE: Final = NX + NU + NV + SOLES
+"""Numbers of how far a body is off its plan, of the offsets it holds, of how the plan goes on, and of planted soles."""
+SUPPORTS: Final = 4
+"""A plan stands on no foot, the right, the left or both; each has a linear answer of its own."""
 SMALL: Final = 0.01
 """What the last layer begins with, against the usual: a new policy does next to nothing."""
 LOG_STD_RANGE: Final = (-4.0, 0.5)
@@ -57,8 +64,9 @@ class PolicyConfig:
     """Numbers of a control."""
     heights: int = HEIGHTMAP.size**2
     goal: int = GOAL_SIZE
-    state: int = STATE_SIZE + NU
-    """s, and the controls that the body holds: the teacher prices their change, so that its answer hangs on them."""
+    state: int = STATE_SIZE + NU + PLAN_SIZE
+    """s, the controls that the body holds (the teacher prices their change, so that its answer hangs on them), and how
+    it is off its plan."""
     text: int = EMBEDDING_SIZE
     """0 for a policy without text."""
     seen: int = 64
@@ -79,6 +87,7 @@ class Policy(nn.Module):  # type: ignore[misc]  # torch is not read by mypy
         self.config = config
         self.look = mlp(config.heights, (2 * config.seen,), config.seen)
         self.act = mlp(config.state + config.seen + config.goal + config.text, config.hidden, config.actions)
+        self.answer = nn.Parameter(torch.zeros(SUPPORTS, PLAN_SIZE + 1, config.actions))
         with torch.no_grad():
             self.act[-1].weight *= SMALL
         self.log_std = nn.Parameter(torch.full((config.actions,), -1.0))
@@ -91,7 +100,17 @@ class Policy(nn.Module):  # type: ignore[misc]  # torch is not read by mypy
     def forward(self, observed: Tensor) -> Tensor:
         """Mean controls of observations (B, s + h + g + z). (B, actions)."""
         s, h, g, z = observed.split(self.input_sizes, dim=-1)
-        return self.act(torch.cat([s, self.look(h), g, z], dim=-1))
+        linear = torch.einsum("bm,bs,msa->ba", *supported(s), self.answer)
+        return linear + self.act(torch.cat([s, self.look(h), g, z], dim=-1))
+
+
+def supported(s: Tensor) -> tuple[Tensor, Tensor]:
+    """By which feet a plan stands next, one of (B, SUPPORTS), and what is seen of it with a 1, (B, PLAN_SIZE + 1), from
+    the states (B, S) of normalised observations, in which what is not planted is below 0."""
+    plan = s[:, -PLAN_SIZE:]
+    left, right = (plan[:, -SOLES : -SOLES // 2] > 0).view(-1, 2, 2).any(-1).long().unbind(-1)
+    ones = torch.ones(len(s), 1, dtype=s.dtype)
+    return nn.functional.one_hot(2 * left + right, SUPPORTS).to(s.dtype), torch.cat([plan, ones], dim=-1)
 
 
 class Value(nn.Module):  # type: ignore[misc]  # torch is not read by mypy

@@ -10,7 +10,7 @@ import numpy as np
 
 from motion_backend.physics.contact_forces import ContactReader, Pressure
 from motion_backend.physics.engine import engine
-from motion_backend.physics.mpc import Controller, Moment
+from motion_backend.physics.mpc import MOST_OFFSET, Controller, Moment
 from motion_backend.physics.policy_view import View
 from motion_backend.physics.tracker import Tracked, fallen
 from motion_backend.rotations import Array
@@ -20,10 +20,10 @@ ASKED_EVERY: int = 30
 
 
 class Acts(Protocol):
-    """Whatever gives controls (N, 30) for observations (N, O)."""
+    """Whatever gives offsets of controls (N, 30) for observations (N, O)."""
 
-    def controls(self, observed: Array) -> Array:
-        """Controls (N, 30) for observations (N, O)."""
+    def offsets(self, observed: Array) -> Array:
+        """What is added to the plan's controls (N, 30) for observations (N, O), in radians."""
         ...
 
 
@@ -51,10 +51,9 @@ class PolicyPlayer:
         qpos, qvel, controls = (row[None] for row in (now.state.qpos, now.state.qvel, now.control))
         return self.view.observe(qpos, qvel, controls, np.array([at]))
 
-    def step(self, now: Moment, at: int, control: Array) -> tuple[Moment, Pressure]:
-        """A frame in which the control runs to one (30,)."""
-        offset = control - self.view.task.reference.controls[at + 1]
-        (moment,), (pressure,) = self.controller(at).play(now, at, offset[None])
+    def step(self, now: Moment, at: int, offset: Array) -> tuple[Moment, Pressure]:
+        """A frame in which the control runs to the plan's next one and an offset (30,), as large as the teacher's."""
+        (moment,), (pressure,) = self.controller(at).play(now, at, np.clip(offset, -MOST_OFFSET, MOST_OFFSET)[None])
         return moment, pressure
 
     def play(self, policy: Acts, start: Moment, frames: int, between: Callable[[], None] = lambda: None) -> Tracked:
@@ -63,7 +62,7 @@ class PolicyPlayer:
         for at in range(frames):
             if at % ASKED_EVERY == 0:
                 between()
-            moment, pressure = self.step(done.moments[-1], at, policy.controls(self.observe(done.moments[-1], at))[0])
+            moment, pressure = self.step(done.moments[-1], at, policy.offsets(self.observe(done.moments[-1], at))[0])
             done.moments.append(moment)
             done.pressures.append(pressure)
             if fallen(moment, self.view.task.reference.qpos[at + 1]):

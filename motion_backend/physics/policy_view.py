@@ -1,8 +1,13 @@
-"""What a policy sees of a task while it does it: (s, h, g, z) of SIMS 3.4, from a simulated body's numbers."""
+"""What a policy sees of a task while it does it: (s, h, g, z) of SIMS 3.4, from a simulated body's numbers.
+
+Besides these it sees the plan that the procedural body made, which the paper's do not: its controls are offsets from
+the plan's, as the teacher's are.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -11,8 +16,10 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.backend_protocol import Part, PartKind
 from motion_backend.motion import Motion, Skill
+from motion_backend.physics.engine import engine
 from motion_backend.physics.generalized_coordinates import unfold
-from motion_backend.physics.mjcf_character import SIMULATED
+from motion_backend.physics.linear_model import NX
+from motion_backend.physics.mjcf_character import NU, NV, SIMULATED
 from motion_backend.physics.observations import (
     GOAL_SIZE,
     HEIGHTMAP,
@@ -35,8 +42,17 @@ AT_GOAL: Final = 0.06
 """A hand of a plan that is this near to its goal (metres) is there: until it leaves, the goal is shown."""
 HELD_FRAMES: Final = 10
 """Last frames of a plan in which it is looked for what head and hands lean on."""
-CONTROL_FLOOR, HEIGHT_FLOOR, GOAL_FLOOR, TEXT_FLOOR = 0.05, 0.05, 0.05, 0.03
-"""What can be seen of controls (radians), of heights and goals (metres), and of an embedding's numbers."""
+CONTROL_FLOOR, HEIGHT_FLOOR, GOAL_FLOOR, TEXT_FLOOR = 0.05, 0.5, 0.2, 0.3
+"""What can be seen of controls (radians), of heights and goals (metres), and of an embedding's numbers: heights and
+words little, or rooms and captions are learned by heart."""
+OFFSET_FLOOR: Final = 0.02
+"""What can be seen of a control's offset from the plan's (radians)."""
+LATER: Final = 5
+"""Frames later: where the plan goes on to."""
+PLAN_FLOOR: Final = np.repeat(
+    [0.01, 0.02, 0.02, 0.05, 0.1, 0.1, OFFSET_FLOOR, 0.05, 0.5], [3, 3, NV - 6, 3, 3, NV - 6, NU, NV, 8]
+)
+"""What can be seen of these. (PLAN_SIZE,)."""
 _SHARED: Final = {"trunk": ("spine1", "spine2", "spine3"), "neck": ("neck", "head")}
 _TURNING: Final = [
     (INDEX[own], joint.qvel, len(shared))
@@ -81,6 +97,11 @@ def bodies_of(qpos: Array, qvel: Array, wrists: Array, task: Task) -> BodyMoment
     return BodyMoment(placed, turned, local, qvel[:, :3], spins, task.skeleton.scale)
 
 
+def level_of(qpos: Array) -> Array:
+    """What turns the world's axes into those of bodies (N, 45) that face ahead. (N, 4)."""
+    return np.asarray(rotations.yaw_to_quat(-2 * np.arctan2(qpos[:, 5], qpos[:, 3])))
+
+
 @dataclass(frozen=True)
 class View:
     """What is told to a policy besides the state of its body."""
@@ -108,28 +129,59 @@ class View:
         return View(task, spot.object_id if spot is not None else None, places, mask, shown, z)
 
     def observe(self, qpos: Array, qvel: Array, controls: Array, frames: NDArray[np.int_]) -> Array:
-        """(s, controls, h, g, z) of bodies (N, 45), (N, 36) that hold controls (N, 30), each in a frame of its plan.
+        """(s, controls and plan, h, g, z) of bodies (N, 45), (N, 36) that hold controls (N, 30), each in a frame of
+        its plan.
 
         (N, O) in metres, radians and their rates; the controls are seen since the teacher prices their change.
         """
         bodies = bodies_of(qpos, qvel, self.task.reference.wrists[frames], self.task)
         heights = heightmap(scene_of(self.task.home), self.target, bodies).reshape(len(qpos), -1)
-        return self.joined(bodies, controls, heights, frames)
+        return self.joined(bodies, controls, self.off_plan(qpos, qvel, controls, frames), heights, frames)
 
-    def joined(self, bodies: BodyMoment, controls: Array, heights: Array, frames: NDArray[np.int_]) -> Array:
-        """The same with heightmaps (N, 625) that are known already."""
+    def off_plan(self, qpos: Array, qvel: Array, controls: Array, frames: NDArray[np.int_]) -> Array:
+        """How far bodies are off their plan, what they hold beside its controls, and how it goes on. (N, PLAN_SIZE)."""
+        reference, off = self.task.reference, np.empty((len(frames), NX))
+        model, difference = self.task.models_at(0).fine, engine().mj_differentiatePos
+        for row, planned, now in zip(off, reference.qpos[frames], qpos, strict=True):
+            difference(model, row[:NV], 1.0, planned, now)
+        off[:, NV:] = qvel - reference.qvel[frames]
+        found = np.concatenate([off, controls - reference.controls[frames], self._goes_on[frames]], axis=1)
+        # What is in the world's axes is told in the body's own, as everything else that it sees.
+        level = level_of(qpos)
+        for first in (0, NV, NX + NU):
+            found[:, first : first + 3] = rotations.rotate(level, found[:, first : first + 3])
+        return found
+
+    @cached_property
+    def _goes_on(self) -> Array:
+        """Of every frame of the plan: the way to where it is `LATER`, and which soles are planted next and then."""
+        reference, model = self.task.reference, self.task.models_at(0).fine
+        frames = np.arange(len(reference))
+        following, later = (np.minimum(frames + ahead, frames[-1]) for ahead in (1, LATER))
+        way = np.empty((len(frames), NV))
+        for row, here, there in zip(way, reference.qpos, reference.qpos[later], strict=True):
+            engine().mj_differentiatePos(model, row, 1.0, here, there)
+        return np.concatenate([way, reference.planted[following], reference.planted[later]], axis=1)
+
+    def joined(
+        self, bodies: BodyMoment, controls: Array, plan: Array, heights: Array, frames: NDArray[np.int_]
+    ) -> Array:
+        """The same with what is seen of the plan (N, PLAN_SIZE) and heightmaps (N, 625) that are known already."""
         mask = (frames < self.shown)[:, None] & self.mask
         places = np.broadcast_to(self.places, (len(frames), *self.places.shape))
         words = np.broadcast_to(self.z, (len(frames), len(self.z)))
-        return np.concatenate([state(bodies), controls, heights, goal(places, mask, bodies), words], axis=1)
+        return np.concatenate([state(bodies), controls, plan, heights, goal(places, mask, bodies), words], axis=1)
 
 
 def floors(name: PolicyName) -> Array:
     """What can be seen of each number of an observation. (O,)."""
     words = EMBEDDING_SIZE if name in WITH_TEXT else 0
     sizes = (sum(1 if joint.axis else 3 for joint in SIMULATED), HEIGHTMAP.size**2, GOAL_SIZE, words)
-    rest = np.repeat([CONTROL_FLOOR, HEIGHT_FLOOR, GOAL_FLOOR, TEXT_FLOOR], sizes)
-    return np.concatenate([STATE_FLOOR, rest])
+    controls, *rest = (
+        np.full(size, floor)
+        for size, floor in zip(sizes, (CONTROL_FLOOR, HEIGHT_FLOOR, GOAL_FLOOR, TEXT_FLOOR), strict=True)
+    )
+    return np.concatenate([STATE_FLOOR, controls, PLAN_FLOOR, *rest])
 
 
 def _shown(planned: Motion, part: Part) -> int:

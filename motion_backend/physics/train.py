@@ -22,12 +22,13 @@ from motion_backend.physics.cloned_policy import CloningConfig, Rows, clone, new
 from motion_backend.physics.discriminator import DiscriminatorConfig, DiscriminatorTrainer
 from motion_backend.physics.distillation import PERTURBED, Episode, Lesson, samples, teach
 from motion_backend.physics.environment import SkillEnvironment, StyledEnvironment
+from motion_backend.physics.linear_answers import linear_answers
 from motion_backend.physics.mjcf_character import NU
 from motion_backend.physics.policies import Policy, PolicyConfig, PolicyName, Value
-from motion_backend.physics.policy_view import CONTROL_FLOOR
 from motion_backend.physics.ppo import PPO, PPOConfig, VectorEnvironment
 from motion_backend.physics.trained_policy import TrainedPolicy
 from motion_backend.physics.training_fault import TrainingFaultError
+from motion_backend.rotations import Array
 
 Report = Callable[[str], None]
 
@@ -85,7 +86,7 @@ class DistilRun:
         if kept.is_file():
             return TrainedPolicy.load(kept)
         rows = self._rows((number + 1) * self.config.episodes)
-        policy = policy or new_policy(self.name, rows, self.config.seed)
+        policy = policy or new_policy(self.name, rows, self.config.seed, self._answers(self.config.episodes))
         losses = clone(policy, rows, self.config.cloning, self.folder)
         report(f"{len(rows.seen)} states; loss {np.mean(losses[:SHOWN]):.3f} to {np.mean(losses[-SHOWN:]):.3f}")
         policy = TrainedPolicy(
@@ -98,12 +99,20 @@ class DistilRun:
     def _rows(self, count: int) -> Rows:
         seen, done = [], []
         for index in range(count):
-            lesson = Lesson.load(self.folder / "lessons" / f"{index:04d}.npz")
+            lesson = self._lesson(index)
             rng = np.random.default_rng([self.config.seed, index, 1])
             for observed, controls in samples(self._episode(index), lesson, rng, self.config.perturbed):
                 seen.append(observed)
                 done.append(controls)
         return Rows(np.concatenate(seen), np.concatenate(done))
+
+    def _answers(self, count: int) -> Array:
+        """What a teacher's answers have in common, of episodes in which it did not fall, if there are any."""
+        taught = [(self._episode(at), self._lesson(at)) for at in range(count)]
+        return linear_answers([one for one in taught if not one[1].fell] or taught)
+
+    def _lesson(self, index: int) -> Lesson:
+        return Lesson.load(self.folder / "lessons" / f"{index:04d}.npz")
 
     def _told(self, number: int, states: int) -> dict[str, Any]:
         return {"method": "distil", "rounds": number + 1, "episodes": self.config.episodes, "states": states}
@@ -111,6 +120,8 @@ class DistilRun:
 
 SHOWN: Final = 50
 """Steps that a loss is averaged over where it is told."""
+REACHES: Final = 0.1
+"""Radians of a control's offset that an action of 1 is, where rewards teach."""
 
 
 @dataclass(frozen=True)
@@ -132,8 +143,7 @@ class RewardRun:
 
     def __init__(self, name: PolicyName, episodes: Sequence[Episode], folder: Path, config: RewardConfig) -> None:
         self.name, self.folder, self.config = name, folder, config
-        controls = np.concatenate([one.view.task.reference.controls[: one.frames] for one in episodes])
-        self.scale = Normalization.of(controls, CONTROL_FLOOR)
+        self.scale = Normalization(np.zeros(NU, np.float32), np.full(NU, REACHES, np.float32))
         plain = SkillEnvironment(episodes, self.scale, config.bodies, config.seed, name is PolicyName.WALK)
         size = plain.observe().shape[1]
         with torch.random.fork_rng():

@@ -18,7 +18,7 @@ from motion_backend.physics.policies import Policy, PolicyConfig, PolicyName
 from motion_backend.rotations import Array
 from scene_graphs.errors import UserError
 
-VERSION: Final = "1"
+VERSION: Final = "2"
 LARGEST: Final = 10.0
 """Normalised observations are cut here, in training too."""
 _SCALES: Final = ("seen.mean", "seen.spread", "done.mean", "done.spread")
@@ -37,12 +37,12 @@ class TrainedPolicy:
     seen: Normalization
     """Of observations (O,)."""
     done: Normalization
-    """Of controls (30,)."""
+    """Of offsets of controls (30,)."""
     figures: Mapping[str, Any] = field(default_factory=dict)
     """How it was trained and what it is worth."""
 
-    def controls(self, observed: Array) -> Array:
-        """Controls (N, 30) for observations (N, O)."""
+    def offsets(self, observed: Array) -> Array:
+        """What is added to the plan's controls (N, 30) for observations (N, O), in radians."""
         rows = np.clip(self.seen.apply(observed), -LARGEST, LARGEST)
         with torch.inference_mode():
             found = self.network(torch.from_numpy(rows)).numpy()

@@ -7,10 +7,10 @@ from for_each import for_each
 
 from motion_backend.backend_protocol import Part, PartKind
 from motion_backend.motion import Action, Emotion, Skill
-from motion_backend.physics.policies import POLICY_OF, WITH_TEXT, PolicyConfig, PolicyName, five_policies
+from motion_backend.physics.policies import PLAN_SIZE, POLICY_OF, WITH_TEXT, PolicyConfig, PolicyName, five_policies
 from motion_backend.physics.policy_view import policy_of
 
-SIZES = (217 + 30, 625, 60, 64)
+SIZES = (217 + 30 + PLAN_SIZE, 625, 60, 64)
 ACTIONS = 30
 
 

@@ -13,17 +13,20 @@ import torch
 from policy_episodes import PART, episode, planned
 from simulated import standing_still
 
+from motion_backend import rotations
 from motion_backend.motion import Skill
 from motion_backend.physics.cloned_policy import CloningConfig, Rows, clone, new_policy
-from motion_backend.physics.distillation import Episode, Lesson, samples, teach
+from motion_backend.physics.distillation import Episode, Lesson, moved, samples, teach
 from motion_backend.physics.environment import SkillEnvironment
-from motion_backend.physics.mjcf_character import NU
+from motion_backend.physics.linear_answers import linear_answers
+from motion_backend.physics.linear_model import NX
+from motion_backend.physics.mjcf_character import NU, NV
 from motion_backend.physics.mpc import moment_of
 from motion_backend.physics.observations import moments_of, state
-from motion_backend.physics.policies import PolicyConfig, PolicyName
+from motion_backend.physics.policies import PLAN_SIZE, PolicyConfig, PolicyName
 from motion_backend.physics.policy_mode import PolicyMode
 from motion_backend.physics.policy_player import PolicyPlayer
-from motion_backend.physics.policy_view import bodies_of, floors, policy_of
+from motion_backend.physics.policy_view import LATER, bodies_of, floors, level_of, policy_of
 from motion_backend.physics.ppo import PPOConfig
 from motion_backend.physics.train import DistilConfig, DistilRun, RewardConfig, RewardRun
 from motion_backend.physics.trained_policy import PolicyError, TrainedPolicy
@@ -42,11 +45,8 @@ def lesson() -> Lesson:
 class Plan:
     """Does what the plan says: the servos alone."""
 
-    def __init__(self, one: Episode) -> None:
-        self.controls_left = iter(one.view.task.reference.controls[1:])
-
-    def controls(self, _observed: np.ndarray) -> np.ndarray:
-        return next(self.controls_left)[None]
+    def offsets(self, observed: np.ndarray) -> np.ndarray:
+        return np.zeros((len(observed), NU))
 
 
 def rows_of(lesson: Lesson, count: int) -> Rows:
@@ -79,8 +79,39 @@ def test_the_teachers_answer_says_what_it_does_elsewhere(lesson: Lesson) -> None
     assert np.abs(lesson.answer).max() > 0.05
     rows = rows_of(lesson, 3)
     assert rows.seen.shape == (4 * FRAMES, SIZE)
-    np.testing.assert_allclose(rows.done[:FRAMES], lesson.control, atol=1e-5)
-    assert np.abs(rows.done[FRAMES : 2 * FRAMES] - lesson.control).max() > 0.005
+    told = lesson.control - episode(FRAMES).view.task.reference.controls[lesson.frames + 1]
+    np.testing.assert_allclose(rows.done[:FRAMES], told, atol=1e-5)
+    assert np.abs(rows.done[FRAMES : 2 * FRAMES] - told).max() > 0.005
+
+
+def test_a_body_on_its_plan_sees_nothing_off_it_and_where_it_goes_on_to() -> None:
+    view = episode(FRAMES).view
+    reference, frames = view.task.reference, np.arange(FRAMES)
+    on_it = (reference.qpos[frames], reference.qvel[frames], reference.controls[frames], frames)
+    seen = view.off_plan(*on_it)
+    assert seen.shape == (FRAMES, PLAN_SIZE)
+    np.testing.assert_allclose(seen[:, : NX + NU], 0, atol=1e-9)
+    way = reference.qpos[LATER : LATER + FRAMES, :3] - reference.qpos[:FRAMES, :3]
+    ahead = rotations.rotate(level_of(reference.qpos[frames]), way)
+    np.testing.assert_allclose(seen[:, NX + NU : NX + NU + 3], ahead, atol=1e-9)
+    off = np.zeros((FRAMES, NV))
+    off[:, 2] = 0.01
+    moved_off = view.off_plan(moved(reference.qpos[frames], off, view), *on_it[1:])
+    off[:, :3] = rotations.rotate(level_of(reference.qpos[frames]), off[:, :3])
+    np.testing.assert_allclose(moved_off[:, :NV], off, atol=1e-9)
+
+
+def test_a_new_policy_answers_as_its_teacher_does_where_that_is_linear(lesson: Lesson) -> None:
+    # One frame, and others like it: all of its answers are one rule.
+    one = episode(FRAMES)
+    alike = replace(
+        lesson, **{name: getattr(lesson, name)[:1] for name in ("qpos", "qvel", "held", "control", "answer", "frames")}
+    )
+    found = list(samples(one, alike, np.random.default_rng(1), 40))
+    rows = Rows(*(np.concatenate(column) for column in zip(*found, strict=True)))
+    policy = new_policy(PolicyName.WALK, rows, answers=linear_answers([(one, alike)]))
+    apart = np.abs(policy.offsets(rows.seen) - rows.done)
+    assert apart.mean() < 0.1 * np.abs(rows.done - rows.done.mean(axis=0)).mean()
 
 
 def test_a_lesson_is_kept_as_it_was(lesson: Lesson, tmp_path: Path) -> None:
@@ -99,7 +130,7 @@ def test_a_policy_learns_a_walk_by_heart_and_is_the_same_on_disk(lesson: Lesson,
     policy.save(tmp_path / "walk.safetensors")
     again = TrainedPolicy.load(tmp_path / "walk.safetensors")
     seen = rows.seen[:4].astype(np.float64)
-    np.testing.assert_allclose(again.controls(seen), policy.controls(seen), atol=0.02)
+    np.testing.assert_allclose(again.offsets(seen), policy.offsets(seen), atol=0.02)
 
 
 def test_a_loss_that_is_no_number_ends_it_and_keeps_the_batch(lesson: Lesson, tmp_path: Path) -> None:
@@ -139,7 +170,7 @@ def test_learning_from_rewards_goes_on_where_it_was_ended(tmp_path: Path, style:
     assert told[0].startswith("round 2 of 2: ")
     assert ("style told" in told[0]) == style
     assert again.ppo.scale.count == 2 * first.ppo.scale.count
-    assert np.isfinite(policy.controls(np.zeros((1, SIZE)))).all()
+    assert np.isfinite(policy.offsets(np.zeros((1, SIZE)))).all()
     with pytest.raises(TrainingFaultError, match="other settings"):
         RewardRun(PolicyName.SIT, [episode(FRAMES)], tmp_path, replace(config, seed=1)).run()
 
@@ -150,7 +181,7 @@ def test_bodies_begin_anew_when_they_fall_or_their_time_is_over() -> None:
     for body in world.bodies:
         body.at, body.now = 0, moment_of(one.view.task.reference, 0)
     world.bodies[1].now.state.qpos[0] += 2.0
-    calm = world.scale.apply(np.repeat(one.view.task.reference.controls[1][None], 2, axis=0))
+    calm = world.scale.apply(np.zeros((2, NU)))
     done = world.step(calm)
     assert done.terminated.tolist() == [False, True]
     assert world.failed.tolist() == [2.0]
@@ -167,12 +198,12 @@ def flat_rows(one: Episode) -> Rows:
 
 def test_a_player_does_what_a_policy_says_until_it_falls() -> None:
     one = episode(FRAMES)
-    done = PolicyPlayer.of(one.view).play(Plan(one), one.start, FRAMES)
+    done = PolicyPlayer.of(one.view).play(Plan(), one.start, FRAMES)
     assert len(done.moments) == FRAMES + 1
     away = done.moments[-1].state.qpos[:3] - one.view.task.reference.qpos[FRAMES, :3]
     assert np.linalg.norm(away) < 0.1
     gone = one.start._replace(state=one.start.state._replace(qpos=one.start.state.qpos + np.eye(45)[0]))
-    assert len(PolicyPlayer.of(one.view).play(Plan(one), gone, FRAMES).moments) == 2
+    assert len(PolicyPlayer.of(one.view).play(Plan(), gone, FRAMES).moments) == 2
 
 
 def test_each_part_is_done_by_its_policy_and_standing_by_none() -> None:
