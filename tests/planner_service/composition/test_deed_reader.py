@@ -10,10 +10,11 @@ import pytest
 
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.beat_classifier import BeatClassifier, Likely
-from planner_service.composition.deed_lexicon import deed_of
+from planner_service.composition.deed_lexicon import Deed, deed_of
 from planner_service.composition.deed_reader import DeedReader, learned_row
+from planner_service.composition.rest_place import only_stands_for
 from planner_service.scripts.captions import captions
-from planner_service.scripts.script import Keyframe
+from planner_service.scripts.script import Keyframe, PlannedKeyframe
 from planner_service.themes.beats import beats_of
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from scene_graphs import furniture
@@ -91,6 +92,30 @@ def test_who_rises_does_so_from_where_they_likeliest_are_unless_it_is_named() ->
     assert found.skill is Skill.STANDUP
     assert (found := reader(likely(get_up=0.9)).deed(clause("She rises from her chair"))) is not None
     assert found.skill is Skill.STANDUP
+
+
+def test_who_rests_does_there_what_nobody_would_get_up_for() -> None:
+    (read,) = beats_of("She frobnicates.")
+    sofa = PlannedKeyframe(skill=Skill.SITDOWN, caption="sitting still", furniture="sofa")
+
+    def is_left_out(**some: float) -> bool:
+        heard = reader(likely(**some))
+        row = learned_row(read.clause, heard.classifier.likely([""], [""])[0])  # type: ignore[union-attr]
+        return only_stands_for(sofa, read, Deed(row, row.skill, row.at, False), heard)
+
+    assert not is_left_out(pacing=0.4, sitting_still=0.4)
+    assert is_left_out(pacing=0.25, sitting_still=0.25)
+    assert is_left_out(pacing=0.4)
+    assert not is_left_out(pacing=0.7)
+
+
+def test_hands_stay_where_they_are_only_for_what_is_likely_done_there() -> None:
+    told = clause("She frobnicates the gizmo")
+    heard = reader(likely(touch_medium=0.9, pieces={"stove": 0.9, "desk": 0.5, "mirror": 0.3}))
+    assert heard.may_be_at(told, Skill.TOUCH, "desk", True)
+    assert not heard.may_be_at(told, Skill.TOUCH, "desk", False)
+    assert not heard.may_be_at(told, Skill.TOUCH, "mirror", True)
+    assert DeedReader().may_be_at(told, Skill.TOUCH, "mirror", True)
 
 
 def test_hands_do_it_at_the_likeliest_furniture_unless_some_is_named() -> None:
