@@ -90,8 +90,8 @@ def walk_on(
 
 
 def _as_feet_change(steps: Steps, frame: int) -> int:
-    """The frame from that one on, within a good half of a step, about which feet are slowest and change their pace least:
-    nobody changes his walk in mid-swing, nor as a foot comes down."""
+    """The frame from that one on, within a good half of a step, about which feet are slowest and change their pace
+    least: nobody changes his walk in mid-swing, nor as a foot comes down."""
     from scipy.ndimage import maximum_filter1d
 
     within = min(int(np.searchsorted(steps.phase, steps.phase[frame] + FEET_CHANGE)), len(steps.phase) - 1)
