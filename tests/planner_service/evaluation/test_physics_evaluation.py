@@ -15,6 +15,7 @@ from motion_backend.motion import Motion, Phase, PhaseKind, Skill
 from planner_service.evaluation import physics_evaluation
 from planner_service.evaluation.physics_evaluation import (
     BACKEND,
+    by_turns,
     draw_trials,
     figures_of,
     keep_row,
@@ -51,6 +52,14 @@ def test_trials_are_drawn_by_chance_and_the_same_each_time() -> None:
     assert len({one.room for one in drawn}) == 3
     assert all(one.caption in captions()["touch"] and 1601 <= one.seed < 1 << 31 for one in drawn)
     assert all(places_for(one.skill, one.caption, setting(one.room)) for one in drawn)
+
+
+def test_skills_take_turns_and_another_seed_draws_others() -> None:
+    skills = [Skill.LOCO, Skill.TOUCH]
+    turns = list(by_turns(skills, 2))
+    assert [one.skill for one in turns] == skills * 2
+    assert turns[1::2] == draw_trials(Skill.TOUCH, 2)
+    assert not set(turns) & set(by_turns(skills, 2, drawn=3))
 
 
 def test_a_trial_without_a_place_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
