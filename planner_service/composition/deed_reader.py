@@ -59,6 +59,8 @@ FELT: Final = 0.6
 """A mood that is so likely, and likelier than any caption, is all that a clause tells: "laughs himself silly"."""
 WORDS_ALONE: Final = 0.8
 """Words without a verb are done where it is so likely that something shows them."""
+NAMED_ALONE: Final = 0.9
+"""So are those of which nobody says whose they are, nor that they are done."""
 HARDLY_HERE: Final = 0.3
 """Who rests does nothing else there for what is less likely to show a clause."""
 BEFORE: Final = 2
@@ -145,8 +147,9 @@ class DeedReader:
             return one
         most = likely.captions[likely.best]
         if one.beat.kind == "other":
-            theirs = one.clause.aside or is_person(one.beat.who) or _THINGS.match(one.text)
-            ours = not theirs and min(most, likely.shown) > SURE
+            sure = min(most, likely.shown)
+            theirs = is_person(one.beat.who) or (one.clause.verb and (one.clause.aside or _THINGS.match(one.text)))
+            ours = not theirs and sure > (SURE if one.clause.verb else NAMED_ALONE)  # "a cup of tea"
             return replace(one, beat=one.beat.model_copy(update={"kind": "deed", "who": ""})) if ours else one
         mood = max(likely.moods, key=lambda mood: likely.moods[mood])
         if likely.moods[mood] < MOODY or mood is Emotion.NEUTRAL:
