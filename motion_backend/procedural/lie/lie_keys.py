@@ -34,11 +34,10 @@ class LyingLeg:
 
 @table
 class Fold:
-    """A leg of who lies on a side: bends at hip and knee, plantar flexion, ankle to the left."""
+    """A leg of who lies on a side: bends at hip and knee, plantar flexion."""
 
     hip_deg: float
     knee_deg: float
-    across_m: float
     plantar_deg: float
 
 
@@ -110,7 +109,8 @@ class OnSide:
 
     pelvis_up_m: float
     tucked_curl_rad: float
-    spine_side_rad: float
+    shoulder_up_m: float
+    """Of the shoulder below, over what the body lies on: the trunk bends off it."""
     spine_turn_rad: float
     head_pitch_rad: float
     head_curl_share: float

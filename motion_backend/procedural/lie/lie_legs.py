@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -12,6 +12,7 @@ from motion_backend.procedural.held_poses import UP
 from motion_backend.procedural.lie.lie_keys import BeforeEnd, Fold, FootDown, LyingLeg, OverEnd, SideLegs
 from motion_backend.procedural.lie.lie_own import OwnWay
 from motion_backend.procedural.pose import Pose
+from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
 
 THIGH, SHANK, HIP = 0.4165, 0.418, 0.088
@@ -35,6 +36,9 @@ STRETCHED: Final = -0.75
 """An ankle that is farther down the bed is that of a stretched leg (metres at 1.70 m)."""
 MIN_KNEE, DRAWN_UP = 6.0, 80.0
 """Knees of who lies on a side are bent at least so far, and hips so far where knees are drawn up (degrees)."""
+BELOW, ABOVE = (0.062, 0.045), (0.17, 0.15)
+"""How high knee and ankle of the leg below, and of the one above, are over what a body lies on a side on (metres at
+1.70 m)."""
 BACK: Final[dict[str, tuple[str, str]]] = {
     "straight": ("flat", "flat"),
     "loose": ("loose", "loose"),
@@ -46,6 +50,16 @@ BACK: Final[dict[str, tuple[str, str]]] = {
     "right_down": ("flat", "aside"),
 }
 """Left and right leg of who lies on the back: rows of the table."""
+
+
+@dataclass(frozen=True)
+class SideBed:
+    """What of a place legs of who lies on a side need to know."""
+
+    surface: float
+    """Height of the mattress (metres)."""
+    room: float
+    """How far it is before the body to what is in the way (metres)."""
 
 
 def on_the_back(pose: Pose, legs: str, skeleton: Skeleton, rows: tuple[LyingLeg, ...], own: OwnWay) -> Pose:
@@ -69,10 +83,39 @@ def _owned(leg: LyingLeg, own: OwnWay, index: int, crossed: bool) -> LyingLeg:
     )
 
 
-def on_a_side(pose: Pose, legs: SideLegs, side: str, room: float, skeleton: Skeleton, own: OwnWay) -> Pose:
-    """Legs of who lies on the left or right side, one upon the other, with `room` metres before the body."""
-    below, above = (_folded(_own_fold(fold, own), room / skeleton.scale) for fold in (legs.below, legs.above))
-    return _placed(pose, (below, above) if side == "left" else (above, below), skeleton)
+def on_a_side(pose: Pose, legs: SideLegs, side: str, bed: SideBed, skeleton: Skeleton, own: OwnWay) -> Pose:
+    """Legs of who lies on the left or right side: the one below on the mattress, the other upon it."""
+    folds = (_own_fold(fold, own) for fold in (legs.below, legs.above))
+    below, above = (_folded(fold, bed.room / skeleton.scale) for fold in folds)
+    folded = (below, above) if side == "left" else (above, below)
+    pose = _placed(pose, (folded[0][0], folded[1][0]), skeleton)
+    ankles, knees = pose.ankles.copy(), pose.knees.copy()
+    for index, (_, knee) in enumerate(folded):
+        high = BELOW if folded[index] is below else ABOVE
+        ankles[index], knees[index] = _let_down(pose, knee, index, bed.surface, high, skeleton)
+    return replace(pose, ankles=ankles, knees=knees)
+
+
+def _let_down(
+    pose: Pose, knee: Array, index: int, surface: float, high: tuple[float, float], skeleton: Skeleton
+) -> tuple[Array, Array]:
+    """Ankle and direction of the knee of a folded leg that swings aside about the trunk until knee and ankle are so
+    `high` over the surface. (3,) each, in the world.
+
+    Pelvis and trunk are not turned over by a whole right angle: knees before them would be in the air.
+    """
+    scale, way = skeleton.scale, 1.0 - 2.0 * index
+    hip = np.array([way * HIP * scale, 0.0, 0.0])
+    back = rotations.inverse(pose.hips)
+    up = rotations.rotate(back, UP)
+
+    def lowered(point: Array, height: float) -> Array:
+        aside = (surface + height * scale - float(pose.pelvis[1]) - float(up[1:] @ point[1:])) / float(up[0])
+        return np.array([aside, point[1], point[2]])
+
+    ankle = lowered(rotations.rotate(back, pose.ankles[index] - pose.pelvis), high[1])
+    bent = lowered(scale * knee, high[0]) - hip
+    return pose.pelvis + rotations.rotate(pose.hips, ankle), rotations.rotate(pose.hips, bent)
 
 
 def _own_fold(fold: Fold, own: OwnWay) -> Fold:
@@ -83,15 +126,17 @@ def _own_fold(fold: Fold, own: OwnWay) -> Fold:
     return replace(fold, hip_deg=fold.hip_deg + own.side_hip, knee_deg=knee)
 
 
-def _folded(fold: Fold, room: float) -> LyingLeg:
-    """The leg with its knee no farther forwards than there is room for (metres at 1.70 m)."""
+def _folded(fold: Fold, room: float) -> tuple[LyingLeg, Array]:
+    """The leg with its knee no farther forwards than there is room for (metres at 1.70 m), and where that knee is from
+    the pelvis (3,)."""
     most = np.arcsin(np.clip((room - KNEE) / THIGH, MIN_FOLD, 1.0))
     thigh = min(np.radians(fold.hip_deg), most) if most < FORWARDS else np.radians(fold.hip_deg)
     shin = thigh - np.radians(fold.knee_deg)
     y = -THIGH * np.cos(thigh) - SHANK * np.cos(shin)
     z = THIGH * np.sin(thigh) + SHANK * np.sin(shin)
     pitch = float(np.radians(fold.plantar_deg) - shin)
-    return LyingLeg("folded", (fold.across_m, float(y), float(z)), pitch, knee_out_ratio=0.0, foot_out_rad=0.0)
+    leg = LyingLeg("folded", (0.0, float(y), float(z)), pitch, knee_out_ratio=0.0, foot_out_rad=0.0)
+    return leg, np.array([0.0, -THIGH * np.cos(thigh), THIGH * np.sin(thigh)])
 
 
 def shortened(

@@ -15,7 +15,7 @@ from motion_backend import rotations
 from motion_backend.motion import Emotion
 from motion_backend.procedural.held_poses import UP, bend
 from motion_backend.procedural.lie.lie_keys import LiePose, RestingHand, SideLegs
-from motion_backend.procedural.lie.lie_legs import foot_down, on_a_side, on_the_back, shortened
+from motion_backend.procedural.lie.lie_legs import SideBed, foot_down, on_a_side, on_the_back, shortened
 from motion_backend.procedural.lie.lie_own import OwnWay
 from motion_backend.procedural.lie.lie_propped import head_in_hand, on_both_elbows
 from motion_backend.procedural.lie.lie_styles import Lying, lie_style, wanted_edge
@@ -60,6 +60,8 @@ MIN_BED: Final = 0.15
 """A foot is put down beside what is higher than this (metres)."""
 NODS: Final = np.linspace(-0.2, 0.9, 56)
 """Forward bends of the head on the back that are tried (radians)."""
+OFF_SHOULDER: Final = np.linspace(0.0, 0.6, 61)
+"""Bends of the trunk off the shoulder that it lies on that are tried (radians)."""
 TILTS: Final = np.linspace(-0.7, 0.5, 61)
 """Side bends of the head on the left side that are tried (radians)."""
 
@@ -239,19 +241,26 @@ def _row(rows: tuple[Row, ...], name: str, usual: str) -> Row:
     return named.get(name, named[usual])
 
 
+def _shoulders(pose: Pose, spines: Array, down: float, skeleton: Skeleton) -> Array:
+    """How high the shoulder below is with each of N bends of the spine. (N,) metres."""
+    turn, place = chest_frame(replace(pose.repeat(len(spines)), spine=spines), skeleton)
+    return np.asarray((place + rotations.rotate(turn, SHOULDER * [down, 1.0, 1.0] * skeleton.scale))[:, 1])
+
+
 def _on_a_side(pose: Pose, bed: Bed, style: Lying, skeleton: Skeleton, keys: LiePose) -> Pose:
     """Hips and shoulders one above the other, the head on the pillow or the arm, one leg upon the other."""
     row, down = keys.side, 1.0 if style.side == "left" else -1.0
     curl = row.tucked_curl_rad if style.legs == "tucked" else 0.0
-    pose = replace(
-        pose,
-        pelvis=bed.pelvis + (row.pelvis_up_m + bed.lift) * UP,
-        hips=_askew(bed.hips(style.side), bed, style.own),
-        spine=bend(curl + abs(style.own.curve), side=row.spine_side_rad * down, turn=row.spine_turn_rad * down),
+    pelvis = bed.pelvis + (row.pelvis_up_m + bed.lift) * UP
+    pose = replace(pose, pelvis=pelvis, hips=_askew(bed.hips(style.side), bed, style.own))
+    bent = np.stack(
+        [bend(curl + abs(style.own.curve), float(off) * down, row.spine_turn_rad * down) for off in OFF_SHOULDER]
     )
+    up = row.shoulder_up_m * skeleton.scale
+    pose = replace(pose, spine=bent[int(np.argmin(np.abs(_shoulders(pose, bent, down, skeleton) - bed.surface - up)))])
     legs = _row(keys.side_legs, style.legs, "straight")
     before = bed.beside[0 if down > 0 else 1]
-    pose = on_a_side(pose, legs, style.side, before, skeleton, style.own)
+    pose = on_a_side(pose, legs, style.side, SideBed(bed.surface, before), skeleton, style.own)
     names = style.arms if style.side == "left" else style.arms[::-1]
     if style.propped:
         above = _fitting(_row(keys.above_hand, names[1], "before"), before / skeleton.scale, keys.above_hand)

@@ -22,13 +22,15 @@ from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import Action, Emotion, Motion, PhaseKind, Skill
 from motion_backend.procedural.lie.lie_pose import Bed, place_to_lie
 from motion_backend.procedural.lie.lie_styles import lie_style, wanted_edge
-from motion_backend.skeleton import INDEX
+from motion_backend.skeleton import INDEX, LYING_REST
 from scene_graphs.affordances.affordances import floor_spot, spots
 
 HOME = small_home()
 CAPTIONS: list[str] = json.loads(
     resources.files("planner_service").joinpath("data/captions.json").read_text(encoding="utf-8")
 )["liedown"]
+STYLES = {caption: lie_style(Emotion.NEUTRAL, caption) for caption in CAPTIONS}
+ON_A_SIDE = [caption for caption, style in STYLES.items() if style.side != "back" and not style.propped]
 
 
 @cache
@@ -85,6 +87,18 @@ def test_who_lies_on_a_side_has_hips_and_shoulders_one_above_the_other() -> None
         assert at[f"{above}_hip"][2] - at[f"{below}_hip"][2] > 0.16
         assert at[f"{above}_shoulder"][2] - at[f"{below}_shoulder"][2] > 0.24
         assert at[f"{above}_knee"][2] > at[f"{below}_knee"][2] + 0.05
+
+
+@pytest.mark.parametrize("caption", ON_A_SIDE)
+def test_on_a_side_one_leg_lies_on_the_mattress_the_other_upon_it_and_no_hand_on_the_face(caption: str) -> None:
+    side = STYLES[caption].side
+    below, above = ("left", "right") if side == "left" else ("right", "left")
+    at, surface = held(caption, "sofa", which_has(side, "sofa")), -LYING_REST - 0.017
+    for name, least, most in ((below, 0.03, 0.09), (above, 0.1, 0.21)):
+        for joint in ("ankle", "knee"):
+            assert surface + least < at[f"{name}_{joint}"][2] < surface + most
+    assert at[f"{below}_shoulder"][2] < surface + 0.08
+    assert np.linalg.norm(at[f"{above}_wrist"] - at["head"]) > 0.25
 
 
 def test_curled_up_is_tighter_than_legs_bent() -> None:
