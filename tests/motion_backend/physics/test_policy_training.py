@@ -23,10 +23,10 @@ from motion_backend.physics.linear_model import NX
 from motion_backend.physics.mjcf_character import NU, NV
 from motion_backend.physics.mpc import moment_of
 from motion_backend.physics.observations import moments_of, state
-from motion_backend.physics.policies import PLAN_SIZE, PolicyConfig, PolicyName
+from motion_backend.physics.policies import AHEAD, PLAN_SIZE, PolicyConfig, PolicyName
 from motion_backend.physics.policy_mode import PolicyMode
 from motion_backend.physics.policy_player import PolicyPlayer
-from motion_backend.physics.policy_view import LATER, bodies_of, floors, level_of, policy_of
+from motion_backend.physics.policy_view import bodies_of, floors, level_of, policy_of
 from motion_backend.physics.ppo import PPOConfig
 from motion_backend.physics.train import DistilConfig, DistilRun, RewardConfig, RewardRun
 from motion_backend.physics.trained_policy import PolicyError, TrainedPolicy
@@ -91,9 +91,10 @@ def test_a_body_on_its_plan_sees_nothing_off_it_and_where_it_goes_on_to() -> Non
     seen = view.off_plan(*on_it)
     assert seen.shape == (FRAMES, PLAN_SIZE)
     np.testing.assert_allclose(seen[:, : NX + NU], 0, atol=1e-9)
-    way = reference.qpos[LATER : LATER + FRAMES, :3] - reference.qpos[:FRAMES, :3]
-    ahead = rotations.rotate(level_of(reference.qpos[frames]), way)
-    np.testing.assert_allclose(seen[:, NX + NU : NX + NU + 3], ahead, atol=1e-9)
+    for first, later in zip(range(NX + NU, PLAN_SIZE, NV), AHEAD, strict=False):
+        way = reference.qpos[later : later + FRAMES, :3] - reference.qpos[:FRAMES, :3]
+        ahead = rotations.rotate(level_of(reference.qpos[frames]), way)
+        np.testing.assert_allclose(seen[:, first : first + 3], ahead, atol=1e-9)
     off = np.zeros((FRAMES, NV))
     off[:, 2] = 0.01
     moved_off = view.off_plan(moved(reference.qpos[frames], off, view), *on_it[1:])
