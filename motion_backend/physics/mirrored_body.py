@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,8 @@ from motion_backend.physics.policies import AHEAD, EMBEDDING_SIZE, SOLES, WITH_T
 from motion_backend.rotations import Array
 from motion_backend.skeleton import other_side
 
+Kind = TypeVar("Kind", np.float32, np.float64)
+
 
 @dataclass(frozen=True)
 class Mirror:
@@ -28,9 +30,9 @@ class Mirror:
     order: NDArray[np.int_]
     signs: Array
 
-    def __call__(self, rows: Array) -> Array:
+    def __call__(self, rows: NDArray[Kind]) -> NDArray[Kind]:
         """Numbers (..., N) as they are in the mirror."""
-        return np.asarray(rows[..., self.order] * self.signs.astype(rows.dtype))
+        return np.asarray(rows[..., self.order] * self.signs.astype(rows.dtype), rows.dtype)
 
     def answers(self, rows: Array, seen: Mirror) -> Array:
         """Matrices (..., N, M) by which these numbers answer to others, in the mirror."""
@@ -92,7 +94,7 @@ def _observed() -> Mirror:
 _OBSERVED: Final = _observed()
 
 
-def mirrored_observation(observed: Array, name: PolicyName) -> Array:
+def mirrored_observation(observed: NDArray[Kind], name: PolicyName) -> NDArray[Kind]:
     """Observations (N, O) of a policy as its body in the mirror has them; words stay as they are."""
     words = EMBEDDING_SIZE if name in WITH_TEXT else 0
     return Mirror.joined([_OBSERVED, _same(words)])(observed)

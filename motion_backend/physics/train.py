@@ -42,10 +42,10 @@ class DistilConfig:
     episodes: int = 24
     """A round."""
     perturbed: int = PERTURBED
-    taken_over: tuple[float, ...] = (0.6, 0.4, 0.2)
-    """Shares of its plans in which the teacher acts, in the second round and on; later the policy acts alone."""
     cloning: CloningConfig = field(default_factory=CloningConfig)
     seed: int = 0
+    taken_over: tuple[float, ...] = (0.6, 0.4, 0.2)
+    """Shares of its plans in which the teacher acts, in the second round and on; later the policy acts alone."""
 
 
 class DistilRun:

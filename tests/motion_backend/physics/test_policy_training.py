@@ -20,6 +20,7 @@ from motion_backend.physics.distillation import Episode, Lesson, moved, samples,
 from motion_backend.physics.environment import SkillEnvironment
 from motion_backend.physics.linear_answers import linear_answers
 from motion_backend.physics.linear_model import NX
+from motion_backend.physics.mirrored_body import CONTROLS, PLAN
 from motion_backend.physics.mjcf_character import NU, NV
 from motion_backend.physics.mpc import moment_of
 from motion_backend.physics.observations import moments_of, state
@@ -113,6 +114,29 @@ def test_a_new_policy_answers_as_its_teacher_does_where_that_is_linear(lesson: L
     policy = new_policy(PolicyName.WALK, rows, answers=linear_answers([(one, alike)]))
     apart = np.abs(policy.offsets(rows.seen) - rows.done)
     assert apart.mean() < 0.1 * np.abs(rows.done - rows.done.mean(axis=0)).mean()
+
+
+def test_a_teacher_who_takes_over_everywhere_asks_its_policy_for_nothing() -> None:
+    class Silent:
+        def offsets(self, observed: np.ndarray) -> np.ndarray:
+            raise AssertionError(f"it was asked {len(observed)} times")
+
+    taught = teach(episode(FRAMES), Silent(), np.random.default_rng(0), 1.0)
+    assert len(taught.frames) == FRAMES
+    # What it says is what it does: there is no noise.
+    np.testing.assert_allclose(taught.held[1:], taught.control[:-1], atol=1e-12)
+    with pytest.raises(AssertionError, match="it was asked"):
+        teach(episode(FRAMES), Silent(), np.random.default_rng(0), 0.0)
+
+
+def test_linear_answers_learned_in_the_mirror_do_there_what_they_do_here(lesson: Lesson) -> None:
+    found = linear_answers([(episode(FRAMES), lesson)], mirrored=True)
+    seen = episode(FRAMES).view.off_plan(lesson.qpos, lesson.qvel, lesson.held, lesson.frames)
+    for support, there in ((1, 2), (2, 1), (3, 3)):
+        here = np.column_stack([seen, np.ones(FRAMES)]) @ found[support]
+        image = np.column_stack([PLAN(seen), np.ones(FRAMES)]) @ found[there]
+        np.testing.assert_allclose(image, CONTROLS(here), atol=1e-8)
+    assert np.abs(found).max() > 0.01
 
 
 def test_a_lesson_is_kept_as_it_was(lesson: Lesson, tmp_path: Path) -> None:
