@@ -3,7 +3,7 @@
 Over all frames in which a plan stands on the same feet, the matrices K are averaged in the body's own axes. What the
 teacher did besides K times the way off its plan is told by where the plan goes, as far ahead as the teacher looks
 (ridge regression), and in the mirror as well: of 16 reaches the linear answers alone do 7, where they do 4 if they see
-but six frames ahead, and 5 without the mirror.
+but three to five frames ahead, and 5 without the mirror.
 """
 
 from __future__ import annotations

@@ -78,10 +78,8 @@ PLAN: Final = Mirror.joined([OFF, *[SPEEDS] * len(AHEAD), *[_FEET] * (SOLES // 4
 
 def _observed() -> Mirror:
     """Of all but words."""
-    here = np.arange(STATE_SIZE)
-    state = Mirror(mirror_state(here.astype(np.float64)), np.ones(STATE_SIZE))
-    order = np.abs(state.order).astype(np.int_)
-    signs = mirror_state(np.ones(STATE_SIZE))
+    order = np.abs(mirror_state(np.arange(STATE_SIZE, dtype=np.float64))).astype(np.int_)
+    signs = mirror_state(np.ones(STATE_SIZE)).astype(np.float64)
     names = [body.name for body in BODIES]
     swapped = np.array([names.index(other_side(name)) for name in names])
     places = Mirror((3 * swapped[:, None] + np.arange(3)).ravel(), np.tile(ACROSS, len(names)))
