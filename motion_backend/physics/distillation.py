@@ -86,8 +86,12 @@ class Lesson:
 _KEPT: Final = ("qpos", "qvel", "held", "control", "frames")
 
 
-def teach(episode: Episode, policy: Acts | None, rng: np.random.Generator) -> Lesson:
-    """Let a policy act, or where there is none the teacher with noise, and write down what the teacher would do."""
+def teach(episode: Episode, policy: Acts | None, rng: np.random.Generator, taken_over: float = 0.0) -> Lesson:
+    """Let a policy act, or where there is none the teacher with noise, and write down what the teacher would do.
+
+    In a share of its plans, drawn by chance, the teacher acts in place of the policy (the β of DAgger), so that a
+    policy that knows little does not fall before anything can be learned.
+    """
     player, now, ahead = PolicyPlayer.of(episode.view), episode.start, np.zeros((0, NU))
     reference, effort, noise = episode.view.task.reference, Effort(), np.zeros(NU)
     rows: list[tuple[Array | int, ...]] = []
@@ -95,12 +99,16 @@ def teach(episode: Episode, policy: Acts | None, rng: np.random.Generator) -> Le
     while at < episode.frames and not fell:
         roll = player.controller(at).improve(now, at, ahead, effort)
         played = min(effort.played, episode.frames - at)
+        own = policy is None or rng.random() < taken_over
         for index in range(played):
             told, answer = _told(player, roll, index, now, at)
             rows.append((now.state.qpos, now.state.qvel, now.control, told, answer, at))
             noise = LASTS * noise + rng.normal(0.0, NOISE * np.sqrt(1 - LASTS**2), NU)
             planned = reference.controls[at + 1]
-            asked = told - planned + noise if policy is None else policy.offsets(player.observe(now, at))[0]
+            if policy is None or own:
+                asked = told - planned + noise * (policy is None)
+            else:
+                asked = policy.offsets(player.observe(now, at))[0]
             now, _ = player.step(now, at, asked)
             at += 1
             if fell := fallen(now, reference.qpos[at]):

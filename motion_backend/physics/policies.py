@@ -22,9 +22,11 @@ from motion_backend.physics.observations import GOAL_SIZE, HEIGHTMAP, STATE_SIZE
 
 EMBEDDING_SIZE: Final = 64
 """Of z (SIMS 3.3)."""
-SOLES: Final = 8
-"""Numbers of planted soles: both heels and balls, next and some frames later."""
-PLAN_SIZE: Final = NX + NU + NV + SOLES
+AHEAD: Final = (1, 3, 6, 10, 15, 20)
+"""Frames later in which a policy sees where its plan is: as far as the teacher looks, and leans before a step."""
+SOLES: Final = 4 * len(AHEAD)
+"""Numbers of planted soles: both heels and balls, in each of these."""
+PLAN_SIZE: Final = NX + NU + NV * len(AHEAD) + SOLES
 """Numbers of how far a body is off its plan, of the offsets it holds, of how the plan goes on, and of planted soles."""
 SUPPORTS: Final = 4
 """A plan stands on no foot, the right, the left or both; each has a linear answer of its own."""
@@ -108,7 +110,7 @@ def supported(s: Tensor) -> tuple[Tensor, Tensor]:
     """By which feet a plan stands next, one of (B, SUPPORTS), and what is seen of it with a 1, (B, PLAN_SIZE + 1), from
     the states (B, S) of normalised observations, in which what is not planted is below 0."""
     plan = s[:, -PLAN_SIZE:]
-    left, right = (plan[:, -SOLES : -SOLES // 2] > 0).view(-1, 2, 2).any(-1).long().unbind(-1)
+    left, right = (plan[:, -SOLES:][:, :4] > 0).view(-1, 2, 2).any(-1).long().unbind(-1)
     ones = torch.ones(len(s), 1, dtype=s.dtype)
     return nn.functional.one_hot(2 * left + right, SUPPORTS).to(s.dtype), torch.cat([plan, ones], dim=-1)
 

@@ -32,7 +32,7 @@ from motion_backend.physics.observations import (
     leaning_of,
     state,
 )
-from motion_backend.physics.policies import EMBEDDING_SIZE, POLICY_OF, WITH_TEXT, PolicyName
+from motion_backend.physics.policies import AHEAD, EMBEDDING_SIZE, PLAN_SIZE, POLICY_OF, SOLES, WITH_TEXT, PolicyName
 from motion_backend.physics.task import Task
 from motion_backend.rotations import Array
 from motion_backend.scene import scene_of
@@ -47,10 +47,9 @@ CONTROL_FLOOR, HEIGHT_FLOOR, GOAL_FLOOR, TEXT_FLOOR = 0.05, 0.5, 0.2, 0.3
 words little, or rooms and captions are learned by heart."""
 OFFSET_FLOOR: Final = 0.02
 """What can be seen of a control's offset from the plan's (radians)."""
-LATER: Final = 5
-"""Frames later: where the plan goes on to."""
 PLAN_FLOOR: Final = np.repeat(
-    [0.01, 0.02, 0.02, 0.05, 0.1, 0.1, OFFSET_FLOOR, 0.05, 0.5], [3, 3, NV - 6, 3, 3, NV - 6, NU, NV, 8]
+    [0.01, 0.02, 0.02, 0.05, 0.1, 0.1, OFFSET_FLOOR, 0.05, 0.5],
+    [3, 3, NV - 6, 3, 3, NV - 6, NU, NV * len(AHEAD), SOLES],
 )
 """What can be seen of these. (PLAN_SIZE,)."""
 _SHARED: Final = {"trunk": ("spine1", "spine2", "spine3"), "neck": ("neck", "head")}
@@ -148,20 +147,22 @@ class View:
         found = np.concatenate([off, controls - reference.controls[frames], self._goes_on[frames]], axis=1)
         # What is in the world's axes is told in the body's own, as everything else that it sees.
         level = level_of(qpos)
-        for first in (0, NV, NX + NU):
+        for first in (0, NV, *range(NX + NU, PLAN_SIZE - SOLES, NV)):
             found[:, first : first + 3] = rotations.rotate(level, found[:, first : first + 3])
         return found
 
     @cached_property
     def _goes_on(self) -> Array:
-        """Of every frame of the plan: the way to where it is `LATER`, and which soles are planted next and then."""
+        """Of every frame of the plan: the ways to where it is `AHEAD`, and which soles are planted then."""
         reference, model = self.task.reference, self.task.models_at(0).fine
         frames = np.arange(len(reference))
-        following, later = (np.minimum(frames + ahead, frames[-1]) for ahead in (1, LATER))
-        way = np.empty((len(frames), NV))
-        for row, here, there in zip(way, reference.qpos, reference.qpos[later], strict=True):
-            engine().mj_differentiatePos(model, row, 1.0, here, there)
-        return np.concatenate([way, reference.planted[following], reference.planted[later]], axis=1)
+        later = np.minimum(frames[:, None] + AHEAD, frames[-1])
+        ways = np.empty((*later.shape, NV))
+        for rows, here, there in zip(ways, reference.qpos, reference.qpos[later], strict=True):
+            for row, place in zip(rows, there, strict=True):
+                engine().mj_differentiatePos(model, row, 1.0, here, place)
+        planted = reference.planted[later].reshape(len(frames), -1)
+        return np.concatenate([ways.reshape(len(frames), -1), planted], axis=1)
 
     def joined(
         self, bodies: BodyMoment, controls: Array, plan: Array, heights: Array, frames: NDArray[np.int_]

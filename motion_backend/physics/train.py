@@ -23,8 +23,9 @@ from motion_backend.physics.discriminator import DiscriminatorConfig, Discrimina
 from motion_backend.physics.distillation import PERTURBED, Episode, Lesson, samples, teach
 from motion_backend.physics.environment import SkillEnvironment, StyledEnvironment
 from motion_backend.physics.linear_answers import linear_answers
+from motion_backend.physics.mirrored_body import CONTROLS, mirrored_observation
 from motion_backend.physics.mjcf_character import NU
-from motion_backend.physics.policies import Policy, PolicyConfig, PolicyName, Value
+from motion_backend.physics.policies import WITH_TEXT, Policy, PolicyConfig, PolicyName, Value
 from motion_backend.physics.ppo import PPO, PPOConfig, VectorEnvironment
 from motion_backend.physics.trained_policy import TrainedPolicy
 from motion_backend.physics.training_fault import TrainingFaultError
@@ -43,6 +44,8 @@ class DistilConfig:
     perturbed: int = PERTURBED
     cloning: CloningConfig = field(default_factory=CloningConfig)
     seed: int = 0
+    taken_over: tuple[float, ...] = (0.6, 0.4, 0.2)
+    """Shares of its plans in which the teacher acts, in the second round and on; later the policy acts alone."""
 
 
 class DistilRun:
@@ -76,7 +79,8 @@ class DistilRun:
             kept = self.folder / "lessons" / f"{index:04d}.npz"
             if not kept.is_file():
                 rng = np.random.default_rng([self.config.seed, index])
-                teach(self._episode(index), policy, rng).save(kept)
+                share = dict(enumerate(self.config.taken_over, 1)).get(number, 0.0)
+                teach(self._episode(index), policy, rng, share).save(kept)
             found.append(Lesson.load(kept))
         return found
 
@@ -104,12 +108,20 @@ class DistilRun:
             for observed, controls in samples(self._episode(index), lesson, rng, self.config.perturbed):
                 seen.append(observed)
                 done.append(controls)
+                if self._mirrored:
+                    seen.append(mirrored_observation(observed, self.name))
+                    done.append(CONTROLS(controls))
         return Rows(np.concatenate(seen), np.concatenate(done))
 
     def _answers(self, count: int) -> Array:
         """What a teacher's answers have in common, of episodes in which it did not fall, if there are any."""
         taught = [(self._episode(at), self._lesson(at)) for at in range(count)]
-        return linear_answers([one for one in taught if not one[1].fell] or taught)
+        return linear_answers([one for one in taught if not one[1].fell] or taught, self._mirrored)
+
+    @property
+    def _mirrored(self) -> bool:
+        """Whether lessons are learned in the mirror too: words have none, whose sides would be the wrong ones."""
+        return self.name not in WITH_TEXT
 
     def _lesson(self, index: int) -> Lesson:
         return Lesson.load(self.folder / "lessons" / f"{index:04d}.npz")

@@ -18,7 +18,7 @@ from motion_backend.physics.policies import Policy, PolicyConfig, PolicyName
 from motion_backend.rotations import Array
 from scene_graphs.errors import UserError
 
-VERSION: Final = "2"
+VERSION: Final = "3"
 LARGEST: Final = 10.0
 """Normalised observations are cut here, in training too."""
 _SCALES: Final = ("seen.mean", "seen.spread", "done.mean", "done.spread")

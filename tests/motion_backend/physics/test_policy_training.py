@@ -20,13 +20,14 @@ from motion_backend.physics.distillation import Episode, Lesson, moved, samples,
 from motion_backend.physics.environment import SkillEnvironment
 from motion_backend.physics.linear_answers import linear_answers
 from motion_backend.physics.linear_model import NX
+from motion_backend.physics.mirrored_body import CONTROLS, PLAN
 from motion_backend.physics.mjcf_character import NU, NV
 from motion_backend.physics.mpc import moment_of
 from motion_backend.physics.observations import moments_of, state
-from motion_backend.physics.policies import PLAN_SIZE, PolicyConfig, PolicyName
+from motion_backend.physics.policies import AHEAD, PLAN_SIZE, PolicyConfig, PolicyName
 from motion_backend.physics.policy_mode import PolicyMode
 from motion_backend.physics.policy_player import PolicyPlayer
-from motion_backend.physics.policy_view import LATER, bodies_of, floors, level_of, policy_of
+from motion_backend.physics.policy_view import bodies_of, floors, level_of, policy_of
 from motion_backend.physics.ppo import PPOConfig
 from motion_backend.physics.train import DistilConfig, DistilRun, RewardConfig, RewardRun
 from motion_backend.physics.trained_policy import PolicyError, TrainedPolicy
@@ -91,9 +92,10 @@ def test_a_body_on_its_plan_sees_nothing_off_it_and_where_it_goes_on_to() -> Non
     seen = view.off_plan(*on_it)
     assert seen.shape == (FRAMES, PLAN_SIZE)
     np.testing.assert_allclose(seen[:, : NX + NU], 0, atol=1e-9)
-    way = reference.qpos[LATER : LATER + FRAMES, :3] - reference.qpos[:FRAMES, :3]
-    ahead = rotations.rotate(level_of(reference.qpos[frames]), way)
-    np.testing.assert_allclose(seen[:, NX + NU : NX + NU + 3], ahead, atol=1e-9)
+    for first, later in zip(range(NX + NU, PLAN_SIZE, NV), AHEAD, strict=False):
+        way = reference.qpos[later : later + FRAMES, :3] - reference.qpos[:FRAMES, :3]
+        ahead = rotations.rotate(level_of(reference.qpos[frames]), way)
+        np.testing.assert_allclose(seen[:, first : first + 3], ahead, atol=1e-9)
     off = np.zeros((FRAMES, NV))
     off[:, 2] = 0.01
     moved_off = view.off_plan(moved(reference.qpos[frames], off, view), *on_it[1:])
@@ -112,6 +114,29 @@ def test_a_new_policy_answers_as_its_teacher_does_where_that_is_linear(lesson: L
     policy = new_policy(PolicyName.WALK, rows, answers=linear_answers([(one, alike)]))
     apart = np.abs(policy.offsets(rows.seen) - rows.done)
     assert apart.mean() < 0.1 * np.abs(rows.done - rows.done.mean(axis=0)).mean()
+
+
+def test_a_teacher_who_takes_over_everywhere_asks_its_policy_for_nothing() -> None:
+    class Silent:
+        def offsets(self, observed: np.ndarray) -> np.ndarray:
+            raise AssertionError(f"it was asked {len(observed)} times")
+
+    taught = teach(episode(FRAMES), Silent(), np.random.default_rng(0), 1.0)
+    assert len(taught.frames) == FRAMES
+    # What it says is what it does: there is no noise.
+    np.testing.assert_allclose(taught.held[1:], taught.control[:-1], atol=1e-12)
+    with pytest.raises(AssertionError, match="it was asked"):
+        teach(episode(FRAMES), Silent(), np.random.default_rng(0), 0.0)
+
+
+def test_linear_answers_learned_in_the_mirror_do_there_what_they_do_here(lesson: Lesson) -> None:
+    found = linear_answers([(episode(FRAMES), lesson)], mirrored=True)
+    seen = episode(FRAMES).view.off_plan(lesson.qpos, lesson.qvel, lesson.held, lesson.frames)
+    for support, there in ((1, 2), (2, 1), (3, 3)):
+        here = np.column_stack([seen, np.ones(FRAMES)]) @ found[support]
+        image = np.column_stack([PLAN(seen), np.ones(FRAMES)]) @ found[there]
+        np.testing.assert_allclose(image, CONTROLS(here), atol=1e-8)
+    assert np.abs(found).max() > 0.01
 
 
 def test_a_lesson_is_kept_as_it_was(lesson: Lesson, tmp_path: Path) -> None:
