@@ -17,7 +17,7 @@ from motion_backend.rendering.shadow_map import ShadowMap
 SHADES = 8192
 """Steps of linear light that become bytes; finer than a byte's at its darkest."""
 NEAR = 0.1
-"""Metres before the eye where a body is too near to be drawn."""
+"""Metres before the eye; of a body the faces that are nearer, or behind it, are not drawn."""
 
 
 @dataclass(frozen=True)
@@ -75,11 +75,17 @@ class Backdrop:
         faces = body.faces
         colors = to_linear(np.broadcast_to(np.asarray(body.color)[..., :3], (len(faces), 3))).astype(np.float32)
         viewed = camera.view(np.asarray(body.vertices, dtype=np.float64))
-        points = camera.project(viewed, (2 * width, 2 * height))
-        first, last = _extent(points)
+        points = ahead = camera.project(viewed, (2 * width, 2 * height))
+        if viewed[:, 2].min() < NEAR:  # the feet of a sleeper whose face is looked at from near
+            seen = (viewed[faces, 2] >= NEAR).all(axis=1)
+            faces, colors = faces[seen], colors[seen]
+            if not len(faces):
+                return Drawn(np.zeros((0, 0), dtype=np.int32), np.zeros(2, dtype=np.int64), np.zeros((0, 3)), colors)
+            ahead = points[np.unique(faces)]
+        first, last = _extent(ahead)
         low = np.clip(np.floor(first / 2), 0, self.size).astype(np.int64)
         high = np.clip(np.ceil(last / 2), 0, self.size).astype(np.int64)
-        if viewed[:, 2].min() < NEAR or (high <= low).any():
+        if (high <= low).any():
             return Drawn(np.zeros((0, 0), dtype=np.int32), low, np.zeros((0, 3)), colors)
         points[:, :2] -= 2 * low
         best = self.nearness[2 * low[1] : 2 * high[1], 2 * low[0] : 2 * high[0]].copy()

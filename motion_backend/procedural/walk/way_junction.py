@@ -40,6 +40,8 @@ class JunctionTable:
     """How far from it a corner is cut, the widest that has room."""
     radii_m: tuple[float, ...]
     """Of the arc, likewise."""
+    passes_m: float
+    """From where the first way ends the joined one passes no farther."""
     before_ratio: float
     """Of its radius, that the arc begins before the place."""
     back_m: float
@@ -78,7 +80,10 @@ def through_way(path: Array, onward: Array, fits: Fits) -> ThroughWay | None:
         joined = _arc(first, second, arrives, turn, size) if sharp else _cut(first, second, size)
         if joined is not None and fits(joined):
             points = resample(joined)
-            near = int(np.argmin(np.linalg.norm(points - first[-1], axis=1)))
+            away = np.linalg.norm(points - first[-1], axis=1)
+            near = int(np.argmin(away))
+            if away[near] > row.passes_m:
+                continue
             cut = min(near * SPACING + row.beyond_m, SPACING * (len(points) - 1) - row.onward_min_m / 2)
             return ThroughWay(points, cut)
     return None

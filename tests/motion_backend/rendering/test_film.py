@@ -28,6 +28,7 @@ from motion_backend.rendering.film_sight import Appearances
 from motion_backend.rendering.motion_figures import body_solids, home_props
 from motion_backend.rendering.rasterizer import Camera, orbit
 from motion_backend.rendering.renderer import STUDIO, Solid, Still, to_srgb_bytes
+from motion_backend.skeleton import INDEX
 from planner_service.narration.narrator import Span, Told
 from planner_service.output.film import subtitles
 
@@ -92,6 +93,17 @@ def test_a_body_put_into_a_still_picture_looks_as_if_all_had_been_drawn():
     off = np.abs(made - whole)
     assert off.mean() < 2.0
     assert (off > 40).mean() < 0.03
+
+
+def test_of_a_body_that_is_partly_behind_the_eye_the_rest_is_seen():
+    """A sleeper's face is looked at from over the hips: the feet are behind the camera."""
+    body = body_solids(acted(), [40])[0]
+    head, pelvis = acted().joint_positions()[40, [INDEX["head"], 0]]
+    camera = Camera(tuple((0.25 * head + 0.75 * pelvis + [0.3, 0.0, 0.0]).tolist()), tuple(head.tolist()))
+    assert camera.view(np.asarray(body.vertices, dtype=np.float64))[:, 2].min() < 0
+    backdrop = Backdrop.of([prop.solid for prop in home_props(SMALL)], camera, SIZE)
+    made = split(backdrop.with_body(body))[0].astype(int)
+    assert (np.abs(made - split(backdrop.planes)[0]) > 20).mean() > 0.05
 
 
 def test_a_body_that_is_not_in_the_picture_leaves_it_as_it_was():
