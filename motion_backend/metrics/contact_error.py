@@ -18,8 +18,8 @@ HAND_OVER = 0.30
 STRICT = 0.10
 """What is near enough for strict success, whatever the skill (metres)."""
 PASSES = 0.9
-"""A walk that goes on to somewhere else is past its goal for at most so long when it is over (seconds): it goes over into
-the next where feet change, a good half of a slow step later."""
+"""A walk that goes on to somewhere else is past its goal for at most so long when it is over (seconds): it goes over
+into the next where feet change, a good half of a slow step later."""
 SUSTAINED = 1.0
 RISEN = (0.85, np.cos(np.radians(30)), 0.1)
 """Share of the standing height, cosine of the trunk's tilt and seconds that count as having risen."""
