@@ -53,22 +53,21 @@ def _follow(walk: Episode, threads: int) -> tuple[float, float]:
 
 def _played(walk: Episode) -> float:
     """How much faster than it plays a body is that asks a network in every frame, and does what its plan says."""
-    player, reference = PolicyPlayer.of(walk.view), walk.view.task.reference
+    player = PolicyPlayer.of(walk.view)
     seen = player.observe(walk.start, 0).astype(np.float32)
     asked = new_policy(PolicyName.WALK, Rows(seen, np.zeros((1, NU), np.float32)))
-    seconds, _ = _timed(lambda: player.play(_AsPlanned(asked, reference.controls), walk.start, FPS))
+    seconds, _ = _timed(lambda: player.play(_AsPlanned(asked), walk.start, FPS))
     return 1 / seconds
 
 
 class _AsPlanned:
     """Asks a network, and does what a plan says: what has not learned falls at once."""
 
-    def __init__(self, asked: TrainedPolicy, controls: np.ndarray) -> None:
-        self.asked, self.rows = asked, iter(controls[1:])
+    def __init__(self, asked: TrainedPolicy) -> None:
+        self.asked = asked
 
-    def controls(self, observed: np.ndarray) -> np.ndarray:
-        self.asked.controls(observed)
-        return np.asarray(next(self.rows))[None]
+    def offsets(self, observed: np.ndarray) -> np.ndarray:
+        return np.zeros_like(self.asked.offsets(observed))
 
 
 def _timed(work: Callable[[], object]) -> tuple[float, float]:

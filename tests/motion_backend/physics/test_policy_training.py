@@ -112,7 +112,7 @@ def test_a_new_policy_answers_as_its_teacher_does_where_that_is_linear(lesson: L
     found = list(samples(one, alike, np.random.default_rng(1), 40))
     rows = Rows(*(np.concatenate(column) for column in zip(*found, strict=True)))
     policy = new_policy(PolicyName.WALK, rows, answers=linear_answers([(one, alike)]))
-    apart = np.abs(policy.offsets(rows.seen) - rows.done)
+    apart = np.abs(policy.offsets(rows.seen.astype(np.float64)) - rows.done)
     assert apart.mean() < 0.1 * np.abs(rows.done - rows.done.mean(axis=0)).mean()
 
 

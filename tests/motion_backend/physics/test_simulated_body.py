@@ -157,7 +157,8 @@ def test_what_rests_presses_with_its_weight_on_what_is_under_it(
     # Its servos alone hold it as the plan ends.
     frames, skeleton = 75, resting.motion.skeleton
     plan = plan_of(resting.motion).last(frames + 1)
-    boxes = near_way(skeleton.forward_kinematics(plan.roots[:1], plan.local[:1])[0], scene_of(small_home()).obstacles)
+    joints = skeleton.forward_kinematics(plan.roots[:1], plan.local[:1])[0].astype(np.float64)
+    boxes = near_way(joints, scene_of(small_home()).obstacles)
     models, reference = models_of(1.70, boxes), Reference.of(plan, skeleton)
     reader = ContactReader.of(models.fine, skeleton.scale)
     controller = Controller(models, engine().MjData(models.fine), reference, reader)

@@ -99,7 +99,7 @@ def test_who_rests_does_there_what_nobody_would_get_up_for() -> None:
     sofa = PlannedKeyframe(skill=Skill.SITDOWN, caption="sitting still", furniture="sofa")
 
     def is_left_out(**some: float) -> bool:
-        heard = reader(likely(**some))
+        heard = reader(likely(0.9, None, None, **some))
         row = learned_row(read.clause, heard.classifier.likely([""], [""])[0])  # type: ignore[union-attr]
         return only_stands_for(sofa, read, Deed(row, row.skill, row.at, False), heard)
 
