@@ -229,6 +229,17 @@ def test_ten_centimetres_are_strict(gap: float, strict: bool) -> None:
         assert (found.reached, found.reached_strict) == (True, strict)
 
 
+@for_each(("ago", "aside", "reached"),
+          [(0.0, 0.0, True), (0.85, 0.29, True), (0.85, 0.31, False), (1.3, 0.0, False)])  # fmt: skip
+def test_who_walks_on_has_passed_the_place_near_enough_and_not_long_ago(
+    ago: float, aside: float, reached: bool
+) -> None:
+    body = gliding(1.5)  # m/s, for 2 s along x
+    end = body.positions[-1, 0]
+    walk = Action(Skill.LOCO, "walk", Emotion.NEUTRAL, goal=(float(end[0]) - 1.5 * ago, float(end[2]) + aside))
+    assert contact_error.outcome(walk, body).reached is reached
+
+
 def test_the_error_is_the_smallest_of_the_last_second_of_the_contact_and_the_time_when_it_began() -> None:
     gaps = np.concatenate([np.full(20, 0.9), np.full(40, 0.01), np.linspace(0.05, 0.15, 30), np.full(10, 0.9)])
     root = np.zeros((100, 3))

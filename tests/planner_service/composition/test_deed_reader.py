@@ -150,6 +150,16 @@ def test_a_beat_that_a_mood_shows_is_in_that_mood_and_what_nobody_else_does_is_d
     assert reader(likely(turn_on=0.9)).heard(mother).beat.kind == "other"
 
 
+def test_words_that_say_nobody_and_nothing_done_are_the_heros_where_that_is_all_but_sure() -> None:
+    tea = next(one for one in beats_of("She comes home. A cup of tea.") if "tea" in one.text)
+    nobodys = replace(tea, beat=tea.beat.model_copy(update={"kind": "other"}))
+    assert reader(likely(shown=0.95, drinking=0.95)).heard(nobodys).beat.kind == "deed"
+    assert reader(likely(shown=0.95, drinking=0.85)).heard(nobodys).beat.kind == "other"
+    assert reader(likely(shown=0.85, drinking=0.95)).heard(nobodys).beat.kind == "other"
+    mothers = replace(tea, beat=tea.beat.model_copy(update={"kind": "other", "who": "her mother"}))
+    assert reader(likely(shown=0.99, drinking=0.99)).heard(mothers).beat.kind == "other"
+
+
 def test_what_a_mood_shows_more_likely_than_any_caption_is_felt() -> None:
     (laughs,) = beats_of("He laughs himself silly.")
     assert reader(likely(moods={Emotion.HAPPY: 0.9}, skip=0.3)).heard(laughs).beat.kind == "feeling"

@@ -20,7 +20,7 @@ from motion_backend.procedural.walk.gait import walk_on
 from motion_backend.procedural.walk.root_path import plan_route
 from motion_backend.procedural.walk.stride import Stride
 from motion_backend.procedural.walk.walk_styles import walk_style
-from motion_backend.procedural.walk.way_junction import through_way, way_from, way_to
+from motion_backend.procedural.walk.way_junction import junction_table, through_way, way_from, way_to
 from motion_backend.skeleton import INDEX, build_skeleton
 
 SKELETON = build_skeleton()
@@ -152,7 +152,7 @@ def test_a_way_that_leads_on_keeps_both_ends_and_passes_the_place_between(degree
     way = through_way(np.array([[0.0, 0.0], corner]), onward, everywhere)
     assert way is not None
     np.testing.assert_allclose(way.points[[0, -1]], [[0.0, 0.0], onward[-1]], atol=1e-6)
-    assert np.linalg.norm(way.points - corner, axis=1).min() < 0.3
+    assert np.linalg.norm(way.points - corner, axis=1).min() <= junction_table().passes_m
     heading = np.unwrap(np.arctan2(*np.diff(way.points, axis=0).T))
     assert np.abs(np.diff(heading)).max() < 0.45
     assert abs(np.degrees(heading[-1] - heading[0])) == pytest.approx(abs(degrees), abs=1.0)
