@@ -27,18 +27,24 @@ from planner_service.themes.protagonist import is_person
 from planner_service.themes.sentence_parser import Clause
 from scene_graphs.furniture import categories_of
 
-SURER: Final = 0.6
+SURER: Final = 0.45
 """A learned caption is taken in place of the table's where it is so much likelier,"""
-SURER_OF_THE_SAME: Final = 0.3
-"""or by so much if it is of the same skill."""
+SURER_OF_THE_SAME: Final = 0.15
+"""or by so much if it is of the same skill,"""
+SURER_THAN_ANY: Final = 0.1
+"""or by this where the table has no more than the skill."""
 SHOWN: Final = 0.5
 """Where it is less likely that anything shows it, nothing does."""
+UNSHOWABLE: Final = 0.3
+"""Where it is less likely than this not even what the table has in so many words is done."""
 LIKELY: Final = 0.5
 """One that is so likely is taken where the table has none."""
 UNLIKELY: Final = 0.15
 """What the table has is left undone where nothing is likelier to show it than this."""
 AS_LIKELY: Final = 0.6
-"""Captions that are so nearly as likely as the likeliest show it as well."""
+"""Captions that are so nearly as likely as the likeliest show it as well,"""
+LIKELIEST: Final = 0.95
+"""and those that are so nearly as likely are chosen from."""
 SEATED: Final = 0.15
 """Who sits already goes on sitting for what may be done so, if that is so likely."""
 KNOWN_THERE: Final = 0.5
@@ -59,8 +65,9 @@ FELT: Final = 0.6
 """A mood that is so likely, and likelier than any caption, is all that a clause tells: "laughs himself silly"."""
 WORDS_ALONE: Final = 0.8
 """Words without a verb are done where it is so likely that something shows them."""
-NAMED_ALONE: Final = 0.9
-"""So are those of which nobody says whose they are, nor that they are done."""
+THEIRS: Final = {"nobody": 0.65, "a thing": 0.85, "a person": 0.95}
+"""What somebody or something else is read to do is done by whom the story is about where it is so likely to be shown:
+of a fragment, of what follows an article, of a person."""
 HARDLY_HERE: Final = 0.3
 """Who rests does nothing else there for what is less likely to show a clause."""
 BEFORE: Final = 2
@@ -118,6 +125,7 @@ class DeedReader:
         found, likely = self._deed(clause, about), self.likely(clause)
         if found is not None and likely is not None and found.skill in RISINGS:
             return replace(found, skill=_rising(found, likely))
+        found = _in_particular(found, likely) if found is not None and likely is not None else found
         if found is None or likely is None or found.named or found.skill is not Skill.TOUCH:
             return found
         pieces = (*found.pieces, *likeliest_pieces(likely))
@@ -130,6 +138,8 @@ class DeedReader:
         skill, best = likely.best
         most = likely.captions[skill, best]
         known = likely.of(told.skill, shown_by(told, Emotion.NEUTRAL)) if told is not None else 0.0
+        if likely.shown < UNSHOWABLE:
+            return None
         if told is not None and told.row.captions and likely.shown < SHOWN:
             return told  # what the table says in so many words
         if likely.shown < SHOWN or not (clause.verb or min(most, likely.shown) > WORDS_ALONE):
@@ -147,9 +157,7 @@ class DeedReader:
             return one
         most = likely.captions[likely.best]
         if one.beat.kind == "other":
-            sure = min(most, likely.shown)
-            theirs = is_person(one.beat.who) or (one.clause.verb and (one.clause.aside or _THINGS.match(one.text)))
-            ours = not theirs and sure > (SURE if one.clause.verb else NAMED_ALONE)  # "a cup of tea"
+            ours = min(most, likely.shown) > THEIRS[_whose(one)]  # "a cup of tea"
             return replace(one, beat=one.beat.model_copy(update={"kind": "deed", "who": ""})) if ours else one
         mood = max(likely.moods, key=lambda mood: likely.moods[mood])
         if likely.moods[mood] < MOODY or mood is Emotion.NEUTRAL:
@@ -193,7 +201,7 @@ class DeedReader:
         most = likely.of(skill, some) if likely is not None else 0.0
         if likely is None or most < UNLIKELY:
             return some
-        return [one for one in some if likely.of(skill, (one,)) >= AS_LIKELY * most]
+        return [one for one in some if likely.of(skill, (one,)) >= LIKELIEST * most]
 
 
 def shown(likely: Likely, clause: Clause, keyframe: Keyframe) -> float:
@@ -203,6 +211,28 @@ def shown(likely: Likely, clause: Clause, keyframe: Keyframe) -> float:
         there = min(2 * at(likely, keyframe.piece[0]) / max(likely.pieces.values()), 1.0)
     felt = 0.0 if keyframe.mood is Emotion.NEUTRAL else likely.moods.get(keyframe.mood, 0.0)
     return min(max(there * likely.captions.get((keyframe.skill, keyframe.caption), 0.0), felt), likely.shown)
+
+
+def _whose(one: ReadBeat) -> str:
+    """Who is read to do what somebody else does."""
+    if is_person(one.beat.who):
+        return "a person"
+    theirs = one.clause.verb and (one.clause.aside or _THINGS.match(one.text))
+    return "a thing" if theirs else "nobody"
+
+
+def _in_particular(deed: Deed, likely: Likely) -> Deed:
+    """A deed of which the table has no more than its skill, with the captions that show how it is done: "sits
+    upright"."""
+    row, known = deed.row, captions()[deed.skill.value]
+    if row.captions or row.why or deed.skill is not row.skill:
+        return deed
+    most = likely.of(deed.skill, known)
+    some = tuple(one for one in known if likely.of(deed.skill, (one,)) >= LIKELIEST * most)
+    any_way = most < LIKELY or len(some) > ANY * len(known)
+    if any_way or most - likely.of(deed.skill, shown_by(deed, Emotion.NEUTRAL)) < SURER_THAN_ANY:
+        return deed
+    return replace(deed, row=replace(row, captions=some))
 
 
 def _rising(deed: Deed, likely: Likely) -> Skill:

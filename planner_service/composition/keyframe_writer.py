@@ -30,6 +30,7 @@ from planner_service.composition.deed_reader import TOUCHES, DeedReader
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
 from planner_service.composition.rest_place import dozing, is_beside, is_there, lies, only_stands_for, sits_up
 from planner_service.scripts.caption_fallbacks import usual
+from planner_service.scripts.captions import captions
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
@@ -292,7 +293,10 @@ class KeyframeWriter:
         pace = {"hurried": "quickly", "angry": "quickly", "tired": "slowly", "sad": "slowly", "drunk": "slowly"}.get(
             mood.value, ""
         )
-        self._put(index, skill, mood, usual(skill, mood, pace), resting.furniture, resting.room)
+        ways = self.reader.likeliest(self._clause, skill, captions()[skill.value]) if self._clause else ()
+        caption = usual(skill, mood, pace)
+        caption = caption if not ways or caption in ways else ways[0]
+        self._put(index, skill, mood, caption, resting.furniture, resting.room)
         self._resting = None
 
     def _walk(self, index: int, read: ReadBeat, deed: Deed, mood: Emotion) -> None:

@@ -180,7 +180,8 @@ def _kind(clause: Clause, who: str) -> BeatKind:
     if who or (clause.aside and (clause.verb or not is_feeling(clause))):
         return "other"
     staggers = clause.verb in words["falling_verbs"] and clause.text.split()[0].lower() in NEARLY
-    tries = clause.unable and (clause.verb in words["unable_verbs"] or not _SETTLING.isdisjoint(clause.lemmas))
+    settles = not _SETTLING.isdisjoint(clause.lemmas) and clause.verb not in ("sit", "lie")  # "cannot sit down"
+    tries = clause.unable and (clause.verb in words["unable_verbs"] or settles)
     if clause.denied and not (staggers or tries):
         return "undone"
     before = clause.perfect and clause.joint not in _MEANWHILE and not _BY_THEN.search(clause.text)

@@ -228,10 +228,11 @@ def called(clauses: Sequence[Clause], hero: str) -> str:
 def _heroic(clause: Clause, pronoun: str) -> float:
     """How well a subject may be whom a theme is about, whose pronoun is "he", "she" or unknown."""
     own, first = pronouns_of(clause.subject), clause.subject.split()[0].lower()
-    fits = 4 * bool(pronoun and own == pronoun)
+    owned = first in OWNERS  # "her mum" is somebody else than she
+    fits = 4 * bool(pronoun and own == pronoun and not owned)
     several = _is_plural(clause.subject)
     small = head_of(clause.subject).lower() in {"baby", "infant", "newborn", *_ANYBODY - {"person", "character"}}
-    return fits - small - 2 * (first in OWNERS) - (1 + bool(pronoun)) * several / 2 - (clause.joint in _ASIDE)
+    return fits - small - 2 * owned - (1 + bool(pronoun)) * several / 2 - (clause.joint in _ASIDE)
 
 
 def _may_live(subject: str) -> bool:

@@ -78,3 +78,8 @@ def test_who_acts_is_whom_a_theme_is_about() -> None:
     assert hero("The bosun cannot sleep, so he rolls off the bed.") == "The bosun"
     assert hero("Rex, soft as butter, comes home, kneels and pats the puppy.") == "Rex"
     assert hero("Rain falls. Rain stops.") == hero("The kettle whistles and boils over.") == ""
+
+
+def test_whose_mother_calls_is_the_hero_and_not_the_mother() -> None:
+    clauses = clauses_of_text("A teenager lies on the bed and her mum calls her for dinner, she gets up and she goes.")
+    assert hero_of(clauses).lower() == "a teenager"
