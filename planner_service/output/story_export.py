@@ -223,14 +223,14 @@ def physics_mode(story: Story) -> str:
 def beats_of(story: Story) -> ActedBeats:
     """What became of the theme's beats, now that the body has moved."""
     keyframes = story.planned.script.keyframes
-    otherwise = {note.keyframe for note in story.motion.notes}
+    notes = story.motion.notes
     shots = [
         replace(
             shot_of(keyframes[figure.keyframe]),
             reached=figure.reached,
             reason=figure.reason,
             seconds=figure.seconds,
-            otherwise=figure.keyframe in otherwise,
+            otherwise=tuple(note.words for note in notes if note.keyframe == figure.keyframe),
         )
         for figure in story.figures
     ]

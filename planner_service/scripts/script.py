@@ -227,8 +227,8 @@ class LongScript(BaseModel):
 
     @property
     def acted(self) -> int:
-        """How many of the beats asked for some keyframe shows."""
-        return sum(beat.asked and not beat.why for beat in self.beats)
+        """How many of the beats asked for some keyframe shows, and not only something in their place."""
+        return sum(beat.asked and not beat.why and not beat.stood_for for beat in self.beats)
 
     @property
     def asked(self) -> int:
