@@ -225,6 +225,11 @@ class LongScript(BaseModel):
     """The sentence encoder that ranked the library."""
     seed: int = 0
 
+    def said_of(self, keyframe: PlannedKeyframe) -> str:
+        """The theme's words of all that a keyframe shows."""
+        shown = {keyframe.beat, *keyframe.also}  # keyframes of one's own may name beats of another story
+        return "; ".join(beat.text for number, beat in enumerate(self.beats) if number in shown)
+
     @property
     def acted(self) -> int:
         """How many of the beats asked for some keyframe shows, and not only something in their place."""
