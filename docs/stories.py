@@ -121,7 +121,7 @@ def _parts(script: LongScript) -> str:
     """Which beats are acted, and what was taken from the library for them."""
     parts = ", ".join(f"`{found.script.id}`" for found in script.short_scripts)
     served = [beat for beat in script.beats if beat.stood_for and not beat.why]
-    said = f"{script.acted - len(served)} of {script.asked} beats of the theme are acted"
+    said = f"{script.acted} of {script.asked} beats of the theme are acted"
     missed = "; ".join(f"“{beat.text}”: {beat.why}" for beat in script.beats if beat.asked and beat.why)
     stood = "; ".join(f"“{beat.text}”" for beat in served)
     said += (f" (not: {missed})" if missed else "") + "." + (f" Something else stands for {stood}." if stood else "")

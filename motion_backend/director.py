@@ -17,7 +17,7 @@ from motion_backend.backend_protocol import BodyState, MotionBackend, Part, Part
 from motion_backend.backends import DEFAULT_BACKEND, load_backend
 from motion_backend.contact_goals import contact_goals
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Action, Character, Motion, Phase, PhaseKind, Posture, join
+from motion_backend.motion import Action, Character, Motion, Note, Phase, PhaseKind, Posture, join
 from motion_backend.scene import scene_of
 from motion_backend.skeleton import build_skeleton
 from motion_backend.state_machine import ENDS, parts_of, shortfall, time_limit
@@ -258,7 +258,8 @@ def _judged(motion: Motion, action: Action) -> Motion:
     served = np.full(len(motion), action.keyframe, dtype=np.int32)
     motion = replace(motion, actions=served, goals=contact_goals(action), completion=1.0)
     why = motion.reason or shortfall(action, Kinematics.of(motion))
-    return replace(motion, completed=not why, reason=why, phases=_run_together(motion.phases))
+    notes = (*motion.notes, *((Note(action.keyframe, action.lacks),) if action.lacks else ()))
+    return replace(motion, completed=not why, reason=why, phases=_run_together(motion.phases), notes=notes)
 
 
 def _run_together(phases: Sequence[Phase]) -> tuple[Phase, ...]:

@@ -183,6 +183,8 @@ class Action:
     """What is done in the pose, in words ("watch TV"): LINGO's interaction steps."""
     already: bool = False
     """Whether the body sits or lies there before the first frame; so only of the first action."""
+    lacks: str = ""
+    """What the home lacks for it, and what is done instead (`Note.words`); empty where it lacks nothing."""
 
 
 @dataclass(frozen=True)

@@ -118,7 +118,7 @@ def _told(story: Story) -> Json:
     row = story.data
     told = {name: row[name] for name in ("id", "state", "stage", "progress", "title", "text", "derived_from")}
     told |= {"seconds": story.duration, "error": story.error or None}
-    told["beats"] = [_beat(one) | {"acted": one["acted"] and not _stood_for(one)} for one in row["beats"]]
+    told["beats"] = [_beat(one) | {"acted": one["acted"]} for one in row["beats"]]
     told["keyframes"] = [
         {name: one[name] for name in ("index", "skill", "caption", "mood", "object_id", "start", "end", "reached")}
         for one in story.keyframes
@@ -135,7 +135,8 @@ def _beat(row: Json) -> Json:
 
 
 def _stood_for(row: Json) -> bool:
-    return not row["why"] and row["text"] in row["unshown"]
+    """Of a story's beat, or of one that is only planned."""
+    return bool(row.get("stood_for", not row["why"] and row["text"] in row["unshown"]))
 
 
 def _slug(text: str) -> str:

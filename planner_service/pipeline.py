@@ -265,7 +265,8 @@ class Pipeline:
             return Vocabulary.built_in(self.shelves.scripts().encoder)
 
         scale = actor(request, stage.script).height / REFERENCE_HEIGHT
-        return act(stage.script.keyframes, stage.places, stage.home, request.seed, words, scale, kept)
+        said = [stage.script.said_of(keyframe) for keyframe in stage.script.keyframes]
+        return act(stage.script.keyframes, stage.places, stage.home, request.seed, words, scale, kept, said)
 
     def make(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Story:
         """Theme to acted story."""
@@ -302,9 +303,7 @@ def role_of(character: Character, actions: Sequence[Action], script: LongScript)
 def _told_of(action: Action, script: LongScript) -> str:
     """All words of an action: its keyframe's, and those of the beats it shows."""
     keyframe = script.keyframes[action.keyframe]
-    shown = {keyframe.beat, *keyframe.also}  # keyframes of one's own may name beats of a story that they are not from
-    beats = [beat.text for number, beat in enumerate(script.beats) if number in shown]
-    return " ".join([keyframe.caption, action.interaction or "", *beats])
+    return " ".join([keyframe.caption, action.interaction or "", script.said_of(keyframe)])
 
 
 def given_script(request: StoryRequest) -> LongScript:

@@ -34,6 +34,9 @@ HELD: Final = 0.5
 TO_HEAD: Final = 0.30
 """Metres between a wrist and the head of who telephones, drinks or eats."""
 HANDS: Final = (INDEX["left_wrist"], INDEX["right_wrist"])
+BOTH: Final = 0.8
+"""The share of the one hand's way from hanging from which the other one has a part in it too."""
+_ELBOWS: Final = (INDEX["left_elbow"], INDEX["right_elbow"])
 _SHOULDERS: Final = (INDEX["left_shoulder"], INDEX["right_shoulder"])
 _HEAD: Final = INDEX["head"]
 
@@ -126,13 +129,20 @@ class _Finder:
         if not touches:
             return None
         first, last = max(start, touches[0].start), min(stop, touches[-1].stop)
-        reach = np.linalg.norm(self.joints[first:last, HANDS] - self.joints[first:last, _SHOULDERS], axis=-1)
-        level = np.linalg.norm((self.joints[first:last, HANDS] - self.joints[first:last, :1])[..., [0, 2]], axis=-1)
-        far = reach + 2.0 * level  # (frames, 2)
-        hand = int(far.max(axis=0).argmax())
-        there = np.flatnonzero(far[:, hand] > far[:, hand].max() - 0.08)
-        hands = HANDS if far[there].min(axis=1).mean() > far.max() - 0.3 else (HANDS[hand],)
+        away = self._from_hanging(first, last)
+        hand = int(away.max(axis=0).argmax())
+        there = np.flatnonzero(away[:, hand] > away[:, hand].max() - 0.08)
+        hands = HANDS if away[there].min(axis=1).mean() > BOTH * away.max() else (HANDS[hand],)
         return self._around(start, stop, first + int(there[0] + there[-1]) // 2, Subject.HANDS, hands, HELD)
+
+    def _from_hanging(self, first: int, last: int) -> Array:
+        """How far each hand is from where it would hang (metres): a hand that touches is, bent or stretched, and one
+        that hangs beside it is not, though its arm may be the longer. (last - first, 2)."""
+        joints = self.joints[first:last]
+        shoulders, elbows, wrists = joints[:, _SHOULDERS], joints[:, _ELBOWS], joints[:, HANDS]
+        length = np.linalg.norm(elbows - shoulders, axis=-1) + np.linalg.norm(wrists - elbows, axis=-1)
+        hanging = shoulders - length[..., None] * np.array([0.0, 1.0, 0.0])
+        return np.asarray(np.linalg.norm(wrists - hanging, axis=-1))
 
     def _face(self, start: int, stop: int, changed: bool) -> Framing | None:
         near = np.linalg.norm(self.joints[start:stop, HANDS] - self.joints[start:stop, [_HEAD]], axis=-1) < TO_HEAD

@@ -56,6 +56,8 @@ SIDE: Final = 0.3
 """From how much of a body's turn across the picture on it has a side."""
 FACED, WIDEST = 1.2, 1.2
 """What it counts to see a face, best at a quarter turned, and the turn in radians from which it is none."""
+WIDEST_NEAR: Final = {Subject.FACE: WIDEST, Subject.HANDS: 2.0}
+"""The turn from which nothing is looked at from near: of a face nothing is seen, of a hand a back before it."""
 ALONG: Final = 0.8
 """What it counts to look along an arm, of which then nothing is seen."""
 FROM_INSIDE: Final = 1.0
@@ -179,7 +181,7 @@ class _Director:
                 if sight.blocked(camera):
                     continue
                 towards = -camera.axes[2]
-                if close.subject is Subject.FACE and float(np.mean(_turns(ahead, towards))) > WIDEST:
+                if float(np.mean(_turns(ahead, towards))) > WIDEST_NEAR[close.subject]:
                     continue
                 score = sight.score(camera, poses) + FROM_INSIDE * sight.indoors(camera) - 0.3 * pitch
                 score += _faces(ahead, towards) * (1.0 if close.subject is Subject.FACE else 0.4)

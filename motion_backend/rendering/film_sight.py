@@ -23,8 +23,11 @@ HEIGHT: Final = 120
 """Pixels of the picture that is looked at."""
 EVERY: Final = {Subject.BODY: 6, Subject.FACE: 16, Subject.HANDS: 16}
 """Frames between two looks; from near little happens."""
-SLACK: Final = 0.06
-"""Metres that a body may be behind what hides it: it sinks into cushions, and pixels are large."""
+SLACK: Final = {Subject.BODY: 0.06, Subject.FACE: 0.06, Subject.HANDS: 0.015}
+"""Metres that a body may be behind what hides it: it sinks into cushions, and pixels are large; a hand round a corner
+is hidden by it."""
+NEAREST: Final = 0.06
+"""Metres before the eye from which on anything is seen."""
 ASKED: Final = {Subject.BODY: (0.4, 0.5), Subject.FACE: (0.0, 0.7), Subject.HANDS: (0.0, 0.5)}
 """The shares of the near side of a body, and of its head or of its hands, from which they count as shown: who sits
 behind a table is."""
@@ -89,7 +92,7 @@ class Appearances:
         for frame, (points, normals) in enumerate(zip(self.vertices, self.normals, strict=True)):
             turned = np.einsum("vk,vk->v", normals, np.asarray(camera.eye, dtype=np.float32) - points) > 0
             viewed = camera.view(points[turned].astype(np.float64))
-            viewed[:, 2] = np.maximum(viewed[:, 2] - SLACK, SLACK)
+            viewed[:, 2] = np.maximum(viewed[:, 2] - SLACK[self.subject], NEAREST)
             x, y, nearness = np.moveaxis(camera.project(viewed, self.size), -1, 0)
             inside = (x >= 0) & (x < width) & (y >= 0) & (y < height)
             column, row = (np.clip(value, 0, most - 1).astype(int) for value, most in ((x, width), (y, height)))

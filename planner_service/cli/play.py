@@ -18,7 +18,7 @@ from planner_service.cli.story import Extra, check_output, produce
 from planner_service.library.library import open_shelves
 from planner_service.pipeline import Pipeline, RequestError, StoryRequest
 from planner_service.scripts.captions import captions, synonyms
-from planner_service.scripts.script import Keyframe, PlannedKeyframe
+from planner_service.scripts.script import Keyframe, PlannedKeyframe, legible
 from planner_service.settings import read_settings
 from planner_service.tasks.task_plan import MAX_KEYFRAMES
 from scene_graphs.furniture import catalogue, display_name, is_known
@@ -27,6 +27,9 @@ MAX_BYTES: Final = 1 << 20
 """Of a script's file."""
 MAX_FAULTS: Final = 20
 """That are told of one file."""
+NAMES: Final = ("title", "summary")
+"""Under which it has what it is called."""
+MAX_TITLE: Final = 200
 KEYS: Final = ("script", "keyframes")
 """Under which a story.json, a long or a short script has its keyframes."""
 
@@ -51,7 +54,7 @@ def play(
     from planner_service.cli.layouts import chosen_layouts
 
     settings = read_settings()
-    keyframes = read_keyframes(script)
+    keyframes, title = read_script(script)
     extra = Extra(film, usd)
     check_output(out, extra)
     console = Console(markup=False)
@@ -59,7 +62,7 @@ def play(
         console.print(line, highlight=False, soft_wrap=True)
     pipeline = Pipeline(open_shelves(settings))
     request = StoryRequest(
-        theme=script.stem,
+        theme=title or script.stem,
         keyframes=tuple(keyframes),
         layouts=chosen_layouts(layout or [], pipeline.shelves),
         seed=seed,
@@ -69,9 +72,10 @@ def play(
     produce(pipeline, request, out, extra, console)
 
 
-def read_keyframes(path: Path) -> list[Keyframe]:
-    """The keyframes of a file. RequestError names the place in it, and what would be right there."""
-    rows = _rows(path)
+def read_script(path: Path) -> tuple[list[Keyframe], str]:
+    """The keyframes of a file, and its title or summary, if it has one. RequestError names the place in it, and what
+    would be right there."""
+    rows, title = _rows(path)
     if not isinstance(rows, list) or not rows:
         raise RequestError(f"{path.name}: holds no keyframes", "a list of them, or an object that has `keyframes`")
     if len(rows) > MAX_KEYFRAMES:
@@ -82,10 +86,10 @@ def read_keyframes(path: Path) -> list[Keyframe]:
         more = [f"and {len(faults) - MAX_FAULTS} more"] if len(faults) > MAX_FAULTS else []
         told = " · ".join([*faults[:MAX_FAULTS], *more])
         raise RequestError(f"{path.name}: {told}", at="script")
-    return [keyframe for keyframe in keyframes if keyframe is not None]
+    return [keyframe for keyframe in keyframes if keyframe is not None], title
 
 
-def _rows(path: Path) -> Any:
+def _rows(path: Path) -> tuple[Any, str]:
     try:
         with path.open("rb") as file:
             data = file.read(MAX_BYTES + 1)
@@ -94,10 +98,18 @@ def _rows(path: Path) -> Any:
         raise RequestError(f"{path}: cannot be read: {error.strerror or error}", at="script") from error
     except (ValueError, RecursionError) as error:
         raise RequestError(f"{path.name}: is not JSON: {error}", at="script") from error
+    title = _title_of(found)
     for key in KEYS:
         if isinstance(found, dict) and key in found:
             found = found[key]
-    return found
+            title = title or _title_of(found)
+    return found, title
+
+
+def _title_of(found: Any) -> str:
+    """What a script calls itself: a story its title, a short script its summary."""
+    names = [found.get(name) for name in NAMES] if isinstance(found, dict) else []
+    return next((legible(name)[:MAX_TITLE] for name in names if isinstance(name, str) and name.strip()), "")  # type: ignore[index]
 
 
 def _keyframe(row: Any, where: str, faults: list[str]) -> Keyframe | None:

@@ -197,7 +197,7 @@ def _bar(console: Console) -> Progress:
 
 def _close(console: Console, made: Story, files: list[Path]) -> None:
     """The closing table: what was reached, and how well; and which beats of the theme were acted."""
-    from planner_service.output.story_export import beats_of
+    from planner_service.output.story_export import beats_of, told_notes
 
     console.print(f"\n{made.planned.told.title}\n", style="bold", highlight=False)
     console.print(made.planned.told.text + "\n", highlight=False)
@@ -225,8 +225,8 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
     console.print(f"planner: {made.planned.script.planner} · motion: {movers}{encoder}", highlight=False)
     if made.planned.spent is not None:
         console.print(f"language model: {made.planned.spent}", highlight=False)
-    for note in made.motion.notes:
-        console.print(f"done otherwise than its caption says: keyframe {note.keyframe}: {note.words}", highlight=False)
+    for line in told_notes(made.motion.notes):
+        console.print(f"done otherwise than its caption says: {line}", highlight=False)
     console.print(f"\nwritten to {files[0].parent}/: {', '.join(file.name for file in files)}", highlight=False)
 
 

@@ -94,7 +94,7 @@ class Judgement:
     @property
     def _unshown(self) -> list[str]:
         outcomes = planned_beats(self.script).outcomes if self.script else ()
-        return [text for one in outcomes if one.acted for text in one.beat.unshown]
+        return [text for one in outcomes if one.acted or one.stood_for for text in one.beat.unshown]
 
     def _said(self, indices: Sequence[int], said: Sequence[str]) -> tuple[int, ...]:
         texts = {index: self.label.beats[index].text for index in indices}

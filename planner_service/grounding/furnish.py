@@ -6,10 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from motion_backend.motion import Skill
 from planner_service.grounding.keyframes_to_actions import NEEDS, Place
 from planner_service.grounding.object_assignment import Placing, StandIn, place_in, usable_offers
 from planner_service.grounding.room_assignment import housed
 from planner_service.grounding.seat_access import pull_to_dict, seat, seat_with_pulls
+from planner_service.grounding.window_places import WINDOW, at_window, has_window
 from planner_service.scripts.script import LongScript, PlannedKeyframe
 from scene_graphs.affordances.usable_furniture import Pull
 from scene_graphs.errors import UserError
@@ -64,8 +66,18 @@ class Furnished:
             piece = "floor"
             if place.object_id is not None:
                 piece = display_name(self.home.object(place.object_id).category)
+            if self._at_window(index):
+                piece = WINDOW
             named[index] = (piece, room)
         return named
+
+    def _at_window(self, index: int) -> bool:
+        """Whether a hand goes to a window there, or who walks goes to where one does; windows are no pieces."""
+        keyframe = self.script.keyframes[index]
+        if keyframe.skill is Skill.LOCO and not keyframe.on_floor and index + 1 < len(self.script.keyframes):
+            keyframe = self.script.keyframes[index + 1]
+        touches = keyframe.skill is Skill.TOUCH and at_window(keyframe.skill, self.script.said_of(keyframe))
+        return touches and has_window(self.home)
 
     def explain(self) -> list[str]:
         """One line a room: which, what stands for what, what is missing, what was moved."""

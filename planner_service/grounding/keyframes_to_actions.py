@@ -23,6 +23,7 @@ from motion_backend.procedural.touch.hand_contacts import suits
 from motion_backend.scene import scene_of
 from motion_backend.state_machine import ENDS, alongside
 from planner_service.grounding.touch_stance import LEG_ROOM, ElbowRoom
+from planner_service.grounding.window_places import NO_WINDOW, WindowPlace, at_window, window_place
 from planner_service.scripts.caption_actions import Hands, done_in, look_of
 from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
 from planner_service.scripts.script import Keyframe
@@ -102,6 +103,10 @@ HOLDS = {Skill.SITDOWN: 2.5, Skill.LIEDOWN: 3.0, Skill.TOUCH: 1.4}
 """Seconds a reached pose is held."""
 LAST_HOLD = 1.5
 """Seconds more for the last keyframe."""
+STANDS_ON_FLOOR = 0.3
+"""What begins lower stands there and does not hang (metres)."""
+LOOKS_OUT = 2.5
+"""Seconds somebody stands at a window."""
 PACING = 1.5
 """A wandering walk goes at least this far, where the room allows it (metres)."""
 WALLED = 0.08
@@ -141,18 +146,21 @@ def act(
     words: Words = hashed_words,
     scale: float = 1.0,
     kept: Sequence[Kept | None] = (),
+    said: Sequence[str] = (),
 ) -> tuple[Action, ...]:
     """Ground every keyframe in the home. Raises UnreachableError naming the keyframe that cannot be done.
 
     An action's caption is what is performed: where the body knows no word of the keyframe's, the nearest of `words`.
     `scale` is the size of the body against one of 1.70 m. `kept` has, for each keyframe that was grounded before, what
-    came of it, else None: that stays as it was.
+    came of it, else None: that stays as it was. `said` are the theme's words of what each shows, where there are any.
     """
     scene = scene_of(home)
     stage = _Stage(home, scene.walkable, np.random.default_rng([seed, 7]), words, scale)
     known = kept or [None] * len(keyframes)
     drafts: list[Action] = []
     for index, (keyframe, place, old) in enumerate(zip(keyframes, places, known, strict=True)):
+        words_of_it = f"{keyframe.caption}; {said[index] if said else ''}"
+        stage.windows.append(at_window(keyframe.skill, words_of_it))
         before = keyframes[index - 1] if index else None
         if old is not None and keyframe.skill in (*NEEDS, Skill.LOCO):
             drafts.append(stage.keep(index, old))
@@ -177,6 +185,10 @@ class _Stage:
         self.resting: Spot | None = None
         self.on: Spot | None = None
         """What it sits or lies on still."""
+        self.windows: list[bool] = []
+        """Whether each keyframe so far asks for a window."""
+        self.elsewhere: set[int] = set()
+        """Keyframes that are not done at the piece they were planned for."""
 
     def contact(self, index: int, keyframe: Keyframe, place: Place, free: str = "right") -> Action:
         """The action of a keyframe; walks get their goal later, when what follows them is known."""
@@ -186,8 +198,14 @@ class _Stage:
         action = Action(keyframe.skill, keyframe.caption, mood, keyframe.furniture, place.object_id, keyframe=index)
         if keyframe.skill in NEEDS:
             hand, spot = hand_of(keyframe.caption, default=free), self._spot(index, keyframe, mood, place)
+            window = self._window(index, place, reach=True) if keyframe.skill is Skill.TOUCH else None
+            if window is not None:
+                spot = window.spot(height_of(keyframe.caption), self.scale)
+            elif keyframe.skill is Skill.TOUCH and self.windows[index]:
+                action = replace(action, lacks=NO_WINDOW)
             if keyframe.skill is Skill.TOUCH:
                 hand, spot = self._elbows.freely(spot, hand, keyframe.caption)
+                self.elsewhere |= {index} if spot.object_id != place.object_id else set()
             else:
                 self.resting = spot
             self.on = None if keyframe.skill is Skill.TOUCH else spot
@@ -199,6 +217,12 @@ class _Stage:
         if keyframe.skill in RISINGS and self.resting is not None:
             return replace(action, object_id=self.resting.object_id, spot=self.resting)
         return action
+
+    def _window(self, index: int, place: Place, reach: bool = False) -> WindowPlace | None:
+        """Where to stand before a window, if the keyframe asks for one and somebody gets there."""
+        if index >= len(self.windows) or not self.windows[index]:
+            return None
+        return window_place(self.home, self.walkable, place.room, self.at, reach)
 
     def keep(self, index: int, old: Kept) -> Action:
         """An action as it was, the body left where that leaves it; how long it is held is reckoned anew."""
@@ -225,12 +249,33 @@ class _Stage:
                 "clear the way to it, or choose another room",
             )
         if need == "touch":
-            return self._to_touch(found, keyframe.caption)
+            chosen = getattr(keyframe, "object_id", None) is not None
+            return self._to_touch(found if chosen else self._high_enough(found, keyframe, place), keyframe.caption)
         # Who sits or lies there lies down, or sits up, without leaving the piece.
         found = [s for s in found if alongside(self.on, s)] or found
         if need == "sit":
             return seat_for(found, mood, keyframe.caption, self._elbows.solid, self.scale)
         return place_to_lie(found, keyframe.caption)
+
+    def _high_enough(self, found: list[Spot], keyframe: Keyframe, place: Place) -> list[Spot]:
+        """Spots of another piece of the room where one is to reach high and this one is low: nobody stretches down to
+        a mattress. The nearest piece that is high, else of medium height, else this one all the same."""
+        if height_of(keyframe.caption) != "high" or any(spot.height == "high" for spot in found):
+            return found
+        there = [one for one in self.home.objects if int(one.id.partition("/")[0]) == place.room]
+        there = [one for one in there if one.position[1] < STANDS_ON_FLOOR]  # pictures are no shelves
+        others = [spots for one in there if (spots := self._reachable(one, "touch"))]
+        for height in ("high", "medium"):
+            if height == "medium" and any(spot.height == "medium" for spot in found):
+                return found
+            level = [[spot for spot in spots if spot.height == height] for spots in others]
+            if nearest := min(filter(None, level), key=lambda spots: self._away(spots[0]), default=None):
+                return nearest
+        return found
+
+    def _away(self, spot: Spot) -> float:
+        """How far the body is from where one stands for a spot (metres)."""
+        return 0.0 if self.at is None else float(np.hypot(spot.standing[0] - self.at[0], spot.standing[1] - self.at[1]))
 
     def _is_on(self, place: Place) -> bool:
         """Whether what the body rests on still is that place."""
@@ -348,6 +393,8 @@ class _Stage:
     ) -> Action:
         """A walk with its goal; who stands still or waves has none."""
         wanders = place.object_id is None
+        if wanders and stays(action.caption) and self.windows[action.keyframe]:
+            return self._looking_out(action, place, at)
         if wanders and action.goal is not None and (following is None or following.object_id != "floor"):
             return action  # where it wandered before is as good as anywhere
         ahead = in_front(action.caption, self.walkable, at, done) if wanders else None
@@ -355,8 +402,17 @@ class _Stage:
             return replace(action, goal=ahead, facing=None)
         return action if wanders and stays(action.caption) else self._walk(action, following, place, at)
 
+    def _looking_out(self, action: Action, place: Place, at: Point | None) -> Action:
+        """Who is to stand at a window goes there and looks out."""
+        found = window_place(self.home, self.walkable, place.room, at)
+        if found is None:
+            return replace(action, lacks=NO_WINDOW)
+        return replace(action, goal=found.standing, facing=found.facing, stands=LOOKS_OUT)
+
     def _walk(self, action: Action, following: Action | None, place: Place, at: Point | None) -> Action:
         same = following is not None and following.skill in NEEDS and following.object_id == action.object_id
+        # What is done elsewhere than planned, at a window say, is reached by the walk to what was planned for it.
+        same = same or (following is not None and following.keyframe in self.elsewhere)
         if following is not None and following.spot is not None and (same or following.object_id == "floor"):
             spot = following.spot
             return replace(action, goal=spot.standing, facing=spot.approach)
@@ -422,7 +478,7 @@ def _scoots(spot: Spot) -> float:
 def _last(action: Action) -> Action:
     """The last of a story: one stays in it, or where one stands after it."""
     if ENDS[action.skill] is Posture.STANDING and (action.skill is not Skill.LOCO or action.goal is not None):
-        return replace(action, stands=LAST_HOLD)
+        return replace(action, stands=max(action.stands, LAST_HOLD))
     return replace(action, hold=action.hold + LAST_HOLD)
 
 
@@ -439,4 +495,6 @@ def height_of(caption: str) -> str:
 def action_to_dict(action: Action) -> dict[str, Any]:
     """Plain values of an action for story.json."""
     plain: dict[str, Any] = {name: value for name, value in vars(action).items() if name != "spot"}
+    if not action.lacks:
+        del plain["lacks"]
     return plain | {"skill": action.skill.value, "emotion": action.emotion.value, "spot": spot_to_dict(action.spot)}

@@ -232,7 +232,7 @@ class Maker:
             "end": first + len(motion),
             "reached": figures.reached,
             "reason": figures.reason,
-            "otherwise": bool(motion.notes),
+            "otherwise": [note.words for note in motion.notes],
             "segments": [asdict(segment) for segment in segments_of(motion)],
         }
         made = Made(

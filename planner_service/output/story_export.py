@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -16,6 +16,7 @@ from motion_backend.formats.motion_json import phase_to_dict
 from motion_backend.formats.npz import write_npz
 from motion_backend.formats.usd_film import film_usd
 from motion_backend.metrics.figure_limits import held_against
+from motion_backend.motion import Note
 from planner_service.cast_choice import told_look
 from planner_service.grounding.keyframes_to_actions import action_to_dict
 from planner_service.output.film import Filmed, write_film
@@ -138,7 +139,7 @@ def story_to_markdown(story: Story) -> str:
         )
     ]
     rooms = [f"- {line}" for line in planned.stage.explain()]
-    notes = [f"- keyframe {note.keyframe}: {note.words}" for note in story.motion.notes] or ["- nothing"]
+    notes = [f"- {line}" for line in told_notes(story.motion.notes)] or ["- nothing"]
     repairs = [f"- {line}" for line in script.repairs] or ["- none"]
     beats = [f"- {line}" for line in beats_of(story).lines()]
     return "\n".join(
@@ -176,6 +177,17 @@ def story_to_markdown(story: Story) -> str:
             "",
         ]
     )
+
+
+def told_notes(notes: Sequence[Note]) -> list[str]:
+    """What was done otherwise than the captions say, each thing once, with the keyframes where it was."""
+    found: dict[str, list[int]] = {}
+    for note in notes:
+        found.setdefault(note.words, []).append(note.keyframe)
+    return [
+        f"keyframe{'s' if len(where) > 1 else ''} {', '.join(map(str, where))}: {words}"
+        for words, where in found.items()
+    ]
 
 
 def _makers(planned: Planned) -> str:
@@ -223,14 +235,14 @@ def physics_mode(story: Story) -> str:
 def beats_of(story: Story) -> ActedBeats:
     """What became of the theme's beats, now that the body has moved."""
     keyframes = story.planned.script.keyframes
-    otherwise = {note.keyframe for note in story.motion.notes}
+    notes = story.motion.notes
     shots = [
         replace(
             shot_of(keyframes[figure.keyframe]),
             reached=figure.reached,
             reason=figure.reason,
             seconds=figure.seconds,
-            otherwise=figure.keyframe in otherwise,
+            otherwise=tuple(note.words for note in notes if note.keyframe == figure.keyframe),
         )
         for figure in story.figures
     ]

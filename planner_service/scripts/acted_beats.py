@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -12,11 +13,29 @@ from planner_service.scripts.script_words import is_floor
 from scene_graphs.json_fields import Json
 
 UNDONE: Final = "left undone, as the theme asks"
+IN_ITS_PLACE: Final = "the body is seen doing something else in its place"
+"""Why what is only stood for is not acted."""
 LEGEND: Final = (
-    "acted: the body is seen doing it; something stands for it: the body is seen doing something else in its place; "
+    f"acted: the body is seen doing it, with empty hands; something stands for it: {IN_ITS_PLACE}; "
     "not shown: words that the body does not show; left undone: the theme says it is not done"
 )
 """What is meant by the words of `ActedBeats.lines`."""
+MOVED: Final = re.compile(
+    r"\b(?:open|clos|shut|slam|bang|draw|pull|unlock|lock)\w*\b(?:(?!\b(?:and|then)\b)[^,;.])*?"
+    r"\b((?:cabinet|cupboard|wardrobe|closet|fridge|refrigerator|freezer|oven|microwave|dresser|desk)(?: door| drawer)?"
+    r"|drawer|door|gate|window|curtain|blind|shutter|lid|box|chest|suitcase)(s?)\b",
+    re.IGNORECASE,
+)
+"""Words of a beat in which a thing moves: a hand is seen on it, and it stays as it is."""
+RESTS: Final = re.compile(
+    r"(?:\w+ly )?(?:sits?|sat|lies|lie|lay|settles?|sinks?|flops?|drops?|slumps?|curls?|perch(?:es)?|collapses?|rests?"
+    r"|stays?|takes? (?:a|his|her|their|the) (?:seat|place))\b"
+    r"(?!.*\b(?:and|with|to|hands?|arms?|elbows?|chin|head|\w{2,}ing)\b)",
+    re.IGNORECASE,
+)
+"""A beat that says no more than that somebody sits or lies somewhere: what hands do is not its matter."""
+OF_HANDS: Final = re.compile(r"\b(?:hands?|arms?)\b")
+"""Words of a note (`Motion.notes`) on nothing but hands."""
 
 
 def connects(keyframe: Keyframe) -> bool:
@@ -44,31 +63,36 @@ class Shot:
     """Why it was not reached."""
     seconds: float = 0.0
     """How long it is on the screen."""
-    otherwise: bool = False
-    """Whether the body did otherwise than its caption says, since the place does not allow it."""
+    otherwise: tuple[str, ...] = ()
+    """What the body did otherwise than its caption says, since the place does not allow it: words of `Motion.notes`."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one beat."""
+    """What became of one beat: it is acted, or something stands for it, or neither; never two of them."""
 
     beat: Beat
     why: str
     """Why it is not acted; empty where it is."""
+    stood_for: bool = False
+    """Whether the film shows only something that stands for it."""
 
     @property
     def acted(self) -> bool:
-        """Whether the film shows it, or something that stands for it."""
+        """Whether the body is seen doing it."""
         return not self.why
 
     @property
-    def stood_for(self) -> bool:
-        """Whether the film shows only something that stands for it."""
-        return self.acted and self.beat.stood_for
+    def unshown(self) -> tuple[str, ...]:
+        """What of its words is not seen where it is acted: what the planner says, and that a thing moves."""
+        moved = MOVED.search(self.beat.text) if self.acted else None
+        still = (f"that the {moved[1].lower()}{moved[2]} move{'' if moved[2] else 's'}",) if moved else ()
+        return (*self.beat.unshown, *still)
 
     def to_dict(self) -> Json:
         """Plain values for JSON."""
-        return {**self.beat.model_dump(mode="json"), "acted": self.acted, "why": self.why}
+        told = {"acted": self.acted, "stood_for": self.stood_for, "why": self.why, "unshown": list(self.unshown)}
+        return {**self.beat.model_dump(mode="json"), **told}
 
 
 @dataclass(frozen=True)
@@ -87,18 +111,18 @@ class ActedBeats:
 
     @property
     def acted(self) -> int:
-        """How many of those are acted, be it by what only stands for them."""
+        """How many of those are acted."""
         return sum(one.acted for one in self.outcomes)
 
     @property
     def stood_for(self) -> int:
-        """How many of the acted ones are so only by what stands for them."""
+        """For how many others of those something stands."""
         return sum(one.stood_for for one in self.outcomes)
 
     @property
     def missing(self) -> tuple[Outcome, ...]:
-        """Those that are asked for and not acted."""
-        return tuple(one for one in self.outcomes if one.beat.asked and not one.acted)
+        """Those that are asked for, and neither acted nor stood for."""
+        return tuple(one for one in self.outcomes if one.beat.asked and not (one.acted or one.stood_for))
 
     @property
     def undone(self) -> tuple[Outcome, ...]:
@@ -111,17 +135,16 @@ class ActedBeats:
         if not self.outcomes:
             return []
         share = f"{self.spare_share:.0%} of the screen time serves none of them"
-        acted = [one.beat for one in self.outcomes if one.acted]
         plain = all(one.acted and not one.beat.unshown for one in self.outcomes)
         more = f", something stands for {self.stood_for} more" if self.stood_for else ""
         return [
-            f"{self.acted - self.stood_for} of {self.asked} beats of your theme are acted{more}; {share}",
+            f"{self.acted} of {self.asked} beats of your theme are acted{more}; {share}",
             *(f"not acted: {one.beat.text} ({one.why})" for one in self.missing),
-            *(f"not acted as such, something stands for it: {beat.text}" for beat in acted if beat.stood_for),
+            *(f"not acted as such, something stands for it: {one.beat.text}" for one in self.outcomes if one.stood_for),
             *(
-                f"not shown of “{beat.text}”: {'; '.join(beat.unshown)}"
-                for beat in acted
-                if beat.unshown and not beat.stood_for
+                f"not shown of “{one.beat.text}”: {'; '.join(one.unshown)}"
+                for one in self.outcomes
+                if one.acted and one.unshown
             ),
             *(f"left undone, as asked: {one.beat.text}" for one in self.undone),
             *([] if plain else [LEGEND]),
@@ -132,7 +155,7 @@ class ActedBeats:
         return {
             "beats": [one.to_dict() for one in self.outcomes],
             "beats_asked": self.asked,
-            "beats_acted": self.acted - self.stood_for,
+            "beats_acted": self.acted,
             "beats_stood_for": self.stood_for,
             "screen_time_without_beat": round(self.spare_share, 4) if self.outcomes else None,
         }
@@ -142,8 +165,14 @@ def acted_beats(beats: Sequence[Beat], shots: Sequence[Shot]) -> ActedBeats:
     """What became of the beats by the keyframes that there are, moved or still to be moved."""
     whole = sum(shot.seconds for shot in shots)
     spare = sum(shot.seconds for shot in shots if not shot.beats)
-    outcomes = (Outcome(_seen(beat, index, shots), _why(beat, index, shots)) for index, beat in enumerate(beats))
+    outcomes = (_outcome(beat, index, shots) for index, beat in enumerate(beats))
     return ActedBeats(tuple(outcomes), spare / whole if whole else 0.0)
+
+
+def _outcome(beat: Beat, index: int, shots: Sequence[Shot]) -> Outcome:
+    seen, why = _seen(beat, index, shots), _why(beat, index, shots)
+    stood_for = seen.stood_for and not why
+    return Outcome(seen, IN_ITS_PLACE if stood_for else why, stood_for)
 
 
 def planned_beats(script: LongScript) -> ActedBeats:
@@ -164,8 +193,13 @@ def beats_in(beat: int | None, also: Sequence[int]) -> tuple[int, ...]:
 def _seen(beat: Beat, index: int, shots: Sequence[Shot]) -> Beat:
     """A beat with what of it is not seen: all of it, where the body did otherwise in every keyframe that shows it."""
     own = [shot for shot in shots if index in shot.beats and not shot.connects]
-    lost = bool(own) and all(shot.otherwise for shot in own)
+    lost = bool(own) and all(any(_concerns(words, beat) for words in shot.otherwise) for shot in own)
     return beat.model_copy(update={"unshown": (beat.text,)}) if lost else beat
+
+
+def _concerns(words: str, beat: Beat) -> bool:
+    """Whether a note is about what a beat says: who is only said to sit at a table does so wherever the hands are."""
+    return not (OF_HANDS.search(words) and RESTS.match(beat.text))
 
 
 def _why(beat: Beat, index: int, shots: Sequence[Shot]) -> str:

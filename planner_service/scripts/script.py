@@ -225,10 +225,15 @@ class LongScript(BaseModel):
     """The sentence encoder that ranked the library."""
     seed: int = 0
 
+    def said_of(self, keyframe: PlannedKeyframe) -> str:
+        """The theme's words of all that a keyframe shows."""
+        shown = {keyframe.beat, *keyframe.also}  # keyframes of one's own may name beats of another story
+        return "; ".join(beat.text for number, beat in enumerate(self.beats) if number in shown)
+
     @property
     def acted(self) -> int:
-        """How many of the beats asked for some keyframe shows."""
-        return sum(beat.asked and not beat.why for beat in self.beats)
+        """How many of the beats asked for some keyframe shows, and not only something in their place."""
+        return sum(beat.asked and not beat.why and not beat.stood_for for beat in self.beats)
 
     @property
     def asked(self) -> int:

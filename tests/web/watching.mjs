@@ -103,6 +103,13 @@ async function changed(page) {
   const rows = page.locator(".draft");
   await rows.first().waitFor();
   const counts = [await rows.count()];
+  const [seed, play] = [page.locator("#take-seed"), page.getByRole("button", { name: "Play this" })];
+  const kept = await seed.inputValue();
+  const playable = [await play.isEnabled()];
+  for (const value of ["41", kept]) {
+    await seed.fill(value);  // the field keeps the focus: nothing is left or confirmed
+    playable.push(await play.isEnabled());
+  }
   const on = (words) => page.getByLabel(`Moment ${at + 1}: ${words}`);
   await on("leave it out").click();
   counts.push(await rows.count());
@@ -134,7 +141,7 @@ async function changed(page) {
   const after = await ending(page, at, before.clip);
   const { changed: apart } = await compare(page, before.picture, after.picture);
   const pose = ({ joints }) => ({ joints });
-  return { at, take: storyId, keyframe, counts, carried, wrong, sideways, caption, origin, milliseconds, apart: apart[0], before: pose(before), after: { ...pose(after), frame: after.frame } };
+  return { at, take: storyId, keyframe, counts, playable, carried, wrong, sideways, caption, origin, milliseconds, apart: apart[0], before: pose(before), after: { ...pose(after), frame: after.frame } };
 }
 
 await scene(async (page) => {

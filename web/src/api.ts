@@ -64,7 +64,7 @@ export interface Beat {
   readonly acted: boolean;
   /** Why it is not acted. */
   readonly why: string;
-  /** Whether keyframes show only something else in its place. */
+  /** Whether it is not acted, but something else is seen in its place. */
   readonly stood_for: boolean;
   /** What of it no keyframe shows; its whole text where something only stands for it. */
   readonly unshown: readonly string[];

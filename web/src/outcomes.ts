@@ -12,7 +12,7 @@ interface Shown {
 }
 
 const OUTCOMES: Readonly<Record<Outcome, Shown>> = {
-  acted: { mark: "✓", word: "Acted", meaning: "the body is seen doing it" },
+  acted: { mark: "✓", word: "Acted", meaning: "the body is seen doing it, with empty hands: no thing moves" },
   stands: { mark: "≈", word: "Stands for it", meaning: "the body is seen doing something else in its place" },
   otherwise: { mark: "↷", word: "Done otherwise", meaning: "it is done in another way than its caption says, since the body or the place allows no more" },
   missing: { mark: "–", word: "Not shown", meaning: "words of the theme that nothing in the film shows" },
@@ -21,8 +21,8 @@ const OUTCOMES: Readonly<Record<Outcome, Shown>> = {
 
 export function outcomeOf(beat: Beat): Outcome {
   if (beat.kind === "undone") return "undone";
-  if (!beat.acted) return "missing";
-  return beat.stood_for ? "stands" : "acted";
+  if (beat.acted) return "acted";
+  return beat.stood_for ? "stands" : "missing";
 }
 
 /** Whether a moment was done in another way than its caption says. */
@@ -36,8 +36,9 @@ export function badge(outcome: Outcome): HTMLElement {
 
 /** What is not shown of a beat, in words; empty where all of it is. */
 export function lacking(beat: Beat): string {
+  if (beat.stood_for) return "";
   if (!beat.acted) return beat.why;
-  if (beat.stood_for || !beat.unshown.length) return "";
+  if (!beat.unshown.length) return "";
   return `not shown of it: ${beat.unshown.map((part) => `“${part}”`).join(", ")}`;
 }
 

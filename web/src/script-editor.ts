@@ -54,7 +54,7 @@ export class ScriptEditor {
   private constructor(story: Story, words: Vocabulary, things: readonly Thing[], played: Played, left: () => void) {
     [this.#story, this.#words, this.#things, this.#played, this.#left] = [story, words, things, played, left];
     this.#now = this.#before = { script: draftOf(story.keyframes), seed: String(story.seed), backend: story.backend, rooms: "" };
-    this.#seed = h("input", { id: "take-seed", type: "number", min: 0, step: 1, inputmode: "numeric", onchange: () => this.#stage({ seed: this.#seed.value }) });
+    this.#seed = h("input", { id: "take-seed", type: "number", min: 0, step: 1, inputmode: "numeric", oninput: () => (this.#play.disabled = this.#from({ ...this.#now, seed: this.#seed.value }) === null), onchange: () => this.#stage({ seed: this.#seed.value }) });
     this.#backend = h("select", { id: "take-backend", onchange: () => this.#stage({ backend: this.#backend.value }) }, ...words.backends.map((one) => h("option", { value: one.backend, title: one.about }, one.backend)));
     this.#rooms = h("input", { id: "take-home", class: "home", list: "take-rooms", placeholder: "the home it has", autocomplete: "off", spellcheck: false, onfocus: () => void this.#name(), oninput: () => (this.#play.disabled = false), onchange: () => this.#stage({ rooms: this.#rooms.value.trim() }) });
     const upload = new Upload((ids) => this.#stage({ rooms: ids.join(", ") }));
@@ -202,9 +202,9 @@ export class ScriptEditor {
   }
 
   /** The first moment that is another; 0 where the staging is; null where nothing is. */
-  #from(): number | null {
-    const staged = this.#now.seed !== this.#before.seed || this.#now.backend !== this.#before.backend || this.#now.rooms !== "";
-    return staged ? 0 : firstChange(this.#now.script, this.#before.script);
+  #from(wanted: Wanted = this.#now): number | null {
+    const staged = wanted.seed !== this.#before.seed || wanted.backend !== this.#before.backend || wanted.rooms !== "";
+    return staged ? 0 : firstChange(wanted.script, this.#before.script);
   }
 
   async #send(): Promise<void> {

@@ -72,7 +72,7 @@ export function noteWords(note: string): string {
 /** "6 of 7 beats of your theme are acted."; of what is asked for, since what is to be left undone is not acted. */
 export function beatsWords(beats: readonly Beat[]): string {
   const asked = beats.filter((beat) => beat.kind !== "undone");
-  const stoodFor = asked.filter((beat) => beat.acted && beat.stood_for).length;
+  const stoodFor = asked.filter((beat) => beat.stood_for).length;
   const more = stoodFor ? `, something stands for ${stoodFor} more` : "";
-  return `${asked.filter((beat) => beat.acted).length - stoodFor} of ${count(asked.length, "beat")} of your theme ${asked.length === 1 ? "is" : "are"} acted${more}.`;
+  return `${asked.filter((beat) => beat.acted).length} of ${count(asked.length, "beat")} of your theme ${asked.length === 1 ? "is" : "are"} acted${more}.`;
 }

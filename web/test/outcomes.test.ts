@@ -31,7 +31,7 @@ beforeAll(() => {
 const beat = (given: Partial<Beat>): Beat => ({ text: "dances", kind: "deed", emotion: "neutral", acted: true, stood_for: false, why: "", unshown: [], ...given });
 const figures = (given: Partial<KeyframeFigures>): KeyframeFigures => ({ keyframe: 0, skill: "loco", seconds: 1, reached: true, reason: "", contact_error: null, pen_max: 0, notes: [], performed_as: null, ...given });
 const ACTED = beat({});
-const STOOD = beat({ text: "conducts an orchestra", stood_for: true, unshown: ["conducts an orchestra"] });
+const STOOD = beat({ text: "conducts an orchestra", acted: false, why: "the body is seen doing something else in its place", stood_for: true, unshown: ["conducts an orchestra"] });
 const MISSING = beat({ acted: false, why: "no keyframe is left that shows it" });
 const UNDONE = beat({ kind: "undone", acted: false, why: "left undone, as the theme asks" });
 

@@ -5,6 +5,7 @@ Ways that are not the shortest: a curve to the front left or right, and pacing t
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -92,6 +93,8 @@ ONE_LEG_ASIDE, ONE_LEG_LOWER, ONE_LEG_ROLL, OFTEN_LEFT = 0.035, 0.012, 0.06, 0.5
 and how often that is the left leg (share)."""
 QUICK, RUNS = 1.7, 2.0
 """Who is to be faster (m/s) walks quickly, and runs."""
+HASTE = re.compile(r"\b(?:quick|run|rush|hurr|dash|fast)", re.IGNORECASE)
+"""Words of a caption that ask for haste."""
 OFTEN, NEARLY = 0.9, 0.9
 """A way with so little room that all but the fastest frames, this share, are slower than so much of it is told."""
 HALTS = 0.6
@@ -143,8 +146,13 @@ def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Po
         body.enter(PhaseKind.BACK_UP)
         path = np.array([body.place, goal])
     _stride(body, path, facing, style, onward if not near and turning is None else None)
-    if style.speed > QUICK:
+    if style.speed > QUICK and asks_for_haste(action):
         _note_no_room(body, made, style.speed)
+
+
+def asks_for_haste(action: Action) -> bool:
+    """Whether a walk is there to be quick: one that only leads to a thing is as quick as the way there allows."""
+    return action.skill is Skill.LOCO and action.object_id is None and bool(HASTE.search(action.caption))
 
 
 def _note_no_room(body: Body, made: int, speed: float) -> None:

@@ -24,6 +24,7 @@ from motion_backend.skeleton import MAX_HEIGHT, MIN_HEIGHT
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, Method
 from planner_service.grounding.script_revision import EditedKeyframe
 from planner_service.pipeline import MAX_SEED
+from planner_service.scripts.acted_beats import IN_ITS_PLACE
 from planner_service.scripts.script import MAX_NAME_LENGTH, Beat, Keyframe
 from planner_service.themes.beats import MAX_THEME_LENGTH
 from scene_graphs.home import MAX_ROOMS
@@ -243,13 +244,13 @@ class KeyframeShown(BaseModel):
 class BeatShown(Beat):
     """One thing that the theme says, and what became of it; as planned while nothing has been moved."""
 
-    acted: bool = Field(description="Whether keyframes show it, or something else that stands for it: `stood_for`.")
+    acted: bool = Field(description="Whether the body is seen doing it; if not, `why` says why not.")
 
-    @computed_field(description="Whether keyframes show only something else in its place.")  # type: ignore[prop-decorator]
+    @computed_field(description="Whether it is not acted, but something else is seen in its place.")  # type: ignore[prop-decorator]
     @property
     def stood_for(self) -> bool:
-        """Whether keyframes show only something else in its place."""
-        return self.acted and super().stood_for
+        """Whether it is not acted, but something else is seen in its place."""
+        return not self.acted and self.why == IN_ITS_PLACE
 
 
 class ShortScriptChosen(BaseModel):

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cached_property
-from typing import Final
+from typing import Any, Final
 
 from motion_backend.body.cast import Look, Role
 from motion_backend.motion import FPS, Character, Emotion, Motion, Skill, join
@@ -100,7 +100,7 @@ def _keyframes(made: Json, segments: list[Json]) -> list[Json]:
 def _beats(made: Json, keyframes: list[Json], segments: list[Json]) -> list[Json]:
     """What became of the beats, as far as that is known."""
     reasons = {segment["keyframe"]: segment.get("reason", "") for segment in segments}
-    otherwise = {segment["keyframe"] for segment in segments if segment.get("otherwise")}
+    otherwise = {segment["keyframe"]: _words(segment.get("otherwise")) for segment in segments}
     shots = [
         Shot(
             beats_in(row["beat"], row["also"]),
@@ -108,12 +108,18 @@ def _beats(made: Json, keyframes: list[Json], segments: list[Json]) -> list[Json
             leads(Skill(row["skill"]), row["furniture"]),
             row["reached"],
             reasons.get(row["index"], ""),
-            otherwise=row["index"] in otherwise,
+            otherwise=otherwise.get(row["index"], ()),
         )
         for row in keyframes
     ]
     beats = [Beat.model_validate(row) for row in made.get("beats", [])]
-    return [one.to_dict() for one in acted_beats(beats, shots).outcomes]
+    rows = [one.to_dict() for one in acted_beats(beats, shots).outcomes]
+    return [{name: value for name, value in row.items() if name != "stood_for"} for row in rows]  # `BeatShown` tells it
+
+
+def _words(otherwise: Any) -> tuple[str, ...]:
+    """What a segment says was done otherwise; earlier versions kept only whether anything was."""
+    return tuple(otherwise) if isinstance(otherwise, list) else ("",) * bool(otherwise)
 
 
 def failure_of(record: Record) -> Json | None:

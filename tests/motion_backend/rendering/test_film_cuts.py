@@ -12,11 +12,12 @@ from for_each import for_each
 
 from motion_backend.body.cast import Role
 from motion_backend.motion import Emotion, Motion, PhaseKind, join
+from motion_backend.rendering.camera import visible_share
 from motion_backend.rendering.film_cuts import SHORTEST, Cut, Framing, Subject, film_cuts
-from motion_backend.rendering.film_shots import ALIKE, FilmShot, film_shots
+from motion_backend.rendering.film_shots import ALIKE, WIDEST_NEAR, FilmShot, film_shots
 from motion_backend.rendering.film_sight import Appearances
 from motion_backend.rendering.rasterizer import orbit
-from motion_backend.rotations import wrap
+from motion_backend.rotations import rotate, wrap
 from motion_backend.skeleton import INDEX
 
 ASPECT = 16 / 9
@@ -63,6 +64,23 @@ def test_a_hand_that_touches_is_seen_from_near_at_the_moment_it_does():
     phases = [phase for phase in motion.phases if phase.kind is PhaseKind.TOUCH]
     assert INDEX["right_wrist"] in close.hands
     assert any(phase.start < (close.start + close.stop) / 2 < phase.stop for phase in phases)
+
+
+@for_each("height, hand", [("medium", "left"), ("medium", "right"), ("low", "left")])
+def test_of_two_hands_the_one_that_touches_is_looked_at(height: str, hand: str):
+    motion = touched("shelf", height, f"touch {height} height with the {hand} hand", hand).motion
+    (close,) = (cut.close for cut in film_cuts(motion, motion.joint_positions().astype(np.float64), [0]) if cut.close)
+    assert (close.subject, close.hands) == (Subject.HANDS, (INDEX[f"{hand}_wrist"],))
+
+
+def test_nothing_stands_between_a_hand_that_touches_and_the_eye_near_it_nor_is_it_seen_from_behind():
+    motion, _ = story()
+    joints, turns = motion.skeleton.forward_kinematics(motion.root_positions, motion.local_rotations)
+    shot = next(one for one in close_ups() if one.subject is Subject.HANDS)
+    wrists = joints[shot.start : shot.stop : 5, INDEX["right_wrist"]].astype(np.float64)
+    assert visible_share(SMALL.objects, shot.camera.eye, wrists) == 1.0
+    ahead = rotate(turns[shot.start : shot.stop, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
+    assert float(np.mean(np.arccos(np.clip(ahead @ -shot.camera.axes[2], -1, 1)))) < WIDEST_NEAR[Subject.HANDS]
 
 
 def test_a_face_is_seen_from_near_where_the_mood_is_another_and_not_where_it_stays():

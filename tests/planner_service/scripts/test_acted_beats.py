@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from motion_backend.motion import Emotion, Skill
-from planner_service.scripts.acted_beats import LEGEND, Shot, acted_beats, connects, planned_beats
+from planner_service.scripts.acted_beats import IN_ITS_PLACE, LEGEND, Shot, acted_beats, connects, planned_beats
 from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe
 
 SITS, READS, NO_SUPPER = Beat(text="sits down"), Beat(text="reads"), Beat(text="eats no supper", kind="undone")
@@ -32,6 +33,7 @@ BEATS = st.builds(
     emotion=st.sampled_from(Emotion),
     kind=st.sampled_from(["deed", "feeling", "undone", "other"]),
     why=st.sampled_from(["", "nobody can fly"]),
+    unshown=st.sampled_from([(), ("sits",), ("with a sigh",)]),
 )
 
 
@@ -40,11 +42,14 @@ def test_every_beat_is_acted_or_there_is_a_reason_and_shares_are_shares(beats: l
     found = acted_beats(beats, shots)
     assert len(found.outcomes) == len(beats)
     assert all(one.acted == (not one.why) for one in found.outcomes)
-    assert found.acted + len(found.missing) == found.asked
+    assert all(one.acted + one.stood_for <= 1 for one in found.outcomes)
+    assert found.acted + found.stood_for + len(found.missing) == found.asked
     assert found.asked + len(found.undone) == len(beats)
     assert 0 <= found.spare_share <= 1
     assert not any(one.acted for one in found.undone)
     assert all(one.why == one.beat.why for one in found.outcomes if one.beat.why)
+    rows = found.to_dict()["beats"]
+    assert [(row["acted"], row["stood_for"]) for row in rows] == [(one.acted, one.stood_for) for one in found.outcomes]
 
 
 @given(st.lists(BEATS, max_size=4), st.lists(SHOTS, min_size=1, max_size=8), st.data())
@@ -70,9 +75,41 @@ def test_a_beat_whose_deeds_the_body_did_not_reach_is_not_acted_and_says_so() ->
 
 
 def test_what_the_body_did_otherwise_only_stands_for_its_beat() -> None:
-    assert acted_beats([READS], [shot(0, True, otherwise=True)]).stood_for == 1
-    assert acted_beats([READS], [shot(0, True, otherwise=True), shot(0, True)]).stood_for == 0
-    assert acted_beats([READS], [shot(0, True, connects=True, otherwise=True), shot(0, True)]).stood_for == 0
+    other = ("nothing to lean back against: upright",)
+    found = acted_beats([READS], [shot(0, True, otherwise=other)])
+    assert (found.acted, found.stood_for, found.outcomes[0].why) == (0, 1, IN_ITS_PLACE)
+    for more in (shot(0, True), shot(0, True, otherwise=())):
+        found = acted_beats([READS], [shot(0, True, connects=True, otherwise=other), more])
+        assert (found.acted, found.stood_for) == (1, 0)
+
+
+@pytest.mark.parametrize(
+    ("text", "stood_for"),
+    [
+        ("sits at the table", False), ("quietly lies down on the bed", False), ("takes a seat", False),
+        ("sits with her hands folded", True), ("sits down to write", True), ("writes a letter", True),
+        ("sits reading", True),
+    ],
+)  # fmt: skip
+def test_a_note_on_hands_leaves_the_beat_acted_that_only_says_where_one_rests(text: str, stood_for: bool) -> None:
+    hands = shot(0, True, otherwise=("no table in easy reach: each hand in the lap",))
+    assert acted_beats([Beat(text=text)], [hands]).stood_for == stood_for
+    both = acted_beats([Beat(text=text)], [shot(0, True, otherwise=(*hands.otherwise, "no edge on that side"))])
+    assert both.stood_for == 1, "the other note is about the body"
+
+
+@pytest.mark.parametrize(
+    ("text", "unshown"),
+    [
+        ("slams the cabinet", ["that the cabinet moves"]), ("opens the curtains", ["that the curtains move"]),
+        ("opens a book", []), ("closes her eyes on the bed", []), ("pulls out the chair and sits by the window", []),
+    ],
+)  # fmt: skip
+def test_a_thing_that_the_theme_moves_is_named_since_it_stays_where_it_is(text: str, unshown: list[str]) -> None:
+    found = acted_beats([Beat(text=text)], [shot(0, True)])
+    assert (found.acted, found.to_dict()["beats"][0]["unshown"]) == (1, unshown)
+    assert (f"not shown of “{text}”: {'; '.join(unshown)}" in found.lines()) == bool(unshown)
+    assert not acted_beats([Beat(text=text)], []).outcomes[0].unshown, "what is not acted shows nothing at all"
 
 
 def test_a_feeling_is_acted_by_the_mood_of_other_beats() -> None:

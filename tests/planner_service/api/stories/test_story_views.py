@@ -99,6 +99,12 @@ def test_a_beat_is_acted_as_planned_until_the_body_does_not_reach_it() -> None:
     planned, moved = (StoryShown.model_validate(story_shown(record(some, "PENDING"))) for some in (made[:1], made))
     assert [beat.acted for beat in planned.beats] == [True, True, False, False]
     assert [beat.acted for beat in moved.beats] == [True, False, False, False]
+    made[0].summary["beats"][0]["unshown"], made[-1].summary["reached"] = ["sits"], True
+    made[-1].summary["otherwise"] = ["nothing to lean back against: upright"]
+    stood = StoryShown.model_validate(story_shown(record(made, "PENDING")))
+    assert [(beat.acted, beat.stood_for) for beat in stood.beats] == [(False, True)] * 2 + [(False, False)] * 2
+    made[0].summary["beats"][0].pop("unshown")
+    made[-1].summary["reached"] = False
     assert [beat.why for beat in moved.beats[1:3]] == ["the body did not reach it: too far", "nobody can"]
 
 
