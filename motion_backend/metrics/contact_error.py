@@ -17,9 +17,9 @@ THRESHOLDS = {Skill.SITDOWN: 0.20, Skill.TOUCH: 0.20, Skill.LIEDOWN: 0.30}
 HAND_OVER = 0.30
 STRICT = 0.10
 """What is near enough for strict success, whatever the skill (metres)."""
-PASSES = 0.9
-"""A walk that goes on to somewhere else is past its goal for at most so long when it is over (seconds): it goes over
-into the next where feet change, a good half of a slow step later."""
+PASSES = 0.5
+"""A walk that goes on to somewhere else has gone at most so far since it was nearest to its goal (metres of the pelvis'
+way): it goes over into the next where feet change, within half a step."""
 SUSTAINED = 1.0
 RISEN = (0.85, np.cos(np.radians(30)), 0.1)
 """Share of the standing height, cosine of the trunk's tilt and seconds that count as having risen."""
@@ -59,7 +59,9 @@ def outcome(action: Action, body: Kinematics) -> Outcome:
     gap = np.hypot(*(body.positions[:, 0, [0, 2]] - np.asarray(action.goal)).T)
     near = gap <= HAND_OVER
     # Who walks on passes by.
-    end = gap[-round(PASSES * motion.fps) :].min()
+    gone = np.linalg.norm(np.diff(body.positions[:, 0, [0, 2]], axis=0), axis=1)
+    since = np.concatenate([np.cumsum(gone[::-1])[::-1], [0.0]])
+    end = gap[since <= PASSES].min()
     found = Outcome(bool(end <= HAND_OVER), bool(near.any()), bool(end <= STRICT), None, None, _first(near, motion.fps))
     return _if_completed(body, found)
 

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from motion_backend.backend_protocol import POSTURE_AFTER, BodyState, History, Part, PartKind
+from motion_backend.backend_protocol import HISTORY, POSTURE_AFTER, BodyState, History, Part, PartKind
 from motion_backend.motion import FPS, Character, Motion, Note, Phase, PhaseKind, Posture
 from motion_backend.procedural.arm_clearance import Around, arms_clear
-from motion_backend.procedural.balance_pass import balanced
+from motion_backend.procedural.balance_pass import Before, balanced
 from motion_backend.procedural.body_state import Body
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.gaze import gazing
@@ -78,20 +78,25 @@ class ProceduralBackend:
         skeleton, memory = build_skeleton(state.height), state.memory if state.backend == self.name else {}
         left, right = (Hold(**hold) if hold else None for hold in memory.get("holds", (None, None)))
         pose = Pose.from_lists(memory["pose"]) if memory else pose_of(state.history, skeleton)
-        tail, stride = memory.get("tail"), memory.get("stride")
-        return Body(
+        tail, stride = memory.get("tail"), Stride.from_lists(memory["stride"]) if memory.get("stride") else None
+        before = Before.of(state.history, np.zeros((HISTORY, 3)) if stride is None else stride.shift, skeleton)
+        body = Body(
             scene=scene_of(home),
             skeleton=skeleton,
             rng=np.random.default_rng([state.seed, state.index]),
             pose=released(pose, skeleton),
+            before=before,
             posture=state.posture,
             rest=state.rest,
             holds=(left, right),
             seed=state.seed,
             tail=Pose.from_lists(tail) if tail else None,
-            stride=Stride.from_lists(stride) if stride else None,
+            stride=stride,
             upcoming=tuple(upcoming),
         )
+        # A walk goes on as it was planned: where its weight goes then is found after it.
+        body.pose = replace(body.pose, pelvis=body.pose.pelvis - before.shift[-1])
+        return body
 
 
 def _remembered(body: Body) -> dict[str, Any]:
@@ -117,7 +122,11 @@ def _to_motion(body: Body, part: Part) -> Motion:
     pose = gazing(pose, body, part)
     if part.kind is not PartKind.REACH and posture is not Posture.LYING:
         pose = head_clear(pose, around.solid, body.skeleton)
-    pose = hips_within(balanced(pose, body.phases, body.skeleton), body.skeleton)
+    upright, pose = pose, balanced(pose, body.phases, body.skeleton, body.before, body.beyond)
+    if body.stride is not None:
+        shift = np.concatenate([body.before.shift, pose.pelvis - upright.pelvis])
+        body.stride = replace(body.stride, shift=shift[-HISTORY:])
+    pose = hips_within(pose, body.skeleton)
     wanted, pose = pose.arms[-1], arms_clear(pose, start, around, body.skeleton)
     if body.stride is not None and len(pose) > 1 and (pose.arms[-1] != wanted).any():
         # Arms that are on a detour go on from that.

@@ -16,11 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
+from motion_backend.backend_protocol import History
 from motion_backend.body.capsules import SOLE
 from motion_backend.body.segment_masses import centres_of_mass
 from motion_backend.body.zero_moment import GRAVITY, LEAST_WEIGHT, accelerations, nearest_in_hull
 from motion_backend.motion import FPS, Phase, PhaseKind
-from motion_backend.procedural.pose import Pose
+from motion_backend.procedural.pose import Pose, concatenate, smooth
 from motion_backend.procedural.pose_solver import solve
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, Skeleton
@@ -49,28 +50,61 @@ BENT: Final = 0.985
 """A bent leg may be stretched to so much of its length, no leg beyond what it was: knees near straight snap."""
 SINKS: Final = (4, 2.0)
 """A pelvis sinks for a leg so many frames before and after it has to, in a bell so wide (frames)."""
+RISES: Final = 10
+"""Within so many frames it has gone over from how low it was before."""
 
 
-def balanced(pose: Pose, phases: Sequence[Phase], skeleton: Skeleton) -> Pose:
+class Before(NamedTuple):
+    """The frames before a segment, as they would have been without a shift of weight, and how far that goes in them."""
+
+    centres: Array
+    """(K, 3) of mass; K may be 0."""
+    pelvis: Array
+    """(K, 3)."""
+    shift: Array
+    """(K, 3) of the pelvis: nothing but in a walk that goes on."""
+
+    @staticmethod
+    def of(history: History, shift: Array, skeleton: Skeleton) -> Before:
+        """From the frames that were shown, of the last of which it is known how far they were shifted."""
+        last = slice(-len(shift), None)
+        root, local = history.root_positions[last], history.local_rotations[last]
+        positions, world = skeleton.forward_kinematics(root, local)
+        shift = shift[-len(root) :]
+        centres = centres_of_mass(skeleton, positions.astype(np.float64), world)
+        return Before(centres - FOLLOWS * shift, root - shift, shift)
+
+
+NOTHING: Final = Before(*np.zeros((3, 0, 3)))
+"""Of a body that begins to be."""
+
+
+def balanced(
+    pose: Pose, phases: Sequence[Phase], skeleton: Skeleton, before: Before = NOTHING, beyond: Pose | None = None
+) -> Pose:
     """A segment of T frames with its zero-moment point in, or nearer to, the soles that are planted.
 
-    Its first and its last frame stay, and so do frames in which the pelvis rests on something or a knee on the floor.
+    It goes on from the shift that it had `before`. The shift dies away towards its end, or where a walk goes on towards
+    the end of what that was to be, `beyond` it. Frames in which the pelvis rests on something or a knee on the floor
+    stay.
     """
+    frames, pose = len(pose), pose if beyond is None else concatenate([pose, beyond])
     free = on_its_feet(pose, phases, skeleton)
-    if not (free & pose.planted.any(axis=1)).any():
-        return pose
+    if not (free & pose.planted.any(axis=1)).any() and not before.shift.any():
+        return pose.at(slice(0, frames))
     root, local = solve(pose, skeleton)
     positions, world = skeleton.forward_kinematics(root, local)
     knees = positions[:, [INDEX["left_knee"], INDEX["right_knee"]], 1]
     free &= knees.min(axis=1) > KNEELS * skeleton.scale
-    cart = _Cart.of(centres_of_mass(skeleton, positions.astype(np.float64), world))
+    centres = centres_of_mass(skeleton, positions.astype(np.float64), world)
+    cart = _Cart.of(np.concatenate([before.centres, centres]))
     support = _Support(_soles(pose, skeleton), np.repeat(pose.planted > 0, len(SOLE), axis=1), free)
     moved = pose.pelvis.copy()
-    shift = _shift(cart, support, moved[:, FLOOR])
+    shift = _shift(cart, support, moved[:, FLOOR], before)
     moved[:, FLOOR] += shift
     hips = positions[:, [INDEX["left_hip"], INDEX["right_hip"]]]
-    moved[:, 1] -= _sinking(hips - pose.ankles, shift, skeleton)
-    return replace(pose, pelvis=moved)
+    moved[:, 1] -= _sinking(hips - pose.ankles, shift, skeleton, before)
+    return replace(pose, pelvis=moved).at(slice(0, frames))
 
 
 def on_its_feet(pose: Pose, phases: Sequence[Phase], skeleton: Skeleton) -> NDArray[np.bool_]:
@@ -136,21 +170,24 @@ class _Support(NamedTuple):
     """Frames in which nothing else carries. (T,)."""
 
 
-def _shift(cart: _Cart, support: _Support, pelvis: Array) -> Array:
+def _shift(cart: _Cart, support: _Support, pelvis: Array, before: Before) -> Array:
     """The least shift of a pelvis on its way (T, 2) that takes the zero-moment point into the soles, and the smoothest
-    pelvis; nothing is shifted before and after. (T, 2)."""
+    pelvis; nothing is shifted afterwards. The cart has the frames before it as well. (T, 2)."""
     from scipy.linalg import cho_solve_banded, cholesky_banded
 
-    judged = (support.free & support.carries.any(axis=1)).astype(np.float64)
-    factor = cholesky_banded(_normal_equations(cart.lever, judged, support.free), lower=True)
-    smoother = _smoother(pelvis)
-    shift = np.zeros_like(pelvis)
+    came, past = len(before.shift), ((len(before.shift), 0), (0, 0))
+    free = np.concatenate([np.zeros(came, dtype=bool), support.free])
+    judged = np.concatenate([np.zeros(came), support.free & support.carries.any(axis=1)])
+    factor = cholesky_banded(_normal_equations(cart.lever, judged, free), lower=True)
+    known = _smoother(np.concatenate([before.pelvis[:, FLOOR], pelvis]))
+    known[:came] += HELD * before.shift[:, FLOOR]
+    shift = np.pad(np.zeros_like(pelvis), past)
     for _ in range(ROUNDS):
         now = cart.points + cart.moved(shift)
-        nearest = nearest_in_hull(now, support.soles, support.carries)
+        nearest = np.pad(nearest_in_hull(now[came:], support.soles, support.carries), past)
         wanted = np.where(judged[:, None] > 0, nearest - cart.points, 0.0)
-        shift = cho_solve_banded((factor, True), _turned_back(cart.lever, judged, wanted) + smoother)
-    return shift
+        shift = cho_solve_banded((factor, True), _turned_back(cart.lever, judged, wanted) + known)
+    return np.asarray(shift[came:])
 
 
 def _normal_equations(lever: Array, judged: Array, free: NDArray[np.bool_]) -> Array:
@@ -189,7 +226,7 @@ def _turned_back(lever: Array, judged: Array, wanted: Array) -> Array:
     return np.asarray(found)
 
 
-def _sinking(legs: Array, shift: Array, skeleton: Skeleton) -> Array:
+def _sinking(legs: Array, shift: Array, skeleton: Skeleton, before: Before) -> Array:
     """How far the pelvis sinks so that no leg is overstretched, from ankles to hips (T, 2, 3) as they were. (T,)."""
     from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 
@@ -198,8 +235,10 @@ def _sinking(legs: Array, shift: Array, skeleton: Skeleton) -> Array:
     level = legs[..., FLOOR] + shift[:, None]
     height = np.sqrt(np.maximum(length**2 - (level**2).sum(axis=-1), 0.0))
     needed = np.maximum(legs[..., 1] - height, 0.0).max(axis=1)
-    if not needed.any():
-        return np.asarray(needed)
     reach, width = SINKS
     early = maximum_filter1d(needed, 2 * reach + 1, mode="constant")
-    return np.asarray(gaussian_filter1d(early, width, mode="constant"))
+    sinks = np.asarray(gaussian_filter1d(early, width, mode="constant"))
+    if not len(before.shift):
+        return sinks
+    fade = 1 - smooth(np.arange(1, len(sinks) + 1) / RISES)
+    return np.asarray(sinks + fade * (-before.shift[-1, 1] - sinks[0]))

@@ -8,6 +8,7 @@ import numpy as np
 
 from motion_backend.backend_protocol import Part
 from motion_backend.motion import Action, Phase, PhaseKind, Posture
+from motion_backend.procedural.balance_pass import NOTHING, Before
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.touch.hand_rests import Holds
 from motion_backend.procedural.walk.footsteps import yaw_of
@@ -30,6 +31,8 @@ class Body:
     pose: Pose
     posture: Posture
     rest: Spot | None
+    before: Before = NOTHING
+    """Its last frames, as its balance goes on from them."""
     holds: Holds = (None, None)
     """What its hands lie on."""
     seed: int = 0
@@ -38,6 +41,8 @@ class Body:
     """The frame shown last, and what is still to be done of the part before (tail.py)."""
     stride: Stride | None = None
     """What it is walking in, where the last walk did not stop."""
+    beyond: Pose | None = None
+    """How that was to go on."""
     upcoming: tuple[Part, ...] = ()
     """What it is to do next, for this action and the one after it."""
     frames: list[Pose] = field(default_factory=list)

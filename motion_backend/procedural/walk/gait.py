@@ -25,8 +25,10 @@ from motion_backend.procedural.walk.walk_styles import Walk
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
 
-FEET_CHANGE = 0.6
-"""So much of a step later, at most, a walk goes over into the next."""
+FEET_CHANGE = (0.4, 0.6)
+"""So much of a step sooner or later, at most, a walk goes over into the next: both feet are down once in it."""
+BEYOND = 24
+"""So many frames are known of how a walk would have gone on that is cut off (its weight is shifted for them)."""
 ABOUT = 3
 """Frames about such a frame in which feet are slow."""
 NEAR = 0.2
@@ -52,7 +54,7 @@ def walk_on(
     stride: Stride | None = None,
     cut_m: float | None = None,
     room: Room = lambda places: np.full(len(places), np.inf),
-) -> tuple[Pose, Stride | None]:
+) -> tuple[Pose, Stride | None, Pose | None]:
     """Walk as `walk` does, from a body in the `stride` that the last walk left it in, where there is one.
 
     With `cut_m` the path goes on after the walk is over, so many metres along it: the body does not stop there, and its
@@ -80,27 +82,32 @@ def walk_on(
     pose = _carry(start, route, steps, style, skeleton, rng, spread, stride is not None)
     pose = settle_from(start, pose, fps) if stride is None else _taken_up(start, pose, stride, fps)
     if cut_m is None:
-        return pose, None
+        return pose, None, None
     reached = route.reaches(cut_m)
     last = _as_feet_change(steps, reached)
-    gone_m = cut_m + float(np.linalg.norm(np.diff(route.position[reached : last + 1], axis=0), axis=1).sum())
+    between = slice(min(reached, last), max(reached, last) + 1)
+    onwards_m = float(np.linalg.norm(np.diff(route.position[between], axis=0), axis=1).sum())
+    gone_m = max(cut_m + (onwards_m if last > reached else -onwards_m), 0.0)
     made = last + 1 - (stride is not None)
     onward = pose.arms[made] - pose.arms[made - 1] if 0 < made < len(pose) else None
-    return pose.at(slice(0, made)), replace(_stride_at(last, path, gone_m, route, steps, spread), arms_onward=onward)
+    stride = replace(_stride_at(last, path, gone_m, route, steps, spread), arms_onward=onward)
+    return pose.at(slice(0, made)), stride, pose.at(slice(made, made + BEYOND))
 
 
 def _as_feet_change(steps: Steps, frame: int) -> int:
-    """The frame from that one on, within a good half of a step, about which feet are slowest and change their pace
-    least: nobody changes his walk in mid-swing, nor as a foot comes down."""
+    """The frame within half a step of that one about which feet are slowest and change their pace least: nobody changes
+    his walk in mid-swing, nor as a foot comes down."""
     from scipy.ndimage import maximum_filter1d
 
-    within = min(int(np.searchsorted(steps.phase, steps.phase[frame] + FEET_CHANGE)), len(steps.phase) - 1)
-    if within <= frame:
+    sooner, later = FEET_CHANGE
+    about = np.array([-sooner, later]) + steps.phase[frame]
+    first, last = np.clip(np.searchsorted(steps.phase, about), (frame + 1) // 2, len(steps.phase) - 1)
+    if last <= first:
         return frame
     # What comes just before and after these frames counts as well.
     gone = np.diff(steps.ankles, axis=0)
     rough = rotations.length(gone) + rotations.length(np.diff(gone, axis=0, prepend=gone[:1]))
-    return frame + int(np.argmin(maximum_filter1d(rough[..., 0].max(axis=1), ABOUT, mode="nearest")[frame:within]))
+    return int(first + np.argmin(maximum_filter1d(rough[..., 0].max(axis=1), ABOUT, mode="nearest")[first:last]))
 
 
 def _taken_up(start: Pose, pose: Pose, stride: Stride, fps: int) -> Pose:
@@ -153,6 +160,7 @@ def _stride_at(frame: int, path: Array, gone_m: float, route: Route, steps: Step
         tiptoe=steps.tiptoe[frame],
         spread=spread[frame],
         arms_onward=None,
+        shift=np.zeros((0, 3)),
         rest=rest,
     )
 

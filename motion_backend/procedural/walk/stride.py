@@ -78,6 +78,8 @@ class Stride:
     arms_onward: Array | None
     """(2, 3) how far its wrists would go in the next frame, in the chest's frame (arm lengths); None where that is not
     known."""
+    shift: Array
+    """(K, 3) how far the pelvis was shifted in the last frames for the balance of the body (balance_pass.py)."""
     rest: Array
     """(N, 2) [x, z] the way it was going to go on by: its first point is `place`, its last the next walk's goal."""
 
@@ -93,7 +95,7 @@ class Stride:
     @staticmethod
     def from_lists(memory: dict[str, Any]) -> Stride:
         """Back from `to_lists`."""
-        names = ("place", "ankles", "yaw", "tiptoe", "spread", "arms_onward", "rest")
+        names = ("place", "ankles", "yaw", "tiptoe", "spread", "arms_onward", "shift", "rest")
         arrays = {name: np.asarray(memory[name]) for name in names if memory[name] is not None}
         return Stride(**{**memory, **arrays, "steps": tuple(_step(one) for one in memory["steps"])})
 

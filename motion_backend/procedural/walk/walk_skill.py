@@ -203,7 +203,8 @@ def _stride(body: Body, path: Array, facing: float | None, style: Walk, onward: 
     if before is not None and float(np.quantile(spare(resample(points)), NARROW)) < ROOM_TO_SPREAD:
         body.note("no room for open arms: to the front")
         style = replace(style, bearing=replace(style.bearing, arms=(before, before)))
-    frames, body.stride = walk_on(body.pose, points, end, style, body.skeleton, body.rng, stride, cut, spare)
+    walked = walk_on(body.pose, points, end, style, body.skeleton, body.rng, stride, cut, spare)
+    frames, body.stride, body.beyond = walked
     body.add(gesture(frames, style.doing))
 
 

@@ -229,14 +229,15 @@ def test_ten_centimetres_are_strict(gap: float, strict: bool) -> None:
         assert (found.reached, found.reached_strict) == (True, strict)
 
 
-@for_each(("ago", "aside", "reached"),
-          [(0.0, 0.0, True), (0.85, 0.29, True), (0.85, 0.31, False), (1.3, 0.0, False)])  # fmt: skip
-def test_who_walks_on_has_passed_the_place_near_enough_and_not_long_ago(
-    ago: float, aside: float, reached: bool
+@for_each("speed", [0.6, 1.5])
+@for_each(("past", "aside", "reached"),
+          [(0.0, 0.0, True), (0.45, 0.29, True), (0.45, 0.31, False), (0.9, 0.0, False)])  # fmt: skip
+def test_who_walks_on_has_passed_the_place_near_enough_and_has_not_gone_far_since(
+    speed: float, past: float, aside: float, reached: bool
 ) -> None:
-    body = gliding(1.5)  # m/s, for 2 s along x
+    body = gliding(speed)  # m/s, for 2 s along x
     end = body.positions[-1, 0]
-    walk = Action(Skill.LOCO, "walk", Emotion.NEUTRAL, goal=(float(end[0]) - 1.5 * ago, float(end[2]) + aside))
+    walk = Action(Skill.LOCO, "walk", Emotion.NEUTRAL, goal=(float(end[0]) - past, float(end[2]) + aside))
     assert contact_error.outcome(walk, body).reached is reached
 
 

@@ -8,14 +8,17 @@ import numpy as np
 from for_each import for_each
 
 from motion_backend import rotations
+from motion_backend.backend_protocol import HISTORY, History
 from motion_backend.metrics.balance_figures import outside_soles
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Motion, Phase, PhaseKind
-from motion_backend.procedural.balance_pass import balanced
+from motion_backend.motion import Emotion, Motion, Phase, PhaseKind
+from motion_backend.procedural.balance_pass import Before, balanced
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose import Pose, smooth
 from motion_backend.procedural.pose_solver import solve
+from motion_backend.procedural.walk.gait import walk
+from motion_backend.procedural.walk.walk_styles import walk_style
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, build_skeleton
 
@@ -149,7 +152,7 @@ def test_a_knee_that_is_knelt_on_stays() -> None:
 
 def test_nobody_is_moved_in_the_air_for_soles_that_do_not_carry() -> None:
     pose = replace(leaning(0), planted=np.zeros((FRAMES, 2)))
-    assert balanced(pose, ON_FEET, SKELETON) is pose
+    assert (balanced(pose, ON_FEET, SKELETON).pelvis == pose.pelvis).all()
 
 
 @for_each("frames", [1, 2, 3, 5])
@@ -162,6 +165,27 @@ def test_a_body_in_a_mirror_shifts_as_in_a_mirror() -> None:
     pose = leaning(4)
     there = shift(mirrored(pose), balanced(mirrored(pose), ON_FEET, SKELETON))
     assert np.abs(there - shift(pose, balanced(pose, ON_FEET, SKELETON)) * [-1, 1, 1]).max() < 1e-6
+
+
+@for_each("cut", [60, 71, 78, 90])
+def test_a_walk_that_goes_on_keeps_its_shift_across_the_seam(cut: int) -> None:
+    start = standing((0.0, 0.0), 0.0, Bearing(), SKELETON)
+    way = np.array([[0.0, 0.0], [0.0, 4.0]])
+    steps = walk(start, way, None, walk_style(Emotion.NEUTRAL, "walk"), SKELETON, np.random.default_rng(0))
+    walks = (Phase(PhaseKind.WALK, 0, len(steps)),)
+    first, second = steps.at(slice(0, cut)), steps.at(slice(cut, None))
+    begun = balanced(first, walks, SKELETON, beyond=second.at(slice(0, 24)))
+    history = History.of(*solve(begun, SKELETON), np.repeat(begun.planted, 2, axis=1))
+    before = Before.of(history, shift(first, begun)[-HISTORY:], SKELETON)
+    on = balanced(second, walks, SKELETON, before)
+    whole, seam = balanced(steps, walks, SKELETON), slice(cut - 10, cut + 10)
+    carried = replace(steps, pelvis=np.concatenate([begun.pelvis, on.pelvis]))
+    stopped = [balanced(part, walks, SKELETON).pelvis for part in (first, second)]
+    alone = replace(steps, pelvis=np.concatenate(stopped))
+    outside = [np.nanmean(outside_soles(acted(one))[seam]) for one in (whole, carried, alone)]
+    assert outside[1] < outside[0] + 0.003
+    assert outside[1] < outside[2]
+    assert np.abs(np.diff(shift(steps, carried), n=2, axis=0)[seam]).max() < 0.005
 
 
 def mirrored(pose: Pose) -> Pose:

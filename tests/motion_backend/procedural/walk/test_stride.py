@@ -59,11 +59,11 @@ def two_walks(name: str) -> tuple[Pose, Pose, Stride]:
     assert way is not None
     start = standing((0.0, 0.0), 0.0, Bearing(), SKELETON)
     styles = [walk_style(Emotion(mood), caption) for caption, mood in (first, second)]
-    one, left = walk_on(start, way.points, None, styles[0], SKELETON, np.random.default_rng(0), cut_m=way.cut_m)
+    one, left, _ = walk_on(start, way.points, None, styles[0], SKELETON, np.random.default_rng(0), cut_m=way.cut_m)
     assert left is not None
     stride = Stride.from_lists(json.loads(json.dumps(left.to_lists())))
     last = one.at(len(one) - 1)
-    other, stopped = walk_on(last, stride.rest, None, styles[1], SKELETON, np.random.default_rng(1), stride)
+    other, stopped, _ = walk_on(last, stride.rest, None, styles[1], SKELETON, np.random.default_rng(1), stride)
     assert stopped is None
     return one, other, stride
 
