@@ -89,6 +89,11 @@ _THINGS: Final = re.compile(
 )
 """What begins so is done by a thing, or by nobody: "the latch clicks"."""
 
+_WHEN: Final = re.compile(
+    r"(?<=\w) (?:(?:just|right|soon|shortly|long) )?(?:after|before|during|since) (?:an?|the|his|their|my) .+$"
+)
+"""When it is done says nothing of what is: "slams the cupboard | after the argument on the phone"."""
+
 
 def classifier_of(encoder: SentenceEncoder) -> BeatClassifier | None:
     """What has been learned of beats, where the sentence encoder is the one that it was learned with."""
@@ -105,7 +110,7 @@ class DeedReader:
 
     def hear(self, read: Sequence[ReadBeat]) -> None:
         """Think about the clauses of beats as they follow each other, all at once."""
-        told = [one.text for one in read]  # with whose deeds they are
+        told = [_WHEN.sub("", one.text) for one in read]  # with whose deeds they are
         before = (". ".join(told[max(place - BEFORE, 0) : place]) for place in range(len(told)))
         self._think({one.clause.text: pair for one, *pair in zip(read, told, before, strict=True)})
 

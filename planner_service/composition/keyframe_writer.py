@@ -407,7 +407,9 @@ class KeyframeWriter:
         if deed.named:  # what is named and not there has a stand-in, which the story says
             wanted = [piece for piece in deed.pieces if affords(piece, need)]
             piece = next((one for one in wanted if self._has(one)), wanted[0] if wanted else "")
-            return next((room for room in rooms if self._has(piece, room)), None), piece
+            told = (read.room, room_of(read.clause))
+            fit = (room for room in rooms if room in told or piece in usual[room][need])  # else where it usually is
+            return next((room for room in fit if self._has(piece, room)), None), piece
         for room in rooms:
             options = [*last, *deed.pieces, *usual[room][need]]
             if piece := next((one for one in options if affords(one, need) and self._has(one, room)), ""):

@@ -6,11 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import networkx as nx
+
 from motion_backend.motion import Skill
 from planner_service.grounding.keyframes_to_actions import NEEDS, Place
 from planner_service.grounding.object_assignment import Placing, StandIn, place_in, usable_offers
 from planner_service.grounding.room_assignment import housed
 from planner_service.grounding.seat_access import pull_to_dict, seat, seat_with_pulls
+from planner_service.grounding.seat_tables import rests, tables_of
 from planner_service.grounding.window_places import WINDOW, at_window, has_window
 from planner_service.scripts.script import LongScript, PlannedKeyframe
 from scene_graphs.affordances.usable_furniture import Pull
@@ -185,14 +188,28 @@ def _room_of(keyframe: PlannedKeyframe, wanted: Sequence[str]) -> str:
 
 def _script_graphs(script: LongScript, room: str, wanted: Sequence[str]) -> list[tuple[int | None, FurnitureGraph]]:
     """One graph for every short script that plays in a room, from its keyframes as they were planned."""
-    numbers = dict.fromkeys(k.short_script for k in script.keyframes if _room_of(k, wanted) == room)
+    needs, tables = _needs(script.keyframes), tables_of(script.keyframes)
+    here = [place for place, keyframe in enumerate(script.keyframes) if _room_of(keyframe, wanted) == room]
     graphs = []
-    for number in numbers:
-        mine = [k for k in script.keyframes if k.short_script == number and _room_of(k, wanted) == room]
-        used = [k for k in mine if not k.on_floor]
-        needs = [[NEEDS[k.skill]] if k.skill in NEEDS else [] for k in used]
-        graphs.append((number, graph_from_uses([k.piece for k in used], needs)))
+    for number in dict.fromkeys(script.keyframes[place].short_script for place in here):
+        mine = [place for place in here if script.keyframes[place].short_script == number]
+        used = [place for place in mine if not script.keyframes[place].on_floor]
+        pieces = [script.keyframes[place].piece for place in used]
+        graph = graph_from_uses(pieces, [needs[place] for place in used])
+        for place, piece in zip(used, pieces, strict=True):
+            if (table := tables[place]) is not None:
+                graph = nx.compose(graph_from_uses([piece, (table, 1)]), graph)
+        graphs.append((number, graph))
     return graphs
+
+
+def _needs(keyframes: Sequence[PlannedKeyframe]) -> list[frozenset[str]]:
+    """What each keyframe needs of its furniture; all that is done on one seat or bed, each of its keyframes."""
+    needs = [frozenset((NEEDS[one.skill],) if one.skill in NEEDS else ()) for one in keyframes]
+    for run in rests(keyframes):
+        for place in run:
+            needs[place] = frozenset[str]().union(*(needs[other] for other in run))
+    return needs
 
 
 Chosen = dict[str, tuple[Layout, RoomMatch]]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
+from planner_service.grounding.seat_tables import tables_of
 from planner_service.scripts.script import LongScript
 from scene_graphs.furniture import canonical, categories_of
 from scene_graphs.layout import Layout
@@ -25,11 +26,11 @@ def housed(script: LongScript, layouts: Sequence[Layout], types: Sequence[str]) 
         return script
     room: str | None = next((keyframe.room for keyframe in script.keyframes if keyframe.room), None)
     rooms: list[str | None] = []
-    for keyframe in script.keyframes:
+    for keyframe, table in zip(script.keyframes, tables_of(script.keyframes), strict=True):
         if keyframe.room or keyframe.on_floor:
             rooms.append(keyframe.room)
         else:
-            shares = shares_of(keyframe.piece[0], layouts, types)
+            shares = shares_of(keyframe.piece[0], layouts, types, table)
             stays = room is not None and shares.get(room, 0.0) >= USUAL
             rooms.append(room if stays else max(types, key=lambda name: shares[name]))
         room = rooms[-1] or room
@@ -48,12 +49,14 @@ def usual_furniture(layouts: Sequence[Layout], room_type: str) -> frozenset[str]
     return frozenset(category for category, count in having.items() if count >= FOUND * len(own))
 
 
-def shares_of(word: str, layouts: Sequence[Layout], types: Sequence[str]) -> dict[str, float]:
-    """For each room type, the share of its rooms that have such a piece."""
-    wanted = categories_of(canonical(word))
+def shares_of(
+    word: str, layouts: Sequence[Layout], types: Sequence[str], beside: str | None = None
+) -> dict[str, float]:
+    """For each room type, the share of its rooms that have such a piece, and one of those that it stands `beside`."""
+    wanted = [categories_of(canonical(one)) for one in (word, beside) if one is not None]
     shares = {}
     for name in types:
         own = [layout for layout in layouts if layout.room_type == name]
-        having = sum(any(placed.category in wanted for placed in layout.objects) for layout in own)
+        having = sum(all(any(one.category in kinds for one in layout.objects) for kinds in wanted) for layout in own)
         shares[name] = having / max(len(own), 1)
     return shares

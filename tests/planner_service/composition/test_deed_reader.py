@@ -211,3 +211,10 @@ def test_a_clause_is_read_once_with_those_before_it() -> None:
     heard.hear(told)
     heard.hear(told)
     assert [before for _, before in model.asked] == ["", "comes in", "comes in. paces", "paces. frets"]
+
+
+def test_when_it_was_done_says_nothing_of_what_is_done() -> None:
+    read = beats_of("After the argument on the phone she slams the cupboard. She drinks during the storm.")
+    heard = Scripted(likely())
+    DeedReader(cast(BeatClassifier, heard)).hear(read)
+    assert [text for text, _ in heard.asked] == ["slams the cupboard", "drinks"]

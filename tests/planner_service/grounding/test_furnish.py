@@ -192,3 +192,34 @@ def test_what_joined_rooms_cut_off_is_left_aside() -> None:
     decor = usable_offers(home, checked=True)
     assert decor == {name: found for name, found in whole.items() if name in decor}
     assert {class_of(home.object(name).category) for name in decor} == {"decor"}
+
+
+def test_who_reads_on_a_sofa_and_dozes_off_there_lies_on_the_sofa_that_was_sat_on() -> None:
+    sits = PlannedKeyframe(
+        skill=Skill.SITDOWN, caption="reading, book held in both hands", furniture="sofa", room="living_room"
+    )
+    dozes = PlannedKeyframe(skill=Skill.LIEDOWN, caption="lying still", furniture="sofa", room="living_room")
+    story = LongScript(
+        theme="t",
+        beats=(Beat(text="t"),),
+        short_scripts=(),
+        keyframes=(sits.model_copy(update={"short_script": 0}), dozes),
+    )
+    for seed in range(8):
+        found = furnish(story, index(), seed=seed)
+        assert found.places[0].object_id == found.places[1].object_id is not None
+        assert "lie" in offers(found.home.object(str(found.places[0].object_id)))
+
+
+@pytest.mark.parametrize(
+    ("caption", "tables"),
+    [("writing at the table, right hand moving", {"table"}), ("crossing arms", set())],
+)
+def test_who_writes_is_sat_where_a_table_stands_beside_the_chair(caption: str, tables: set[str]) -> None:
+    writes = PlannedKeyframe(skill=Skill.SITDOWN, caption=caption, furniture="dining chair")
+    rests = writes.model_copy(update={"caption": "crossing arms"})
+    story = LongScript(theme="t", beats=(Beat(text="t"),), short_scripts=(), keyframes=(rests, writes))
+    found = furnish(story, index())
+    asked = {class_of(node.category) for graph in found.graphs.values() for node in graph}
+    assert asked == {"seat"} | tables
+    assert not any(match.missing for match in found.matches)
