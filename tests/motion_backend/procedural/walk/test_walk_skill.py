@@ -25,7 +25,7 @@ from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.smoothness import jerk_against_real
 from motion_backend.mocap.readers import read_clips
 from motion_backend.mocap.retarget import retarget
-from motion_backend.motion import FPS, Emotion, Motion
+from motion_backend.motion import FPS, Action, Emotion, Motion, Skill
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose_solver import solve
@@ -33,7 +33,7 @@ from motion_backend.procedural.walk.foot_trajectory import HEEL_RISE, SETTLE, Sw
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.procedural.walk.gait import walk
 from motion_backend.procedural.walk.root_path import evenly
-from motion_backend.procedural.walk.walk_skill import curved, to_and_fro
+from motion_backend.procedural.walk.walk_skill import asks_for_haste, curved, to_and_fro
 from motion_backend.procedural.walk.walk_styles import walk_style
 from motion_backend.skeleton import INDEX, JOINTS, build_skeleton
 from scene_graphs.navigation.path_planner import Walkable
@@ -340,3 +340,13 @@ def test_legs_bend_as_far_as_those_of_a_recorded_walk(name: str) -> None:
         theirs = np.quantile(flexion(real, side), [0.1, 0.5, 0.97])
         mine = np.quantile(flexion(ours, side)[on_the_way(walked("steadily walking forward"))], [0.1, 0.5, 0.97])
         np.testing.assert_allclose(mine, theirs, atol=13)
+
+
+def test_haste_is_asked_for_by_a_walk_of_its_own_and_not_by_one_that_leads_to_a_thing() -> None:
+    def asks(caption: str, object_id: str | None, skill: Skill = Skill.LOCO) -> bool:
+        return asks_for_haste(Action(skill, caption, Emotion.STRESSED, object_id=object_id))
+
+    assert asks("rush anxiously forward", None)
+    assert not asks("rush anxiously forward", "0/sofa")
+    assert not asks("steadily walking forward", None), "who is quick in a mood alone"
+    assert not asks("run", None, Skill.TOUCH)
