@@ -6,8 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-import networkx as nx
-
 from motion_backend.motion import Skill
 from planner_service.grounding.keyframes_to_actions import NEEDS, Place
 from planner_service.grounding.object_assignment import Placing, StandIn, place_in, usable_offers
@@ -18,9 +16,9 @@ from planner_service.grounding.window_places import WINDOW, at_window, has_windo
 from planner_service.scripts.script import LongScript, PlannedKeyframe
 from scene_graphs.affordances.usable_furniture import Pull
 from scene_graphs.errors import UserError
-from scene_graphs.furniture import ROOM_TYPES, canonical_room, display_name
+from scene_graphs.furniture import ROOM_TYPES, Furniture, canonical, canonical_room, display_name
 from scene_graphs.graph.edit_distance import MAX_NODES, exact_distance
-from scene_graphs.graph.furniture_graph import FurnitureGraph, graph_from_layout, graph_from_uses
+from scene_graphs.graph.furniture_graph import FurnitureGraph, graph_from_layout, graph_from_uses, put_beside
 from scene_graphs.graph.merge import merge
 from scene_graphs.home import MAX_ROOMS, Home, home_from_layouts
 from scene_graphs.layout import Layout
@@ -198,7 +196,7 @@ def _script_graphs(script: LongScript, room: str, wanted: Sequence[str]) -> list
         graph = graph_from_uses(pieces, [needs[place] for place in used])
         for place, piece in zip(used, pieces, strict=True):
             if (table := tables[place]) is not None:
-                graph = nx.compose(graph_from_uses([piece, (table, 1)]), graph)
+                put_beside(graph, Furniture(canonical(piece[0]), piece[1]), Furniture(canonical(table)))
         graphs.append((number, graph))
     return graphs
 

@@ -58,6 +58,13 @@ def graph_from_uses(uses: Sequence[tuple[str, int]], needs: Sequence[Iterable[st
     return graph
 
 
+def put_beside(graph: FurnitureGraph, node: Furniture, other: Furniture) -> None:
+    """Join two pieces by an edge; the other one comes in, wanted for nothing, where the graph has none."""
+    if other not in graph:
+        _add(graph, other, frozenset())
+    graph.add_edge(node, other)
+
+
 def graph_from_parts(
     nodes: Sequence[Furniture], edges: Iterable[tuple[int, int]], needs: Sequence[Iterable[str]] = ()
 ) -> FurnitureGraph:
