@@ -59,6 +59,10 @@ _AGAIN: Final = frozenset(("again", "over", "afresh", "anew", "more"))
 _BY_A_WALL: Final = re.compile(r"\b(?:by|at|near|against) (?:the|a|an) (?:\w+ )?(?:window|door|wall)\b")
 """Where nothing is kept that could be taken."""
 _GOES_ON: Final = re.compile(r"(?:goes|went|go|carries|carried|carry|keeps|kept|keep) (?:on|going)(?:,| with\b|$)")
+_GETS_THERE: Final = re.compile(
+    r"\b(?:down|into|onto|back|under|climbs?|crawls?|falls?|flops?|goes|go|went|gets?|got|drops?|collapses?|curls?)\b"
+)
+"""Words that tell of lying down, not of lying there."""
 _ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
 _TAKEN: Final = DeedRow(
     ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
@@ -104,6 +108,8 @@ class KeyframeWriter:
     """What was tried or begun last."""
     _clause: Clause | None = None
     """Of which deed it is written."""
+    _rises: bool = False
+    """Whether getting up is done next."""
     _plain: bool = False
     """Whether the posture shows nothing yet but that one rests."""
 
@@ -179,6 +185,7 @@ class KeyframeWriter:
         return later is not None and deed is not None and (deed.skill in RISINGS or sits_up(later, deed))
 
     def _do(self, index: int, read: ReadBeat, deed: Deed, rises_later: bool = False) -> None:
+        self._rises = rises_later
         deed = self._on_feet(read, deed)
         mood = read.beat.emotion
         self._clause = read.clause
@@ -265,7 +272,10 @@ class KeyframeWriter:
                 return
         if resting is not None and here:
             deed = Deed(deed.row, skill, (resting.furniture,), True)
+        begins = not self.keyframes and skill is Skill.LIEDOWN and not _GETS_THERE.search(read.text)
         if self._add(index, read, deed, mood, skill, shown):
+            if begins and self._rises:  # who "cannot sleep. He gets up" lies there when the story begins
+                self.keyframes[:] = [self.keyframes[-1].model_copy(update={"already": True})]
             self._resting, self._plain = self.keyframes[-1], not (deed.row.rests or captions)
 
     def _begin(self, index: int, deed: Deed, mood: Emotion) -> None:

@@ -22,6 +22,7 @@ from motion_backend.procedural.sit.sit_skill import seat_for
 from motion_backend.procedural.touch.hand_contacts import suits
 from motion_backend.scene import scene_of
 from motion_backend.state_machine import ENDS, alongside
+from planner_service.grounding.seat_tables import done_at_tables
 from planner_service.grounding.touch_stance import LEG_ROOM, ElbowRoom
 from planner_service.grounding.window_places import NO_WINDOW, WindowPlace, at_window, window_place
 from planner_service.scripts.caption_actions import Hands, done_in, look_of
@@ -158,9 +159,11 @@ def act(
     stage = _Stage(home, scene.walkable, np.random.default_rng([seed, 7]), words, scale)
     known = kept or [None] * len(keyframes)
     drafts: list[Action] = []
+    busy = done_at_tables(keyframes)
     for index, (keyframe, place, old) in enumerate(zip(keyframes, places, known, strict=True)):
         words_of_it = f"{keyframe.caption}; {said[index] if said else ''}"
         stage.windows.append(at_window(keyframe.skill, words_of_it))
+        stage.seated_for.append(busy[index] or keyframe.caption)
         before = keyframes[index - 1] if index else None
         if old is not None and keyframe.skill in (*NEEDS, Skill.LOCO):
             drafts.append(stage.keep(index, old))
@@ -187,6 +190,8 @@ class _Stage:
         """What it sits or lies on still."""
         self.windows: list[bool] = []
         """Whether each keyframe so far asks for a window."""
+        self.seated_for: list[str] = []
+        """The caption that a seat is chosen for: what needs a table, of all that is done on it."""
         self.elsewhere: set[int] = set()
         """Keyframes that are not done at the piece they were planned for."""
 
@@ -254,7 +259,8 @@ class _Stage:
         # Who sits or lies there lies down, or sits up, without leaving the piece.
         found = [s for s in found if alongside(self.on, s)] or found
         if need == "sit":
-            return seat_for(found, mood, keyframe.caption, self._elbows.solid, self.scale)
+            caption = self.seated_for[index] if index < len(self.seated_for) else keyframe.caption
+            return seat_for(found, mood, caption, self._elbows.solid, self.scale)
         return place_to_lie(found, keyframe.caption)
 
     def _high_enough(self, found: list[Spot], keyframe: Keyframe, place: Place) -> list[Spot]:

@@ -10,7 +10,7 @@ from typing import Final
 
 from motion_backend.motion import Skill
 from planner_service.composition.deed_lexicon import deed_table
-from planner_service.scripts.script import Keyframe, PlannedKeyframe
+from planner_service.scripts.script import Keyframe
 
 _AT_A_TABLE: Final = re.compile(r"\b(?:at|on) the table\b|\bkeyboard\b")
 _AT_A_DESK: Final = re.compile(r"\bwriting\b|\bkeyboard\b")
@@ -29,21 +29,30 @@ def table_of(keyframe: Keyframe) -> str | None:
     return next(iter(sorted(tables, key=lambda table: (table == "desk") is not at_desk)), None)
 
 
-def rests(keyframes: Sequence[PlannedKeyframe]) -> list[list[int]]:
+def rests(keyframes: Sequence[Keyframe]) -> list[list[int]]:
     """The places of keyframes that follow each other on one seat or bed."""
 
     def rested_on(place: int) -> tuple[object, ...]:
         one = keyframes[place]
-        return (one.piece, one.room) if one.skill in (Skill.SITDOWN, Skill.LIEDOWN) else ()
+        return (one.piece, getattr(one, "room", None)) if one.skill in (Skill.SITDOWN, Skill.LIEDOWN) else ()
 
     return [list(run) for on, run in groupby(range(len(keyframes)), rested_on) if on]
 
 
-def tables_of(keyframes: Sequence[PlannedKeyframe]) -> list[str | None]:
-    """For each keyframe the table that its seat stands at: `table_of` it, or of what else is done on that seat then."""
-    tables: list[str | None] = [None] * len(keyframes)
+def done_at_tables(keyframes: Sequence[Keyframe]) -> list[str | None]:
+    """For each keyframe the caption that its seat needs a table for: its own, or that of what else is done there."""
+    found: list[str | None] = [None] * len(keyframes)
     for run in rests(keyframes):
-        table = next((known for place in run if (known := table_of(keyframes[place])) is not None), None)
+        busy = next((keyframes[place].caption for place in run if table_of(keyframes[place]) is not None), None)
         for place in run:
-            tables[place] = table
-    return tables
+            found[place] = busy
+    return found
+
+
+def tables_of(keyframes: Sequence[Keyframe]) -> list[str | None]:
+    """For each keyframe the table that its seat stands at."""
+    busy = done_at_tables(keyframes)
+    return [
+        table_of(one.model_copy(update={"caption": caption, "skill": Skill.SITDOWN})) if caption is not None else None
+        for one, caption in zip(keyframes, busy, strict=True)
+    ]

@@ -255,3 +255,26 @@ def test_what_cannot_be_done_in_a_home_is_named() -> None:
     seen = planned("She cooks dinner.", furniture={"study": frozenset()})
     assert [beat.why for beat in seen.beats] == ["the home has nothing to touch at for it"]
     assert [keyframe.beat for keyframe in seen.keyframes] == [None]
+
+
+@for_each(
+    ("theme", "already"),
+    [
+        ("Anna cannot sleep. She gets up and paces around the bedroom.", True),
+        ("Anna goes to bed and cannot sleep. She gets up.", False),
+        ("Anna lies down on the bed. She gets up.", False),
+        ("Anna cannot sleep.", False),
+    ],
+)
+def test_who_gets_up_from_sleep_in_the_first_sentence_lies_there_when_the_story_begins(
+    theme: str, already: bool
+) -> None:
+    lying = next(one for one in planned(theme).keyframes if one.skill is Skill.LIEDOWN)
+    assert lying.already is already
+
+
+def test_named_furniture_is_looked_for_where_it_usually_is_and_not_in_the_room_of_what_was_done_before() -> None:
+    script = planned("She opens the wardrobe in the bedroom. She sits on the office chair.")
+    rooms = {one.furniture: one.room for one in script.keyframes}
+    assert rooms["wardrobe"] == "bedroom"
+    assert rooms["office chair"] != "bedroom"
