@@ -92,7 +92,7 @@ class _Arm:
 
     def but_what_is_at(self, elbow: Array, wrist: Array, turn: Array) -> _Arm:
         """The same without what it is at in any of some frames."""
-        at = (self._in_each(elbow, wrist, turn) > -NEAR * self.skeleton.scale).any(axis=1)
+        at = np.asarray((self._in_each(elbow, wrist, turn) > -NEAR * self.skeleton.scale).any(axis=1))
         return replace(self, things=self.things.only(~at))
 
     def _in_each(self, elbow: Array, wrist: Array, turn: Array) -> Array:
@@ -106,7 +106,7 @@ class _Arm:
         deep = [
             [self.things.inside(points, index) + radius * scale for points, radius in places] for index in range(count)
         ]
-        return np.array(deep).reshape(count, len(places), len(wrist)).max(axis=1)
+        return np.asarray(np.array(deep).reshape(count, len(places), len(wrist)).max(axis=1))
 
     def back(self, shoulder: Array, elbow: Array, wrist: Array, turn: Array) -> Array:
         """By which share of the way to the shoulder a hand is to be drawn back to be clear of things. (T,)."""
@@ -118,7 +118,7 @@ class _Arm:
             depths.append(self.depth(shoulder + lengths[0] * limb.upper, target, turn))
         clear = np.array(depths) <= most
         best = np.where(clear.any(axis=0), clear.argmax(axis=0), np.argmin(depths, axis=0))
-        return np.array(BACK)[best]
+        return np.asarray(np.array(BACK)[best])
 
 
 _CAPSULES: Final[dict[str, Capsule]] = {capsule.name: capsule for capsule in BODIES}

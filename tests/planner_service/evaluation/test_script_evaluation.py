@@ -12,6 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 from motion_backend.backend_protocol import BodyState
+from motion_backend.director import Director
 from motion_backend.motion import Action, Motion, Note, Simulated, Skill
 from planner_service.cli import app
 from planner_service.evaluation import script_evaluation
@@ -110,7 +111,7 @@ class Simulating:
 def test_what_was_not_simulated_to_its_end_without_a_reset_is_not_done(
     monkeypatch: pytest.MonkeyPatch, how: dict[str, int], steps: int, fault: str
 ) -> None:
-    monkeypatch.setattr(script_evaluation.Director, "of", lambda _: Simulating(**how))
+    monkeypatch.setattr(Director, "of", lambda _: Simulating(**how))
     done = run_script(TRIAL, "physics")
     assert (done.steps, done.steps_any, done.success) == (steps, steps, not fault)
     assert fault in done.fault
