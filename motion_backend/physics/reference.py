@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
+from motion_backend.body.scene_collision import Obstacles
 from motion_backend.inverse_kinematics import arm_rotations, leg_rotations, two_bone
 from motion_backend.motion import FPS
 from motion_backend.physics.generalized_coordinates import controls, fold, speeds
+from motion_backend.physics.hands_round_things import bones, eased, hands_round_things
 from motion_backend.physics.mjcf_character import SIDES
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, Skeleton
@@ -47,13 +49,15 @@ class Plan:
     """(T, 4)."""
     raised: NDArray[np.bool_]
     """(T,) whether the body gets up from the floor, on hands and knees."""
+    reaching: NDArray[np.bool_]
+    """(T,) whether it reaches for something with its hands."""
 
     def __len__(self) -> int:
         return len(self.roots)
 
     @property
     def _rows(self) -> tuple[Any, ...]:
-        return self.roots, self.local, self.contacts, self.raised
+        return self.roots, self.local, self.contacts, self.raised, self.reaching
 
     def part(self, frames: slice) -> Plan:
         """Some of the frames."""
@@ -101,10 +105,12 @@ class Reference:
         return Reference(*moving, self.planted[frames], self.wrists[frames], self.raised[frames])
 
     @staticmethod
-    def of(plan: Plan, skeleton: Skeleton) -> Reference:
-        """With feet that swing a little higher, and arms that reach as far without their collars."""
+    def of(plan: Plan, skeleton: Skeleton, things: Obstacles | None = None) -> Reference:
+        """With feet that swing a little higher, and arms that reach as far without their collars and round things."""
         local = _without_collars(plan.roots, _feet_lifted(plan, skeleton), skeleton)
         local = _arms_over_floor(plan.roots, local, skeleton)
+        if things is not None:
+            local = hands_round_things(plan.roots, local, plan.reaching, skeleton, things)
         qpos = fold(plan.roots, local)
         qvel = speeds(qpos)
         wrists = local[:, [INDEX[f"{side}_wrist"] for side, _ in SIDES]]
@@ -123,7 +129,7 @@ def _feet_lifted(plan: Plan, skeleton: Skeleton) -> Array:
         hip, knee, ankle = (positions[frames, INDEX[f"{side}_{joint}"]] for joint in ("hip", "knee", "ankle"))
         target = ankle.astype(np.float64)
         target[:, 1] += lift[frames]
-        limb = two_bone(hip.astype(np.float64), target, (knee - hip).astype(np.float64), _bones(skeleton, side, _LEG))
+        limb = two_bone(hip.astype(np.float64), target, (knee - hip).astype(np.float64), _leg(skeleton, side))
         thigh, shin = leg_rotations(limb)
         foot = world[frames, INDEX[f"{side}_ankle"]]
         local[frames, INDEX[f"{side}_hip"]] = rotations.compose(rotations.inverse(world[frames, 0]), thigh)
@@ -132,12 +138,8 @@ def _feet_lifted(plan: Plan, skeleton: Skeleton) -> Array:
     return local
 
 
-_LEG: Final = ("knee", "ankle")
-_ARM: Final = ("elbow", "wrist")
-
-
-def _bones(skeleton: Skeleton, side: str, joints: tuple[str, str]) -> tuple[float, float]:
-    upper, lower = (float(np.linalg.norm(skeleton.offsets[INDEX[f"{side}_{joint}"]])) for joint in joints)
+def _leg(skeleton: Skeleton, side: str) -> tuple[float, float]:
+    upper, lower = (float(np.linalg.norm(skeleton.offsets[INDEX[f"{side}_{joint}"]])) for joint in ("knee", "ankle"))
     return upper, lower
 
 
@@ -169,7 +171,7 @@ def _without_collars(roots: Array, local: Array, skeleton: Skeleton) -> Array:
         rest = skeleton.offsets[collar] + skeleton.offsets[shoulder]
         at = positions[frames, INDEX["spine3"]] + rotations.rotate(chest, rest)
         pole = (positions[frames, elbow] - positions[frames, shoulder]).astype(np.float64)
-        limb = two_bone(at, positions[frames, wrist].astype(np.float64), pole, _bones(skeleton, side, _ARM))
+        limb = two_bone(at, positions[frames, wrist].astype(np.float64), pole, bones(skeleton, side))
         upper, lower = arm_rotations(limb, int(sign))
         found[frames, collar] = rotations.IDENTITY
         found[frames, shoulder] = rotations.compose(rotations.inverse(chest), upper)
@@ -188,16 +190,16 @@ def _arms_over_floor(roots: Array, local: Array, skeleton: Skeleton) -> Array:
         if positions[:, [elbow, wrist], 1].min() >= least:
             continue
         at, middle, hand = (positions[:, joint].astype(np.float64) for joint in (shoulder, elbow, wrist))
-        bones, raised = _bones(skeleton, side, _ARM), _eased(np.maximum(least - hand[:, 1], 0.0))
+        lengths, raised = bones(skeleton, side), eased(np.maximum(least - hand[:, 1], 0.0), ARM_EASES)
         target = hand + raised[:, None] * UP
         pole, turn = middle - at, _turn_up(middle - at, target - at)
         poles = [rotations.rotate(rotations.rotvec_to_quat(lift * turn), pole) for lift in LIFTS]
-        heights = np.stack([at[:, 1] + bones[0] * two_bone(at, target, one, bones).upper[:, 1] for one in poles])
+        heights = np.stack([at[:, 1] + lengths[0] * two_bone(at, target, one, lengths).upper[:, 1] for one in poles])
         needed = np.array(LIFTS)[np.where((heights >= least).any(axis=0), (heights >= least).argmax(axis=0), -1)]
-        lifted = _eased(needed)
+        lifted = eased(needed, ARM_EASES)
         frames = np.flatnonzero(lifted + raised)
         pole = rotations.rotate(rotations.rotvec_to_quat(lifted[:, None] * turn), pole)
-        limb = two_bone(at[frames], target[frames], pole[frames], bones)
+        limb = two_bone(at[frames], target[frames], pole[frames], lengths)
         upper, lower = arm_rotations(limb, int(sign))
         found[frames, shoulder] = rotations.compose(rotations.inverse(world[frames, INDEX["spine3"]]), upper)
         found[frames, elbow] = rotations.compose(rotations.inverse(upper), lower)
@@ -212,11 +214,3 @@ def _turn_up(pole: Array, reach: Array) -> Array:
     across = rotations.cross(axis, np.broadcast_to(UP, axis.shape))
     sine, cosine = -rotations.dot(pole, across)[:, 0], pole[:, 1] - (rotations.dot(pole, axis) * axis)[:, 1]
     return np.asarray(np.unwrap(np.arctan2(sine, cosine))[:, None] * axis)
-
-
-def _eased(needed: Array) -> Array:
-    """As much as is needed in every frame (T,), or more: it comes and goes smoothly."""
-    padded = np.pad(needed, 2 * ARM_EASES)
-    most = np.lib.stride_tricks.sliding_window_view(padded, 2 * ARM_EASES + 1).max(axis=1)
-    bell = np.hanning(2 * ARM_EASES + 3)[1:-1]
-    return np.asarray(np.convolve(most, bell / bell.sum(), "valid"))

@@ -45,8 +45,10 @@ class Task:
     def reference(self) -> Reference:
         """From the frame before the part to the end of what is looked ahead at."""
         before = np.zeros(len(self.past), dtype=bool)
-        past = Plan(self.past.root_positions, self.past.local_rotations, np.array(self.past.contacts), before)
-        return Reference.of(past.followed_by(self.plan), self.skeleton).part(slice(len(past) - 1, None))
+        past = Plan(self.past.root_positions, self.past.local_rotations, np.array(self.past.contacts), before, before)
+        boxes = scene_of(self.home).obstacles
+        things = near_way(self._joints[self.plan.reaching], boxes) if self.plan.reaching.any() else None
+        return Reference.of(past.followed_by(self.plan), self.skeleton, things).part(slice(len(past) - 1, None))
 
     @cached_property
     def _joints(self) -> Array:
@@ -105,7 +107,15 @@ def from_floor(motion: Motion) -> NDArray[np.bool_]:
     return found
 
 
+def reaching(motion: Motion) -> NDArray[np.bool_]:
+    """In which frames a motion reaches for something. (T,)."""
+    found = np.zeros(len(motion), dtype=bool)
+    for phase in motion.phases:
+        found[phase.start : phase.stop] |= phase.kind is PhaseKind.TOUCH
+    return found
+
+
 def plan_of(motion: Motion) -> Plan:
     """A motion's arrays, to be followed."""
     roots, local = motion.root_positions.astype(np.float64), motion.local_rotations.astype(np.float64)
-    return Plan(roots, local, motion.contacts.astype(np.float64), from_floor(motion))
+    return Plan(roots, local, motion.contacts.astype(np.float64), from_floor(motion), reaching(motion))

@@ -26,6 +26,10 @@ BACK: Final = (1.3, 2.0, 3.0)
 """Seconds that are gone back before each of those."""
 RECOVERED: Final = 1.0
 """Seconds beyond the fall after which it is left behind."""
+UNSURE: Final = 0.1
+"""A pelvis farther from its plan (metres) at the end of a part may fall in the next one, which cannot mend it."""
+TRIED: Final = 0.8
+"""Seconds of the next part that are tried then, and thrown away."""
 FALLEN: Final = 0.4
 """A pelvis farther from its plan (metres) has fallen, or was carried off."""
 TIPPED: Final = 1.3
@@ -61,21 +65,35 @@ class Tracker:
     """Called between any two windows; may raise."""
 
     def track(self, start: Moment, ahead: Array, frames: int) -> Tracked:
-        """Follow so many frames of the reference from where a body is; the rest of it is looked ahead at."""
+        """Follow so many frames of the reference from where a body is; the rest of it is looked ahead at, and tried
+        where the body is far from its plan at the end: what falls there is mended here, before it."""
         done = Tracked([start], [Pressure()], ahead=ahead)
         data, reader = self._scratch()
-        falls, beyond = 0, 0
-        while len(done.moments) <= frames:
+        falls, beyond, until, left = 0, 0, frames, ahead
+        while (at := len(done.moments) - 1) < until:
             self.between()
-            at = len(done.moments) - 1
             least = FROM_FLOOR if self.reference.raised[at] else 0
-            self._window(done, EFFORTS[max(falls, least)], data, reader, frames - at)
+            stop = frames if at < frames else until
+            self._window(done, EFFORTS[max(falls, least)], data, reader, stop - at)
             at = len(done.moments) - 1
             if fallen(done.moments[-1], self.reference.qpos[at]):
-                falls, beyond = self._recovered(done, falls), max(beyond, at)
+                if at > frames and falls == len(BACK):
+                    break
+                falls, beyond, until = self._recovered(done, falls), max(beyond, at), frames
+            elif at == frames:
+                until, left = self._tried_until(done, frames), done.ahead
             elif falls and at > beyond + RECOVERED * FPS:
                 falls = beyond = 0
+        if until > frames:
+            del done.moments[frames + 1 :], done.pressures[frames + 1 :]
+            done.ahead = left
         return done
+
+    def _tried_until(self, done: Tracked, frames: int) -> int:
+        """The frame until which is tried what comes next, at the end of what is to be followed."""
+        away = np.linalg.norm(done.moments[frames].state.qpos[:3] - self.reference.qpos[frames][:3])
+        known = len(self.reference) - 1 - EFFORTS[0].horizon
+        return frames if away <= UNSURE else max(min(frames + round(TRIED * FPS), known), frames)
 
     def _scratch(self) -> tuple[Any, ContactReader]:
         model = self.models_at(0).fine

@@ -22,6 +22,7 @@ from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.smoothness import jerk
 from motion_backend.motion import Motion, Skill
 from motion_backend.physics.physics_record import physics_of
+from planner_service.evaluation.intervals import drawn_anew, wilson
 from planner_service.evaluation.trials import Performance, Trial, perform, places_for, setting
 from planner_service.grounding.keyframes_to_actions import UnreachableError
 from planner_service.library.library import Shelves
@@ -174,19 +175,6 @@ def figures_of(rows: Sequence[Row]) -> dict[str, tuple[float, float, float]]:
     ):
         values = np.array([row[name] for row in rows if row.get(name) is not None], dtype=np.float64)
         if len(values):
-            low, high = _wilson(values) if name == "reached" else _drawn(values)
+            low, high = wilson(values) if name == "reached" else drawn_anew(values)
             found[name] = (float(values.mean()), low, high)
     return found
-
-
-def _wilson(values: Any) -> tuple[float, float]:
-    count, share, z = len(values), float(values.mean()), 1.96
-    middle = (share + z**2 / (2 * count)) / (1 + z**2 / count)
-    wide = z / (1 + z**2 / count) * float(np.sqrt(share * (1 - share) / count + z**2 / (4 * count**2)))
-    return max(middle - wide, 0.0), min(middle + wide, 1.0)
-
-
-def _drawn(values: Any) -> tuple[float, float]:
-    drawn = np.random.default_rng(0).integers(len(values), size=(1000, len(values)))
-    low, high = np.quantile(values[drawn].mean(axis=1), [0.025, 0.975])
-    return float(low), float(high)

@@ -6,19 +6,26 @@ in one room of the library. What is between them is put in as in a story: rising
 
 from __future__ import annotations
 
+import json
 import zlib
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache
+from pathlib import Path
 from typing import Any, Final, Literal
 
 import numpy as np
 
+from motion_backend.backends import DEFAULT_BACKEND
+from motion_backend.director import Director, shares
 from motion_backend.metrics.contact_error import outcome
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Action, Character, Skill
+from motion_backend.motion import Action, Character, Motion, Skill
+from motion_backend.physics.physics_record import physics_of
+from motion_backend.rotations import Array
 from motion_backend.state_machine import ENDS
+from planner_service.evaluation.intervals import RESAMPLES, wilson
 from planner_service.evaluation.trials import FLOOR, Setting, places_for, setting
 from planner_service.grounding.keyframes_to_actions import Place, UnreachableError, act
 from planner_service.scripts.built_in_scripts import built_in
@@ -36,7 +43,6 @@ LEVELS: Final[Mapping[Level, tuple[int, int]]] = {"simple": (2, 2), "mid": (3, 4
 INTERACTIONS: Final = (Skill.SITDOWN, Skill.LIEDOWN, Skill.TOUCH)
 MAX_DRAWS: Final = 1000
 """Wordings looked at for one script; a room in which so many do not help has too little in it."""
-RESAMPLES: Final = 1000
 Progress = Callable[[int, int], None]
 
 
@@ -63,6 +69,12 @@ class ScriptResult:
     """Metres from joint to goal at the end of each contact."""
     fault: str = ""
     """What failed first."""
+    resets: int = 0
+    """How often a simulated body was set back onto its plan; what that happened in is not done."""
+    rewinds: int = 0
+    """How often a simulation went back before a fall."""
+    seconds: float = 0.0
+    """How long the motion is."""
 
     @property
     def success(self) -> bool:
@@ -96,17 +108,34 @@ def plan_script_trials(rooms: int, seeds: int) -> list[ScriptTrial]:
 
 
 def run_script_trials(
-    trials: Sequence[ScriptTrial], progress: Progress = lambda _done, _all: None
+    trials: Sequence[ScriptTrial],
+    progress: Progress = lambda _done, _all: None,
+    backend: str = DEFAULT_BACKEND,
+    kept: Path | None = None,
 ) -> list[ScriptResult]:
-    """Write, ground and act all of them, one after the other."""
+    """Write, ground and act all of them, one after the other; what a file of JSON lines has is not acted again, and
+    what is new is added to it."""
+    known = {one.trial: one for one in _read(kept)}
     found = []
     for index, trial in enumerate(trials):
-        found.append(run_script(trial))
+        if trial not in known:
+            known[trial] = run_script(trial, backend)
+            if kept is not None:
+                with kept.open("a", encoding="utf-8") as out:
+                    out.write(json.dumps(asdict(known[trial]), ensure_ascii=False) + "\n")
+        found.append(known[trial])
         progress(index + 1, len(trials))
     return found
 
 
-def run_script(trial: ScriptTrial) -> ScriptResult:
+def _read(kept: Path | None) -> Iterator[ScriptResult]:
+    if kept is not None and kept.exists():
+        for line in kept.read_text(encoding="utf-8").splitlines():
+            row = json.loads(line)
+            yield ScriptResult(ScriptTrial(**row.pop("trial")), errors=tuple(row.pop("errors")), **row)
+
+
+def run_script(trial: ScriptTrial, backend: str = DEFAULT_BACKEND) -> ScriptResult:
     """Write, ground and act one script; one that cannot be grounded fails at its first step."""
     where = setting(trial.room)
     luck = np.random.default_rng([trial.seed, zlib.crc32(f"{trial.room} {trial.level}".encode())])
@@ -117,23 +146,36 @@ def run_script(trial: ScriptTrial) -> ScriptResult:
         actions = act(keyframes, places, where.home, int(luck.integers(1 << 31)))
     except UnreachableError as error:
         return ScriptResult(trial, count, 0, 0, (), str(error))
-    return _acted(trial, actions, where)
+    return _acted(trial, actions, where, backend)
 
 
-def _acted(trial: ScriptTrial, actions: Sequence[Action], where: Setting) -> ScriptResult:
-    state = where.director.begin(where.home, Character(), trial.seed)
+def _acted(trial: ScriptTrial, actions: Sequence[Action], where: Setting, backend: str) -> ScriptResult:
+    director = where.director if backend == DEFAULT_BACKEND else Director.of(backend)
+    state = director.begin(where.home, Character(), trial.seed)
     steps, steps_any, failed, failed_any, fault = 0, 0, False, False, ""
     errors: list[float] = []
-    for action, (motion, _) in zip(actions, where.director.play(where.home, actions, state), strict=True):
-        found = outcome(action, Kinematics.of(motion))
-        failed, failed_any = failed or not found.reached, failed_any or not found.reached_any
+    resets, rewinds, seconds = 0, 0, 0.0
+    for action, (motion, _) in zip(actions, director.play(where.home, actions, state), strict=True):
+        found, told = outcome(action, Kinematics.of(motion)), physics_of(motion) or {"resets": 0, "rewinds": 0}
+        own = not told["resets"] and shares(motion) in ({}, {backend: 1.0})
+        failed, failed_any = failed or not (found.reached and own), failed_any or not (found.reached_any and own)
         if failed and not fault:
-            fault = motion.reason or f"keyframe {action.keyframe}: “{action.caption}” was not held"
+            fault = _why(action, motion, found.reached)
+        resets, rewinds, seconds = resets + told["resets"], rewinds + told["rewinds"], seconds + motion.duration
         if action.skill in INTERACTIONS:
             steps, steps_any = steps + (not failed), steps_any + (not failed_any)
             errors += [] if found.error is None else [found.error]
     count = sum(action.skill in INTERACTIONS for action in actions)
-    return ScriptResult(trial, count, steps, steps_any, tuple(errors), fault)
+    return ScriptResult(trial, count, steps, steps_any, tuple(errors), fault, resets, rewinds, round(seconds, 2))
+
+
+def _why(action: Action, motion: Motion, reached: bool) -> str:
+    """Why a keyframe counts as not done."""
+    if motion.reason:
+        return motion.reason
+    told = ["was not held"] if not reached else [note.words for note in motion.notes]
+    others = [phase.fallback for phase in motion.phases if phase.fallback]
+    return f"keyframe {action.keyframe}: “{action.caption}” " + "; ".join(dict.fromkeys([*told, *others]))
 
 
 @cache
@@ -179,7 +221,7 @@ def _joined(interactions: Sequence[Placed]) -> Iterator[Placed]:
 
 
 def sum_up_scripts(results: Sequence[ScriptResult], seed: int = 0) -> list[ScriptFigure]:
-    """Every figure of every level; intervals draw rooms and seeds anew."""
+    """Every figure of every level; intervals are Wilson's for shares of scripts, else draw rooms and seeds anew."""
     figures = []
     for name, of in _FIGURES.items():
         for level in LEVELS:
@@ -187,11 +229,17 @@ def sum_up_scripts(results: Sequence[ScriptResult], seed: int = 0) -> list[Scrip
             pairs = np.array([of(one) for one in some], dtype=np.float64).reshape(-1, 2)
             if not pairs[:, 1].sum():
                 continue
-            drawn = pairs[np.random.default_rng(seed).integers(len(pairs), size=(RESAMPLES, len(pairs)))].sum(axis=1)
-            low, high = np.quantile(drawn[:, 0] / np.maximum(drawn[:, 1], 1.0), [0.025, 0.975])
+            low, high = wilson(pairs[:, 0]) if name in _SHARES else _drawn(pairs, seed)
             total = pairs.sum(axis=0)
-            figures.append(ScriptFigure(name, level, float(total[0] / total[1]), float(low), float(high)))
+            figures.append(ScriptFigure(name, level, float(total[0] / total[1]), low, high))
     return figures
+
+
+def _drawn(pairs: Array, seed: int) -> tuple[float, float]:
+    """Of the ratio of sums (N, 2), by drawing anew."""
+    drawn = pairs[np.random.default_rng(seed).integers(len(pairs), size=(RESAMPLES, len(pairs)))].sum(axis=1)
+    low, high = np.quantile(drawn[:, 0] / np.maximum(drawn[:, 1], 1.0), [0.025, 0.975])
+    return float(low), float(high)
 
 
 _FIGURES: Final[Mapping[str, Callable[[ScriptResult], tuple[float, float]]]] = {
@@ -203,3 +251,5 @@ _FIGURES: Final[Mapping[str, Callable[[ScriptResult], tuple[float, float]]]] = {
     "plan_length": lambda one: (one.interactions, 1),
 }
 """Sum and count that each script adds to a mean."""
+_SHARES: Final = ("script_success", "script_success_any")
+"""Of scripts: their interval is Wilson's."""

@@ -12,7 +12,7 @@ from motion_backend.body.zero_moment import GRAVITY
 from motion_backend.physics.contact_forces import Pressure
 from motion_backend.physics.engine import engine
 from motion_backend.physics.mjcf_character import NU, mass_of
-from motion_backend.physics.mpc import SLIDING, Controller, Moment, moment_of
+from motion_backend.physics.mpc import SLIDING, Controller, Effort, Moment, moment_of
 from motion_backend.physics.physics_options import PhysicsOptions, give_physics
 from motion_backend.physics.reference import Plan
 from motion_backend.physics.task import plan_of
@@ -102,6 +102,32 @@ def test_a_fall_is_gone_back_from_three_times_and_then_counted(monkeypatch: pyte
     assert done.resets == [30]
     assert len(done.moments) == 61
     assert len(set(map(str, efforts))) == 4
+
+
+@pytest.mark.parametrize(("off", "mends", "rewinds"), [(0.05, True, 0), (0.2, True, 1), (0.2, False, 3)])
+def test_what_would_fall_in_the_next_part_is_gone_back_for_in_this_one(
+    monkeypatch: pytest.MonkeyPatch, off: float, mends: bool, rewinds: int
+) -> None:
+    tracker, frames = tracker_of(plan_of(walk())), 40
+
+    def topples(_self: Tracker, done: Tracked, effort: Effort, _data: object, _reader: object, left: int) -> None:
+        """A body that leans at the end of a part, and falls if it goes on like that."""
+        at = len(done.moments)
+        moment = moment_of(tracker.reference, at)
+        if at >= frames and not (mends and effort != EFFORTS[0]):
+            moment.state.qpos[0] += off if at == frames else 1.0
+        assert left == (frames + 24 if at > frames else frames) - (at - 1)
+        done.moments.append(moment)
+        done.pressures.append(Pressure())
+        done.ahead = np.full((1, NU), float(at))
+
+    monkeypatch.setattr(Tracker, "_window", topples)
+    done = tracker.track(moment_of(tracker.reference, 0), np.zeros((0, NU)), frames)
+    assert (len(done.moments), len(done.pressures)) == (frames + 1, frames + 1)
+    assert (len(done.rewinds), done.resets) == (rewinds, [])
+    assert done.ahead[0, 0] == frames, "what comes next begins with the controls that this part left"
+    away_at_end = abs(done.moments[-1].state.qpos[0] - tracker.reference.qpos[frames][0])
+    assert away_at_end == pytest.approx(0.0 if mends and rewinds else off)
 
 
 def test_a_plan_that_jumps_or_is_not_finite_is_known_by_the_frame() -> None:
