@@ -82,6 +82,7 @@ def stride_of(history: History, skeleton: Skeleton, style: Walk, rest: Array) ->
         tiptoe=np.zeros(2),
         spread=np.zeros(2),
         arms_onward=None,
+        shift=np.zeros((len(history.root_positions), 3)),
         rest=np.concatenate([place[None], rest]),
     )
 
