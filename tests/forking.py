@@ -21,6 +21,8 @@ HEAVY = (
         "planner_service.output.story_export",
     ),
     *("planner_service.output.storyboard", "matplotlib.figure", "scipy.ndimage", "motion_backend.procedural.backend"),
+    *(f"planner_service.cli.{command}" for command in ("story", "scripts", "layouts")),
+    *("planner_service.api.layouts.views", "scene_graphs.loaders.mesh_scene", "motion_backend.rendering.surface_light"),
 )
 """What commands load when they first use it."""
 

@@ -20,6 +20,8 @@ PATIENCE = 240.0
 """Seconds for anything that has to happen, on a machine that does much else."""
 SHORT = "A tired woman comes home and falls asleep on the sofa."
 """A theme whose story is quickly made."""
+LOOK = 0.05
+"""Seconds between two looks at a story that is being made: every answer takes time from its worker."""
 ENDED = ("succeeded", "failed", "cancelled")
 
 
@@ -119,5 +121,17 @@ def finished(client: httpx.Client, story_id: str, patience: float = PATIENCE) ->
             continue
         if story["state"] in ENDED:
             return story
-        time.sleep(0.2)  # every answer costs the service some of the time that its worker wants
+        time.sleep(0.2)
     raise AssertionError(f"{story_id} is still {story['state']}, {story['stage']} {story['progress']}")
+
+
+def begun(client: httpx.Client, story_id: str) -> dict[str, Any]:
+    """The story, once its first frames can be had."""
+    deadline = time.monotonic() + PATIENCE
+    while time.monotonic() < deadline:
+        story: dict[str, Any] = client.get(f"/v1/stories/{story_id}").raise_for_status().json()
+        if story["motion"]["frames"]:
+            return story
+        assert story["state"] not in ENDED, story["error"]
+        time.sleep(LOOK)
+    raise AssertionError(f"{story_id} has no frames yet, {story['stage']} {story['progress']}")

