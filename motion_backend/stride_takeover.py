@@ -28,6 +28,8 @@ ARMS_HALF_LIFE: Final = 0.2
 """The same of arms, where those of two bodies may be half a metre apart: in less they are flung."""
 STEP_ON: Final = 1.5
 """Steps from where a body is, as a foot of it comes down, to where the other one will."""
+LONGEST: Final = 0.52
+"""Metres of a step by which that is reckoned at most: a body that is about to slow down would sink between its feet."""
 WIDEST: Final = 0.09
 """Metres that a foot lands beside the way at most."""
 _SIDES: Final = ("left", "right")
@@ -82,7 +84,7 @@ def stride_of(history: History, skeleton: Skeleton, style: Walk, rest: Array) ->
         tiptoe=np.zeros(2),
         spread=np.zeros(2),
         arms_onward=None,
-        shift=np.zeros((len(history.root_positions), 3)),
+        shift=np.zeros((0, 3)),
         rest=np.concatenate([place[None], rest]),
     )
 
@@ -92,9 +94,11 @@ def _landing(way: Array, ankles: Array, index: int, gap: float) -> tuple[Array, 
 
     The body is between its feet now, and half a step behind the foot when that lands: a step and a half on from here.
     """
+    step = min(gap, LONGEST)
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(way, axis=0), axis=1))])
     place, before = (
-        np.array([np.interp(at, arc, way[:, axis]) for axis in (0, 1)]) for at in (STEP_ON * gap, (STEP_ON - 0.5) * gap)
+        np.array([np.interp(at, arc, way[:, axis]) for axis in (0, 1)])
+        for at in (STEP_ON * step, (STEP_ON - 0.5) * step)
     )
     along = rotations.normalize(place - before)
     if not along.any():

@@ -79,7 +79,8 @@ class ProceduralBackend:
         left, right = (Hold(**hold) if hold else None for hold in memory.get("holds", (None, None)))
         pose = Pose.from_lists(memory["pose"]) if memory else pose_of(state.history, skeleton)
         tail, stride = memory.get("tail"), Stride.from_lists(memory["stride"]) if memory.get("stride") else None
-        before = Before.of(state.history, np.zeros((HISTORY, 3)) if stride is None else stride.shift, skeleton)
+        still = np.zeros((HISTORY if memory else 0, 3))
+        before = Before.of(state.history, still if stride is None else stride.shift, skeleton)
         body = Body(
             scene=scene_of(home),
             skeleton=skeleton,
@@ -95,7 +96,8 @@ class ProceduralBackend:
             upcoming=tuple(upcoming),
         )
         # A walk goes on as it was planned: where its weight goes then is found after it.
-        body.pose = replace(body.pose, pelvis=body.pose.pelvis - before.shift[-1])
+        if len(before.shift):
+            body.pose = replace(body.pose, pelvis=body.pose.pelvis - before.shift[-1])
         return body
 
 

@@ -66,7 +66,10 @@ class Before(NamedTuple):
 
     @staticmethod
     def of(history: History, shift: Array, skeleton: Skeleton) -> Before:
-        """From the frames that were shown, of the last of which it is known how far they were shifted."""
+        """From the frames that were shown, of the last of which it is known how far they were shifted: of none that
+        another body made, whose pelvis goes otherwise."""
+        if not len(shift):
+            return NOTHING
         last = slice(-len(shift), None)
         root, local = history.root_positions[last], history.local_rotations[last]
         positions, world = skeleton.forward_kinematics(root, local)
